@@ -1,0 +1,88 @@
+// What the program says about the user's text, and its two printed forms: text for people, JSON for
+// editors. One table of codes (codes.def). Knows nothing of the language or of any phase.
+#pragma once
+
+#include "base/source.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fathom {
+
+enum class Severity { Error, Warning, Note };
+
+// One enumerator per row of codes.def: `lipschitz-unbounded` is Code::LipschitzUnbounded.
+enum class Code {
+#define FATHOM_CODE(name, text, severity, summary) name,
+#include "base/codes.def"
+#undef FATHOM_CODE
+};
+
+std::string_view code_name(Code code);                 // "unknown-name"
+std::string_view code_summary(Code code);              // one line, for `fathom explain` and the docs
+Severity code_severity(Code code);                     // the severity a code has unless said
+std::optional<Code> code_by_name(std::string_view name);
+std::vector<Code> all_codes();
+
+struct Label {
+    Span span;
+    std::string message; // may be empty for the primary label
+};
+
+// One replacement of text; `span` may be empty (an insertion).
+struct Edit {
+    Span span;
+    std::string replacement;
+};
+
+struct Fix {
+    std::string message; // printed after `help: `
+    std::vector<Edit> edits; // empty where the fix is not mechanical
+};
+
+struct Diagnostic {
+    Code code{};
+    Severity severity = Severity::Error;
+    std::string message; // lower case, no full stop, code in backticks
+    Label primary;       // the narrowest wrong thing; a span without a source is "no place"
+    std::vector<Label> related;
+    std::vector<std::string> notes;
+    std::optional<Fix> fix;
+
+    Diagnostic &label(Span span, std::string text) &;
+    Diagnostic &note(std::string text) &;
+    Diagnostic &help(std::string text, std::vector<Edit> edits = {}) &;
+};
+
+// Collects; drops exact repeats (same code, place and message); keeps at most `limit` of them and
+// counts the rest, so that a hostile file cannot fill the memory.
+class Diagnostics {
+  public:
+    // Adds one with the code's own severity and hands it back to be refined at once; the reference is good until
+    // the next add.
+    Diagnostic &add(Code code, Span primary, std::string message);
+    void add(Diagnostic diagnostic);
+    bool has_errors() const { return errors_ > 0; }
+    std::size_t errors() const { return errors_; }
+    std::size_t warnings() const;
+    std::size_t dropped() const { return dropped_; }
+    const std::vector<Diagnostic> &items() const { return items_; }
+    std::vector<Diagnostic> sorted() const; // by place
+
+  private:
+    std::vector<Diagnostic> items_;
+    Diagnostic overflow_;
+    std::size_t errors_ = 0;
+    std::size_t dropped_ = 0;
+};
+
+// `FILE:LINE:COL: error[code]: message`, then the source line with the place underlined, the
+// related labels, notes and the help. `color` adds ANSI colours.
+std::string to_text(const Diagnostic &diagnostic, const Sources &sources, bool color);
+
+// The JSON object of cli.md, without a trailing line end.
+std::string to_json(const Diagnostic &diagnostic, const Sources &sources);
+
+} // namespace fathom

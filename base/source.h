@@ -1,0 +1,53 @@
+// Source texts and places in them. A place is a pair of byte offsets; lines and columns exist only
+// when something is printed. Opens no file: the driver reads, everything else is given text.
+#pragma once
+
+#include "base/ids.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fathom {
+
+struct Source {
+    std::string name; // as the user wrote it on the command line or in `import`; printed as is
+    std::string text; // UTF-8, as read
+    std::vector<std::uint32_t> line_starts; // byte offsets; filled by Sources::add
+};
+using SourceId = Id<Source>;
+
+// Bytes [begin, end) of one source.
+struct Span {
+    SourceId source;
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+
+    friend auto operator<=>(const Span &, const Span &) = default;
+};
+
+// The smallest span that holds both; both lie in one source.
+Span join(Span a, Span b);
+
+// Lines and columns count from 1; columns count Unicode code points.
+struct Position {
+    std::uint32_t line = 1;
+    std::uint32_t column = 1;
+};
+
+class Sources {
+  public:
+    SourceId add(std::string name, std::string text);
+    const Source &operator[](SourceId id) const { return sources_[id]; }
+    std::size_t size() const { return sources_.size(); }
+
+  private:
+    Arena<Source> sources_;
+};
+
+Position position(const Source &source, std::uint32_t offset);
+std::string_view line_text(const Source &source, std::uint32_t line); // without its line end
+std::string_view text(const Sources &sources, Span span);
+
+} // namespace fathom

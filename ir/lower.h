@@ -1,0 +1,29 @@
+// Shapes to functions. The one place that knows what each ShapeKind computes; after it a back end sees only
+// expressions, functions and folds.
+//
+// Three readings of a shape (semantics.md, 10 and 11); looks (normals, occlusion, |f|/|grad f|) use the marched one,
+// normalised by its gradient:
+//   raw      the field itself, which offsets, blends and displacements consume
+//   marched  through the outermost min/max tree (Union, Intersection, Complement, Paint, rigid and uniformly scaled Map,
+//            Repeat, Many, Library without claims) down to its leaves, each divided there by its own bound
+//            (facts[s].lipschitz); Within answers by its region; `guard`ed shapes by max with their box's distance
+//   hit      marched, carrying which surface decides
+// A shape asked at more than one point becomes a function of its own (named after its library call or place); so
+// the lowered scene is linear in the shapes. Complete only after the analysis has filled `facts`.
+#pragma once
+
+#include "ir/scene.h"
+
+namespace fathom::ir {
+
+void lower(Scene &scene);
+
+// Signed distance of a region, exact, negative inside; and the point of the convex part nearest to p (p itself inside).
+NodeId region_distance(Graph &graph, const Region &region, NodeId p);
+NodeId region_nearest(Graph &graph, const Region &region, NodeId p);
+
+// The rules that a scene obeys on its way to a back end (argument order, types, payloads in range, no free variables, no
+// Point in functions …). Returns the first broken rule in words, or an empty string. For assertions and tests.
+std::string verify(const Scene &scene);
+
+} // namespace fathom::ir

@@ -1,0 +1,107 @@
+// A whole scene, as the checker hands it to the back ends: the shapes, what was proved of each, and the lowered
+// functions that evaluators run. A verified scene always emits, and what is emitted always compiles.
+#pragma once
+
+#include "ir/shape.h"
+
+namespace fathom::ir {
+
+// How many copies of a repetition have to be evaluated, per axis, for a valid and continuous bound.
+struct RepeatPlan {
+    std::array<int, 3> neighbors{0, 0, 0}; // copies evaluated along an axis: 0 does not repeat, 1 the own cell, 2 the
+                                           // nearer neighbour too, 3 both neighbours, 2n+1 more
+    bool guard = false;                    // also the distance to the slab of all cells not evaluated
+    Box copy;                              // the child's bounds, for the guard
+};
+
+// What the analysis proved of one shape, in the shape's own space.
+struct ShapeFact {
+    FieldKind kind = FieldKind::Bound;
+    ProofStatus status = ProofStatus::Proved;
+    NodeId lipschitz;            // of the raw field: a float expression in params and time alone; >= the true constant
+    double lipschitz_sup = 1;    // its largest value over all params and times; infinity where the proof failed
+    Box bounds = Box::everything(); // holds the solid, for all params and times
+    std::array<bool, 3> symmetric{};
+    std::array<double, 3> lever{}; // sup |(p x grad f)_axis| over space; infinity: unknown
+    bool guard = false;          // when marched, take the max with the distance to `bounds` (cheap far away)
+    RepeatPlan repeat;
+};
+
+struct Param {
+    std::string name, label;
+    Type type = Type::Float; // Bool, Int, Float, Vec2..Vec4; a colour is a Vec3 with is_color
+    bool is_color = false;
+    bool has_range = false;
+    bool structural = false; // a change rebuilds the scene; else it is a uniform
+    std::array<double, 4> value{}, initial{}, lo{}, hi{};
+    Span origin;
+};
+
+struct Light {
+    bool directional = true;
+    NodeId position;  // vec3: towards the sun (unit), or the light's place
+    NodeId color;     // vec3, linear, times the intensity
+};
+
+struct Lighting {
+    NodeId ambient;           // vec3, linear
+    NodeId ambient_occlusion; // 0 none … 1 full strength
+    NodeId shadow_darkness;   // 0 none … 1 black
+    NodeId soft_shadows;      // half the light's angular size, radians; 0 is hard
+    NodeId specular_intensity;
+    bool skip = false;        // `Skip Shadows & Shading`
+};
+
+struct Camera {
+    NodeId at, look_at;       // vec3
+    NodeId fov;               // vertical, radians
+    bool orthographic = false;
+    bool given = false;       // false: framed by the rule of semantics.md, 23, from `bounds`
+};
+
+struct RenderSettings {
+    int max_steps = 256;
+    double epsilon = 5e-4;    // hit tolerance at distance 1, grows with the distance
+    double far = 0;           // 0: by the rule of semantics.md, 23
+    double time_end = 3600;   // the span of time the proof covers starts at 0
+};
+
+// How a painted point looks: the material as a function of (point: vec3, normal: vec3, extra: vec4).
+struct Surface {
+    NodeId point, normal, extra; // Vars
+    NodeId diffuse, specular, exponent, emission;
+};
+
+struct TopLevel {
+    ShapeId shape;
+    Span span;
+};
+
+struct ImageData { std::string name; int width = 0, height = 0; std::vector<float> rgba; }; // linear
+struct GridData { std::string name; std::array<int, 3> size{}; std::vector<float> values; };
+
+struct Scene {
+    Graph graph;
+    Shapes shapes;
+    ShapeId root;                    // the union of the top-level shapes
+    std::vector<TopLevel> top_level;
+    std::vector<ShapeFact> facts;    // by ShapeId; filled by the analysis
+    std::vector<Param> params;
+    std::vector<Light> lights;
+    Lighting lighting;
+    Camera camera;
+    RenderSettings render;
+    NodeId background;               // vec3, linear, an expression in Direction
+    std::vector<ImageData> images;
+    std::vector<GridData> grids;
+
+    // Filled by ir::lower.
+    FunctionId distance;             // (vec3) -> float: marched: a step of its length never passes a surface
+    FunctionId hit;                  // (vec3) -> Hit: the same distance, with the surface that decides
+    std::vector<Surface> surfaces;   // by a hit's paint; the last is that of what nobody painted
+    FunctionId background_function;  // (vec3 direction) -> vec3
+    Box bounds;                      // of the finite top-level parts; empty when there are none
+    double far = 0;                  // a far limit for rays
+};
+
+} // namespace fathom::ir

@@ -1,0 +1,157 @@
+// The syntax tree: what the user wrote, as a value, with no semantic facts (those live beside it in
+// the checker's side tables, keyed by id). Knows nothing of types, names' meanings or other files.
+#pragma once
+
+#include "base/ids.h"
+#include "base/source.h"
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace fathom::lang {
+
+struct Expr;
+struct Block;
+struct Function;
+using ExprId = Id<Expr>;
+using BlockId = Id<Block>;
+using FunctionId = Id<Function>;
+
+struct Identifier {
+    std::string text;
+    Span span;
+};
+
+// -- types as written ----------------------------------------------------------------------------
+
+// `float`, `shape<1.5>`, `[vec3]`, `(vec3, int) -> float`.
+struct TypeExpr {
+    enum class Kind { Name, List, Function };
+    Kind kind = Kind::Name;
+    Span span;
+    std::string name;                // Name: "float", "shape", …
+    std::optional<double> lipschitz; // Name, `shape<L>` only
+    std::vector<TypeExpr> items;     // List: one; Function: the parameters, then the result
+};
+
+// -- expressions ---------------------------------------------------------------------------------
+
+enum class UnaryOp { Neg, Not };
+enum class BinaryOp {
+    Union, Intersection, Or, And, Equal, NotEqual, Less, LessEqual, Greater, GreaterEqual,
+    Add, Sub, Mul, Div, Mod, Pow
+};
+
+struct Poison {}; // a place where the parser already reported an error
+struct Number {
+    double value = 0; // in radians where an angle's unit stood behind it
+    bool is_int = false;
+    std::string unit; // "", "deg", "rad" or "turn"
+};
+struct String { std::string value; };
+struct Bool { bool value = false; };
+struct Color { double rgba[4] = {0, 0, 0, 1}; }; // sRGB, 0..1, as in the text
+struct Name { std::string text; };
+struct List { std::vector<ExprId> items; };      // [a, b, c]
+struct Comprehension { BlockId body; };          // [for … { … }] or [if … { … }]: a contributing body
+struct Range { ExprId first, last; bool inclusive = false; };
+struct Unary { UnaryOp op; ExprId operand; };
+// `a + b - c` is one node: operands a, b, c and ops +, -. All ops of a node have one precedence.
+// Comparisons and `^` have exactly two operands.
+struct Binary { std::vector<ExprId> operands; std::vector<BinaryOp> ops; std::vector<Span> op_spans; };
+struct Argument {
+    std::optional<Identifier> name;
+    ExprId value;
+};
+struct Call {
+    ExprId callee; // a Member for `a.f(b)`
+    std::vector<Argument> arguments;
+    std::optional<BlockId> trailing; // `union { … }`: a contributing block
+    bool has_parentheses = true;     // false for `union { … }`
+};
+struct Index { ExprId object, index; };
+struct Member { ExprId object; Identifier name; };
+struct Lambda { FunctionId function; };
+struct IfBranch { ExprId condition; BlockId body; };
+struct If {
+    std::vector<IfBranch> branches; // `if`, then each `else if`
+    std::optional<BlockId> otherwise;
+};
+struct BlockExpr { BlockId block; }; // a block where an expression stands: a lambda's `{ … }` body
+
+using ExprKind = std::variant<Poison, Number, String, Bool, Color, Name, List, Comprehension, Range,
+                              Unary, Binary, Call, Index, Member, Lambda, If, BlockExpr>;
+
+struct Expr {
+    ExprKind kind;
+    Span span; // the whole expression, without surrounding parentheses
+    bool parenthesized = false;
+};
+
+// -- statements ----------------------------------------------------------------------------------
+
+struct Parameter {
+    Identifier name;
+    std::optional<TypeExpr> type;
+    std::optional<ExprId> default_value;
+};
+
+// A `fn` or a lambda. The body is always a block; `fn f(x) = e` and `x => e` give one of a single ExprStmt.
+struct Function {
+    std::optional<Identifier> name; // none for a lambda
+    std::vector<Parameter> parameters;
+    std::optional<TypeExpr> result;
+    BlockId body;
+    Span span;      // all of it
+    Span head;      // `fn name(…) -> type`, or the lambda's parameters
+    bool body_is_expression = false; // written with `=` or without braces
+    std::string doc; // the `///` comment lines directly above, without the slashes
+};
+
+struct ExprStmt { ExprId value; };
+struct Let { Identifier name; std::optional<TypeExpr> type; ExprId value; std::string doc; };
+struct Var { Identifier name; std::optional<TypeExpr> type; ExprId value; };
+// `target op= value`; op is empty for `=`. The target is a name followed by members and indices.
+struct Assign { ExprId target; std::optional<BinaryOp> op; ExprId value; };
+struct FunctionDecl { FunctionId function; };
+// `param name = value in low..high "label"`; the range's ends are included.
+struct Param {
+    Identifier name;
+    std::optional<TypeExpr> type;
+    ExprId value;
+    std::optional<ExprId> low, high;
+    std::optional<std::string> label;
+};
+struct Import { std::string path; Span path_span; std::optional<Identifier> as; };
+struct For { Identifier variable; ExprId sequence; BlockId body; };
+struct While { ExprId condition; std::optional<ExprId> limit; BlockId body; };
+struct Break {};
+struct Return { std::optional<ExprId> value; };
+struct Bad {}; // a statement that could not be read; already reported
+
+using StmtKind = std::variant<Bad, ExprStmt, Let, Var, Assign, FunctionDecl, Param, Import, For, While,
+                              Break, Return>;
+struct Stmt {
+    StmtKind kind;
+    Span span;
+};
+
+// The statements between braces, or of a whole file. Whether it *contributes* (semantics.md, 3) depends on
+// where it stands: a file, a trailing block and a comprehension do, and so do the bodies of `for` and `if`
+// inside them.
+struct Block {
+    std::vector<Stmt> stmts;
+    Span span;
+};
+
+struct Ast {
+    SourceId source;
+    Arena<Expr> exprs;
+    Arena<Block> blocks;
+    Arena<Function> functions;
+    BlockId root; // the file
+};
+
+} // namespace fathom::lang

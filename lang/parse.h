@@ -1,0 +1,17 @@
+// Text to tree: the grammar of language.md with the decisions of semantics.md 1 to 8.
+// Knows nothing of types or other files. PEGTL is seen in parse.cpp alone.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "lang/ast.h"
+
+namespace fathom::lang {
+
+// Never fails: what cannot be read is reported and becomes Poison or Bad, and reading goes on at the next
+// statement. Time and memory are linear in the text.
+Ast parse(const Sources &sources, SourceId source, Diagnostics &diagnostics);
+
+// The names that the grammar keeps for itself (`let`, `fn`, `for`, …).
+const std::vector<std::string> &keywords();
+
+} // namespace fathom::lang
