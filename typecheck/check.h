@@ -1,0 +1,68 @@
+// Ast to ir::Scene: names, types, stages, and the evaluation of everything that is scene time. The proof is a step of
+// its own (typecheck/proof). Opens no file: what a scene imports comes through the `Loader` that the driver gives.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "ir/scene.h"
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace fathom::typecheck {
+
+struct LoadedText {
+    std::string identity; // equal for the same file however it was named; handed back as `from`
+    std::string name;     // as printed in diagnostics
+    std::string text;
+};
+struct LoadError {
+    enum class Reason { NotFound, Outside, Unreadable };
+    Reason reason = Reason::NotFound;
+    std::string why; // for people: "no such file", "is not a PNG or JPEG image", …
+};
+
+// What a scene may ask of the world; paths are as the user wrote them, `from` the identity of the file that asks.
+struct Loader {
+    std::function<std::variant<LoadedText, LoadError>(const std::string &path, const std::string &from)> text;
+    std::function<std::variant<ir::ImageData, LoadError>(const std::string &path, const std::string &from)> image;
+    std::function<std::variant<ir::GridData, LoadError>(const std::string &path, const std::string &from)> grid;
+};
+
+// One embedded file of the standard library. Prelude files are visible everywhere, others by `import "name"`.
+struct LibraryFile {
+    std::string_view name; // "solids.sdf"; of a module "dfmodel"
+    std::string_view text;
+    bool prelude = true;
+};
+
+// `-D name=text`, or a slider's value as text: an expression of scene time.
+struct Override {
+    std::string name, text;
+};
+
+// For `fathom doc` and editors: a public name of the embedded library.
+struct LibraryEntry {
+    std::string name, signature, doc, file;
+};
+
+struct Options {
+    std::vector<Override> overrides;
+};
+
+struct Checked {
+    ir::Scene scene;                       // poisoned where diagnostics say so; do not prove it then
+    std::vector<std::string> usage_errors; // overrides that name no param or are out of range: exit 2
+    std::size_t evaluations = 0;           // counted work of scene time
+};
+
+// `root` is already in `sources`; imported files are added to it. Reports every independent error.
+Checked check(Sources &sources, SourceId root, const std::string &root_identity,
+              const std::vector<LibraryFile> &library, const Loader &loader, const Options &options,
+              Diagnostics &diagnostics);
+
+std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &library);
+
+} // namespace fathom::typecheck
