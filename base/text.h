@@ -1,6 +1,9 @@
-// Numbers to and from text without a locale, and small text helpers that several folders need.
+// Numbers to and from text without a locale, and the small text helpers that several folders need.
+// Knows nothing of sources or diagnostics.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,5 +14,22 @@ std::string format_shortest(double value); // shortest form that reads back equa
 std::string format_shortest(float value);
 std::optional<double> parse_number(std::string_view text); // the whole text, or nothing
 std::string json_string(std::string_view text);            // quoted and escaped; bad UTF-8 replaced
+
+// The code point that begins at `offset` (which must lie inside the text). What is not UTF-8 is one
+// U+FFFD a byte, with `valid` false, so that reading always moves on.
+struct CodePoint {
+    std::uint32_t value = 0;
+    std::uint32_t length = 1; // bytes
+    bool valid = true;
+};
+CodePoint decode_utf8(std::string_view text, std::size_t offset);
+void append_utf8(std::string &out, std::uint32_t code_point);
+
+// Columns that a code point takes on a terminal: 0 (combining), 1 or 2 (East Asian wide, emoji).
+int display_width(std::uint32_t code_point);
+
+// The text with everything that could disturb a terminal (control characters, bidirectional overrides, bad UTF-8)
+// replaced by U+FFFD, and tabs and line ends by a space.
+std::string printable(std::string_view text);
 
 } // namespace fathom

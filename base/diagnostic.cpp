@@ -1,0 +1,112 @@
+// The table of codes and the collection of diagnostics. How they are printed: diagnostic_text.cpp
+// and diagnostic_json.cpp.
+#include "base/diagnostic.h"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+namespace fathom {
+
+namespace {
+
+struct CodeRow {
+    Code code;
+    std::string_view name;
+    Severity severity;
+    std::string_view summary;
+};
+
+constexpr std::array code_rows = {
+#define FATHOM_CODE(name, text, severity, summary)                                                 \
+    CodeRow{Code::name, text, Severity::severity, summary},
+#include "base/codes.def"
+#undef FATHOM_CODE
+};
+
+const CodeRow &row_of(Code code) { return code_rows[static_cast<std::size_t>(code)]; }
+
+// Nobody reads more; and comparing with all of them for repeats stays cheap.
+constexpr std::size_t limit = 200;
+
+} // namespace
+
+std::string_view code_name(Code code) { return row_of(code).name; }
+std::string_view code_summary(Code code) { return row_of(code).summary; }
+Severity code_severity(Code code) { return row_of(code).severity; }
+
+std::optional<Code> code_by_name(std::string_view name) {
+    for (const CodeRow &row : code_rows)
+        if (row.name == name) return row.code;
+    return std::nullopt;
+}
+
+std::vector<Code> all_codes() {
+    std::vector<Code> codes;
+    for (const CodeRow &row : code_rows) codes.push_back(row.code);
+    return codes;
+}
+
+Diagnostic &Diagnostic::label(Span span, std::string text) & {
+    related.push_back({span, std::move(text)});
+    return *this;
+}
+
+Diagnostic &Diagnostic::note(std::string text) & {
+    notes.push_back(std::move(text));
+    return *this;
+}
+
+Diagnostic &Diagnostic::help(std::string text, std::vector<Edit> edits) & {
+    fix = Fix{std::move(text), std::move(edits)};
+    return *this;
+}
+
+Diagnostic &Diagnostics::add(Code code, Span primary, std::string message) {
+    Diagnostic diagnostic{code, code_severity(code), std::move(message), {primary, {}}, {}, {}, {}};
+    overflow_ = diagnostic; // where it is not kept: a place for refinements that nobody will see
+    Diagnostic *kept = keep(std::move(diagnostic));
+    return kept ? *kept : overflow_;
+}
+
+void Diagnostics::add(Diagnostic diagnostic) { keep(std::move(diagnostic)); }
+
+Diagnostic *Diagnostics::keep(Diagnostic diagnostic) {
+    const auto same = [&](const Diagnostic &d) {
+        return d.primary.span == diagnostic.primary.span && d.code == diagnostic.code &&
+               d.message == diagnostic.message;
+    };
+    if (std::any_of(items_.begin(), items_.end(), same)) return nullptr;
+    const bool error = diagnostic.severity == Severity::Error;
+    errors_ += error;
+    if (items_.size() >= limit) {
+        ++dropped_;
+        // An error is worth more than a remark that holds its place.
+        const auto lesser = std::find_if(items_.begin(), items_.end(), [](const Diagnostic &d) {
+            return d.severity != Severity::Error;
+        });
+        if (!error || lesser == items_.end()) return nullptr;
+        items_.erase(lesser);
+    }
+    items_.push_back(std::move(diagnostic));
+    return &items_.back();
+}
+
+std::size_t Diagnostics::warnings() const {
+    return static_cast<std::size_t>(
+        std::count_if(items_.begin(), items_.end(),
+                      [](const Diagnostic &d) { return d.severity == Severity::Warning; }));
+}
+
+std::vector<Diagnostic> Diagnostics::sorted() const {
+    std::vector<Diagnostic> sorted = items_;
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic &a, const Diagnostic &b) {
+        const auto key = [](const Diagnostic &d) {
+            return std::tuple(d.primary.span.source.index, d.primary.span.begin, d.severity);
+        };
+        return key(a) < key(b);
+    });
+    return sorted;
+}
+
+} // namespace fathom

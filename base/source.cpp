@@ -1,0 +1,55 @@
+// Source texts: where lines begin, and lines and columns of byte offsets.
+#include "base/source.h"
+
+#include "base/text.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace fathom {
+
+Span join(Span a, Span b) {
+    assert(a.source == b.source);
+    return {a.source, std::min(a.begin, b.begin), std::max(a.end, b.end)};
+}
+
+SourceId Sources::add(std::string name, std::string text) {
+    Source source{std::move(name), std::move(text), {0}};
+    for (std::size_t i = source.text.find('\n'); i != std::string::npos;
+         i = source.text.find('\n', i + 1))
+        source.line_starts.push_back(static_cast<std::uint32_t>(i + 1));
+    return sources_.add(std::move(source));
+}
+
+Position position(const Source &source, std::uint32_t offset) {
+    offset = std::min(offset, static_cast<std::uint32_t>(source.text.size()));
+    const auto &starts = source.line_starts;
+    const auto after = std::upper_bound(starts.begin(), starts.end(), offset);
+    const auto line = static_cast<std::uint32_t>(after - starts.begin()); // counts from 1
+    std::uint32_t column = 1;
+    for (std::uint32_t i = starts[line - 1]; i < offset; ++column) {
+        i += decode_utf8(source.text, i).length;
+        if (i > offset) break; // an offset inside a code point belongs to it
+    }
+    return {line, column};
+}
+
+std::string_view line_text(const Source &source, std::uint32_t line) {
+    if (line == 0 || line > source.line_starts.size()) return {};
+    const std::string_view whole = source.text;
+    const std::uint32_t begin = source.line_starts[line - 1];
+    std::size_t end =
+        line < source.line_starts.size() ? source.line_starts[line] - 1 : whole.size();
+    if (end > begin && whole[end - 1] == '\r') --end;
+    return whole.substr(begin, end - begin);
+}
+
+std::string_view text(const Sources &sources, Span span) {
+    if (!span.source) return {};
+    const std::string_view whole = sources[span.source].text;
+    const std::size_t begin = std::min<std::size_t>(span.begin, whole.size());
+    const std::size_t end = std::clamp<std::size_t>(span.end, begin, whole.size());
+    return whole.substr(begin, end - begin);
+}
+
+} // namespace fathom
