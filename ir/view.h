@@ -1,0 +1,69 @@
+// Where a picture is taken from, and the numbers of one frame that the marchers share (look.h says
+// how they are used). Evaluates the scene's closed expressions (params and time only); knows no
+// back end.
+#pragma once
+
+#include "ir/scene.h"
+
+namespace fathom::ir {
+
+using Triple = std::array<double, 3>;
+
+// Right-handed: right x up = -forward. All three unit.
+struct View {
+    Triple origin{}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
+    double extent = 1; // perspective: tan(fov/2); orthographic: half the height of what is seen
+    double focus = 1;  // how far away is what is looked at
+    bool orthographic = false;
+};
+
+// The value of a closed expression (Const, Param, Time and what is made of them) at a time and with
+// the params' present values; column-major, bools and ints as numbers. All zero for an invalid id.
+std::array<double, 16> value_of(const Scene &scene, NodeId id, double time);
+
+// From `position` towards `target`; up is y, or, looking along it, minus z (z when looking up).
+View look_at(Triple position, Triple target, double extent, bool orthographic);
+
+// The scene's camera, or the rule of semantics.md, 23: from [3, 2, 5]'s direction, framing the
+// finite parts' bounding sphere, 45 degrees. `aspect`: width / height.
+View view_of(const Scene &scene, double time, double aspect);
+
+// Frames a sphere from the direction in which a view already looks.
+View frame_sphere(View view, Triple center, double radius, double aspect);
+
+// The ray of a place in the picture, x and y in pixels from the top left (a pixel's middle is at
+// +0.5):
+//   u = (2x/width - 1) * width/height, v = 1 - 2y/height
+//   perspective: origin, normalize(forward + extent*(u*right + v*up))
+//   orthographic: origin + extent*(u*right + v*up), forward
+// Sample k of a pixel stands at this offset in it: k = 0 in the middle, the others by the R2
+// sequence (Roberts 2018: multiples of the plastic number's powers), so that any number of them is
+// spread evenly and more can be added.
+std::array<double, 2> sample_offset(int k);
+
+// What look.h calls by these names, for a picture `height` pixels high.
+struct Frame {
+    double slack = 0, pixel = 0;
+    double tolerance_base = 0, tolerance_slope = 0; // tolerance(t) = base + slope*t
+    double far = 0;    // render.far, or 100 * max(radius, distance from origin to centre)
+    double radius = 1; // of the finite parts' bounding sphere; 1 when there are none
+    Triple center{};
+    bool boxed = false; // every part is finite: rays live between `lo` and `hi` alone (a little
+                        // larger than the bounds)
+    Triple lo{}, hi{};
+    bool steep = false;
+};
+Frame frame_of(const Scene &scene, const View &view, int height);
+
+// Whether any field was divided by a bound above 1, so that a marched distance may be much less
+// than the true one.
+bool steep(const Scene &scene);
+
+// Scene::lights at a time; where there are none, white sun from the upper left behind `view`.
+struct LightValue {
+    bool directional = true;
+    Triple position{}, color{}; // directional: the unit vector towards the light
+};
+std::vector<LightValue> lights_of(const Scene &scene, double time, const View &view);
+
+} // namespace fathom::ir
