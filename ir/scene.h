@@ -94,6 +94,8 @@ struct Scene {
     NodeId background;               // vec3, linear, an expression in Direction
     std::vector<ImageData> images;
     std::vector<GridData> grids;
+    std::vector<std::string> kept;   // given to `dfmodel.keep`, in order: items of a save file that the language has
+                                     // no word for; only save-format reads them
 
     // Filled by ir::lower.
     FunctionId distance;             // (vec3) -> float: marched: a step of its length never passes a surface

@@ -97,6 +97,7 @@ struct Material {
     NodeId specular; // vec3, linear
     NodeId exponent; // float
     NodeId emission; // vec3, linear
+    std::string name{}; // of the `let` that named it, where one did: the save format's name for it
 };
 
 // What may be said of a field (lipschitz.md, 0), best first.
