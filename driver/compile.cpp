@@ -1,0 +1,89 @@
+#include "driver/compile.h"
+
+#include "driver/scene_files.h"
+#include "ir/lower.h"
+#include "typecheck/proof/prove.h"
+
+#include <cassert>
+#include <utility>
+
+namespace fathom::driver {
+
+// Made at build time from stdlib/*.sdf (cmake/embed.cmake).
+const std::vector<std::pair<std::string_view, std::string_view>> &embedded_library();
+
+const std::vector<typecheck::LibraryFile> &standard_library() {
+    static const std::vector<typecheck::LibraryFile> library = [] {
+        std::vector<typecheck::LibraryFile> files;
+        for (auto [name, text] : embedded_library()) {
+            // `dfmodel` is imported by name; all others are there from the start.
+            bool module = name == "dfmodel.sdf";
+            files.push_back({module ? name.substr(0, name.size() - 4) : name, text, !module});
+        }
+        return files;
+    }();
+    return library;
+}
+
+namespace {
+
+void enter(const CompileOptions &options, Phase phase) {
+    if (options.entered) options.entered(phase);
+}
+
+void run_phases(Compilation &out, SceneFiles &files, const std::string &identity, SourceId root,
+                const CompileOptions &options) {
+    enter(options, Phase::Check);
+    typecheck::Checked checked = typecheck::check(out.sources, root, identity, standard_library(), files.loader(),
+                                                  {options.overrides}, out.diagnostics);
+    out.scene = std::move(checked.scene);
+    out.usage_errors = std::move(checked.usage_errors);
+    out.evaluations = checked.evaluations;
+    if (!out.diagnostics.has_errors()) {
+        enter(options, Phase::Prove);
+        typecheck::proof::prove(out.scene, out.diagnostics, {});
+    }
+    if (out.good()) {
+        enter(options, Phase::Lower);
+        ir::lower(out.scene);
+        assert(ir::verify(out.scene).empty());
+    }
+    enter(options, Phase::Done);
+}
+
+} // namespace
+
+Compilation compile_text(std::string name, std::string text, const std::filesystem::path &folder,
+                         const CompileOptions &options) {
+    Compilation out;
+    SceneFiles files(folder, options.include_folders);
+    std::string identity = files.add_root(folder / "-");
+    SourceId root = out.sources.add(std::move(name), std::move(text));
+    run_phases(out, files, identity, root, options);
+    out.files = files.touched();
+    return out;
+}
+
+Compilation compile_file(const std::filesystem::path &file, const CompileOptions &options) {
+    enter(options, Phase::Read);
+    bool standard_input = file == "-";
+    Compilation out;
+    std::string error;
+    SceneFiles files(file.parent_path(), options.include_folders);
+    if (!standard_input) files.touch(file);
+    std::optional<std::string> text =
+        standard_input ? read_standard_input(max_source_bytes, error) : read_file(file, max_source_bytes, error);
+    if (!text) {
+        out.unreadable = error;
+    } else if (standard_input) {
+        return compile_text("<stdin>", std::move(*text), "", options);
+    } else {
+        std::string identity = files.add_root(file);
+        SourceId root = out.sources.add(file.string(), std::move(*text));
+        run_phases(out, files, identity, root, options);
+    }
+    out.files = files.touched();
+    return out;
+}
+
+} // namespace fathom::driver

@@ -1,0 +1,46 @@
+// The one facade over the compiler: a file in, a scene and all that is to be said about it out.
+// Prints nothing and measures nothing; who wants times listens to the phases.
+#pragma once
+
+#include "driver/files.h"
+#include "typecheck/check.h"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace fathom::driver {
+
+enum class Phase { Read, Check, Prove, Lower, Done };
+
+struct CompileOptions {
+    std::vector<std::filesystem::path> include_folders; // -I
+    std::vector<typecheck::Override> overrides;         // -D
+    std::function<void(Phase)> entered;                 // may be empty
+};
+
+struct Compilation {
+    Sources sources;
+    Diagnostics diagnostics;
+    ir::Scene scene;                       // proved and lowered where `good()`, else poisoned
+    std::vector<std::string> usage_errors; // of the overrides: the command line is wrong
+    std::string unreadable;                // why the scene's own file cannot be used, or empty
+    std::map<std::filesystem::path, FileStamp> files; // all that was read or looked for: what to watch
+    std::size_t evaluations = 0;
+
+    bool good() const { return unreadable.empty() && usage_errors.empty() && !diagnostics.has_errors(); }
+};
+
+// `file` as the user wrote it; `-` is standard input, whose imports are those of the current folder.
+Compilation compile_file(const std::filesystem::path &file, const CompileOptions &options);
+
+// Text that is no file (yet): printed as `name`, importing as if it lay in `folder`.
+Compilation compile_text(std::string name, std::string text, const std::filesystem::path &folder,
+                         const CompileOptions &options);
+
+// The embedded standard library.
+const std::vector<typecheck::LibraryFile> &standard_library();
+
+} // namespace fathom::driver

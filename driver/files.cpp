@@ -1,0 +1,169 @@
+#include "driver/files.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace fathom::driver {
+namespace {
+
+// errno in words, without the C library's locale.
+std::string reason(int error) {
+    const char *words = strerrordesc_np(error);
+    std::string text = words ? words : "unknown error";
+    if (text.size() > 1 && text[0] >= 'A' && text[0] <= 'Z' && text[1] >= 'a')
+        text[0] = static_cast<char>(text[0] - 'A' + 'a');
+    return text;
+}
+
+class Descriptor {
+  public:
+    explicit Descriptor(int fd) : fd_(fd) {}
+    Descriptor(const Descriptor &) = delete;
+    Descriptor &operator=(const Descriptor &) = delete;
+    ~Descriptor() {
+        if (fd_ >= 0) ::close(fd_);
+    }
+    int get() const { return fd_; }
+    // Closing is where some file systems report that the disk is full.
+    int close() {
+        int result = ::close(fd_);
+        fd_ = -1;
+        return result == 0 ? 0 : errno;
+    }
+
+  private:
+    int fd_;
+};
+
+// While it lives, an interrupt waits: a temporary file is never left behind by Ctrl-C.
+class HoldInterrupts {
+  public:
+    HoldInterrupts() {
+        sigset_t set;
+        sigemptyset(&set);
+        for (int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaddset(&set, signal);
+        pthread_sigmask(SIG_BLOCK, &set, &old_);
+    }
+    HoldInterrupts(const HoldInterrupts &) = delete;
+    HoldInterrupts &operator=(const HoldInterrupts &) = delete;
+    ~HoldInterrupts() { pthread_sigmask(SIG_SETMASK, &old_, nullptr); }
+
+  private:
+    sigset_t old_;
+};
+
+std::optional<std::string> read_descriptor(int fd, std::size_t expected, std::size_t limit,
+                                           std::string &error) {
+    std::string bytes;
+    bytes.resize(std::min(expected, limit) + 1);
+    std::size_t used = 0;
+    for (;;) {
+        if (used == bytes.size()) bytes.resize(std::max<std::size_t>(2 * used, 1 << 16));
+        ssize_t count = ::read(fd, bytes.data() + used, bytes.size() - used);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) {
+            error = reason(errno);
+            return std::nullopt;
+        }
+        if (count == 0) break;
+        used += static_cast<std::size_t>(count);
+        if (used > limit) {
+            error = "larger than " + std::to_string(limit >> 20) + " MiB";
+            return std::nullopt;
+        }
+    }
+    bytes.resize(used);
+    return bytes;
+}
+
+} // namespace
+
+FileStamp stamp_of(const std::filesystem::path &file) {
+    struct stat status{};
+    if (::stat(file.c_str(), &status) != 0) return {};
+    return {true,
+            static_cast<std::uint64_t>(status.st_dev),
+            static_cast<std::uint64_t>(status.st_ino),
+            static_cast<std::uint64_t>(status.st_size),
+            status.st_mtim.tv_sec,
+            status.st_mtim.tv_nsec};
+}
+
+std::optional<std::string> read_file(const std::filesystem::path &path, std::size_t limit,
+                                     std::string &error) {
+    // Without O_NONBLOCK the open of a pipe that no one writes to would wait for ever.
+    Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (file.get() < 0) {
+        error = errno == ENOENT ? "no such file" : reason(errno);
+        return std::nullopt;
+    }
+    struct stat status{};
+    if (::fstat(file.get(), &status) != 0) {
+        error = reason(errno);
+        return std::nullopt;
+    }
+    if (!S_ISREG(status.st_mode)) {
+        error = S_ISDIR(status.st_mode) ? "is a directory" : "is not a regular file";
+        return std::nullopt;
+    }
+    return read_descriptor(file.get(), static_cast<std::size_t>(status.st_size), limit, error);
+}
+
+std::optional<std::string> read_standard_input(std::size_t limit, std::string &error) {
+    return read_descriptor(STDIN_FILENO, 1 << 16, limit, error);
+}
+
+int write_all(int descriptor, std::string_view bytes) {
+    while (!bytes.empty()) {
+        ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return errno;
+        bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+    return 0;
+}
+
+std::string write_file(const std::filesystem::path &named, std::string_view bytes) {
+    std::error_code ignored;
+    // A symbolic link stays one: what it leads to is replaced.
+    std::filesystem::path target = named;
+    if (std::filesystem::is_symlink(named, ignored)) {
+        std::filesystem::path followed = std::filesystem::weakly_canonical(named, ignored);
+        if (!ignored) target = followed;
+    }
+    struct stat old{};
+    bool exists = ::stat(target.c_str(), &old) == 0;
+    if (exists && S_ISDIR(old.st_mode)) return "is a directory";
+    if (exists && !S_ISREG(old.st_mode)) {
+        Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+        if (file.get() < 0) return reason(errno);
+        int error = write_all(file.get(), bytes);
+        return error ? reason(error) : "";
+    }
+    if (exists && ::access(target.c_str(), W_OK) != 0) return reason(errno);
+
+    std::filesystem::path folder = target.parent_path().empty() ? "." : target.parent_path();
+    std::string temporary =
+        (folder / ("." + target.filename().string() + ".fathom-tmpXXXXXX")).string();
+    HoldInterrupts hold;
+    Descriptor file(::mkostemp(temporary.data(), O_CLOEXEC));
+    if (file.get() < 0) return reason(errno);
+    mode_t mask = ::umask(0);
+    ::umask(mask);
+    mode_t mode = exists ? (old.st_mode & 07777) : (0666 & ~mask);
+    int error = write_all(file.get(), bytes);
+    if (!error && ::fchmod(file.get(), mode) != 0) error = errno;
+    if (!error && ::fsync(file.get()) != 0) error = errno;
+    int close_error = file.close();
+    if (!error) error = close_error;
+    if (!error && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
+    if (error) ::unlink(temporary.c_str());
+    return error ? reason(error) : "";
+}
+
+} // namespace fathom::driver

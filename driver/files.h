@@ -1,0 +1,40 @@
+// Files, whole: reading with a limit, writing so that a target is either the old file or the new one.
+// Knows nothing of what the bytes mean; reports failures as sentences, never by exceptions.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace fathom::driver {
+
+// The largest file that is read, by what it is for.
+inline constexpr std::size_t max_source_bytes = std::size_t{64} << 20;
+inline constexpr std::size_t max_asset_bytes = std::size_t{512} << 20;
+
+// What tells one state of a file from the next without reading it.
+struct FileStamp {
+    bool exists = false;
+    std::uint64_t device = 0, inode = 0, size = 0;
+    std::int64_t seconds = 0, nanoseconds = 0; // last change of its bytes
+    friend bool operator==(const FileStamp &, const FileStamp &) = default;
+};
+FileStamp stamp_of(const std::filesystem::path &file);
+
+// The bytes of a regular file, or nothing and the reason ("no such file", "is a directory", …).
+std::optional<std::string> read_file(const std::filesystem::path &path, std::size_t limit,
+                                     std::string &error);
+std::optional<std::string> read_standard_input(std::size_t limit, std::string &error);
+
+// Writes beside the target, then renames: on any failure, a full disk included, the old file stays as it was and
+// nothing is left behind. Interrupts wait until the rename is done. A target that is no regular file (a pipe,
+// /dev/null) is written in place. Returns an empty string, or the reason of the failure.
+std::string write_file(const std::filesystem::path &target, std::string_view bytes);
+
+// Writes all of `bytes` to a descriptor; 0, or the errno of the failure.
+int write_all(int descriptor, std::string_view bytes);
+
+} // namespace fathom::driver

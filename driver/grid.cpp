@@ -1,0 +1,121 @@
+// The subset of NRRD (teem.sourceforge.net/nrrd/format.html) that a grid of distances needs: attached data, three
+// dimensions, float or double, raw or ascii encoding.
+#include "base/text.h"
+#include "driver/image.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace fathom::driver {
+namespace {
+
+constexpr std::size_t max_values = std::size_t{1} << 26;
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
+    return text;
+}
+
+std::string_view next_word(std::string_view &text) {
+    constexpr std::string_view space = " \t\r\n";
+    std::size_t begin = text.find_first_not_of(space);
+    if (begin == text.npos) {
+        text = {};
+        return {};
+    }
+    std::size_t end = std::min(text.find_first_of(space, begin), text.size());
+    std::string_view word = text.substr(begin, end - begin);
+    text.remove_prefix(end);
+    return word;
+}
+
+struct Header {
+    std::string_view type, encoding = "raw", endian = "little";
+    std::array<std::size_t, 3> sizes{};
+    std::size_t dimension = 0;
+    std::string error;
+};
+
+Header read_header(std::string_view &bytes) {
+    Header header;
+    bool first = true;
+    for (;;) {
+        std::size_t end = bytes.find('\n');
+        if (end == bytes.npos) {
+            header.error = "an NRRD header that never ends";
+            return header;
+        }
+        std::string_view line = trimmed(bytes.substr(0, end));
+        bytes.remove_prefix(end + 1);
+        if (std::exchange(first, false) || line.starts_with('#')) continue;
+        if (line.empty()) return header;
+        std::size_t colon = line.find(':');
+        if (colon == line.npos) continue;
+        std::string_view field = line.substr(0, colon), value = trimmed(line.substr(colon + 1));
+        if (field == "type") header.type = value;
+        if (field == "encoding") header.encoding = value;
+        if (field == "endian") header.endian = value;
+        if (field == "dimension") header.dimension = static_cast<std::size_t>(parse_number(value).value_or(0));
+        if (field == "data file" || field == "datafile") header.error = "an NRRD header whose data is elsewhere";
+        if (field == "sizes")
+            for (std::size_t &size : header.sizes) {
+                double number = parse_number(next_word(value)).value_or(0);
+                size = number >= 2 && number <= 4096 ? static_cast<std::size_t>(number) : 0;
+            }
+    }
+}
+
+template <class Float> Float read_raw(const char *at, bool swap) {
+    std::array<char, sizeof(Float)> raw;
+    std::memcpy(raw.data(), at, raw.size());
+    if (swap) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<Float>(raw);
+}
+
+} // namespace
+
+std::optional<ir::GridData> decode_grid(std::string_view bytes, std::string &error) {
+    auto fail = [&](std::string why) {
+        error = std::move(why);
+        return std::nullopt;
+    };
+    if (!bytes.starts_with("NRRD000")) return fail("not an NRRD grid");
+    Header header = read_header(bytes);
+    if (!header.error.empty()) return fail(header.error);
+    bool doubles = header.type == "double";
+    if (!doubles && header.type != "float") return fail("an NRRD grid whose `type` is neither `float` nor `double`");
+    if (header.dimension != 3) return fail("an NRRD grid that has not three dimensions");
+    for (std::size_t size : header.sizes)
+        if (size == 0) return fail("an NRRD grid whose `sizes` are not three numbers from 2 to 4096");
+    std::size_t count = header.sizes[0] * header.sizes[1] * header.sizes[2];
+    if (count > max_values) return fail("an NRRD grid of more than 64 million values");
+
+    ir::GridData grid;
+    for (std::size_t i = 0; i < 3; ++i) grid.size[i] = static_cast<int>(header.sizes[i]);
+    if (header.encoding == "raw") {
+        std::size_t width = doubles ? sizeof(double) : sizeof(float);
+        if (bytes.size() < count * width) return fail("an NRRD grid with fewer values than its `sizes` say");
+        bool swap = (header.endian == "big") != (std::endian::native == std::endian::big);
+        grid.values.reserve(count);
+        for (std::size_t i = 0; i < count; ++i)
+            grid.values.push_back(doubles ? static_cast<float>(read_raw<double>(bytes.data() + i * width, swap))
+                                          : read_raw<float>(bytes.data() + i * width, swap));
+    } else if (header.encoding == "ascii" || header.encoding == "text" || header.encoding == "txt") {
+        for (std::size_t i = 0; i < count; ++i) {
+            std::optional<double> value = parse_number(next_word(bytes));
+            if (!value) return fail("an NRRD grid with fewer values than its `sizes` say");
+            grid.values.push_back(static_cast<float>(*value));
+        }
+    } else {
+        return fail("an NRRD grid whose `encoding` is neither `raw` nor `ascii`");
+    }
+    for (float value : grid.values)
+        if (!std::isfinite(value)) return fail("an NRRD grid with a value that is no finite number");
+    return grid;
+}
+
+} // namespace fathom::driver
