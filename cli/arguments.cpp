@@ -1,0 +1,295 @@
+// The command line, read with CLI11, which no other file includes.
+#include "base/suggest.h"
+#include "base/text.h"
+#include "cli/command.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char *version_text = "fathom " FATHOM_VERSION "\n";
+
+// -- words of the line -----------------------------------------------------------------------------
+
+// Each reads one word into its place, or says what it wanted.
+std::string read_pair(const std::string &word, int &first, int &second) {
+    std::size_t x = word.find('x');
+    std::optional<double> w = x == word.npos ? std::nullopt : parse_number(std::string_view(word).substr(0, x));
+    std::optional<double> h = x == word.npos ? std::nullopt : parse_number(std::string_view(word).substr(x + 1));
+    auto good = [](std::optional<double> n) { return n && *n >= 1 && *n <= 16384 && *n == static_cast<int>(*n); };
+    if (!good(w) || !good(h)) return fmt::format("a size is WIDTHxHEIGHT, each 1 to 16384, as 1280x720, not `{}`", word);
+    first = static_cast<int>(*w);
+    second = static_cast<int>(*h);
+    return "";
+}
+
+std::string read_point(const std::string &word, std::array<double, 3> &point) {
+    std::string_view rest = word;
+    for (std::size_t i = 0; i < 3; ++i) {
+        std::size_t comma = i < 2 ? rest.find(',') : rest.size();
+        std::optional<double> number = comma == rest.npos ? std::nullopt : parse_number(rest.substr(0, comma));
+        if (!number) return fmt::format("a point is X,Y,Z, as 0,1.5,-2, not `{}`", word);
+        point[i] = *number;
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+    return "";
+}
+
+std::string read_frames(const std::string &word, std::pair<int, int> &frames) {
+    std::size_t dots = word.find("..");
+    bool inclusive = dots != word.npos && word.compare(dots, 3, "..=") == 0;
+    auto whole = [&](std::string_view text) -> std::optional<int> {
+        std::optional<double> n = parse_number(text);
+        if (!n || *n < 0 || *n > 1e6 || *n != static_cast<int>(*n)) return std::nullopt;
+        return static_cast<int>(*n);
+    };
+    std::optional<int> first, last;
+    if (dots != word.npos) {
+        first = whole(std::string_view(word).substr(0, dots));
+        last = whole(std::string_view(word).substr(dots + (inclusive ? 3 : 2)));
+    }
+    if (!first || !last || *first >= *last + (inclusive ? 1 : 0))
+        return fmt::format("frames are A..B (B left out) or A..=B, as 0..48, not `{}`", word);
+    frames = {*first, *last + (inclusive ? 1 : 0)};
+    return "";
+}
+
+std::string read_override(const std::string &word, std::vector<typecheck::Override> &overrides) {
+    std::size_t equals = word.find('=');
+    if (equals == word.npos || equals == 0) return fmt::format("a param is set as -D name=value, not `{}`", word);
+    overrides.push_back({word.substr(0, equals), word.substr(equals + 1)});
+    return "";
+}
+
+// -- commands --------------------------------------------------------------------------------------
+
+// An option whose words are read by a function that says what is wrong with them.
+template <class Read> CLI::Option *option(CLI::App *app, const std::string &name, Read read, const std::string &help) {
+    return app->add_option_function<std::vector<std::string>>(
+                  name,
+                  [name, read](const std::vector<std::string> &words) {
+                      for (const std::string &word : words) {
+                          std::string error = read(word);
+                          if (!error.empty()) throw CLI::ValidationError(name, error);
+                      }
+                  },
+                  help)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_scene(CLI::App *app, SceneArguments &scene) {
+    app->add_option("FILE", scene.file, "the scene, `-` for standard input")->required();
+    option(
+        app, "-D", [&](const std::string &word) { return read_override(word, scene.overrides); },
+        "set a param of the scene")
+        ->type_name("NAME=VALUE");
+    app->add_option("-I", scene.include_folders, "look here too for imports, images and grids")
+        ->type_name("DIR")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_size(CLI::App *app, int &width, int &height) {
+    option(
+        app, "--size", [&](const std::string &word) { return read_pair(word, width, height); },
+        fmt::format("size in pixels, {}x{} unless said", width, height))
+        ->type_name("WxH");
+}
+
+struct Reader {
+    CLI::App app{"Fathom: scenes as text, distance fields whose step is proved.", "fathom"};
+    Invocation invocation;
+    bool version = false;
+    CheckCommand check;
+    CompileCommand compile;
+    RenderCommand render;
+    EvalCommand eval;
+    ViewCommand view;
+    ImportCommand import;
+    ExportCommand export_;
+    FmtCommand fmt;
+    DocCommand doc;
+    ExplainCommand explain;
+    BenchCommand bench;
+    std::string help_about;
+    CLI::App *help = nullptr;
+
+    template <class T> CLI::App *command(const char *name, const char *what, T &value) {
+        CLI::App *sub = app.add_subcommand(name, what);
+        sub->callback([this, &value] { invocation.command = value; });
+        return sub;
+    }
+
+    Reader() {
+        app.require_subcommand(0, 1);
+        app.fallthrough();
+        app.set_help_flag("-h,--help", "print this");
+        app.add_flag("--version", version, "print the version");
+        app.add_option("--color", invocation.color, "colour the words: auto, always or never")
+            ->transform(CLI::CheckedTransformer(
+                std::map<std::string, ColorChoice>{
+                    {"auto", ColorChoice::Auto}, {"always", ColorChoice::Always}, {"never", ColorChoice::Never}},
+                CLI::ignore_case))
+            ->type_name("WHEN");
+        app.footer("`fathom help COMMAND` shows a command's options. Exit status: 0 done, 1 the scene has an error,\n"
+                   "2 the command line is wrong, 3 a file named on it or the device cannot be used.");
+
+        CLI::App *sub = command("view", "open a window that follows the file", view);
+        add_scene(sub, view.scene);
+        add_size(sub, view.width, view.height);
+
+        sub = command("check", "parse, type and prove a scene", check);
+        add_scene(sub, check.scene);
+        sub->add_flag("--json", check.json, "one JSON document on standard output");
+        sub->add_flag("--explain", check.explain, "show where the bound comes from, as a tree");
+        sub->add_flag("--watch", check.watch, "check again after every save");
+
+        sub = command("compile", "write the scene's shader, validated", compile);
+        add_scene(sub, compile.scene);
+        sub->add_option("-o", compile.out, "write here, not to standard output")->type_name("OUT");
+        sub->add_option("--target", compile.target,
+                        "glsl450 (unless said), glsl330, es300, shadertoy, glslviewer, spirv or html")
+            ->check(CLI::IsMember({"glsl450", "glsl330", "es300", "shadertoy", "glslviewer", "spirv", "html"}))
+            ->type_name("TARGET");
+        sub->add_flag("--field-only", compile.field_only, "the field functions alone, for a renderer of your own");
+        sub->add_flag("--watch", compile.watch, "compile again after every save");
+
+        sub = command("render", "make a picture, without a window", render);
+        add_scene(sub, render.scene);
+        sub->add_option("-o", render.out, "the PNG; for --frames, `#`s stand for the frame's number")
+            ->type_name("OUT.png")
+            ->required();
+        add_size(sub, render.width, render.height);
+        sub->add_option("--backend", render.backend, "gl, cpu, or auto: gl where a context can be had")
+            ->transform(CLI::CheckedTransformer(std::map<std::string, Backend>{
+                {"auto", Backend::Auto}, {"gl", Backend::Gl}, {"cpu", Backend::Cpu}}))
+            ->type_name("WHICH");
+        sub->add_option("--time", render.time, "seconds; with --frames, when frame 0 is")->type_name("T");
+        option(
+            sub, "--frames",
+            [this](const std::string &word) {
+                std::pair<int, int> frames;
+                std::string error = read_frames(word, frames);
+                if (error.empty()) render.frames = frames;
+                return error;
+            },
+            "a picture for each of these frames; B is left out, A..=B takes it too")
+            ->type_name("A..B");
+        sub->add_option("--fps", render.frame_rate, "frames in a second, 30 unless said")
+            ->check(CLI::Range(0.001, 1000.0))
+            ->type_name("N");
+        sub->add_option("--samples", render.samples, "rays across a pixel each way, 1 to 8: N*N a pixel")
+            ->check(CLI::Range(1, 8))
+            ->type_name("N");
+
+        sub = command("eval", "print the field at points: distance gx gy gz", eval);
+        add_scene(sub, eval.scene);
+        option(
+            sub, "--at",
+            [this](const std::string &word) { return read_point(word, eval.at.emplace_back()); },
+            "a point; may be given again")
+            ->type_name("X,Y,Z");
+        option(
+            sub, "--points",
+            [this](const std::string &word) {
+                eval.points = true;
+                return word == "-" ? "" : fmt::format("points are read from standard input: --points -, not `{}`", word);
+            },
+            "`-`: one `X Y Z` a line on standard input")
+            ->type_name("-");
+        sub->add_option("--time", eval.time, "seconds")->type_name("T");
+
+        sub = command("import", "turn a YAML save file into the language", import);
+        sub->add_option("IN.yaml", import.file, "the save file, `-` for standard input")->required();
+        sub->add_option("-o", import.out, "write here, not to standard output")->type_name("OUT.sdf");
+        sub->add_flag("--strict", import.strict, "take nothing that is not understood");
+        sub->add_flag("--partial", import.partial, "write what was read of a file whose structure is broken");
+
+        sub = command("export", "turn a scene into a YAML save file", export_);
+        add_scene(sub, export_.scene);
+        sub->add_option("-o", export_.out, "write here, not to standard output")->type_name("OUT.yaml");
+
+        sub = command("fmt", "format scenes, in place", fmt);
+        sub->add_option("FILE", fmt.files, "the scenes; `-`: standard input to standard output")->required();
+        sub->add_flag("--check", fmt.check, "change nothing; name the files that are not formatted, and exit with 1");
+
+        sub = command("doc", "print the library's entry of a name", doc);
+        sub->add_option("NAME", doc.name, "left out: list all names");
+
+        sub = command("explain", "print a diagnostic's page", explain);
+        sub->add_option("CODE", explain.code, "left out: list all codes");
+
+        sub = command("bench", "measure the phases and a frame of a scene", bench);
+        add_scene(sub, bench.scene);
+        add_size(sub, bench.width, bench.height);
+
+        help = app.add_subcommand("help", "show this, or a command's options");
+        help->add_option("COMMAND", help_about, "");
+    }
+};
+
+Answer wrong(const std::string &words) { return {usage_error, "", "fathom: " + words}; }
+
+std::string help_hint(const CLI::App &app) {
+    std::vector<CLI::App *> chosen = app.get_subcommands();
+    return chosen.empty() ? "`fathom help` lists the commands"
+                          : fmt::format("`fathom help {}` shows its options", chosen.front()->get_name());
+}
+
+std::vector<std::string> command_names(CLI::App &app) {
+    std::vector<std::string> names;
+    for (const CLI::App *sub : app.get_subcommands([](CLI::App *) { return true; })) names.push_back(sub->get_name());
+    return names;
+}
+
+CLI::App *find_command(CLI::App &app, const std::string &name) {
+    std::vector<CLI::App *> found = app.get_subcommands([&](CLI::App *sub) { return sub->get_name() == name; });
+    return found.empty() ? nullptr : found.front();
+}
+
+Answer unknown_command(CLI::App &app, const std::string &word) {
+    std::string words = fmt::format("there is no command `{}`", word);
+    std::string near = nearest_name(word, command_names(app));
+    if (!near.empty())
+        words += fmt::format("; did you mean `{}`?", near);
+    else if (word.ends_with(".sdf"))
+        words += fmt::format("; `fathom view {}` opens it in a window", word);
+    else
+        words += "; `fathom help` lists them";
+    return wrong(words);
+}
+
+} // namespace
+
+std::variant<Invocation, Answer> read_arguments(int count, const char *const *arguments) {
+    Reader reader;
+    CLI::App &app = reader.app;
+    if (count > 1 && arguments[1][0] != '-' && !find_command(app, arguments[1]))
+        return unknown_command(app, arguments[1]);
+    try {
+        app.parse(count, const_cast<char **>(arguments));
+    } catch (const CLI::CallForHelp &) {
+        std::vector<CLI::App *> chosen = app.get_subcommands();
+        return Answer{done, chosen.empty() ? app.help() : chosen.front()->help(), ""};
+    } catch (const CLI::ParseError &error) {
+        return wrong(fmt::format("{}; {}", error.what(), help_hint(app)));
+    }
+    if (reader.version) return Answer{done, version_text, ""};
+    if (reader.help->parsed()) {
+        if (reader.help_about.empty()) return Answer{done, app.help(), ""};
+        const CLI::App *about = find_command(app, reader.help_about);
+        if (!about) return unknown_command(app, reader.help_about);
+        return Answer{done, about->help("fathom " + reader.help_about), ""};
+    }
+    if (app.get_subcommands().empty()) return Answer{usage_error, "", app.help()};
+    if (reader.eval.scene.file == "-" && reader.eval.points)
+        return wrong("the scene and the points cannot both come from standard input");
+    if (app.got_subcommand("eval") && reader.eval.at.empty() && !reader.eval.points)
+        return wrong("eval wants points: --at X,Y,Z or --points -");
+    return reader.invocation;
+}
+
+} // namespace fathom::cli

@@ -1,0 +1,112 @@
+// What the command line asks for, as values: one struct a command. Reading the line (arguments.cpp) knows nothing of
+// what the commands do, the commands nothing of how the line is written.
+#pragma once
+
+#include "typecheck/check.h"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace fathom::cli {
+
+// The exit statuses of every command.
+enum Exit {
+    done = 0,
+    scene_error = 1,   // the scene (or the save file) has an error; diagnostics are printed
+    usage_error = 2,   // the command line is wrong
+    device_error = 3   // a file named on it, or the device, cannot be used
+};
+
+enum class ColorChoice { Auto, Always, Never };
+
+// What every command that reads a scene takes.
+struct SceneArguments {
+    std::string file; // `-` is standard input
+    std::vector<typecheck::Override> overrides;         // -D
+    std::vector<std::filesystem::path> include_folders; // -I
+};
+
+struct CheckCommand {
+    SceneArguments scene;
+    bool json = false, explain = false, watch = false;
+};
+struct CompileCommand {
+    SceneArguments scene;
+    std::string out; // empty: standard output
+    std::string target = "glsl450";
+    bool field_only = false, watch = false;
+};
+enum class Backend { Auto, Gl, Cpu };
+struct RenderCommand {
+    SceneArguments scene;
+    std::string out;
+    int width = 1280, height = 720;
+    Backend backend = Backend::Auto;
+    double time = 0;
+    std::optional<std::pair<int, int>> frames; // first, one past the last
+    double frame_rate = 30;
+    int samples = 1;
+};
+struct EvalCommand {
+    SceneArguments scene;
+    std::vector<std::array<double, 3>> at;
+    bool points = false; // more on standard input
+    double time = 0;
+};
+struct ViewCommand {
+    SceneArguments scene;
+    int width = 1280, height = 800;
+};
+struct ImportCommand {
+    std::string file, out;
+    bool strict = false, partial = false;
+};
+struct ExportCommand {
+    SceneArguments scene;
+    std::string out;
+};
+struct FmtCommand {
+    std::vector<std::string> files;
+    bool check = false;
+};
+struct DocCommand { std::string name; };     // empty: the list of all
+struct ExplainCommand { std::string code; }; // empty: the list of all
+struct BenchCommand {
+    SceneArguments scene;
+    int width = 400, height = 400;
+};
+
+using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, EvalCommand, ViewCommand, ImportCommand,
+                             ExportCommand, FmtCommand, DocCommand, ExplainCommand, BenchCommand>;
+
+struct Invocation {
+    ColorChoice color = ColorChoice::Auto;
+    Command command;
+};
+
+// A line that is answered at once: help, the version, or what is wrong with it.
+struct Answer {
+    Exit exit = done;
+    std::string results, words; // to standard output, to standard error
+};
+
+std::variant<Invocation, Answer> read_arguments(int count, const char *const *arguments);
+
+class Terminal;
+Exit run(const CheckCommand &, Terminal &);
+Exit run(const CompileCommand &, Terminal &);
+Exit run(const RenderCommand &, Terminal &);
+Exit run(const EvalCommand &, Terminal &);
+Exit run(const ViewCommand &, Terminal &);
+Exit run(const ImportCommand &, Terminal &);
+Exit run(const ExportCommand &, Terminal &);
+Exit run(const FmtCommand &, Terminal &);
+Exit run(const DocCommand &, Terminal &);
+Exit run(const ExplainCommand &, Terminal &);
+Exit run(const BenchCommand &, Terminal &);
+
+} // namespace fathom::cli

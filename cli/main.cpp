@@ -1,0 +1,22 @@
+// The program: reads the command line, runs one command, tells by the exit status how it went.
+#include "cli/terminal.h"
+
+#include <csignal>
+
+int main(int count, char **arguments) {
+    using namespace fathom::cli;
+    std::signal(SIGPIPE, SIG_IGN); // a reader that goes away is seen at the write
+    std::variant<Invocation, Answer> line = read_arguments(count, arguments);
+    if (const auto *answer = std::get_if<Answer>(&line)) {
+        Terminal terminal(ColorChoice::Auto);
+        terminal.put(answer->results);
+        if (!answer->words.empty()) terminal.say(answer->words);
+        Exit flushed = terminal.flush();
+        return flushed != done ? flushed : answer->exit;
+    }
+    const Invocation &invocation = std::get<Invocation>(line);
+    Terminal terminal(invocation.color);
+    Exit exit = std::visit([&](const auto &command) { return run(command, terminal); }, invocation.command);
+    Exit flushed = terminal.flush();
+    return flushed != done ? flushed : exit;
+}

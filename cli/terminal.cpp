@@ -1,0 +1,135 @@
+#include "cli/terminal.h"
+
+#include "driver/watch.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace fathom::cli {
+namespace {
+
+constexpr std::size_t buffer_size = 1 << 16;
+
+long long milliseconds_now() {
+    return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+} // namespace
+
+Terminal::Terminal(ColorChoice color) {
+    const char *no_color = std::getenv("NO_COLOR");
+    const char *kind = std::getenv("TERM");
+    interactive_ = ::isatty(STDERR_FILENO) != 0 && kind && std::string_view(kind) != "dumb";
+    switch (color) {
+    case ColorChoice::Auto: color_ = interactive_ && !(no_color && *no_color); break;
+    case ColorChoice::Always: color_ = true; break;
+    case ColorChoice::Never: color_ = false; break;
+    }
+}
+
+void Terminal::put(std::string_view results) {
+    if (gone_ || failure_) return;
+    buffer_ += results;
+    if (buffer_.size() >= buffer_size) flush();
+}
+
+Exit Terminal::flush() {
+    if (!failure_ && !gone_ && !buffer_.empty()) {
+        int error = driver::write_all(STDOUT_FILENO, buffer_);
+        if (error == EPIPE)
+            gone_ = true;
+        else if (error) {
+            failure_ = error;
+            say(fmt::format("fathom: cannot write to standard output: {}", strerrordesc_np(error)));
+        }
+    }
+    buffer_.clear();
+    return failure_ ? device_error : done;
+}
+
+void Terminal::say(std::string_view words) {
+    finish_progress();
+    std::string line(words);
+    if (line.empty() || line.back() != '\n') line += '\n';
+    (void)driver::write_all(STDERR_FILENO, line); // where words cannot be said, nothing can be said about it
+}
+
+void Terminal::progress(std::string_view what, double share) {
+    if (!interactive_) return;
+    long long now = milliseconds_now();
+    if (now < next_bar_) return;
+    next_bar_ = now + 50;
+    constexpr int width = 30;
+    int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * width);
+    (void)driver::write_all(STDERR_FILENO, fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %", what, "", full, "",
+                                                       width - full, 100 * share));
+    bar_shown_ = true;
+}
+
+void Terminal::finish_progress() {
+    if (bar_shown_) (void)driver::write_all(STDERR_FILENO, "\r\x1b[K");
+    bar_shown_ = false;
+    next_bar_ = 0;
+}
+
+driver::CompileOptions compile_options(const SceneArguments &scene) {
+    driver::CompileOptions options;
+    options.include_folders = scene.include_folders;
+    options.overrides = scene.overrides;
+    return options;
+}
+
+void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, Terminal &terminal) {
+    for (const Diagnostic &diagnostic : diagnostics.sorted())
+        terminal.say(to_text(diagnostic, sources, terminal.color()));
+    if (diagnostics.dropped() > 0) terminal.say(fmt::format("({} more are not shown)", diagnostics.dropped()));
+}
+
+Exit report(const driver::Compilation &compilation, const SceneArguments &scene, Terminal &terminal) {
+    if (!compilation.unreadable.empty()) {
+        terminal.say(fmt::format("fathom: cannot read `{}`: {}", scene.file, compilation.unreadable));
+        return device_error;
+    }
+    print_diagnostics(compilation.diagnostics, compilation.sources, terminal);
+    for (const std::string &error : compilation.usage_errors) terminal.say("fathom: " + error);
+    if (compilation.diagnostics.has_errors()) return scene_error;
+    return compilation.usage_errors.empty() ? done : usage_error;
+}
+
+Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal) {
+    if (out.empty() || out == "-") {
+        terminal.put(bytes);
+        return done; // a failed write is told when the results are flushed
+    }
+    std::string error = driver::write_file(out, bytes);
+    if (error.empty()) return done;
+    terminal.say(fmt::format("fathom: cannot write `{}`: {}", out, error));
+    return device_error;
+}
+
+Exit watch_scene(const SceneArguments &scene, Terminal &terminal,
+                 const std::function<Exit(const driver::Compilation &)> &act) {
+    driver::Watcher watcher;
+    for (;;) {
+        {
+            driver::Compilation compilation = driver::compile_file(scene.file, compile_options(scene));
+            Exit exit = act(compilation);
+            if (terminal.flush() != done || terminal.reader_gone()) return exit;
+            watcher.watch(compilation.files);
+        }
+        if (!watcher.good()) {
+            terminal.say("fathom: cannot watch: " + watcher.error());
+            return device_error;
+        }
+        while (!watcher.wait(std::chrono::hours(1))) {}
+        terminal.say(fmt::format("-- {} was saved", scene.file));
+    }
+}
+
+} // namespace fathom::cli
