@@ -1,0 +1,72 @@
+# What `./fathom` and `./fathom-test` share: installs the Debian packages that are missing, configures, builds.
+# Sourced, with $root set. Says what it does on standard error; standard output belongs to the program.
+
+# To build and to run. Mesa draws without a graphics card and without a display.
+build_packages="g++ cmake ninja-build ccache pkg-config libfmt-dev tao-pegtl-dev libcli11-dev libglfw3-dev libimgui-dev
+libepoxy-dev libegl-dev libyaml-dev glslang-dev spirv-tools libpng-dev libjpeg-dev catch2 libegl1 libgl1-mesa-dri"
+# To test: a display of our own for the viewer, a second compiler for the fuzzers.
+test_packages="xvfb xauth clang"
+
+say() { printf '%s\n' "fathom: $*" >&2; }
+
+# install_packages NAMES: what is not there yet, with apt.
+install_packages() {
+    if ! command -v dpkg-query >/dev/null; then
+        say "this is no Debian; going on with what is installed (wanted: Debian 12's $(echo $*))"
+        return 0
+    fi
+    missing=""
+    for package in $*; do
+        dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing="$missing $package"
+    done
+    [ -z "$missing" ] && return 0
+    as_root=""
+    if [ "$(id -u)" != 0 ]; then
+        if ! command -v sudo >/dev/null; then
+            say "these packages are missing, and there is no sudo to install them:$missing"
+            return 1
+        fi
+        as_root="sudo"
+    fi
+    say "installing with apt${as_root:+ (by sudo)}:$missing"
+    $as_root apt-get update -qq >&2 || say "apt-get update failed; trying with the lists that are there"
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >&2 || {
+        say "apt could not install them"
+        return 1
+    }
+}
+
+# changed_since STAMP: did a source, or a folder's list of files, change after it?
+changed_since() {
+    [ -e "$1" ] || return 0
+    [ -n "$(find "$root" -path "$root/build*" -prune -o -path "$root/.git" -prune -o -newer "$1" \
+        \( -name '*.cpp' -o -name '*.h' -o -name '*.def' -o -name '*.sdf' -o -name '*.glsl' -o -name '*.md' \
+        -o -name '*.cmake' -o -name CMakeLists.txt -o -type d ! -path "$root" \) -print -quit)" ]
+}
+
+# build WHAT: configures where that was not done yet, and builds; a second call at the same time waits for the first.
+build() {
+    mkdir -p "$root/build" || return 1
+    exec 9>"$root/build/.lock"
+    flock 9
+    touch "$root/build/.started"
+    if [ ! -e "$root/build/build.ninja" ]; then
+        say "configuring (into build/)"
+        launcher=""
+        command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
+        cmake -G Ninja -S "$root" -B "$root/build" $launcher >"$root/build/configure.log" 2>&1 || {
+            cat "$root/build/configure.log" >&2
+            rm -f "$root/build/build.ninja"
+            return 1
+        }
+    fi
+    if [ -t 2 ]; then
+        ninja -C "$root/build" "$@" >&2
+    else
+        ninja -C "$root/build" "$@" >"$root/build/build.log" 2>&1 || {
+            tail -n 60 "$root/build/build.log" >&2
+            return 1
+        }
+    fi || return 1
+    flock -u 9
+}
