@@ -123,6 +123,7 @@ class Graph {
     const Node &operator[](NodeId id) const { return nodes_[id]; }
     std::span<const NodeId> args(NodeId id) const;
     NodeId arg(NodeId id, int i) const { return args(id)[static_cast<std::size_t>(i)]; }
+    Type type(NodeId id) const { return nodes_[id].type; }
     std::size_t size() const { return nodes_.size(); }
 
     // Makes a node, or finds the equal one; folds constants and a few identities (x+0, x*1, x*0, min(x,x), swizzle of
@@ -182,9 +183,11 @@ class Graph {
     std::vector<NodeId> free_vars(NodeId id) const; // in order of payload; walks, so ask once
 
   private:
-    struct Key;
-    NodeId intern(Node node, std::span<const NodeId> args);
-    NodeId fold_constants(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload);
+    NodeId simplified(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload); // or none
+    NodeId folded(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload);     // or none
+    NodeId intern(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload);
+    Reads reads_of(const Node &node) const;
+    bool is_all(NodeId id, double value) const; // a constant with this number in every component
     Arena<Node> nodes_;
     std::vector<NodeId> args_;
     std::vector<Reads> reads_;
@@ -194,14 +197,17 @@ class Graph {
     Arena<Table> tables_;
     Arena<Cache> caches_;
     std::uint32_t vars_ = 0;
-    std::unordered_multimap<std::uint64_t, NodeId> interned_;
+    std::vector<NodeId> slots_; // open addressing by content; a power of two, at most half full
     std::unordered_multimap<std::uint64_t, std::uint32_t> interned_constants_;
 };
 
 // A copy of `root` in which every node that `map` names is replaced. Fold bodies are entered; calls are not (functions are closed).
+// A copied Fold gets variables of its own.
 using Substitution = std::unordered_map<NodeId, NodeId>;
 NodeId substitute(Graph &graph, NodeId root, const Substitution &map);
 
-std::string dump(const Graph &graph, NodeId root); // one line a node, stable; for goldens
+// One line a node, numbered in the order of first use; folds and functions indented below; stable, for goldens.
+std::string dump(const Graph &graph, NodeId root);
+std::string dump(const Graph &graph, FunctionId function); // its parameters, then its body
 
 } // namespace fathom::ir

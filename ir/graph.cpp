@@ -1,0 +1,504 @@
+// The graph's storage: making, finding and copying nodes. What a node simplifies to stands in simplify.cpp.
+#include "ir/graph.h"
+
+#include "ir/fold.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <unordered_set>
+
+namespace fathom::ir {
+
+// -- types and ops ---------------------------------------------------------------------------------------------------
+
+int components(Type type) {
+    switch (type) {
+    case Type::Bool:
+    case Type::Int:
+    case Type::Float: return 1;
+    case Type::Vec2: return 2;
+    case Type::Vec3: return 3;
+    case Type::Vec4:
+    case Type::Mat2: return 4;
+    case Type::Mat3:
+    case Type::Hit: return 9;
+    case Type::Mat4: return 16;
+    }
+    return 0;
+}
+
+Type vector_type(int size) {
+    constexpr Type types[] = {Type::Float, Type::Vec2, Type::Vec3, Type::Vec4};
+    assert(size >= 1 && size <= 4);
+    return types[size - 1];
+}
+
+Type matrix_type(int size) {
+    constexpr Type types[] = {Type::Mat2, Type::Mat3, Type::Mat4};
+    assert(size >= 2 && size <= 4);
+    return types[size - 2];
+}
+
+int side(Type matrix) {
+    assert(is_matrix(matrix));
+    return matrix == Type::Mat2 ? 2 : matrix == Type::Mat3 ? 3 : 4;
+}
+
+bool is_vector(Type type) {
+    return type == Type::Vec2 || type == Type::Vec3 || type == Type::Vec4;
+}
+bool is_matrix(Type type) {
+    return type == Type::Mat2 || type == Type::Mat3 || type == Type::Mat4;
+}
+
+const char *type_name(Type type) {
+    switch (type) {
+    case Type::Bool: return "bool";
+    case Type::Int: return "int";
+    case Type::Float: return "float";
+    case Type::Vec2: return "vec2";
+    case Type::Vec3: return "vec3";
+    case Type::Vec4: return "vec4";
+    case Type::Mat2: return "mat2";
+    case Type::Mat3: return "mat3";
+    case Type::Mat4: return "mat4";
+    case Type::Hit: return "hit";
+    }
+    return "";
+}
+
+namespace {
+constexpr OpInfo infos[] = {
+#define FATHOM_OP(name, arity, rule, glsl) {#name, arity, TypeRule::rule, glsl},
+#include "ir/ops.def"
+#undef FATHOM_OP
+};
+
+bool commutes(Op op) {
+    return op == Op::Add || op == Op::Mul || op == Op::Min || op == Op::Max || op == Op::Dot ||
+           op == Op::Equal || op == Op::NotEqual || op == Op::And || op == Op::Or;
+}
+} // namespace
+
+const OpInfo &info(Op op) { return infos[static_cast<std::size_t>(op)]; }
+std::size_t op_count() { return std::size(infos); }
+
+// -- packed payloads -------------------------------------------------------------------------------------------------
+
+std::uint32_t table_slot(TableId table, int column) {
+    assert(table.index < (1u << 20) && column >= 0 && column < 4096);
+    return table.index << 12 | static_cast<std::uint32_t>(column);
+}
+TableId table_of(std::uint32_t slot) { return TableId{std::size_t{slot >> 12}}; }
+int column_of(std::uint32_t slot) { return static_cast<int>(slot & 4095u); }
+
+std::uint32_t swizzle_mask(std::span<const int> parts) {
+    assert(!parts.empty() && parts.size() <= 4);
+    std::uint32_t mask = static_cast<std::uint32_t>(parts.size()) << 8;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        assert(parts[i] >= 0 && parts[i] < 4);
+        mask |= static_cast<std::uint32_t>(parts[i]) << (2 * i);
+    }
+    return mask;
+}
+int swizzle_size(std::uint32_t mask) { return static_cast<int>(mask >> 8); }
+int swizzle_component(std::uint32_t mask, int i) { return static_cast<int>(mask >> (2 * i) & 3u); }
+
+// -- making nodes ----------------------------------------------------------------------------------------------------
+
+namespace {
+
+std::uint64_t stir(std::uint64_t h, std::uint64_t word) {
+    h = (h ^ word) * 0x9e3779b97f4a7c15ull;
+    return h ^ (h >> 29);
+}
+
+std::uint64_t hash_of(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
+    std::uint64_t h = stir(static_cast<std::uint64_t>(op) << 8 | static_cast<std::uint64_t>(type), payload);
+    if (commutes(op)) // the same in either order
+        return stir(stir(h, std::min(args[0].index, args[1].index)), std::max(args[0].index, args[1].index));
+    for (NodeId arg : args) h = stir(h, arg.index);
+    return h;
+}
+
+// The type of an op whose rule is Given, where its arguments decide it.
+Type given_type(const Graph &graph, Op op, std::span<const NodeId> args, std::uint32_t payload) {
+    const auto type = [&](std::size_t i) { return graph.type(args[i]); };
+    if (op == Op::MatMul) return is_matrix(type(0)) ? type(1) : type(0);
+    if (op == Op::Make)
+        return is_vector(type(0)) ? matrix_type(static_cast<int>(args.size()))
+                                  : vector_type(static_cast<int>(args.size()));
+    if (op == Op::Swizzle) return vector_type(swizzle_size(payload));
+    if (op == Op::Column) return vector_type(side(type(0)));
+    if (op == Op::ToInt) return Type::Int;
+    if (op == Op::Image) return Type::Vec4;
+    if (op == Op::Call) return graph.type(graph.function(FunctionId{std::size_t{payload}}).result);
+    if (op == Op::Fold) return graph.type(graph.fold(FoldId{std::size_t{payload}}).vars.front());
+    if (op == Op::MakeHit || op == Op::NearestHit || op == Op::FarthestHit || op == Op::HitWith ||
+        op == Op::FillPaint)
+        return Type::Hit;
+    assert(op == Op::ToFloat || op == Op::SpotNoise || op == Op::Grid);
+    return Type::Float;
+}
+
+} // namespace
+
+std::span<const NodeId> Graph::args(NodeId id) const {
+    const Node &node = nodes_[id];
+    return {args_.data() + node.first, node.count};
+}
+
+NodeId Graph::make(Op op, std::span<const NodeId> args) {
+    switch (info(op).rule) {
+    case TypeRule::Given: return make(op, given_type(*this, op, args, 0), args, 0);
+    case TypeRule::Same: return make(op, type(args.front()), args, 0);
+    case TypeRule::Last: return make(op, type(args.back()), args, 0);
+    case TypeRule::ToFloat: return make(op, Type::Float, args, 0);
+    case TypeRule::ToBool: return make(op, Type::Bool, args, 0);
+    }
+    return {};
+}
+
+NodeId Graph::make(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
+    assert(info(op).arity < 0 ? !args.empty() : args.size() == static_cast<std::size_t>(info(op).arity));
+    assert(op != Op::Const);
+    if (info(op).rule == TypeRule::Same && op != Op::Transpose)
+        for ([[maybe_unused]] NodeId arg : args) assert(this->type(arg) == type);
+    if (const NodeId known = simplified(op, type, args, payload)) return known;
+    if (const NodeId constant = folded(op, type, args, payload)) return constant;
+    return intern(op, type, args, payload);
+}
+
+NodeId Graph::make(Op op, std::initializer_list<NodeId> args) {
+    return make(op, std::span<const NodeId>(args.begin(), args.size()));
+}
+NodeId Graph::make(Op op, Type type, std::initializer_list<NodeId> args, std::uint32_t payload) {
+    return make(op, type, std::span<const NodeId>(args.begin(), args.size()), payload);
+}
+
+NodeId Graph::intern(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
+    const auto equal = [&](NodeId id) {
+        const Node &node = nodes_[id];
+        if (node.op != op || node.type != type || node.payload != payload || node.count != args.size())
+            return false;
+        const std::span<const NodeId> have = this->args(id);
+        return std::equal(have.begin(), have.end(), args.begin()) ||
+               (commutes(op) && have[0] == args[1] && have[1] == args[0]);
+    };
+    if (nodes_.size() * 2 >= slots_.size()) {
+        std::vector<NodeId> grown(std::max<std::size_t>(1024, slots_.size() * 4));
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            const Node &node = nodes_[NodeId{i}];
+            std::size_t at = hash_of(node.op, node.type, this->args(NodeId{i}), node.payload);
+            for (at &= grown.size() - 1; grown[at]; at = (at + 1) & (grown.size() - 1)) {}
+            grown[at] = NodeId{i};
+        }
+        slots_ = std::move(grown);
+    }
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t at = hash_of(op, type, args, payload) & mask;
+    for (; slots_[at]; at = (at + 1) & mask)
+        if (equal(slots_[at])) return slots_[at];
+
+    Node node{op, type, payload, static_cast<std::uint32_t>(args_.size()),
+              static_cast<std::uint32_t>(args.size())};
+    const std::less<> before;
+    if (!args.empty() && !before(args.data(), args_.data()) &&
+        before(args.data(), args_.data() + args_.size())) { // another node's own arguments
+        const std::vector<NodeId> copy(args.begin(), args.end());
+        args_.insert(args_.end(), copy.begin(), copy.end());
+    } else {
+        args_.insert(args_.end(), args.begin(), args.end());
+    }
+    const NodeId id = nodes_.add(node);
+    reads_.push_back(reads_of(nodes_[id]));
+    slots_[at] = id;
+    return id;
+}
+
+NodeId Graph::folded(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
+    if (args.empty()) return {};
+    for (NodeId arg : args)
+        if (!is_constant(arg)) return {};
+    std::array<Constant, 8> few;
+    std::vector<Constant> many(args.size() > few.size() ? args.size() : 0);
+    const std::span<Constant> values(many.empty() ? few.data() : many.data(), args.size());
+    for (std::size_t i = 0; i < args.size(); ++i) values[i] = constant_of(args[i]);
+    const std::optional<Constant> result = evaluate(op, type, values, payload);
+    if (!result) return {};
+    for (double value : result->value)
+        if (std::isnan(value)) return {}; // stays an operation, so that no text has to spell it
+    return constant(*result);
+}
+
+// -- leaves ----------------------------------------------------------------------------------------------------------
+
+NodeId Graph::constant(const Constant &wanted) {
+    Constant value = wanted;
+    const std::size_t count = static_cast<std::size_t>(components(value.type));
+    std::uint64_t h = static_cast<std::uint64_t>(value.type);
+    for (std::size_t i = 0; i < value.value.size(); ++i) {
+        if (i >= count || value.value[i] == 0) value.value[i] = 0; // -0 too: it is the same number
+        h = stir(h, std::bit_cast<std::uint64_t>(value.value[i]));
+    }
+    const auto [first, last] = interned_constants_.equal_range(h);
+    for (auto it = first; it != last; ++it) {
+        const Constant &have = constants_[Id<Constant>{std::size_t{it->second}}];
+        if (have.type == value.type &&
+            std::equal(have.value.begin(), have.value.end(), value.value.begin(), [](double a, double b) {
+                return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+            }))
+            return intern(Op::Const, value.type, {}, it->second);
+    }
+    const Id<Constant> id = constants_.add(value);
+    interned_constants_.emplace(h, id.index);
+    return intern(Op::Const, value.type, {}, id.index);
+}
+
+NodeId Graph::number(double value) { return constant({Type::Float, {value}}); }
+NodeId Graph::integer(int value) { return constant({Type::Int, {static_cast<double>(value)}}); }
+NodeId Graph::boolean(bool value) { return constant({Type::Bool, {value ? 1.0 : 0.0}}); }
+NodeId Graph::vec(std::span<const double> values) {
+    Constant result{vector_type(static_cast<int>(values.size())), {}};
+    std::copy(values.begin(), values.end(), result.value.begin());
+    return constant(result);
+}
+NodeId Graph::vec3(double x, double y, double z) { return constant({Type::Vec3, {x, y, z}}); }
+NodeId Graph::point(Type type) { return intern(Op::Point, type, {}, 0); }
+NodeId Graph::fresh_var(Type type) { return intern(Op::Var, type, {}, vars_++); }
+NodeId Graph::param(std::uint32_t index, Type type) { return intern(Op::Param, type, {}, index); }
+NodeId Graph::time() { return intern(Op::Time, Type::Float, {}, 0); }
+
+const Constant &Graph::constant_of(NodeId id) const {
+    assert(is_constant(id));
+    return constants_[Id<Constant>{std::size_t{nodes_[id].payload}}];
+}
+
+std::optional<double> Graph::as_number(NodeId id) const {
+    if (!is_constant(id) || components(type(id)) != 1) return std::nullopt;
+    return constant_of(id).value[0];
+}
+
+bool Graph::is_all(NodeId id, double value) const {
+    if (!is_constant(id)) return false;
+    const Constant &constant = constant_of(id);
+    for (int i = 0; i < components(constant.type); ++i)
+        if (constant.value[static_cast<std::size_t>(i)] != value) return false;
+    return true;
+}
+
+// -- short forms -----------------------------------------------------------------------------------------------------
+
+namespace {
+NodeId spread(Graph &graph, Op op, NodeId a, NodeId b) {
+    if (graph.type(a) == Type::Float && graph.type(b) != Type::Float) a = graph.splat(a, graph.type(b));
+    if (graph.type(b) == Type::Float && graph.type(a) != Type::Float) b = graph.splat(b, graph.type(a));
+    return graph.make(op, {a, b});
+}
+} // namespace
+
+NodeId Graph::add(NodeId a, NodeId b) { return spread(*this, Op::Add, a, b); }
+NodeId Graph::sub(NodeId a, NodeId b) { return spread(*this, Op::Sub, a, b); }
+NodeId Graph::mul(NodeId a, NodeId b) { return spread(*this, Op::Mul, a, b); }
+NodeId Graph::div(NodeId a, NodeId b) { return spread(*this, Op::Div, a, b); }
+NodeId Graph::neg(NodeId a) { return make(Op::Neg, {a}); }
+NodeId Graph::component(NodeId vector, int i) {
+    if (type(vector) == Type::Float) return vector;
+    return swizzle(vector, std::array{i});
+}
+NodeId Graph::swizzle(NodeId vector, std::span<const int> parts) {
+    return make(Op::Swizzle, vector_type(static_cast<int>(parts.size())), {vector}, swizzle_mask(parts));
+}
+NodeId Graph::splat(NodeId scalar, Type to) {
+    return type(scalar) == to ? scalar : make(Op::Splat, to, {scalar});
+}
+NodeId Graph::call(FunctionId id, std::span<const NodeId> args) {
+    return make(Op::Call, type(function(id).result), args, id.index);
+}
+
+// -- what nodes refer to ---------------------------------------------------------------------------------------------
+
+FunctionId Graph::add_function(Function function) { return functions_.add(std::move(function)); }
+FoldId Graph::add_fold(Fold fold) { return folds_.add(std::move(fold)); }
+TableId Graph::add_table(Table table) { return tables_.add(std::move(table)); }
+CacheId Graph::add_cache(Cache cache) { return caches_.add(cache); }
+
+namespace {
+
+std::vector<NodeId> body_of(const Fold &fold) {
+    std::vector<NodeId> body{fold.count};
+    if (fold.condition) body.push_back(fold.condition);
+    body.insert(body.end(), fold.next.begin(), fold.next.end());
+    return body;
+}
+
+// Variables are made for one binder, so the free ones are those that no fold below binds.
+std::vector<NodeId> unbound(const Graph &graph, std::vector<NodeId> stack) {
+    std::unordered_set<NodeId> seen, bound;
+    std::vector<NodeId> found;
+    while (!stack.empty()) {
+        const NodeId id = stack.back();
+        stack.pop_back();
+        const Node &node = graph[id];
+        if (!graph.reads(id).free_vars || !seen.insert(id).second) continue;
+        if (node.op == Op::Var) found.push_back(id);
+        if (node.op == Op::Fold) {
+            const Fold &fold = graph.fold(FoldId{std::size_t{node.payload}});
+            bound.insert(fold.index);
+            bound.insert(fold.vars.begin(), fold.vars.end());
+            for (NodeId part : body_of(fold)) stack.push_back(part);
+        }
+        for (NodeId arg : graph.args(id)) stack.push_back(arg);
+    }
+    std::erase_if(found, [&](NodeId id) { return bound.contains(id); });
+    std::sort(found.begin(), found.end(),
+              [&](NodeId a, NodeId b) { return graph[a].payload < graph[b].payload; });
+    return found;
+}
+
+} // namespace
+
+Graph::Reads Graph::reads_of(const Node &node) const {
+    Reads reads;
+    const auto join = [&](Reads other) {
+        reads.point |= other.point;
+        reads.normal |= other.normal;
+        reads.direction |= other.direction;
+        reads.time |= other.time;
+        reads.params |= other.params;
+        reads.free_vars |= other.free_vars;
+    };
+    for (std::uint32_t i = 0; i < node.count; ++i) join(reads_[args_[node.first + i].index]);
+    const auto join_function = [&](FunctionId id) {
+        const Reads body = reads_[function(id).result.index];
+        reads.time |= body.time;
+        reads.params |= body.params;
+    };
+    if (node.op == Op::Point) reads.point = true;
+    if (node.op == Op::Normal) reads.normal = true;
+    if (node.op == Op::Direction) reads.direction = true;
+    if (node.op == Op::Time) reads.time = true;
+    if (node.op == Op::Param) reads.params = true;
+    if (node.op == Op::Var) reads.free_vars = true;
+    if (node.op == Op::Call) join_function(FunctionId{std::size_t{node.payload}});
+    if (node.op == Op::Cached) join_function(cache(CacheId{std::size_t{node.payload}}).field);
+    if (node.op == Op::Fold) {
+        const Fold &fold = folds_[FoldId{std::size_t{node.payload}}];
+        const bool outside = reads.free_vars;
+        const std::vector<NodeId> body = body_of(fold);
+        for (NodeId part : body) join(reads_[part.index]);
+        reads.free_vars = outside;
+        if (!outside) {
+            std::vector<NodeId> free = unbound(*this, body);
+            std::erase_if(free, [&](NodeId id) {
+                return id == fold.index || std::find(fold.vars.begin(), fold.vars.end(), id) != fold.vars.end();
+            });
+            reads.free_vars = !free.empty();
+        }
+    }
+    return reads;
+}
+
+std::vector<NodeId> Graph::free_vars(NodeId id) const { return unbound(*this, {id}); }
+
+// -- copying ---------------------------------------------------------------------------------------------------------
+
+namespace {
+
+struct Copier {
+    Graph &graph;
+    Substitution done;
+    bool points;   // whether a Point is among the replaced
+    bool any_kind; // something else than Points and Vars is replaced
+
+    // Whether nothing below the node can have been replaced, as far as `reads` tells.
+    bool untouched(NodeId id) const {
+        const Graph::Reads reads = graph.reads(id);
+        return !any_kind && !reads.free_vars && !(points && reads.point);
+    }
+
+    NodeId copy(NodeId root) {
+        std::vector<NodeId> stack{root};
+        while (!stack.empty()) {
+            const NodeId id = stack.back();
+            if (done.contains(id)) {
+                stack.pop_back();
+                continue;
+            }
+            if (untouched(id)) {
+                done.emplace(id, id);
+                stack.pop_back();
+                continue;
+            }
+            const std::size_t before = stack.size();
+            for (NodeId arg : graph.args(id))
+                if (!done.contains(arg)) stack.push_back(arg);
+            if (stack.size() > before) continue;
+            stack.pop_back();
+            const NodeId made = remade(id);
+            done.emplace(id, made);
+        }
+        return done.at(root);
+    }
+
+    NodeId remade(NodeId id) {
+        const Node node = graph[id];
+        if (node.count == 0) return id;
+        std::vector<NodeId> args;
+        bool changed = false;
+        for (NodeId arg : graph.args(id)) {
+            args.push_back(done.at(arg));
+            changed |= args.back() != arg;
+        }
+        std::uint32_t payload = node.payload;
+        if (node.op == Op::Fold) payload = fold(FoldId{std::size_t{node.payload}}).index;
+        if (!changed && payload == node.payload) return id;
+        return graph.make(node.op, node.type, args, payload);
+    }
+
+    bool touches(const std::vector<NodeId> &parts) {
+        if (any_kind) {
+            Copier probe{graph, done, points, any_kind};
+            return std::any_of(parts.begin(), parts.end(), [&](NodeId id) { return probe.copy(id) != id; });
+        }
+        for (NodeId part : parts)
+            if (points && graph.reads(part).point) return true;
+        for (NodeId var : unbound(graph, parts))
+            if (const auto to = done.find(var); to != done.end() && to->second != var) return true;
+        return false;
+    }
+
+    // A fold whose body changes gets fresh variables: the copy may come to stand inside the original.
+    FoldId fold(FoldId id) {
+        const Fold old = graph.fold(id);
+        const std::vector<NodeId> parts = body_of(old);
+        if (!touches(parts)) return id;
+        Copier inside{graph, done, points, any_kind};
+        Fold made = old;
+        made.index = inside.done[old.index] = graph.fresh_var(Type::Int);
+        for (NodeId &var : made.vars) {
+            const NodeId fresh = graph.fresh_var(graph.type(var));
+            inside.done[var] = fresh;
+            var = fresh;
+        }
+        made.count = inside.copy(old.count);
+        if (old.condition) made.condition = inside.copy(old.condition);
+        for (NodeId &next : made.next) next = inside.copy(next);
+        return graph.add_fold(std::move(made));
+    }
+};
+
+} // namespace
+
+NodeId substitute(Graph &graph, NodeId root, const Substitution &map) {
+    Copier copier{graph, map, false, false};
+    for (const auto &[from, to] : map) {
+        copier.points |= graph[from].op == Op::Point;
+        copier.any_kind |= graph[from].op != Op::Point && graph[from].op != Op::Var;
+    }
+    return copier.copy(root);
+}
+
+} // namespace fathom::ir

@@ -1,0 +1,105 @@
+// The hash-consed shapes and the boxes that bound them.
+#include "ir/shape.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace fathom::ir {
+
+const char *shape_kind_name(ShapeKind kind) {
+    switch (kind) {
+    case ShapeKind::Empty: return "empty";
+    case ShapeKind::Leaf: return "leaf";
+    case ShapeKind::Union: return "union";
+    case ShapeKind::Intersection: return "intersection";
+    case ShapeKind::Complement: return "complement";
+    case ShapeKind::Xor: return "xor";
+    case ShapeKind::Blend: return "blend";
+    case ShapeKind::Seam: return "seam";
+    case ShapeKind::Lerp: return "lerp";
+    case ShapeKind::PseudoNorm: return "pseudonorm";
+    case ShapeKind::Map: return "map";
+    case ShapeKind::Offset: return "offset";
+    case ShapeKind::Shell: return "shell";
+    case ShapeKind::Displace: return "displace";
+    case ShapeKind::Extrude: return "extrude";
+    case ShapeKind::Repeat: return "repeat";
+    case ShapeKind::Within: return "within";
+    case ShapeKind::Paint: return "paint";
+    case ShapeKind::Repaint: return "repaint";
+    case ShapeKind::Mixed: return "mixed";
+    case ShapeKind::Many: return "many";
+    case ShapeKind::Library: return "library";
+    case ShapeKind::Contract: return "contract";
+    }
+    return "";
+}
+
+bool Box::finite() const {
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!std::isfinite(lo[i]) || !std::isfinite(hi[i])) return false;
+    return true;
+}
+
+Box Box::everything() {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    return {{-far, -far, -far}, {far, far, far}};
+}
+
+Box hull(Box a, Box b) {
+    if (a.empty()) return b;
+    if (b.empty()) return a;
+    for (std::size_t i = 0; i < 3; ++i) {
+        a.lo[i] = std::min(a.lo[i], b.lo[i]);
+        a.hi[i] = std::max(a.hi[i], b.hi[i]);
+    }
+    return a;
+}
+
+Box intersect(Box a, Box b) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        a.lo[i] = std::max(a.lo[i], b.lo[i]);
+        a.hi[i] = std::min(a.hi[i], b.hi[i]);
+    }
+    return a.empty() ? Box{} : a;
+}
+
+namespace {
+
+std::uint64_t stir(std::uint64_t h, std::uint64_t word) {
+    h = (h ^ word) * 0x9e3779b97f4a7c15ull;
+    return h ^ (h >> 29);
+}
+
+std::uint64_t hash_of(const Shape &shape) {
+    std::uint64_t h = static_cast<std::uint64_t>(shape.kind);
+    h = stir(h, static_cast<std::uint64_t>(shape.map) << 24 | std::uint64_t{shape.dims} << 16 |
+                    std::uint64_t{shape.axis} << 8 | shape.towards);
+    h = stir(h, shape.payload);
+    for (ShapeId child : shape.children) h = stir(h, child.index);
+    h = stir(h, shape.children.size());
+    for (NodeId arg : shape.args) h = stir(h, arg.index);
+    h = stir(h, std::bit_cast<std::uint64_t>(shape.assumed));
+    return stir(h, std::bit_cast<std::uint64_t>(shape.estimate));
+}
+
+bool equal(const Shape &a, const Shape &b) {
+    return a.kind == b.kind && a.dims == b.dims && a.map == b.map && a.axis == b.axis &&
+           a.towards == b.towards && a.payload == b.payload && a.children == b.children &&
+           a.args == b.args && a.assumed == b.assumed && a.estimate == b.estimate;
+}
+
+} // namespace
+
+ShapeId Shapes::add(Shape shape) {
+    const std::uint64_t h = hash_of(shape);
+    const auto [first, last] = interned_.equal_range(h);
+    for (auto it = first; it != last; ++it)
+        if (equal(shapes_[it->second], shape)) return it->second;
+    const ShapeId id = shapes_.add(std::move(shape));
+    interned_.emplace(h, id);
+    return id;
+}
+
+} // namespace fathom::ir
