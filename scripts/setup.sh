@@ -68,5 +68,5 @@ build() {
             return 1
         }
     fi || return 1
-    flock -u 9
+    exec 9>&-
 }

@@ -1,0 +1,23 @@
+// What `check` says of a whole scene (semantics.md, 19), for people and as the JSON document of the command line.
+// Knows nothing of commands.
+#pragma once
+
+#include "driver/compile.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace fathom::driver {
+
+struct Verdict {
+    std::optional<double> lipschitz; // the largest before division among the top-level shapes; none: no shape, no bound
+    ir::ProofStatus status = ir::ProofStatus::Proved; // the worst
+    bool exact = true;                                // only if all are
+};
+
+Verdict judge(const ir::Scene &scene); // of a good compilation
+std::string_view status_name(ir::ProofStatus status);
+std::string verdict_json(const Compilation &compilation); // with its line end
+
+} // namespace fathom::driver
