@@ -1,0 +1,224 @@
+// See view.h. Values of closed expressions come from ir/fold.h, which is the ops' meaning in double.
+#include "ir/view.h"
+
+#include "ir/fold.h"
+#include "ir/look.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <unordered_map>
+
+namespace fathom::ir {
+
+namespace {
+
+// Walks an expression and keeps what it has computed. Variables of functions and loops live in `env_`; what was computed under
+// them is forgotten when they change.
+class Evaluator {
+  public:
+    Evaluator(const Scene &scene, double time) : scene_(scene), graph_(scene.graph), time_(time) {}
+
+    Constant value(NodeId id) {
+        if (auto known = values_.find(id); known != values_.end()) return known->second;
+        const Constant result = compute(id);
+        values_.insert_or_assign(id, result);
+        return result;
+    }
+
+  private:
+    Constant compute(NodeId id) {
+        const Node &node = graph_[id];
+        if (node.op == Op::Const) return graph_.constant_of(id);
+        if (node.op == Op::Time) return {node.type, {time_}};
+        if (node.op == Op::Param) {
+            Constant result{node.type, {}};
+            std::ranges::copy(scene_.params[node.payload].value, result.value.begin());
+            return result;
+        }
+        if (node.op == Op::Fold) return loop(id)[0];
+        if (node.op == Op::FoldResult) return loop(graph_.arg(id, 0))[node.payload];
+        if (node.op == Op::TableRead) return row(id);
+        std::vector<Constant> args;
+        for (NodeId arg : graph_.args(id)) args.push_back(value(arg));
+        if (node.op == Op::Call) {
+            const Function &function = graph_.function(FunctionId{node.payload});
+            return in_scope(function.params, args, [&](Evaluator &inner) { return inner.value(function.result); });
+        }
+        const std::optional<Constant> result = evaluate(node.op, node.type, args, node.payload);
+        assert(result && "a closed expression is made of ops that have a value");
+        return result.value_or(Constant{node.type, {}});
+    }
+
+    template <class F> Constant in_scope(std::span<const NodeId> vars, std::span<const Constant> args, F run) {
+        Evaluator inner(scene_, time_);
+        for (std::size_t i = 0; i < vars.size(); ++i) inner.values_[vars[i]] = args[i];
+        return run(inner);
+    }
+
+    std::vector<Constant> loop(NodeId id) {
+        const Fold &fold = graph_.fold(FoldId{graph_[id].payload});
+        std::vector<Constant> now;
+        for (NodeId arg : graph_.args(id)) now.push_back(value(arg));
+        const int count = static_cast<int>(value(fold.count).value[0]);
+        for (int i = 0; i < count; ++i) {
+            Evaluator turn(scene_, time_);
+            for (NodeId var : graph_.free_vars(id))
+                if (auto known = values_.find(var); known != values_.end()) turn.values_[var] = known->second;
+            turn.values_[fold.index] = {Type::Int, {static_cast<double>(i)}};
+            for (std::size_t k = 0; k < now.size(); ++k) turn.values_[fold.vars[k]] = now[k];
+            if (fold.condition && turn.value(fold.condition).value[0] == 0) break;
+            std::vector<Constant> next;
+            for (NodeId n : fold.next) next.push_back(turn.value(n));
+            now = std::move(next);
+        }
+        return now;
+    }
+
+    Constant row(NodeId id) {
+        const Node &node = graph_[id];
+        const Table &table = graph_.table(table_of(node.payload));
+        const int at = std::clamp(static_cast<int>(value(graph_.arg(id, 0)).value[0]), 0, std::max(table.rows - 1, 0));
+        Constant result{node.type, {}};
+        for (int i = 0; i < components(node.type); ++i)
+            result.value[static_cast<std::size_t>(i)] =
+                table.data[static_cast<std::size_t>(at * table.stride + column_of(node.payload) + i)];
+        return result;
+    }
+
+    const Scene &scene_;
+    const Graph &graph_;
+    double time_;
+    std::unordered_map<NodeId, Constant> values_;
+};
+
+double dot(Triple a, Triple b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Triple cross(Triple a, Triple b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Triple scaled(Triple a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
+Triple plus(Triple a, Triple b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Triple minus(Triple a, Triple b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+double length(Triple a) { return std::sqrt(dot(a, a)); }
+Triple normalized(Triple a, Triple otherwise) {
+    const double size = length(a);
+    return size > 0 ? scaled(a, 1 / size) : otherwise;
+}
+
+Triple triple_of(const Scene &scene, NodeId id, double time) {
+    const std::array<double, 16> v = value_of(scene, id, time);
+    return {v[0], v[1], v[2]};
+}
+
+constexpr double default_fov = std::numbers::pi / 4;
+
+// The bounding sphere of the finite parts' box; radius 1 about the origin where nothing is finite.
+std::pair<Triple, double> sphere_of(const Box &box) {
+    if (!box.finite()) return {{0, 0, 0}, 1};
+    const Triple middle = scaled(plus(box.lo, box.hi), 0.5);
+    const double radius = 0.5 * length(minus(box.hi, box.lo));
+    return {middle, radius > 0 ? radius : 1};
+}
+
+} // namespace
+
+std::array<double, 16> value_of(const Scene &scene, NodeId id, double time) {
+    if (!id) return {};
+    return Evaluator(scene, time).value(id).value;
+}
+
+View look_at(Triple position, Triple target, double extent, bool orthographic) {
+    View view;
+    view.origin = position;
+    view.extent = extent;
+    view.orthographic = orthographic;
+    const Triple way = minus(target, position);
+    view.focus = length(way) > 0 ? length(way) : 1;
+    view.forward = normalized(way, {0, 0, -1});
+    const bool vertical = std::abs(view.forward[1]) > 1 - 1e-9;
+    const Triple up = vertical ? Triple{0, 0, view.forward[1] > 0 ? 1.0 : -1.0} : Triple{0, 1, 0};
+    view.right = normalized(cross(view.forward, up), {1, 0, 0});
+    view.up = cross(view.right, view.forward);
+    return view;
+}
+
+View frame_sphere(View view, Triple center, double radius, double aspect) {
+    const double narrow = std::min(aspect, 1.0);
+    if (view.orthographic) {
+        view.extent = radius / narrow;
+        view.focus = 2 * radius;
+    } else {
+        view.focus = radius / std::sin(std::atan(view.extent * narrow));
+    }
+    view.origin = minus(center, scaled(view.forward, view.focus));
+    return view;
+}
+
+View view_of(const Scene &scene, double time, double aspect) {
+    const Camera &camera = scene.camera;
+    if (!camera.given) {
+        const auto [center, radius] = sphere_of(scene.bounds);
+        const View from = look_at(plus(center, {3, 2, 5}), center, std::tan(default_fov / 2), camera.orthographic);
+        return frame_sphere(from, center, radius, aspect);
+    }
+    const Triple at = triple_of(scene, camera.at, time), target = triple_of(scene, camera.look_at, time);
+    const double fov = camera.fov ? value_of(scene, camera.fov, time)[0] : default_fov;
+    const double extent = std::tan(std::clamp(fov, 1e-4, std::numbers::pi - 1e-4) / 2);
+    View view = look_at(at, target, extent, camera.orthographic);
+    if (view.orthographic) view.extent *= view.focus; // shows what the perspective camera would, at the target
+    return view;
+}
+
+std::array<double, 2> sample_offset(int k) {
+    // The plastic number g is the real root of g^3 = g + 1; the steps are 1/g and 1/g^2.
+    constexpr double a = 0.75487766624669276, b = 0.56984029099805327;
+    const double x = 0.5 + a * k, y = 0.5 + b * k;
+    return {x - std::floor(x), y - std::floor(y)};
+}
+
+Frame frame_of(const Scene &scene, const View &view, int height) {
+    Frame frame;
+    const auto [center, radius] = sphere_of(scene.bounds);
+    frame.center = center;
+    frame.radius = radius;
+    frame.slack = look::float_slack * (length(view.origin) + radius);
+    frame.pixel = 2 * view.extent / height;
+    const double sharp = std::min(scene.render.epsilon * (view.orthographic ? view.focus : 1), frame.pixel / 2);
+    frame.tolerance_slope = view.orthographic ? 0 : sharp;
+    frame.tolerance_base = (view.orthographic ? sharp : 0) + frame.slack;
+    frame.far = scene.render.far > 0 ? scene.render.far
+                                     : 100 * std::max(radius, length(minus(view.origin, center)));
+    const Box all = scene.root && scene.root.index < scene.facts.size() ? scene.facts[scene.root.index].bounds
+                                                                        : Box::everything();
+    frame.boxed = all.finite();
+    if (frame.boxed) {
+        // Not flush with flat faces, on which a ray would graze its own entry.
+        const double margin = 1e-3 * radius;
+        frame.lo = minus(all.lo, {margin, margin, margin});
+        frame.hi = plus(all.hi, {margin, margin, margin});
+    }
+    frame.steep = steep(scene);
+    return frame;
+}
+
+bool steep(const Scene &scene) {
+    return std::ranges::any_of(scene.facts, [](const ShapeFact &fact) { return fact.lipschitz_sup > 1 + 1e-6; });
+}
+
+std::vector<LightValue> lights_of(const Scene &scene, double time, const View &view) {
+    std::vector<LightValue> lights;
+    for (const Light &light : scene.lights) {
+        Triple position = triple_of(scene, light.position, time);
+        if (light.directional) position = normalized(position, {0, 1, 0});
+        lights.push_back({light.directional, position, triple_of(scene, light.color, time)});
+    }
+    if (lights.empty()) {
+        const Triple towards = plus(plus(scaled(view.right, -0.5), scaled(view.up, 0.8)), scaled(view.forward, -0.6));
+        lights.push_back({true, normalized(towards, {0, 1, 0}), {1, 1, 1}});
+    }
+    return lights;
+}
+
+} // namespace fathom::ir
