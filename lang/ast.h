@@ -40,8 +40,22 @@ struct TypeExpr {
 
 enum class UnaryOp { Neg, Not };
 enum class BinaryOp {
-    Union, Intersection, Or, And, Equal, NotEqual, Less, LessEqual, Greater, GreaterEqual,
-    Add, Sub, Mul, Div, Mod, Pow
+    Union,
+    Intersection,
+    Or,
+    And,
+    Equal,
+    NotEqual,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Mod,
+    Pow
 };
 
 struct Poison {}; // a place where the parser already reported an error
@@ -50,17 +64,39 @@ struct Number {
     bool is_int = false;
     std::string unit; // "", "deg", "rad" or "turn"
 };
-struct String { std::string value; };
-struct Bool { bool value = false; };
-struct Color { double rgba[4] = {0, 0, 0, 1}; }; // sRGB, 0..1, as in the text
-struct Name { std::string text; };
-struct List { std::vector<ExprId> items; };      // [a, b, c]
-struct Comprehension { BlockId body; };          // [for … { … }] or [if … { … }]: a contributing body
-struct Range { ExprId first, last; bool inclusive = false; };
-struct Unary { UnaryOp op; ExprId operand; };
+struct String {
+    std::string value;
+};
+struct Bool {
+    bool value = false;
+};
+struct Color {
+    double rgba[4] = {0, 0, 0, 1};
+}; // sRGB, 0..1, as in the text
+struct Name {
+    std::string text;
+};
+struct List {
+    std::vector<ExprId> items;
+}; // [a, b, c]
+struct Comprehension {
+    BlockId body;
+}; // [for … { … }] or [if … { … }]: a contributing body
+struct Range {
+    ExprId first, last;
+    bool inclusive = false;
+};
+struct Unary {
+    UnaryOp op;
+    ExprId operand;
+};
 // `a + b - c` is one node: operands a, b, c and ops +, -. All ops of a node have one precedence.
 // Comparisons and `^` have exactly two operands.
-struct Binary { std::vector<ExprId> operands; std::vector<BinaryOp> ops; std::vector<Span> op_spans; };
+struct Binary {
+    std::vector<ExprId> operands;
+    std::vector<BinaryOp> ops;
+    std::vector<Span> op_spans;
+};
 struct Argument {
     std::optional<Identifier> name;
     ExprId value;
@@ -71,15 +107,27 @@ struct Call {
     std::optional<BlockId> trailing; // `union { … }`: a contributing block
     bool has_parentheses = true;     // false for `union { … }`
 };
-struct Index { ExprId object, index; };
-struct Member { ExprId object; Identifier name; };
-struct Lambda { FunctionId function; };
-struct IfBranch { ExprId condition; BlockId body; };
+struct Index {
+    ExprId object, index;
+};
+struct Member {
+    ExprId object;
+    Identifier name;
+};
+struct Lambda {
+    FunctionId function;
+};
+struct IfBranch {
+    ExprId condition;
+    BlockId body;
+};
 struct If {
     std::vector<IfBranch> branches; // `if`, then each `else if`
     std::optional<BlockId> otherwise;
 };
-struct BlockExpr { BlockId block; }; // a block where an expression stands: a lambda's `{ … }` body
+struct BlockExpr {
+    BlockId block;
+}; // a block where an expression stands: a lambda's `{ … }` body
 
 using ExprKind = std::variant<Poison, Number, String, Bool, Color, Name, List, Comprehension, Range,
                               Unary, Binary, Call, Index, Member, Lambda, If, BlockExpr>;
@@ -98,24 +146,42 @@ struct Parameter {
     std::optional<ExprId> default_value;
 };
 
-// A `fn` or a lambda. The body is always a block; `fn f(x) = e` and `x => e` give one of a single ExprStmt.
+// A `fn` or a lambda. The body is always a block; `fn f(x) = e` and `x => e` give one of a single
+// ExprStmt.
 struct Function {
     std::optional<Identifier> name; // none for a lambda
     std::vector<Parameter> parameters;
     std::optional<TypeExpr> result;
     BlockId body;
-    Span span;      // all of it
-    Span head;      // `fn name(…) -> type`, or the lambda's parameters
+    Span span;                       // all of it
+    Span head;                       // `fn name(…) -> type`, or the lambda's parameters
     bool body_is_expression = false; // written with `=` or without braces
-    std::string doc; // the `///` comment lines directly above, without the slashes
+    std::string doc;                 // the `///` comment lines directly above, without the slashes
 };
 
-struct ExprStmt { ExprId value; };
-struct Let { Identifier name; std::optional<TypeExpr> type; ExprId value; std::string doc; };
-struct Var { Identifier name; std::optional<TypeExpr> type; ExprId value; };
+struct ExprStmt {
+    ExprId value;
+};
+struct Let {
+    Identifier name;
+    std::optional<TypeExpr> type;
+    ExprId value;
+    std::string doc;
+};
+struct Var {
+    Identifier name;
+    std::optional<TypeExpr> type;
+    ExprId value;
+};
 // `target op= value`; op is empty for `=`. The target is a name followed by members and indices.
-struct Assign { ExprId target; std::optional<BinaryOp> op; ExprId value; };
-struct FunctionDecl { FunctionId function; };
+struct Assign {
+    ExprId target;
+    std::optional<BinaryOp> op;
+    ExprId value;
+};
+struct FunctionDecl {
+    FunctionId function;
+};
 // `param name = value in low..high "label"`; the range's ends are included.
 struct Param {
     Identifier name;
@@ -124,23 +190,37 @@ struct Param {
     std::optional<ExprId> low, high;
     std::optional<std::string> label;
 };
-struct Import { std::string path; Span path_span; std::optional<Identifier> as; };
-struct For { Identifier variable; ExprId sequence; BlockId body; };
-struct While { ExprId condition; std::optional<ExprId> limit; BlockId body; };
+struct Import {
+    std::string path;
+    Span path_span;
+    std::optional<Identifier> as;
+};
+struct For {
+    Identifier variable;
+    ExprId sequence;
+    BlockId body;
+};
+struct While {
+    ExprId condition;
+    std::optional<ExprId> limit;
+    BlockId body;
+};
 struct Break {};
-struct Return { std::optional<ExprId> value; };
+struct Return {
+    std::optional<ExprId> value;
+};
 struct Bad {}; // a statement that could not be read; already reported
 
-using StmtKind = std::variant<Bad, ExprStmt, Let, Var, Assign, FunctionDecl, Param, Import, For, While,
-                              Break, Return>;
+using StmtKind = std::variant<Bad, ExprStmt, Let, Var, Assign, FunctionDecl, Param, Import, For,
+                              While, Break, Return>;
 struct Stmt {
     StmtKind kind;
     Span span;
 };
 
-// The statements between braces, or of a whole file. Whether it *contributes* (semantics.md, 3) depends on
-// where it stands: a file, a trailing block and a comprehension do, and so do the bodies of `for` and `if`
-// inside them.
+// The statements between braces, or of a whole file. Whether it *contributes* (semantics.md, 3)
+// depends on where it stands: a file, a trailing block and a comprehension do, and so do the bodies
+// of `for` and `if` inside them.
 struct Block {
     std::vector<Stmt> stmts;
     Span span;

@@ -1,4 +1,5 @@
-// The one style of `fathom fmt`: idempotent, keeps every comment, never changes what a program means.
+// The one style of `fathom fmt`: idempotent, keeps every comment, never changes what a program
+// means.
 #pragma once
 
 #include "base/diagnostic.h"

@@ -7,8 +7,8 @@
 
 namespace fathom::lang {
 
-// Never fails: what cannot be read is reported and becomes Poison or Bad, and reading goes on at the next
-// statement. Time and memory are linear in the text.
+// Never fails: what cannot be read is reported and becomes Poison or Bad, and reading goes on at
+// the next statement. Time and memory are linear in the text.
 Ast parse(const Sources &sources, SourceId source, Diagnostics &diagnostics);
 
 // The names that the grammar keeps for itself (`let`, `fn`, `for`, …).

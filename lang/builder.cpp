@@ -1,0 +1,509 @@
+// Building the tree: operands, expressions and functions. Statements are in builder_statements.cpp.
+#include "lang/builder.h"
+
+#include "lang/lexer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace fathom::lang {
+
+namespace {
+
+// Brackets, functions and types may nest so deep; the grammar's own recursion is bounded by it.
+constexpr std::size_t deepest_nesting = 256;
+// Levels of the tree, which all that walk it may descend: nesting with several operators to a
+// level, and chains of calls.
+constexpr std::uint32_t tallest_tree = 1024;
+
+enum Precedence {
+    UnionLevel = 1,
+    IntersectionLevel,
+    OrLevel,
+    AndLevel,
+    NotLevel,
+    CompareLevel,
+    RangeLevel,
+    AddLevel,
+    MulLevel,
+    NegLevel,
+    PowLevel
+};
+
+struct BinaryRow {
+    Tok kind;
+    BinaryOp op;
+    int precedence;
+};
+
+constexpr BinaryRow binary_rows[] = {{Tok::Bar, BinaryOp::Union, UnionLevel},
+                                     {Tok::Amp, BinaryOp::Intersection, IntersectionLevel},
+                                     {Tok::Or, BinaryOp::Or, OrLevel},
+                                     {Tok::And, BinaryOp::And, AndLevel},
+                                     {Tok::EqualEqual, BinaryOp::Equal, CompareLevel},
+                                     {Tok::NotEqual, BinaryOp::NotEqual, CompareLevel},
+                                     {Tok::Less, BinaryOp::Less, CompareLevel},
+                                     {Tok::LessEqual, BinaryOp::LessEqual, CompareLevel},
+                                     {Tok::Greater, BinaryOp::Greater, CompareLevel},
+                                     {Tok::GreaterEqual, BinaryOp::GreaterEqual, CompareLevel},
+                                     {Tok::Plus, BinaryOp::Add, AddLevel},
+                                     {Tok::Minus, BinaryOp::Sub, AddLevel},
+                                     {Tok::Star, BinaryOp::Mul, MulLevel},
+                                     {Tok::Slash, BinaryOp::Div, MulLevel},
+                                     {Tok::Percent, BinaryOp::Mod, MulLevel},
+                                     {Tok::Caret, BinaryOp::Pow, PowLevel}};
+
+template <class T> T take_back(std::vector<T> &stack) {
+    assert(!stack.empty());
+    T top = std::move(stack.back());
+    stack.pop_back();
+    return top;
+}
+
+} // namespace
+
+Builder::Builder(const Source &source, SourceId id, const Tokens &tokens, Diagnostics &diagnostics)
+    : source_(source), id_(id), tokens_(tokens), diagnostics_(diagnostics) {
+    ast_.source = id;
+    ast_.exprs.reserve(tokens.tokens.size() / 2);
+    expr_heights_.reserve(tokens.tokens.size() / 2);
+    stmt_marks_.push_back(0); // the file is a block
+}
+
+void Builder::deeper(Index at) {
+    if (++depth_ <= deepest_nesting) return;
+    diagnostics_.add(Code::TooDeep, span(at), "the text nests deeper than 256 levels here")
+        .help("give the inner parts names with `let`");
+    failed_ = at;
+    throw Abandon{};
+}
+
+// -- stacks --------------------------------------------------------------------------------------
+
+ExprId Builder::add(ExprKind kind, Span span, std::uint32_t height) {
+    if (height > tallest_tree) {
+        diagnostics_
+            .add(Code::TooDeep, {span.source, span.end, span.end},
+                 "this expression is a chain or nest of more than 1000 parts")
+            .help("give its parts names with `let`");
+        kind = Poison{};
+        height = 0;
+    }
+    expr_heights_.push_back(height);
+    return ast_.exprs.add({std::move(kind), span, false});
+}
+
+void Builder::push(ExprKind kind, Span span, std::uint32_t height) {
+    items_.push_back({add(std::move(kind), span, height), span.begin, span.end});
+}
+
+Builder::Item Builder::pop_item() { return take_back(items_); }
+std::optional<Builder::Item> Builder::pop_maybe_item() { return take_back(maybe_items_); }
+std::optional<TypeExpr> Builder::pop_maybe_type() { return take_back(maybe_types_); }
+BlockId Builder::pop_block() { return take_back(blocks_); }
+Identifier Builder::pop_name() { return *take_back(names_); }
+
+void Builder::some_value() { maybe_items_.emplace_back(pop_item()); }
+
+// -- types ---------------------------------------------------------------------------------------
+
+void Builder::type_name(Index at) {
+    TypeExpr type;
+    type.span = span(at);
+    type.name = text(at);
+    types_.push_back(std::move(type));
+}
+
+void Builder::type_number(Index at) {
+    const std::optional<NumberWord> number = read_number(text(at));
+    if (number) types_.back().lipschitz = number->value;
+}
+
+void Builder::type_bound_end(Index at) { types_.back().span = join(types_.back().span, span(at)); }
+
+void Builder::type_list(Index first, Index last) {
+    TypeExpr list;
+    list.kind = TypeExpr::Kind::List;
+    list.span = span(first, last);
+    list.items.push_back(take_back(types_));
+    types_.push_back(std::move(list));
+}
+
+void Builder::type_function(Index first, Index last) {
+    const auto items = types_.begin() + static_cast<std::ptrdiff_t>(take_back(type_marks_));
+    TypeExpr function;
+    function.kind = TypeExpr::Kind::Function;
+    function.span = span(first, last);
+    function.items.assign(std::make_move_iterator(items), std::make_move_iterator(types_.end()));
+    types_.erase(items, types_.end());
+    types_.push_back(std::move(function));
+}
+
+void Builder::some_type() { maybe_types_.emplace_back(take_back(types_)); }
+
+// -- operands ------------------------------------------------------------------------------------
+
+void Builder::number(Index at) {
+    const std::optional<NumberWord> number = read_number(text(at));
+    assert(number);
+    push(Number{number->value, number->is_int, std::string(number->unit)}, span(at), 1);
+}
+
+void Builder::string(Index at) { push(String{read_string(text(at))}, span(at), 1); }
+
+void Builder::color(Index at) {
+    Color color;
+    read_color(text(at), color.rgba);
+    push(color, span(at), 1);
+}
+
+void Builder::yes(Index at) { push(Bool{true}, span(at), 1); }
+void Builder::no(Index at) { push(Bool{false}, span(at), 1); }
+void Builder::poison(Index at) { push(Poison{}, span(at), 1); }
+
+void Builder::name(Index at) {
+    push(Name{std::string(text(at))}, span(at), 1);
+    if (is_foreign_value(text(at))) foreign_names_.push_back({items_.back().id, span(at)});
+}
+
+void Builder::parenthesized(Index first, Index last) {
+    Item &item = items_.back();
+    ast_.exprs[item.id].parenthesized = true;
+    item.begin = token(first).begin;
+    item.end = token(last).end;
+}
+
+void Builder::comprehension() {
+    const BlockId body = add_block(take_back(stmt_marks_), {});
+    const Span inside = ast_.blocks[body].stmts.front().span;
+    ast_.blocks[body].span = inside;
+    push(Comprehension{body}, inside, 1 + height(body));
+}
+
+void Builder::list(Index first, Index last) {
+    const Frame frame = take_back(frames_);
+    const std::size_t count = items_.size() - frame.items;
+    const Span whole = span(first, last);
+    if (count == 1) {
+        // A lone `for` or `if` in brackets contributes.
+        const Item item = items_.back();
+        const Expr &only = ast_.exprs[item.id];
+        if (std::holds_alternative<Comprehension>(only.kind) && !only.parenthesized &&
+            only.span.begin != whole.begin && kind(first + 1) == Tok::For) {
+            ast_.exprs[item.id].span = whole;
+            items_.back() = {item.id, whole.begin, whole.end};
+            return;
+        }
+        if (std::holds_alternative<If>(only.kind) && !only.parenthesized) {
+            items_.pop_back();
+            const std::size_t mark = stmts_.size();
+            add_stmt(ExprStmt{item.id}, span(item), height(item.id));
+            const BlockId body = add_block(mark, span(item));
+            push(Comprehension{body}, whole, 1 + height(body));
+            return;
+        }
+    }
+    List list;
+    std::uint32_t tallest = 0;
+    list.items.reserve(count);
+    for (std::size_t i = frame.items; i < items_.size(); ++i) {
+        list.items.push_back(items_[i].id);
+        tallest = std::max(tallest, height(items_[i].id));
+    }
+    items_.resize(frame.items);
+    push(std::move(list), whole, 1 + tallest);
+}
+
+// -- functions -----------------------------------------------------------------------------------
+
+void Builder::declared_name(Index at) {
+    names_.emplace_back(identifier(at));
+    declared_.push_back(text(at));
+}
+
+void Builder::parameter() {
+    const std::optional<Item> value = pop_maybe_item();
+    std::optional<TypeExpr> type = pop_maybe_type();
+    parameters_.push_back({pop_name(), std::move(type), {}});
+    if (value) parameters_.back().default_value = value->id;
+}
+
+void Builder::function_open(Index at) {
+    heads_.push_back({parameters_.size(), at, in_function_, span(at)});
+}
+
+void Builder::lambda_name(Index at) {
+    function_open(at);
+    declared_.push_back(text(at));
+    parameters_.push_back({identifier(at), {}, {}});
+}
+
+void Builder::function_head(Index next) {
+    heads_.back().span = span(heads_.back().first, next - 1);
+    in_function_ = true;
+}
+
+void Builder::value_body() {
+    blocks_.push_back(value_block(pop_item()));
+    expression_body_ = true;
+}
+
+FunctionId Builder::pop_function(std::optional<Identifier> name, std::optional<TypeExpr> result,
+                                 Span whole) {
+    const Head head = take_back(heads_);
+    in_function_ = head.outer_in_function;
+    Function function;
+    function.name = std::move(name);
+    const auto parameters = parameters_.begin() + static_cast<std::ptrdiff_t>(head.parameters);
+    function.parameters.assign(std::make_move_iterator(parameters),
+                               std::make_move_iterator(parameters_.end()));
+    parameters_.erase(parameters, parameters_.end());
+    function.result = std::move(result);
+    function.body = pop_block();
+    function.span = whole;
+    function.head = head.span;
+    function.body_is_expression = expression_body_;
+    return ast_.functions.add(std::move(function));
+}
+
+void Builder::lambda(Index first, Index last) {
+    const std::uint32_t body_height = height(blocks_.back());
+    const FunctionId function = pop_function({}, {}, span(first, last));
+    push(Lambda{function}, span(first, last), 1 + body_height);
+}
+
+// -- choice --------------------------------------------------------------------------------------
+
+void Builder::if_branch() {
+    const BlockId body = pop_block();
+    branches_.push_back({pop_item().id, body});
+}
+
+void Builder::otherwise() { branches_.push_back({ExprId{}, pop_block()}); }
+
+void Builder::choice(Index first, Index last) {
+    const auto begin = branches_.begin() + static_cast<std::ptrdiff_t>(take_back(branch_marks_));
+    If choice;
+    std::uint32_t tallest = 0;
+    for (auto branch = begin; branch != branches_.end(); ++branch) {
+        tallest = std::max(tallest, height(branch->body));
+        if (branch->condition) tallest = std::max(tallest, height(branch->condition));
+        if (!branch->condition)
+            choice.otherwise = branch->body;
+        else
+            choice.branches.push_back(*branch);
+    }
+    branches_.erase(begin, branches_.end());
+    push(std::move(choice), span(first, last), 1 + tallest);
+}
+
+// -- postfix forms -------------------------------------------------------------------------------
+
+void Builder::argument_name(Index at) {
+    names_.emplace_back(identifier(at));
+    if (kind(at + 1) != Tok::Assign) return;
+    foreign(span(at + 1), "an argument is named with `:`")
+        .help("write `" + std::string(text(at)) + ": …`",
+              {{{id_, token(at).end, token(at + 1).end}, ":"}});
+}
+
+void Builder::argument() { arguments_.push_back({take_back(names_), pop_item().id}); }
+
+void Builder::call(Index, Index last) {
+    const auto arguments =
+        arguments_.begin() + static_cast<std::ptrdiff_t>(take_back(argument_marks_));
+    const Item callee = pop_item();
+    Call call;
+    call.callee = callee.id;
+    call.arguments.assign(std::make_move_iterator(arguments),
+                          std::make_move_iterator(arguments_.end()));
+    arguments_.erase(arguments, arguments_.end());
+    std::uint32_t tallest = height(callee.id);
+    for (const Argument &argument : call.arguments)
+        tallest = std::max(tallest, height(argument.value));
+    push(std::move(call), {id_, callee.begin, token(last).end}, 1 + tallest);
+}
+
+void Builder::index(Index, Index last) {
+    const Item index = pop_item();
+    const Item object = pop_item();
+    push(lang::Index{object.id, index.id}, {id_, object.begin, token(last).end},
+         1 + std::max(height(object.id), height(index.id)));
+}
+
+void Builder::member(Index at) {
+    const Item object = pop_item();
+    push(Member{object.id, identifier(at)}, {id_, object.begin, token(at).end},
+         1 + height(object.id));
+    const Expr &qualifier = ast_.exprs[object.id];
+    const Name *name = std::get_if<Name>(&qualifier.kind);
+    if (name && !qualifier.parenthesized && is_foreign_module(name->text))
+        foreign_names_.push_back({items_.back().id, qualifier.span});
+}
+
+void Builder::trailing(Index first, Index last) {
+    const BlockId block = pop_block();
+    const Item callee = pop_item();
+    const std::uint32_t tall = 1 + std::max(height(callee.id), height(block));
+    const Span whole{id_, callee.begin, token(last).end};
+    Expr &expr = ast_.exprs[callee.id];
+    Call *call = std::get_if<Call>(&expr.kind);
+    if (!call || expr.parenthesized || call->trailing) {
+        push(Call{callee.id, {}, block, false}, whole, tall);
+        return;
+    }
+    if (call->arguments.empty()) {
+        const Index open = tokens_.match[first - 1];
+        const std::string name(text(expr.span.begin, token(open).begin));
+        foreign(span(open, first - 1), "a block stands directly behind the function's name")
+            .help("write `" + name + " { … }`", {{span(open, first - 1), ""}});
+        call->has_parentheses = false;
+    }
+    call->trailing = block;
+    Expr merged = std::move(expr);
+    push(std::move(merged.kind), whole, tall);
+}
+
+void Builder::step(Index at) {
+    const Item item = pop_item();
+    const bool up = kind(at) == Tok::PlusPlus;
+    const std::string name(text(item.begin, item.end));
+    foreign(span(at), up ? "there is no `++`" : "there is no `--`")
+        .help("write `" + name + (up ? " += 1`" : " -= 1`"), {{span(at), up ? " += 1" : " -= 1"}});
+    push(Poison{}, {id_, item.begin, token(at).end}, 1);
+}
+
+// -- rows of operands and operators --------------------------------------------------------------
+
+void Builder::expression_open(Index at) {
+    deeper(at);
+    frames_.push_back({items_.size(), ops_.size()});
+}
+
+void Builder::expression_close() {
+    reduce_above(0);
+    frames_.pop_back();
+    shallower();
+}
+
+void Builder::prefix(Index at) {
+    Op op;
+    op.is_prefix = true;
+    op.at = at;
+    op.unary = kind(at) == Tok::Minus ? UnaryOp::Neg : UnaryOp::Not;
+    op.precedence = op.unary == UnaryOp::Neg ? NegLevel : NotLevel;
+    const bool behind_tighter =
+        ops_.size() > frames_.back().ops && ops_.back().precedence > op.precedence;
+    if (op.unary == UnaryOp::Not && behind_tighter)
+        diagnostics_.add(Code::SyntaxError, span(at), "`not` needs parentheses behind an operator")
+            .note("`not` binds more loosely than comparisons and arithmetic");
+    ops_.push_back(op);
+}
+
+void Builder::binary(Index at) {
+    Op op;
+    op.at = at;
+    if (kind(at) == Tok::DotDot || kind(at) == Tok::DotDotEqual) {
+        op.is_range = true;
+        op.inclusive = kind(at) == Tok::DotDotEqual;
+        op.precedence = RangeLevel;
+    } else {
+        const auto *row = std::find_if(std::begin(binary_rows), std::end(binary_rows),
+                                       [&](const BinaryRow &r) { return r.kind == kind(at); });
+        op.binary = row->op;
+        op.precedence = row->precedence;
+    }
+    reduce_above(op.precedence);
+    const bool chains = op.precedence == CompareLevel || op.precedence == RangeLevel;
+    if (chains && ops_.size() > frames_.back().ops && ops_.back().precedence == op.precedence) {
+        report_chain(ops_.back(), at);
+        reduce_top();
+        ast_.exprs[items_.back().id].kind = Poison{};
+    }
+    ops_.push_back(op);
+}
+
+void Builder::report_chain(const Op &first, Index second) {
+    if (first.is_range) {
+        diagnostics_.add(Code::SyntaxError, span(second), "a range has two ends")
+            .label(span(first.at), "the range begins here")
+            .help("with steps, write `range(from, to, step)`");
+        return;
+    }
+    const Item &middle = items_.back();
+    const std::string name(text(middle.begin, middle.end));
+    const std::string signs =
+        std::string(text(first.at)) + " " + name + " and " + name + " " + std::string(text(second));
+    diagnostics_.add(Code::SyntaxError, span(second), "comparisons do not chain")
+        .label(span(first.at), "the first comparison")
+        .help("write `… " + signs + " …`", {{{id_, middle.end, middle.end}, " and " + name}});
+}
+
+void Builder::reduce_above(int precedence) {
+    while (ops_.size() > frames_.back().ops && ops_.back().precedence > precedence) reduce_top();
+}
+
+// Makes a node of the operators of one precedence on top: all of them where the node is n-ary.
+void Builder::reduce_top() {
+    const Op top = ops_.back();
+    if (top.is_prefix) {
+        ops_.pop_back();
+        const Item operand = pop_item();
+        push(Unary{top.unary, operand.id}, {id_, token(top.at).begin, operand.end},
+             1 + height(operand.id));
+        return;
+    }
+    std::size_t first = ops_.size() - 1;
+    if (top.precedence != PowLevel)
+        while (first > frames_.back().ops && !ops_[first - 1].is_prefix &&
+               ops_[first - 1].precedence == top.precedence)
+            --first;
+    const std::size_t count = ops_.size() - first;
+    const std::size_t base = items_.size() - count - 1;
+    const Span whole{id_, items_[base].begin, items_.back().end};
+    std::uint32_t tallest = 0;
+    for (std::size_t i = base; i < items_.size(); ++i)
+        tallest = std::max(tallest, height(items_[i].id));
+    if (top.is_range) {
+        const Range range{items_[base].id, items_[base + 1].id, top.inclusive};
+        ops_.pop_back();
+        items_.resize(base);
+        push(range, whole, 1 + tallest);
+        return;
+    }
+    Binary binary;
+    binary.operands.reserve(count + 1);
+    binary.ops.reserve(count);
+    binary.op_spans.reserve(count);
+    for (std::size_t i = base; i < items_.size(); ++i) binary.operands.push_back(items_[i].id);
+    for (std::size_t i = first; i < ops_.size(); ++i) {
+        binary.ops.push_back(ops_[i].binary);
+        binary.op_spans.push_back(span(ops_[i].at));
+    }
+    ops_.resize(first);
+    items_.resize(base);
+    push(std::move(binary), whole, 1 + tallest);
+}
+
+void Builder::ternary() {
+    const Item otherwise = pop_item(), then = pop_item(), condition = pop_item();
+    remembered_.pop_back(); // the `:`
+    const Index question = take_back(remembered_);
+    const std::string c(text(condition.begin, condition.end)), a(text(then.begin, then.end)),
+        b(text(otherwise.begin, otherwise.end));
+    foreign(span(question), "a choice is written with `if`")
+        .help("write `if " + c + " { " + a + " } else { " + b + " }`",
+              {{{id_, condition.begin, condition.begin}, "if "},
+               {{id_, condition.end, then.begin}, " { "},
+               {{id_, then.end, otherwise.begin}, " } else { "},
+               {{id_, otherwise.end, otherwise.end}, " }"}});
+    If choice;
+    const BlockId yes = value_block(then), no = value_block(otherwise);
+    choice.branches.push_back({condition.id, yes});
+    choice.otherwise = no;
+    push(std::move(choice), {id_, condition.begin, otherwise.end},
+         1 + std::max({height(condition.id), height(yes), height(no)}));
+}
+
+} // namespace fathom::lang

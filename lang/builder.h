@@ -1,0 +1,266 @@
+// The tree, built from below while the grammar reads: each method is what one rule of the grammar
+// means, and bears its name. Reports what only the tree shows. Knows no PEGTL.
+#pragma once
+
+#include "lang/ast.h"
+#include "lang/token.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fathom::lang {
+
+// Names that other languages have for what is spelled otherwise here: `True`, `None`; `math`.
+bool is_foreign_value(std::string_view name);
+bool is_foreign_module(std::string_view name);
+
+// Thrown by Builder::fail, caught around each statement: reading goes on behind it. Never leaves
+// parse().
+struct Abandon {};
+
+// What the grammar wanted at a place where it cannot go on.
+enum class Wanted {
+    Expression,
+    Statement,
+    CloseParen,
+    CloseList,
+    CloseBrace,
+    Name,
+    ParameterName,
+    OpenParen,
+    AssignSign,
+    Type,
+    TypeEnd,
+    TypeNumber,
+    TypeArrow,
+    FunctionBody,
+    Block,
+    In,
+    Arrow,
+    MemberName,
+    ImportPath,
+    TernaryColon,
+    StatementEnd
+};
+
+class Builder {
+  public:
+    using Index = std::uint32_t; // of a token
+
+    Builder(const Source &source, SourceId id, const Tokens &tokens, Diagnostics &diagnostics);
+    Ast finish();
+
+    // Reports and abandons the statement.
+    [[noreturn]] void fail(Wanted wanted, Index at);
+    void deeper(Index at); // the depth of the grammar's own recursion
+    void shallower() { --depth_; }
+
+    // Statements end at a line end, at a `}`, or with the file. Where one does not, or was
+    // abandoned, what it left on the stacks is dropped; the result is the token to go on at.
+    struct Mark {
+        std::size_t items, ops, frames, names, types, maybe_types, type_marks, arguments,
+            argument_marks;
+        std::size_t parameters, maybe_items, heads, branches, branch_marks, stmts, stmt_marks,
+            blocks, remembered;
+        std::size_t depth;
+        bool in_function;
+    };
+    Mark mark() const;
+    bool ends_statement(Index at) const;
+    Index junk(const Mark &mark, Index first, Index at);
+    Index abandon(const Mark &mark, Index first);
+
+    // Types.
+    void type_name(Index at);
+    void type_number(Index at);
+    void type_bound_end(Index at);
+    void type_list(Index first, Index last);
+    void type_function_open() { type_marks_.push_back(types_.size()); }
+    void type_function(Index first, Index last);
+    void some_type();
+    void no_type() { maybe_types_.emplace_back(); }
+
+    // Operands.
+    void number(Index at);
+    void string(Index at);
+    void color(Index at);
+    void yes(Index at);
+    void no(Index at);
+    void name(Index at);
+    void poison(Index at);
+    void parenthesized(Index first, Index last);
+    void list_open() { frames_.push_back({items_.size(), ops_.size()}); }
+    void comprehension();
+    void list(Index first, Index last);
+
+    // Functions. A head begins at `fn`, or at a lambda's parameters.
+    void declared_name(Index at);
+    void some_value(); // an operand that may be left away
+    void no_value() { maybe_items_.emplace_back(); }
+    void parameter();
+    void function_open(Index at);
+    void lambda_name(Index at);
+    void function_head(Index next);
+    void block_body() { expression_body_ = false; }
+    void value_body();
+    void lambda(Index first, Index last);
+    void function(Index first, Index last);
+
+    void if_open() { branch_marks_.push_back(branches_.size()); }
+    void if_branch();
+    void otherwise();
+    void choice(Index first, Index last);
+
+    // Postfix forms, of the operand on top.
+    void call_open() { argument_marks_.push_back(arguments_.size()); }
+    void argument_name(Index at);
+    void no_name() { names_.emplace_back(); }
+    void argument();
+    void call(Index first, Index last);
+    void index(Index first, Index last);
+    void member(Index at);
+    void trailing(Index first, Index last);
+    void step(Index at);
+
+    // Rows of operands and operators.
+    void expression_open(Index at);
+    void expression_close();
+    void prefix(Index at);
+    void binary(Index at);
+    void remember(Index at) { remembered_.push_back(at); }
+    void ternary();
+
+    // Statements.
+    void let(Index first, Index last);
+    void var(Index first, Index last);
+    void param_label(Index at);
+    void param(Index first, Index last);
+    void import(Index first, Index last);
+    void for_loop(Index first, Index last);
+    void while_loop(Index first, Index last);
+    void break_loop(Index at);
+    void return_value(Index first, Index last);
+    void assignment();
+    void plain_value();
+    void block_open() { stmt_marks_.push_back(stmts_.size()); }
+    void block_close(Index first, Index last);
+
+  private:
+    struct Item { // an operand with its extent, parentheses included
+        ExprId id;
+        std::uint32_t begin = 0, end = 0;
+    };
+    struct Op {
+        bool is_prefix = false;
+        UnaryOp unary{};
+        BinaryOp binary{};
+        bool is_range = false, inclusive = false;
+        int precedence = 0;
+        Index at = 0;
+    };
+    struct Frame {
+        std::size_t items, ops;
+    };
+    struct Head {
+        std::size_t parameters;
+        Index first;
+        bool outer_in_function;
+        Span span;
+    };
+    struct Statement {
+        Stmt stmt;
+        std::uint32_t height;
+    };
+
+    const Token &token(Index at) const { return tokens_.tokens[at]; }
+    Tok kind(Index at) const {
+        return at < tokens_.tokens.size() ? tokens_.tokens[at].kind : Tok::End;
+    }
+    std::string_view text(Index at) const { return text_of(source_, token(at)); }
+    std::string_view text(std::uint32_t begin, std::uint32_t end) const {
+        return std::string_view(source_.text).substr(begin, end - begin);
+    }
+    Span span(Index at) const { return {id_, token(at).begin, token(at).end}; }
+    Span span(Index first, Index last) const { return {id_, token(first).begin, token(last).end}; }
+    Span span(const Item &item) const { return {id_, item.begin, item.end}; }
+    Span place(Index at) const; // of a token, or of the end of the text
+    Identifier identifier(Index at) const { return {std::string(text(at)), span(at)}; }
+    Diagnostic &foreign(Span where, std::string message) {
+        return diagnostics_.add(Code::ForeignSyntax, where, std::move(message));
+    }
+
+    ExprId add(ExprKind kind, Span span, std::uint32_t height);
+    void push(ExprKind kind, Span span, std::uint32_t height);
+    void replace_top(ExprKind kind, Span span, std::uint32_t height);
+    Item pop_item();
+    std::optional<Item> pop_maybe_item();
+    Identifier pop_name();
+    std::optional<TypeExpr> pop_maybe_type();
+    BlockId pop_block();
+    FunctionId pop_function(std::optional<Identifier> name, std::optional<TypeExpr> result,
+                            Span whole);
+    std::uint32_t height(ExprId id) const { return expr_heights_[id.index]; }
+    std::uint32_t height(BlockId id) const { return block_heights_[id.index]; }
+    void reduce_above(int precedence);
+    void reduce_top();
+    void report_chain(const Op &first, Index second);
+    BlockId value_block(const Item &item);
+    BlockId add_block(std::size_t first_stmt, Span span);
+    void add_stmt(StmtKind kind, Span span, std::uint32_t height);
+    std::string doc_above(Index at) const;
+    bool is_target(ExprId id) const;
+    Index statement_end(Index first) const;
+    void drop(const Mark &mark);
+    void replace_bad_statement(Index first);
+
+    // Answers made for the forms of other languages (foreign.cpp); true where they reported.
+    bool foreign_failure(Wanted wanted, Index at);
+    bool foreign_loop(Index at);
+    bool foreign_head(Index first);
+    bool foreign_junk(Index first, Index at);
+    bool juxtaposed_calls(Index first, Index at);
+    void generic_failure(Wanted wanted, Index at);
+    std::string describe(Index at) const;
+    void settle_foreign_names();
+
+    const Source &source_;
+    SourceId id_;
+    const Tokens &tokens_;
+    Diagnostics &diagnostics_;
+    Ast ast_;
+
+    std::vector<Item> items_;
+    std::vector<Op> ops_;
+    std::vector<Frame> frames_;
+    std::vector<std::optional<Identifier>> names_;
+    std::vector<TypeExpr> types_;
+    std::vector<std::optional<TypeExpr>> maybe_types_;
+    std::vector<std::size_t> type_marks_;
+    std::vector<Argument> arguments_;
+    std::vector<std::size_t> argument_marks_;
+    std::vector<Parameter> parameters_;
+    std::vector<std::optional<Item>> maybe_items_;
+    std::vector<Head> heads_;
+    std::vector<IfBranch> branches_;
+    std::vector<std::size_t> branch_marks_;
+    std::vector<Statement> stmts_;
+    std::vector<std::size_t> stmt_marks_;
+    std::vector<BlockId> blocks_;
+    std::vector<Index> remembered_;
+    std::vector<std::uint32_t> expr_heights_, block_heights_;
+    std::size_t depth_ = 0;
+    bool in_function_ = false;
+    bool expression_body_ = false; // of the function whose body was just read
+    Index failed_ = 0;             // where the statement that is being abandoned broke
+
+    // Names that other languages have, to be reported unless the file declares them.
+    struct ForeignName {
+        ExprId expr; // the name, or the member that it qualifies
+        Span span;
+    };
+    std::vector<ForeignName> foreign_names_;
+    std::vector<std::string_view> declared_;
+};
+
+} // namespace fathom::lang

@@ -1,0 +1,351 @@
+// Building the tree: statements and blocks, and what becomes of a statement that cannot be read.
+#include "lang/builder.h"
+
+#include "lang/lexer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace fathom::lang {
+
+namespace {
+
+template <class T> T take_back(std::vector<T> &stack) {
+    assert(!stack.empty());
+    T top = std::move(stack.back());
+    stack.pop_back();
+    return top;
+}
+
+bool opens(Tok kind) {
+    switch (kind) {
+    case Tok::Open:
+    case Tok::FreshOpen:
+    case Tok::LambdaOpen:
+    case Tok::ListOpen:
+    case Tok::FreshListOpen:
+    case Tok::Body:
+    case Tok::Trailing:
+    case Tok::StrayBrace: return true;
+    default: return false;
+    }
+}
+
+} // namespace
+
+// -- blocks --------------------------------------------------------------------------------------
+
+void Builder::add_stmt(StmtKind kind, Span span, std::uint32_t height) {
+    stmts_.push_back({{std::move(kind), span}, height});
+}
+
+BlockId Builder::add_block(std::size_t first_stmt, Span span) {
+    Block block;
+    block.span = span;
+    block.stmts.reserve(stmts_.size() - first_stmt);
+    std::uint32_t tallest = 0;
+    for (std::size_t i = first_stmt; i < stmts_.size(); ++i) {
+        tallest = std::max(tallest, stmts_[i].height);
+        block.stmts.push_back(std::move(stmts_[i].stmt));
+    }
+    stmts_.erase(stmts_.begin() + static_cast<std::ptrdiff_t>(first_stmt), stmts_.end());
+    block_heights_.push_back(1 + tallest);
+    return ast_.blocks.add(std::move(block));
+}
+
+BlockId Builder::value_block(const Item &item) {
+    const std::size_t mark = stmts_.size();
+    add_stmt(ExprStmt{item.id}, span(item), height(item.id));
+    return add_block(mark, span(item));
+}
+
+void Builder::block_close(Index first, Index last) {
+    blocks_.push_back(add_block(take_back(stmt_marks_), span(first, last)));
+}
+
+// -- statements ----------------------------------------------------------------------------------
+
+// The `///` lines directly above the line of a token, without slashes.
+std::string Builder::doc_above(Index at) const {
+    const std::string_view all = source_.text;
+    const auto line_start = [&](std::size_t offset) {
+        const std::size_t end = offset == 0 ? std::string_view::npos : all.rfind('\n', offset - 1);
+        return end == std::string_view::npos ? 0 : end + 1;
+    };
+    std::size_t begin = token(at).begin;
+    while (begin > 0 && (all[begin - 1] == ' ' || all[begin - 1] == '\t')) --begin;
+    std::vector<std::string_view> lines;
+    while (begin > 0 && all[begin - 1] == '\n') {
+        const std::size_t above = line_start(begin - 1);
+        std::string_view line = all.substr(above, begin - 1 - above);
+        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+        if (!line.starts_with("///") || line.starts_with("////")) break;
+        line.remove_prefix(line.starts_with("/// ") ? 4 : 3);
+        while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+        lines.push_back(line);
+        begin = above;
+    }
+    std::string doc;
+    for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
+        if (line != lines.rbegin()) doc += '\n';
+        doc += *line;
+    }
+    return doc;
+}
+
+void Builder::let(Index first, Index) {
+    const Item value = pop_item();
+    std::optional<TypeExpr> type = pop_maybe_type();
+    add_stmt(Let{pop_name(), std::move(type), value.id, doc_above(first)},
+             {id_, token(first).begin, value.end}, height(value.id));
+}
+
+void Builder::var(Index first, Index) {
+    const Item value = pop_item();
+    std::optional<TypeExpr> type = pop_maybe_type();
+    add_stmt(Var{pop_name(), std::move(type), value.id}, {id_, token(first).begin, value.end},
+             height(value.id));
+}
+
+void Builder::function(Index first, Index last) {
+    std::optional<TypeExpr> result = pop_maybe_type();
+    const std::uint32_t body_height = height(blocks_.back());
+    const FunctionId function = pop_function(pop_name(), std::move(result), span(first, last));
+    ast_.functions[function].doc = doc_above(first);
+    add_stmt(FunctionDecl{function}, span(first, last), 1 + body_height);
+}
+
+void Builder::param_label(Index at) {
+    names_.emplace_back(Identifier{read_string(text(at)), span(at)});
+}
+
+void Builder::param(Index first, Index last) {
+    Param param;
+    if (const std::optional<Identifier> label = take_back(names_)) param.label = label->text;
+    const std::optional<Item> range = pop_maybe_item();
+    const Item value = pop_item();
+    param.type = pop_maybe_type();
+    param.name = pop_name();
+    param.value = value.id;
+    std::uint32_t tallest = height(value.id);
+    if (range) {
+        const Expr &expr = ast_.exprs[range->id];
+        if (const Range *ends = std::get_if<Range>(&expr.kind)) {
+            param.low = ends->first;
+            param.high = ends->last;
+            tallest = std::max(tallest, height(range->id));
+        } else if (!std::holds_alternative<Poison>(expr.kind)) {
+            diagnostics_
+                .add(Code::SyntaxError, span(*range), "a parameter's range is written `low..high`")
+                .note("both ends are included");
+        }
+    }
+    add_stmt(std::move(param), span(first, last), tallest);
+}
+
+void Builder::import(Index first, Index last) {
+    Import import;
+    import.as = take_back(names_);
+    import.path = read_string(text(first + 1));
+    import.path_span = span(first + 1);
+    add_stmt(std::move(import), span(first, last), 1);
+}
+
+void Builder::for_loop(Index first, Index last) {
+    const BlockId body = pop_block();
+    const Item sequence = pop_item();
+    add_stmt(For{pop_name(), sequence.id, body}, span(first, last),
+             1 + std::max(height(sequence.id), height(body)));
+}
+
+void Builder::while_loop(Index first, Index last) {
+    const BlockId body = pop_block();
+    const std::optional<Item> limit = pop_maybe_item();
+    const Item condition = pop_item();
+    While loop{condition.id, {}, body};
+    std::uint32_t tallest = std::max(height(condition.id), height(body));
+    if (limit) {
+        loop.limit = limit->id;
+        tallest = std::max(tallest, height(limit->id));
+    }
+    add_stmt(loop, span(first, last), 1 + tallest);
+}
+
+void Builder::break_loop(Index at) { add_stmt(Break{}, span(at), 1); }
+
+void Builder::return_value(Index first, Index last) {
+    const std::optional<Item> value = pop_maybe_item();
+    Return statement;
+    if (value) statement.value = value->id;
+    add_stmt(statement, span(first, last), value ? height(value->id) : 1);
+}
+
+void Builder::plain_value() {
+    const Item item = pop_item();
+    add_stmt(ExprStmt{item.id}, span(item), height(item.id));
+}
+
+// A name, or members and indices of one.
+bool Builder::is_target(ExprId id) const {
+    for (;;) {
+        const ExprKind &kind = ast_.exprs[id].kind;
+        if (const Member *member = std::get_if<Member>(&kind))
+            id = member->object;
+        else if (const lang::Index *index = std::get_if<lang::Index>(&kind))
+            id = index->object;
+        else
+            return std::holds_alternative<Name>(kind) || std::holds_alternative<Poison>(kind);
+    }
+}
+
+void Builder::assignment() {
+    const Index at = take_back(remembered_);
+    const Item value = pop_item();
+    const Item target = pop_item();
+    const Span whole{id_, target.begin, value.end};
+    const std::uint32_t tall = std::max(height(target.id), height(value.id));
+    const Name *name = std::get_if<Name>(&ast_.exprs[target.id].kind);
+    if (!in_function_ && name && kind(at) == Tok::Assign) {
+        foreign(span(target), "a new name is bound with `let`")
+            .help("write `let " + name->text + " = …`",
+                  {{{id_, target.begin, target.begin}, "let "}});
+        Identifier bound{name->text, span(target)};
+        declared_.push_back(text(target.begin, target.end));
+        add_stmt(Let{std::move(bound), {}, value.id, {}}, whole, tall);
+        return;
+    }
+    if (!is_target(target.id)) {
+        Diagnostic &d =
+            diagnostics_.add(Code::NotAssignable, span(target), "this cannot be assigned to");
+        d.note("a target is a `var`, or a component of one");
+        if (kind(at) == Tok::Assign) d.help("a comparison is written `==`", {{span(at), "=="}});
+        add_stmt(Bad{}, whole, 1);
+        return;
+    }
+    std::optional<BinaryOp> op;
+    switch (kind(at)) {
+    case Tok::PlusAssign: op = BinaryOp::Add; break;
+    case Tok::MinusAssign: op = BinaryOp::Sub; break;
+    case Tok::StarAssign: op = BinaryOp::Mul; break;
+    case Tok::SlashAssign: op = BinaryOp::Div; break;
+    default: break;
+    }
+    add_stmt(Assign{target.id, op, value.id}, whole, tall);
+}
+
+// -- statements that cannot be read --------------------------------------------------------------
+
+Builder::Mark Builder::mark() const {
+    return {items_.size(),
+            ops_.size(),
+            frames_.size(),
+            names_.size(),
+            types_.size(),
+            maybe_types_.size(),
+            type_marks_.size(),
+            arguments_.size(),
+            argument_marks_.size(),
+            parameters_.size(),
+            maybe_items_.size(),
+            heads_.size(),
+            branches_.size(),
+            branch_marks_.size(),
+            stmts_.size(),
+            stmt_marks_.size(),
+            blocks_.size(),
+            remembered_.size(),
+            depth_,
+            in_function_};
+}
+
+void Builder::drop(const Mark &mark) {
+    const auto cut = [](auto &stack, std::size_t size) {
+        stack.erase(stack.begin() + static_cast<std::ptrdiff_t>(size), stack.end());
+    };
+    cut(items_, mark.items);
+    cut(ops_, mark.ops);
+    cut(frames_, mark.frames);
+    cut(names_, mark.names);
+    cut(types_, mark.types);
+    cut(maybe_types_, mark.maybe_types);
+    cut(type_marks_, mark.type_marks);
+    cut(arguments_, mark.arguments);
+    cut(argument_marks_, mark.argument_marks);
+    cut(parameters_, mark.parameters);
+    cut(maybe_items_, mark.maybe_items);
+    cut(heads_, mark.heads);
+    cut(branches_, mark.branches);
+    cut(branch_marks_, mark.branch_marks);
+    cut(stmts_, mark.stmts);
+    cut(stmt_marks_, mark.stmt_marks);
+    cut(blocks_, mark.blocks);
+    cut(remembered_, mark.remembered);
+    depth_ = mark.depth;
+    in_function_ = mark.in_function;
+}
+
+bool Builder::ends_statement(Index at) const {
+    return at >= tokens_.tokens.size() || kind(at) == Tok::End || kind(at) == Tok::BraceClose;
+}
+
+// Past the place where the statement broke, at the line end or `}` that ends it.
+Builder::Index Builder::statement_end(Index first) const {
+    Index i = first;
+    while (i < tokens_.tokens.size()) {
+        if (opens(kind(i))) {
+            i = tokens_.match[i] + 1;
+        } else if (i >= failed_ && (kind(i) == Tok::BraceClose ||
+                                    (kind(i) == Tok::End && kind(i + 1) != Tok::Else))) {
+            return i;
+        } else {
+            ++i;
+        }
+    }
+    return i;
+}
+
+// What stands for the statement in the tree. Its name stays declared, so that its uses are no new
+// errors.
+void Builder::replace_bad_statement(Index first) {
+    const Index end = statement_end(first);
+    const Span whole = span(first, end > first ? end - 1 : first);
+    Index name = first;
+    switch (kind(first)) {
+    case Tok::Let:
+    case Tok::Var:
+    case Tok::Fn:
+    case Tok::Param: name = first + 1; break;
+    case Tok::Name: name = first + 1; break; // `vec2 x = …`, `def f(…)`
+    default: break;
+    }
+    const bool declares =
+        kind(first) != Tok::Name || kind(first + 2) == Tok::Assign || kind(first + 2) == Tok::Open;
+    if (name == first || kind(name) != Tok::Name || !declares) {
+        add_stmt(Bad{}, whole, 1);
+        return;
+    }
+    declared_.push_back(text(name));
+    add_stmt(Let{identifier(name), {}, add(Poison{}, span(name), 1), {}}, whole, 1);
+}
+
+Builder::Index Builder::abandon(const Mark &mark, Index first) {
+    drop(mark);
+    replace_bad_statement(first);
+    return statement_end(first);
+}
+
+Builder::Index Builder::junk(const Mark &mark, Index first, Index at) {
+    failed_ = at;
+    if (!foreign_junk(first, at)) generic_failure(Wanted::StatementEnd, at);
+    return abandon(mark, first);
+}
+
+Ast Builder::finish() {
+    settle_foreign_names();
+    const auto size = static_cast<std::uint32_t>(source_.text.size());
+    ast_.root = add_block(0, {id_, 0, size});
+    return std::move(ast_);
+}
+
+} // namespace fathom::lang

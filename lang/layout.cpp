@@ -1,0 +1,315 @@
+// From words to the tokens of the grammar: which line ends end a statement, which bracket closes
+// which, and what each `(` and `{` is for. After this, line ends, comments and unbalanced brackets
+// are no concern of the grammar's. Knows nothing of expressions.
+#include "lang/token.h"
+
+#include <algorithm>
+
+namespace fathom::lang {
+
+namespace {
+
+// What still waits for its `{` at one level of brackets.
+enum class Header { None, If, Else, For, While, Fn };
+
+struct Level {
+    Tok bracket = Tok::Body; // Open, ListOpen, Body; of the file, Body
+    std::uint32_t index = 0; // of the opening token
+    Header waits = Header::None;
+};
+
+// A statement goes on behind these at a line's end.
+bool continues_after(Tok kind) {
+    switch (kind) {
+    case Tok::Comma:
+    case Tok::Colon:
+    case Tok::Dot:
+    case Tok::Assign:
+    case Tok::Bar:
+    case Tok::Amp:
+    case Tok::Less:
+    case Tok::Greater:
+    case Tok::Plus:
+    case Tok::Minus:
+    case Tok::Star:
+    case Tok::Slash:
+    case Tok::Percent:
+    case Tok::Caret:
+    case Tok::Question:
+    case Tok::Arrow:
+    case Tok::FatArrow:
+    case Tok::DotDot:
+    case Tok::DotDotEqual:
+    case Tok::EqualEqual:
+    case Tok::NotEqual:
+    case Tok::LessEqual:
+    case Tok::GreaterEqual:
+    case Tok::PlusAssign:
+    case Tok::MinusAssign:
+    case Tok::StarAssign:
+    case Tok::SlashAssign:
+    case Tok::OtherAssign:
+    case Tok::And:
+    case Tok::Or:
+    case Tok::Not:
+    case Tok::In:
+    case Tok::Else: return true;
+    default: return false;
+    }
+}
+
+// These end an operand, so that a `{` behind them belongs to it.
+bool takes_block(Tok kind) { return kind == Tok::Name || kind == Tok::Close; }
+
+// Operators that cannot begin a statement, nor continue one from the next line.
+bool belongs_to_line_above(Tok kind) {
+    return continues_after(kind) && kind != Tok::Minus && kind != Tok::Not && kind != Tok::Comma &&
+           kind != Tok::Colon && kind != Tok::In && kind != Tok::Question;
+}
+
+bool begins_declaration(Tok kind) {
+    switch (kind) {
+    case Tok::Let:
+    case Tok::Var:
+    case Tok::Fn:
+    case Tok::Param:
+    case Tok::Import:
+    case Tok::While:
+    case Tok::Return:
+    case Tok::Break: return true;
+    default: return false;
+    }
+}
+
+Tok closer_of(Tok bracket) {
+    return bracket == Tok::Open       ? Tok::Close
+           : bracket == Tok::ListOpen ? Tok::ListClose
+                                      : Tok::BraceClose;
+}
+
+class Layout {
+  public:
+    Layout(const Source &source, SourceId id, const Words &words, Diagnostics &diagnostics)
+        : source_(source), id_(id), words_(words.tokens), diagnostics_(diagnostics) {
+        out_.tokens.reserve(words_.size() + words_.size() / 4);
+        out_.match.reserve(words_.size() + words_.size() / 4);
+        levels_.push_back({});
+    }
+
+    Tokens run() {
+        for (std::size_t i = 0; i < words_.size(); ++i) place(i);
+        if (levels_.size() > 1) {
+            const Level &level = suspect_ ? *suspect_ : levels_.back();
+            report_unclosed(level, nullptr);
+            while (levels_.size() > 1) close_missing();
+        }
+        out_.kinds.reserve(out_.tokens.size());
+        for (const Token &t : out_.tokens) out_.kinds.push_back(static_cast<char>(t.kind));
+        return std::move(out_);
+    }
+
+  private:
+    Level &level() { return levels_.back(); }
+    bool lines_count() { return level().bracket == Tok::Body; }
+    Tok previous() const { return out_.tokens.empty() ? Tok::End : out_.tokens.back().kind; }
+    std::uint32_t previous_end() const { return out_.tokens.empty() ? 0 : out_.tokens.back().end; }
+    Span span(const Token &t) const { return {id_, t.begin, t.end}; }
+    Span after_previous() const { return {id_, previous_end(), previous_end()}; }
+
+    void put(Token token, Tok kind) {
+        token.kind = kind;
+        out_.match.push_back(static_cast<std::uint32_t>(out_.tokens.size()));
+        out_.tokens.push_back(token);
+    }
+    void put_virtual(Tok kind) { put({kind, false, previous_end(), previous_end()}, kind); }
+    void end_statement() {
+        put_virtual(Tok::End);
+        level().waits = Header::None;
+    }
+
+    void place(std::size_t i);
+    void line_begins(const Token &t);
+    void open(const Token &t);
+    void close(const Token &t, std::size_t i);
+    void close_missing();
+    void report_unclosed(const Level &open, const Token *instead);
+    bool else_if_of_other_languages(const Token &t);
+    Tok brace_kind(const Token &t);
+
+    std::uint32_t indent_of(const Token &t) const {
+        const auto line = position(source_, t.begin).line;
+        const std::string_view text = line_text(source_, line);
+        return static_cast<std::uint32_t>(std::min(text.find_first_not_of(" \t"), text.size()));
+    }
+
+    const Source &source_;
+    SourceId id_;
+    const std::vector<Token> &words_;
+    Diagnostics &diagnostics_;
+    Tokens out_;
+    std::vector<Level> levels_;
+    std::optional<Level> suspect_; // the first `{` whose `}` stands further left than its line
+};
+
+void Layout::report_unclosed(const Level &open, const Token *instead) {
+    const Token &token = out_.tokens[open.index];
+    const std::string sign(text_of(source_, token));
+    Diagnostic &d =
+        diagnostics_.add(Code::UnclosedBracket, span(token), "this `" + sign + "` is never closed");
+    const std::string closer(1, static_cast<char>(closer_of(open.bracket)));
+    if (instead) d.label(span(*instead), "`" + closer + "` is wanted before this");
+}
+
+void Layout::close_missing() {
+    const Level open = level();
+    levels_.pop_back();
+    put_virtual(closer_of(open.bracket));
+    out_.match.back() = open.index;
+    out_.match[open.index] = static_cast<std::uint32_t>(out_.tokens.size() - 1);
+}
+
+void Layout::line_begins(const Token &t) {
+    // A declaration cannot stand inside parentheses: one of them was forgotten.
+    if (!lines_count() && begins_declaration(t.kind)) {
+        report_unclosed(level(), &t);
+        while (!lines_count()) close_missing();
+    }
+    if (!lines_count() || out_.tokens.empty() || out_.tokens.back().kind == Tok::End) return;
+    const Tok last = previous();
+    if (last == Tok::Body || last == Tok::Trailing || last == Tok::StrayBrace ||
+        continues_after(last))
+        return;
+    const std::string_view sign = text_of(source_, t);
+    if (t.kind == Tok::Else || sign[0] == '.' || sign[0] == '|' || sign[0] == '&') {
+        const bool range = t.kind == Tok::DotDot || t.kind == Tok::DotDotEqual;
+        if (!range && t.kind != Tok::Number && t.kind != Tok::OtherAssign) return;
+    }
+    if (t.kind == Tok::Body) {
+        if (level().waits == Header::None && !takes_block(last)) return end_statement();
+        const std::uint32_t end = previous_end();
+        diagnostics_
+            .add(Code::ForeignSyntax, span(t), "the `{` stands on the line of what it belongs to")
+            .help("move it to the end of the line above", {{{id_, end, t.end}, " {"}});
+        return;
+    }
+    if (belongs_to_line_above(t.kind)) {
+        const std::string op(sign);
+        std::uint32_t rest = t.end;
+        while (rest < source_.text.size() &&
+               (source_.text[rest] == ' ' || source_.text[rest] == '\t'))
+            ++rest;
+        diagnostics_.add(Code::LineContinues, span(t), "a line cannot begin with `" + op + "`")
+            .help("move the `" + op + "` to the end of the line above",
+                  {{after_previous(), " " + op}, {{id_, t.begin, rest}, ""}});
+        return;
+    }
+    end_statement();
+}
+
+Tok Layout::brace_kind(const Token &) {
+    if (previous() == Tok::FatArrow) return Tok::Body;
+    if (level().waits != Header::None) {
+        level().waits = Header::None;
+        return Tok::Body;
+    }
+    return takes_block(previous()) ? Tok::Trailing : Tok::StrayBrace;
+}
+
+void Layout::open(const Token &t) {
+    Tok kind = t.kind;
+    Tok bracket = t.kind;
+    if (kind == Tok::Body)
+        kind = brace_kind(t);
+    else if (t.first_on_line)
+        kind = kind == Tok::Open ? Tok::FreshOpen : Tok::FreshListOpen;
+    put(t, kind);
+    levels_.push_back({bracket, static_cast<std::uint32_t>(out_.tokens.size() - 1), Header::None});
+}
+
+void Layout::close(const Token &t, std::size_t i) {
+    const auto matches = [&](const Level &l) { return closer_of(l.bracket) == t.kind; };
+    const auto found = std::find_if(levels_.rbegin(), levels_.rend() - 1, matches);
+    if (found == levels_.rend() - 1) {
+        const std::string sign(text_of(source_, t));
+        diagnostics_.add(Code::SyntaxError, span(t), "this `" + sign + "` closes nothing")
+            .help("remove it", {{span(t), ""}});
+        return;
+    }
+    if (found != levels_.rbegin()) {
+        report_unclosed(level(), &t);
+        while (!matches(level())) close_missing();
+    }
+    const std::uint32_t opener = level().index;
+    if (t.kind == Tok::BraceClose && t.first_on_line && !suspect_ &&
+        indent_of(t) < indent_of(out_.tokens[opener]))
+        suspect_ = level();
+    levels_.pop_back();
+    put(t, t.kind);
+    out_.match.back() = opener;
+    out_.match[opener] = static_cast<std::uint32_t>(out_.tokens.size() - 1);
+
+    // `( … ) =>` is a lambda's head, unless it stands behind a callee.
+    if (t.kind != Tok::Close || i + 1 >= words_.size() || words_[i + 1].kind != Tok::FatArrow)
+        return;
+    const Tok before = opener ? out_.tokens[opener - 1].kind : Tok::End;
+    const bool callee = before == Tok::Name || before == Tok::Close || before == Tok::ListClose;
+    if (!callee || out_.tokens[opener].first_on_line) out_.tokens[opener].kind = Tok::LambdaOpen;
+}
+
+bool Layout::else_if_of_other_languages(const Token &t) {
+    const std::string_view text = text_of(source_, t);
+    if (previous() != Tok::BraceClose || (text != "elif" && text != "elseif" && text != "elsif"))
+        return false;
+    diagnostics_.add(Code::ForeignSyntax, span(t), "this is written in two words")
+        .help("write `else if`", {{span(t), "else if"}});
+    put(t, Tok::Else);
+    put(t, Tok::If);
+    level().waits = Header::If;
+    return true;
+}
+
+void Layout::place(std::size_t i) {
+    const Token &t = words_[i];
+    if (t.kind == Tok::Name && else_if_of_other_languages(t)) return;
+    if (t.first_on_line) line_begins(t);
+    switch (t.kind) {
+    case Tok::Open:
+    case Tok::ListOpen:
+    case Tok::Body: return open(t);
+    case Tok::Close:
+    case Tok::ListClose:
+    case Tok::BraceClose: return close(t, i);
+    case Tok::If: level().waits = Header::If; break;
+    case Tok::Else: level().waits = Header::Else; break;
+    case Tok::For: level().waits = Header::For; break;
+    case Tok::While: level().waits = Header::While; break;
+    case Tok::Fn: level().waits = Header::Fn; break;
+    case Tok::End: level().waits = Header::None; break;
+    case Tok::Assign:
+        if (level().waits == Header::Fn) level().waits = Header::None;
+        break;
+    case Tok::Name: {
+        const bool lambda = i + 1 < words_.size() && words_[i + 1].kind == Tok::FatArrow;
+        if (lambda) return put(t, Tok::LambdaName);
+        const std::string_view text = text_of(source_, t);
+        const Tok last = previous();
+        const bool after_operand = !continues_after(last) && last != Tok::While && last != Tok::End;
+        if (level().waits == Header::While && after_operand && text == "limit")
+            return put(t, Tok::Limit);
+        const std::size_t n = out_.tokens.size();
+        if (text == "as" && n >= 2 && out_.tokens[n - 2].kind == Tok::Import)
+            return put(t, Tok::As);
+        break;
+    }
+    default: break;
+    }
+    put(t, t.kind);
+}
+
+} // namespace
+
+Tokens lay_out(const Source &source, SourceId id, const Words &words, Diagnostics &diagnostics) {
+    return Layout(source, id, words, diagnostics).run();
+}
+
+} // namespace fathom::lang
