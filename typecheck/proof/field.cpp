@@ -1,0 +1,238 @@
+// Branch and bound: the cell with the greatest bound is cut in two until the bound is near the largest slope seen.
+#include "typecheck/proof/field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+namespace fathom::proof {
+
+using ir::rounding::infinity;
+
+double Dice::next() { // splitmix64
+    state += 0x9e3779b97f4a7c15u;
+    std::uint64_t z = state;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return double((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+Cell outer_box(const Zone &zone) {
+    Cell cell;
+    switch (zone.kind) {
+    case ir::RegionKind::Everywhere: break;
+    case ir::RegionKind::Ball:
+        for (std::size_t i = 0; i < 3; ++i) cell.p[i] = zone.center[i] + Interval(-zone.half[0].hi, zone.half[0].hi);
+        break;
+    case ir::RegionKind::Box:
+        for (std::size_t i = 0; i < 3; ++i) cell.p[i] = zone.center[i] + Interval(-zone.half[i].hi, zone.half[i].hi);
+        break;
+    case ir::RegionKind::Tube:
+        for (std::size_t i = 0; i < 3; ++i)
+            if (int(i) != zone.axis) cell.p[i] = Interval(-zone.half[0].hi, zone.half[0].hi);
+        break;
+    }
+    return cell;
+}
+
+namespace {
+
+Interval distance_squared(const Zone &zone, const Cell &cell) {
+    Interval sum;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (zone.kind != ir::RegionKind::Tube || int(i) != zone.axis)
+            sum += square(zone.kind == ir::RegionKind::Tube ? cell.p[i] : cell.p[i] - zone.center[i]);
+    return sum;
+}
+bool inside(const Zone &zone, const Cell &cell) { // certainly all of the cell
+    switch (zone.kind) {
+    case ir::RegionKind::Everywhere: return true;
+    case ir::RegionKind::Ball:
+    case ir::RegionKind::Tube: return distance_squared(zone, cell).hi < zone.half[0].lo * zone.half[0].lo * (1 - 1e-12);
+    case ir::RegionKind::Box:
+        for (std::size_t i = 0; i < 3; ++i)
+            if ((cell.p[i] - zone.center[i]).magnitude() >= zone.half[i].lo) return false;
+        return true;
+    }
+    return false;
+}
+
+struct Candidate {
+    double bound;
+    int depth;
+    Cell cell;
+    Interval value;
+};
+struct Worse { // finite bounds: the greatest first; infinite ones: the deepest, so that trouble is found soon
+    bool operator()(const Candidate &a, const Candidate &b) const {
+        if (a.bound != b.bound) return a.bound < b.bound;
+        return a.depth < b.depth;
+    }
+};
+
+std::array<double, 3> middle(const Cell &cell) {
+    return {cell.p[0].middle(), cell.p[1].middle(), cell.p[2].middle()};
+}
+Cell at_point(const std::array<double, 3> &p) { return {{Interval(p[0]), Interval(p[1]), Interval(p[2])}}; }
+
+double widest(const Cell &cell, const std::array<bool, 3> &reads, int *axis) {
+    double most = -1;
+    for (int i = 0; i < 3; ++i) {
+        auto k = static_cast<std::size_t>(i);
+        if (!reads[k]) continue;
+        double w = cell.p[k].hi - cell.p[k].lo;
+        if (w > most) most = w, *axis = i;
+    }
+    return most;
+}
+
+// Two near points with different values, for the report of a jump.
+void find_sides(Machine &machine, FieldBound &out, double scale, const std::array<bool, 3> &reads) {
+    double most = -1;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (!reads[i]) continue;
+        std::array<double, 3> a = out.where, b = out.where;
+        a[i] -= scale, b[i] += scale;
+        machine.run(at_point(a));
+        Interval x = machine.value(0);
+        machine.run(at_point(b));
+        Interval y = machine.value(0);
+        if (!x.finite() || !y.finite()) continue;
+        double gap = std::fabs(x.middle() - y.middle());
+        if (gap > most) {
+            most = gap;
+            out.side_a = a, out.side_b = b, out.value_a = x.middle(), out.value_b = y.middle();
+        }
+    }
+}
+
+} // namespace
+
+bool misses(const Zone &zone, const Cell &cell) {
+    switch (zone.kind) {
+    case ir::RegionKind::Everywhere: break;
+    case ir::RegionKind::Ball:
+    case ir::RegionKind::Tube:
+        if (distance_squared(zone, cell).lo > zone.half[0].hi * zone.half[0].hi * (1 + 1e-12)) return true;
+        break;
+    case ir::RegionKind::Box:
+        for (std::size_t i = 0; i < 3; ++i)
+            if ((cell.p[i] - zone.center[i]).mignitude() > zone.half[i].hi) return true;
+        break;
+    }
+    return std::any_of(zone.less.begin(), zone.less.end(), [&](const Zone &z) { return inside(z, cell); });
+}
+
+FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field, const Domain &domain, const Budget &budget) {
+    FieldBound out;
+    Tape tape = flatten(context, field);
+    if (tape.too_large) {
+        out.lipschitz = infinity;
+        out.value = Interval::everything();
+        out.too_large = true;
+        return out;
+    }
+    Machine machine(tape, ranges);
+    Periods periods = periods_of(tape, context.graph);
+    Cell whole = domain.box;
+    bool reduced = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        double period = periods.period[i];
+        if (periods.reads[i] && period > 0 && whole.p[i].width() > period) {
+            whole.p[i] = Interval(-period / 2, period / 2 * (1 + 1e-9));
+            reduced = true;
+        }
+        if (!periods.reads[i] && !whole.p[i].finite()) whole.p[i] = 0.0;
+    }
+    const Zone *zone = reduced ? nullptr : domain.zone; // a shifted copy need not lie in the zone
+
+    auto outside = [&](const Cell &cell) { return zone && misses(*zone, cell); };
+    auto sample = [&](const std::array<double, 3> &p) {
+        if (outside(at_point(p))) return;
+        machine.run(at_point(p));
+        ++out.evaluations;
+        if (machine.norm() != infinity) out.sampled = std::max(out.sampled, machine.norm() * (1 - 1e-9));
+    };
+    Dice dice{0x5eed};
+    for (int k = 0; k < 24; ++k) {
+        std::array<double, 3> p{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            double lo = std::max(whole.p[i].lo, -8.0), hi = std::min(whole.p[i].hi, 8.0);
+            if (lo > hi) lo = hi = whole.p[i].middle();
+            p[i] = lo + (hi - lo) * dice.next();
+        }
+        sample(p);
+    }
+
+    std::priority_queue<Candidate, std::vector<Candidate>, Worse> queue;
+    auto push = [&](const Cell &cell, int depth) {
+        if (outside(cell)) return;
+        machine.run(cell);
+        ++out.evaluations;
+        queue.push({machine.norm(), depth, cell, machine.value(0)});
+    };
+    push(whole, 0);
+    double settled = 0; // of cells that cannot be cut any more
+    Interval settled_value{infinity, -infinity};
+    std::size_t limit = std::max(budget.instructions, 200 * tape.length());
+    while (!queue.empty()) {
+        Candidate top = queue.top();
+        if (top.bound <= std::max(out.sampled * budget.tolerance, settled)) break;
+        if (top.bound != infinity && machine.work() > limit) break;
+        queue.pop();
+        int axis = 0;
+        double width = widest(top.cell, periods.reads, &axis);
+        auto k = static_cast<std::size_t>(axis);
+        std::array<double, 3> centre = middle(top.cell);
+        double size = std::max({std::fabs(centre[0]), std::fabs(centre[1]), std::fabs(centre[2]), 1.0});
+        bool endless = !std::isfinite(width);
+        if (top.bound == infinity && (width <= 1e-7 * size || (endless && top.depth > 60) || machine.work() > 4 * limit)) {
+            machine.run(top.cell);
+            out.lipschitz = infinity;
+            out.value = hull(settled_value, top.value);
+            out.trouble = machine.trouble();
+            out.at_infinity = endless;
+            out.cause = machine.cause();
+            out.where = centre;
+            if (!endless) find_sides(machine, out, std::max(1e-5 * size, width), periods.reads);
+            out.value = Interval::everything();
+            return out;
+        }
+        if (width <= 1e-9 * size) {
+            settled = std::max(settled, top.bound);
+            settled_value = hull(settled_value, top.value);
+            continue;
+        }
+        sample(centre);
+        Cell left = top.cell, right = top.cell;
+        double cut = top.cell.p[k].middle();
+        left.p[k].hi = cut, right.p[k].lo = cut;
+        push(left, top.depth + 1);
+        push(right, top.depth + 1);
+    }
+    out.value = settled_value;
+    out.lipschitz = settled;
+    if (!queue.empty()) out.lipschitz = std::max(settled, queue.top().bound);
+    while (!queue.empty()) {
+        out.value = hull(out.value, queue.top().value);
+        queue.pop();
+    }
+    if (out.value.lo > out.value.hi) out.value = Interval::everything(); // an empty region
+    out.sampled = std::min(out.sampled, out.lipschitz);
+    return out;
+}
+
+std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, NodeId expression, const Cell &cell) {
+    std::array<Interval, 16> out{};
+    Tape tape = flatten(context, expression);
+    if (tape.too_large) {
+        out.fill(Interval::everything());
+        return out;
+    }
+    Machine machine(tape, ranges);
+    machine.run(cell);
+    for (int i = 0; i < machine.size() && i < 16; ++i) out[static_cast<std::size_t>(i)] = machine.value(i);
+    return out;
+}
+
+} // namespace fathom::proof

@@ -1,0 +1,70 @@
+// A field expression, flattened for repeated interval evaluation: calls entered, loops kept as blocks, forms whose
+// smoothness only shows in combination (a square root of squares, a centred wave, sin(x)/x) made one instruction.
+// Knows nothing of regions or shapes.
+#pragma once
+
+#include "ir/graph.h"
+#include "ir/interval.h"
+
+#include <unordered_map>
+#include <vector>
+
+namespace fathom::proof {
+
+using ir::Interval;
+using ir::NodeId;
+using ir::Op;
+
+// What an instruction computes where it is not its op's plain meaning.
+enum class Form : std::uint8_t {
+    Plain,
+    Wave,   // x - m*round(x/m): jumps, but only from m/2 to -m/2, which an even function does not see
+    Sinc,   // sin(x)/x, 1 at 0
+    Norm,   // the length of all arguments' components together
+    Square, // x*x, never negative
+    Joined, // a Select whose arms were proved to agree on the border
+    Loop,
+};
+
+using Slot = std::uint32_t; // a value: components(type) numbers at Tape::first[slot]
+
+struct Instruction {
+    Op op = Op::Const;
+    Form form = Form::Plain;
+    ir::Type type = ir::Type::Float;
+    bool varies = false; // with the point
+    Slot out = 0;
+    std::vector<Slot> args;
+    std::uint32_t payload = 0; // the op's; of a Loop: index into Tape::loops
+    NodeId node;
+};
+
+struct Loop {
+    std::vector<Instruction> body;
+    std::vector<Slot> vars, start, next, scratch, ends; // `ends`: the values that the loop hands on
+    Slot index = 0, count = 0, condition = 0;
+    bool has_condition = false, condition_varies = false;
+    int most = 0; // turns
+};
+
+struct Tape {
+    std::vector<Instruction> once; // does not vary with the point
+    std::vector<Instruction> each;
+    std::vector<Loop> loops;
+    std::vector<std::uint32_t> first; // by slot: its first component
+    std::vector<std::uint8_t> size;   // by slot: how many
+    std::uint32_t components = 0;
+    Slot result = 0;
+    bool too_large = false; // the field was cut off while flattening; nothing may be concluded
+    std::size_t length() const;
+};
+
+// Border questions: is this Select continuous (continuity.h)? Asked once a Select that varies.
+struct Flattening {
+    ir::Graph &graph;
+    std::unordered_map<NodeId, bool> joined; // by Select, remembered over fields
+};
+
+Tape flatten(Flattening &context, NodeId root);
+
+} // namespace fathom::proof
