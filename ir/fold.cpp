@@ -149,6 +149,9 @@ std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload
     case Op::Cached:
     case Op::MakeHit:
     case Op::HitDistance:
+    case Op::HitPaint:
+    case Op::HitPoint:
+    case Op::HitExtra:
     case Op::NearestHit:
     case Op::FarthestHit:
     case Op::HitWith:

@@ -132,7 +132,9 @@ Type given_type(const Graph &graph, Op op, std::span<const NodeId> args, std::ui
                                   : vector_type(static_cast<int>(args.size()));
     if (op == Op::Swizzle) return vector_type(swizzle_size(payload));
     if (op == Op::Column) return vector_type(side(type(0)));
-    if (op == Op::ToInt) return Type::Int;
+    if (op == Op::ToInt || op == Op::HitPaint) return Type::Int;
+    if (op == Op::HitPoint) return Type::Vec3;
+    if (op == Op::HitExtra) return Type::Vec4;
     if (op == Op::Image) return Type::Vec4;
     if (op == Op::Call) return graph.type(graph.function(FunctionId{std::size_t{payload}}).result);
     if (op == Op::Fold) return graph.type(graph.fold(FoldId{std::size_t{payload}}).vars.front());

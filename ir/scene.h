@@ -66,9 +66,12 @@ struct RenderSettings {
     double time_end = 3600;   // the span of time the proof covers starts at 0
 };
 
-// How a painted point looks: the material as a function of (point: vec3, normal: vec3, extra: vec4).
+// How a painted point looks: the material as a function of (point: vec3, normal: vec3, extra: vec4). `point` and `extra`
+// are the hit's own; its point lies in the space where the paint stands, and so must `normal`. It is found from the world's
+// normal n without knowing the transforms between: normalize(hit(p + e*n).point - hit(p).point), for a small e.
 struct Surface {
     NodeId point, normal, extra; // Vars
+    bool reads_normal = false;   // else any normal will do
     NodeId diffuse, specular, exponent, emission;
 };
 

@@ -74,6 +74,12 @@ NodeId simple_hit(Graph &graph, Op op, std::span<const NodeId> args) {
         if (made == Op::FillPaint) return graph.make(Op::HitDistance, {graph.arg(hit, 0)});
         return {};
     }
+    if (op == Op::HitPaint || op == Op::HitPoint || op == Op::HitExtra) {
+        const int field = op == Op::HitPaint ? 1 : op == Op::HitPoint ? 2 : 3;
+        if (made == Op::MakeHit) return graph.arg(hit, field);
+        if (made == Op::HitWith) return graph.make(op, {graph.arg(hit, 0)});
+        return {};
+    }
     if (op == Op::HitWith) {
         if (made == Op::MakeHit)
             return graph.make(Op::MakeHit, {args[1], graph.arg(hit, 1), graph.arg(hit, 2), graph.arg(hit, 3)});
@@ -196,6 +202,9 @@ NodeId Graph::simplified(Op op, Type type, std::span<const NodeId> args, std::ui
     case Op::FarthestHit: return args.size() == 1 ? args[0] : NodeId{};
     case Op::Blend: return args.size() == 3 ? args[2] : NodeId{};
     case Op::HitDistance:
+    case Op::HitPaint:
+    case Op::HitPoint:
+    case Op::HitExtra:
     case Op::HitWith:
     case Op::FillPaint: return simple_hit(*this, op, args);
 
