@@ -1,0 +1,328 @@
+// The language's text of a field program.
+#include "save-format/program.h"
+
+#include "save-format/importer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::save {
+namespace {
+
+// How an operation is written: infix between its arguments, or a call. Names are those of
+// ir/ops.def.
+struct Spelling {
+    std::string_view op;
+    std::string_view text;
+    int arity;
+    bool infix;
+};
+constexpr Spelling spellings[] = {
+    {"Add", "+", 2, true},
+    {"Sub", "-", 2, true},
+    {"Mul", "*", 2, true},
+    {"Div", "/", 2, true},
+    {"Mod", "%", 2, true},
+    {"Pow", "^", 2, true},
+    {"Min", "min", 2, false},
+    {"Max", "max", 2, false},
+    {"Step", "step", 2, false},
+    {"Atan2", "atan", 2, false},
+    {"Abs", "abs", 1, false},
+    {"Sign", "sign", 1, false},
+    {"Floor", "floor", 1, false},
+    {"Ceil", "ceil", 1, false},
+    {"Round", "round", 1, false},
+    {"Trunc", "trunc", 1, false},
+    {"Fract", "fract", 1, false},
+    {"Sqrt", "sqrt", 1, false},
+    {"InverseSqrt", "inversesqrt", 1, false},
+    {"Exp", "exp", 1, false},
+    {"Exp2", "exp2", 1, false},
+    {"Log", "log", 1, false},
+    {"Log2", "log2", 1, false},
+    {"Sin", "sin", 1, false},
+    {"Cos", "cos", 1, false},
+    {"Tan", "tan", 1, false},
+    {"Asin", "asin", 1, false},
+    {"Acos", "acos", 1, false},
+    {"Atan", "atan", 1, false},
+    {"Sinh", "sinh", 1, false},
+    {"Cosh", "cosh", 1, false},
+    {"Tanh", "tanh", 1, false},
+    {"Clamp", "clamp", 3, false},
+    {"Mix", "mix", 3, false},
+    {"Smoothstep", "smoothstep", 3, false},
+    {"Dot", "dot", 2, false},
+    {"Length", "length", 1, false},
+    {"Cross", "cross", 2, false},
+    {"Normalize", "normalize", 1, false},
+    {"Less", "<", 2, true},
+    {"LessEqual", "<=", 2, true},
+    {"Equal", "==", 2, true},
+    {"NotEqual", "!=", 2, true},
+    {"And", "and", 2, true},
+    {"Or", "or", 2, true},
+    {"ToFloat", "float", 1, false},
+    {"ToInt", "int", 1, false},
+    {"MatMul", "*", 2, true},
+    {"Transpose", "transpose", 1, false},
+    {"Hash", "hash", 1, false},
+    {"Perlin", "noise", 1, false},
+    {"Simplex", "simplex", 1, false},
+    {"ValueNoise", "value_noise", 1, false},
+    {"Worley", "worley", 1, false},
+    {"SpotNoise", "spot_noise", 3, false},
+};
+
+constexpr std::string_view constructors[] = {"vec2", "vec3", "vec4", "mat2", "mat3", "mat4"};
+
+std::string constant_text(const Value &value) {
+    if (const auto number = number_of(value))
+        return *number < 0 ? "(" + sdf_number(*number) + ")" : sdf_number(*number);
+    if (value.kind == Value::Kind::Scalar && value.plain) {
+        if (const auto on = switch_of(value)) return *on ? "true" : "false";
+    }
+    return {};
+}
+
+class Program {
+  public:
+    Program(const Value &steps, std::string_view parameter, std::string &why)
+        : steps_(steps), parameter_(parameter), why_(why) {}
+
+    std::string text() {
+        if (steps_.kind != Value::Kind::Sequence || steps_.items.empty()) {
+            why_ = "it has to be a list of steps";
+            return {};
+        }
+        count_uses();
+        for (std::size_t i = 0; i < steps_.items.size(); ++i) {
+            std::string expression = step(i);
+            if (expression.empty()) {
+                if (why_.empty())
+                    why_ = "step " + std::to_string(i) +
+                           " is not an operation with earlier steps as its arguments";
+                return {};
+            }
+            const bool last = i + 1 == steps_.items.size();
+            // A value that is used twice, or grows long, gets a name; others stand where they are
+            // used.
+            if (!last && (uses_[i] > 1 || expression.size() > 60) && expression.size() > 3) {
+                lets_ += "let t" + std::to_string(i) + " = " + expression + "; ";
+                expression = "t" + std::to_string(i);
+            }
+            texts_.push_back(std::move(expression));
+        }
+        std::string result = texts_.back();
+        if (result.size() > 2 && result.front() == '(' && whole_in_parentheses(result))
+            result = result.substr(1, result.size() - 2);
+        return std::string(parameter_) + " => " +
+               (lets_.empty() ? result : "{ " + lets_ + result + " }");
+    }
+
+  private:
+    static bool whole_in_parentheses(std::string_view text) {
+        int depth = 0;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (text[i] == '(') ++depth;
+            if (text[i] == ')' && --depth == 0) return i + 1 == text.size();
+        }
+        return false;
+    }
+
+    const std::string *argument(const Value &value) const {
+        const auto number = number_of(value);
+        if (!number || *number != std::floor(*number) || *number < 0 ||
+            *number >= static_cast<double>(texts_.size()))
+            return nullptr;
+        return &texts_[static_cast<std::size_t>(*number)];
+    }
+
+    void count_uses() {
+        uses_.assign(steps_.items.size(), 0);
+        for (const Value &step : steps_.items) {
+            if (step.kind != Value::Kind::Sequence) continue;
+            const bool constant = !step.items.empty() && step.items[0].text == "Const";
+            for (std::size_t i = 1; i < step.items.size() && !constant; ++i) {
+                const auto number = number_of(step.items[i]);
+                if (number && *number >= 0 && *number < static_cast<double>(uses_.size()))
+                    ++uses_[static_cast<std::size_t>(*number)];
+            }
+        }
+    }
+
+    std::string step(std::size_t index) {
+        const Value &value = steps_.items[index];
+        if (value.kind != Value::Kind::Sequence || value.items.empty()) return {};
+        const std::string &op = value.items[0].text;
+        const std::size_t count = value.items.size() - 1;
+        if (op == "Point") return std::string(parameter_);
+        if (op == "Time") return "time";
+        if (op == "Const") return count == 1 ? constant_text(value.items[1]) : std::string();
+        std::vector<std::string> arguments;
+        std::size_t first = 1;
+        std::string_view word; // of Make, Splat and Swizzle: the type or the components
+        if (op == "Make" || op == "Splat" || op == "Swizzle" || op == "Column") {
+            if (count < 2) return {};
+            word = value.items[1].text;
+            first = 2;
+        }
+        for (std::size_t i = first; i < value.items.size(); ++i) {
+            const std::string *text = argument(value.items[i]);
+            if (!text) return {};
+            arguments.push_back(*text);
+        }
+        const auto call = [&](std::string_view function) {
+            std::string text(function);
+            text += '(';
+            for (const std::string &part : arguments)
+                text += (text.back() == '(' ? "" : ", ") + part;
+            return text + ")";
+        };
+        if (op == "Make" || op == "Splat") {
+            const bool known = std::find(std::begin(constructors), std::end(constructors), word) !=
+                               std::end(constructors);
+            return known ? call(word) : std::string();
+        }
+        if (op == "Swizzle" || op == "Column") {
+            const bool legal =
+                arguments.size() == 1 && !word.empty() && word.size() <= 4 &&
+                word.find_first_not_of(op == "Column" ? "0123" : "xyzw") == std::string_view::npos;
+            if (!legal) return {};
+            return op == "Column" ? arguments[0] + "[" + std::string(word) + "]"
+                                  : arguments[0] + "." + std::string(word);
+        }
+        if (op == "Neg" && arguments.size() == 1) return "(-" + arguments[0] + ")";
+        if (op == "Not" && arguments.size() == 1) return "(not " + arguments[0] + ")";
+        if (op == "Select" && arguments.size() == 3)
+            return "(if " + arguments[0] + " { " + arguments[1] + " } else { " + arguments[2] +
+                   " })";
+        if ((op == "Union" || op == "Intersection") &&
+            !arguments.empty()) { // of distances: the least, the greatest
+            std::string text = arguments[0];
+            for (std::size_t i = 1; i < arguments.size(); ++i)
+                text = (op == "Union" ? "min(" : "max(") + text + ", " + arguments[i] + ")";
+            return text;
+        }
+        for (const Spelling &spelling : spellings) {
+            if (spelling.op != op) continue;
+            if (arguments.size() != static_cast<std::size_t>(spelling.arity)) return {};
+            if (spelling.infix)
+                return "(" + arguments[0] + " " + std::string(spelling.text) + " " + arguments[1] +
+                       ")";
+            return call(spelling.text);
+        }
+        return {};
+    }
+
+    const Value &steps_;
+    std::string_view parameter_;
+    std::string &why_;
+    std::vector<int> uses_;
+    std::vector<std::string> texts_;
+    std::string lets_;
+};
+
+std::string vector_of(const Value *value) {
+    double part[3];
+    static constexpr const char *axes[] = {"X", "Y", "Z"};
+    for (int i = 0; i < 3; ++i) {
+        const Value *component =
+            value && value->kind == Value::Kind::Mapping ? value->find(axes[i]) : nullptr;
+        const auto number = component ? number_of(*component) : std::nullopt;
+        if (!number) return {};
+        part[i] = *number;
+    }
+    return sdf_vector(part);
+}
+
+} // namespace
+
+std::string yaml_number(double value) {
+    if (std::isinf(value)) return value < 0 ? "-.inf" : ".inf";
+    return sdf_number(value);
+}
+
+std::string program_text(const Value &steps, std::string &why, std::string_view parameter) {
+    return Program(steps, parameter, why).text();
+}
+
+// {Ball: radius, Center: {X, Y, Z}}, {Low: …, High: …}, {Tube: radius, Axis: Y}, `Everywhere`, and
+// in each `Less`: a list.
+std::string region_text(const Value &region) {
+    std::string text;
+    if (region.kind == Value::Kind::Scalar)
+        return spelling_key(region.text) == "everywhere" ? "everywhere" : "";
+    if (region.kind != Value::Kind::Mapping) return {};
+    if (const Value *radius = region.find("Ball")) {
+        const auto number = number_of(*radius);
+        if (!number) return {};
+        text = "ball(" + sdf_number(*number);
+        if (const Value *center = region.find("Center")) {
+            const std::string at = vector_of(center);
+            if (at.empty()) return {};
+            text += ", at: " + at;
+        }
+        text += ")";
+    } else if (region.find("Low")) {
+        const std::string low = vector_of(region.find("Low")),
+                          high = vector_of(region.find("High"));
+        if (low.empty() || high.empty()) return {};
+        text = "aabb(" + low + ", " + high + ")";
+    } else if (const Value *tube = region.find("Tube")) {
+        const auto number = number_of(*tube);
+        const Value *axis = region.find("Axis");
+        if (!number || !axis || (axis->text != "X" && axis->text != "Y" && axis->text != "Z"))
+            return {};
+        text = "tube(" + axis->text + ", " + sdf_number(*number) + ")";
+    } else if (region.find("Everywhere")) {
+        text = "everywhere";
+    } else {
+        return {};
+    }
+    if (const Value *less = region.find("Less")) {
+        for (const Value &other : less->items) {
+            const std::string part = region_text(other);
+            if (part.empty()) return {};
+            text += " - " + part;
+        }
+    }
+    return text;
+}
+
+std::string distortion_text(const Value &map, const Value &within, std::string &why) {
+    const std::string lambda = program_text(map, why);
+    if (lambda.empty()) return {};
+    const std::string region = region_text(within);
+    return ".distort(" + lambda + (region.empty() ? "" : ", within: " + region) + ")";
+}
+
+std::string deformation_text(std::string_view function, const Value &arguments, std::string &why) {
+    if (!is_library_deformation(function)) {
+        why = "it is no transform of the library";
+        return {};
+    }
+    std::string call = "." + std::string(function) + "(";
+    for (const auto &[name, value] : arguments.entries) {
+        const bool is_name =
+            !name.empty() &&
+            name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string::npos;
+        std::string text;
+        if (const auto number = number_of(value)) {
+            text = sdf_number(*number);
+        } else if (value.kind == Value::Kind::Mapping) {
+            text = vector_of(&value);
+        } else if (value.text == "X" || value.text == "Y" || value.text == "Z") {
+            text = value.text;
+        }
+        if (!is_name || text.empty()) {
+            why = "an argument is no number, vector or axis";
+            return {};
+        }
+        call += (call.back() == '(' ? "" : ", ") + name + ": " + text;
+    }
+    return call + ")";
+}
+
+} // namespace fathom::save

@@ -1,0 +1,26 @@
+// Functions of the point as the save format writes them, labelled: a list of steps, each
+// `[operation, arguments…]`, where a whole number is the result of an earlier step. The same in the
+// language's text. Private to save-format.
+#pragma once
+
+#include "ir/scene.h"
+#include "save-format/yaml_reader.h"
+
+#include <string>
+#include <unordered_map>
+
+namespace fathom::save {
+
+// `p => …`; empty, with the reason, where the steps make no sense.
+std::string program_text(const Value &steps, std::string &why, std::string_view parameter = "p");
+std::string region_text(const Value &region);
+std::string distortion_text(const Value &map, const Value &within, std::string &why);
+std::string deformation_text(std::string_view function, const Value &arguments, std::string &why);
+
+std::string yaml_number(double value); // shortest exact form, `.inf`
+
+// The steps of an expression in flow form; empty where an operation has no words there (loops,
+// grids). `bound` gives steps to variables that stand for something else (a function's parameters).
+std::string program_flow(const ir::Scene &scene, const ir::Graph &graph, ir::NodeId root);
+
+} // namespace fathom::save

@@ -1,0 +1,113 @@
+// YAML text as a stream of events with places, and single values of it: what the importer reads.
+// The only user of libyaml (in yaml_reader.cpp). Knows nothing of what the items of a save file
+// mean.
+#pragma once
+
+#include "base/diagnostic.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fathom::save {
+
+// Where the importer's complaints go: content is a warning unless strict, structure an error.
+struct Report {
+    Diagnostics &diagnostics;
+    bool strict = false;
+
+    Diagnostic &content(Span span, std::string message, Code code = Code::YamlValue);
+    Diagnostic &structure(Span span, std::string message);
+};
+
+enum class EventKind {
+    Scalar,
+    SequenceStart,
+    SequenceEnd,
+    MappingStart,
+    MappingEnd,
+    End,   // of the document
+    Broken // nothing can be read any more; reported once, and given for ever
+};
+
+struct Event {
+    EventKind kind = EventKind::End;
+    Span span;
+    std::string text;   // Scalar
+    bool plain = false; // Scalar: not in quotes, so that `true` and `1` are more than text
+};
+
+// Pulls events. Aliases and tags are reported and stand as an empty plain scalar or nothing;
+// nesting is limited.
+class YamlReader {
+  public:
+    YamlReader(std::string_view text, SourceId source, Report report, std::size_t max_depth);
+    ~YamlReader();
+    YamlReader(const YamlReader &) = delete;
+    YamlReader &operator=(const YamlReader &) = delete;
+
+    Event next();
+    bool more_documents(); // after End
+    bool broken() const { return broken_; }
+    void break_off(Span span,
+                   std::string message); // a structure that the caller cannot read on from
+
+  private:
+    struct Parser;
+    Span span_of(const void *event);
+    std::uint32_t byte_offset(std::size_t character);
+    Event fail(Span span, std::string message);
+
+    std::unique_ptr<Parser> parser_;
+    std::string_view text_;
+    SourceId source_;
+    Report report_;
+    std::size_t max_depth_;
+    std::size_t depth_ = 0;
+    std::size_t cursor_character_ = 0;
+    std::uint32_t cursor_byte_ = 0;
+    bool broken_ = false;
+    bool ended_ = false;
+};
+
+// One value, whole. `flow` is the same in YAML's flow form on one line, so that it can be written
+// anywhere.
+struct Value {
+    enum class Kind { Scalar, Sequence, Mapping };
+    Kind kind = Kind::Scalar;
+    std::string text;
+    bool plain = false;
+    std::vector<Value> items; // Sequence
+    std::vector<std::pair<std::string, Value>>
+        entries; // Mapping; keys that are no scalars stand as their flow form
+    Span span;
+
+    const Value *find(std::string_view key) const; // without regard to case, spaces, `-` and `_`
+};
+
+struct TakenValue {
+    Value value;
+    std::string flow;
+    bool whole = true; // false: more than `limit` parts; `value` is cut short (`flow` never is)
+};
+
+// Reads the value that `first` begins. `limit` bounds the parts that are kept as a tree.
+TakenValue take_value(YamlReader &reader, Event first, std::size_t limit = 4096);
+// The same, when only the text is wanted; appended to `flow`.
+void take_flow(YamlReader &reader, Event first, std::string &flow);
+void skip_value(YamlReader &reader, const Event &first);
+
+// The scalar in flow form: plain where that reads back as the same, in quotes elsewhere.
+std::string flow_scalar(std::string_view text, bool plain);
+
+// One value given as text (what `flow` held); a null scalar with `ok` false where it does not read.
+struct ParsedText {
+    Value value;
+    bool ok = false;
+};
+ParsedText parse_text(std::string_view text);
+
+std::string spelling_key(std::string_view name); // lower case, without spaces, `-` and `_`
+
+} // namespace fathom::save

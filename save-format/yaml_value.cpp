@@ -1,0 +1,236 @@
+// Single values of a save file: read from the event stream into a small tree and into one line of
+// flow text.
+#include "save-format/yaml_reader.h"
+
+#include "base/text.h"
+
+#include <cctype>
+
+namespace fathom::save {
+namespace {
+
+bool is_indicator(char c) {
+    return std::string_view("-?:,[]{}#&*!|>'\"%@`").find(c) != std::string_view::npos;
+}
+
+// Can this text stand plain in a flow collection and read back as itself?
+bool plain_in_flow(std::string_view text) {
+    if (text.empty() || text.front() == ' ' || text.back() == ' ' || text.size() > 512)
+        return false;
+    if (text.substr(0, 3) == "---" || text.substr(0, 3) == "...") return false;
+    const bool number_like =
+        text.size() > 1 && text[0] == '-' && text[1] != ' ' && !is_indicator(text[1]);
+    if (is_indicator(text.front()) && !number_like) return false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto c = static_cast<unsigned char>(text[i]);
+        if (c < 0x20 || c >= 0x7F) return false;
+        if (std::string_view(",[]{}\"'\\`").find(text[i]) != std::string_view::npos) return false;
+        if (c == ':' && (i + 1 == text.size() || text[i + 1] == ' ' || is_indicator(text[i + 1])))
+            return false;
+        if (c == '#' && i > 0 && text[i - 1] == ' ') return false;
+    }
+    return true;
+}
+
+// Walks one value's events; `visit` sees each with the text that stands before it in flow form.
+template <class Visit> void walk(YamlReader &reader, Event first, std::string *flow, Visit visit) {
+    struct Level {
+        bool mapping = false;
+        std::size_t parts = 0;
+    };
+    std::vector<Level> levels;
+    Event event = std::move(first);
+    for (;;) {
+        const bool ends =
+            event.kind == EventKind::SequenceEnd || event.kind == EventKind::MappingEnd;
+        if (event.kind == EventKind::Broken || event.kind == EventKind::End) {
+            // What was read until the break stays a legal text.
+            if (flow) {
+                if (!levels.empty() && levels.back().mapping && levels.back().parts % 2 == 1)
+                    *flow += ": ~";
+                for (; !levels.empty(); levels.pop_back()) {
+                    *flow += levels.back().mapping ? '}' : ']';
+                    if (levels.size() > 1 && levels[levels.size() - 2].mapping &&
+                        levels[levels.size() - 2].parts % 2 == 1)
+                        *flow += ": ~";
+                }
+            }
+            visit(event, false);
+            return;
+        }
+        bool key = false;
+        if (!ends && !levels.empty()) {
+            Level &level = levels.back();
+            key = level.mapping && level.parts % 2 == 0;
+            if (flow && level.parts > 0) *flow += level.mapping && !key ? ": " : ", ";
+            // A key that is long or no scalar needs its mark: plain ones may have 1,024 characters.
+            if (flow && key && (event.kind != EventKind::Scalar || event.text.size() > 200))
+                *flow += "? ";
+            ++level.parts;
+        }
+        if (flow) {
+            switch (event.kind) {
+            case EventKind::Scalar: *flow += flow_scalar(event.text, event.plain); break;
+            case EventKind::SequenceStart: *flow += '['; break;
+            case EventKind::MappingStart: *flow += '{'; break;
+            case EventKind::SequenceEnd: *flow += ']'; break;
+            case EventKind::MappingEnd: *flow += '}'; break;
+            case EventKind::End:
+            case EventKind::Broken: break;
+            }
+        }
+        visit(event, key);
+        if (event.kind == EventKind::SequenceStart || event.kind == EventKind::MappingStart) {
+            levels.push_back({event.kind == EventKind::MappingStart, 0});
+        } else if (ends) {
+            levels.pop_back();
+        }
+        if (levels.empty()) return;
+        event = reader.next();
+    }
+}
+
+} // namespace
+
+std::string flow_scalar(std::string_view text, bool plain) {
+    if (plain && text.empty()) return "~";
+    if (plain && plain_in_flow(text)) return std::string(text);
+    bool printable = true;
+    for (const char c : text)
+        printable = printable && static_cast<unsigned char>(c) >= 0x20 && c != 0x7F;
+    std::string out;
+    if (printable) { // single quotes need no escapes but their own
+        out += '\'';
+        for (const char c : text) out.append(c == '\'' ? 2 : 1, c);
+        out += '\'';
+        return out;
+    }
+    static const char *hex = "0123456789ABCDEF";
+    out += '"';
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') {
+            out += '\\';
+            out += c;
+        } else if (c == '\n') {
+            out += "\\n";
+        } else if (byte < 0x20 || byte == 0x7F) {
+            out += "\\x";
+            out += hex[byte >> 4];
+            out += hex[byte & 15];
+        } else {
+            out += c;
+        }
+    }
+    out += '"';
+    return out;
+}
+
+TakenValue take_value(YamlReader &reader, Event first, std::size_t limit) {
+    TakenValue taken;
+    std::vector<Value *>
+        open; // collections that are being filled; stable, since only the last one grows
+    std::vector<std::string> keys(1); // the key that waits for its value, by level
+    std::size_t parts = 0;
+    std::size_t skipped = 0;    // levels of collections that are no longer kept
+    std::size_t key_levels = 0; // levels inside a key that is a collection
+    taken.value.span = first.span;
+    walk(reader, std::move(first), &taken.flow, [&](const Event &event, bool key) {
+        const bool starts =
+            event.kind == EventKind::SequenceStart || event.kind == EventKind::MappingStart;
+        const bool ends =
+            event.kind == EventKind::SequenceEnd || event.kind == EventKind::MappingEnd;
+        if (event.kind == EventKind::Broken || event.kind == EventKind::End) {
+            taken.whole = false;
+            return;
+        }
+        if (key_levels > 0 ||
+            (key && starts)) { // a key that is no scalar: it counts as text that no one looks for
+            if (starts) ++key_levels;
+            if (ends) --key_levels;
+            if (key_levels == 0) keys.back().assign(1, '?');
+            taken.whole = false;
+            return;
+        }
+        if (skipped > 0) {
+            if (starts) ++skipped;
+            if (ends) --skipped;
+            return;
+        }
+        if (ends) {
+            open.back()->span = join(open.back()->span, event.span);
+            open.pop_back();
+            keys.pop_back();
+            return;
+        }
+        if (key) {
+            keys.back() = event.text;
+            return;
+        }
+        if (++parts > limit) {
+            taken.whole = false;
+            if (starts) ++skipped;
+            return;
+        }
+        Value *slot = &taken.value;
+        if (!open.empty()) {
+            if (open.back()->kind == Value::Kind::Mapping) {
+                open.back()->entries.emplace_back(keys.back(), Value{});
+                slot = &open.back()->entries.back().second;
+            } else {
+                slot = &open.back()->items.emplace_back();
+            }
+        }
+        slot->span = event.span;
+        if (event.kind == EventKind::Scalar) {
+            slot->text = event.text;
+            slot->plain = event.plain;
+            return;
+        }
+        slot->kind =
+            event.kind == EventKind::MappingStart ? Value::Kind::Mapping : Value::Kind::Sequence;
+        open.push_back(slot);
+        keys.emplace_back();
+    });
+    return taken;
+}
+
+void take_flow(YamlReader &reader, Event first, std::string &flow) {
+    walk(reader, std::move(first), &flow, [](const Event &, bool) {});
+}
+
+void skip_value(YamlReader &reader, const Event &first) {
+    walk(reader, first, nullptr, [](const Event &, bool) {});
+}
+
+std::string spelling_key(std::string_view name) {
+    std::string key;
+    for (const char c : name) {
+        if (c == ' ' || c == '-' || c == '_') continue;
+        key += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+    return key;
+}
+
+const Value *Value::find(std::string_view key) const {
+    const std::string wanted = spelling_key(key);
+    for (const auto &[name, value] : entries) {
+        if (spelling_key(name) == wanted) return &value;
+    }
+    return nullptr;
+}
+
+ParsedText parse_text(std::string_view text) {
+    Diagnostics unheard;
+    Sources sources;
+    YamlReader reader(text, SourceId{0}, Report{unheard, false}, 2000);
+    ParsedText parsed;
+    Event first = reader.next();
+    if (first.kind == EventKind::Broken || first.kind == EventKind::End) return parsed;
+    TakenValue taken = take_value(reader, std::move(first), text.size() + 1);
+    parsed.ok = !reader.broken();
+    parsed.value = std::move(taken.value);
+    return parsed;
+}
+
+} // namespace fathom::save
