@@ -1,0 +1,19 @@
+// The scene's own part of a text: data, helpers, functions, materials, lights. Knows no target.
+#pragma once
+
+#include "backend-glsl/module.h"
+
+namespace fathom::glsl {
+
+struct SceneText {
+    std::string tables;    // constants, where the data stands in the text
+    std::string functions; // helpers, the scene's functions, `sdf`
+    std::string looks;     // fathom_hit, fathom_material, fathom_lighting, fathom_light, fathom_background
+    bool local_normals = false;
+    int lights = 0;
+};
+
+// `with_looks`: also what shading needs beyond the materials.
+SceneText assemble(Module &module, bool with_looks);
+
+} // namespace fathom::glsl

@@ -1,0 +1,558 @@
+// Spells a scheduled body (schedule.h) as GLSL statements and expressions. Knows the op table's spelling column and what the
+// ops without one look like; helper functions are only named here (helpers.cpp holds them).
+#include "backend-glsl/module.h"
+#include "backend-glsl/schedule.h"
+
+#include <algorithm>
+#include <cassert>
+#include <optional>
+
+namespace fathom::glsl {
+
+using ir::NodeId;
+using ir::Op;
+using ir::Type;
+
+namespace {
+
+// How tightly an expression binds, GLSL's levels; a looser operand gets parentheses.
+enum Level { Primary, Unary, Product, Sum, Relation, Equality, Conjunction, Disjunction, Choice };
+
+struct Text {
+    std::string text;
+    Level level = Primary;
+};
+
+Level level_of(Op op) {
+    if (op == Op::Mul || op == Op::Div || op == Op::MatMul) return Product;
+    if (op == Op::Add || op == Op::Sub) return Sum;
+    if (op == Op::Less || op == Op::LessEqual) return Relation;
+    if (op == Op::Equal || op == Op::NotEqual) return Equality;
+    if (op == Op::And) return Conjunction;
+    if (op == Op::Or) return Disjunction;
+    if (op == Op::Select) return Choice;
+    if (op == Op::Neg || op == Op::Not) return Unary;
+    return Primary;
+}
+
+std::string at_least(const Text &t, Level level) { return t.level <= level ? t.text : "(" + t.text + ")"; }
+
+char prefix_of(Type type) {
+    switch (type) {
+    case Type::Bool: return 'b';
+    case Type::Int: return 'n';
+    case Type::Float: return 'd';
+    case Type::Vec2: case Type::Vec3: case Type::Vec4: return 'v';
+    case Type::Mat2: case Type::Mat3: case Type::Mat4: return 'm';
+    case Type::Hit: return 'h';
+    }
+    return 'x';
+}
+
+const char *profile_helper(ir::Profile profile) {
+    switch (profile) {
+    case ir::Profile::Smooth: return "fathom_blend_smooth";
+    case ir::Profile::Round: return "fathom_blend_round";
+    case ir::Profile::Chamfer: return "fathom_blend_chamfer";
+    case ir::Profile::Stairs: return "fathom_blend_stairs";
+    case ir::Profile::Columns: return "fathom_blend_columns";
+    }
+    return "";
+}
+
+class Writer {
+  public:
+    Writer(Module &module, std::span<Bound> bound, std::span<const NodeId> roots)
+        : module_(module), graph_(module.scene.graph), plan_(schedule(graph_, roots)), names_(module.names) {
+        for (Bound &b : bound) name_[b.var] = b.name = names_.unique(b.name);
+    }
+
+    std::string take() { return std::move(out_); }
+    void block(BlockId id, int indent) { statements(plan_.blocks[static_cast<std::size_t>(id)].statements, indent); }
+    std::string value(NodeId id) { return expression(id).text; }
+
+  private:
+    void line(int indent, const std::string &text) {
+        out_.append(static_cast<std::size_t>(indent) * 4, ' ');
+        out_ += text;
+        out_ += '\n';
+    }
+
+    void statements(const std::vector<NodeId> &ids, int indent) {
+        for (NodeId id : ids) statement(id, indent);
+    }
+
+    void statement(NodeId id, int indent) {
+        const ir::Node &node = graph_[id];
+        if (node.op == Op::Fold) return loop(id, indent);
+        const std::string type = glsl_type(node.type);
+        if (auto arms = plan_.arms.find(id); arms != plan_.arms.end()) {
+            const std::string name = names_.numbered(prefix_of(node.type));
+            line(indent, type + " " + name + ";");
+            choice(id, name, indent, "if (");
+            name_[id] = name;
+            return;
+        }
+        if (node.count > 2 && is_folded(node.op)) {
+            const bool blend = node.op == Op::Blend;
+            const std::size_t first = blend ? 2 : 0;
+            const std::string start = expression(graph_.args(id)[first]).text;
+            const std::string name = names_.numbered(prefix_of(node.type));
+            line(indent, type + " " + name + " = " + start + ";");
+            for (std::size_t i = first + 1; i < node.count; ++i)
+                line(indent, name + " = " + joined(id, name, expression(graph_.args(id)[i]).text) + ";");
+            name_[id] = name;
+            return;
+        }
+        const std::string text = spell(id).text;
+        const std::string name = names_.numbered(prefix_of(node.type));
+        line(indent, type + " " + name + " = " + text + ";");
+        name_[id] = name;
+    }
+
+    static bool is_folded(Op op) {
+        return op == Op::Union || op == Op::Intersection || op == Op::NearestHit || op == Op::FarthestHit ||
+               op == Op::Blend;
+    }
+
+    // One turn of an n-ary combination.
+    std::string joined(NodeId id, const std::string &a, const std::string &b) {
+        const ir::Node &node = graph_[id];
+        if (node.op == Op::Union) return "min(" + a + ", " + b + ")";
+        if (node.op == Op::Intersection) return "max(" + a + ", " + b + ")";
+        if (node.op == Op::NearestHit) return helper("fathom_nearest") + "(" + a + ", " + b + ")";
+        if (node.op == Op::FarthestHit) return helper("fathom_farthest") + "(" + a + ", " + b + ")";
+        const auto profile = static_cast<ir::Profile>(node.payload);
+        std::string text = helper(profile_helper(profile)) + "(" + a + ", " + b + ", " + value(graph_.arg(id, 0));
+        if (profile == ir::Profile::Stairs || profile == ir::Profile::Columns)
+            text += ", " + value(graph_.arg(id, 1));
+        return text + ")";
+    }
+
+    void choice(NodeId id, const std::string &target, int indent, const std::string &opening) {
+        const auto [yes, no] = plan_.arms.at(id);
+        line(indent, opening + value(graph_.arg(id, 0)) + ") {");
+        block(yes, indent + 1);
+        assign(indent + 1, target, graph_.arg(id, 1));
+        const NodeId other = graph_.arg(id, 2);
+        const auto &rest = plan_.blocks[static_cast<std::size_t>(no)].statements;
+        if (rest.size() == 1 && rest.front() == other && plan_.arms.contains(other)) {
+            choice(other, target, indent, "} else if (");
+            return;
+        }
+        line(indent, "} else {");
+        block(no, indent + 1);
+        assign(indent + 1, target, other);
+        line(indent, "}");
+    }
+
+    void assign(int indent, const std::string &target, NodeId id) { line(indent, target + " = " + value(id) + ";"); }
+
+    void loop(NodeId id, int indent) {
+        const ir::Fold &fold = graph_.fold(ir::FoldId{graph_[id].payload});
+        for (std::size_t k = 0; k < fold.vars.size(); ++k) {
+            const Type type = graph_[fold.vars[k]].type;
+            const std::string start = value(graph_.args(id)[k]);
+            const std::string name = names_.numbered(prefix_of(type));
+            line(indent, std::string(glsl_type(type)) + " " + name + " = " + start + ";");
+            name_[fold.vars[k]] = name;
+        }
+        const std::string i = names_.numbered('i');
+        line(indent, "for (int " + i + " = 0; " + i + " < " + at_least(expression(fold.count), Sum) + "; ++" + i + ") {");
+        name_[fold.index] = i;
+
+        // What the condition needs comes first, then the way out, then the rest.
+        const auto &all = plan_.blocks[static_cast<std::size_t>(plan_.loop.at(id))].statements;
+        std::vector<NodeId> before, after;
+        if (fold.condition) {
+            std::unordered_map<NodeId, bool> known;
+            for (NodeId s : all) (needs(fold.condition, s, known) ? before : after).push_back(s);
+            statements(before, indent + 1);
+            line(indent + 1, "if (!" + at_least(expression(fold.condition), Primary) + ") break;");
+            statements(after, indent + 1);
+        } else {
+            statements(all, indent + 1);
+        }
+
+        // All next values are of the old ones: a value that a later line still reads is kept aside.
+        std::vector<std::pair<std::string, std::string>> moves;
+        for (std::size_t k = 0; k < fold.vars.size(); ++k) {
+            if (fold.next[k] == fold.vars[k]) continue;
+            const std::string &target = name_[fold.vars[k]];
+            bool read_later = false;
+            for (std::size_t j = k + 1; j < fold.vars.size(); ++j) read_later |= mentions(fold.next[j], fold.vars[k]);
+            if (!read_later) {
+                assign(indent + 1, target, fold.next[k]);
+                continue;
+            }
+            const std::string name = names_.numbered(prefix_of(graph_[fold.vars[k]].type));
+            line(indent + 1, std::string(glsl_type(graph_[fold.vars[k]].type)) + " " + name + " = " +
+                                 value(fold.next[k]) + ";");
+            moves.emplace_back(target, name);
+        }
+        for (const auto &[target, name] : moves) line(indent + 1, target + " = " + name + ";");
+        line(indent, "}");
+        name_[id] = name_[fold.vars[0]];
+    }
+
+    // Whether `root` reads statement `s` (itself, or through other nodes of the same loop).
+    bool needs(NodeId root, NodeId s, std::unordered_map<NodeId, bool> &known) {
+        if (root == s) return true;
+        if (root < s) return false;
+        known.clear();
+        return reaches(root, s, known);
+    }
+    bool reaches(NodeId from, NodeId to, std::unordered_map<NodeId, bool> &known) {
+        if (from == to) return true;
+        if (!from || from < to) return false;
+        auto [entry, fresh] = known.try_emplace(from, false);
+        if (!fresh) return entry->second;
+        bool found = false;
+        for (NodeId arg : graph_.args(from)) found = found || reaches(arg, to, known);
+        if (graph_[from].op == Op::Fold) {
+            const ir::Fold &fold = graph_.fold(ir::FoldId{graph_[from].payload});
+            found = found || reaches(fold.count, to, known) || reaches(fold.condition, to, known);
+            for (NodeId next : fold.next) found = found || reaches(next, to, known);
+        }
+        return known[from] = found;
+    }
+
+    // Whether the text of `id`'s value mentions `var` (and not a local that was computed before).
+    bool mentions(NodeId id, NodeId var) {
+        if (id == var) return true;
+        if (plan_.named(id)) return false;
+        return std::ranges::any_of(graph_.args(id), [&](NodeId arg) { return mentions(arg, var); });
+    }
+
+    Text expression(NodeId id) {
+        if (auto known = name_.find(id); known != name_.end()) return {known->second, Primary};
+        return spell(id);
+    }
+
+    std::string helper(const std::string &name, const std::string &type = "") {
+        module_.helpers.insert({name, type});
+        return name;
+    }
+
+    std::string list(NodeId id, std::size_t from = 0) {
+        std::string text;
+        for (std::size_t i = from; i < graph_[id].count; ++i)
+            text += (i == from ? "" : ", ") + value(graph_.args(id)[i]);
+        return text;
+    }
+
+    Text spell(NodeId id) {
+        const ir::Node &node = graph_[id];
+        auto arg = [&](int i) { return graph_.arg(id, i); };
+        switch (node.op) {
+        case Op::Const: {
+            const std::string text = literal(graph_.constant_of(id));
+            return {text, text[0] == '-' ? Unary : Primary};
+        }
+        case Op::Point: case Op::Normal: case Op::Direction: case Op::Var:
+            assert(!"inputs of a function are its parameters");
+            return {"0.0", Primary};
+        case Op::Time: module_.reads_time = true; return {"fathom_time", Primary};
+        case Op::Param: return {module_.params.at(node.payload), Primary};
+        case Op::Neg: case Op::Not:
+            if (node.type == Type::Int && !in_range(id)) return saturating(id, "fathom_neg");
+            return {(node.op == Op::Neg ? "-" : "!") + at_least(expression(arg(0)), Primary), Unary};
+        case Op::Mul:
+            if (ir::is_matrix(node.type)) return {"matrixCompMult(" + list(id) + ")", Primary};
+            if (node.type == Type::Int && !in_range(id)) return saturating(id, "fathom_mul");
+            return infix(id, " * ");
+        case Op::Div:
+            if (node.type == Type::Int) return {helper("fathom_div") + "(" + list(id) + ")", Primary};
+            return infix(id, " / ");
+        case Op::Add: case Op::Sub:
+            if (node.type == Type::Int && !in_range(id))
+                return saturating(id, node.op == Op::Add ? "fathom_add" : "fathom_sub");
+            return sum(id);
+        case Op::MatMul: return infix(id, " * ");
+        case Op::Less: return infix(id, " < ");
+        case Op::LessEqual: return infix(id, " <= ");
+        case Op::Equal: return infix(id, " == ");
+        case Op::NotEqual: return infix(id, " != ");
+        case Op::And: return infix(id, " && ");
+        case Op::Or: return infix(id, " || ");
+        case Op::Select:
+            return {at_least(expression(arg(0)), Disjunction) + " ? " + at_least(expression(arg(1)), Disjunction) +
+                        " : " + at_least(expression(arg(2)), Choice),
+                    Choice};
+        case Op::ToFloat: return {"float(" + value(arg(0)) + ")", Primary};
+        case Op::ToInt:
+            if (graph_[arg(0)].type == Type::Float) return {helper("fathom_int") + "(" + value(arg(0)) + ")", Primary};
+            return {"int(" + value(arg(0)) + ")", Primary};
+        case Op::Splat: return splat(id);
+        case Op::Make: return {std::string(glsl_type(node.type)) + "(" + list(id) + ")", Primary};
+        case Op::Swizzle: {
+            std::string text = at_least(expression(arg(0)), Primary) + ".";
+            for (int i = 0; i < ir::swizzle_size(node.payload); ++i)
+                text += "xyzw"[ir::swizzle_component(node.payload, i)];
+            return {text, Primary};
+        }
+        case Op::Column: return part(id, "[" + std::to_string(node.payload) + "]");
+        case Op::TableRead: return table_read(id);
+        case Op::Hash:
+            return {helper("fathom_hash", glsl_type(graph_[arg(0)].type)) + "(" + list(id) + ")", Primary};
+        case Op::Image:
+            return {helper("fathom_image") + "(" + module_.images.at(node.payload) + ", " + list(id) + ")", Primary};
+        case Op::Grid:
+            return {helper("fathom_grid") + "(" + module_.grids.at(node.payload) + ", " + list(id) + ")", Primary};
+        case Op::Call: return {module_.functions.at(node.payload) + "(" + list(id) + ")", Primary};
+        case Op::Cached: {
+            const auto field = module_.scene.graph.cache(ir::CacheId{node.payload}).field;
+            return {module_.functions.at(field.index) + "(" + list(id) + ")", Primary};
+        }
+        case Op::Fold: return {name_.at(id), Primary};
+        case Op::FoldResult: {
+            const ir::Fold &fold = graph_.fold(ir::FoldId{graph_[arg(0)].payload});
+            return {name_.at(fold.vars[node.payload]), Primary};
+        }
+        case Op::Union: case Op::Intersection: case Op::NearestHit: case Op::FarthestHit: case Op::Blend: {
+            const int first = node.op == Op::Blend ? 2 : 0;
+            if (static_cast<int>(node.count) == first + 1) return expression(arg(first));
+            return {joined(id, value(arg(first)), value(arg(first + 1))), Primary};
+        }
+        case Op::MakeHit: return {"Hit(" + list(id) + ")", Primary};
+        case Op::HitDistance: return part(id, ".distance");
+        case Op::HitPaint: return part(id, ".paint");
+        case Op::HitPoint: return part(id, ".point");
+        case Op::HitExtra: return part(id, ".extra");
+        case Op::HitWith: return {helper("fathom_hit_with") + "(" + list(id) + ")", Primary};
+        case Op::FillPaint: return {helper("fathom_fill_paint") + "(" + list(id) + ")", Primary};
+        case Op::Abs:
+            if (node.type == Type::Int) return saturating(id, "fathom_abs");
+            return by_table(id);
+        case Op::Mod: // by a constant it is GLSL's own
+            if (node.type != Type::Int && !ir::is_matrix(node.type) && is_nonzero(arg(1)))
+                return {"mod(" + list(id) + ")", Primary};
+            return by_table(id);
+        case Op::Smoothstep:
+            if (!ir::is_matrix(node.type) && differ(arg(0), arg(1)))
+                return {"smoothstep(" + list(id) + ")", Primary};
+            return {filled_by_helper(id, "fathom_smoothstep"), Primary};
+        case Op::Pow:
+            if (const double n = whole_power(arg(1)); !ir::is_matrix(node.type) && (n == 2 || n == 3))
+                return {helper(n == 2 ? "fathom_square" : "fathom_cube", glsl_type(node.type)) + "(" + value(arg(0)) + ")", Primary};
+            return by_table(id);
+        case Op::Min: case Op::Max: case Op::Step: case Op::Atan2:
+        case Op::Sign: case Op::Floor: case Op::Ceil: case Op::Round: case Op::Trunc: case Op::Fract: case Op::Sqrt:
+        case Op::InverseSqrt: case Op::Exp: case Op::Exp2: case Op::Log: case Op::Log2: case Op::Sin: case Op::Cos:
+        case Op::Tan: case Op::Asin: case Op::Acos: case Op::Atan: case Op::Sinh: case Op::Cosh: case Op::Tanh:
+        case Op::Clamp: case Op::Mix: case Op::Dot: case Op::Length: case Op::Cross:
+        case Op::Normalize: case Op::Transpose: case Op::Perlin: case Op::Simplex: case Op::ValueNoise:
+        case Op::Worley: case Op::SpotNoise:
+            return by_table(id);
+        }
+        return {};
+    }
+
+    // -- what is known of values ---------------------------------------------------------------------------------
+
+    std::optional<ir::Constant> constant(NodeId id) {
+        if (!graph_.is_constant(id)) return std::nullopt;
+        return graph_.constant_of(id);
+    }
+
+    bool is_nonzero(NodeId id) {
+        const auto c = constant(id);
+        if (!c) return false;
+        for (int i = 0; i < ir::components(c->type); ++i)
+            if (static_cast<float>(c->value[static_cast<std::size_t>(i)]) == 0) return false;
+        return true;
+    }
+
+    bool differ(NodeId a, NodeId b) {
+        const auto x = constant(a), y = constant(b);
+        if (!x || !y) return false;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(ir::components(x->type)); ++i)
+            if (!(static_cast<float>(x->value[i]) < static_cast<float>(y->value[i]))) return false;
+        return true;
+    }
+
+    // The exponent where it is one constant in all components, else 0.
+    double whole_power(NodeId id) {
+        const auto c = constant(id);
+        if (!c) return 0;
+        for (int i = 1; i < ir::components(c->type); ++i)
+            if (c->value[static_cast<std::size_t>(i)] != c->value[0]) return 0;
+        return c->value[0];
+    }
+
+    // Between which numbers an int certainly lies: counters and constants, mostly. Ints saturate (semantics.h), GLSL's wrap; so
+    // only sums that cannot leave the range are written with GLSL's operators.
+    std::pair<double, double> range(NodeId id, int depth = 0) {
+        constexpr std::pair<double, double> all{-2147483648.0, 2147483647.0};
+        const ir::Node &node = graph_[id];
+        if (depth > 8) return all;
+        auto of = [&](int i) { return range(graph_.arg(id, i), depth + 1); };
+        if (node.op == Op::Const) return {graph_.constant_of(id).value[0], graph_.constant_of(id).value[0]};
+        if (node.op == Op::Var) {
+            const auto counter = plan_.rows.find(id);
+            if (counter != plan_.rows.end() && counter->second > 0) return {0, counter->second};
+        }
+        if (node.op == Op::ToInt && graph_[graph_.arg(id, 0)].type == Type::Bool) return {0, 1};
+        if (node.op == Op::Add || node.op == Op::Sub || node.op == Op::Mul || node.op == Op::Neg) {
+            const auto [lo, hi] = exact_range(id, depth);
+            return {std::max(lo, all.first), std::min(hi, all.second)};
+        }
+        if (node.op == Op::Clamp) {
+            const auto low = of(1), high = of(2);
+            return {std::min(low.first, high.first), high.second};
+        }
+        if (node.op == Op::Mod) {
+            const auto [lo, hi] = of(1);
+            if (lo > 0) return {0, hi - 1};
+        }
+        return all;
+    }
+
+    std::pair<double, double> exact_range(NodeId id, int depth = 0) {
+        const auto [a, b] = range(graph_.arg(id, 0), depth + 1);
+        const Op op = graph_[id].op;
+        if (op == Op::Neg) return {-b, -a};
+        const auto [c, d] = range(graph_.arg(id, 1), depth + 1);
+        if (op == Op::Add) return {a + c, b + d};
+        if (op == Op::Sub) return {a - d, b - c};
+        return {std::min({a * c, a * d, b * c, b * d}), std::max({a * c, a * d, b * c, b * d})};
+    }
+
+    bool in_range(NodeId id) {
+        const auto [lo, hi] = exact_range(id);
+        return lo >= -2147483648.0 && hi <= 2147483647.0;
+    }
+
+    Text saturating(NodeId id, const char *name) { return {helper(name, "int") + "(" + list(id) + ")", Primary}; }
+
+    std::string filled_by_helper(NodeId id, const std::string &name) {
+        const Type type = graph_[id].type;
+        if (!ir::is_matrix(type)) return helper(name, glsl_type(type)) + "(" + list(id) + ")";
+        const Type column = ir::vector_type(ir::side(type));
+        helper(name, glsl_type(column));
+        std::string text = std::string(glsl_type(type)) + "(";
+        for (int i = 0; i < ir::side(type); ++i)
+            text += (i ? ", " : "") + filled(id, name + "({0}, {1}, {2})", column, "[" + std::to_string(i) + "]");
+        return text + ")";
+    }
+
+    Text part(NodeId id, const std::string &which) {
+        return {at_least(expression(graph_.arg(id, 0)), Primary) + which, Primary};
+    }
+
+    Text infix(NodeId id, const char *op) {
+        const Level level = level_of(graph_[id].op);
+        const auto tighter = static_cast<Level>(level - 1);
+        return {at_least(expression(graph_.arg(id, 0)), level) + op + at_least(expression(graph_.arg(id, 1)), tighter),
+                level};
+    }
+
+    // a + -3 is written a - 3, and a + -b as a - b: the same number.
+    Text sum(NodeId id) {
+        const ir::Node &node = graph_[id];
+        const NodeId left = graph_.arg(id, 0), right = graph_.arg(id, 1);
+        bool minus = node.op == Op::Sub;
+        Text operand = expression(right);
+        if (operand.level == Unary && operand.text[0] == '-') {
+            minus = !minus;
+            operand = {operand.text.substr(1), Primary};
+        }
+        return {at_least(expression(left), Sum) + (minus ? " - " : " + ") + at_least(operand, Product), Sum};
+    }
+
+    Text splat(NodeId id) {
+        const Type type = graph_[id].type;
+        const std::string scalar = value(graph_.arg(id, 0));
+        if (!ir::is_matrix(type)) return {std::string(glsl_type(type)) + "(" + scalar + ")", Primary};
+        std::string text = std::string(glsl_type(type)) + "("; // mat3(x) would be x times the identity
+        const std::string column = std::string(glsl_type(ir::vector_type(ir::side(type)))) + "(" + scalar + ")";
+        for (int i = 0; i < ir::side(type); ++i) text += (i ? ", " : "") + column;
+        return {text + ")", Primary};
+    }
+
+    // Ops that the table spells as a call. GLSL's built-in functions take no matrices: those go column by column.
+    Text by_table(NodeId id) {
+        const ir::Node &node = graph_[id];
+        const std::string_view form = ir::info(node.op).glsl;
+        Type type = node.type;
+        if (ir::is_matrix(type) && node.op != Op::Transpose) {
+            const Type column = ir::vector_type(ir::side(type));
+            std::string text = std::string(glsl_type(type)) + "(";
+            for (int i = 0; i < ir::side(type); ++i)
+                text += (i ? ", " : "") + filled(id, form, column, "[" + std::to_string(i) + "]");
+            return {text + ")", Primary};
+        }
+        if (node.op == Op::Length || node.op == Op::Dot) type = graph_[graph_.arg(id, 0)].type;
+        return {filled(id, form, type, ""), Primary};
+    }
+
+    std::string filled(NodeId id, std::string_view form, Type type, const std::string &part) {
+        std::string text;
+        for (std::size_t i = 0; i < form.size(); ++i) {
+            if (form[i] != '{') {
+                text += form[i];
+                continue;
+            }
+            const int n = form[i + 1] - '0';
+            i += 2;
+            // Only in `floor({0} + 0.5)` does an argument stand beside an operator.
+            const bool alone = form.find(" + ") == std::string_view::npos;
+            text += part.empty() ? at_least(expression(graph_.arg(id, n)), alone ? Choice : Sum)
+                                 : at_least(expression(graph_.arg(id, n)), Primary) + part;
+        }
+        if (form.starts_with("fathom_")) {
+            const std::string name(form.substr(0, form.find('(')));
+            const Op op = graph_[id].op;
+            const bool fixed = op == Op::Perlin || op == Op::Simplex || op == Op::ValueNoise || op == Op::Worley ||
+                               op == Op::SpotNoise;
+            helper(name, fixed ? "" : glsl_type(type));
+        }
+        return text;
+    }
+
+    Text table_read(NodeId id) {
+        const ir::Node &node = graph_[id];
+        const TableUse &use = module_.tables.at(ir::table_of(node.payload).index);
+        const NodeId row = graph_.arg(id, 0);
+        const auto counted = plan_.rows.find(row);
+        const bool inside = counted != plan_.rows.end() && counted->second <= use.rows;
+        std::string at = inside ? at_least(expression(row), Product)
+                                : "clamp(" + value(row) + ", 0, " + std::to_string(use.rows - 1) + ")";
+        if (use.texels > 1) at += " * " + std::to_string(use.texels);
+        const int size = ir::components(node.type);
+        int column = ir::column_of(node.payload), left = size;
+        std::string parts;
+        for (int piece = 0; left > 0; ++piece) {
+            const int first = column / 4, from = column % 4, count = std::min(left, 4 - from);
+            parts += (piece ? ", " : "") + texel(use, at + (first ? " + " + std::to_string(first) : ""));
+            if (count < 4) parts += "." + std::string("xyzw").substr(static_cast<std::size_t>(from), static_cast<std::size_t>(count));
+            column += count;
+            left -= count;
+        }
+        const bool one_piece = ir::column_of(node.payload) % 4 + size <= 4;
+        if (node.type == Type::Bool) return {parts + " != 0.0", Equality};
+        if (node.type == Type::Int) return {"int(" + parts + ")", Primary};
+        if (one_piece && !ir::is_matrix(node.type)) return {parts, Primary};
+        return {std::string(glsl_type(node.type)) + "(" + parts + ")", Primary};
+    }
+
+    Module &module_;
+    const ir::Graph &graph_;
+    Schedule plan_;
+    Names names_;
+    std::unordered_map<NodeId, std::string> name_;
+    std::string out_;
+};
+
+} // namespace
+
+Body body(Module &module, std::span<Bound> bound, std::span<const NodeId> roots) {
+    Writer writer(module, bound, roots);
+    writer.block(0, 1);
+    Body result;
+    for (NodeId root : roots) result.values.push_back(writer.value(root));
+    result.statements = writer.take();
+    return result;
+}
+
+} // namespace fathom::glsl

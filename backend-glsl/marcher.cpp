@@ -1,0 +1,266 @@
+// See marcher.h. Names and order follow ir/look.h, which explains; backend-cpu/march.cpp is this file's sibling.
+#include "backend-glsl/marcher.h"
+
+#include "backend-glsl/fill.h"
+#include "backend-glsl/module.h"
+#include "ir/look.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace fathom::glsl {
+
+namespace {
+
+constexpr const char *lengths = R"(
+// ---- how rays are marched and points are shaded ----
+
+float fathom_slack, fathom_pixel, fathom_far, fathom_tolerance_base, fathom_tolerance_slope;
+int fathom_steps;
+
+void fathom_lengths() {
+    fathom_slack = $FLOAT_SLACK * (length(fathom_origin) + $RADIUS);
+    fathom_pixel = 2.0 * fathom_extent / fathom_resolution.y;
+    fathom_far = $FAR;
+    bool parallel = fathom_orthographic != 0;
+    fathom_tolerance_base = (parallel ? min($EPSILON * fathom_focus, 0.5 * fathom_pixel) : 0.0) + fathom_slack;
+    fathom_tolerance_slope = parallel ? 0.0 : min($EPSILON, 0.5 * fathom_pixel);
+}
+
+float fathom_tolerance(float t) {
+    return fathom_tolerance_base + fathom_tolerance_slope * t;
+}
+
+float fathom_arm(float t) {
+    return fathom_tolerance(t) + $NORMAL_SLACK * fathom_slack;
+}
+
+// A loop whose bound the compiler cannot see, so that sdf is inlined once and not four times.
+vec3 fathom_gradient(vec3 p, float h) {
+    vec3 sum = vec3(0.0);
+    for (int i = $ZERO; i < 4; ++i) {
+        vec3 e = 0.577350269 * (2.0 * vec3(float(((i + 3) >> 1) & 1), float((i >> 1) & 1), float(i & 1)) - 1.0);
+        sum += e * sdf(p + h * e);
+    }
+    return 0.75 / h * sum;
+}
+)";
+
+constexpr const char *near_steep = R"(
+// The true distance, where the field was divided by a bound: |f| / |grad f|.
+float fathom_near(vec3 p, float d, float h) {
+    return d / clamp(length(fathom_gradient(p, h)), $LEAST_SLOPE, 1.0);
+}
+)";
+
+constexpr const char *box = R"(
+// Where a ray enters and leaves the box that holds everything.
+vec2 fathom_box(vec3 origin, vec3 direction) {
+    vec3 safe = mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
+    vec3 a = ($LO - origin) / safe;
+    vec3 b = ($HI - origin) / safe;
+    vec3 first = min(a, b);
+    vec3 last = max(a, b);
+    return vec2(max(first.x, max(first.y, first.z)), min(last.x, min(last.y, last.z)));
+}
+)";
+
+constexpr const char *march = R"(
+// Enhanced sphere tracing. The distance of the hit along the ray, or -1.
+float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
+    float t = begin;
+    float before = 0.0;
+    float stride = 0.0;
+    float d = 0.0;
+    int steps = 0;
+    for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
+        vec3 p = origin + t * direction;
+        d = sdf(p);
+        if (stride > before + max(d, 0.0)) {
+            t += before - stride;
+            stride = before;
+            continue;
+        }
+        if (d <= fathom_tolerance(t)$AND_NEAR) {
+            fathom_steps = steps + 1;
+            return t + d;
+        }
+        d = max(d, 0.25 * fathom_slack);
+        float next = d;
+        if (stride > 0.0)
+            next += $RELAXATION * d * max(stride + d - before, 0.0) / max(stride - d + before, $FLATTEST * stride);
+        next = min(next, max(d, end - t));
+        before = d;
+        stride = next;
+        t += next;
+    }
+    fathom_steps = steps;
+    float pixel = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
+    return steps >= $MAX_STEPS && d <= pixel ? t : -1.0;
+}
+)";
+
+constexpr const char *occlusion = R"(
+// How much of the surroundings five samples along the normal find closed (thesis, 4.2.1).
+float fathom_occlusion(vec3 p, vec3 n, float h) {
+    float sum = 0.0;
+    float weight = 1.0;
+    float total = 0.0;
+    for (int i = $ZERO; i < $OCCLUSION_SAMPLES; ++i) {
+        float x = $OCCLUSION_REACH * float(i + 1);
+        vec3 q = p + x * n;
+        weight *= 0.5;
+        total += weight;
+        sum += weight * clamp(1.0 - $NEAR_Q / x, 0.0, 1.0);
+    }
+    return sum / total;
+}
+
+// How much of a light arrives: marched from the light towards the point (thesis, 4.2.1).
+float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, float h) {
+    float s = reach;
+    float before = 0.0;
+    float shadow = 1.0;
+    for (int i = $ZERO; i < $SHADOW_STEPS && s > margin; ++i) {
+        vec3 p = q + s * l;
+        float d = sdf(p);
+        float near = d;
+        if (d < shadow * angle * s) near = $NEAR_P;
+        float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
+        float c = sqrt(max(near * near - y * y, 0.0));
+        shadow = min(shadow, c / (angle * (s + y)));
+        if (near <= 0.0 || shadow < 0.00390625) return 0.0;
+        before = d;
+        s -= max(d, 0.25 * fathom_slack);
+    }
+    return shadow * shadow * (3.0 - 2.0 * shadow);
+}
+)";
+
+constexpr const char *shade_head = R"(
+vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
+    vec3 p = origin + t * direction;
+    float h = fathom_arm(t);
+    vec3 g = fathom_gradient(p, h);
+    float slope = length(g);
+    vec3 n = slope > 0.0 ? g / slope : -direction;
+    Hit s = fathom_hit(p);
+)";
+
+constexpr const char *local_normal = R"(    vec3 turned = fathom_hit(p + h * n).point - s.point;
+    float size = length(turned);
+    fathom_Material m = fathom_material(s, size > 0.0 ? turned / size : n);
+)";
+
+constexpr const char *shade_phong = R"(    fathom_Lighting look = fathom_lighting();
+    float open = 1.0;
+    if (look.ambient_occlusion > 0.0) open -= look.ambient_occlusion * fathom_occlusion(p, n, h);
+    vec3 color = open * m.diffuse * look.ambient + m.emission;
+    float margin = $SHADOW_BIAS * fathom_tolerance(t);
+    vec3 q = p + margin * n;
+    float angle = max(look.soft_shadows, $LEAST_ANGLE);
+    for (int i = $ZERO; i < $LIGHTS; ++i) {
+        fathom_Light light = fathom_light(i);
+        vec3 way = light.directional ? light.position : light.position - q;
+        float away = length(way);
+        vec3 l = away > 0.0 ? way / away : n;
+        float facing = dot(n, l);
+        if (facing <= 0.0) continue;
+        float seen = 1.0;
+        if (look.shadow_darkness > 0.0) {
+            float reach = light.directional ? $SUN_REACH : away;
+            seen -= look.shadow_darkness * (1.0 - fathom_shadow(q, l, reach, angle, margin, h));
+        }
+        vec3 r = 2.0 * facing * n - l;
+        float gleam = max(-dot(r, direction), 0.0);
+        gleam = gleam > 0.0 ? look.specular_intensity * pow(gleam, m.exponent) : 0.0;
+        color += seen * light.color * (open * facing * m.diffuse + gleam * m.specular);
+    }
+    return color;
+}
+)";
+
+constexpr const char *output = R"(
+vec3 fathom_encode(vec3 linear) {
+    vec3 c = clamp(linear, 0.0, 1.0);
+    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
+}
+
+// Blue for few steps, through green and yellow to red for all that are allowed.
+vec3 fathom_heat(int steps) {
+    float x = log2(1.0 + float(steps)) / log2(1.0 + float($MAX_STEPS));
+    return clamp(vec3(2.0 * x - 0.6, 1.6 - abs(3.2 * x - 1.6), 1.0 - 2.2 * x), 0.0, 1.0);
+}
+
+// `place`: in pixels from the top left of the picture.
+vec4 fathom_picture(vec2 place) {
+    fathom_lengths();
+    float u = (2.0 * place.x / fathom_resolution.x - 1.0) * fathom_resolution.x / fathom_resolution.y;
+    float v = 1.0 - 2.0 * place.y / fathom_resolution.y;
+    vec3 aside = fathom_extent * (u * fathom_right + v * fathom_up);
+    vec3 origin = fathom_origin;
+    vec3 direction = fathom_forward;
+    if (fathom_orthographic != 0) origin += aside;
+    else direction = normalize(direction + aside);
+    float begin = 0.0;
+    float end = fathom_far;
+$CLIP    float t = end < begin ? -1.0 : fathom_march(origin, direction, begin, end);
+    if (fathom_mode == 1) return vec4(fathom_heat(fathom_steps), 1.0);
+    if (fathom_mode == 2)
+        return vec4(float(fathom_steps), t, t < 0.0 ? -2.0 : float(fathom_hit(origin + t * direction).paint), t < 0.0 ? 0.0 : 1.0);
+    vec3 color = t < 0.0 ? fathom_background(direction) : fathom_shade(origin, direction, t);
+    return vec4(fathom_mode == 3 ? color : fathom_encode(color), 1.0);
+}
+)";
+
+std::string number(double value) { return float_literal(static_cast<float>(value)); }
+
+} // namespace
+
+std::string marcher_text(const MarcherOptions &options) {
+    namespace look = ir::look;
+    std::string text = lengths;
+    if (options.steep) text += near_steep;
+    if (options.boxed) text += box;
+    text += march;
+    if (!options.skip_shading) text += occlusion;
+    text += shade_head;
+    text += options.local_normals ? local_normal : "    fathom_Material m = fathom_material(s, n);\n";
+    text += options.skip_shading ? "    return m.diffuse + m.emission;\n}\n" : shade_phong;
+    text += output;
+
+    const std::string clip = "    vec2 inside = fathom_box(origin, direction);\n"
+                             "    begin = max(begin, inside.x);\n"
+                             "    end = min(end, inside.y);\n";
+    const std::string far =
+        "100.0 * max(" + number(options.radius) + ", length(fathom_origin - " + options.center + "))";
+    return fill(text, {
+        {"AND_NEAR", options.steep ? " && fathom_near(p, d, fathom_arm(t)) <= fathom_tolerance(t)" : ""},
+        {"NEAR_Q", options.steep ? "fathom_near(q, sdf(q), h)" : "sdf(q)"},
+        {"NEAR_P", options.steep ? "fathom_near(p, d, h)" : "d"},
+        {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
+        {"CLIP", options.boxed ? clip : ""},
+        {"FAR", options.far > 0 ? number(options.far) : far},
+        {"RADIUS", number(options.radius)},
+        {"CENTER", options.center},
+        {"LO", options.lo},
+        {"HI", options.hi},
+        {"EPSILON", number(options.epsilon)},
+        {"MAX_STEPS", std::to_string(options.max_steps)},
+        {"ZERO", options.zero},
+        {"LIGHTS", std::to_string(options.lights)},
+        {"FLOAT_SLACK", number(look::float_slack)},
+        {"NORMAL_SLACK", number(look::normal_slack)},
+        {"LEAST_SLOPE", number(look::least_slope)},
+        {"RELAXATION", number(look::relaxation)},
+        {"FLATTEST", number(look::flattest)},
+        {"OCCLUSION_SAMPLES", std::to_string(look::occlusion_samples)},
+        {"OCCLUSION_REACH", number(look::occlusion_reach * options.radius / look::occlusion_samples)},
+        {"SHADOW_STEPS", std::to_string(look::shadow_steps)},
+        {"SHADOW_BIAS", number(look::shadow_bias)},
+        {"LEAST_ANGLE", number(look::least_angle)},
+    });
+}
+
+} // namespace fathom::glsl

@@ -1,0 +1,159 @@
+// What a text needs (functions, tables, images, params), their names, and constants as text.
+#include "backend-glsl/module.h"
+
+#include "base/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+namespace fathom::glsl {
+
+using ir::NodeId;
+using ir::Op;
+using ir::Type;
+
+const char *glsl_type(Type type) {
+    switch (type) {
+    case Type::Bool: return "bool";
+    case Type::Int: return "int";
+    case Type::Float: return "float";
+    case Type::Vec2: return "vec2";
+    case Type::Vec3: return "vec3";
+    case Type::Vec4: return "vec4";
+    case Type::Mat2: return "mat2";
+    case Type::Mat3: return "mat3";
+    case Type::Mat4: return "mat4";
+    case Type::Hit: return "Hit";
+    }
+    return "";
+}
+
+// GLSL has no words for infinity and NaN; both versions that we write know the bits.
+std::string float_literal(float value) {
+    if (std::isnan(value)) return "uintBitsToFloat(0x7fc00000u)";
+    if (std::isinf(value)) return value > 0 ? "uintBitsToFloat(0x7f800000u)" : "uintBitsToFloat(0xff800000u)";
+    std::string text = format_shortest(value);
+    if (text.find_first_of(".e") == std::string::npos) text += ".0";
+    return text;
+}
+
+std::string literal(const ir::Constant &constant) {
+    const auto number = [&](std::size_t i) { return float_literal(static_cast<float>(constant.value[i])); };
+    switch (constant.type) {
+    case Type::Bool: return constant.value[0] != 0 ? "true" : "false";
+    case Type::Int: {
+        const auto value = static_cast<std::int64_t>(constant.value[0]);
+        return value <= -2147483648 ? "(-2147483647 - 1)" : std::to_string(value);
+    }
+    case Type::Float: return number(0);
+    case Type::Vec2: case Type::Vec3: case Type::Vec4: case Type::Mat2: case Type::Mat3: case Type::Mat4: case Type::Hit:
+        break;
+    }
+    const std::size_t size = static_cast<std::size_t>(ir::components(constant.type));
+    std::string text = std::string(glsl_type(constant.type)) + "(" + number(0);
+    bool equal = ir::is_vector(constant.type);
+    for (std::size_t i = 1; i < size; ++i) equal &= number(i) == number(0);
+    for (std::size_t i = 1; i < size && !equal; ++i) text += ", " + number(i);
+    return text + ")";
+}
+
+namespace {
+
+constexpr int small_table = 16; // rows up to which a table is text even where the host could bind a buffer
+
+class Gatherer {
+  public:
+    explicit Gatherer(Module &module) : module_(module), graph_(module.scene.graph) {}
+
+    void walk(NodeId root) {
+        std::vector<NodeId> todo{root};
+        while (!todo.empty()) {
+            const NodeId id = todo.back();
+            todo.pop_back();
+            if (!id || !seen_.insert(id).second) continue;
+            const ir::Node &node = graph_[id];
+            module_.hits |= node.type == Type::Hit;
+            for (NodeId arg : graph_.args(id)) todo.push_back(arg);
+            if (node.op == Op::Fold) {
+                const ir::Fold &fold = graph_.fold(ir::FoldId{node.payload});
+                todo.insert(todo.end(), fold.next.begin(), fold.next.end());
+                todo.push_back(fold.condition);
+                todo.push_back(fold.count);
+            } else if (node.op == Op::Call) {
+                function(node.payload, todo);
+            } else if (node.op == Op::Cached) {
+                function(graph_.cache(ir::CacheId{node.payload}).field.index, todo);
+            } else if (node.op == Op::TableRead) {
+                tables_.insert(ir::table_of(node.payload).index);
+            } else if (node.op == Op::Param) {
+                params_.insert(node.payload);
+            } else if (node.op == Op::Image) {
+                images_.insert(node.payload);
+            } else if (node.op == Op::Grid) {
+                grids_.insert(node.payload);
+            }
+        }
+    }
+
+    void name() {
+        for (std::uint32_t index : functions_)
+            if (!module_.functions.contains(index))
+                module_.functions[index] = module_.names.unique(graph_.function(ir::FunctionId{index}).name);
+        for (std::uint32_t index : params_)
+            module_.params[index] = module_.names.unique("param_" + module_.scene.params[index].name);
+        for (std::uint32_t index : images_)
+            module_.images[index] = module_.names.unique("image_" + std::to_string(index));
+        for (std::uint32_t index : grids_)
+            module_.grids[index] = module_.names.unique("grid_" + std::to_string(index));
+        for (std::uint32_t index : tables_) table(index);
+    }
+
+  private:
+    void function(std::uint32_t index, std::vector<NodeId> &todo) {
+        if (functions_.insert(index).second) todo.push_back(graph_.function(ir::FunctionId{index}).result);
+    }
+
+    void table(std::uint32_t index) {
+        const ir::Table &data = graph_.table(ir::TableId{index});
+        module_.tables[index] =
+            add_table(module_, "table_" + std::to_string(index), data.rows, data.stride, data.data);
+    }
+
+    Module &module_;
+    const ir::Graph &graph_;
+    std::unordered_set<NodeId> seen_;
+    std::set<std::uint32_t> functions_, params_, tables_, images_, grids_;
+};
+
+} // namespace
+
+// So that reading a vector takes one or two texels.
+TableUse add_table(Module &module, const std::string &name, int rows, int stride, const std::vector<float> &data) {
+    TableUse use;
+    use.name = module.names.unique(name);
+    use.rows = std::max(rows, 1);
+    use.texels = std::max((stride + 3) / 4, 1);
+    use.data.assign(static_cast<std::size_t>(use.rows) * static_cast<std::size_t>(use.texels) * 4, 0.0f);
+    for (int row = 0; row < rows; ++row)
+        std::copy_n(data.begin() + row * stride, stride, use.data.begin() + row * use.texels * 4);
+    use.buffer = module.options.buffers && rows > small_table;
+    if (use.buffer) {
+        use.start = static_cast<int>(module.texels.size() / 4);
+        module.texels.insert(module.texels.end(), use.data.begin(), use.data.end());
+    }
+    return use;
+}
+
+std::string texel(const TableUse &use, const std::string &place) {
+    if (!use.buffer) return use.name + "[" + place + "]";
+    return "texelFetch(fathom_tables, " + place + (use.start ? " + " + std::to_string(use.start) : "") + ")";
+}
+
+void gather(Module &module, std::span<const NodeId> roots) {
+    Gatherer gatherer(module);
+    for (NodeId root : roots) gatherer.walk(root);
+    gatherer.name();
+}
+
+} // namespace fathom::glsl

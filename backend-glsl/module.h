@@ -1,0 +1,62 @@
+// What the functions of one emitted text share: names, and a record of what was used, so that only that is emitted.
+#pragma once
+
+#include "backend-glsl/emit.h"
+#include "backend-glsl/names.h"
+
+#include <map>
+#include <set>
+#include <string>
+#include <unordered_map>
+
+namespace fathom::glsl {
+
+// A helper function `fathom_…` and the type that it was asked for ("" where it has one form only).
+using HelperKey = std::pair<std::string, std::string>;
+
+struct TableUse {
+    std::string name;
+    int rows = 0, texels = 0; // a row is that many vec4
+    int start = 0;            // in the texture buffer
+    bool buffer = false;
+    std::vector<float> data;  // padded to whole texels; where it stands in the text
+};
+
+struct Module {
+    const ir::Scene &scene;
+    const Options &options;
+    Names names;
+    std::map<std::uint32_t, std::string> functions; // the needed ones, by FunctionId
+    std::set<HelperKey> helpers;
+    std::map<std::uint32_t, TableUse> tables; // by TableId
+    std::map<std::uint32_t, std::string> params, images, grids;
+    std::vector<float> texels;
+    bool reads_time = false;
+    bool hits = false; // the struct Hit is used
+};
+
+const char *glsl_type(ir::Type type);
+std::string literal(const ir::Constant &constant); // "1.0", "vec3(0.0, 1.0, 0.0)"
+std::string float_literal(float value);
+
+// Every function, table, image and grid that the roots need gets its name here; functions by ascending id.
+void gather(Module &module, std::span<const ir::NodeId> roots);
+
+// Rows of floats, padded to whole vec4, as text or in the buffer.
+TableUse add_table(Module &module, const std::string &name, int rows, int stride, const std::vector<float> &data);
+std::string texel(const TableUse &use, const std::string &place); // "table_0[i * 2]", of an index from the table's start
+
+struct Bound {
+    ir::NodeId var;
+    std::string name; // what it is to be called in the text; `body` makes it unique
+};
+
+// The statements of a function's body, each line indented by four: locals, loops, branches. Then, for each root, the
+// expression of its value, in `values`.
+struct Body {
+    std::string statements;
+    std::vector<std::string> values;
+};
+Body body(Module &module, std::span<Bound> bound, std::span<const ir::NodeId> roots);
+
+} // namespace fathom::glsl

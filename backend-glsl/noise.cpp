@@ -1,0 +1,170 @@
+// The noise helpers, ports of ir/noise.h; see there for what they are and why their constants are these.
+#include "backend-glsl/helpers.h"
+
+namespace fathom::glsl {
+
+std::string hash_helper(const std::string &type) {
+    const int size = type == "int" || type == "float" ? 1 : type.back() - '0';
+    std::string text = "\nfloat fathom_hash(" + type + " x) {\n    uint h = " + std::to_string(size) + "u;\n";
+    for (int i = 0; i < size; ++i) {
+        const std::string part = size == 1 ? "x" : std::string("x.") + "xyzw"[i];
+        const std::string word =
+            type == "int" ? "uint(x)" : part + " == 0.0 ? 0u : floatBitsToUint(" + part + ")";
+        text += "    h = fathom_hash_more(h, " + word + ");\n";
+    }
+    return text + "    return fathom_unit(h);\n}\n";
+}
+
+const std::vector<NoiseHelper> &noise_library() {
+    static const std::vector<NoiseHelper> helpers = {
+        {"fathom_scramble", {}, R"(
+uint fathom_scramble(uint h) {
+    h ^= h >> 16u;
+    h *= 0x7feb352du;
+    h ^= h >> 15u;
+    h *= 0x846ca68bu;
+    h ^= h >> 16u;
+    return h;
+}
+
+float fathom_unit(uint h) {
+    return float(h >> 8u) * (1.0 / 16777216.0);
+}
+)"},
+        {"fathom_hash_more", {{"fathom_scramble", ""}}, R"(
+uint fathom_hash_more(uint h, uint word) {
+    return fathom_scramble((h ^ word) + 0x9e3779b9u);
+}
+)"},
+        {"fathom_lattice", {{"fathom_scramble", ""}}, R"(
+uint fathom_hash_lattice(uvec3 p, uint salt) {
+    uint h = (p.x ^ salt) * 0x9e3779b1u;
+    h = ((h ^ (h >> 15u)) + p.y) * 0x85ebca77u;
+    h = ((h ^ (h >> 13u)) + p.z) * 0xc2b2ae3du;
+    return fathom_scramble(h);
+}
+
+uvec3 fathom_lattice(vec3 whole) {
+    return uvec3(uint(int(abs(whole.x) <= 1073741824.0 ? whole.x : 0.0)),
+                 uint(int(abs(whole.y) <= 1073741824.0 ? whole.y : 0.0)),
+                 uint(int(abs(whole.z) <= 1073741824.0 ? whole.z : 0.0)));
+}
+
+vec3 fathom_fade(vec3 t) {
+    return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+}
+)"},
+        {"fathom_edge_gradient", {{"fathom_lattice", ""}}, R"(
+float fathom_edge_gradient(uint h, vec3 p) {
+    uint k = h >> 28u;
+    float u = k < 8u ? p.x : p.y;
+    float v = k < 4u ? p.y : ((k | 2u) == 14u ? p.x : p.z);
+    return ((k & 1u) == 0u ? u : -u) + ((k & 2u) == 0u ? v : -v);
+}
+)"},
+        {"fathom_perlin", {{"fathom_edge_gradient", ""}}, R"(
+float fathom_perlin_corner(uvec3 cell, vec3 p, uvec3 corner) {
+    return fathom_edge_gradient(fathom_hash_lattice(cell + corner, 0u), p - vec3(corner));
+}
+
+float fathom_perlin(vec3 p) {
+    vec3 whole = floor(p);
+    uvec3 cell = fathom_lattice(whole);
+    vec3 x = p - whole;
+    vec3 u = fathom_fade(x);
+    float a = mix(fathom_perlin_corner(cell, x, uvec3(0u)), fathom_perlin_corner(cell, x, uvec3(1u, 0u, 0u)), u.x);
+    float b = mix(fathom_perlin_corner(cell, x, uvec3(0u, 1u, 0u)), fathom_perlin_corner(cell, x, uvec3(1u, 1u, 0u)), u.x);
+    float c = mix(fathom_perlin_corner(cell, x, uvec3(0u, 0u, 1u)), fathom_perlin_corner(cell, x, uvec3(1u, 0u, 1u)), u.x);
+    float d = mix(fathom_perlin_corner(cell, x, uvec3(0u, 1u, 1u)), fathom_perlin_corner(cell, x, uvec3(1u)), u.x);
+    return mix(mix(a, b, u.y), mix(c, d, u.y), u.z);
+}
+)"},
+        {"fathom_value_noise", {{"fathom_lattice", ""}}, R"(
+float fathom_value_corner(uvec3 cell) {
+    return fathom_unit(fathom_hash_lattice(cell, 0x68e31da4u));
+}
+
+float fathom_value_noise(vec3 p) {
+    vec3 whole = floor(p);
+    uvec3 cell = fathom_lattice(whole);
+    vec3 u = fathom_fade(p - whole);
+    float a = mix(fathom_value_corner(cell), fathom_value_corner(cell + uvec3(1u, 0u, 0u)), u.x);
+    float b = mix(fathom_value_corner(cell + uvec3(0u, 1u, 0u)), fathom_value_corner(cell + uvec3(1u, 1u, 0u)), u.x);
+    float c = mix(fathom_value_corner(cell + uvec3(0u, 0u, 1u)), fathom_value_corner(cell + uvec3(1u, 0u, 1u)), u.x);
+    float d = mix(fathom_value_corner(cell + uvec3(0u, 1u, 1u)), fathom_value_corner(cell + uvec3(1u)), u.x);
+    return mix(mix(a, b, u.y), mix(c, d, u.y), u.z);
+}
+)"},
+        {"fathom_simplex", {{"fathom_edge_gradient", ""}}, R"(
+float fathom_simplex_corner(uvec3 cell, vec3 p) {
+    float t = max(0.5 - (p.x * p.x + p.y * p.y + p.z * p.z), 0.0);
+    return t * t * t * t * fathom_edge_gradient(fathom_hash_lattice(cell, 0xb5297a4du), p);
+}
+
+float fathom_simplex(vec3 p) {
+    float s = (p.x + p.y + p.z) * (1.0 / 3.0);
+    vec3 whole = floor(p + s);
+    float t = (whole.x + whole.y + whole.z) * (1.0 / 6.0);
+    vec3 x = p - (whole - t);
+    bool xy = x.x >= x.y, yz = x.y >= x.z, xz = x.x >= x.z;
+    ivec3 rank = ivec3(int(xy) + int(xz), int(!xy) + int(yz), int(!xz) + int(!yz));
+    vec3 first = vec3(equal(rank, ivec3(2)));
+    vec3 second = vec3(greaterThanEqual(rank, ivec3(1)));
+    uvec3 cell = fathom_lattice(whole);
+    return 76.0 * (fathom_simplex_corner(cell, x) +
+                   fathom_simplex_corner(cell + uvec3(first), x - first + (1.0 / 6.0)) +
+                   fathom_simplex_corner(cell + uvec3(second), x - second + (1.0 / 3.0)) +
+                   fathom_simplex_corner(cell + uvec3(1u), x - 1.0 + 0.5));
+}
+)"},
+        {"fathom_worley_point", {{"fathom_lattice", ""}}, R"(
+vec3 fathom_worley_point(uint h) {
+    return vec3((float(h & 2047u) + 0.5) * (1.0 / 2048.0), (float((h >> 11u) & 2047u) + 0.5) * (1.0 / 2048.0),
+                (float(h >> 22u) + 0.5) * (1.0 / 1024.0));
+}
+)"},
+        {"fathom_worley", {{"fathom_worley_point", ""}}, R"(
+float fathom_worley(vec3 p) {
+    vec3 whole = floor(p);
+    uvec3 cell = fathom_lattice(whole);
+    vec3 x = p - whole;
+    float least = 1.0;
+    for (int k = -1; k <= 1; ++k)
+        for (int j = -1; j <= 1; ++j)
+            for (int i = -1; i <= 1; ++i) {
+                uint h = fathom_hash_lattice(cell + uvec3(uint(i), uint(j), uint(k)), 0x1b56c4e9u);
+                vec3 d = x - (vec3(float(i), float(j), float(k)) + fathom_worley_point(h));
+                least = min(least, d.x * d.x + d.y * d.y + d.z * d.z);
+            }
+    return sqrt(least);
+}
+)"},
+        {"fathom_spot_noise", {{"fathom_worley_point", ""}, {"fathom_hash_more", ""}}, R"(
+float fathom_spot_noise(vec3 p, float radius, float density) {
+    float n = clamp(density, 0.0, 8.0);
+    vec3 q = p / max(radius, 1e-6);
+    vec3 whole = floor(q);
+    uvec3 cell = fathom_lattice(whole);
+    vec3 x = q - whole;
+    float sum = 0.0;
+    for (int k = -1; k <= 1; ++k)
+        for (int j = -1; j <= 1; ++j)
+            for (int i = -1; i <= 1; ++i) {
+                uint h = fathom_hash_lattice(cell + uvec3(uint(i), uint(j), uint(k)), 0x3c6ef372u);
+                int count = int(floor(n + fathom_unit(h)));
+                for (int spot = 0; spot < count; ++spot) {
+                    h = fathom_hash_more(h, 1u);
+                    vec3 d = x - (vec3(float(i), float(j), float(k)) + fathom_worley_point(h));
+                    float t = max(1.0 - (d.x * d.x + d.y * d.y + d.z * d.z), 0.0);
+                    h = fathom_hash_more(h, 2u);
+                    sum += (fathom_unit(h) * 2.0 - 1.0) * (t * t * t);
+                }
+            }
+    return sum / sqrt(max(n, 1.0));
+}
+)"},
+    };
+    return helpers;
+}
+
+} // namespace fathom::glsl

@@ -1,0 +1,26 @@
+// Checks a shader's text with the glslang library, in process. The only file that includes glslang is validate.cpp.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fathom::glsl {
+
+struct Complaint {
+    int line = 0; // of the text, from 1; 0: of no line
+    std::string message;
+};
+
+// A whole fragment shader with its #version line. Nothing where it is valid.
+std::optional<Complaint> validate(const std::string &text);
+
+// The same text as SPIR-V for OpenGL 4.5 (GL_ARB_gl_spirv), or what is wrong with it.
+struct SpirV {
+    std::vector<std::uint32_t> words;
+    std::optional<Complaint> complaint;
+};
+SpirV to_spirv(const std::string &text);
+
+} // namespace fathom::glsl
