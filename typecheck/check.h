@@ -6,6 +6,7 @@
 #include "ir/scene.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -48,12 +49,16 @@ struct LibraryEntry {
     std::string name, signature, doc, file;
 };
 
+// The checker asks the analysis two things while it evaluates: `lipschitz(s)`, and the exact extent of a shape along an
+// axis (`taper` without `from:` and `to:`). The driver wires them to the proof.
 struct Options {
     std::vector<Override> overrides;
+    std::function<std::optional<double>(ir::Scene &, ir::ShapeId)> lipschitz;
+    std::function<std::optional<std::pair<double, double>>(ir::Scene &, ir::ShapeId, int axis)> extent;
 };
 
 struct Checked {
-    ir::Scene scene;                       // poisoned where diagnostics say so; do not prove it then
+    ir::Scene scene;                       // without what diagnostics refused; the rest can still be proved
     std::vector<std::string> usage_errors; // overrides that name no param or are out of range: exit 2
     std::size_t evaluations = 0;           // counted work of scene time
 };

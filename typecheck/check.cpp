@@ -1,0 +1,187 @@
+// The whole check: the library, the scene's file, what it contributes, and the scene put together.
+#include "typecheck/check.h"
+
+#include "lang/parse.h"
+#include "typecheck/evaluator.h"
+
+#include <fmt/format.h>
+
+#include <pthread.h>
+
+namespace fathom::typecheck {
+
+ir::Lighting default_lighting(Evaluator &ev); // builtins_scene.cpp
+
+namespace {
+
+// Evaluation recurses with the scene's own recursion (max_depth, max_call_depth), so it gets a stack made for that.
+constexpr std::size_t stack_bytes = std::size_t{1} << 30; // reserved, not used: pages come as they are touched
+
+void with_stack(const std::function<void()> &work) {
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstacksize(&attributes, stack_bytes);
+    pthread_t thread;
+    auto run = [](void *f) -> void * {
+        (*static_cast<const std::function<void()> *>(f))();
+        return nullptr;
+    };
+    int failed = pthread_create(&thread, &attributes, run, const_cast<std::function<void()> *>(&work));
+    pthread_attr_destroy(&attributes);
+    if (failed != 0) work(); // no room for one: the ordinary stack serves all but the deepest scenes
+    else pthread_join(thread, nullptr);
+}
+
+void apply(Evaluator &ev, const Setting &s) {
+    switch (s.kind) {
+    case Setting::Kind::Camera: ev.scene.camera = s.camera; break;
+    case Setting::Kind::Light: ev.scene.lights.push_back(s.light); break;
+    case Setting::Kind::Lighting: ev.scene.lighting = s.lighting; break;
+    case Setting::Kind::Background: ev.scene.background = s.background; break;
+    case Setting::Kind::Render: ev.scene.render = s.render; break;
+    case Setting::Kind::Keep: ev.scene.kept.push_back(s.keep); break;
+    }
+}
+
+void add_top_level(Evaluator &ev, const Value &v, Span span, std::vector<ir::ShapeId> &shapes) {
+    switch (v.kind) {
+    case ValueKind::Poison:
+    case ValueKind::Unit: return;
+    case ValueKind::Setting: apply(ev, ev.settings[v.id]); return;
+    case ValueKind::List:
+        for (const Value &item : std::vector<Value>(ev.lists[v.id])) add_top_level(ev, item, span, shapes);
+        return;
+    case ValueKind::Shape:
+        if (v.size == 2) {
+            report(ev, Code::FlatShape, span, "a flat shape has no thickness, so it cannot be seen")
+                .help("make it solid: `.extrude(0.1)` or `.revolve()`");
+            return;
+        }
+        ev.scene.top_level.push_back({shape_of(v), span});
+        shapes.push_back(shape_of(v));
+        return;
+    case ValueKind::None:
+    case ValueKind::Bool:
+    case ValueKind::Int:
+    case ValueKind::Float:
+    case ValueKind::Vec:
+    case ValueKind::Mat:
+    case ValueKind::Field:
+    case ValueKind::String:
+    case ValueKind::Range:
+    case ValueKind::Closure:
+    case ValueKind::Builtin:
+    case ValueKind::Overloads:
+    case ValueKind::ConstField:
+    case ValueKind::CachedField:
+    case ValueKind::ImageField:
+    case ValueKind::Material:
+    case ValueKind::Region:
+    case ValueKind::Module: break;
+    }
+    Diagnostic &d = report(ev, Code::WrongPlace, span, fmt::format("the scene is made of shapes; {} does nothing here", describe(ev, v)));
+    if (is_function(v)) d.help("call it: `name(…)`");
+    else d.help("name it with `let`, or look at it with `print(…)`");
+}
+
+void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions, const lang::Ast &ast) {
+    ir::Scene &scene = ev.scene;
+    scene.lighting = default_lighting(ev);
+    ir::NodeId direction = scene.graph.make(ir::Op::Direction, ir::Type::Vec3, std::initializer_list<ir::NodeId>{});
+    // a quiet sky: from a warm horizon to a soft blue, linear
+    ir::NodeId up = scene.graph.make(ir::Op::Smoothstep, {scene.graph.number(-0.3), scene.graph.number(0.8), scene.graph.component(direction, 1)});
+    scene.background = scene.graph.make(ir::Op::Mix, {scene.graph.vec3(0.63, 0.66, 0.68), scene.graph.vec3(0.21, 0.34, 0.53),
+                                                      scene.graph.splat(up, ir::Type::Vec3)});
+    std::vector<ir::ShapeId> shapes;
+    for (const Contribution &c : contributions) add_top_level(ev, c.value, c.span, shapes);
+    bool some_only = false;
+    for (ir::ShapeId s : shapes) some_only = some_only || ev.only_shapes.count(s.index) > 0;
+    if (some_only) {
+        std::erase_if(shapes, [&](ir::ShapeId s) { return ev.only_shapes.count(s.index) == 0; });
+        std::erase_if(scene.top_level, [&](const ir::TopLevel &t) { return ev.only_shapes.count(t.shape.index) == 0; });
+    }
+    bool declares = false;
+    for (const lang::Stmt &s : ast.blocks[ast.root].stmts)
+        declares = declares || std::holds_alternative<lang::Let>(s.kind) || std::holds_alternative<lang::FunctionDecl>(s.kind);
+    if (shapes.empty() && !declares && !ev.diagnostics.has_errors()) {
+        report(ev, Code::EmptyScene, {ast.source, 0, 0}, "this file makes no shape, and declares nothing that another could import")
+            .help("the smallest scene is `sphere(1)`");
+    }
+    if (scene.lights.empty()) {
+        // semantics.md, 23: one sun from the upper left behind the camera; view.h turns it with the camera where none is given
+        scene.lights.clear();
+    }
+    scene.root = unite(ev, std::move(shapes), 3, ast.blocks[ast.root].span);
+}
+
+} // namespace
+
+Checked check(Sources &sources, SourceId root, const std::string &root_identity, const std::vector<LibraryFile> &library,
+              const Loader &loader, const Options &options, Diagnostics &diagnostics) {
+    Checked out;
+    with_stack([&] {
+        Evaluator ev{sources, diagnostics, library, loader, options};
+        load_prelude(ev);
+        Module m;
+        m.identity = root_identity;
+        m.name = sources[root].name;
+        m.source = root;
+        ev.asts.push_back(lang::parse(sources, root, diagnostics));
+        m.ast = &ev.asts.back();
+        const lang::Ast &ast = *m.ast;
+        m.frame = push_frame(ev, ev.prelude_frame);
+        ev.frames[m.frame].is_module = true;
+        ev.frames[m.frame].captured = true;
+        ev.modules.push_back(m);
+        auto module = static_cast<std::uint32_t>(ev.modules.size() - 1);
+        ev.importing.push_back(module);
+        std::vector<Contribution> contributions;
+        run_module(ev, module, contributions);
+        ev.current_module = module;
+        check_names(ev, ast, m.frame);
+        build_scene(ev, contributions, ast);
+        for (const Override &o : options.overrides) {
+            bool known = false;
+            for (const ir::Param &p : ev.scene.params) known = known || p.name == o.name;
+            if (!known) ev.usage_errors.push_back(fmt::format("-D {}: the scene has no parameter of this name", o.name));
+        }
+        out.scene = std::move(ev.scene);
+        out.usage_errors = std::move(ev.usage_errors);
+        out.evaluations = ev.evaluations;
+    });
+    return out;
+}
+
+static std::string text_of(const Sources &sources, SourceId source, Span span) {
+    return sources[source].text.substr(span.begin, span.end - span.begin);
+}
+
+std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &library) {
+    std::vector<LibraryEntry> out;
+    Sources sources;
+    Diagnostics diagnostics;
+    for (const LibraryFile &file : library) {
+        SourceId id = sources.add(std::string(file.name), std::string(file.text));
+        lang::Ast ast = lang::parse(sources, id, diagnostics);
+        for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
+            if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind)) {
+                const lang::Function &fn = ast.functions[f->function];
+                if (!fn.name || fn.name->text[0] == '_') continue;
+                std::string head = text_of(sources, id, fn.head);
+                out.push_back({fn.name->text, head.starts_with("fn ") ? head.substr(3) : head, fn.doc, std::string(file.name)});
+            } else if (auto *l = std::get_if<lang::Let>(&s.kind)) {
+                if (l->name.text[0] != '_') out.push_back({l->name.text, l->name.text, l->doc, std::string(file.name)});
+            }
+        }
+    }
+    for (const Builtin &b : builtins()) {
+        if (b.library_only) continue;
+        std::string signature = b.name + "(";
+        for (std::size_t i = 0; i < b.parameters.size(); ++i)
+            signature += (i ? ", " : "") + b.parameters[i].name + (b.parameters[i].optional ? " = …" : "");
+        out.push_back({b.name, signature + ")", b.doc, "built in"});
+    }
+    return out;
+}
+
+} // namespace fathom::typecheck

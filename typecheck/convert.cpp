@@ -1,0 +1,304 @@
+// Types as the user writes them, and the conversions that happen where one is wanted: an int becomes a float, a number
+// fills a vector, a list of two to four numbers is a vector and back, a constant stands for a field.
+#include "typecheck/evaluator.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace fathom::typecheck {
+
+using ir::Type;
+
+std::string type_text(const lang::TypeExpr &type) {
+    switch (type.kind) {
+    case lang::TypeExpr::Kind::Name:
+        return type.lipschitz ? fmt::format("{}<{}>", type.name, *type.lipschitz) : type.name;
+    case lang::TypeExpr::Kind::List: return fmt::format("[{}]", type_text(type.items[0]));
+    case lang::TypeExpr::Kind::Function: {
+        std::string out = "(";
+        for (std::size_t i = 0; i + 1 < type.items.size(); ++i) out += (i ? ", " : "") + type_text(type.items[i]);
+        return out + ") -> " + type_text(type.items.back());
+    }
+    }
+    return "";
+}
+
+bool known_type(const lang::TypeExpr &type) {
+    if (type.kind != lang::TypeExpr::Kind::Name) {
+        for (const lang::TypeExpr &item : type.items)
+            if (!known_type(item)) return false;
+        return true;
+    }
+    for (const char *name : {"float", "int", "bool", "string", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "color",
+                             "shape", "shape2", "_shape", "material", "light", "region", "_field", "_any"})
+        if (type.name == name) return true;
+    return false;
+}
+
+bool is_function(const Value &v) {
+    return v.kind == ValueKind::Closure || v.kind == ValueKind::Builtin || v.kind == ValueKind::Overloads ||
+           v.kind == ValueKind::ConstField || v.kind == ValueKind::CachedField || v.kind == ValueKind::ImageField;
+}
+
+Value list_value(Evaluator &ev, std::vector<Value> items) {
+    ev.list_elements += items.size();
+    ev.lists.push_back(std::move(items));
+    return make_value(ValueKind::List, static_cast<std::uint32_t>(ev.lists.size() - 1));
+}
+
+Value string_value(Evaluator &ev, std::string text) {
+    ev.strings.push_back(std::move(text));
+    return make_value(ValueKind::String, static_cast<std::uint32_t>(ev.strings.size() - 1));
+}
+
+static int vector_size_of(const std::string &name) {
+    return name == "vec2" ? 2 : name == "vec3" ? 3 : name == "vec4" ? 4 : 0;
+}
+
+// A list of numbers as a vector; everything else as it is.
+static Value vector_of_list(Evaluator &ev, const Value &v) {
+    if (v.kind != ValueKind::List) return v;
+    const std::vector<Value> items = ev.lists[v.id];
+    if (items.size() < 2 || items.size() > 4) return v;
+    for (const Value &item : items)
+        if (!is_scalar(ev, item)) return v;
+    return make_vector(ev, items, static_cast<int>(items.size()), {});
+}
+
+static std::optional<Value> as_named(Evaluator &ev, const Value &raw, const lang::TypeExpr &type) {
+    const std::string &name = type.name;
+    if (name == "_any") return raw;
+    if (name == "shape" || name == "shape2" || name == "_shape") {
+        if (raw.kind != ValueKind::Shape) return std::nullopt;
+        if (name == "shape" && raw.size != 3) return std::nullopt;
+        if (name == "shape2" && raw.size != 2) return std::nullopt;
+        if (!type.lipschitz) return raw;
+        ir::Shape contract;
+        contract.kind = ir::ShapeKind::Contract;
+        contract.dims = raw.size;
+        contract.payload = static_cast<std::uint32_t>(ev.scene.shapes.contracts.size());
+        contract.children = {shape_of(raw)};
+        contract.origin = ev.scene.shapes[shape_of(raw)].origin;
+        ev.scene.shapes.contracts.push_back({*type.lipschitz, type.span});
+        return shape_value(ev.scene.shapes.add(std::move(contract)), raw.size);
+    }
+    if (name == "string") return raw.kind == ValueKind::String ? std::optional(raw) : std::nullopt;
+    if (name == "region") return raw.kind == ValueKind::Region ? std::optional(raw) : std::nullopt;
+    if (name == "light") return raw.kind == ValueKind::Setting ? std::optional(raw) : std::nullopt;
+    if (name == "_field" && is_function(raw)) return raw;
+    if (name == "material") {
+        if (raw.kind == ValueKind::Material || is_function(raw)) return raw;
+        if (is_numeric(raw) && (raw.color || numeric_type(ev, raw) == Type::Vec3)) return raw;
+        return std::nullopt;
+    }
+    Value v = vector_of_list(ev, raw);
+    if (!is_numeric(v)) return std::nullopt;
+    Type t = numeric_type(ev, v);
+    if (name == "_field") return v;
+    if (name == "bool") return t == Type::Bool ? std::optional(v) : std::nullopt;
+    if (t == Type::Bool) return std::nullopt;
+    if (name == "int") return t == Type::Int ? std::optional(v) : std::nullopt;
+    if (name == "float") {
+        if (t == Type::Float) return v;
+        return t == Type::Int ? std::optional(to_float(ev, v)) : std::nullopt;
+    }
+    if (name == "color") {
+        if (t == Type::Vec4) v = swizzle(ev, v, "xyz", {}), t = Type::Vec3;
+        if (t == Type::Int || t == Type::Float) v = make_vector(ev, {to_float(ev, v)}, 3, {}), t = Type::Vec3;
+        if (t != Type::Vec3) return std::nullopt;
+        v.color = true;
+        return v;
+    }
+    if (int size = vector_size_of(name)) {
+        if (t == Type::Int || t == Type::Float) return make_vector(ev, {to_float(ev, v)}, size, {});
+        if (v.color && size == 4) return make_vector(ev, {v, number(1)}, 4, {});
+        return t == ir::vector_type(size) ? std::optional(v) : std::nullopt;
+    }
+    if (name == "mat2" || name == "mat3" || name == "mat4")
+        return t == ir::matrix_type(name[3] - '0') ? std::optional(v) : std::nullopt;
+    return std::nullopt;
+}
+
+static std::optional<Value> as_type(Evaluator &ev, const Value &v, const lang::TypeExpr &type) {
+    if (is_poison(v)) return v;
+    switch (type.kind) {
+    case lang::TypeExpr::Kind::Name: return as_named(ev, v, type);
+    case lang::TypeExpr::Kind::Function: {
+        if (is_function(v)) return v;
+        // a constant stands for a field
+        Value constant = vector_of_list(ev, v);
+        if (!is_numeric(constant)) return std::nullopt;
+        Value list = list_value(ev, {constant});
+        return make_value(ValueKind::ConstField, list.id);
+    }
+    case lang::TypeExpr::Kind::List: {
+        std::vector<Value> items;
+        if (v.kind == ValueKind::List) items = ev.lists[v.id];
+        else if (v.kind == ValueKind::Range || (is_numeric(v) && ir::is_vector(numeric_type(ev, v)))) {
+            auto all = sequence_items(ev, v, {});
+            if (!all) return std::nullopt;
+            items = std::move(*all);
+        } else if (v.kind == ValueKind::Shape) items = {v};
+        else return std::nullopt;
+        bool changed = v.kind != ValueKind::List;
+        for (Value &item : items) {
+            auto converted = as_type(ev, item, type.items[0]);
+            if (!converted) return std::nullopt;
+            changed = changed || !(*converted == item);
+            item = *converted;
+        }
+        return changed ? list_value(ev, std::move(items)) : v;
+    }
+    }
+    return std::nullopt;
+}
+
+bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type) {
+    std::size_t contracts = ev.scene.shapes.contracts.size();
+    bool ok = as_type(ev, v, type).has_value();
+    (void)contracts;
+    return ok;
+}
+
+Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place, const std::string &what, bool &ok) {
+    if (auto converted = as_type(ev, v, type)) return *converted;
+    ok = false;
+    Diagnostic &d = report(ev, Code::TypeMismatch, place,
+                           fmt::format("{} wants a `{}`, this is {}", what, type_text(type), describe(ev, v)));
+    if (type.span.source && !(type.span == place)) d.label(type.span, "because of this type");
+    if (type.kind == lang::TypeExpr::Kind::Name && type.name == "shape" && v.kind == ValueKind::Shape && v.size == 2)
+        d.help("make it solid with `.extrude(height)` or `.revolve()`");
+    if (type.kind == lang::TypeExpr::Kind::Name && type.name == "int" && is_numeric(v)) d.help("`int(x)` cuts the fraction off");
+    return poison();
+}
+
+// -- what builtins ask of their arguments --------------------------------------------------------
+
+static void want(Evaluator &ev, const Value &v, Span place, const std::string &what, const std::string &wanted) {
+    if (is_poison(v)) return;
+    report(ev, Code::TypeMismatch, place, fmt::format("{} wants {}, this is {}", what, wanted, describe(ev, v)));
+}
+
+std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+    if (!is_scalar(ev, v)) {
+        want(ev, v, place, what, "a number");
+        return std::nullopt;
+    }
+    auto known = element_as_known(ev, v, place, what.c_str());
+    return known ? std::optional(known->num[0]) : std::nullopt;
+}
+
+std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+    if (!is_scalar(ev, v)) {
+        want(ev, v, place, what, "a whole number");
+        return std::nullopt;
+    }
+    auto known = element_as_known(ev, v, place, what.c_str());
+    if (!known) return std::nullopt;
+    if (known->num[0] != std::floor(known->num[0]) || std::abs(known->num[0]) > 2147483647.0) {
+        report(ev, Code::TypeMismatch, place, fmt::format("{} wants a whole number, this is {}", what, known->num[0]));
+        return std::nullopt;
+    }
+    return static_cast<int>(known->num[0]);
+}
+
+std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+    if (!is_numeric(v) || numeric_type(ev, v) != Type::Bool) {
+        want(ev, v, place, what, "a bool (a comparison, `true` or `false`)");
+        return std::nullopt;
+    }
+    auto known = element_as_known(ev, v, place, what.c_str());
+    return known ? std::optional(known->num[0] != 0) : std::nullopt;
+}
+
+std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+    if (v.kind == ValueKind::String) return ev.strings[v.id];
+    want(ev, v, place, what, "a string");
+    return std::nullopt;
+}
+
+std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+    if (is_scalar(ev, v)) return to_node(ev, to_float(ev, v));
+    want(ev, v, place, what, "a number");
+    return std::nullopt;
+}
+
+std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int size, Span place, const std::string &what) {
+    Value v = vector_of_list(ev, raw);
+    if (is_numeric(v)) {
+        Type t = numeric_type(ev, v);
+        if (t == Type::Int || t == Type::Float) return to_node(ev, make_vector(ev, {to_float(ev, v)}, size, place));
+        if (t == ir::vector_type(size)) return to_node(ev, v);
+    }
+    want(ev, raw, place, what, fmt::format("a vec{}", size));
+    return std::nullopt;
+}
+
+std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+    lang::TypeExpr type;
+    type.name = "color";
+    if (auto c = as_named(ev, v, type); c && !is_poison(*c)) return to_node(ev, *c);
+    want(ev, v, place, what, "a color");
+    return std::nullopt;
+}
+
+std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place, const std::string &what, int dims) {
+    if (v.kind == ValueKind::Shape && (dims == 0 || v.size == dims)) return shape_of(v);
+    if (v.kind == ValueKind::Shape && dims == 3) {
+        report(ev, Code::FlatShape, place, fmt::format("{} wants a solid, this is a flat shape", what))
+            .help("make it solid with `.extrude(height)` or `.revolve()`");
+        return std::nullopt;
+    }
+    want(ev, v, place, what, dims == 2 ? "a flat shape" : "a shape");
+    return std::nullopt;
+}
+
+std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+    if (v.kind == ValueKind::List) return ev.lists[v.id];
+    if (v.kind == ValueKind::Range || (is_numeric(v) && ir::is_vector(numeric_type(ev, v)))) return sequence_items(ev, v, place);
+    want(ev, v, place, what, "a list");
+    return std::nullopt;
+}
+
+std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &v, Span place, const std::string &what,
+                                                    int &dims) {
+    if (is_poison(v)) return std::nullopt;
+    std::vector<Value> items;
+    if (v.kind == ValueKind::Shape) items = {v};
+    else if (v.kind == ValueKind::List) items = ev.lists[v.id];
+    else {
+        want(ev, v, place, what, "shapes");
+        return std::nullopt;
+    }
+    std::vector<ir::ShapeId> shapes;
+    for (const Value &item : items) {
+        if (is_poison(item)) continue; // reported; the others still make a picture
+        if (item.kind == ValueKind::List) {
+            auto inner = want_shapes(ev, item, place, what, dims);
+            if (inner) shapes.insert(shapes.end(), inner->begin(), inner->end());
+            continue;
+        }
+        if (item.kind != ValueKind::Shape) {
+            want(ev, item, place, what, "shapes");
+            return std::nullopt;
+        }
+        bool empty = ev.scene.shapes[shape_of(item)].kind == ir::ShapeKind::Empty;
+        if (dims == 0 && !empty) dims = item.size;
+        if (!empty && item.size != dims) {
+            report(ev, Code::FlatShape, place, fmt::format("{} mixes solids and flat shapes", what))
+                .help("make the flat ones solid with `.extrude(height)` or `.revolve()`");
+            return std::nullopt;
+        }
+        shapes.push_back(shape_of(item));
+    }
+    return shapes;
+}
+
+std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+    if (v.kind == ValueKind::Region) return ev.regions[v.id];
+    want(ev, v, place, what, "a region: `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or `everywhere`");
+    return std::nullopt;
+}
+
+} // namespace fathom::typecheck

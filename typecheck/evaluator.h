@@ -1,0 +1,312 @@
+// The evaluator's state and the functions that its files share. Private to typecheck.
+//
+// Evaluation is partial: an expression over known numbers is computed in double; as soon as a point, a parameter or
+// `time` takes part, nodes of the graph are made instead. An `if` on such a number runs both arms and selects; a loop
+// over such numbers becomes a Fold; a function called with them becomes an ir::Function.
+#pragma once
+
+#include "typecheck/check.h"
+#include "typecheck/value.h"
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace fathom::typecheck {
+
+struct Evaluator;
+using Symbol = std::uint32_t;
+
+struct Binding {
+    Symbol name = 0;
+    Value value;
+    bool is_var = false;
+    Span declared;
+};
+
+// Names of one block, function call or module. Small ones are searched; `index` serves the large.
+struct Frame {
+    std::uint32_t parent = 0; // itself for the outermost
+    std::vector<Binding> bindings;
+    std::unordered_map<Symbol, std::uint32_t> index; // used by modules only
+    bool is_module = false;
+    bool captured = false; // a closure refers to it
+};
+
+struct Closure {
+    const lang::Ast *ast = nullptr;
+    lang::FunctionId function;
+    std::uint32_t frame = 0; // where it was made
+    std::uint32_t module = 0;
+    bool in_field = false; // made while a field was evaluated: may hold a point's numbers
+    bool library = false;
+};
+
+struct Module {
+    std::string identity, name;
+    SourceId source;
+    const lang::Ast *ast = nullptr;
+    std::uint32_t frame = 0;
+    bool library = false;
+    bool loaded = false;
+    Span import_place; // the first import of it
+};
+
+struct Setting {
+    enum class Kind { Camera, Light, Lighting, Background, Render, Keep } kind;
+    ir::Camera camera;
+    ir::Light light;
+    ir::Lighting lighting;
+    ir::NodeId background;
+    ir::RenderSettings render;
+    std::string keep;
+};
+
+// One call as a builtin sees it: where things stand, for its errors.
+struct CallSite {
+    std::string name;
+    Span call;
+    Span callee;
+    std::vector<Span> args; // one per parameter; of the call where the argument was left out
+    Span arg(std::size_t i) const { return i < args.size() ? args[i] : call; }
+};
+
+struct BuiltinParameter {
+    std::string name;
+    bool optional = false;
+};
+struct Builtin {
+    std::string name;
+    std::vector<BuiltinParameter> parameters;
+    bool variadic = false; // the last parameter takes a block, a list, or all further arguments
+    bool library_only = false;
+    Value (*call)(Evaluator &, const CallSite &, std::vector<Value> &) = nullptr;
+    std::string signature, doc; // for `fathom doc`
+};
+
+// How a statement list was left before its end, as conditions that may be nodes (Bool or a Field of Bool).
+struct Exit {
+    Value returned = boolean(false);
+    Value value; // where returned
+    Value broke = boolean(false);
+};
+
+struct Outcome {
+    Value value = unit(); // of the last expression
+    Exit exit;
+};
+
+struct JournalEntry {
+    std::uint32_t frame, slot;
+    Value old;
+};
+
+// Calls in progress, for errors inside the library (shown at the user's call) and for the notes of others.
+struct ActiveCall {
+    std::string name;
+    Span call;
+    bool library = false; // the callee is the library's
+    std::uint32_t module = 0;
+};
+
+struct Specialization {
+    ir::FunctionId function;
+    Value shape_of_result; // a Field or constant: kind and colour of what it returns
+};
+
+struct Evaluator {
+    Sources &sources;
+    Diagnostics &diagnostics;
+    const std::vector<LibraryFile> &library;
+    const Loader &loader;
+    const Options &options;
+    ir::Scene scene{};
+
+    // names
+    std::unordered_map<std::string, Symbol> symbols{};
+    std::vector<std::string> symbol_names{};
+    std::deque<lang::Ast> asts{};
+    std::vector<Frame> frames{};
+    std::uint32_t prelude_frame = 0;
+    std::vector<Module> modules{};
+    std::uint32_t current_module = 0;
+    std::vector<std::uint32_t> importing{}; // modules being loaded, for cycles
+    std::unordered_map<std::string, std::uint32_t> builtin_index{};
+
+    // values
+    std::vector<std::string> strings{};
+    std::deque<std::vector<Value>> lists{};
+    std::vector<std::array<double, 16>> matrices{};
+    std::vector<Closure> closures{};
+    std::vector<ir::Material> materials{};
+    std::vector<ir::Region> regions{};
+    std::vector<Setting> settings{};
+
+    // evaluation
+    std::vector<JournalEntry> journal{};
+    int journaling = 0;
+    std::vector<ActiveCall> calls{};
+    int depth = 0;    // nested evaluations, of any kind
+    int in_field = 0; // > 0 while a field's body is evaluated
+    int quiet = 0;    // > 0: errors are counted, not reported (overload resolution, trial loops)
+    std::size_t quiet_errors = 0;
+    std::size_t evaluations = 0;
+    std::size_t list_elements = 0;
+    bool out_of_budget = false;
+    std::map<std::vector<std::uint64_t>, Specialization> specializations{};
+    std::map<std::pair<const lang::Ast *, std::uint32_t>, bool> never_specialize{}; // functions seen to give no number
+    std::map<std::string, std::uint32_t> interned_records{}; // libraries, regions, materials by content
+    std::vector<ir::NodeId> param_nodes{};                      // by Scene::params
+    std::vector<Span> only{}; // places of `only(…)`
+    std::unordered_map<std::uint32_t, bool> only_shapes{};
+    std::vector<std::string> usage_errors{};
+};
+
+// The limits that bound what a scene can make the checker do; stated in docs/language.md.
+constexpr int max_call_depth = 1000;
+constexpr int max_depth = 40000;               // nested evaluations; the stack is sized for it (check.cpp)
+constexpr std::size_t max_evaluations = 100'000'000;
+constexpr std::size_t max_list_elements = 20'000'000;
+constexpr int max_unrolled = 4096;
+constexpr int max_fold_turns = 100'000;
+
+// -- names.cpp
+Symbol intern(Evaluator &ev, const std::string &text);
+std::uint32_t push_frame(Evaluator &ev, std::uint32_t parent);
+void pop_frame(Evaluator &ev, std::uint32_t frame);
+void declare(Evaluator &ev, std::uint32_t frame, const std::string &name, Value value, bool is_var, Span place);
+struct Found {
+    std::uint32_t frame = 0, slot = 0;
+};
+std::optional<Found> find_name(Evaluator &ev, std::uint32_t frame, const std::string &name);
+std::optional<Value> look_up(Evaluator &ev, std::uint32_t frame, const std::string &name);
+std::vector<std::string> visible_names(Evaluator &ev, std::uint32_t frame);
+void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place);
+void check_names(Evaluator &ev, const lang::Ast &ast, std::uint32_t module_frame);
+
+// -- report.cpp
+Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message);
+std::string describe(const Evaluator &ev, const Value &value);      // "a float", "a list of 3", "a shape"
+std::string print_value(const Evaluator &ev, const Value &value);   // for print(…)
+bool spend(Evaluator &ev, Span place, std::size_t amount = 1);      // false once the budget is gone
+
+// -- numeric.cpp: numbers of both stages
+bool is_numeric(const Value &v); // Bool, Int, Float, Vec, Mat, Field
+ir::Type numeric_type(const Evaluator &ev, const Value &v);
+bool is_scalar(const Evaluator &ev, const Value &v); // Int or Float, known or not
+ir::NodeId to_node(Evaluator &ev, const Value &v); // of a numeric value
+Value from_node(Evaluator &ev, ir::NodeId node, bool color = false); // constants come back as known numbers
+Value apply_op(Evaluator &ev, ir::Op op, std::vector<Value> args, Span place, const std::string &name);
+Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &a, const Value &b, Span place, Span a_place, Span b_place);
+Value negate(Evaluator &ev, const Value &v, Span place);
+Value logical_and(Evaluator &ev, const Value &a, const Value &b);
+Value logical_or(Evaluator &ev, const Value &a, const Value &b);
+Value logical_not(Evaluator &ev, const Value &a);
+std::optional<Value> select_value(Evaluator &ev, const Value &condition, const Value &a, const Value &b);
+Value swizzle(Evaluator &ev, const Value &v, const std::string &letters, Span place);
+std::optional<std::vector<int>> swizzle_indices(const std::string &letters, int size);
+Value make_vector(Evaluator &ev, const std::vector<Value> &parts, int size, Span place);
+std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place, const char *what); // scene time demanded
+Value to_float(Evaluator &ev, const Value &v);
+
+// -- convert.cpp: types as written, and conversions
+Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place, const std::string &what, bool &ok);
+bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type);
+std::string type_text(const lang::TypeExpr &type);
+bool known_type(const lang::TypeExpr &type);
+std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, const std::string &what);
+std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, const std::string &what);
+std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, const std::string &what);
+std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place, const std::string &what);
+std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, const std::string &what);
+std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &v, int size, Span place, const std::string &what);
+std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, const std::string &what);
+std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place, const std::string &what, int dims = 0);
+std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place, const std::string &what);
+std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &v, Span place, const std::string &what,
+                                                    int &dims);
+std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place, const std::string &what);
+std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span place, const std::string &what);
+Value list_value(Evaluator &ev, std::vector<Value> items);
+Value string_value(Evaluator &ev, std::string text);
+bool is_function(const Value &v);
+
+// -- expressions.cpp, statements.cpp
+Value eval(Evaluator &ev, const lang::Ast &ast, lang::ExprId expr, std::uint32_t frame);
+Outcome run_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame); // as an expression
+struct Contribution {
+    Value value;
+    Span span;
+};
+// Every expression of the block contributes; true where a `break` ended it. The frame is already pushed.
+bool contribute_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame,
+                      std::vector<Contribution> &out);
+// Statements that declare or act the same wherever they stand: let, var, assignment, fn. False for all others.
+bool run_simple(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt, std::uint32_t frame);
+Outcome run_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::uint32_t frame, Span place);
+void hoist_functions(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame);
+std::optional<std::vector<Value>> sequence_items(Evaluator &ev, const Value &v, Span place);
+void assign(Evaluator &ev, std::uint32_t frame, std::uint32_t slot, Value value);
+
+// -- loops.cpp: loops over numbers that are not known
+Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std::uint32_t frame, Span place);
+Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, std::uint32_t frame, Span place);
+// Runs `rest` and keeps what it assigned only where `skip` is false.
+Exit run_unless(Evaluator &ev, const Value &skip, Span place, const std::function<Exit()> &rest);
+// The journal keeps what assignments overwrite, so that a trial can be undone and two arms can be merged.
+std::size_t journal_mark(Evaluator &ev);
+struct Change {
+    std::uint32_t frame, slot;
+    Value before, after;
+};
+// What changed since the mark in frames older than `outer`; every change is undone.
+std::vector<Change> journal_take(Evaluator &ev, std::size_t mark);
+void journal_keep(Evaluator &ev, std::size_t mark); // done: the changes stay
+
+// -- calls.cpp
+struct Argument {
+    std::optional<std::string> name;
+    Value value;
+    Span span, name_span;
+    bool trailing = false;      // the block behind the call: belongs to the last parameter
+    bool plain_literal = false; // a number without a unit
+};
+Value call_value(Evaluator &ev, const Value &callee, const std::string &name, std::vector<Argument> args, Span call,
+                 Span callee_span);
+Value call_with(Evaluator &ev, const Value &callee, const std::vector<Value> &args, Span place); // positional
+Value eval_call(Evaluator &ev, const lang::Ast &ast, lang::ExprId expr, const lang::Call &call, std::uint32_t frame);
+int parameter_count(Evaluator &ev, const Value &function); // -1: any
+
+// One node for a call of a library shape: its name and numbers, with the claims that its body made (semantics.md, 12).
+Value library_shape(Evaluator &ev, ir::Library library, const Value &body, Span origin);
+std::uint32_t intern_region(Evaluator &ev, const ir::Region &region);     // index into Shapes::regions
+std::uint32_t intern_material(Evaluator &ev, const ir::Material &material); // index into Shapes::materials
+
+// -- fields.cpp: functions of the point
+// The field as an expression of `point` (and `normal`), a graph node of one of `types`.
+std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field, const std::vector<ir::NodeId> &inputs,
+                                      ir::Type result, Span place, const std::string &what, bool *is_color = nullptr);
+
+// -- builtins: one table of all that the language itself cannot say
+const std::vector<Builtin> &builtins();
+void add_numeric_builtins(std::vector<Builtin> &table);
+void add_list_builtins(std::vector<Builtin> &table);
+void add_shape_builtins(std::vector<Builtin> &table);
+void add_scene_builtins(std::vector<Builtin> &table);
+
+// -- families.cpp
+std::vector<ir::ShapeId> gather_families(Evaluator &ev, std::vector<ir::ShapeId> shapes, int dims);
+std::optional<ir::ShapeId> smooth_family(Evaluator &ev, const std::vector<ir::ShapeId> &shapes, ir::NodeId k, int dims);
+ir::ShapeId unite(Evaluator &ev, std::vector<ir::ShapeId> shapes, int dims, Span origin);
+
+// -- modules.cpp
+Value import_module(Evaluator &ev, const lang::Import &import, Span place, std::uint32_t importer);
+void load_prelude(Evaluator &ev);
+void declare_param(Evaluator &ev, const lang::Ast &ast, const lang::Param &param, std::uint32_t frame);
+// Every module's file: declares its names, in its frame, and gathers what it contributes.
+void run_module(Evaluator &ev, std::uint32_t module, std::vector<Contribution> &out);
+
+} // namespace fathom::typecheck

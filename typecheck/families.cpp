@@ -1,0 +1,270 @@
+// Lists of like shapes become one shape over a table: `for i in 0..256 { sphere(0.1).translate([…]) }` is one `Many`
+// whose rows hold what differs, so that neither the shader nor the proof grows with the count.
+//
+// Two shapes are alike when their trees differ in constants only. A shape's *skeleton* is its tree with the constants
+// taken out, in the order of a walk; the constants, in that order, are its row.
+#include "typecheck/evaluator.h"
+
+#include <map>
+
+namespace fathom::typecheck {
+
+using ir::NodeId;
+using ir::Op;
+using ir::ShapeId;
+using ir::ShapeKind;
+using ir::Type;
+
+namespace {
+
+constexpr std::size_t least_family = 8;
+constexpr std::size_t largest_walk = 4000; // parts of one shape; larger ones stay as they are
+
+struct Walk {
+    const ir::Scene &scene;
+    std::vector<std::uint64_t> skeleton;
+    std::vector<ir::Constant> row;
+    bool too_large = false;
+
+    void node(NodeId id) {
+        if (!id) return skeleton.push_back(~0ull);
+        if (skeleton.size() > largest_walk) {
+            too_large = true;
+            return;
+        }
+        const ir::Node &n = scene.graph[id];
+        skeleton.push_back(static_cast<std::uint64_t>(n.op) << 56 | static_cast<std::uint64_t>(n.type) << 48 |
+                           (n.op == Op::Const ? 0 : n.payload));
+        if (n.op == Op::Const) return row.push_back(scene.graph.constant_of(id));
+        for (NodeId a : scene.graph.args(id)) node(a);
+    }
+    void region(const ir::Region &r) {
+        skeleton.push_back(static_cast<std::uint64_t>(r.kind) << 8 | static_cast<std::uint64_t>(r.axis + 1));
+        node(r.center), node(r.size);
+        skeleton.push_back(r.less.size());
+        for (const ir::Region &l : r.less) region(l);
+    }
+    void shape(ShapeId id) {
+        if (skeleton.size() > largest_walk) {
+            too_large = true;
+            return;
+        }
+        const ir::Shape &s = scene.shapes[id];
+        skeleton.push_back(static_cast<std::uint64_t>(s.kind) << 40 | static_cast<std::uint64_t>(s.map) << 32 |
+                           static_cast<std::uint64_t>(s.dims) << 24 | static_cast<std::uint64_t>(s.axis) << 16 |
+                           static_cast<std::uint64_t>(s.towards) << 8);
+        skeleton.push_back(static_cast<std::uint64_t>(s.assumed * 1e6));
+        skeleton.push_back(static_cast<std::uint64_t>(s.estimate * 1e6));
+        skeleton.push_back(s.children.size() << 16 | s.args.size());
+        switch (s.kind) {
+        case ShapeKind::Within: region(scene.shapes.regions[s.payload]); break;
+        case ShapeKind::Paint:
+        case ShapeKind::Repaint: {
+            const ir::Material &m = scene.shapes.materials[s.payload];
+            node(m.diffuse), node(m.specular), node(m.exponent), node(m.emission);
+            break;
+        }
+        case ShapeKind::Library: {
+            const ir::Library &l = scene.shapes.libraries[s.payload];
+            skeleton.push_back(std::hash<std::string>{}(l.name));
+            for (const auto &[name, argument] : l.arguments) node(argument);
+            skeleton.push_back(static_cast<std::uint64_t>(l.claims.kind) << 4 | l.has_claims << 3 | l.claims.symmetric[0] << 2 | l.claims.symmetric[1] << 1 | l.claims.symmetric[2]);
+            node(l.claims.lipschitz), node(l.claims.lo), node(l.claims.hi);
+            for (NodeId lever : l.claims.lever) node(lever);
+            break;
+        }
+        // these hold variables or a family of their own: alike only where they are the same
+        case ShapeKind::Repeat:
+        case ShapeKind::Many:
+        case ShapeKind::Contract:
+        case ShapeKind::Blend:
+        case ShapeKind::Seam:
+        case ShapeKind::Empty:
+        case ShapeKind::Leaf:
+        case ShapeKind::Union:
+        case ShapeKind::Intersection:
+        case ShapeKind::Complement:
+        case ShapeKind::Xor:
+        case ShapeKind::Lerp:
+        case ShapeKind::PseudoNorm:
+        case ShapeKind::Map:
+        case ShapeKind::Offset:
+        case ShapeKind::Shell:
+        case ShapeKind::Displace:
+        case ShapeKind::Extrude:
+        case ShapeKind::Mixed: skeleton.push_back(s.payload); break;
+        }
+        for (NodeId a : s.args) node(a);
+        for (ShapeId c : s.children) shape(c);
+    }
+};
+
+// The same walk, writing the tree anew with `replacement[k]` for the k-th constant.
+struct Rebuild {
+    Evaluator &ev;
+    const std::vector<NodeId> &replacement;
+    std::size_t next = 0;
+
+    NodeId node(NodeId id) {
+        if (!id) return id;
+        ir::Graph &g = ev.scene.graph;
+        const ir::Node n = g[id];
+        if (n.op == Op::Const) {
+            NodeId r = replacement[next++];
+            return r ? r : id;
+        }
+        std::vector<NodeId> args(g.args(id).begin(), g.args(id).end());
+        for (NodeId &a : args) a = node(a);
+        return g.make(n.op, n.type, args, n.payload);
+    }
+    ir::Region region(ir::Region r) {
+        r.center = node(r.center), r.size = node(r.size);
+        for (ir::Region &l : r.less) l = region(l);
+        return r;
+    }
+    ShapeId shape(ShapeId id) {
+        ir::Shape s = ev.scene.shapes[id];
+        if (s.kind == ShapeKind::Within) {
+            ir::Region r = region(ev.scene.shapes.regions[s.payload]);
+            s.payload = intern_region(ev, r);
+        } else if (s.kind == ShapeKind::Paint || s.kind == ShapeKind::Repaint) {
+            ir::Material m = ev.scene.shapes.materials[s.payload];
+            m.diffuse = node(m.diffuse), m.specular = node(m.specular), m.exponent = node(m.exponent), m.emission = node(m.emission);
+            s.payload = intern_material(ev, m);
+        } else if (s.kind == ShapeKind::Library) {
+            ir::Library l = ev.scene.shapes.libraries[s.payload];
+            for (auto &[name, argument] : l.arguments) argument = node(argument);
+            l.claims.lipschitz = node(l.claims.lipschitz), l.claims.lo = node(l.claims.lo), l.claims.hi = node(l.claims.hi);
+            for (NodeId &lever : l.claims.lever) lever = node(lever);
+            s.payload = static_cast<std::uint32_t>(ev.scene.shapes.libraries.size());
+            ev.scene.shapes.libraries.push_back(std::move(l));
+        }
+        for (NodeId &a : s.args) a = node(a);
+        for (ShapeId &c : s.children) c = shape(c);
+        return ev.scene.shapes.add(std::move(s));
+    }
+};
+
+bool same(const ir::Constant &a, const ir::Constant &b) { return a.type == b.type && a.value == b.value; }
+
+ShapeId make_family(Evaluator &ev, const std::vector<ShapeId> &members, const std::vector<std::vector<ir::Constant>> &rows, bool smooth, NodeId k, int dims) {
+    ir::Graph &g = ev.scene.graph;
+    ir::Family family;
+    family.index = g.fresh_var(Type::Int);
+    family.count = static_cast<int>(members.size());
+    family.smooth = smooth;
+    std::size_t columns = rows[0].size();
+    ir::Table table;
+    table.rows = family.count;
+    std::vector<int> column_of(columns, -1);
+    for (std::size_t c = 0; c < columns; ++c) {
+        bool differs = false;
+        for (const auto &row : rows) differs = differs || !same(row[c], rows[0][c]);
+        if (!differs) continue;
+        column_of[c] = table.stride;
+        table.stride += ir::components(rows[0][c].type);
+    }
+    if (table.stride == 0 || table.stride > 4000) return {};
+    table.data.reserve(static_cast<std::size_t>(table.rows) * static_cast<std::size_t>(table.stride));
+    for (const auto &row : rows)
+        for (std::size_t c = 0; c < columns; ++c)
+            if (column_of[c] >= 0)
+                for (int i = 0; i < ir::components(row[c].type); ++i) table.data.push_back(static_cast<float>(row[c].value[static_cast<std::size_t>(i)]));
+    ir::TableId id = g.add_table(std::move(table));
+    std::vector<NodeId> replacement(columns);
+    for (std::size_t c = 0; c < columns; ++c) {
+        if (column_of[c] < 0) continue;
+        Type type = rows[0][c].type;
+        bool whole = type == Type::Int || type == Type::Bool;
+        NodeId read = g.make(Op::TableRead, whole ? Type::Float : type, {family.index}, ir::table_slot(id, column_of[c]));
+        if (type == Type::Int) read = g.make(Op::ToInt, Type::Int, {read});
+        if (type == Type::Bool) read = g.make(Op::NotEqual, {read, g.number(0)});
+        replacement[c] = read;
+    }
+    Rebuild rebuild{ev, replacement};
+    ir::Shape many;
+    many.kind = ShapeKind::Many;
+    many.dims = static_cast<std::uint8_t>(dims);
+    many.children = {rebuild.shape(members[0])};
+    many.origin = ev.scene.shapes[members[0]].origin;
+    if (smooth) many.args = {k};
+    many.payload = static_cast<std::uint32_t>(ev.scene.shapes.families.size());
+    ev.scene.shapes.families.push_back(family);
+    return ev.scene.shapes.add(std::move(many));
+}
+
+} // namespace
+
+// Order matters to colours only on ties, so a plain union may gather its like members from anywhere in the list.
+std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes, int dims) {
+    if (shapes.size() < least_family) return shapes;
+    struct Group {
+        std::vector<std::size_t> members;
+        std::vector<std::vector<ir::Constant>> rows;
+    };
+    std::map<std::vector<std::uint64_t>, Group> groups;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        Walk walk{ev.scene, {}, {}};
+        walk.shape(shapes[i]);
+        if (walk.too_large || walk.row.empty()) continue;
+        Group &g = groups[walk.skeleton];
+        g.members.push_back(i);
+        g.rows.push_back(std::move(walk.row));
+    }
+    std::vector<bool> taken(shapes.size(), false);
+    std::map<std::size_t, ShapeId> made; // by the first member's place, to keep a stable order
+    for (auto &[skeleton, g] : groups) {
+        if (g.members.size() < least_family) continue;
+        std::vector<ShapeId> members;
+        for (std::size_t i : g.members) members.push_back(shapes[i]);
+        ShapeId family = make_family(ev, members, g.rows, false, {}, dims);
+        if (!family) continue;
+        for (std::size_t i : g.members) taken[i] = true;
+        made[g.members[0]] = family;
+    }
+    std::vector<ShapeId> out;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        if (auto it = made.find(i); it != made.end()) out.push_back(it->second);
+        else if (!taken[i]) out.push_back(shapes[i]);
+    }
+    return out;
+}
+
+// A smooth union folds in the order written, so only a list that is alike as a whole becomes a family.
+std::optional<ShapeId> smooth_family(Evaluator &ev, const std::vector<ShapeId> &shapes, NodeId k, int dims) {
+    if (shapes.size() < least_family) return std::nullopt;
+    std::vector<std::vector<ir::Constant>> rows;
+    std::vector<std::uint64_t> skeleton;
+    for (ShapeId s : shapes) {
+        Walk walk{ev.scene, {}, {}};
+        walk.shape(s);
+        if (walk.too_large || (!rows.empty() && walk.skeleton != skeleton)) return std::nullopt;
+        skeleton = std::move(walk.skeleton);
+        rows.push_back(std::move(walk.row));
+    }
+    ShapeId family = make_family(ev, shapes, rows, true, k, dims);
+    return family ? std::optional(family) : std::nullopt;
+}
+
+// The union, flat: unions inside are opened, what is nowhere is left out, what stands twice stands once.
+ShapeId unite(Evaluator &ev, std::vector<ShapeId> shapes, int dims, Span origin) {
+    std::vector<ShapeId> flat;
+    std::map<std::uint32_t, bool> seen;
+    for (ShapeId id : shapes) {
+        const ir::Shape &s = ev.scene.shapes[id];
+        if (s.kind == ShapeKind::Empty) continue;
+        std::vector<ShapeId> parts{id};
+        if (s.kind == ShapeKind::Union) parts = s.children;
+        for (ShapeId part : parts)
+            if (!std::exchange(seen[part.index], true)) flat.push_back(part);
+    }
+    flat = gather_families(ev, std::move(flat), dims);
+    ir::Shape out;
+    out.dims = static_cast<std::uint8_t>(dims);
+    out.origin = origin;
+    if (flat.size() == 1) return flat[0];
+    if (!flat.empty()) out.kind = ShapeKind::Union, out.children = std::move(flat);
+    return ev.scene.shapes.add(std::move(out));
+}
+
+} // namespace fathom::typecheck

@@ -1,0 +1,326 @@
+// Loops in bodies. While all numbers are known a loop simply runs. As soon as a turn assigns a number that is not known,
+// the loop becomes a Fold: its body is evaluated once with variables for the index and for all that it assigns. Where
+// that cannot be (the body needs the index at scene time, say), the turns are written out one by one.
+#include "typecheck/evaluator.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace fathom::typecheck {
+
+using ir::Op;
+using ir::Type;
+
+namespace {
+
+struct Turns {
+    int count = 0;
+    std::vector<Value> items;  // of a list; empty for a range
+    double first = 0, step = 1; // of a range
+};
+
+Value item_at(const Turns &turns, int i) {
+    return turns.items.empty() ? integer(turns.first + i * turns.step) : turns.items[static_cast<std::size_t>(i)];
+}
+
+bool unknown(const Value &v) { return v.kind == ValueKind::Field; }
+bool never(const Value &v) { return v.kind == ValueKind::Bool && v.num[0] == 0; }
+bool always(const Value &v) { return v.kind == ValueKind::Bool && v.num[0] != 0; }
+
+bool touches_unknown(const Exit &exit, const std::vector<Change> &changes, std::size_t frames) {
+    if (unknown(exit.returned) || unknown(exit.broke) || unknown(exit.value)) return true;
+    for (const Change &c : changes)
+        if (c.frame < frames && unknown(c.after)) return true;
+    return false;
+}
+
+struct Carried {
+    std::uint32_t frame, slot;
+    Value initial;
+    Value variable;
+};
+
+// The loop's variable in a Fold: computed from the index, or read from a table of the list's items.
+std::optional<Value> symbolic_item(Evaluator &ev, const Turns &turns, ir::NodeId index) {
+    ir::Graph &g = ev.scene.graph;
+    if (turns.items.empty()) {
+        ir::NodeId i = index;
+        if (turns.step != 1) i = g.mul(i, g.integer(static_cast<int>(turns.step)));
+        if (turns.first != 0) i = g.add(i, g.integer(static_cast<int>(turns.first)));
+        return from_node(ev, i);
+    }
+    const Value &first = turns.items[0];
+    if (!is_numeric(first) || unknown(first) || first.kind == ValueKind::Mat) return std::nullopt;
+    Type type = numeric_type(ev, first);
+    ir::Table table;
+    table.rows = turns.count;
+    table.stride = ir::components(type);
+    for (const Value &item : turns.items) {
+        if (!is_numeric(item) || unknown(item) || numeric_type(ev, item) != type) return std::nullopt;
+        for (int c = 0; c < table.stride; ++c) table.data.push_back(static_cast<float>(item.num[static_cast<std::size_t>(c)]));
+    }
+    bool whole = type == Type::Int || type == Type::Bool;
+    ir::TableId id = g.add_table(std::move(table));
+    ir::NodeId read = g.make(Op::TableRead, whole ? Type::Float : type, {index}, ir::table_slot(id, 0));
+    if (type == Type::Int) read = g.make(Op::ToInt, Type::Int, {read});
+    if (type == Type::Bool) read = g.make(Op::NotEqual, {read, g.number(0)});
+    return from_node(ev, read, first.color);
+}
+
+struct FoldInput {
+    int count = 0;
+    ir::NodeId index;
+    std::function<std::optional<Value>()> condition; // evaluated before each turn; none: always true
+    std::function<Exit()> body;                      // with the index set
+};
+
+// Tries the Fold, quietly. On success the assigned variables hold its results and the exit says how it was left.
+std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input, std::vector<Change> first_changes, std::size_t frames, Span place) {
+    ir::Graph &g = ev.scene.graph;
+    std::vector<Carried> carried;
+    auto carry = [&](const Change &c) {
+        for (const Carried &k : carried)
+            if (k.frame == c.frame && k.slot == c.slot) return false;
+        carried.push_back({c.frame, c.slot, c.before, {}});
+        return true;
+    };
+    for (const Change &c : first_changes)
+        if (c.frame < frames) carry(c);
+    bool returns = false;
+    Value returned_value; // its kind, once seen
+    for (int attempt = 0; attempt < 8; ++attempt) {
+        std::size_t mark = journal_mark(ev);
+        std::vector<ir::NodeId> vars, next, initial;
+        for (Carried &k : carried) {
+            if (!is_numeric(k.initial)) {
+                journal_take(ev, mark);
+                return std::nullopt;
+            }
+            ir::NodeId var = g.fresh_var(numeric_type(ev, k.initial));
+            k.variable = from_node(ev, var, k.initial.color);
+            assign(ev, k.frame, k.slot, k.variable);
+            vars.push_back(var);
+            initial.push_back(to_node(ev, k.initial));
+        }
+        ++ev.quiet;
+        std::size_t errors = std::exchange(ev.quiet_errors, 0);
+        std::optional<Value> condition = input.condition ? input.condition() : std::optional(boolean(true));
+        Exit exit = input.body();
+        bool failed = ev.quiet_errors > 0 || !condition || is_poison(*condition);
+        ev.quiet_errors = errors;
+        --ev.quiet;
+        std::vector<Change> changes = journal_take(ev, mark);
+        if (failed) return std::nullopt;
+
+        bool again = false;
+        for (const Change &c : changes)
+            if (c.frame < frames) again = carry(c) || again;
+        std::vector<Value> after;
+        for (Carried &k : carried) {
+            Value v = k.initial;
+            bool changed = false;
+            for (const Change &c : changes)
+                if (c.frame == k.frame && c.slot == k.slot) v = c.after, changed = true;
+            if (!changed && !again) v = k.variable;
+            if (is_poison(v) || !is_numeric(v)) return std::nullopt;
+            Type want = numeric_type(ev, k.initial), have = numeric_type(ev, v);
+            if (want == Type::Int && have == Type::Float) k.initial = to_float(ev, k.initial), again = true;
+            else if (want == Type::Float && have == Type::Int) v = to_float(ev, v);
+            else if (ir::is_vector(want) && ir::components(have) == 1) v = make_vector(ev, {to_float(ev, v)}, ir::components(want), place);
+            else if (want != have) return std::nullopt;
+            after.push_back(v);
+        }
+        if (again) continue;
+
+        // leaving early: two more carried values, `left` and, where the loop returns, what
+        bool leaves = !never(exit.returned) || !never(exit.broke);
+        std::optional<std::size_t> left_at, returned_at, value_at;
+        for (const Value &v : after) next.push_back(to_node(ev, v));
+        auto carry_flag = [&](const Value &now) {
+            ir::NodeId var = g.fresh_var(Type::Bool);
+            vars.push_back(var);
+            initial.push_back(g.boolean(false));
+            next.push_back(to_node(ev, now));
+            return vars.size() - 1;
+        };
+        if (leaves) left_at = carry_flag(logical_or(ev, exit.returned, exit.broke));
+        returns = !never(exit.returned);
+        if (returns) {
+            if (!is_numeric(exit.value)) return std::nullopt;
+            returned_at = carry_flag(exit.returned);
+            returned_value = exit.value;
+            ir::NodeId value = to_node(ev, exit.value);
+            ir::NodeId var = g.fresh_var(g[value].type);
+            ir::Constant zero;
+            zero.type = g[value].type;
+            vars.push_back(var);
+            initial.push_back(g.constant(zero));
+            next.push_back(value);
+            value_at = vars.size() - 1;
+        }
+        if (vars.empty()) return Exit{};
+        ir::Fold fold;
+        fold.count = g.integer(input.count);
+        fold.max_count = input.count;
+        fold.index = input.index;
+        fold.vars = vars;
+        fold.next = next;
+        Value go = *condition;
+        if (left_at) go = logical_and(ev, go, logical_not(ev, from_node(ev, vars[*left_at])));
+        if (!always(go)) fold.condition = to_node(ev, go);
+        ir::FoldId id = g.add_fold(std::move(fold));
+        ir::NodeId node = g.make(Op::Fold, g[vars[0]].type, initial, id.index);
+        auto result = [&](std::size_t k) {
+            return k == 0 ? node : g.make(Op::FoldResult, g[vars[k]].type, {node}, static_cast<std::uint32_t>(k));
+        };
+        for (std::size_t k = 0; k < carried.size(); ++k)
+            assign(ev, carried[k].frame, carried[k].slot, from_node(ev, result(k), carried[k].variable.color));
+        Exit out;
+        if (returns) {
+            out.returned = from_node(ev, result(*returned_at));
+            out.value = from_node(ev, result(*value_at), returned_value.color);
+        }
+        return out;
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std::uint32_t frame, Span place) {
+    Outcome out;
+    Value seq = eval(ev, ast, node.sequence, frame);
+    if (is_poison(seq)) return out;
+    Turns turns;
+    if (seq.kind == ValueKind::Range) {
+        turns.count = static_cast<int>(std::min(2e9, std::max(0.0, std::ceil((seq.num[1] - seq.num[0]) / seq.num[2]))));
+        turns.first = seq.num[0];
+        turns.step = seq.num[2];
+    } else {
+        auto items = sequence_items(ev, seq, ast.exprs[node.sequence].span);
+        if (!items) return out;
+        turns.items = std::move(*items);
+        turns.count = static_cast<int>(turns.items.size());
+    }
+    auto turn = [&](const Value &item) {
+        std::uint32_t inner = push_frame(ev, frame);
+        declare(ev, inner, node.variable.text, item, false, node.variable.span);
+        Outcome o = run_block(ev, ast, node.body, inner);
+        pop_frame(ev, inner);
+        if (o.value.kind == ValueKind::Shape)
+            report(ev, Code::UnusedShape, place, "the shapes of this loop are made and dropped")
+                .help("in a function's body wrap the loop: `union { for … { … } }`");
+        return o.exit;
+    };
+    std::size_t frames = ev.frames.size();
+    int unrolled = 0;
+    for (int i = 0; i < turns.count; ++i) {
+        if (!spend(ev, place)) return out;
+        std::size_t mark = journal_mark(ev);
+        Exit exit = turn(item_at(turns, i));
+        std::vector<Change> changes = journal_take(ev, mark);
+        bool touched = touches_unknown(exit, changes, frames);
+        if (touched && i == 0 && turns.count > 2 && turns.count <= max_fold_turns) {
+            FoldInput input;
+            input.count = turns.count;
+            input.index = ev.scene.graph.fresh_var(Type::Int);
+            if (auto item = symbolic_item(ev, turns, input.index)) {
+                input.body = [&] { return turn(*item); };
+                if (auto folded = try_fold(ev, input, changes, frames, place)) {
+                    out.exit = *folded;
+                    return out;
+                }
+            }
+        }
+        if (touched && ++unrolled > max_unrolled) {
+            report(ev, Code::LoopLimit, place, fmt::format("this loop cannot stay a loop, and {} turns are too many to write out", turns.count));
+            return out;
+        }
+        for (const Change &c : changes) assign(ev, c.frame, c.slot, c.after);
+        // how the turn was left
+        if (always(exit.broke)) return out;
+        if (always(exit.returned)) {
+            out.exit = exit;
+            return out;
+        }
+        if (never(exit.broke) && never(exit.returned)) continue;
+        // the further turns happen only where this one was not left
+        Value left = logical_or(ev, exit.returned, exit.broke);
+        std::function<Exit(int)> run_rest = [&](int at) -> Exit {
+            if (at >= turns.count) return {};
+            Exit e = turn(item_at(turns, at));
+            Value gone = logical_or(ev, e.returned, e.broke);
+            if (always(gone) || at + 1 >= turns.count || at - i > 256) return e;
+            Exit r = never(gone) ? run_rest(at + 1) : run_unless(ev, gone, place, [&] { return run_rest(at + 1); });
+            Exit both;
+            both.returned = logical_or(ev, e.returned, logical_and(ev, logical_not(ev, e.broke), r.returned));
+            both.broke = boolean(false);
+            both.value = never(r.returned) ? e.value : never(e.returned) ? r.value
+                                                       : select_value(ev, e.returned, e.value, r.value).value_or(poison());
+            return both;
+        };
+        Exit rest = run_unless(ev, left, place, [&] { return run_rest(i + 1); });
+        out.exit.returned = logical_or(ev, exit.returned, logical_and(ev, logical_not(ev, exit.broke), rest.returned));
+        out.exit.value = never(rest.returned) ? exit.value : never(exit.returned) ? rest.value
+                                                             : select_value(ev, exit.returned, exit.value, rest.value).value_or(poison());
+        return out;
+    }
+    return out;
+}
+
+Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, std::uint32_t frame, Span place) {
+    Outcome out;
+    int limit = 1'000'000;
+    if (node.limit) {
+        auto n = want_known_int(ev, eval(ev, ast, *node.limit, frame), ast.exprs[*node.limit].span, "a loop's limit");
+        if (!n) return out;
+        limit = *n;
+    }
+    Span condition_place = ast.exprs[node.condition].span;
+    auto condition = [&]() -> std::optional<Value> {
+        Value v = eval(ev, ast, node.condition, frame);
+        if (is_poison(v)) return std::nullopt;
+        if (is_numeric(v) && numeric_type(ev, v) == Type::Bool) return v;
+        report(ev, Code::TypeMismatch, condition_place, fmt::format("a condition is a bool, this is {}", describe(ev, v)));
+        return std::nullopt;
+    };
+    std::size_t frames = ev.frames.size();
+    auto turn = [&] { return run_block(ev, ast, node.body, frame).exit; };
+    for (int i = 0; i < limit; ++i) {
+        if (!spend(ev, place)) return out;
+        auto go = condition();
+        if (!go || never(*go)) return out;
+        std::size_t mark = journal_mark(ev);
+        Exit exit = turn();
+        std::vector<Change> changes = journal_take(ev, mark);
+        if (unknown(*go) || touches_unknown(exit, changes, frames)) {
+            if (!node.limit) {
+                report(ev, Code::LoopLimit, place, "a loop over numbers that hang on the point needs a limit")
+                    .help("say how many turns it takes at most: `while … limit 32 { … }`");
+                return out;
+            }
+            FoldInput input;
+            input.count = limit - i;
+            input.index = ev.scene.graph.fresh_var(Type::Int);
+            input.condition = condition;
+            input.body = turn;
+            if (auto folded = try_fold(ev, input, changes, frames, place)) {
+                out.exit = *folded;
+                return out;
+            }
+            report(ev, Code::StageMismatch, place, "this loop's variables have to be numbers of one type, since it hangs on the point");
+            return out;
+        }
+        for (const Change &c : changes) assign(ev, c.frame, c.slot, c.after);
+        if (always(exit.broke)) return out;
+        if (always(exit.returned)) {
+            out.exit = exit;
+            return out;
+        }
+    }
+    if (!node.limit) report(ev, Code::LoopLimit, place, fmt::format("this loop did not end within {} turns", limit));
+    return out;
+}
+
+} // namespace fathom::typecheck

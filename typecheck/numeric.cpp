@@ -1,0 +1,513 @@
+// Arithmetic on numbers of both stages. What is known is computed through the graph's own constant folding (so that an
+// op has one meaning); the everyday operations on plain numbers have a short way. What is not known becomes a node.
+#include "typecheck/evaluator.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace fathom::typecheck {
+
+using ir::Op;
+using ir::Type;
+
+bool is_numeric(const Value &v) {
+    return v.kind == ValueKind::Bool || v.kind == ValueKind::Int || v.kind == ValueKind::Float ||
+           v.kind == ValueKind::Vec || v.kind == ValueKind::Mat || v.kind == ValueKind::Field;
+}
+
+Type numeric_type(const Evaluator &ev, const Value &v) {
+    switch (v.kind) {
+    case ValueKind::Bool: return Type::Bool;
+    case ValueKind::Int: return Type::Int;
+    case ValueKind::Vec: return ir::vector_type(v.size);
+    case ValueKind::Mat: return ir::matrix_type(v.size);
+    case ValueKind::Field: return ev.scene.graph[node_of(v)].type;
+    case ValueKind::Float:
+    case ValueKind::Poison:
+    case ValueKind::Unit:
+    case ValueKind::None:
+    case ValueKind::String:
+    case ValueKind::List:
+    case ValueKind::Range:
+    case ValueKind::Closure:
+    case ValueKind::Builtin:
+    case ValueKind::Overloads:
+    case ValueKind::ConstField:
+    case ValueKind::CachedField:
+    case ValueKind::ImageField:
+    case ValueKind::Shape:
+    case ValueKind::Material:
+    case ValueKind::Region:
+    case ValueKind::Setting:
+    case ValueKind::Module: return Type::Float;
+    }
+    return Type::Float;
+}
+
+bool is_scalar(const Evaluator &ev, const Value &v) {
+    if (!is_numeric(v)) return false;
+    Type type = numeric_type(ev, v);
+    return type == Type::Int || type == Type::Float;
+}
+
+ir::NodeId to_node(Evaluator &ev, const Value &v) {
+    ir::Graph &graph = ev.scene.graph;
+    if (v.kind == ValueKind::Field) return node_of(v);
+    ir::Constant constant;
+    constant.type = numeric_type(ev, v);
+    if (v.kind == ValueKind::Mat) constant.value = ev.matrices[v.id];
+    else std::copy(v.num.begin(), v.num.begin() + (v.kind == ValueKind::Vec ? v.size : 1), constant.value.begin());
+    return graph.constant(constant);
+}
+
+Value from_node(Evaluator &ev, ir::NodeId node, bool is_color) {
+    const ir::Graph &graph = ev.scene.graph;
+    if (!graph.is_constant(node)) {
+        Value v = make_value(ValueKind::Field, node.index);
+        v.color = is_color;
+        return v;
+    }
+    const ir::Constant &c = graph.constant_of(node);
+    switch (c.type) {
+    case Type::Bool: return boolean(c.value[0] != 0);
+    case Type::Int: return integer(c.value[0]);
+    case Type::Float: return number(c.value[0]);
+    case Type::Vec2:
+    case Type::Vec3:
+    case Type::Vec4: return vec(ir::components(c.type), {c.value[0], c.value[1], c.value[2], c.value[3]}, is_color);
+    case Type::Mat2:
+    case Type::Mat3:
+    case Type::Mat4: {
+        ev.matrices.push_back(c.value);
+        Value v = make_value(ValueKind::Mat, static_cast<std::uint32_t>(ev.matrices.size() - 1));
+        v.size = static_cast<std::uint8_t>(ir::side(c.type));
+        return v;
+    }
+    case Type::Hit: break;
+    }
+    return poison();
+}
+
+Value to_float(Evaluator &ev, const Value &v) {
+    if (v.kind == ValueKind::Int || v.kind == ValueKind::Bool) return number(v.num[0]);
+    if (v.kind == ValueKind::Field && (numeric_type(ev, v) == Type::Int || numeric_type(ev, v) == Type::Bool))
+        return from_node(ev, ev.scene.graph.make(Op::ToFloat, Type::Float, {node_of(v)}));
+    return v;
+}
+
+static bool any_color(const std::vector<Value> &args) {
+    for (const Value &a : args)
+        if (a.color) return true;
+    return false;
+}
+
+// Ops that keep whole numbers whole; all others take floats.
+static bool works_on_ints(Op op) {
+    return op == Op::Add || op == Op::Sub || op == Op::Mul || op == Op::Mod || op == Op::Min || op == Op::Max ||
+           op == Op::Neg || op == Op::Abs || op == Op::Clamp || op == Op::Sign || op == Op::Hash || op == Op::Div;
+}
+
+// Componentwise ops broadcast a number to the widest argument; a whole number becomes a float beside a float.
+Value apply_op(Evaluator &ev, Op op, std::vector<Value> args, Span place, const std::string &name) {
+    Type widest = Type::Int;
+    for (Value &a : args) {
+        if (is_poison(a)) return poison();
+        if (a.kind == ValueKind::List || !is_numeric(a) || numeric_type(ev, a) == Type::Bool) {
+            report(ev, Code::TypeMismatch, place, fmt::format("`{}` wants numbers, this is {}", name, describe(ev, a)));
+            return poison();
+        }
+        Type type = numeric_type(ev, a);
+        if (type == Type::Int) continue;
+        if (widest == Type::Int || widest == Type::Float) widest = type;
+        else if (type != Type::Float && type != widest) {
+            report(ev, Code::TypeMismatch, place,
+                   fmt::format("`{}` wants vectors of one size, these are {} and {}", name, ir::type_name(widest),
+                               ir::type_name(type)));
+            return poison();
+        }
+    }
+    if (widest == Type::Int && !works_on_ints(op)) widest = Type::Float;
+    std::vector<ir::NodeId> nodes;
+    for (Value &a : args) {
+        ir::NodeId node = to_node(ev, widest == Type::Int ? a : to_float(ev, a));
+        if (ir::components(widest) > 1 && ir::components(ev.scene.graph[node].type) == 1)
+            node = ev.scene.graph.splat(node, widest);
+        nodes.push_back(node);
+    }
+    return from_node(ev, ev.scene.graph.make(op, nodes), any_color(args) && widest == Type::Vec3);
+}
+
+static Value overflow(Evaluator &ev, Span place, double value) {
+    report(ev, Code::NumberRange, place, fmt::format("{:.0f} does not fit a whole number of 32 bits", value))
+        .help("write one of the numbers with a decimal point, and floats are used");
+    return poison();
+}
+
+static Value checked_int(Evaluator &ev, double value, Span place) {
+    if (value < std::numeric_limits<std::int32_t>::min() || value > std::numeric_limits<std::int32_t>::max())
+        return overflow(ev, place, value);
+    return integer(value);
+}
+
+static const char *operator_text(lang::BinaryOp op) {
+    switch (op) {
+    case lang::BinaryOp::Union: return "|";
+    case lang::BinaryOp::Intersection: return "&";
+    case lang::BinaryOp::Or: return "or";
+    case lang::BinaryOp::And: return "and";
+    case lang::BinaryOp::Equal: return "==";
+    case lang::BinaryOp::NotEqual: return "!=";
+    case lang::BinaryOp::Less: return "<";
+    case lang::BinaryOp::LessEqual: return "<=";
+    case lang::BinaryOp::Greater: return ">";
+    case lang::BinaryOp::GreaterEqual: return ">=";
+    case lang::BinaryOp::Add: return "+";
+    case lang::BinaryOp::Sub: return "-";
+    case lang::BinaryOp::Mul: return "*";
+    case lang::BinaryOp::Div: return "/";
+    case lang::BinaryOp::Mod: return "%";
+    case lang::BinaryOp::Pow: return "^";
+    }
+    return "";
+}
+
+static bool known_scalar(const Value &v) { return v.kind == ValueKind::Int || v.kind == ValueKind::Float; }
+
+static Value compare(Evaluator &ev, lang::BinaryOp op, const Value &a, const Value &b, Span place) {
+    using lang::BinaryOp;
+    bool equality = op == BinaryOp::Equal || op == BinaryOp::NotEqual;
+    if (known_scalar(a) && known_scalar(b)) {
+        double x = a.num[0], y = b.num[0];
+        switch (op) {
+        case BinaryOp::Less: return boolean(x < y);
+        case BinaryOp::LessEqual: return boolean(x <= y);
+        case BinaryOp::Greater: return boolean(x > y);
+        case BinaryOp::GreaterEqual: return boolean(x >= y);
+        case BinaryOp::Equal: return boolean(x == y);
+        case BinaryOp::NotEqual: return boolean(x != y);
+        case BinaryOp::Union:
+        case BinaryOp::Intersection:
+        case BinaryOp::Or:
+        case BinaryOp::And:
+        case BinaryOp::Add:
+        case BinaryOp::Sub:
+        case BinaryOp::Mul:
+        case BinaryOp::Div:
+        case BinaryOp::Mod:
+        case BinaryOp::Pow: break;
+        }
+    }
+    if (equality && a.kind == b.kind && a.kind != ValueKind::Field) {
+        bool same = false;
+        if (a.kind == ValueKind::String) same = ev.strings[a.id] == ev.strings[b.id];
+        else if (a.kind == ValueKind::Bool || a.kind == ValueKind::Vec) same = a.size == b.size && a.num == b.num;
+        else if (a.kind == ValueKind::None) same = true;
+        else {
+            report(ev, Code::TypeMismatch, place, fmt::format("{} cannot be compared", describe(ev, a)));
+            return poison();
+        }
+        return boolean(same == (op == BinaryOp::Equal));
+    }
+    bool scalars = is_scalar(ev, a) && is_scalar(ev, b);
+    bool bools = equality && is_numeric(a) && is_numeric(b) && numeric_type(ev, a) == Type::Bool &&
+                 numeric_type(ev, b) == Type::Bool;
+    if (!scalars && !bools) {
+        report(ev, Code::TypeMismatch, place,
+               fmt::format("`{}` compares two numbers, these are {} and {}", operator_text(op), describe(ev, a),
+                           describe(ev, b)));
+        return poison();
+    }
+    bool whole = !bools && numeric_type(ev, a) == Type::Int && numeric_type(ev, b) == Type::Int;
+    ir::NodeId x = to_node(ev, whole || bools ? a : to_float(ev, a)), y = to_node(ev, whole || bools ? b : to_float(ev, b));
+    ir::Graph &g = ev.scene.graph;
+    switch (op) {
+    case BinaryOp::Less: return from_node(ev, g.make(Op::Less, {x, y}));
+    case BinaryOp::LessEqual: return from_node(ev, g.make(Op::LessEqual, {x, y}));
+    case BinaryOp::Greater: return from_node(ev, g.make(Op::Less, {y, x}));
+    case BinaryOp::GreaterEqual: return from_node(ev, g.make(Op::LessEqual, {y, x}));
+    case BinaryOp::Equal: return from_node(ev, g.make(Op::Equal, {x, y}));
+    case BinaryOp::NotEqual: return from_node(ev, g.make(Op::NotEqual, {x, y}));
+    case BinaryOp::Union:
+    case BinaryOp::Intersection:
+    case BinaryOp::Or:
+    case BinaryOp::And:
+    case BinaryOp::Add:
+    case BinaryOp::Sub:
+    case BinaryOp::Mul:
+    case BinaryOp::Div:
+    case BinaryOp::Mod:
+    case BinaryOp::Pow: break;
+    }
+    return poison();
+}
+
+static Value division_by_zero(Evaluator &ev, Span place, const char *what) {
+    report(ev, Code::NumberRange, place, fmt::format("{} by zero", what));
+    return poison();
+}
+
+// A matrix times a matrix or a vector of its side.
+static std::optional<Value> matrix_product(Evaluator &ev, const Value &a, const Value &b, Span place) {
+    Type ta = numeric_type(ev, a), tb = numeric_type(ev, b);
+    bool ma = ir::is_matrix(ta), mb = ir::is_matrix(tb);
+    if (!(ma && (mb || ir::is_vector(tb))) && !(mb && ir::is_vector(ta))) return std::nullopt;
+    int side_a = ma ? ir::side(ta) : ir::components(ta), side_b = mb ? ir::side(tb) : ir::components(tb);
+    if (side_a != side_b) {
+        report(ev, Code::TypeMismatch, place,
+               fmt::format("{} and {} cannot be multiplied: their sizes differ", describe(ev, a), describe(ev, b)));
+        return poison();
+    }
+    Type type = ma && mb ? ta : ma ? tb : ta;
+    return from_node(ev, ev.scene.graph.make(Op::MatMul, type, {to_node(ev, a), to_node(ev, b)}));
+}
+
+// A list of 2 to 4 numbers is a vector where one is wanted.
+static Value as_vector(Evaluator &ev, const Value &v) {
+    if (v.kind != ValueKind::List) return v;
+    const std::vector<Value> items = ev.lists[v.id];
+    if (items.size() < 2 || items.size() > 4) return v;
+    for (const Value &item : items)
+        if (!is_scalar(ev, item)) return v;
+    return make_vector(ev, items, static_cast<int>(items.size()), {});
+}
+
+Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Value &right, Span place, Span a_place,
+                 Span b_place) {
+    using lang::BinaryOp;
+    if (is_poison(left) || is_poison(right)) return poison();
+    if (known_scalar(left) && known_scalar(right)) {
+        double x = left.num[0], y = right.num[0];
+        bool whole = left.kind == ValueKind::Int && right.kind == ValueKind::Int;
+        switch (op) {
+        case BinaryOp::Add: return whole ? checked_int(ev, x + y, place) : number(x + y);
+        case BinaryOp::Sub: return whole ? checked_int(ev, x - y, place) : number(x - y);
+        case BinaryOp::Mul: return whole ? checked_int(ev, x * y, place) : number(x * y);
+        case BinaryOp::Div: return y == 0 ? division_by_zero(ev, place, "division") : number(x / y);
+        case BinaryOp::Mod: {
+            if (y == 0) return division_by_zero(ev, place, "remainder of a division");
+            double r = x - y * std::floor(x / y);
+            return whole ? integer(r) : number(r);
+        }
+        case BinaryOp::Pow: {
+            double r = std::pow(x, y);
+            if (whole && y >= 0) return checked_int(ev, r, place);
+            if (!std::isfinite(r)) {
+                report(ev, Code::NumberRange, place, fmt::format("{} ^ {} is not a number", x, y));
+                return poison();
+            }
+            return number(r);
+        }
+        case BinaryOp::Union:
+        case BinaryOp::Intersection:
+        case BinaryOp::Or:
+        case BinaryOp::And:
+        case BinaryOp::Equal:
+        case BinaryOp::NotEqual:
+        case BinaryOp::Less:
+        case BinaryOp::LessEqual:
+        case BinaryOp::Greater:
+        case BinaryOp::GreaterEqual: break;
+        }
+    }
+    Value a = as_vector(ev, left), b = as_vector(ev, right);
+    if (op == BinaryOp::Less || op == BinaryOp::LessEqual || op == BinaryOp::Greater ||
+        op == BinaryOp::GreaterEqual || op == BinaryOp::Equal || op == BinaryOp::NotEqual)
+        return compare(ev, op, a, b, place);
+    if (op == BinaryOp::Add && a.kind == ValueKind::String) {
+        ev.strings.push_back(ev.strings[a.id] + print_value(ev, b));
+        return make_value(ValueKind::String, static_cast<std::uint32_t>(ev.strings.size() - 1));
+    }
+    auto numeric = [&](const Value &v) { return is_numeric(v) && numeric_type(ev, v) != Type::Bool; };
+    if (!numeric(a) || !numeric(b)) {
+        bool left_wrong = !numeric(a);
+        Diagnostic &d = report(ev, Code::TypeMismatch, left_wrong ? a_place : b_place,
+                               fmt::format("`{}` wants numbers, this is {}", operator_text(op),
+                                           describe(ev, left_wrong ? a : b)));
+        const Value &wrong = left_wrong ? a : b;
+        if (is_function(wrong)) d.help("call it with a point: `f(p)`");
+        if (wrong.kind == ValueKind::Shape && op == BinaryOp::Add) d.help("shapes are united with `|`");
+        if (wrong.kind == ValueKind::Shape && op == BinaryOp::Mul) d.help("a shape is made larger with `.scale(2)`");
+        return poison();
+    }
+    if (op == BinaryOp::Mul)
+        if (auto product = matrix_product(ev, a, b, place)) return *product;
+    switch (op) {
+    case BinaryOp::Add: return apply_op(ev, Op::Add, {a, b}, place, "+");
+    case BinaryOp::Sub: return apply_op(ev, Op::Sub, {a, b}, place, "-");
+    case BinaryOp::Mul: return apply_op(ev, Op::Mul, {a, b}, place, "*");
+    case BinaryOp::Div: return apply_op(ev, Op::Div, {to_float(ev, a), to_float(ev, b)}, place, "/");
+    case BinaryOp::Mod: return apply_op(ev, Op::Mod, {a, b}, place, "%");
+    case BinaryOp::Pow: {
+        // a small whole exponent is repeated multiplication: exact, cheap, and easy to bound
+        if (b.kind == ValueKind::Int && b.num[0] >= 1 && b.num[0] <= 8) {
+            Value product = a;
+            for (int i = 1; i < static_cast<int>(b.num[0]); ++i) product = apply_op(ev, Op::Mul, {product, a}, place, "^");
+            return product;
+        }
+        return apply_op(ev, Op::Pow, {a, b}, place, "^");
+    }
+    case BinaryOp::Union:
+    case BinaryOp::Intersection:
+    case BinaryOp::Or:
+    case BinaryOp::And:
+    case BinaryOp::Equal:
+    case BinaryOp::NotEqual:
+    case BinaryOp::Less:
+    case BinaryOp::LessEqual:
+    case BinaryOp::Greater:
+    case BinaryOp::GreaterEqual: break;
+    }
+    return poison();
+}
+
+Value negate(Evaluator &ev, const Value &v, Span place) {
+    if (v.kind == ValueKind::Int) return checked_int(ev, -v.num[0], place);
+    if (v.kind == ValueKind::Float) return number(-v.num[0]);
+    return apply_op(ev, Op::Neg, {as_vector(ev, v)}, place, "-");
+}
+
+// -- truth ---------------------------------------------------------------------------------------
+
+Value logical_not(Evaluator &ev, const Value &a) {
+    if (a.kind == ValueKind::Bool) return boolean(a.num[0] == 0);
+    return from_node(ev, ev.scene.graph.make(Op::Not, {to_node(ev, a)}));
+}
+Value logical_and(Evaluator &ev, const Value &a, const Value &b) {
+    if (a.kind == ValueKind::Bool) return a.num[0] != 0 ? b : a;
+    if (b.kind == ValueKind::Bool) return b.num[0] != 0 ? a : b;
+    return from_node(ev, ev.scene.graph.make(Op::And, {to_node(ev, a), to_node(ev, b)}));
+}
+Value logical_or(Evaluator &ev, const Value &a, const Value &b) {
+    if (a.kind == ValueKind::Bool) return a.num[0] != 0 ? a : b;
+    if (b.kind == ValueKind::Bool) return b.num[0] != 0 ? b : a;
+    return from_node(ev, ev.scene.graph.make(Op::Or, {to_node(ev, a), to_node(ev, b)}));
+}
+
+// Nothing where the two cannot be told apart by a number at field time (a shape in one arm, say).
+std::optional<Value> select_value(Evaluator &ev, const Value &condition, const Value &a, const Value &b) {
+    if (condition.kind == ValueKind::Bool) return condition.num[0] != 0 ? a : b;
+    if (is_poison(a) || is_poison(b)) return poison();
+    if (a == b) return a;
+    if (!is_numeric(a) || !is_numeric(b)) return std::nullopt;
+    Value x = a, y = b;
+    Type tx = numeric_type(ev, x), ty = numeric_type(ev, y);
+    if (tx != ty && (tx == Type::Int || ty == Type::Int)) {
+        x = to_float(ev, x), y = to_float(ev, y);
+        tx = numeric_type(ev, x), ty = numeric_type(ev, y);
+    }
+    ir::NodeId nx = to_node(ev, x), ny = to_node(ev, y);
+    if (tx != ty) {
+        if (tx == Type::Float && ir::is_vector(ty)) nx = ev.scene.graph.splat(nx, ty);
+        else if (ty == Type::Float && ir::is_vector(tx)) ny = ev.scene.graph.splat(ny, tx);
+        else return std::nullopt;
+    }
+    return from_node(ev, ev.scene.graph.make(Op::Select, {node_of(condition), nx, ny}), a.color || b.color);
+}
+
+// -- components ----------------------------------------------------------------------------------
+
+std::optional<std::vector<int>> swizzle_indices(const std::string &letters, int size) {
+    if (letters.empty() || letters.size() > 4) return std::nullopt;
+    for (const char *set : {"xyzw", "rgba", "stpq"}) {
+        std::vector<int> indices;
+        for (char c : letters)
+            for (int i = 0; i < size; ++i)
+                if (set[i] == c) indices.push_back(i);
+        if (indices.size() == letters.size()) return indices;
+    }
+    return std::nullopt;
+}
+
+Value swizzle(Evaluator &ev, const Value &v, const std::string &letters, Span place) {
+    Type type = numeric_type(ev, v);
+    auto indices = ir::is_vector(type) ? swizzle_indices(letters, ir::components(type)) : std::nullopt;
+    if (!indices) {
+        report(ev, Code::UnknownMember, place, fmt::format("{} has no component `{}`", describe(ev, v), letters));
+        return poison();
+    }
+    bool color = v.color && indices->size() == 3;
+    if (v.kind == ValueKind::Vec) {
+        if (indices->size() == 1) {
+            double x = v.num[static_cast<std::size_t>((*indices)[0])];
+            return v.ints ? integer(x) : number(x);
+        }
+        Value out = vec(static_cast<int>(indices->size()), {}, color);
+        for (std::size_t i = 0; i < indices->size(); ++i) out.num[i] = v.num[static_cast<std::size_t>((*indices)[i])];
+        return out;
+    }
+    return from_node(ev, ev.scene.graph.swizzle(node_of(v), *indices), color);
+}
+
+// GLSL's constructors: numbers and vectors one after another; one number fills all; a longer vector is cut.
+Value make_vector(Evaluator &ev, const std::vector<Value> &parts, int size, Span place) {
+    std::vector<Value> scalars;
+    bool known = true, whole = true;
+    for (const Value &part : parts) {
+        if (is_poison(part)) return poison();
+        if (!is_numeric(part) || ir::is_matrix(numeric_type(ev, part)) || numeric_type(ev, part) == Type::Bool) {
+            report(ev, Code::TypeMismatch, place, fmt::format("a vec{} is made of numbers, this is {}", size, describe(ev, part)));
+            return poison();
+        }
+        int n = ir::components(numeric_type(ev, part));
+        if (n == 1) scalars.push_back(part);
+        else
+            for (int i = 0; i < n; ++i) scalars.push_back(swizzle(ev, part, std::string(1, "xyzw"[i]), place));
+    }
+    if (scalars.size() == 1) scalars.assign(static_cast<std::size_t>(size), scalars[0]);
+    if (parts.size() == 1 && scalars.size() > static_cast<std::size_t>(size)) scalars.resize(static_cast<std::size_t>(size));
+    if (scalars.size() != static_cast<std::size_t>(size)) {
+        report(ev, Code::BadArgument, place, fmt::format("a vec{} has {} numbers, not {}", size, size, scalars.size()));
+        return poison();
+    }
+    for (const Value &s : scalars) {
+        known = known && s.kind != ValueKind::Field;
+        whole = whole && s.kind == ValueKind::Int;
+    }
+    if (known) {
+        Value v = vec(size, {});
+        for (std::size_t i = 0; i < scalars.size(); ++i) v.num[i] = scalars[i].num[0];
+        v.ints = whole;
+        return v;
+    }
+    std::vector<ir::NodeId> nodes;
+    for (const Value &s : scalars) nodes.push_back(to_node(ev, to_float(ev, s)));
+    return from_node(ev, ev.scene.graph.make(Op::Make, ir::vector_type(size), nodes));
+}
+
+// A number that scene time needs. One that hangs on params alone is taken at their present values, and those params
+// become structural: moving them builds the scene anew (semantics.md, 25).
+std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place, const char *what) {
+    if (v.kind != ValueKind::Field) return v;
+    ir::Graph &g = ev.scene.graph;
+    ir::Graph::Reads reads = g.reads(node_of(v));
+    if (reads.params && !reads.point && !reads.normal && !reads.direction && !reads.time && !reads.free_vars) {
+        ir::Substitution values;
+        for (std::size_t i = 0; i < ev.scene.params.size(); ++i) {
+            ir::Constant c;
+            c.type = ev.scene.params[i].type;
+            std::copy(ev.scene.params[i].value.begin(), ev.scene.params[i].value.end(), c.value.begin());
+            values[ev.param_nodes[i]] = g.constant(c);
+        }
+        ir::NodeId known = ir::substitute(g, node_of(v), values);
+        if (g.is_constant(known)) {
+            std::vector<ir::NodeId> todo{node_of(v)};
+            std::unordered_map<std::uint32_t, bool> seen;
+            while (!todo.empty()) {
+                ir::NodeId n = todo.back();
+                todo.pop_back();
+                if (seen[n.index]) continue;
+                seen[n.index] = true;
+                if (g[n].op == Op::Param) ev.scene.params[g[n].payload].structural = true;
+                for (ir::NodeId a : g.args(n)) todo.push_back(a);
+            }
+            return from_node(ev, known, v.color);
+        }
+    }
+    const char *why = reads.time && !reads.point ? "`time`" : "the point";
+    report(ev, Code::StageMismatch, place, fmt::format("{} has to be known when the scene is read, and this depends on {}", what, why));
+    return std::nullopt;
+}
+
+} // namespace fathom::typecheck
