@@ -1,0 +1,52 @@
+// The kernels that tapes are made of, and their compiled variants. A kernel's operand is either a register (one number a
+// point) or shared (one number for all points); a variant fixes which, so that its loop has nothing to decide.
+// Which shapes of the graph become which kernel is build.cpp's and fuse.cpp's business.
+#pragma once
+
+#include "backend-cpu/cells.h"
+#include "ir/graph.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace fathom::cpu {
+
+enum class Kernel : std::uint8_t {
+#define FATHOM_KERNEL(name, parameters, expression, ...) name,
+#include "backend-cpu/kernels.def"
+#undef FATHOM_KERNEL
+};
+
+inline constexpr std::size_t kernel_count = 0
+#define FATHOM_KERNEL(name, parameters, expression, ...) +1
+#include "backend-cpu/kernels.def"
+#undef FATHOM_KERNEL
+    ;
+
+using Mask = std::uint32_t; // bit i: input i is shared
+
+// Kernels of up to three inputs have a variant for every mask (but not all shared: such a step runs once, on the
+// variant of registers); longer ones have none shared and those that their row lists.
+const char *kernel_name(Kernel kernel);
+int kernel_inputs(Kernel kernel);
+int kernel_outputs(Kernel kernel);
+ir::Type kernel_output_type(Kernel kernel); // of every output: Float, Int or Bool
+
+// The variant that shares the most of `shared`; its mask is a subset.
+struct Variant {
+    std::uint32_t index = 0;
+    Mask mask = 0;
+};
+Variant best_variant(Kernel kernel, Mask shared);
+Kernel kernel_of_variant(std::uint32_t index);
+Mask mask_of_variant(std::uint32_t index);
+
+// One loop a variant: operands are addresses in cells, outputs first.
+template <class Cell> using Loops = std::span<void (*const)(Cell *cells, const std::uint32_t *operands, std::size_t n)>;
+
+// The fastest set for the processor that this runs on.
+Loops<std::uint32_t> point_loops();
+Loops<DualCell> gradient_loops();
+
+} // namespace fathom::cpu

@@ -1,0 +1,116 @@
+// A lowered function as a tape: straight runs of kernels over batches of points in structure-of-arrays registers, with
+// real calls and real loops, so that its length is linear in the scene. Programs are values: compile once, share between
+// threads, give each thread a Scratch of its own. Knows nothing of rays and pictures.
+#pragma once
+
+#include "backend-cpu/cells.h"
+#include "ir/scene.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fathom::cpu {
+
+// The numbers that are the same for every point of a picture.
+struct Inputs {
+    std::vector<std::array<double, 4>> params; // as Scene::params
+    double time = 0;
+};
+Inputs inputs_of(const ir::Scene &scene, double time); // with the params' present values
+
+enum class StepKind : std::uint8_t {
+    Run,        // target: a kernel's variant; operands: outputs, then inputs
+    TableRead,  // target: index into Program::reads; operands: outputs, then the row
+    Image,      // target: Program::images; operands: outputs, then u, v
+    Grid,       // target: Program::grids; operands: the output, then x, y, z
+    Call,       // target: Program::blocks; arguments and results are copied by Runs around it
+    Loop,       // target: Program::loops
+    BreakUnless // operands: a bool; leaves the loop when no point wants another turn
+};
+
+struct Step {
+    StepKind kind = StepKind::Run;
+    bool once = false;         // the operands are the same for every point: run for one
+    std::uint32_t target = 0;
+    std::uint32_t operands = 0; // where its operands begin in Program::operands
+};
+
+// Addresses count cells of the scratch: a register is batch_size cells, a number that all points share is one.
+struct Loop {
+    std::uint32_t block = 0;
+    std::uint32_t count = 0; // address
+    bool once = false;       // the count is the same for every point
+    std::uint32_t index = 0; // address of one cell
+    int max_count = 0;
+};
+
+struct Read {
+    std::uint32_t first = 0; // into Program::table_data
+    int rows = 0, stride = 0, columns = 0;
+};
+
+struct Program {
+    struct Block {
+        std::uint32_t first = 0, last = 0; // steps
+    };
+    struct Slot {
+        std::uint32_t address = 0;
+        ir::Type type = ir::Type::Float; // Float, Int or Bool
+        bool shared = false;             // one cell for all points
+    };
+    struct Shared { // cells filled once per Scratch
+        enum class Kind : std::uint8_t { Float, Int, Time, Param } kind = Kind::Float;
+        std::uint32_t address = 0;
+        Word bits = 0;                                // Float, Int
+        std::uint32_t param = 0, component = 0;       // Param
+        ir::Type type = ir::Type::Float;              // Param: Float, Int or Bool
+    };
+
+    std::vector<Step> steps;
+    std::vector<std::uint32_t> operands;
+    std::vector<Block> blocks; // the last is the function asked for
+    std::vector<Loop> loops;
+    std::vector<Read> reads;
+    std::vector<float> table_data;
+    std::vector<ir::ImageData> images;
+    std::vector<ir::GridData> grids;
+    std::vector<Shared> shared;
+    std::vector<Slot> params, results; // one a component
+    std::size_t registers = 0;         // of batch_size cells
+    std::size_t cells = 0;             // of a scratch, all told
+};
+
+Program compile(const ir::Scene &scene, ir::FunctionId function);
+
+// The memory that one thread evaluates a program in: made once, used for any number of batches.
+struct Scratch {
+    Scratch() = default;
+    Scratch(Scratch &&) = default; // never copied: `cells` points into `memory`
+    Scratch &operator=(Scratch &&) = default;
+    std::vector<Word> memory;
+    Word *cells = nullptr; // aligned to a cache line
+};
+Scratch make_scratch(const Program &program, const Inputs &inputs);
+
+// n points: in[c] and out[c] are the c-th component of the parameters and of the result, one number a point; of an Int
+// or Bool component the number's value as a float's bits (std::bit_cast<std::int32_t>). Allocates nothing.
+void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out, std::size_t n);
+
+// Value and gradient by the first three input components, from the same tape run over dual numbers. At a kink one of the
+// sides', the same that decides the value. The result is a float: out is value, d/dx, d/dy, d/dz.
+struct GradientScratch {
+    GradientScratch() = default;
+    GradientScratch(GradientScratch &&) = default; // never copied: `cells` points into `memory`
+    GradientScratch &operator=(GradientScratch &&) = default;
+    std::vector<DualCell> memory;
+    DualCell *cells = nullptr;
+};
+GradientScratch make_gradient_scratch(const Program &program, const Inputs &inputs);
+void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in, float *const *out,
+                       std::size_t n);
+
+std::string dump(const Program &program); // one line a step, for tests and for reading
+
+} // namespace fathom::cpu

@@ -1,0 +1,1 @@
+set(libs fathom_cpu fathom_ir fathom_base)
