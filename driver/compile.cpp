@@ -5,6 +5,7 @@
 #include "typecheck/proof/prove.h"
 
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 namespace fathom::driver {
@@ -31,18 +32,50 @@ void enter(const CompileOptions &options, Phase phase) {
     if (options.entered) options.entered(phase);
 }
 
+// What the proof says of one shape while the scene is still being built (`lipschitz(s)`, `taper`). Its complaints are
+// not for now: the whole scene is proved afterwards, where it can say them once.
+std::optional<ir::ShapeFact> prove_one(ir::Scene &scene, ir::ShapeId shape) {
+    Diagnostics unheard;
+    proof::Options options;
+    options.test_assumptions = false;
+    ir::ShapeId root = std::exchange(scene.root, shape);
+    std::vector<ir::TopLevel> top_level = std::exchange(scene.top_level, {{shape, {}}});
+    proof::prove(scene, unheard, options);
+    scene.root = root;
+    scene.top_level = std::move(top_level);
+    if (unheard.has_errors()) return std::nullopt;
+    return scene.facts[shape.index];
+}
+
+typecheck::Options check_options(const CompileOptions &options) {
+    typecheck::Options result;
+    result.overrides = options.overrides;
+    result.lipschitz = [](ir::Scene &scene, ir::ShapeId shape) -> std::optional<double> {
+        std::optional<ir::ShapeFact> fact = prove_one(scene, shape);
+        if (!fact || !std::isfinite(fact->lipschitz_sup)) return std::nullopt;
+        return fact->lipschitz_sup;
+    };
+    result.extent = [](ir::Scene &scene, ir::ShapeId shape,
+                       int axis) -> std::optional<std::pair<double, double>> {
+        std::optional<ir::ShapeFact> fact = prove_one(scene, shape);
+        std::size_t i = static_cast<std::size_t>(axis);
+        if (!fact || !std::isfinite(fact->bounds.lo[i]) || !std::isfinite(fact->bounds.hi[i])) return std::nullopt;
+        return std::pair(fact->bounds.lo[i], fact->bounds.hi[i]);
+    };
+    return result;
+}
+
 void run_phases(Compilation &out, SceneFiles &files, const std::string &identity, SourceId root,
                 const CompileOptions &options) {
     enter(options, Phase::Check);
     typecheck::Checked checked = typecheck::check(out.sources, root, identity, standard_library(), files.loader(),
-                                                  {options.overrides}, out.diagnostics);
+                                                  check_options(options), out.diagnostics);
     out.scene = std::move(checked.scene);
     out.usage_errors = std::move(checked.usage_errors);
     out.evaluations = checked.evaluations;
-    if (!out.diagnostics.has_errors()) {
-        enter(options, Phase::Prove);
-        typecheck::proof::prove(out.scene, out.diagnostics, {});
-    }
+    // What checked is proved also where other statements did not: all errors in one run.
+    enter(options, Phase::Prove);
+    proof::prove(out.scene, out.diagnostics);
     if (out.good()) {
         enter(options, Phase::Lower);
         ir::lower(out.scene);

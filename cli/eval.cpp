@@ -1,0 +1,112 @@
+// fathom eval: the marched distance and its gradient at points, on the CPU.
+#include "backend-cpu/tape.h"
+#include "base/text.h"
+#include "cli/terminal.h"
+
+#include <cerrno>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace fathom::cli {
+namespace {
+
+// The field at any number of points: coordinates in, printed lines out.
+class Evaluator {
+  public:
+    Evaluator(const ir::Scene &scene, double time)
+        : program_(cpu::compile(scene, scene.distance)),
+          scratch_(cpu::make_gradient_scratch(program_, cpu::inputs_of(scene, time))) {}
+
+    void add(const std::array<double, 3> &point) {
+        for (std::size_t i = 0; i < 3; ++i) in_[i].push_back(static_cast<float>(point[i]));
+    }
+
+    void print(Terminal &terminal) {
+        std::size_t count = in_[0].size();
+        std::array<const float *, 3> in;
+        std::array<float *, 4> out;
+        for (std::size_t i = 0; i < 3; ++i) in[i] = in_[i].data();
+        for (std::size_t i = 0; i < 4; ++i) {
+            out_[i].resize(count);
+            out[i] = out_[i].data();
+        }
+        cpu::evaluate_gradient(program_, scratch_, in.data(), out.data(), count);
+        for (std::size_t k = 0; k < count; ++k)
+            terminal.put(fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", out_[0][k], out_[1][k], out_[2][k], out_[3][k]));
+        for (std::vector<float> &values : in_) values.clear();
+    }
+
+  private:
+    cpu::Program program_;
+    cpu::GradientScratch scratch_;
+    std::array<std::vector<float>, 3> in_;
+    std::array<std::vector<float>, 4> out_;
+};
+
+// Three numbers, separated by blanks; false where the line is something else. An empty line is no point.
+bool read_point(std::string_view line, std::array<double, 3> &point, bool &empty) {
+    constexpr std::string_view blanks = " \t\r";
+    std::size_t count = 0;
+    for (;;) {
+        std::size_t begin = line.find_first_not_of(blanks);
+        if (begin == line.npos) break;
+        line.remove_prefix(begin);
+        std::string_view word = line.substr(0, line.find_first_of(blanks));
+        line.remove_prefix(word.size());
+        std::optional<double> number = parse_number(word);
+        if (!number || count == 3) return false;
+        point[count++] = *number;
+    }
+    empty = count == 0;
+    return empty || count == 3;
+}
+
+// Answers each block of lines as it comes, so that a program may ask, read the answer, and ask again.
+Exit answer_standard_input(Evaluator &evaluator, Terminal &terminal) {
+    std::string pending;
+    std::array<char, 1 << 16> block;
+    std::size_t line_number = 0;
+    bool more = true;
+    while (more && !terminal.reader_gone()) {
+        ssize_t count = ::read(STDIN_FILENO, block.data(), block.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) {
+            terminal.say("fathom: cannot read standard input");
+            return device_error;
+        }
+        more = count > 0;
+        pending.append(block.data(), static_cast<std::size_t>(count));
+        if (!more && !pending.empty() && pending.back() != '\n') pending += '\n';
+        std::string_view rest = pending;
+        for (std::size_t end; (end = rest.find('\n')) != rest.npos; rest.remove_prefix(end + 1)) {
+            ++line_number;
+            std::array<double, 3> point{};
+            bool empty = false;
+            if (!read_point(rest.substr(0, end), point, empty)) {
+                evaluator.print(terminal);
+                terminal.flush();
+                terminal.say(fmt::format("fathom: line {} of the points is not `X Y Z`", line_number));
+                return usage_error;
+            }
+            if (!empty) evaluator.add(point);
+        }
+        pending.erase(0, pending.size() - rest.size());
+        evaluator.print(terminal);
+        if (terminal.flush() != done) return device_error;
+    }
+    return done;
+}
+
+} // namespace
+
+Exit run(const EvalCommand &command, Terminal &terminal) {
+    driver::Compilation compilation = driver::compile_file(command.scene.file, compile_options(command.scene));
+    Exit exit = report(compilation, command.scene, terminal);
+    if (exit != done) return exit;
+    Evaluator evaluator(compilation.scene, command.time);
+    for (const std::array<double, 3> &point : command.at) evaluator.add(point);
+    evaluator.print(terminal);
+    return command.points ? answer_standard_input(evaluator, terminal) : done;
+}
+
+} // namespace fathom::cli
