@@ -167,6 +167,9 @@ class Shapes {
     std::vector<Material> materials;
     std::vector<Library> libraries;
     std::vector<Contract> contracts;
+    // Unions as the scene lists them, by the shape that they became where that says less (like copies gathered, doubles
+    // left out). Only what reads a scene back for people asks: the save format.
+    std::unordered_map<ShapeId, std::vector<ShapeId>> listed;
 
   private:
     Arena<Shape> shapes_;

@@ -150,7 +150,7 @@ std::string gdf_call(Importer &in, const Reading &reading, Properties &propertie
     const auto set_text = [&](int set) {
         return "dfmodel." + std::string(sets[static_cast<std::size_t>(set)].function + 4);
     };
-    return "dfmodel.gdf_blend(" + set_text(first) + ", " + set_text(second < 0 ? first : second) +
+    return "dfmodel.gdf_pair(" + set_text(first) + ", " + set_text(second < 0 ? first : second) +
            ", a_scale: " + reading.text("Scale") +
            ", b_scale: " + (second < 0 ? "0" : reading.text("Second Scale")) + ", " + radius +
            exponent_text("Exponent", "a_exponent") +

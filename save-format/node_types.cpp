@@ -55,7 +55,7 @@ constexpr P gdf[] = {
     word("Shape", "Icosahedron"),      size("Radius", 1),  exponent("Exponent", none),
     word("Second Shape", "<None>"),    number("Scale", 1), number("Second Scale", -1),
     exponent("Second Exponent", none), material,           texture_offset};
-constexpr P blobby[] = {whole("Balls", 10, 1, 10000),
+constexpr P blobby[] = {whole("Balls", 10, 1, 1000),
                         sizes("Size", 1),
                         {"Radius", K::Number, 0.1, "", 0, 1e9, true},
                         whole("Seed", 0, -2147483647, 2147483647),

@@ -5,6 +5,7 @@
 // taken out, in the order of a walk; the constants, in that order, are its row.
 #include "typecheck/evaluator.h"
 
+#include <algorithm>
 #include <map>
 
 namespace fathom::typecheck {
@@ -243,28 +244,41 @@ std::optional<ShapeId> smooth_family(Evaluator &ev, const std::vector<ShapeId> &
         rows.push_back(std::move(walk.row));
     }
     ShapeId family = make_family(ev, shapes, rows, true, k, dims);
+    if (family) ev.scene.shapes.listed.emplace(family, shapes);
     return family ? std::optional(family) : std::nullopt;
 }
 
 // The union, flat: unions inside are opened, what is nowhere is left out, what stands twice stands once.
 ShapeId unite(Evaluator &ev, std::vector<ShapeId> shapes, int dims, Span origin) {
-    std::vector<ShapeId> flat;
+    std::vector<ShapeId> flat, listed;
     std::map<std::uint32_t, bool> seen;
     for (ShapeId id : shapes) {
         const ir::Shape &s = ev.scene.shapes[id];
         if (s.kind == ShapeKind::Empty) continue;
         std::vector<ShapeId> parts{id};
-        if (s.kind == ShapeKind::Union) parts = s.children;
+        if (s.kind == ShapeKind::Union) {
+            parts = s.children;
+            auto inner = ev.scene.shapes.listed.find(id);
+            const auto &all = inner == ev.scene.shapes.listed.end() ? parts : inner->second;
+            listed.insert(listed.end(), all.begin(), all.end());
+        } else listed.push_back(id);
         for (ShapeId part : parts)
             if (!std::exchange(seen[part.index], true)) flat.push_back(part);
     }
     flat = gather_families(ev, std::move(flat), dims);
+    const bool gathered = flat != listed;
     ir::Shape out;
     out.dims = static_cast<std::uint8_t>(dims);
     out.origin = origin;
-    if (flat.size() == 1) return flat[0];
+    if (flat.size() == 1) {
+        const bool one = std::find(listed.begin(), listed.end(), flat[0]) != listed.end(); // it stands for itself
+        if (gathered && !one) ev.scene.shapes.listed.emplace(flat[0], std::move(listed));
+        return flat[0];
+    }
     if (!flat.empty()) out.kind = ShapeKind::Union, out.children = std::move(flat);
-    return ev.scene.shapes.add(std::move(out));
+    ShapeId united = ev.scene.shapes.add(std::move(out));
+    if (gathered) ev.scene.shapes.listed.emplace(united, std::move(listed));
+    return united;
 }
 
 } // namespace fathom::typecheck
