@@ -1,0 +1,123 @@
+// The lowering's own parts, shared by lower*.cpp and regions.cpp only. Knows shapes, not the language.
+//
+// A shape is asked in one of three readings (lower.h) at a frame: a point, and values for the variables that shapes above bind.
+// Every answer is made once; a shape that would be written out in several places becomes a function.
+#pragma once
+
+#include "ir/lower.h"
+
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace fathom::ir {
+
+constexpr double nowhere = 1e9; // the distance to what is not there
+
+enum class Reading : std::uint8_t { Raw, Marched, Hit };
+
+struct Frame {
+    NodeId p;
+    std::uint32_t values = 0; // index of Lowering's environments; 0 binds nothing
+};
+
+// Where a material finds the variables that its expressions read: in the four floats of a hit.
+struct Packing {
+    std::vector<NodeId> vars;
+    int numbers = 0; // floats in all vars
+};
+
+class Lowering {
+  public:
+    explicit Lowering(Scene &scene);
+    void run();
+
+  private:
+    // -- asking
+    NodeId ask(Reading reading, ShapeId id, Frame frame);
+    NodeId answer(Reading reading, ShapeId id, Frame frame);    // without a function of its own, unless its children's
+    NodeId structural(Reading reading, ShapeId id, Frame frame); // through the shape's own combination
+    NodeId raw_only(ShapeId id, Frame frame);                    // kinds whose field consumes raw fields
+    NodeId colored(ShapeId id, Frame frame);                     // whose surface shows on a leaf: a Hit, distance aside
+    bool passes_through(ShapeId id) const;
+    NodeId divided(ShapeId id, NodeId raw);
+    NodeId guarded(Reading reading, ShapeId id, Frame frame, NodeId value);
+
+    // -- per kind
+    NodeId within(Reading reading, ShapeId id, Frame frame);
+    Frame inside(ShapeId id, Frame frame); // where `within` asks its child
+    NodeId blend(const Shape &shape, Frame frame);
+    NodeId seam(const Shape &shape, Frame frame);
+    NodeId pseudonorm(const Shape &shape, Frame frame);
+    NodeId repeated(Reading reading, ShapeId id, Frame frame);
+    NodeId lattice(Reading reading, ShapeId id, Frame frame);
+    NodeId polar(Reading reading, ShapeId id, Frame frame);
+    NodeId many(Reading reading, ShapeId id, Frame frame);
+    NodeId painted(ShapeId id, Frame frame);
+    NodeId mixed(ShapeId id, Frame frame);
+
+    // -- values by reading: floats, or hits
+    NodeId least(Reading reading, std::span<const NodeId> values);
+    NodeId greatest(Reading reading, std::span<const NodeId> values);
+    NodeId negated(Reading reading, NodeId value);
+    NodeId distance_of(Reading reading, NodeId value);
+    NodeId at_distance(Reading reading, NodeId value, NodeId distance);
+    NodeId far_away(Reading reading);
+    NodeId unpainted(NodeId distance);
+    // The least over `count` turns of what `each` asks, by a Fold; `each` is given the turn's number (Int).
+    template <class F> NodeId least_of(Reading reading, NodeId count, int max_count, NodeId index, F each);
+
+    // -- frames
+    NodeId read(NodeId expression, Frame frame);
+    Frame at(Frame frame, NodeId p) const { return {p, frame.values}; }
+    Frame bind(Frame frame, NodeId var, NodeId value);
+    NodeId value_of(NodeId var, Frame frame) const;
+
+    // -- functions
+    FunctionId function(Reading reading, ShapeId id);
+    void count_uses();
+    void find_names();
+    void find_free_vars();
+    bool is_wrapper(Reading reading, ShapeId id) const;
+    bool shared(ShapeId id) const;
+
+    // -- looks
+    std::int32_t surface_of(std::uint32_t material, bool flat);
+    NodeId pack(const Packing &packing, Frame frame);
+    NodeId unpack(const Packing &packing, std::size_t var, NodeId extra);
+    Packing packing_of(std::vector<NodeId> vars) const;
+    std::int32_t mixed_surface(ShapeId id);
+    Surface blank_surface();
+    void finish_surface(Surface surface);
+    NodeId point3(NodeId p);
+    void find_bounds();
+
+    const Shape &shape(ShapeId id) const { return shapes_[id]; }
+    const ShapeFact &fact(ShapeId id) const { return scene_.facts[id.index]; }
+
+    Scene &scene_;
+    Graph &graph_;
+    const Shapes &shapes_;
+    NodeId p2_, p3_; // the point parameters, one for all functions
+    std::vector<Substitution> environments_{1};
+    std::map<std::tuple<std::uint32_t, NodeId, NodeId>, std::uint32_t> derived_;
+    std::map<std::tuple<Reading, ShapeId, NodeId, std::uint32_t>, NodeId> answers_;
+    std::map<std::pair<Reading, ShapeId>, FunctionId> functions_;
+    std::map<std::pair<std::uint32_t, bool>, std::int32_t> surfaces_;
+    std::map<ShapeId, std::int32_t> mixed_surfaces_;
+    std::vector<double> cost_, uses_; // by shape; saturating
+    std::vector<char> paint_, reached_;
+    std::vector<std::string> names_;
+    std::vector<std::vector<NodeId>> free_vars_;
+};
+
+// regions.cpp
+NodeId joined_distance(Graph &graph, std::span<const NodeId> distances);
+NodeId region_way_out(Graph &graph, const Region &region, NodeId p); // convex part: the nearest point not inside
+NodeId box_distance(Graph &graph, const Box &box, NodeId p);
+
+// repeat.cpp: how many copies are evaluated one by one, before a loop does it
+constexpr int most_unrolled = 8;
+int copies_evaluated(const Scene &scene, ShapeId repeat);
+
+} // namespace fathom::ir
