@@ -20,9 +20,9 @@ enum class Code {
 #undef FATHOM_CODE
 };
 
-std::string_view code_name(Code code);                 // "unknown-name"
-std::string_view code_summary(Code code);              // one line, for `fathom explain` and the docs
-Severity code_severity(Code code);                     // the severity a code has unless said
+std::string_view code_name(Code code);    // "unknown-name"
+std::string_view code_summary(Code code); // one line, for `fathom explain` and the docs
+Severity code_severity(Code code);        // the severity a code has unless said
 std::optional<Code> code_by_name(std::string_view name);
 std::vector<Code> all_codes();
 
@@ -38,7 +38,7 @@ struct Edit {
 };
 
 struct Fix {
-    std::string message; // printed after `help: `
+    std::string message;     // printed after `help: `
     std::vector<Edit> edits; // empty where the fix is not mechanical
 };
 
@@ -60,8 +60,8 @@ struct Diagnostic {
 // counts the rest, so that a hostile file cannot fill the memory.
 class Diagnostics {
   public:
-    // Adds one with the code's own severity and hands it back to be refined at once; the reference is good until
-    // the next add.
+    // Adds one with the code's own severity and hands it back to be refined at once; the reference
+    // is good until the next add.
     Diagnostic &add(Code code, Span primary, std::string message);
     void add(Diagnostic diagnostic);
     bool has_errors() const { return errors_ > 0; }
@@ -84,9 +84,9 @@ class Diagnostics {
 // related labels, notes and the help. `color` adds ANSI colours.
 std::string to_text(const Diagnostic &diagnostic, const Sources &sources, bool color);
 
-// The JSON object of cli.md, without a trailing line end: "code severity message file line column end_line
-// end_column label labels notes fix". Ends are one past the last code point. Without a place, file and numbers are
-// null.
+// The JSON object of cli.md, without a trailing line end: "code severity message file line column
+// end_line end_column label labels notes fix". Ends are one past the last code point. Without a
+// place, file and numbers are null.
 std::string to_json(const Diagnostic &diagnostic, const Sources &sources);
 
 } // namespace fathom

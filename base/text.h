@@ -28,8 +28,8 @@ void append_utf8(std::string &out, std::uint32_t code_point);
 // Columns that a code point takes on a terminal: 0 (combining), 1 or 2 (East Asian wide, emoji).
 int display_width(std::uint32_t code_point);
 
-// The text with everything that could disturb a terminal (control characters, bidirectional overrides, bad UTF-8)
-// replaced by U+FFFD, and tabs and line ends by a space.
+// The text with everything that could disturb a terminal (control characters, bidirectional
+// overrides, bad UTF-8) replaced by U+FFFD, and tabs and line ends by a space.
 std::string printable(std::string_view text);
 
 } // namespace fathom

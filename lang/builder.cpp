@@ -72,7 +72,7 @@ Builder::Builder(const Source &source, SourceId id, const Tokens &tokens, Diagno
 }
 
 void Builder::deeper(Index at) {
-    if (++depth_ <= deepest_nesting) return;
+    if (++depth_ <= deepest_nesting + 1) return; // a statement is no nesting
     diagnostics_.add(Code::TooDeep, span(at), "the text nests deeper than 256 levels here")
         .help("give the inner parts names with `let`");
     failed_ = at;
@@ -83,10 +83,12 @@ void Builder::deeper(Index at) {
 
 ExprId Builder::add(ExprKind kind, Span span, std::uint32_t height) {
     if (height > tallest_tree) {
-        diagnostics_
-            .add(Code::TooDeep, {span.source, span.end, span.end},
-                 "this expression is a chain or nest of more than 1000 parts")
-            .help("give its parts names with `let`");
+        if (span.begin != last_too_tall_)
+            diagnostics_
+                .add(Code::TooDeep, {span.source, span.end, span.end},
+                     "this expression is a chain or nest of more than 1000 parts")
+                .help("give its parts names with `let`");
+        last_too_tall_ = span.begin;
         kind = Poison{};
         height = 0;
     }
@@ -189,8 +191,7 @@ void Builder::list(Index first, Index last) {
         // A lone `for` or `if` in brackets contributes.
         const Item item = items_.back();
         const Expr &only = ast_.exprs[item.id];
-        if (std::holds_alternative<Comprehension>(only.kind) && !only.parenthesized &&
-            only.span.begin != whole.begin && kind(first + 1) == Tok::For) {
+        if (kind(first + 1) == Tok::For) {
             ast_.exprs[item.id].span = whole;
             items_.back() = {item.id, whole.begin, whole.end};
             return;
@@ -231,6 +232,11 @@ void Builder::parameter() {
 
 void Builder::function_open(Index at) {
     heads_.push_back({parameters_.size(), at, in_function_, span(at)});
+}
+
+void Builder::declaration_open(Index at) {
+    deeper(at);
+    function_open(at);
 }
 
 void Builder::lambda_name(Index at) {
@@ -355,7 +361,7 @@ void Builder::trailing(Index first, Index last) {
     }
     if (call->arguments.empty()) {
         const Index open = tokens_.match[first - 1];
-        const std::string name(text(expr.span.begin, token(open).begin));
+        const std::string name = brief(text(expr.span.begin, token(open).begin));
         foreign(span(open, first - 1), "a block stands directly behind the function's name")
             .help("write `" + name + " { … }`", {{span(open, first - 1), ""}});
         call->has_parentheses = false;
@@ -368,7 +374,7 @@ void Builder::trailing(Index first, Index last) {
 void Builder::step(Index at) {
     const Item item = pop_item();
     const bool up = kind(at) == Tok::PlusPlus;
-    const std::string name(text(item.begin, item.end));
+    const std::string name = brief(text(item.begin, item.end));
     foreign(span(at), up ? "there is no `++`" : "there is no `--`")
         .help("write `" + name + (up ? " += 1`" : " -= 1`"), {{span(at), up ? " += 1" : " -= 1"}});
     push(Poison{}, {id_, item.begin, token(at).end}, 1);
@@ -381,10 +387,9 @@ void Builder::expression_open(Index at) {
     frames_.push_back({items_.size(), ops_.size()});
 }
 
-void Builder::expression_close() {
+void Builder::row_end() {
     reduce_above(0);
     frames_.pop_back();
-    shallower();
 }
 
 void Builder::prefix(Index at) {
@@ -432,12 +437,12 @@ void Builder::report_chain(const Op &first, Index second) {
         return;
     }
     const Item &middle = items_.back();
-    const std::string name(text(middle.begin, middle.end));
+    const std::string copy(text(middle.begin, middle.end)), name = brief(copy);
     const std::string signs =
         std::string(text(first.at)) + " " + name + " and " + name + " " + std::string(text(second));
     diagnostics_.add(Code::SyntaxError, span(second), "comparisons do not chain")
         .label(span(first.at), "the first comparison")
-        .help("write `… " + signs + " …`", {{{id_, middle.end, middle.end}, " and " + name}});
+        .help("write `… " + signs + " …`", {{{id_, middle.end, middle.end}, " and " + copy}});
 }
 
 void Builder::reduce_above(int precedence) {
@@ -490,8 +495,9 @@ void Builder::ternary() {
     const Item otherwise = pop_item(), then = pop_item(), condition = pop_item();
     remembered_.pop_back(); // the `:`
     const Index question = take_back(remembered_);
-    const std::string c(text(condition.begin, condition.end)), a(text(then.begin, then.end)),
-        b(text(otherwise.begin, otherwise.end));
+    const std::string c = brief(text(condition.begin, condition.end)),
+                      a = brief(text(then.begin, then.end)),
+                      b = brief(text(otherwise.begin, otherwise.end));
     foreign(span(question), "a choice is written with `if`")
         .help("write `if " + c + " { " + a + " } else { " + b + " }`",
               {{{id_, condition.begin, condition.begin}, "if "},

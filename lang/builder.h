@@ -15,6 +15,9 @@ namespace fathom::lang {
 bool is_foreign_value(std::string_view name);
 bool is_foreign_module(std::string_view name);
 
+// A text as it can stand in a message: of one line and not long, else `…`.
+std::string brief(std::string_view text);
+
 // Thrown by Builder::fail, caught around each statement: reading goes on behind it. Never leaves
 // parse().
 struct Abandon {};
@@ -100,6 +103,7 @@ class Builder {
     void no_value() { maybe_items_.emplace_back(); }
     void parameter();
     void function_open(Index at);
+    void declaration_open(Index at);
     void lambda_name(Index at);
     void function_head(Index next);
     void block_body() { expression_body_ = false; }
@@ -125,7 +129,7 @@ class Builder {
 
     // Rows of operands and operators.
     void expression_open(Index at);
-    void expression_close();
+    void row_end();
     void prefix(Index at);
     void binary(Index at);
     void remember(Index at) { remembered_.push_back(at); }
@@ -218,11 +222,18 @@ class Builder {
     bool foreign_failure(Wanted wanted, Index at);
     bool foreign_loop(Index at);
     bool foreign_head(Index first);
+    bool foreign_body(Index at);
+    bool foreign_lambda(Index at);
+    std::string parameters_text(Index open) const;
     bool foreign_junk(Index first, Index at);
     bool juxtaposed_calls(Index first, Index at);
-    void generic_failure(Wanted wanted, Index at);
-    std::string describe(Index at) const;
     void settle_foreign_names();
+
+    // Answers to all else (failures.cpp).
+    bool already_reported(Wanted wanted, Index at) const;
+    void generic_failure(Wanted wanted, Index at);
+    Index enclosing(Index at) const;
+    std::string describe(Index at) const;
 
     const Source &source_;
     SourceId id_;
@@ -251,8 +262,9 @@ class Builder {
     std::vector<std::uint32_t> expr_heights_, block_heights_;
     std::size_t depth_ = 0;
     bool in_function_ = false;
-    bool expression_body_ = false; // of the function whose body was just read
-    Index failed_ = 0;             // where the statement that is being abandoned broke
+    bool expression_body_ = false;      // of the function whose body was just read
+    std::uint32_t last_too_tall_ = ~0u; // where the chain began that was reported
+    Index failed_ = 0;                  // where the statement that is being abandoned broke
 
     // Names that other languages have, to be reported unless the file declares them.
     struct ForeignName {

@@ -109,6 +109,7 @@ void Builder::var(Index first, Index) {
 }
 
 void Builder::function(Index first, Index last) {
+    shallower();
     std::optional<TypeExpr> result = pop_maybe_type();
     const std::uint32_t body_height = height(blocks_.back());
     const FunctionId function = pop_function(pop_name(), std::move(result), span(first, last));
@@ -153,6 +154,7 @@ void Builder::import(Index first, Index last) {
 }
 
 void Builder::for_loop(Index first, Index last) {
+    shallower();
     const BlockId body = pop_block();
     const Item sequence = pop_item();
     add_stmt(For{pop_name(), sequence.id, body}, span(first, last),
@@ -160,6 +162,7 @@ void Builder::for_loop(Index first, Index last) {
 }
 
 void Builder::while_loop(Index first, Index last) {
+    shallower();
     const BlockId body = pop_block();
     const std::optional<Item> limit = pop_maybe_item();
     const Item condition = pop_item();
@@ -337,7 +340,8 @@ Builder::Index Builder::abandon(const Mark &mark, Index first) {
 
 Builder::Index Builder::junk(const Mark &mark, Index first, Index at) {
     failed_ = at;
-    if (!foreign_junk(first, at)) generic_failure(Wanted::StatementEnd, at);
+    if (!already_reported(Wanted::StatementEnd, at) && !foreign_junk(first, at))
+        generic_failure(Wanted::StatementEnd, at);
     return abandon(mark, first);
 }
 

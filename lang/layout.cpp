@@ -16,6 +16,7 @@ struct Level {
     Tok bracket = Tok::Body; // Open, ListOpen, Body; of the file, Body
     std::uint32_t index = 0; // of the opening token
     Header waits = Header::None;
+    bool never_closed = false;
 };
 
 // A statement goes on behind these at a line's end.
@@ -87,6 +88,36 @@ Tok closer_of(Tok bracket) {
                                       : Tok::BraceClose;
 }
 
+// A line that begins with one of these begins something new, were it not inside brackets.
+bool begins_anew(Tok kind) {
+    switch (kind) {
+    case Tok::Name:
+    case Tok::For:
+    case Tok::If:
+    case Tok::Number: return true;
+    default: return begins_declaration(kind);
+    }
+}
+
+// Which opening brackets no closing one belongs to, by the same rules as Layout::close.
+std::vector<bool> never_closed(const std::vector<Token> &words) {
+    std::vector<bool> unclosed(words.size(), false);
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const Tok kind = words[i].kind;
+        if (kind == Tok::Open || kind == Tok::ListOpen || kind == Tok::Body) open.push_back(i);
+        if (kind != Tok::Close && kind != Tok::ListClose && kind != Tok::BraceClose) continue;
+        const auto found = std::find_if(open.rbegin(), open.rend(), [&](std::size_t o) {
+            return closer_of(words[o].kind) == kind;
+        });
+        if (found == open.rend()) continue;
+        for (auto o = open.rbegin(); o != found; ++o) unclosed[*o] = true;
+        open.erase(found.base() - 1, open.end());
+    }
+    for (const std::size_t o : open) unclosed[o] = true;
+    return unclosed;
+}
+
 class Layout {
   public:
     Layout(const Source &source, SourceId id, const Words &words, Diagnostics &diagnostics)
@@ -94,6 +125,7 @@ class Layout {
         out_.tokens.reserve(words_.size() + words_.size() / 4);
         out_.match.reserve(words_.size() + words_.size() / 4);
         levels_.push_back({});
+        never_closed_ = never_closed(words_);
     }
 
     Tokens run() {
@@ -129,12 +161,12 @@ class Layout {
 
     void place(std::size_t i);
     void line_begins(const Token &t);
-    void open(const Token &t);
+    void open(const Token &t, std::size_t i);
     void close(const Token &t, std::size_t i);
     void close_missing();
     void report_unclosed(const Level &open, const Token *instead);
     bool else_if_of_other_languages(const Token &t);
-    Tok brace_kind(const Token &t);
+    Tok brace_kind();
 
     std::uint32_t indent_of(const Token &t) const {
         const auto line = position(source_, t.begin).line;
@@ -148,7 +180,8 @@ class Layout {
     Diagnostics &diagnostics_;
     Tokens out_;
     std::vector<Level> levels_;
-    std::optional<Level> suspect_; // the first `{` whose `}` stands further left than its line
+    std::vector<bool> never_closed_; // of the words
+    std::optional<Level> suspect_;   // the first `{` whose `}` stands further left than its line
 };
 
 void Layout::report_unclosed(const Level &open, const Token *instead) {
@@ -173,6 +206,13 @@ void Layout::line_begins(const Token &t) {
     if (!lines_count() && begins_declaration(t.kind)) {
         report_unclosed(level(), &t);
         while (!lines_count()) close_missing();
+    }
+    // Inside a bracket that is never closed, the line end behind a whole operand is where it should
+    // have been.
+    while (!lines_count() && level().never_closed && begins_anew(t.kind) &&
+           !continues_after(previous()) && out_.tokens.size() - 1 > level().index) {
+        report_unclosed(level(), &t);
+        close_missing();
     }
     if (!lines_count() || out_.tokens.empty() || out_.tokens.back().kind == Tok::End) return;
     const Tok last = previous();
@@ -206,7 +246,7 @@ void Layout::line_begins(const Token &t) {
     end_statement();
 }
 
-Tok Layout::brace_kind(const Token &) {
+Tok Layout::brace_kind() {
     if (previous() == Tok::FatArrow) return Tok::Body;
     if (level().waits != Header::None) {
         level().waits = Header::None;
@@ -215,15 +255,16 @@ Tok Layout::brace_kind(const Token &) {
     return takes_block(previous()) ? Tok::Trailing : Tok::StrayBrace;
 }
 
-void Layout::open(const Token &t) {
+void Layout::open(const Token &t, std::size_t i) {
     Tok kind = t.kind;
     Tok bracket = t.kind;
     if (kind == Tok::Body)
-        kind = brace_kind(t);
+        kind = brace_kind();
     else if (t.first_on_line)
         kind = kind == Tok::Open ? Tok::FreshOpen : Tok::FreshListOpen;
     put(t, kind);
-    levels_.push_back({bracket, static_cast<std::uint32_t>(out_.tokens.size() - 1), Header::None});
+    levels_.push_back({bracket, static_cast<std::uint32_t>(out_.tokens.size() - 1), Header::None,
+                       never_closed_[i]});
 }
 
 void Layout::close(const Token &t, std::size_t i) {
@@ -275,7 +316,7 @@ void Layout::place(std::size_t i) {
     switch (t.kind) {
     case Tok::Open:
     case Tok::ListOpen:
-    case Tok::Body: return open(t);
+    case Tok::Body: return open(t, i);
     case Tok::Close:
     case Tok::ListClose:
     case Tok::BraceClose: return close(t, i);

@@ -155,7 +155,8 @@ void Lexer::add(Tok kind, std::uint32_t begin, std::uint32_t end) {
 
 Diagnostic &Lexer::foreign(std::uint32_t begin, std::uint32_t end, std::string message,
                            std::string replacement) {
-    std::string help = "write " + quoted_code(replacement);
+    std::string help =
+        "write " + quoted_code(std::string_view(replacement).substr(0, replacement.find(' ')));
     return report(Code::ForeignSyntax, begin, end, std::move(message))
         .help(std::move(help), {{span(begin, end), std::move(replacement)}});
 }

@@ -213,12 +213,13 @@ struct binary
           Tok::Minus, Tok::Star, Tok::Slash, Tok::Percent, Tok::Caret> {};
 struct operand : sor<lambda, seq<primary, star<postfix>>, seq<plus<prefix>, must<operand>>> {};
 struct enter : success {};
+struct row_end : success {};
 struct leave : success {};
 struct question : tok<Tok::Question> {};
 struct ternary_colon : tok<Tok::Colon> {};
 struct ternary : seq<question, must<expression>, must<ternary_colon>, must<expression>> {};
-struct expression : seq<at<operand_start>, enter, must<operand>, star<binary, must<operand>>, leave,
-                        opt<ternary>> {};
+struct expression : seq<at<operand_start>, enter, must<operand>, star<binary, must<operand>>,
+                        row_end, opt<ternary>, leave> {};
 
 // Statements.
 struct assign_sign : tok<Tok::Assign> {};
@@ -241,11 +242,12 @@ struct import_path : tok<Tok::String> {};
 struct import_as : seq<tok<Tok::As>, must<declared_name>> {};
 struct import : seq<tok<Tok::Import>, must<import_path>, sor<import_as, no_name>> {};
 struct loop_in : tok<Tok::In> {};
-struct for_loop
-    : seq<tok<Tok::For>, must<declared_name>, must<loop_in>, must<expression>, must<block>> {};
+struct loop_open : tok<Tok::For, Tok::While> {};
+struct for_loop : seq<at<tok<Tok::For>>, loop_open, must<declared_name>, must<loop_in>,
+                      must<expression>, must<block>> {};
 struct while_limit : seq<tok<Tok::Limit>, must<expression>> {};
-struct while_loop
-    : seq<tok<Tok::While>, must<expression>, sor<while_limit, no_value>, must<block>> {};
+struct while_loop : seq<at<tok<Tok::While>>, loop_open, must<expression>,
+                        sor<while_limit, no_value>, must<block>> {};
 struct break_loop : tok<Tok::Break> {};
 struct returned : seq<expression> {};
 struct return_value : seq<tok<Tok::Return>, sor<returned, no_value>> {};
@@ -399,7 +401,8 @@ template <> struct action<trailing> : with_range<&Builder::trailing> {};
 template <> struct action<step> : with_token<&Builder::step> {};
 
 template <> struct action<enter> : with_token<&Builder::expression_open> {};
-template <> struct action<leave> : plain<&Builder::expression_close> {};
+template <> struct action<row_end> : plain<&Builder::row_end> {};
+template <> struct action<leave> : plain<&Builder::shallower> {};
 template <> struct action<prefix> : with_token<&Builder::prefix> {};
 template <> struct action<binary> : with_token<&Builder::binary> {};
 template <> struct action<question> : with_token<&Builder::remember> {};
@@ -408,7 +411,7 @@ template <> struct action<ternary> : plain<&Builder::ternary> {};
 
 template <> struct action<let> : with_range<&Builder::let> {};
 template <> struct action<var> : with_range<&Builder::var> {};
-template <> struct action<function_open> : with_token<&Builder::function_open> {};
+template <> struct action<function_open> : with_token<&Builder::declaration_open> {};
 template <> struct action<function_head> : with_token<&Builder::function_head> {};
 template <> struct action<function_value> : plain<&Builder::value_body> {};
 template <> struct action<function> : with_range<&Builder::function> {};
@@ -416,6 +419,7 @@ template <> struct action<param_range> : plain<&Builder::some_value> {};
 template <> struct action<param_label> : with_token<&Builder::param_label> {};
 template <> struct action<param> : with_range<&Builder::param> {};
 template <> struct action<import> : with_range<&Builder::import> {};
+template <> struct action<loop_open> : with_token<&Builder::deeper> {};
 template <> struct action<for_loop> : with_range<&Builder::for_loop> {};
 template <> struct action<while_limit> : plain<&Builder::some_value> {};
 template <> struct action<while_loop> : with_range<&Builder::while_loop> {};

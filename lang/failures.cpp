@@ -1,0 +1,179 @@
+// What is said where the text cannot be read and no other language explains it: what was wanted,
+// what was found, and the bracket that it concerns.
+#include "lang/builder.h"
+
+namespace fathom::lang {
+
+namespace {
+
+std::string wanted_text(Wanted wanted) {
+    switch (wanted) {
+    case Wanted::Expression: return "an expression";
+    case Wanted::Statement: return "a statement";
+    case Wanted::CloseParen: return "`,` or `)`";
+    case Wanted::CloseList: return "`,` or `]`";
+    case Wanted::CloseBrace: return "`}`";
+    case Wanted::Name: return "a name";
+    case Wanted::ParameterName: return "a parameter's name";
+    case Wanted::OpenParen: return "`(` and the parameters";
+    case Wanted::AssignSign: return "`=` and a value";
+    case Wanted::Type: return "a type";
+    case Wanted::TypeEnd: return "`>`";
+    case Wanted::TypeNumber: return "a number, as in `shape<1.5>`";
+    case Wanted::TypeArrow: return "`->` and a type, as in `(vec3) -> float`";
+    case Wanted::FunctionBody: return "`{` or `=` and the function's body";
+    case Wanted::Block: return "`{`";
+    case Wanted::In: return "`in`";
+    case Wanted::Arrow: return "`=>`";
+    case Wanted::MemberName: return "a name after the `.`";
+    case Wanted::ImportPath: return "a file's name in double quotes";
+    case Wanted::TernaryColon: return "`:`";
+    case Wanted::StatementEnd: return "the end of the statement";
+    }
+    return "";
+}
+
+bool begins_operand(Tok kind) {
+    switch (kind) {
+    case Tok::Name:
+    case Tok::LambdaName:
+    case Tok::Number:
+    case Tok::String:
+    case Tok::Color:
+    case Tok::True:
+    case Tok::False:
+    case Tok::Open:
+    case Tok::FreshOpen:
+    case Tok::LambdaOpen:
+    case Tok::ListOpen:
+    case Tok::FreshListOpen:
+    case Tok::If:
+    case Tok::Not: return true;
+    default: return false;
+    }
+}
+
+bool is_keyword(Tok kind) {
+    switch (kind) {
+    case Tok::Let:
+    case Tok::Var:
+    case Tok::Fn:
+    case Tok::Param:
+    case Tok::Import:
+    case Tok::For:
+    case Tok::In:
+    case Tok::If:
+    case Tok::Else:
+    case Tok::While:
+    case Tok::Break:
+    case Tok::Return:
+    case Tok::And:
+    case Tok::Or:
+    case Tok::Not:
+    case Tok::True:
+    case Tok::False: return true;
+    default: return false;
+    }
+}
+
+} // namespace
+
+void Builder::fail(Wanted wanted, Index at) {
+    failed_ = at;
+    if (!already_reported(wanted, at) && !foreign_failure(wanted, at)) generic_failure(wanted, at);
+    throw Abandon{};
+}
+
+// A word that is none was reported when it was read, a bracket that is missing when it was missed.
+bool Builder::already_reported(Wanted wanted, Index at) const {
+    const auto is_virtual = [&](Index i) {
+        return token(i).begin == token(i).end && kind(i) != Tok::End;
+    };
+    if (at < tokens_.tokens.size() && (kind(at) == Tok::Bad || is_virtual(at))) return true;
+    if (wanted != Wanted::CloseParen && wanted != Wanted::CloseList) return false;
+    return is_virtual(tokens_.match[enclosing(at)]);
+}
+
+Span Builder::place(Index at) const {
+    if (at < tokens_.tokens.size()) return span(at);
+    const std::uint32_t end = tokens_.tokens.empty() ? 0 : tokens_.tokens.back().end;
+    return {id_, end, end};
+}
+
+// The bracket around a token, or 0.
+Builder::Index Builder::enclosing(Index at) const {
+    for (Index i = at; i-- > 0;) {
+        const Index partner = tokens_.match[i];
+        if (partner < i)
+            i = partner;
+        else if (partner > i)
+            return i;
+    }
+    return 0;
+}
+
+std::string Builder::describe(Index at) const {
+    if (at >= tokens_.tokens.size()) return "the end of the file";
+    const Token &t = token(at);
+    if (t.kind == Tok::End) return t.begin == t.end ? "the end of the line" : "`;`";
+    if (t.kind == Tok::String) return "a string";
+    if (t.kind == Tok::Number) return "the number `" + std::string(text(at)) + "`";
+    if (is_keyword(t.kind)) return "the keyword `" + std::string(text(at)) + "`";
+    return "`" + std::string(text(at)) + "`";
+}
+
+void Builder::generic_failure(Wanted wanted, Index at) {
+    const Tok found = kind(at);
+    const bool exists = at < tokens_.tokens.size();
+    if (exists && found == Tok::StrayBrace) {
+        diagnostics_.add(Code::SyntaxError, span(at), "a block cannot stand here")
+            .note("`{` opens a block behind a callee, a header, a function's head or `=>`")
+            .help("to put shapes together, write `union { … }`");
+        return;
+    }
+    if (exists && found == Tok::Else) {
+        diagnostics_.add(Code::SyntaxError, span(at), "this `else` belongs to no `if`");
+        return;
+    }
+    Diagnostic &d = diagnostics_.add(Code::SyntaxError, place(at),
+                                     "expected " + wanted_text(wanted) + ", found " + describe(at));
+    switch (wanted) {
+    case Wanted::CloseParen:
+    case Wanted::CloseList:
+    case Wanted::CloseBrace: {
+        d.label(span(enclosing(at)), "opened here");
+        if (begins_operand(found) && wanted != Wanted::CloseBrace) {
+            const std::uint32_t end = token(at - 1).end;
+            d.help("a comma may be missing", {{{id_, end, end}, ","}});
+        }
+        break;
+    }
+    case Wanted::Name:
+    case Wanted::ParameterName:
+    case Wanted::MemberName:
+        if (exists && is_keyword(found)) d.note("a keyword cannot be a name");
+        break;
+    case Wanted::StatementEnd:
+        if (begins_operand(found)) {
+            const std::uint32_t end = token(at - 1).end;
+            d.help("begin a new line, or part statements by `;`", {{{id_, end, end}, ";"}});
+        }
+        break;
+    case Wanted::OpenParen: d.note("a function without parameters has empty parentheses"); break;
+    case Wanted::Expression:
+    case Wanted::Statement:
+    case Wanted::AssignSign:
+    case Wanted::Type:
+    case Wanted::TypeEnd:
+    case Wanted::TypeNumber:
+    case Wanted::TypeArrow:
+    case Wanted::FunctionBody:
+    case Wanted::Block:
+    case Wanted::In:
+    case Wanted::Arrow:
+    case Wanted::ImportPath:
+    case Wanted::TernaryColon: break;
+    }
+}
+
+} // namespace fathom::lang
