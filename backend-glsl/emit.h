@@ -23,7 +23,7 @@ struct Options {
     bool buffers = false;    // the host binds large tables as the texture buffer `fathom_tables`; else all data is text
     double time = 0;         // where a target has no host that sets a camera: the moment whose camera is the first view
     std::string title = "scene";             // html: the page's title
-    std::function<std::string(Span)> place;  // "arch.sdf:12", or an empty text
+    std::function<std::string(Span)> place{}; // "arch.sdf:12", or an empty text
 };
 
 // What a host has to set. Inputs of the frame (camera, time, size) have fixed names, see marcher.h.

@@ -1,0 +1,57 @@
+// An emitted text as a linked GL program with its data, and the one pass that it draws. Needs a current context of GL 3.3 or
+// later, its own or a window's; makes none.
+#pragma once
+
+#include "backend-glsl/emit.h"
+#include "ir/view.h"
+
+#include <array>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace fathom::gl {
+
+// What the driver says against a shader, with the line of our text.
+struct ProgramError {
+    int line = 0; // 0: of no line
+    std::string message, source_line;
+};
+
+enum class Mode { Picture = 0, Heat = 1, Numbers = 2, Linear = 3 };
+
+struct FrameInputs {
+    ir::View view;
+    ir::Triple sun{0, 1, 0}; // ir::lights_of's, where the scene has none
+    int width = 0, height = 0;
+    std::array<double, 2> offset{0.5, 0.5};
+    double time = 0;
+    Mode mode = Mode::Picture;
+};
+
+class Program {
+  public:
+    // `output` is of Target::Glsl330 or Glsl450; the images and grids that it names are taken from `scene`.
+    static std::variant<Program, ProgramError> build(const glsl::Output &output, const ir::Scene &scene);
+
+    // Draws over the current framebuffer and viewport (the scissor rectangle applies), with the params' values of `params`.
+    void draw(const FrameInputs &inputs, const std::vector<ir::Param> &params) const;
+
+    // Replaces the tables' numbers where only these changed. Their size must be the same.
+    void upload_tables(const std::vector<float> &texels) const;
+
+    Program(Program &&other) noexcept;
+    Program &operator=(Program &&other) noexcept;
+    ~Program();
+
+  private:
+    Program() = default;
+    void release();
+    int location(const char *name) const;
+
+    unsigned program_ = 0, vertex_array_ = 0, table_buffer_ = 0, table_texture_ = 0;
+    std::vector<std::pair<unsigned, unsigned>> textures_; // target, name; bound to units 1, 2, …
+    std::vector<glsl::Uniform> uniforms_;
+};
+
+} // namespace fathom::gl

@@ -1,0 +1,37 @@
+// Off-screen pictures of a scene: emits, builds, draws strip by strip, reads back. Needs a current context.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "base/picture.h"
+#include "render-gl/program.h"
+
+#include <functional>
+#include <optional>
+
+namespace fathom::gl {
+
+struct Request {
+    int width = 800, height = 600;
+    int samples = 1; // a pixel
+    double time = 0;
+    std::optional<ir::View> view{};           // else the scene's own
+    std::function<bool(double)> progress{};   // asked now and then with 0..1; false stops
+};
+
+// Rows from the top, RGBA.
+struct Pixels {
+    int width = 0, height = 0;
+    std::vector<float> rgba;
+};
+
+// The largest width and height that the context can draw at once.
+int largest_side();
+
+// What `mode` writes, averaged over the samples. Nothing where `progress` stopped it or the framebuffer cannot be made
+// (too large, no memory).
+std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const Request &request, Mode mode);
+
+// The whole way. Nothing where the scene cannot be emitted or built (said in `diagnostics`), or it was stopped.
+std::optional<Picture> render(const ir::Scene &scene, const Request &request, Diagnostics &diagnostics);
+
+} // namespace fathom::gl
