@@ -130,6 +130,20 @@ bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b) {
 
 } // namespace
 
+std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {
+    auto p = polynomial(graph, a), q = polynomial(graph, b);
+    if (!p || !q) return {};
+    for (const auto &[m, c] : *q) (*p)[m] -= c;
+    NodeId sum = graph.number(0);
+    for (const auto &[m, c] : *p) {
+        if (c == 0) continue;
+        NodeId term = graph.number(c);
+        for (NodeId f : m) term = graph.mul(term, f);
+        sum = graph.add(sum, term);
+    }
+    return sum;
+}
+
 bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b) {
     const ir::Node node = graph[condition];
     switch (node.op) {

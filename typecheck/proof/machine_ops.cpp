@@ -746,7 +746,7 @@ void Machine::step(const Instruction &in) {
         return finish(in, up(times(data.slope * std::sqrt(double(n)), norm(0)), 4), any_odd);
     }
     case Op::Call: case Op::Cached: case Op::Fold: case Op::FoldResult: break; // flattened away
-    case Op::MakeHit: case Op::HitDistance: case Op::NearestHit: case Op::FarthestHit: case Op::HitWith:
+    case Op::MakeHit: case Op::HitDistance: case Op::HitPaint: case Op::HitPoint: case Op::HitExtra: case Op::NearestHit: case Op::FarthestHit: case Op::HitWith:
     case Op::FillPaint: break; // colours, never geometry
     }
     for (int c = 0; c < n; ++c) set(c, Interval::everything(), none);

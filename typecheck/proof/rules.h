@@ -8,8 +8,8 @@
 namespace fathom::proof {
 
 enum class Rule : std::size_t {
-    ScaleFactor, Twist, Bend, Taper, Distort, Displace, LerpWeight, LerpVarying, Columns, Pipe, PseudoNorm,
-    Field, Contract_, RepeatNeighbors, Count
+    Twist, Bend, Taper, Distort, Displace, LerpVarying, Columns, Pipe, PseudoNorm,
+    Field, RepeatNeighbors, Count
 };
 
 // factor[r] multiplies what rule r adds to 1 (a factor's excess over 1, or a sum's second term); 1 is the truth.

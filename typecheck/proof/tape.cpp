@@ -282,7 +282,7 @@ struct Flattener {
         case Op::ToFloat: case Op::ToInt: case Op::Splat: case Op::Make: case Op::Swizzle: case Op::Column:
         case Op::MatMul: case Op::Transpose: case Op::TableRead: case Op::Hash: case Op::Perlin: case Op::Simplex:
         case Op::ValueNoise: case Op::Worley: case Op::SpotNoise: case Op::Image: case Op::Grid: case Op::Union:
-        case Op::Intersection: case Op::Blend: case Op::MakeHit: case Op::HitDistance: case Op::NearestHit:
+        case Op::Intersection: case Op::Blend: case Op::MakeHit: case Op::HitDistance: case Op::HitPaint: case Op::HitPoint: case Op::HitExtra: case Op::NearestHit:
         case Op::FarthestHit: case Op::HitWith: case Op::FillPaint: break;
         }
         for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))

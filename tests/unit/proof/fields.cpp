@@ -1,0 +1,161 @@
+// What the analysis makes of field expressions.
+#include "build.h"
+
+#include <catch2/catch.hpp>
+
+using namespace fathom;
+using namespace fathom::test;
+using proof::Cell;
+
+namespace {
+Cell cube(double r) { return {{Interval(-r, r), Interval(-r, r), Interval(-r, r)}}; }
+} // namespace
+
+TEST_CASE("a length has slope 1 everywhere, also at 0") {
+    Scenery s;
+    auto b = s.bound(s.g.sub(s.length(s.p), s.n(1)));
+    CHECK(b.lipschitz == Approx(1).epsilon(1e-12));
+    CHECK(b.evaluations < 40);
+}
+
+TEST_CASE("a square root of squares is a length") {
+    Scenery s;
+    NodeId q = s.g.add(s.g.mul(s.x, s.x), s.g.add(s.g.mul(s.z, s.z), s.n(0.01)));
+    auto b = s.bound(s.call(Op::Sqrt, q));
+    CHECK(b.lipschitz == Approx(1).epsilon(1e-6));
+    auto c = s.bound(s.call(Op::Sqrt, s.g.add(s.g.mul(s.x, s.x), s.g.mul(s.y, s.y))));
+    CHECK(c.lipschitz == Approx(1).epsilon(1e-6));
+}
+
+TEST_CASE("the gyroid everywhere, by its period") {
+    Scenery s;
+    NodeId k = s.n(1 / 0.35);
+    NodeId q = s.g.mul(s.p, k);
+    NodeId f = s.g.make(Op::Dot, {s.sin(q), s.cos(s.g.swizzle(q, std::array{2, 0, 1}))});
+    NodeId shell = s.g.sub(s.g.mul(s.call(Op::Abs, f), s.n(0.35)), s.n(0.05));
+    auto b = s.bound(shell);
+    INFO("evaluations " << b.evaluations << " sampled " << b.sampled);
+    CHECK(b.lipschitz >= std::sqrt(3.0) * (1 - 1e-9));
+    CHECK(b.lipschitz <= std::sqrt(3.0) * 1.12);
+    auto c = s.bound(shell, cube(1.5));
+    INFO("evaluations " << c.evaluations << " sampled " << c.sampled);
+    CHECK(c.lipschitz <= std::sqrt(3.0) * 1.12);
+}
+
+TEST_CASE("waves of % are continuous behind an even function, and jump otherwise") {
+    Scenery s;
+    NodeId m = s.g.splat(s.n(2), Type::Vec3);
+    NodeId a = s.g.sub(s.g.make(Op::Mod, {s.p, m}), s.g.splat(s.n(1), Type::Vec3));
+    auto b = s.bound(s.g.sub(s.length(a), s.n(0.5)));
+    CHECK(b.lipschitz == Approx(1).epsilon(1e-9));
+    auto jump = s.bound(s.g.component(a, 0));
+    CHECK(std::isinf(jump.lipschitz));
+    CHECK(jump.trouble == proof::Trouble::Jump);
+    CHECK(std::fabs(jump.value_a - jump.value_b) == Approx(2).epsilon(1e-3));
+    auto off = s.bound(s.length(s.g.sub(s.g.make(Op::Mod, {s.p, m}), s.g.splat(s.n(0.9), Type::Vec3))));
+    CHECK(std::isinf(off.lipschitz));
+}
+
+TEST_CASE("the Menger field, a loop whose scale changes by turn, has slope 1") {
+    Scenery s;
+    Graph &g = s.g;
+    NodeId a = s.call(Op::Abs, s.p);
+    NodeId most = g.make(Op::Max, {g.component(a, 0), g.make(Op::Max, {g.component(a, 1), g.component(a, 2)})});
+    Fold fold;
+    fold.count = g.integer(4);
+    fold.max_count = 4;
+    fold.index = g.fresh_var(Type::Int);
+    NodeId d = g.fresh_var(Type::Float), scale = g.fresh_var(Type::Float);
+    fold.vars = {d, scale};
+    NodeId cell = g.sub(g.make(Op::Mod, {g.mul(s.p, scale), g.splat(s.n(2), Type::Vec3)}), g.splat(s.n(1), Type::Vec3));
+    NodeId next = g.mul(scale, s.n(3));
+    NodeId r = s.call(Op::Abs, g.sub(g.splat(s.n(1), Type::Vec3), g.mul(s.call(Op::Abs, cell), s.n(3))));
+    NodeId rx = g.component(r, 0), ry = g.component(r, 1), rz = g.component(r, 2);
+    auto max = [&](NodeId u, NodeId v) { return g.make(Op::Max, {u, v}); };
+    auto min = [&](NodeId u, NodeId v) { return g.make(Op::Min, {u, v}); };
+    NodeId c = g.div(g.sub(min(max(rx, ry), min(max(ry, rz), max(rz, rx))), s.n(1)), next);
+    fold.next = {max(d, c), next};
+    FoldId id = g.add_fold(fold);
+    NodeId node = g.make(Op::Fold, Type::Float, {g.sub(most, s.n(1)), s.n(1)}, id.index);
+    NodeId result = g.make(Op::FoldResult, Type::Float, {node}, 0);
+    auto b = s.bound(result, cube(1));
+    INFO("evaluations " << b.evaluations);
+    CHECK(b.lipschitz == Approx(1).epsilon(1e-9));
+}
+
+TEST_CASE("division by a length is singular at the origin, and not away from it") {
+    Scenery s;
+    NodeId f = s.g.sub(s.g.div(s.n(1), s.length(s.p)), s.n(2));
+    auto b = s.bound(f, cube(2));
+    CHECK(std::isinf(b.lipschitz));
+    CHECK(b.trouble == proof::Trouble::Singular);
+    CHECK(std::fabs(b.where[0]) < 1e-3);
+    auto away = s.bound(f, {{Interval(1, 2), Interval(-2, 2), Interval(-2, 2)}});
+    CHECK(away.lipschitz >= 1);
+    CHECK(away.lipschitz < 1.06);
+    auto root = s.bound(s.call(Op::Sqrt, s.x));
+    CHECK(root.trouble == proof::Trouble::Singular);
+}
+
+TEST_CASE("a field that steepens without limit says so") {
+    Scenery s;
+    auto b = s.bound(s.g.mul(s.x, s.x));
+    CHECK(std::isinf(b.lipschitz));
+    CHECK(b.at_infinity);
+    CHECK(s.bound(s.g.mul(s.x, s.x), cube(2)).lipschitz == Approx(4));
+}
+
+TEST_CASE("sin(x)/x is smooth at 0") {
+    Scenery s;
+    auto b = s.bound(s.g.div(s.sin(s.x), s.x), cube(9));
+    CHECK(b.lipschitz >= 0.436);
+    CHECK(b.lipschitz < 0.46);
+}
+
+TEST_CASE("an if whose arms agree on the border is continuous") {
+    Scenery s;
+    Graph &g = s.g;
+    NodeId zero = s.n(0);
+    NodeId fold = g.make(Op::Select, {g.make(Op::Less, {s.x, zero}), g.neg(s.x), s.x});
+    CHECK(s.bound(fold).lipschitz == Approx(1));
+    NodeId l = s.length(s.p), one = s.n(1);
+    NodeId smooth = g.make(Op::Select, {g.make(Op::Less, {l, one}), g.mul(l, l), g.sub(g.mul(s.n(2), l), one)});
+    auto b = s.bound(smooth, cube(2));
+    CHECK(b.lipschitz >= 2);
+    CHECK(b.lipschitz < 2.2);
+    NodeId linear = g.make(Op::Select, {g.make(Op::Less, {g.mul(s.n(2), s.x), one}), s.x, g.sub(one, s.x)});
+    CHECK(s.bound(linear).lipschitz == Approx(1));
+    NodeId jump = g.make(Op::Select, {g.make(Op::Less, {s.x, zero}), s.n(1), s.x});
+    auto bad = s.bound(jump);
+    CHECK(bad.trouble == proof::Trouble::Jump);
+    CHECK(std::fabs(bad.value_a - bad.value_b) == Approx(1).epsilon(1e-3));
+}
+
+TEST_CASE("noise uses its certified constants") {
+    Scenery s;
+    NodeId f = s.g.mul(s.call(Op::Perlin, s.g.mul(s.p, s.n(4))), s.n(0.03));
+    auto b = s.bound(f);
+    CHECK(b.lipschitz == Approx(0.03 * 4 * 3.7542).epsilon(1e-6));
+    CHECK(b.value.hi == Approx(0.03 * 1.0364).epsilon(1e-6));
+}
+
+TEST_CASE("a cut-off hides what lies above it") {
+    Scenery s;
+    NodeId steep = s.g.sub(s.g.mul(s.length(s.p), s.g.mul(s.length(s.p), s.length(s.p))), s.n(1));
+    auto b = s.bound(s.g.make(Op::Min, {steep, s.n(0.2)}));
+    INFO("evaluations " << b.evaluations);
+    CHECK(b.lipschitz >= 3 * std::pow(1.2, 2.0 / 3) * 0.99);
+    CHECK(b.lipschitz < 3 * std::pow(1.2, 2.0 / 3) * 1.1);
+}
+
+TEST_CASE("rotations by an angle that varies are as steep as their shear") {
+    Scenery s;
+    Graph &g = s.g;
+    NodeId angle = g.mul(s.y, s.n(2)), c = s.cos(angle), w = s.sin(angle);
+    NodeId q = s.vec(g.sub(g.mul(s.x, c), g.mul(s.z, w)), s.y, g.add(g.mul(s.x, w), g.mul(s.z, c)));
+    auto b = s.bound(q, {{Interval(-0.5, 0.5), Interval(-1, 1), Interval(-0.5, 0.5)}});
+    INFO("evaluations " << b.evaluations << " sampled " << b.sampled);
+    double truth = proof::sigma(2 * std::sqrt(0.5));
+    CHECK(b.lipschitz >= truth * (1 - 1e-6));
+    CHECK(b.lipschitz < truth * 1.1);
+}

@@ -1,0 +1,234 @@
+// Fields of the user's own: their bounds over the region where they are asked, what is assumed of them, and the
+// reports that say where and why there is none.
+#include "typecheck/proof/prover.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::proof {
+
+using ir::FieldKind;
+using ir::NodeId;
+using ir::Op;
+using ir::Shape;
+using ir::ShapeId;
+using ir::ShapeKind;
+using ir::rounding::infinity;
+
+std::string number_text(double x) {
+    if (std::isinf(x)) return x > 0 ? "infinity" : "-infinity";
+    if (x == 0 || std::fabs(x) < 1e-12) return "0";
+    return fmt::format("{:.3g}", x);
+}
+std::string point_text(const std::array<double, 3> &p, int dims) {
+    std::string out = "[" + number_text(p[0]) + ", " + number_text(p[1]);
+    if (dims == 3) out += ", " + number_text(p[2]);
+    return out + "]";
+}
+
+Diagnostic *Prover::report(ShapeId id, Code code, std::string message) {
+    if (!place(id).audible) return nullptr;
+    return &diagnostics.add(code, scene.shapes[id].origin, std::move(message));
+}
+
+FieldBound Prover::bound(ShapeId id, NodeId field, const std::string &what, bool report_it) {
+    const Place &here = place(id);
+    FieldBound out;
+    if (!here.audible) { // inside a body whose claims are taken
+        out.lipschitz = 1;
+        out.value = Interval::everything();
+        return out;
+    }
+    Budget budget;
+    budget.instructions = options.field_instructions;
+    out = bound_field(flattening, ranges, field, {to_cell(here.box), here.zone}, budget);
+    if (!std::isfinite(out.lipschitz) && report_it) report_field(id, out, what);
+    return out;
+}
+
+namespace {
+
+std::string cause_text(const ir::Graph &graph, NodeId cause) {
+    if (!cause) return "an operation";
+    switch (graph[cause].op) {
+    case Op::Div: return "a division by 0";
+    case Op::Sqrt: return "a square root at 0";
+    case Op::InverseSqrt: return "`inversesqrt` at 0";
+    case Op::Pow: return "a power at 0";
+    case Op::Log: case Op::Log2: return "a logarithm at 0";
+    case Op::Tan: return "`tan` at its pole";
+    case Op::Asin: return "`asin` at -1 or 1";
+    case Op::Acos: return "`acos` at -1 or 1";
+    case Op::Atan2: return "`atan` of two arguments at the origin";
+    case Op::Normalize: return "`normalize` at 0";
+    case Op::Mod: return "`%`";
+    case Op::Floor: return "`floor`";
+    case Op::Ceil: return "`ceil`";
+    case Op::Round: return "`round`";
+    case Op::Trunc: case Op::ToInt: return "`int` or `trunc`";
+    case Op::Fract: return "`fract`";
+    case Op::Step: return "`step`";
+    case Op::Sign: return "`sign`";
+    case Op::Hash: return "`hash` of the point";
+    case Op::Select: return "an `if`";
+    case Op::Fold: return "a loop that ends early";
+    case Op::TableRead: return "an index that depends on the point";
+    case Op::Smoothstep: return "`smoothstep` with equal edges";
+    case Op::Sub: case Op::Add: return "a wave made with `%`";
+    default: return "`" + std::string(ir::info(graph[cause].op).name) + "`";
+    }
+}
+
+} // namespace
+
+void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &what) {
+    int dims = scene.shapes[id].dims;
+    const std::string assume = scene.shapes[id].kind == ShapeKind::Leaf
+                                   ? "or state a bound that you know with `lipschitz:`, which is then tested"
+                                   : "or limit it";
+    if (b.too_large) {
+        if (Diagnostic *d = report(id, Code::LipschitzUnbounded, what + " is too large to be analysed"))
+            d->help("make its loops shorter, " + assume);
+        return;
+    }
+    std::string cause = cause_text(graph, b.cause);
+    if (b.at_infinity) {
+        if (Diagnostic *d = report(id, Code::LipschitzUnbounded, what + " grows steeper without limit, as it is asked everywhere"))
+            d->note("no bound on its slope holds for all points; far from the origin " + cause + " has none")
+                .help("give it a region, as in `within: ball(3)`, " + assume);
+        return;
+    }
+    switch (b.trouble) {
+    case Trouble::Jump: {
+        bool seen = std::fabs(b.value_a - b.value_b) > 1e-4 * std::max({1.0, std::fabs(b.value_a), std::fabs(b.value_b)});
+        if (seen) {
+            if (Diagnostic *d = report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))
+                d->note("it is " + number_text(b.value_a) + " at " + point_text(b.side_a, dims) + " and " + number_text(b.value_b) +
+                        " at " + point_text(b.side_b, dims) + ": " + cause)
+                    .help("make both sides agree there, keep the jump out of the region with `within:`, " + assume);
+        } else if (Diagnostic *d = report(id, Code::LipschitzUnbounded, "it cannot be proved that " + what + " does not jump near " + point_text(b.where, dims)))
+            d->note(cause + " chooses there; the values on both sides are " + number_text(b.value_a) + " and " + number_text(b.value_b))
+                .help("write it with `min`, `max`, `clamp` or `abs`, whose continuity is known, " + assume);
+        return;
+    }
+    case Trouble::Singular:
+    case Trouble::None:
+        if (Diagnostic *d = report(id, Code::FieldSingular, what + " is undefined or infinitely steep near " + point_text(b.where, dims)))
+            d->note(cause + " happens there, and the field is asked in all of its region")
+                .help("choose a region that avoids it, as in `within: ball(2) - tube(Y, 0.1)`, keep it off with `max(…, 0.001)`, " + assume);
+        return;
+    }
+}
+
+Known Prover::know_leaf(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    Known k;
+    k.fact.kind = FieldKind::Bound;
+    k.fact.lever = {infinity, infinity, infinity};
+    if (shape.dims == 2) k.fact.bounds.lo[2] = k.fact.bounds.hi[2] = 0;
+    if (shape.assumed > 0 || shape.estimate > 0) {
+        bool assumed = shape.assumed > 0;
+        set_lipschitz(k, assumed ? shape.assumed : shape.estimate);
+        k.fact.status = assumed ? ir::ProofStatus::Assumed : ir::ProofStatus::Estimated;
+        if (!assumed) k.fact.kind = FieldKind::Estimate;
+        test_assumed(id, shape.args[0], k.fact.lipschitz_sup, !assumed);
+        return k;
+    }
+    FieldBound b = bound(id, shape.args[0], "this field");
+    if (!std::isfinite(b.lipschitz)) {
+        fail(k);
+        return k;
+    }
+    set_lipschitz(k, b.lipschitz * options.rules[Rule::Field]);
+    if (b.lipschitz == 0) set_lipschitz(k, 1); // a constant
+    return k;
+}
+
+// Pairs of points at all distances, and gradient ascent from the steepest: two points that refute the limit, if any are found.
+void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate) {
+    const Place &here = place(id);
+    if (!here.audible || !options.test_assumptions) return;
+    Tape tape = flatten(flattening, field);
+    if (tape.too_large) return;
+    Machine machine(tape, ranges);
+    Dice dice{0xa55e55};
+    int dims = scene.shapes[id].dims;
+    auto random_point = [&] {
+        std::array<double, 3> p{};
+        for (int tries = 0; tries < 64; ++tries) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                double lo = std::max(here.box.lo[i], -4.0), hi = std::min(here.box.hi[i], 4.0);
+                if (lo > hi) lo = hi = std::isfinite(here.box.lo[i]) ? here.box.lo[i] : here.box.hi[i];
+                p[i] = dims == 2 && i == 2 ? 0 : lo + (hi - lo) * dice.next();
+            }
+            if (!here.zone || !misses(*here.zone, {{Interval(p[0]), Interval(p[1]), Interval(p[2])}})) break;
+        }
+        return p;
+    };
+    using Values = std::array<double, 4>;
+    auto ask = [&](const std::array<double, 3> &p) {
+        machine.run({{Interval(p[0]), Interval(p[1]), Interval(p[2])}});
+        Values v{};
+        for (int i = 0; i < std::min(machine.size(), 4); ++i) v[static_cast<std::size_t>(i)] = machine.value(i).finite() ? machine.value(i).middle() : NAN;
+        return v;
+    };
+    auto slope = [&](const std::array<double, 3> &p, const std::array<double, 3> &q) {
+        Values a = ask(p), b = ask(q);
+        double rise = 0, run = 0;
+        for (std::size_t i = 0; i < 4; ++i) rise += (a[i] - b[i]) * (a[i] - b[i]);
+        for (std::size_t i = 0; i < 3; ++i) run += (p[i] - q[i]) * (p[i] - q[i]);
+        return run > 0 && std::isfinite(rise) ? std::sqrt(rise / run) : 0;
+    };
+    const int pairs = 2000;
+    int violations = 0;
+    double worst = 0;
+    std::array<double, 3> worst_a{}, worst_b{};
+    auto keep = [&](double s, const std::array<double, 3> &a, const std::array<double, 3> &b) {
+        if (s > worst) worst = s, worst_a = a, worst_b = b;
+    };
+    for (int n = 0; n < pairs; ++n) {
+        auto a = random_point(), b = random_point();
+        double reach = std::pow(10.0, -4 * dice.next()); // from the whole region down to a ten-thousandth of it
+        for (std::size_t i = 0; i < 3; ++i) b[i] = a[i] + (b[i] - a[i]) * reach;
+        double s = slope(a, b);
+        violations += s > limit * (1 + 1e-6);
+        keep(s, a, b);
+    }
+    // Ascent: small moves of a short pair that make it steeper.
+    std::array<double, 3> a = worst_a, b = worst_b;
+    double step = 0.1;
+    for (int n = 0; n < 400; ++n) {
+        auto c = a, d = b;
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (dims == 2 && i == 2) continue;
+            double move = step * (2 * dice.next() - 1);
+            c[i] += move, d[i] += move;
+            d[i] += step * 0.1 * (2 * dice.next() - 1);
+            c[i] = std::clamp(c[i], here.box.lo[i], here.box.hi[i]);
+            d[i] = std::clamp(d[i], here.box.lo[i], here.box.hi[i]);
+        }
+        if (here.zone && (misses(*here.zone, {{Interval(c[0]), Interval(c[1]), Interval(c[2])}}) ||
+                          misses(*here.zone, {{Interval(d[0]), Interval(d[1]), Interval(d[2])}})))
+            continue;
+        double s = slope(c, d);
+        if (s > worst) {
+            keep(s, c, d);
+            a = c, b = d;
+        } else {
+            step = std::max(step * 0.98, 1e-4);
+        }
+    }
+    std::string witness = "between " + point_text(worst_a, dims) + " and " + point_text(worst_b, dims) + " its slope is " + number_text(worst);
+    if (estimate) {
+        if (Diagnostic *d = report(id, Code::EstimatedField, "this field is marched by an estimate, which is not a proof: thin parts may be missed"))
+            d->note(fmt::format("{:.2g} % of {} pairs of points are steeper than {}; ", 100.0 * violations / pairs, pairs, number_text(limit)) + witness);
+    } else if (worst > limit * (1 + 1e-6)) {
+        if (Diagnostic *d = report(id, Code::LipschitzViolated, "the field is steeper than `lipschitz: " + number_text(limit) + "` says"))
+            d->note(witness).help("state at least " + number_text(std::ceil(worst * 100) / 100) + ", or leave `lipschitz:` out to have it proved");
+        // The picture is refused; what depends on it is not reported again.
+    }
+}
+
+} // namespace fathom::proof

@@ -1,0 +1,693 @@
+// The walk: places from the root down, facts from the leaves up; and the rules of the kinds that combine.
+#include "typecheck/proof/prover.h"
+
+#include "ir/view.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::proof {
+
+using ir::FieldKind;
+using ir::MapKind;
+using ir::NodeId;
+using ir::Op;
+using ir::ProofStatus;
+using ir::Shape;
+using ir::ShapeId;
+using ir::ShapeKind;
+using ir::rounding::infinity;
+using ir::rounding::up;
+
+void prove(ir::Scene &scene, Diagnostics &diagnostics, const Options &options) {
+    Prover prover(scene, diagnostics, options);
+    prover.run();
+}
+
+void Prover::run() {
+    std::size_t count = scene.shapes.size();
+    known.assign(count, {});
+    places.assign(count, {});
+    scene.facts.assign(count, {});
+    for (std::size_t i = 0; i < count; ++i) { // variables that shapes bind
+        const Shape &shape = scene.shapes[ShapeId{i}];
+        if (shape.kind == ShapeKind::Many) {
+            const ir::Family &family = scene.shapes.families[shape.payload];
+            ranges.vars[graph[family.index].payload] = {Interval(0, std::max(family.count - 1, 0))};
+        }
+        if (shape.kind == ShapeKind::Repeat) {
+            const ir::Repetition &repetition = scene.shapes.repetitions[shape.payload];
+            if (!repetition.id) continue;
+            std::array<Interval, 4> id{};
+            if (repetition.polar) {
+                id[0] = Interval(0, std::max(number(shape.args[0]).hi - 1, 0.0));
+            } else {
+                Vec counts = vector(shape.args[1]);
+                for (std::size_t a = 0; a < 3; ++a) {
+                    if (!repetition.along[a]) continue;
+                    id[a] = counts[a].hi >= 1e8 ? Interval::everything() : Interval(0, std::max(counts[a].hi - 1, 0.0));
+                }
+            }
+            ranges.vars[graph[repetition.id].payload] = id;
+        }
+    }
+    find_places();
+    for (std::size_t i = 0; i < count; ++i) {
+        Known k = know(ShapeId{i});
+        finish(ShapeId{i}, k);
+        known[i] = k;
+        scene.facts[i] = k.fact;
+    }
+    scene.bounds = {};
+    double radius = 0;
+    for (const ir::TopLevel &top : scene.top_level) {
+        const Box &box = scene.facts[top.shape.index].bounds;
+        if (box.finite() && !box.empty()) scene.bounds = ir::hull(scene.bounds, box);
+    }
+    std::array<double, 3> centre{};
+    if (!scene.bounds.empty()) {
+        double sum = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            centre[i] = (scene.bounds.lo[i] + scene.bounds.hi[i]) / 2;
+            sum += std::pow((scene.bounds.hi[i] - scene.bounds.lo[i]) / 2, 2);
+        }
+        radius = std::sqrt(sum);
+    }
+    // semantics.md, 23. Without a camera the framing stands at radius / sin(45 degrees / 2).
+    double distance = radius / 0.3826834323650898;
+    if (scene.camera.given) {
+        auto at = ir::value_of(scene, scene.camera.at, 0);
+        distance = std::sqrt(std::pow(at[0] - centre[0], 2) + std::pow(at[1] - centre[1], 2) + std::pow(at[2] - centre[2], 2));
+    }
+    scene.far = scene.render.far > 0 ? scene.render.far : 100 * std::max({radius, distance, 1e-6});
+    if (scene.bounds.empty() && scene.render.far <= 0) scene.far = std::max(scene.far, 100.0);
+}
+
+// -- numbers
+
+std::array<Interval, 16> Prover::numbers(NodeId id) {
+    std::array<Interval, 16> out{};
+    if (!id) return out;
+    if (graph.is_constant(id)) {
+        const ir::Constant &c = graph.constant_of(id);
+        for (std::size_t i = 0; i < 16; ++i) out[i] = c.value[i];
+        return out;
+    }
+    return range_of(flattening, ranges, id);
+}
+Interval Prover::number(NodeId id) { return numbers(id)[0]; }
+Vec Prover::vector(NodeId id) {
+    auto all = numbers(id);
+    if (id && graph[id].type == ir::Type::Float) all[1] = all[2] = all[0];
+    return {all[0], all[1], all[2]};
+}
+
+void Prover::set_lipschitz(Known &k, double value) {
+    // Rounding outward leaves 1 + a few units in the last place where the truth is 1; the float32 slack covers them.
+    if (value > 1 && value <= 1 + slack) value = 1;
+    k.fact.lipschitz_sup = value;
+    k.fact.lipschitz = graph.number(value);
+}
+void Prover::set_lipschitz(Known &k, NodeId formula, double sup) {
+    ir::Graph::Reads reads = graph.reads(formula);
+    bool in_params = (reads.params || reads.time) && !reads.point && !reads.free_vars;
+    set_lipschitz(k, sup);
+    if (in_params && std::isfinite(sup)) k.fact.lipschitz = formula;
+}
+void Prover::fail(Known &k) {
+    k.failed = true;
+    k.fact.lipschitz_sup = infinity;
+    k.fact.lipschitz = graph.number(1);
+}
+
+// -- places
+
+Zone Prover::zone_of(const ir::Region &region) {
+    Zone zone;
+    zone.kind = region.kind;
+    zone.axis = region.axis;
+    if (region.center) zone.center = vector(region.center);
+    if (region.kind == ir::RegionKind::Box) {
+        Vec size = vector(region.size);
+        for (std::size_t i = 0; i < 3; ++i) zone.half[i] = abs(size[i]) * Interval(0.5);
+    } else if (region.size) {
+        zone.half[0] = number(region.size);
+    }
+    for (const ir::Region &less : region.less) zone.less.push_back(zone_of(less));
+    return zone;
+}
+
+void Prover::visit(ShapeId id, const Box &box, const Zone *zone, bool audible) {
+    Place &place = places[id.index];
+    if (!place.reached) {
+        place.box = box;
+        place.zone = zone;
+    } else {
+        place.box = ir::hull(place.box, box);
+        if (place.zone != zone) place.zone = nullptr;
+        place.shared = true;
+    }
+    place.reached = true;
+    place.audible = place.audible || audible;
+}
+
+void Prover::find_places() {
+    for (const ir::TopLevel &top : scene.top_level) visit(top.shape, Box::everything(), nullptr, true);
+    if (scene.root) visit(scene.root, Box::everything(), nullptr, true);
+    for (std::size_t i = scene.shapes.size(); i-- > 0;) {
+        ShapeId id{i};
+        const Shape &shape = scene.shapes[id];
+        Place here = places[i];
+        if (!here.reached) { // asked by no one; kept usable, in silence
+            here.box = Box::everything();
+            visit(id, here.box, nullptr, false);
+            here = places[i];
+        }
+        for (ShapeId child : shape.children) {
+            switch (shape.kind) {
+            case ShapeKind::Within: {
+                zones.push_back(zone_of(scene.shapes.regions[shape.payload]));
+                Box region = from_cell(outer_box(zones.back()), shape.dims);
+                visit(child, ir::intersect(here.box, region), &zones.back(), here.audible);
+                break;
+            }
+            case ShapeKind::Map: {
+                Box box = Box::everything();
+                if (!everywhere(here.box)) {
+                    auto q = range_of(flattening, ranges, shape.args[0], to_cell(here.box));
+                    box = from_cell({{q[0], q[1], q[2]}}, scene.shapes[child].dims);
+                    if (shape.map == MapKind::Twist || shape.map == MapKind::Bend) { // turns about an axis keep the radius
+                        int axis = shape.map == MapKind::Twist ? shape.axis : 3 - shape.axis - shape.towards;
+                        double r = radius_about(here.box, axis);
+                        for (std::size_t a = 0; a < 3; ++a)
+                            if (int(a) != axis) box.lo[a] = std::max(box.lo[a], -r), box.hi[a] = std::min(box.hi[a], r);
+                    }
+                }
+                visit(child, box, nullptr, here.audible);
+                break;
+            }
+            case ShapeKind::Repeat: visit(child, Box::everything(), nullptr, here.audible); break;
+            case ShapeKind::Extrude: visit(child, here.box, nullptr, here.audible); break;
+            case ShapeKind::Library: {
+                const ir::Library &library = scene.shapes.libraries[shape.payload];
+                bool taken = library.has_claims && library.claims.lipschitz;
+                visit(child, here.box, here.zone, here.audible && !taken);
+                break;
+            }
+            case ShapeKind::Empty: case ShapeKind::Leaf: case ShapeKind::Union: case ShapeKind::Intersection:
+            case ShapeKind::Complement: case ShapeKind::Xor: case ShapeKind::Blend: case ShapeKind::Seam:
+            case ShapeKind::Lerp: case ShapeKind::PseudoNorm: case ShapeKind::Offset: case ShapeKind::Shell:
+            case ShapeKind::Displace: case ShapeKind::Paint: case ShapeKind::Repaint: case ShapeKind::Mixed:
+            case ShapeKind::Many: case ShapeKind::Contract: visit(child, here.box, here.zone, here.audible); break;
+            }
+        }
+    }
+}
+
+// -- facts
+
+Known Prover::know(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    switch (shape.kind) {
+    case ShapeKind::Empty: {
+        Known k;
+        k.fact.kind = FieldKind::Exact;
+        k.fact.bounds = k.parts = empty_box();
+        k.fact.symmetric = {true, true, true};
+        k.exact_outside = k.parts_exact = true;
+        set_lipschitz(k, 1);
+        return k;
+    }
+    case ShapeKind::Leaf: return know_leaf(id);
+    case ShapeKind::Union:
+    case ShapeKind::Intersection:
+    case ShapeKind::Xor:
+    case ShapeKind::Blend:
+    case ShapeKind::Seam:
+    case ShapeKind::PseudoNorm: return know_set(id);
+    case ShapeKind::Complement: {
+        Known k = child(shape);
+        std::swap(k.fact.bounds, k.outer);
+        std::swap(k.swell, k.swell_out);
+        k.exact_outside = k.fact.kind == FieldKind::Exact;
+        k.fact.repeat = {};
+        return k;
+    }
+    case ShapeKind::Lerp: return know_lerp(id);
+    case ShapeKind::Map: return know_map(id);
+    case ShapeKind::Offset:
+    case ShapeKind::Shell:
+    case ShapeKind::Displace: return know_displaced(id);
+    case ShapeKind::Extrude: return know_extrude(id);
+    case ShapeKind::Repeat: return know_repeat(id);
+    case ShapeKind::Within: return know_within(id);
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint:
+    case ShapeKind::Mixed: {
+        Known k = child(shape);
+        k.fact.repeat = {};
+        return k;
+    }
+    case ShapeKind::Many: return know_many(id);
+    case ShapeKind::Library: return know_library(id);
+    case ShapeKind::Contract: return know_contract(id);
+    }
+    return {};
+}
+
+namespace {
+
+ProofStatus worse(ProofStatus a, ProofStatus b) { return std::max(a, b); }
+
+// Of a min of fields: {min < t} is in the hull of the children's; {min > -t} in the meet of theirs. A meet of grown
+// boxes is the grown meet where that is not empty.
+void unite(Known &k, const Known &c) {
+    k.fact.bounds = ir::hull(k.fact.bounds, c.fact.bounds);
+    k.swell = std::max(k.swell, c.swell);
+    Box meet = ir::intersect(k.outer, c.outer);
+    k.swell_out = meet.empty() ? infinity : std::max(k.swell_out, c.swell_out);
+    k.outer = meet.empty() ? empty_box() : meet;
+}
+void meet(Known &k, const Known &c) {
+    std::swap(k.fact.bounds, k.outer);
+    std::swap(k.swell, k.swell_out);
+    Known other = c;
+    std::swap(other.fact.bounds, other.outer);
+    std::swap(other.swell, other.swell_out);
+    unite(k, other);
+    std::swap(k.fact.bounds, k.outer);
+    std::swap(k.swell, k.swell_out);
+}
+// What every combination of two inherits: the attributes of the gradients.
+void inherit(Known &k, const Known &c) {
+    k.failed = k.failed || c.failed;
+    k.fact.status = worse(k.fact.status, c.fact.status);
+    k.parts = ir::hull(k.parts, c.parts);
+    for (std::size_t a = 0; a < 3; ++a) {
+        k.fact.symmetric[a] = k.fact.symmetric[a] && c.fact.symmetric[a];
+        k.fact.lever[a] = std::max(k.fact.lever[a], c.fact.lever[a]);
+    }
+}
+
+} // namespace
+
+Known Prover::know_set(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    Known k = child(shape);
+    k.fact.repeat = {};
+    k.fact.guard = false;
+    auto profile = static_cast<ir::Profile>(shape.payload);
+    auto seam = static_cast<ir::SeamKind>(shape.payload);
+    Interval radius = shape.args.empty() ? Interval(0.0) : number(shape.args[0]);
+    double r = std::max(radius.hi, 0.0);
+    if (!std::isfinite(r) && (shape.kind == ShapeKind::Blend || shape.kind == ShapeKind::Seam)) r = 0;
+
+    NodeId formula = k.fact.lipschitz;
+    double sup = k.fact.lipschitz_sup;
+    bool pairwise_disjoint = shape.children.size() <= 64, all_exact = k.fact.kind == FieldKind::Exact;
+    const Known first = k;
+    for (std::size_t i = 1; i < shape.children.size(); ++i) {
+        const Known &c = child(shape, i);
+        bool exact_outside = k.exact_outside && c.exact_outside, parts_exact = k.parts_exact && c.parts_exact;
+        all_exact = all_exact && c.fact.kind == FieldKind::Exact;
+        for (std::size_t j = 0; pairwise_disjoint && j < i; ++j)
+            pairwise_disjoint = disjoint(child(shape, j).fact.bounds, c.fact.bounds);
+        inherit(k, c);
+        k.exact_outside = k.parts_exact = false;
+        double w = std::max(k.swell, c.swell);
+        switch (shape.kind) {
+        case ShapeKind::Union:
+            unite(k, c);
+            k.exact_outside = exact_outside;
+            k.parts_exact = parts_exact;
+            break;
+        case ShapeKind::Intersection:
+            meet(k, c);
+            k.parts_exact = parts_exact;
+            break;
+        case ShapeKind::Xor: // within the union; all else unknown
+            unite(k, c);
+            k.outer = Box::everything();
+            k.swell_out = 0;
+            k.parts_exact = parts_exact;
+            break;
+        case ShapeKind::Blend: {
+            // The part that the profile adds lies where both are below r (blends.h).
+            Box both = ir::intersect(grow(k.fact.bounds, w * r), grow(c.fact.bounds, w * r));
+            unite(k, c);
+            if (!both.empty()) k.fact.bounds = ir::hull(k.fact.bounds, both);
+            if (profile == ir::Profile::Columns) { // not a function of the difference alone
+                k.fact.bounds = grow(k.fact.bounds, w * r);
+                k.swell = infinity;
+                k.outer = Box::everything();
+            }
+            break;
+        }
+        case ShapeKind::Seam: {
+            k.outer = Box::everything(), k.swell_out = 0;
+            if (seam == ir::SeamKind::Pipe) {
+                k.fact.bounds = ir::intersect(grow(first.fact.bounds, w * r), grow(c.fact.bounds, w * r));
+                k.swell = w;
+            } else if (seam == ir::SeamKind::Tongue) {
+                double depth = std::max(number(shape.args[1]).hi, 0.0);
+                k.fact.bounds = grow(first.fact.bounds, first.swell * depth);
+                k.swell = first.swell;
+            } else {
+                k.fact.bounds = first.fact.bounds; // takes away
+                k.swell = first.swell;
+            }
+            break;
+        }
+        case ShapeKind::PseudoNorm: // 1 - |((1-a)+, (1-b)+)|_p < 0 needs a or b below 1 - 2^(-1/p) <= 1/2
+            unite(k, c);
+            k.fact.bounds = grow(k.fact.bounds, w * 0.5);
+            k.swell = infinity;
+            k.outer = Box::everything();
+            break;
+        default: break; // know() sends no other kind here
+        }
+        bool quadratic = (shape.kind == ShapeKind::Blend && profile == ir::Profile::Columns) ||
+                         (shape.kind == ShapeKind::Seam && seam == ir::SeamKind::Pipe);
+        if (quadratic) { // weights on a unit circle: sqrt(La^2 + Lb^2)
+            double excess = std::hypot(sup, c.fact.lipschitz_sup) - std::max(sup, c.fact.lipschitz_sup);
+            sup = up(std::max(sup, c.fact.lipschitz_sup) +
+                         excess * options.rules[shape.kind == ShapeKind::Seam ? Rule::Pipe : Rule::Columns], 4);
+            formula = graph.number(sup);
+        } else if (shape.kind == ShapeKind::PseudoNorm) { // Hoelder: (La^p + Lb^p)^(1/p)
+            double p = std::max(number(shape.args[0]).lo, 1.0), a = sup, b = c.fact.lipschitz_sup;
+            double most = std::max(a, b), both = most * std::pow(std::pow(a / most, p) + std::pow(b / most, p), 1 / p);
+            sup = up(most + (both - most) * options.rules[Rule::PseudoNorm], 16);
+            formula = graph.number(sup);
+        } else {
+            sup = std::max(sup, c.fact.lipschitz_sup);
+            formula = graph.make(Op::Max, {formula, c.fact.lipschitz});
+        }
+    }
+    k.fact.kind = FieldKind::Bound;
+    if (shape.children.size() == 1) k.fact.kind = first.fact.kind;
+    else if (shape.kind == ShapeKind::Union && all_exact && pairwise_disjoint) k.fact.kind = FieldKind::Exact;
+    for (ShapeId c : shape.children)
+        if (of(c).fact.kind == FieldKind::Estimate) k.fact.kind = FieldKind::Estimate;
+    if ((shape.kind == ShapeKind::Blend || shape.kind == ShapeKind::Seam) && reads_point(shape.args[0])) {
+        // The profile's derivative in r lies in [-1/2, 0] for every profile but Columns (1/4 of the quadratic).
+        FieldBound b = bound(id, shape.args[0], "the blend's radius");
+        k.failed = k.failed || !std::isfinite(b.lipschitz) || profile == ir::Profile::Columns;
+        sup = up(sup + 0.5 * b.lipschitz);
+        formula = graph.number(sup);
+        k.fact.lever = {infinity, infinity, infinity};
+        k.parts = Box::everything();
+        if (shape.kind == ShapeKind::Blend) k.fact.bounds = grow(k.fact.bounds, std::max(b.value.hi, 0.0) * k.swell);
+    }
+    if (k.failed) fail(k);
+    else set_lipschitz(k, formula, sup);
+    return k;
+}
+
+Known Prover::know_lerp(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    const Known &a = child(shape, 0), &b = child(shape, 1);
+    Known k = a;
+    k.fact.repeat = {};
+    k.fact.guard = false;
+    inherit(k, b);
+    k.fact.kind = FieldKind::Bound;
+    k.exact_outside = k.parts_exact = false;
+    NodeId t = shape.args[0];
+    bool varies = reads_point(t);
+    FieldBound weight;
+    if (varies) weight = bound(id, t, "the blend's weight");
+    Interval range = varies ? weight.value : number(t), rest = Interval(1.0) - range;
+    bool convex = range.lo >= 0 && range.hi <= 1;
+    double la = a.fact.lipschitz_sup, lb = b.fact.lipschitz_sup;
+    double sup = convex ? (varies || !range.is_point() ? std::max(la, lb) : up(range.hi * la + rest.hi * lb))
+                        : up(range.magnitude() * la + rest.magnitude() * lb);
+    // t*a + (1-t)*b < 0 needs a < 0 or b < 0 while both weights are at least 0.
+    unite(k, b);
+    if (!convex) {
+        k.fact.bounds = k.outer = Box::everything();
+        k.parts = Box::everything();
+        k.fact.lever = {infinity, infinity, infinity};
+    }
+    if (varies && std::isfinite(weight.lipschitz) && weight.lipschitz > 0) {
+        // |grad| <= the mean's + |grad t| * |a - b|. Two fields with |f - signed distance to their own solid| small differ, for
+        // solids within a common box of diagonal D, by at most 3/2 D: outside both each lies in [d_U, d_U + D]; in one of
+        // them it is above -D/2.
+        double gap = infinity;
+        Box common = ir::hull(a.fact.bounds, b.fact.bounds);
+        if (a.exact_outside && b.exact_outside && common.finite() && !common.empty()) {
+            double diagonal = 0;
+            for (std::size_t i = 0; i < 3; ++i) diagonal += std::pow(common.hi[i] - common.lo[i], 2);
+            gap = 1.5 * std::sqrt(diagonal);
+        }
+        Box box = place(id).box;
+        if (box.finite() && !box.empty() && a.fact.bounds.finite() && b.fact.bounds.finite()) {
+            // Lipschitz fields that vanish (or begin) in their bounds: |f| <= L * the distance across.
+            double size = norm_of(box) + std::max(norm_of(a.fact.bounds), norm_of(b.fact.bounds));
+            gap = std::min(gap, size * (la + lb));
+        }
+        k.fact.lever = {infinity, infinity, infinity};
+        k.parts = Box::everything();
+        k.fact.symmetric = {false, false, false};
+        if (!std::isfinite(gap) && !k.failed) {
+            if (Diagnostic *d = report(id, Code::NeedsRegion, "a blend with a varying weight needs a region: its two fields may differ without limit"))
+                d->help("write `.within(…)` after it, with a region that holds what you want to see, as in `.within(ball(3))`");
+            k.failed = true;
+        }
+        sup = up(sup + weight.lipschitz * gap * options.rules[Rule::LerpVarying]);
+    }
+    if (varies && !std::isfinite(weight.lipschitz)) k.failed = true;
+    if (k.failed) fail(k);
+    else set_lipschitz(k, sup);
+    return k;
+}
+
+Known Prover::know_displaced(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    Known k = child(shape);
+    k.fact.repeat = {};
+    k.fact.guard = false;
+    if (shape.kind != ShapeKind::Displace && !k.exact_outside && !k.failed && k.fact.kind != FieldKind::Estimate) {
+        bool grows = shape.kind == ShapeKind::Shell || number(shape.args[0]).hi > 0;
+        if (grows)
+            if (Diagnostic *d = report(id, Code::LowerBound,
+                                       std::string(shape.kind == ShapeKind::Shell ? "a shell" : "an offset") +
+                                           " of a field that is only a lower bound of the distance"))
+                d->note("the field of " + operation_name(scene, shape.children[0]) +
+                        " is not the exact distance near edges; the result there is thinner or less round than the number says")
+                    .help("apply it to the exact parts first, then combine them");
+    }
+    bool varies = reads_point(shape.args[0]);
+    Interval amount;
+    double slope = 0;
+    if (varies) {
+        FieldBound b = bound(id, shape.args[0], shape.kind == ShapeKind::Displace ? "the displacement" : "the amount");
+        amount = b.value;
+        slope = b.lipschitz;
+        k.parts = Box::everything();
+        k.fact.lever = {infinity, infinity, infinity};
+        k.fact.symmetric = {false, false, false};
+        if (!std::isfinite(slope)) k.failed = true;
+        else if (!amount.finite() && !k.failed) {
+            if (Diagnostic *d = report(id, Code::NeedsRegion, "the displacement grows without bound"))
+                d->help("write `.within(…)` after it, or limit it, as in `clamp(…, -1, 1)`");
+            k.failed = true;
+        }
+    } else {
+        amount = number(shape.args[0]);
+    }
+    bool was_exact = k.fact.kind == FieldKind::Exact;
+    if (shape.kind == ShapeKind::Shell) {
+        double half = std::max(amount.hi, 0.0) / 2;
+        slope /= 2;
+        k.fact.bounds = grow(k.fact.bounds, k.swell * half);
+        k.outer = Box::everything();
+        k.swell_out = 0;
+        k.exact_outside = was_exact && !varies;
+    } else {
+        k.fact.bounds = grow(k.fact.bounds, k.swell * std::max(amount.hi, 0.0));
+        k.outer = grow(k.outer, k.swell_out * std::max(-amount.lo, 0.0));
+        k.exact_outside = k.exact_outside && !varies;
+    }
+    k.parts_exact = false;
+    if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
+    if (k.failed) {
+        fail(k);
+        return k;
+    }
+    slope *= options.rules[Rule::Displace];
+    double sup = up(k.fact.lipschitz_sup + slope);
+    set_lipschitz(k, slope == 0 ? k.fact.lipschitz : graph.add(k.fact.lipschitz, graph.number(slope)), sup);
+    return k;
+}
+
+Known Prover::know_extrude(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    Known k = child(shape);
+    k.fact.repeat = {};
+    k.fact.guard = false;
+    double half = number(shape.args[0]).magnitude() / 2;
+    auto stand = [&](Box &box) {
+        if (!box.empty()) box.lo[2] = -half, box.hi[2] = half;
+    };
+    // length((f)+, (|z| - h)+) + min(max(f, |z| - h), 0): the weights of the two gradients, which are at right angles, lie on a
+    // unit circle: max(L, 1).
+    double lever = k.fact.lever[2];
+    stand(k.fact.bounds);
+    stand(k.parts);
+    k.fact.symmetric[2] = true;
+    for (int a = 0; a < 2; ++a) k.fact.lever[static_cast<std::size_t>(a)] = radius_about(k.parts, a);
+    k.fact.lever[2] = std::min(lever, radius_about(k.parts, 2));
+    k.outer = Box::everything();
+    k.swell_out = 0;
+    if (k.failed) {
+        fail(k);
+        return k;
+    }
+    NodeId formula = graph.make(Op::Max, {k.fact.lipschitz, graph.number(1)});
+    set_lipschitz(k, formula, std::max(k.fact.lipschitz_sup, 1.0));
+    return k;
+}
+
+Known Prover::know_within(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    Known k = child(shape);
+    k.fact.repeat = {};
+    k.fact.guard = false;
+    Zone zone = zone_of(scene.shapes.regions[shape.payload]);
+    if (zone.kind == ir::RegionKind::Everywhere && zone.less.empty()) return k;
+    Box region = from_cell(outer_box(zone), shape.dims);
+    // Outside the region the value is at least the distance to it: {d < t} lies in the region grown by t. What is inside may
+    // be smaller than the region.
+    Box solid = ir::intersect(region, k.fact.bounds);
+    k.swell = holds(k.fact.bounds, region) ? 1 : infinity;
+    k.fact.bounds = solid.empty() ? empty_box() : solid;
+    k.outer = Box::everything();
+    k.swell_out = 0;
+    k.parts = Box::everything();
+    k.fact.lever = {infinity, infinity, infinity};
+    if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
+    k.exact_outside = k.parts_exact = false;
+    for (std::size_t a = 0; a < 3; ++a) {
+        bool centred = zone.kind == ir::RegionKind::Tube || zone.kind == ir::RegionKind::Everywhere || zone.center[a] == Interval(0.0);
+        k.fact.symmetric[a] = k.fact.symmetric[a] && centred && zone.less.empty();
+    }
+    if (k.failed) {
+        fail(k);
+        return k;
+    }
+    // A path round a hole is at most pi/2 times as long as the straight line through it (lipschitz.md, regions).
+    double detour = zone.less.empty() ? 1 : 1.5707963267948968;
+    NodeId formula = graph.make(Op::Max, {graph.mul(k.fact.lipschitz, graph.number(detour)), graph.number(1)});
+    set_lipschitz(k, formula, std::max(up(k.fact.lipschitz_sup * detour), 1.0));
+    return k;
+}
+
+Known Prover::know_many(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    const ir::Family family = scene.shapes.families[shape.payload];
+    Known k = child(shape);
+    k.fact.repeat = {};
+    if (family.count > 1) {
+        k.fact.kind = k.fact.kind == FieldKind::Estimate ? FieldKind::Estimate : FieldKind::Bound;
+        bool plain = !family.smooth;
+        k.exact_outside = k.exact_outside && plain;
+        k.parts_exact = k.parts_exact && plain;
+        // By induction over the fold: {acc < t} lies in the copies' box grown by swell*(t + k).
+        if (family.smooth) k.fact.bounds = grow(k.fact.bounds, k.swell * std::max(number(shape.args[0]).hi, 0.0));
+    }
+    // Symmetric copies need not be a symmetric whole.
+    k.fact.symmetric = {false, false, false};
+    if (k.failed) fail(k);
+    else set_lipschitz(k, k.fact.lipschitz, k.fact.lipschitz_sup);
+    return k;
+}
+
+Known Prover::know_library(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    const ir::Library library = scene.shapes.libraries[shape.payload];
+    Known k = child(shape);
+    k.fact.repeat = {};
+    if (!library.has_claims) return k;
+    const ir::Claims &claims = library.claims;
+    bool exact = claims.kind == FieldKind::Exact;
+    if (claims.lo && claims.hi) {
+        Vec lo = vector(claims.lo), hi = vector(claims.hi);
+        Box box;
+        for (std::size_t i = 0; i < 3; ++i) {
+            bool flat = shape.dims == 2 && i == 2;
+            box.lo[i] = flat ? 0 : lo[i].lo;
+            box.hi[i] = flat ? 0 : hi[i].hi;
+        }
+        k.fact.bounds = box;
+        k.swell = exact ? 1 : infinity;
+        k.outer = Box::everything();
+        k.swell_out = 0;
+    }
+    if (claims.kind == FieldKind::Estimate) k.fact.kind = FieldKind::Estimate;
+    else if (exact) k.fact.kind = FieldKind::Exact;
+    else if (k.fact.kind != FieldKind::Exact || claims.lipschitz) k.fact.kind = FieldKind::Bound;
+    for (std::size_t a = 0; a < 3; ++a) k.fact.symmetric[a] = k.fact.symmetric[a] || claims.symmetric[a];
+    if (exact) {
+        k.exact_outside = k.parts_exact = true;
+        k.parts = k.fact.bounds;
+        if (claims.lo && claims.hi) k.swell = 1;
+        for (int a = 0; a < 3; ++a) k.fact.lever[static_cast<std::size_t>(a)] = radius_about(k.parts, a);
+    } else if (claims.lipschitz) {
+        k.exact_outside = k.parts_exact = false;
+        k.parts = Box::everything();
+        k.fact.lever = {infinity, infinity, infinity};
+    }
+    for (std::size_t a = 0; a < 3; ++a)
+        if (claims.lever[a]) {
+            double lever = number(claims.lever[a]).magnitude();
+            k.fact.lever[a] = std::min(k.fact.lever[a], lever);
+        }
+    if (claims.lipschitz || exact) {
+        k.failed = false;
+        k.fact.status = claims.kind == FieldKind::Estimate ? ProofStatus::Estimated : ProofStatus::Proved;
+        if (exact) set_lipschitz(k, 1);
+        else set_lipschitz(k, claims.lipschitz, number(claims.lipschitz).magnitude());
+    }
+    if (claims.kind == FieldKind::Estimate) {
+        k.fact.status = ProofStatus::Estimated;
+    }
+    return k;
+}
+
+Known Prover::know_contract(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    const ir::Contract contract = scene.shapes.contracts[shape.payload];
+    Known k = child(shape);
+    k.fact.repeat = {};
+    if (!k.failed && k.fact.lipschitz_sup > contract.lipschitz * (1 + slack)) {
+        if (Diagnostic *d = report(id, Code::LipschitzContract,
+                                   "this shape's bound is " + number_text(k.fact.lipschitz_sup) + ", and `shape<" +
+                                       number_text(contract.lipschitz) + ">` is wanted")) {
+            if (contract.demanded.source) d->label(contract.demanded, "demanded here");
+            for (const std::string &line : chain(shape.children[0])) d->note(line);
+        }
+    }
+    return k;
+}
+
+// -- guards
+
+void Prover::finish(ShapeId id, Known &k) {
+    const Shape &shape = scene.shapes[id];
+    k.fact.bounds = padded(k.fact.bounds);
+    bool everywhere_valid = everywhere(place(id).box);
+    bool deformed = shape.kind == ShapeKind::Displace || shape.kind == ShapeKind::Many ||
+                    (shape.kind == ShapeKind::Map && (shape.map == MapKind::Twist || shape.map == MapKind::Bend ||
+                                                      shape.map == MapKind::Taper || shape.map == MapKind::Distort));
+    k.fact.guard = !k.failed && everywhere_valid && k.fact.bounds.finite() && !k.fact.bounds.empty() && shape.dims == 3 &&
+                   (k.fact.lipschitz_sup > 1.3 || deformed) && shape.kind != ShapeKind::Within;
+    if (k.failed || !std::isfinite(k.fact.lipschitz_sup)) return;
+    double below = 1;
+    for (ShapeId c : shape.children) below = std::max(below, of(c).fact.lipschitz_sup);
+    if (!shape.children.empty() && std::isfinite(below) && k.fact.lipschitz_sup > 4 * below && shape.kind != ShapeKind::Library)
+        if (Diagnostic *d = report(id, Code::Costly, operation_name(scene, id) + " makes this shape cost up to " +
+                                                         number_text(k.fact.lipschitz_sup / below) + " times the steps"))
+            d->note("its field is at most " + number_text(k.fact.lipschitz_sup) + " times as steep as a distance, and every step is divided by that");
+}
+
+} // namespace fathom::proof
