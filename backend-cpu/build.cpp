@@ -48,20 +48,22 @@ class FunctionBuilder {
     FunctionBuilder(const Scene &scene, Calls &calls, Code &code)
         : scene_(scene), graph_(scene.graph), calls_(calls), code_(code), builder_(code) {}
 
-    void run(FunctionId id) {
-        const Function &function = graph_.function(id);
+    void run(std::size_t index) {
+        const Body &body = calls_.bodies[index];
         Frame frame;
-        const std::vector<bool> &shared = calls_.shared[id.index];
-        for (std::size_t k = 0; k < function.params.size(); ++k) {
+        const std::vector<bool> &shared = calls_.shared[index];
+        for (std::size_t k = 0; k < body.params.size(); ++k) {
             Values values;
-            for (Type type : scalar_types(graph_[function.params[k]].type)) {
+            for (Type type : scalar_types(graph_[body.params[k]].type)) {
                 values.push_back(builder_.variable(type, shared[k], 0));
                 code_.params.push_back(values.back());
             }
-            frame.values[function.params[k]] = std::move(values);
+            frame.values[body.params[k]] = std::move(values);
         }
-        code_.results = value(frame, function.result);
-        code_.results.resize(static_cast<std::size_t>(components(graph_[function.result].type)));
+        for (NodeId result : body.results) {
+            const Values &values = value(frame, result);
+            code_.results.insert(code_.results.end(), values.begin(), values.begin() + components(graph_[result].type));
+        }
     }
 
   private:
@@ -165,7 +167,7 @@ Values FunctionBuilder::call(FunctionId id, const std::vector<Values> &arguments
         return result;
     }
     Values in;
-    std::vector<bool> &shared = calls_.shared[id.index];
+    std::vector<bool> &shared = calls_.shared[calls_.body[id.index]];
     for (std::size_t k = 0; k < arguments.size(); ++k)
         for (std::size_t c = 0; c < static_cast<std::size_t>(components(graph_[function.params[k]].type)); ++c) {
             in.push_back(arguments[k][c]);
@@ -285,9 +287,9 @@ Values FunctionBuilder::outside(const LoopCode &loop) const {
 
 } // namespace
 
-Code build(const Scene &scene, Calls &calls, FunctionId function) {
+Code build(const Scene &scene, Calls &calls, std::size_t body) {
     Code code;
-    FunctionBuilder(scene, calls, code).run(function);
+    FunctionBuilder(scene, calls, code).run(body);
     return code;
 }
 

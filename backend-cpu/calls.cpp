@@ -21,10 +21,11 @@ struct Use {
     bool seen = false;
 };
 
-// The nodes of a function's own text.
-void walk(const Graph &graph, FunctionId id, Use &use) {
+// The nodes of a body's own text.
+Use walk(const Graph &graph, std::span<const NodeId> results) {
+    Use use;
     std::unordered_map<NodeId, bool> seen;
-    std::vector<NodeId> stack{graph.function(id).result};
+    std::vector<NodeId> stack(results.begin(), results.end());
     while (!stack.empty()) {
         NodeId at = stack.back();
         stack.pop_back();
@@ -41,33 +42,40 @@ void walk(const Graph &graph, FunctionId id, Use &use) {
             stack.insert(stack.end(), fold.next.begin(), fold.next.end());
         }
     }
+    return use;
 }
 
 } // namespace
 
-Calls plan_calls(const Scene &scene, FunctionId root) {
+Body body_of(const Graph &graph, FunctionId function) {
+    return {graph.function(function).params, {graph.function(function).result}};
+}
+
+Calls plan_calls(const Scene &scene, const Body &root) {
     const Graph &graph = scene.graph;
     std::size_t n = graph.function_count();
     std::vector<Use> uses(n);
-    Calls calls;
-    calls.inlined.resize(n);
-    calls.code_of.resize(n);
-    calls.shared.resize(n);
-
-    std::vector<FunctionId> reached{root};
-    uses[root.index].seen = true;
-    for (std::size_t i = 0; i < reached.size(); ++i) {
-        Use &use = uses[reached[i].index];
-        walk(graph, reached[i], use);
+    std::vector<FunctionId> reached;
+    auto reach = [&](const Use &use) {
         for (FunctionId callee : use.callees) {
-            ++uses[callee.index].calls;
-            if (!uses[callee.index].seen) {
-                uses[callee.index].seen = true;
-                reached.push_back(callee);
-            }
+            Use &there = uses[callee.index];
+            if (!there.seen) reached.push_back(callee);
+            there.seen = true;
+            ++there.calls;
         }
+    };
+    reach(walk(graph, root.results));
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+        Use use = walk(graph, body_of(graph, reached[i]).results);
+        use.seen = true;
+        use.calls = uses[reached[i].index].calls;
+        uses[reached[i].index] = use;
+        reach(use);
     }
     // Functions call only those before them: callees have their sizes first.
+    Calls calls;
+    calls.inlined.resize(n);
+    calls.body.resize(n);
     std::ranges::sort(reached, {}, &FunctionId::index);
     for (FunctionId id : reached) {
         Use &use = uses[id.index];
@@ -76,22 +84,30 @@ Calls plan_calls(const Scene &scene, FunctionId root) {
                 use.nodes += uses[callee.index].nodes;
                 use.depth = std::max(use.depth, uses[callee.index].depth + 1);
             }
-        calls.inlined[id.index] = id != root && use.depth < deepest && (use.calls == 1 || use.nodes <= tiny);
-        calls.shared[id.index].assign(graph.function(id).params.size(), id != root);
+        calls.inlined[id.index] = use.depth < deepest && (use.calls == 1 || use.nodes <= tiny);
     }
+    calls.bodies.push_back(root);
+    calls.shared.emplace_back(root.params.size(), false);
     for (std::size_t i = reached.size(); i-- > 0;) {
         if (calls.inlined[reached[i].index]) continue;
-        calls.code_of[reached[i].index] = static_cast<std::uint32_t>(calls.order.size());
-        calls.order.push_back(reached[i]);
+        calls.body[reached[i].index] = static_cast<std::uint32_t>(calls.bodies.size());
+        calls.bodies.push_back(body_of(graph, reached[i]));
+        calls.shared.emplace_back(calls.bodies.back().params.size(), true);
     }
     return calls;
 }
 
-Program compile(const Scene &scene, FunctionId function) {
-    Calls calls = plan_calls(scene, function);
+static Program compile_body(const Scene &scene, const Body &root) {
+    Calls calls = plan_calls(scene, root);
     std::vector<Code> codes;
-    for (std::size_t i = 0; i < calls.order.size(); ++i) codes.push_back(build(scene, calls, calls.order[i]));
+    for (std::size_t i = 0; i < calls.bodies.size(); ++i) codes.push_back(build(scene, calls, i));
     return lay_out(scene, calls, std::move(codes));
+}
+
+Program compile(const Scene &scene, FunctionId function) { return compile_body(scene, body_of(scene.graph, function)); }
+
+Program compile(const Scene &scene, std::span<const NodeId> params, std::span<const NodeId> results) {
+    return compile_body(scene, {{params.begin(), params.end()}, {results.begin(), results.end()}});
 }
 
 } // namespace fathom::cpu

@@ -98,17 +98,23 @@ struct Fused {
 std::optional<Value> simplify(const Builder &builder, Kernel kernel, std::span<const Value> in);
 std::optional<Fused> fuse(Builder &builder, Kernel kernel, std::span<const Value> in);
 
-// What of a graph's functions becomes what: reached from one, callers before callees.
-struct Calls {
-    std::vector<ir::FunctionId> order;       // those that stay functions, callers first; the first is the root
-    std::vector<bool> inlined;               // by FunctionId
-    std::vector<std::uint32_t> code_of;      // by FunctionId: index into `order`
-    std::vector<std::vector<bool>> shared;   // by FunctionId: per parameter: the same for every point at every call
+// What is computed from what: a function, or several results at once.
+struct Body {
+    std::vector<ir::NodeId> params, results;
 };
-Calls plan_calls(const ir::Scene &scene, ir::FunctionId root);
+Body body_of(const ir::Graph &graph, ir::FunctionId function);
+
+// What of a graph's functions becomes what: reached from one body, callers before callees.
+struct Calls {
+    std::vector<Body> bodies;              // those that stay functions, callers first; the first is the root
+    std::vector<std::vector<bool>> shared; // by body: per parameter: the same for every point at every call
+    std::vector<bool> inlined;             // by FunctionId
+    std::vector<std::uint32_t> body;       // by FunctionId: index into `bodies`
+};
+Calls plan_calls(const ir::Scene &scene, const Body &root);
 
 // Marks in `calls.shared` what the calls that it makes hand over.
-Code build(const ir::Scene &scene, Calls &calls, ir::FunctionId function);
+Code build(const ir::Scene &scene, Calls &calls, std::size_t body);
 
 Program lay_out(const ir::Scene &scene, const Calls &calls, std::vector<Code> codes);
 

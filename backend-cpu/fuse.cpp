@@ -58,6 +58,10 @@ std::optional<Fused> fuse(Builder &builder, Kernel kernel, std::span<const Value
     Matcher match(builder.code(), in);
     if (kernel == Kernel::SubF) {
         if (auto d = match.made_by(in[0], Kernel::Distance3); !d.empty()) return Fused{Kernel::Ball, then(d, {in[1]})};
+        if (auto v = match.made_by(in[0], Kernel::Length3); !v.empty()) { // a ball about the origin
+            Value zero = builder.number(0);
+            return Fused{Kernel::Ball, then(v, {zero, zero, zero, in[1]})};
+        }
         if (auto a = match.made_by(in[0], Kernel::AbsF); !a.empty()) return Fused{Kernel::AbsSub, then(a, {in[1]})};
     }
     if (kernel == Kernel::AddF) {

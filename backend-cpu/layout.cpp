@@ -257,7 +257,7 @@ class Encoder {
   private:
     template <class F> void for_calls(const Code &code, F &&f) const {
         for (const Instruction &instruction : code.instructions)
-            if (instruction.kind == InstructionKind::Call) f(calls_.code_of[instruction.payload]);
+            if (instruction.kind == InstructionKind::Call) f(calls_.body[instruction.payload]);
     }
 
     // One cell for each number known before the first point, whichever function reads it.
@@ -397,7 +397,7 @@ class Encoder {
     }
 
     void call(const Instruction &instruction) {
-        std::uint32_t index = calls_.code_of[instruction.payload];
+        std::uint32_t index = calls_.body[instruction.payload];
         const Code &callee = codes_[index];
         auto there = [&](Value v) {
             return Place{address(callee, layouts_[index], source_cells_[index], v), callee.values[v].shared};

@@ -83,6 +83,8 @@ struct Program {
 };
 
 Program compile(const ir::Scene &scene, ir::FunctionId function);
+// Expressions in `params` (Vars), all their results one after the other.
+Program compile(const ir::Scene &scene, std::span<const ir::NodeId> params, std::span<const ir::NodeId> results);
 
 // The memory that one thread evaluates a program in: made once, used for any number of batches.
 struct Scratch {
