@@ -204,8 +204,10 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Frame frame) {
     const int count = std::max(1, static_cast<int>(g.as_number(s.args[0]).value_or(1)));
     const int sectors = sectors_of(scene_, id, count);
     const int axis = s.dims == 2 ? 2 : repetition.axis;
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const NodeId x = g.component(frame.p, u), y = g.component(frame.p, v);
+    // Angles count from where the first copy usually stands: x of the axes y and z, y of x. (x, -z, y) is right-handed.
+    const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    const auto turned = [&](NodeId part) { return axis == 1 ? g.neg(part) : part; };
+    const NodeId x = g.component(frame.p, u), y = turned(g.component(frame.p, v));
     const double step = 8 * std::atan(1.0) / count;
 
     const auto copy = [&](NodeId k) { // k: a float, 0 .. n-1
@@ -214,7 +216,7 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Frame frame) {
         std::array<NodeId, 3> q;
         if (s.dims == 3) q[static_cast<std::size_t>(axis)] = g.component(frame.p, axis);
         q[static_cast<std::size_t>(u)] = g.add(g.mul(c, x), g.mul(sine, y));
-        q[static_cast<std::size_t>(v)] = g.sub(g.mul(c, y), g.mul(sine, x));
+        q[static_cast<std::size_t>(v)] = turned(g.sub(g.mul(c, y), g.mul(sine, x)));
         const NodeId point =
             g.make(Op::Make, vector_type(s.dims), std::span(q).first(static_cast<std::size_t>(s.dims)));
         const NodeId cell_id = g.make(Op::Make, Type::Vec3, {k, g.number(0), g.number(0)});

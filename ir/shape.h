@@ -77,7 +77,8 @@ struct Region {
 // union of all copies; the analysis chooses how few are evaluated.
 struct Repetition {
     bool polar = false;
-    int axis = 1;             // polar: round this axis, a[0] = how many copies (Int, constant)
+    int axis = 1;             // polar: round this axis, a[0] = how many copies (Int, constant); copy k is turned by
+                              // k/a[0] of a turn. The first is taken to lie about +x (of axis x: about +y)
     std::array<bool, 3> along{}; // lattice: which axes repeat. args: a[0] cell (vec3), a[1] count (vec3; 1e9 where infinite)
     bool mirrored = false;    // repeat_mirror: every other cell is the reflection
     NodeId id;                // Var (vec3): the cell's id, whole numbers, counted from 0 where finite; read by the child
