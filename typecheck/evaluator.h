@@ -160,7 +160,6 @@ struct Evaluator {
     std::map<std::pair<const lang::Ast *, std::uint32_t>, bool> never_specialize{}; // functions seen to give no number
     std::map<std::string, std::uint32_t> interned_records{}; // libraries, regions, materials by content
     std::vector<ir::NodeId> param_nodes{};                      // by Scene::params
-    std::vector<Span> only{}; // places of `only(…)`
     std::unordered_map<std::uint32_t, bool> only_shapes{};
     std::vector<std::string> usage_errors{};
 };
@@ -257,14 +256,16 @@ Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, 
 // Runs `rest` and keeps what it assigned only where `skip` is false.
 Exit run_unless(Evaluator &ev, const Value &skip, Span place, const std::function<Exit()> &rest);
 // The journal keeps what assignments overwrite, so that a trial can be undone and two arms can be merged.
-std::size_t journal_mark(Evaluator &ev);
+struct JournalMark {
+    std::size_t entries = 0, frames = 0;
+};
+JournalMark journal_mark(Evaluator &ev);
 struct Change {
     std::uint32_t frame, slot;
     Value before, after;
 };
-// What changed since the mark in frames older than `outer`; every change is undone.
-std::vector<Change> journal_take(Evaluator &ev, std::size_t mark);
-void journal_keep(Evaluator &ev, std::size_t mark); // done: the changes stay
+// What changed since the mark in frames that stood then; every change is undone.
+std::vector<Change> journal_take(Evaluator &ev, JournalMark mark);
 
 // -- calls.cpp
 struct Argument {

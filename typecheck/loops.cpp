@@ -28,10 +28,10 @@ bool unknown(const Value &v) { return v.kind == ValueKind::Field; }
 bool never(const Value &v) { return v.kind == ValueKind::Bool && v.num[0] == 0; }
 bool always(const Value &v) { return v.kind == ValueKind::Bool && v.num[0] != 0; }
 
-bool touches_unknown(const Exit &exit, const std::vector<Change> &changes, std::size_t frames) {
+bool touches_unknown(const Exit &exit, const std::vector<Change> &changes) {
     if (unknown(exit.returned) || unknown(exit.broke) || unknown(exit.value)) return true;
     for (const Change &c : changes)
-        if (c.frame < frames && unknown(c.after)) return true;
+        if (unknown(c.after)) return true;
     return false;
 }
 
@@ -76,7 +76,7 @@ struct FoldInput {
 };
 
 // Tries the Fold, quietly. On success the assigned variables hold its results and the exit says how it was left.
-std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input, std::vector<Change> first_changes, std::size_t frames, Span place) {
+std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input, const std::vector<Change> &first_changes, Span place) {
     ir::Graph &g = ev.scene.graph;
     std::vector<Carried> carried;
     auto carry = [&](const Change &c) {
@@ -85,12 +85,11 @@ std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input, std::vector<
         carried.push_back({c.frame, c.slot, c.before, {}});
         return true;
     };
-    for (const Change &c : first_changes)
-        if (c.frame < frames) carry(c);
+    for (const Change &c : first_changes) carry(c);
     bool returns = false;
     Value returned_value; // its kind, once seen
     for (int attempt = 0; attempt < 8; ++attempt) {
-        std::size_t mark = journal_mark(ev);
+        JournalMark mark = journal_mark(ev);
         std::vector<ir::NodeId> vars, next, initial;
         for (Carried &k : carried) {
             if (!is_numeric(k.initial)) {
@@ -114,8 +113,7 @@ std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input, std::vector<
         if (failed) return std::nullopt;
 
         bool again = false;
-        for (const Change &c : changes)
-            if (c.frame < frames) again = carry(c) || again;
+        for (const Change &c : changes) again = carry(c) || again;
         std::vector<Value> after;
         for (Carried &k : carried) {
             Value v = k.initial;
@@ -213,21 +211,20 @@ Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std:
                 .help("in a function's body wrap the loop: `union { for … { … } }`");
         return o.exit;
     };
-    std::size_t frames = ev.frames.size();
     int unrolled = 0;
     for (int i = 0; i < turns.count; ++i) {
         if (!spend(ev, place)) return out;
-        std::size_t mark = journal_mark(ev);
+        JournalMark mark = journal_mark(ev);
         Exit exit = turn(item_at(turns, i));
         std::vector<Change> changes = journal_take(ev, mark);
-        bool touched = touches_unknown(exit, changes, frames);
+        bool touched = touches_unknown(exit, changes);
         if (touched && i == 0 && turns.count > 2 && turns.count <= max_fold_turns) {
             FoldInput input;
             input.count = turns.count;
             input.index = ev.scene.graph.fresh_var(Type::Int);
             if (auto item = symbolic_item(ev, turns, input.index)) {
                 input.body = [&] { return turn(*item); };
-                if (auto folded = try_fold(ev, input, changes, frames, place)) {
+                if (auto folded = try_fold(ev, input, changes, place)) {
                     out.exit = *folded;
                     return out;
                 }
@@ -285,16 +282,15 @@ Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, 
         report(ev, Code::TypeMismatch, condition_place, fmt::format("a condition is a bool, this is {}", describe(ev, v)));
         return std::nullopt;
     };
-    std::size_t frames = ev.frames.size();
     auto turn = [&] { return run_block(ev, ast, node.body, frame).exit; };
     for (int i = 0; i < limit; ++i) {
         if (!spend(ev, place)) return out;
         auto go = condition();
         if (!go || never(*go)) return out;
-        std::size_t mark = journal_mark(ev);
+        JournalMark mark = journal_mark(ev);
         Exit exit = turn();
         std::vector<Change> changes = journal_take(ev, mark);
-        if (unknown(*go) || touches_unknown(exit, changes, frames)) {
+        if (unknown(*go) || touches_unknown(exit, changes)) {
             if (!node.limit) {
                 report(ev, Code::LoopLimit, place, "a loop over numbers that hang on the point needs a limit")
                     .help("say how many turns it takes at most: `while … limit 32 { … }`");
@@ -305,7 +301,7 @@ Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, 
             input.index = ev.scene.graph.fresh_var(Type::Int);
             input.condition = condition;
             input.body = turn;
-            if (auto folded = try_fold(ev, input, changes, frames, place)) {
+            if (auto folded = try_fold(ev, input, changes, place)) {
                 out.exit = *folded;
                 return out;
             }

@@ -68,7 +68,6 @@ static void declare_constants(Evaluator &ev) {
     let("time", make_value(ValueKind::Field, ev.scene.graph.time().index));
     ev.regions.push_back({});
     let("everywhere", make_value(ValueKind::Region, static_cast<std::uint32_t>(ev.regions.size() - 1)));
-    let("empty", shape_value(ev.scene.shapes.add({}), 3));
     for (const auto &c : css_colors) let(c.name, css_color(c.rgb));
 }
 

@@ -10,16 +10,16 @@ namespace fathom::typecheck {
 
 // -- the journal ---------------------------------------------------------------------------------
 
-std::size_t journal_mark(Evaluator &ev) {
+JournalMark journal_mark(Evaluator &ev) {
     ++ev.journaling;
-    return ev.journal.size();
+    return {ev.journal.size(), ev.frames.size()};
 }
 
-std::vector<Change> journal_take(Evaluator &ev, std::size_t mark) {
+std::vector<Change> journal_take(Evaluator &ev, JournalMark mark) {
     std::vector<Change> changes;
-    for (std::size_t i = ev.journal.size(); i-- > mark;) {
+    for (std::size_t i = ev.journal.size(); i-- > mark.entries;) {
         JournalEntry &entry = ev.journal[i];
-        if (entry.frame >= ev.frames.size() || entry.slot >= ev.frames[entry.frame].bindings.size()) continue;
+        if (entry.frame >= mark.frames) continue; // a block inside: gone by now
         Binding &binding = ev.frames[entry.frame].bindings[entry.slot];
         Change *known = nullptr;
         for (Change &c : changes)
@@ -28,15 +28,9 @@ std::vector<Change> journal_take(Evaluator &ev, std::size_t mark) {
         else changes.push_back({entry.frame, entry.slot, entry.old, binding.value});
         binding.value = entry.old;
     }
-    ev.journal.resize(mark);
+    ev.journal.resize(mark.entries);
     --ev.journaling;
     return changes;
-}
-
-void journal_keep(Evaluator &ev, std::size_t mark) {
-    --ev.journaling;
-    if (ev.journaling == 0) ev.journal.clear();
-    else (void)mark;
 }
 
 void assign(Evaluator &ev, std::uint32_t frame, std::uint32_t slot, Value value) {
@@ -331,10 +325,9 @@ Outcome run_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId id, std::ui
 }
 
 Exit run_unless(Evaluator &ev, const Value &skip, Span place, const std::function<Exit()> &rest) {
-    std::size_t frames = ev.frames.size(), mark = journal_mark(ev);
+    JournalMark mark = journal_mark(ev);
     Exit exit = rest();
     for (const Change &c : journal_take(ev, mark)) {
-        if (c.frame >= frames) continue;
         auto merged = select_value(ev, skip, c.before, c.after);
         if (!merged) {
             report(ev, Code::StageMismatch, place, "what is assigned after this hangs on the point, so it has to be numbers of one type");
@@ -367,8 +360,7 @@ static Outcome run_otherwise(Evaluator &ev, const lang::Ast &ast, const lang::If
 // Both arms, each on its own, merged by the condition. Fails (nullopt) where they are not numbers.
 static std::optional<Outcome> run_both(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::size_t branch,
                                        const Value &condition, std::uint32_t frame, Span place) {
-    std::size_t frames = ev.frames.size();
-    std::size_t mark = journal_mark(ev);
+    JournalMark mark = journal_mark(ev);
     Outcome a = run_block(ev, ast, node.branches[branch].body, frame);
     std::vector<Change> in_a = journal_take(ev, mark);
     mark = journal_mark(ev);
@@ -395,14 +387,12 @@ static std::optional<Outcome> run_both(Evaluator &ev, const lang::Ast &ast, cons
     else out.exit.value = merge(a.exit.value, b.exit.value);
     std::vector<Change> merged;
     for (const Change &c : in_a) {
-        if (c.frame >= frames) continue;
         Value other = c.before;
         for (const Change &d : in_b)
             if (d.frame == c.frame && d.slot == c.slot) other = d.after;
         merged.push_back({c.frame, c.slot, c.before, a_leaves ? other : b_leaves ? c.after : merge(c.after, other)});
     }
     for (const Change &d : in_b) {
-        if (d.frame >= frames) continue;
         bool seen = false;
         for (const Change &c : in_a) seen = seen || (c.frame == d.frame && c.slot == d.slot);
         if (!seen) merged.push_back({d.frame, d.slot, d.before, a_leaves ? d.after : b_leaves ? d.before : merge(d.before, d.after)});
