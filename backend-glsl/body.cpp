@@ -99,8 +99,13 @@ class Writer {
             const std::string start = expression(graph_.args(id)[first]).text;
             const std::string name = names_.numbered(prefix_of(node.type));
             line(indent, type + " " + name + " = " + start + ";");
+            std::string aside; // whose paint the others take where they have none
+            if (node.op == Op::FarthestHit) {
+                aside = names_.numbered('h');
+                line(indent, "Hit " + aside + " = " + name + ";");
+            }
             for (std::size_t i = first + 1; i < node.count; ++i)
-                line(indent, name + " = " + joined(id, name, expression(graph_.args(id)[i]).text) + ";");
+                line(indent, name + " = " + joined(id, name, value(graph_.args(id)[i]), aside) + ";");
             name_[id] = name;
             return;
         }
@@ -116,12 +121,14 @@ class Writer {
     }
 
     // One turn of an n-ary combination.
-    std::string joined(NodeId id, const std::string &a, const std::string &b) {
+    std::string joined(NodeId id, const std::string &a, const std::string &b, const std::string &first = "") {
         const ir::Node &node = graph_[id];
         if (node.op == Op::Union) return "min(" + a + ", " + b + ")";
         if (node.op == Op::Intersection) return "max(" + a + ", " + b + ")";
         if (node.op == Op::NearestHit) return helper("fathom_nearest") + "(" + a + ", " + b + ")";
-        if (node.op == Op::FarthestHit) return helper("fathom_farthest") + "(" + a + ", " + b + ")";
+        if (node.op == Op::FarthestHit && first.empty()) return helper("fathom_farthest") + "(" + a + ", " + b + ")";
+        if (node.op == Op::FarthestHit)
+            return helper("fathom_farthest_of") + "(" + first + ", " + a + ", " + b + ")";
         const auto profile = static_cast<ir::Profile>(node.payload);
         std::string text = helper(profile_helper(profile)) + "(" + a + ", " + b + ", " + value(graph_.arg(id, 0));
         if (profile == ir::Profile::Stairs || profile == ir::Profile::Columns)

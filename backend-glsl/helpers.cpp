@@ -201,11 +201,17 @@ Hit fathom_nearest(Hit a, Hit b) {
     return a;
 }
 )"},
-        {"fathom_farthest", Form::One, {}, R"(
+        {"fathom_farthest_of", Form::One, {}, R"(
+// Of hits that are asked in a row: an unpainted one shows the first one's paint.
+Hit fathom_farthest_of(Hit first, Hit best, Hit next) {
+    if (next.distance <= best.distance) return best;
+    if (next.paint >= 0) return next;
+    return Hit(next.distance, first.paint, first.point, first.extra);
+}
+)"},
+        {"fathom_farthest", Form::One, {{"fathom_farthest_of", ""}}, R"(
 Hit fathom_farthest(Hit a, Hit b) {
-    float far = max(a.distance, b.distance);
-    if (b.distance > a.distance && b.paint >= 0) return b;
-    return Hit(far, a.paint, a.point, a.extra);
+    return fathom_farthest_of(a, a, b);
 }
 )"},
         {"fathom_hit_with", Form::One, {}, R"(
@@ -223,7 +229,8 @@ Hit fathom_fill_paint(Hit hit, int paint, vec3 point, vec4 extra) {
         {"fathom_image", Form::One, {}, R"(
 vec4 fathom_image(sampler2D image, vec2 uv) {
     ivec2 size = textureSize(image, 0);
-    vec2 place = (uv - floor(uv)) * vec2(size) - 0.5;
+    vec2 turn = uv - floor(uv);
+    vec2 place = vec2(turn.x, 1.0 - turn.y) * vec2(size) - 0.5;
     vec2 t = fract(place);
     ivec2 a = ivec2(floor(place));
     ivec2 b = (a + 1) % size;

@@ -1,1 +1,3 @@
-set(libs fathom_gl)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET GLOBAL epoxy)
+set(libs fathom_gl PkgConfig::epoxy)

@@ -1,28 +1,16 @@
 // Pictures of scenes whose look is known by calculation.
 #include "tests/unit/glsl/scenes.h"
 
-#include "render-gl/context.h"
+#include "tests/unit/render_gl/context.h"
 #include "render-gl/render.h"
 
 #include <catch2/catch.hpp>
 
-#include <iostream>
+
 
 using namespace fathom;
 
 namespace {
-
-// The one context of this program; the tests that need it say why they skip where there is none.
-bool has_context() {
-    static const std::variant<gl::Context, std::string> context = gl::Context::make();
-    static const bool said = [] {
-        if (const auto *reason = std::get_if<std::string>(&context))
-            std::cerr << "skipped: no GL context (" << *reason << ")\n";
-        return true;
-    }();
-    (void)said;
-    return std::holds_alternative<gl::Context>(context);
-}
 
 gl::Program built(const ir::Scene &scene, bool buffers = true) {
     Diagnostics diagnostics;
