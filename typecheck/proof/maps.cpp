@@ -246,6 +246,21 @@ std::array<bool, 3> Prover::fold_symmetry(NodeId q, std::array<bool, 3> child) {
     return out;
 }
 
+// The largest distance from the axis at which the shape is asked.
+double Prover::region_radius(ShapeId id, int axis) const {
+    const Place &here = place(id);
+    double radius = radius_about(here.box, axis);
+    if (here.zone && here.zone->kind == ir::RegionKind::Ball) {
+        double off = 0;
+        for (int a = 0; a < 3; ++a)
+            if (a != axis) off = std::hypot(off, here.zone->center[static_cast<std::size_t>(a)].magnitude());
+        radius = std::min(radius, up(off + here.zone->half[0].hi, 4));
+    }
+    if (here.zone && here.zone->kind == ir::RegionKind::Tube && here.zone->axis == axis)
+        radius = std::min(radius, here.zone->half[0].hi);
+    return radius;
+}
+
 Known Prover::know_deformed(ShapeId id) {
     const Shape shape = scene.shapes[id];
     const Known inner = child(shape);
@@ -270,7 +285,7 @@ Known Prover::know_deformed(ShapeId id) {
         Interval rate = number(shape.args[2]);
         int axis = shape.axis;
         auto a = static_cast<std::size_t>(axis);
-        double lever = inner.fact.lever[a], region = radius_about(here, axis);
+        double lever = inner.fact.lever[a], region = region_radius(id, axis);
         double arm = std::min(lever, region); // sigma(k M) everywhere, or sigma(k R) within R
         double r = radius_about(inner.fact.bounds, axis);
         if (!everywhere(k.fact.bounds) && !k.fact.bounds.empty())
@@ -298,7 +313,7 @@ Known Prover::know_deformed(ShapeId id) {
         Interval rate = number(shape.args[2]);
         int third = 3 - shape.axis - shape.towards;
         auto t = static_cast<std::size_t>(third);
-        double lever = inner.fact.lever[t], arm = std::min(lever, radius_about(here, third));
+        double lever = inner.fact.lever[t], arm = std::min(lever, region_radius(id, third));
         double r = radius_about(inner.fact.bounds, third);
         if (!everywhere(k.fact.bounds) && !k.fact.bounds.empty())
             for (std::size_t i = 0; i < 3; ++i)
@@ -353,7 +368,7 @@ Known Prover::know_deformed(ShapeId id) {
         if (here.finite() && !here.empty() && inner.fact.bounds.finite() && !inner.fact.bounds.empty()) {
             // In a region: |grad| <= L [[1,0],[|c'| r/c, c]] + |c'| |f|, |f| <= L * the distance across.
             double least = std::max(std::min(1.0, ratio.lo), 1e-4);
-            double across = radius_about(here, shape.axis) / least;
+            double across = region_radius(id, shape.axis) / least;
             double size = up(norm_of(here) / least + norm_of(inner.fact.bounds));
             norm = std::min(norm, up(lower_triangle_norm(most, up(steepness * across)) + steepness * size));
         }

@@ -62,6 +62,8 @@ struct Prover {
     Known know_library(ir::ShapeId id);
     Known know_contract(ir::ShapeId id);
 
+    double region_radius(ir::ShapeId id, int axis) const;
+
     // -- folds: q is p by component, |p_i|, or p less something limited
     Box fold_preimage(ir::NodeId q, const Box &box);
     bool fold_is_clean(ir::NodeId q, const Box &box); // the box lies on the near side of every mirror

@@ -56,7 +56,9 @@ void Prover::run() {
         Known k = know(ShapeId{i});
         finish(ShapeId{i}, k);
         known[i] = k;
-        scene.facts[i] = k.fact;
+        scene.facts[i] = k.fact; // padded there alone, so that the slack does not add up
+        scene.facts[i].bounds = padded(k.fact.bounds);
+        scene.facts[i].repeat.copy = padded(k.fact.repeat.copy);
     }
     scene.bounds = {};
     double radius = 0;
@@ -674,7 +676,6 @@ Known Prover::know_contract(ShapeId id) {
 
 void Prover::finish(ShapeId id, Known &k) {
     const Shape &shape = scene.shapes[id];
-    k.fact.bounds = padded(k.fact.bounds);
     bool everywhere_valid = everywhere(place(id).box);
     bool deformed = shape.kind == ShapeKind::Displace || shape.kind == ShapeKind::Many ||
                     (shape.kind == ShapeKind::Map && (shape.map == MapKind::Twist || shape.map == MapKind::Bend ||

@@ -344,12 +344,12 @@ struct Flattener {
         out.payload = static_cast<std::uint32_t>(tape.loops.size());
         loop_results[id] = plan.ends;
         out.args = plan.start;
+        const Slot plan_result = plan.ends.front();
         tape.loops.push_back(std::move(plan));
-        Slot marker = fresh(ir::Type::Float, true);
-        out.out = marker;
+        out.out = plan_result;
         if (++count > most_instructions) tape.too_large = true;
         scope.block->push_back(std::move(out));
-        return marker;
+        return plan_result; // the Fold itself is its first value
     }
 };
 

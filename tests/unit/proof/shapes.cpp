@@ -1,0 +1,218 @@
+// The rules by kind of shape: bounds, boxes, kinds, and what is reported.
+#include "build.h"
+
+#include <catch2/catch.hpp>
+
+using namespace fathom;
+using namespace fathom::test;
+
+TEST_CASE("rigid motions and uniform scales keep an exact distance") {
+    Scenery s;
+    ShapeId box = s.box(1.2, 5, 1.2);
+    ShapeId moved = s.add(translated(s.g, box, s.g.vec3(1, 2, 3)));
+    ShapeId turned = s.add(rotated(s.g, moved, rotation(s.g, s.g.vec3(0, 1, 0), s.n(0.5))));
+    ShapeId scaled3 = s.add(scaled(s.g, turned, s.g.splat(s.n(3), Type::Vec3)));
+    const ShapeFact &f = s.prove(scaled3);
+    CHECK(f.kind == FieldKind::Exact);
+    CHECK(f.lipschitz_sup == 1);
+    CHECK(f.bounds.lo[1] == Approx(3 * -0.5).epsilon(1e-5));
+    CHECK(f.bounds.hi[1] == Approx(3 * 4.5).epsilon(1e-5));
+    ShapeId flat = s.add(scaled(s.g, box, s.g.vec3(1, 2, 1)));
+    const ShapeFact &g = s.prove(flat);
+    CHECK(g.kind == FieldKind::Bound);
+    CHECK(g.lipschitz_sup == 1);
+    CHECK(g.bounds.hi[1] == Approx(5).epsilon(1e-5));
+}
+
+TEST_CASE("a twist costs its shear at the lever arm, and nothing at rate 0") {
+    Scenery s;
+    ShapeId box = s.box(1.2, 5, 1.2);
+    NodeId rate = s.parameter(0, 2);
+    ShapeId twist = s.add(twisted(s.g, box, rate, 1));
+    Diagnostics d;
+    const ShapeFact &f = s.prove(twist, d);
+    INFO(said(d));
+    CHECK(d.items().empty());
+    CHECK(f.lipschitz_sup == Approx(proof::sigma(1.2)).epsilon(1e-5));
+    CHECK(s.g.reads(f.lipschitz).params);
+    CHECK(f.bounds.hi[0] == Approx(0.6 * std::sqrt(2.0)).epsilon(1e-4));
+    CHECK(f.lever[1] == Approx(0.6).epsilon(1e-6));
+    CHECK(f.guard);
+    ShapeId bend = s.add(bent(s.g, box, s.n(0.2), 1, 0));
+    CHECK(s.prove(bend).lipschitz_sup == Approx(1 + 0.2 * 2.5).epsilon(1e-5));
+    ShapeId taper = s.add(tapered(s.g, box, s.n(0.3), s.n(-2.5), s.n(2.5), 1));
+    double l = s.prove(taper).lipschitz_sup;
+    INFO("taper " << l);
+    CHECK(l > 1);
+    CHECK(l < 1.75);
+}
+
+TEST_CASE("a twist of what is not near the axis wants a region") {
+    Scenery s;
+    ShapeId twist = s.add(twisted(s.g, s.plane(), s.n(1), 1));
+    Diagnostics d;
+    CHECK(std::isinf(s.prove(twist, d).lipschitz_sup));
+    CHECK(has(d, Code::NeedsRegion));
+    CHECK(d.items().size() == 1);
+    Diagnostics e;
+    ShapeId inside = s.within(s.add(twisted(s.g, s.plane(), s.n(1), 1)), s.ball(2));
+    const ShapeFact &f = s.prove(inside, e);
+    INFO(said(e));
+    CHECK(e.items().empty());
+    CHECK(f.lipschitz_sup == Approx(proof::sigma(2)).epsilon(1e-4));
+    CHECK(f.bounds.hi[0] == Approx(2).epsilon(1e-4));
+}
+
+TEST_CASE("a displacement adds its slope") {
+    Scenery s;
+    NodeId k = s.n(9);
+    NodeId f = s.g.mul(s.n(0.12), s.g.mul(s.sin(s.g.mul(s.x, k)), s.g.mul(s.sin(s.g.mul(s.y, k)), s.sin(s.g.mul(s.z, k)))));
+    ShapeId rough = s.add(ShapeKind::Displace, {s.sphere(0.6)}, {f});
+    Diagnostics d;
+    const ShapeFact &fact = s.prove(rough, d);
+    INFO(said(d));
+    CHECK(fact.lipschitz_sup >= 1 + 0.12 * 9 * (1 - 1e-9));
+    CHECK(fact.lipschitz_sup <= 1 + 0.12 * 9 * 1.13);
+    CHECK(fact.bounds.hi[0] >= 0.72);
+    CHECK(fact.bounds.hi[0] < 0.73);
+}
+
+TEST_CASE("blends by profile") {
+    Scenery s;
+    ShapeId a = s.sphere(1), b = s.add(translated(s.g, s.sphere(1), s.g.vec3(1.5, 0, 0)));
+    for (Profile profile : {Profile::Smooth, Profile::Round, Profile::Chamfer, Profile::Stairs}) {
+        ShapeId blend = s.add(ShapeKind::Blend, {a, b}, {s.n(0.4), s.n(3)}, static_cast<std::uint32_t>(profile));
+        const ShapeFact &f = s.prove(blend);
+        CHECK(f.lipschitz_sup == 1);
+        CHECK(f.bounds.lo[0] == Approx(-1).epsilon(1e-4));
+        CHECK(f.bounds.hi[0] == Approx(2.5).epsilon(1e-4));
+    }
+    ShapeId columns = s.add(ShapeKind::Blend, {a, b}, {s.n(0.4), s.n(3)}, static_cast<std::uint32_t>(Profile::Columns));
+    CHECK(s.prove(columns).lipschitz_sup == Approx(std::sqrt(2.0)).epsilon(1e-6));
+    ShapeId norm = s.add(ShapeKind::PseudoNorm, {a, b}, {s.n(4)});
+    CHECK(s.prove(norm).lipschitz_sup == Approx(std::pow(2.0, 0.25)).epsilon(1e-6));
+    // An intersection is a blend of complements and keeps its bounds.
+    ShapeId both = s.add(ShapeKind::Complement, {s.add(ShapeKind::Blend, {s.add(ShapeKind::Complement, {a}), s.add(ShapeKind::Complement, {b})},
+                                                       {s.n(0.2), s.n(0)}, static_cast<std::uint32_t>(Profile::Smooth))});
+    const ShapeFact &f = s.prove(both);
+    CHECK(f.bounds.lo[0] == Approx(0.5).epsilon(1e-4));
+    CHECK(f.bounds.hi[0] == Approx(1).epsilon(1e-4));
+}
+
+TEST_CASE("repetition evaluates as few copies as are enough") {
+    Scenery s;
+    auto repeat = [&](ShapeId child, double cell, bool mirrored = false, NodeId id = {}) {
+        Repetition r;
+        r.along = {true, false, true};
+        r.mirrored = mirrored;
+        r.id = id;
+        s.scene.shapes.repetitions.push_back(r);
+        return s.add(ShapeKind::Repeat, {child}, {s.g.vec3(cell, 0, cell), s.g.vec3(1e9, 1, 1e9)},
+                     static_cast<std::uint32_t>(s.scene.shapes.repetitions.size() - 1));
+    };
+    const auto plan = [&](ShapeId id) { return s.prove(id).repeat; };
+    CHECK(plan(repeat(s.box(1, 1, 1), 1.6)).neighbors == std::array{1, 0, 1});
+    ShapeId aside = s.add(translated(s.g, s.sphere(0.3), s.g.vec3(0.4, 0, 0)));
+    CHECK(plan(repeat(aside, 1.6)).neighbors == std::array{2, 0, 1});
+    CHECK(plan(repeat(s.box(2.4, 1, 1), 1.6)).neighbors == std::array{3, 0, 1});
+    CHECK(plan(repeat(aside, 1.6, true)).neighbors == std::array{1, 0, 1});
+    NodeId id = s.g.fresh_var(Type::Vec3);
+    NodeId hash = s.call(Op::Hash, id);
+    ShapeId differs = s.add(translated(s.g, s.box(0.5, 1, 0.5), s.vec(s.n(0), hash, s.n(0))));
+    const ShapeFact &f = s.prove(repeat(differs, 1.6, false, id));
+    CHECK(f.repeat.neighbors == std::array{2, 0, 2});
+    CHECK(f.repeat.guard);
+    CHECK(f.bounds.hi[1] == Approx(1.5).epsilon(1e-4));
+    Diagnostics d;
+    s.prove(repeat(s.box(30, 1, 1), 1), d);
+    CHECK(has(d, Code::RepeatLimit));
+    Diagnostics e;
+    s.prove(repeat(s.plane(), 1), e);
+    CHECK(has(e, Code::NeedsRegion));
+}
+
+TEST_CASE("one cause, one report, with its place and the ways out") {
+    Scenery s;
+    ShapeId bad = s.leaf(s.g.sub(s.g.div(s.n(1), s.length(s.p)), s.n(2)));
+    ShapeId region = s.within(bad, s.ball(2));
+    ShapeId twist = s.add(twisted(s.g, region, s.n(1), 1));
+    Diagnostics d;
+    CHECK(std::isinf(s.prove(twist, d).lipschitz_sup));
+    INFO(said(d));
+    CHECK(d.items().size() == 1);
+    CHECK(has(d, Code::FieldSingular));
+    CHECK(d.items()[0].fix);
+}
+
+TEST_CASE("a region that keeps off the singular place is enough") {
+    Scenery s;
+    Region region = s.ball(2), hole;
+    hole.kind = RegionKind::Ball;
+    hole.center = s.g.vec3(0, 0, 0);
+    hole.size = s.n(0.4);
+    region.less = {hole};
+    ShapeId ok = s.within(s.leaf(s.g.sub(s.g.div(s.n(1), s.length(s.p)), s.n(2))), region);
+    Diagnostics d;
+    double l = s.prove(ok, d).lipschitz_sup;
+    INFO(said(d));
+    CHECK(l >= 6.25);
+    CHECK(l < 6.25 * 1.5708 * 1.2);
+}
+
+TEST_CASE("what is assumed is tested") {
+    Scenery s;
+    Shape shape;
+    shape.kind = ShapeKind::Leaf;
+    shape.args = {s.g.sub(s.length(s.p), s.n(1))};
+    shape.assumed = 0.5;
+    Diagnostics d;
+    s.prove(s.add(shape), d);
+    CHECK(has(d, Code::LipschitzViolated));
+    shape.assumed = 1.5;
+    Diagnostics e;
+    const ShapeFact &f = s.prove(s.add(shape), e);
+    CHECK(e.items().empty());
+    CHECK(f.status == ProofStatus::Assumed);
+    CHECK(f.lipschitz_sup == 1.5);
+    shape.assumed = 0;
+    shape.estimate = 0.8;
+    Diagnostics g;
+    CHECK(s.prove(s.add(shape), g).status == ProofStatus::Estimated);
+    INFO(said(g));
+    CHECK(has(g, Code::EstimatedField));
+}
+
+TEST_CASE("contracts, lower bounds, cost") {
+    Scenery s;
+    ShapeId twist = s.add(twisted(s.g, s.box(1, 1, 1), s.n(3), 1));
+    s.scene.shapes.contracts.push_back({1, {}});
+    Diagnostics d;
+    s.prove(s.add(ShapeKind::Contract, {twist}, {}, 0), d);
+    INFO(said(d));
+    CHECK(has(d, Code::LipschitzContract));
+    CHECK(!d.items()[0].notes.empty());
+    Diagnostics e;
+    s.prove(s.add(ShapeKind::Shell, {twist}, {s.n(0.1)}), e);
+    CHECK(has(e, Code::LowerBound));
+    Diagnostics f;
+    s.prove(s.add(ShapeKind::Shell, {s.box(1, 1, 1)}, {s.n(0.1)}), f);
+    CHECK(f.items().empty());
+    Diagnostics g;
+    s.prove(s.add(twisted(s.g, s.box(4, 1, 4), s.n(4), 1)), g);
+    CHECK(has(g, Code::Costly));
+}
+
+TEST_CASE("the explanation names the operation that costs") {
+    Scenery s;
+    ShapeId twist = s.add(twisted(s.g, s.box(1, 1, 1), s.n(3), 1));
+    ShapeId all = s.add(ShapeKind::Union, {s.sphere(1), s.add(translated(s.g, twist, s.g.vec3(3, 0, 0)))});
+    s.prove(all);
+    proof::Explanation e = proof::explain(s.scene);
+    CHECK(e.operation == "union");
+    REQUIRE(e.children.size() == 2);
+    CHECK(e.children[1].worst);
+    const proof::Explanation &t = e.children[1].children[0];
+    CHECK(t.operation == "twist");
+    CHECK(t.share == Approx(1));
+    CHECK(t.factor == Approx(proof::sigma(1.5)).epsilon(1e-5));
+}
