@@ -48,7 +48,7 @@ template <int dims> static Value leaf_call(Evaluator &ev, const CallSite &site, 
     library.name = ev.calls.empty() ? site.name : ev.calls.back().name;
     library.has_claims = true;
     ir::Claims &c = library.claims;
-    if (given(args[1])) {
+    if (given(args[1]) && args[1].kind != ValueKind::Field) { // true only for some values of a param is not true
         auto exact = want_known_bool(ev, args[1], site.arg(1), "`exact`");
         if (exact && *exact) c.kind = ir::FieldKind::Exact, c.lipschitz = g.number(1);
     }

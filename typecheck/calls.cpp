@@ -21,7 +21,8 @@ namespace {
 struct Formal {
     std::string name;
     bool optional = false;
-    bool takes_rest = false; // the last one, of type [shape]
+    bool takes_rest = false; // the last one, of type [shape], or a builtin's of any number
+    bool opens_list = true;  // a single list among the rest is the rest
     Span declared;
     bool or_a_list = true;   // takes_rest: one list stands for its elements
 };
@@ -129,7 +130,7 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
         if (!ok) return std::nullopt;
         Diagnostic &d = report(ev, Code::MissingArgument, call, fmt::format("`{}` wants an argument `{}`", name, formals[i].name));
         d.note(fmt::format("it is `{}`", signature_text(name, formals)));
-        if (formals[i].declared.source) d.label(formals[i].declared, "declared here");
+        if (!is_library_place(ev, formals[i].declared)) d.label(formals[i].declared, "declared here");
         return std::nullopt;
     }
     if (!ok) return std::nullopt;
@@ -143,7 +144,7 @@ static bool is_shape_list(const lang::TypeExpr &type) {
 static std::vector<Formal> formals_of(const lang::Function &f) {
     std::vector<Formal> out;
     for (const lang::Parameter &p : f.parameters) {
-        Formal formal{p.name.text, p.default_value.has_value(), false, p.name.span};
+        Formal formal{p.name.text, p.default_value.has_value(), false, true, p.name.span};
         if (&p == &f.parameters.back() && p.type && is_shape_list(*p.type)) formal.takes_rest = true;
         out.push_back(formal);
     }
@@ -474,7 +475,7 @@ Value call_value(Evaluator &ev, const Value &callee, const std::string &name, st
     case ValueKind::ConstField: return ev.lists[callee.id][0];
     case ValueKind::CachedField:
     case ValueKind::ImageField: {
-        auto bound = bind_arguments(ev, name, {{"p", false, false, {}}}, args, call, callee_span);
+        auto bound = bind_arguments(ev, name, {{"p", false, false, true, {}}}, args, call, callee_span);
         if (!bound) return poison();
         bool image = callee.kind == ValueKind::ImageField;
         auto p = want_vec_node(ev, *bound->values[0], image ? 2 : 3, bound->spans[0], fmt::format("`{}`", name));
