@@ -111,9 +111,6 @@ constexpr std::string_view material_properties[] = {"Name",
                                                     "Displacement Map",
                                                     "Displacement Amount",
                                                     "Displacement Scale",
-                                                    "Diffuse Field",
-                                                    "Specular Field",
-                                                    "Exponent Field",
                                                     "Emission"};
 
 void read_material(Importer &in, const TakenValue &taken) {
@@ -199,7 +196,11 @@ void read_material(Importer &in, const TakenValue &taken) {
         info.displacement = ".displace_map(" + map + ", " + sdf_number(amount) +
                             ", scale: " + displacement_scale + ")";
     }
-    in.out += "let " + info.identifier + " = " + call + ")\n";
+    if (const Value *emission = all.find("Emission")) {
+        call += ", emission: " +
+                color_text(read_color(in, emission, "Emission", {0, 0, 0}, emission->span));
+    }
+    in.out += "let " + info.identifier + " = " + call + ", name: " + sdf_string(name->text) + ")\n";
     in.materials.emplace(name->text, std::move(info));
 }
 

@@ -301,7 +301,15 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
         const NodeType kind = row ? row->type : NodeType::Generic;
         if (kind == NodeType::Generic || kind == NodeType::Union) {
             unite();
-            if (result.contributed) group(kids.base);
+            const std::string paint = row && result.contributed
+                                          ? paint_call(in_, *row, properties, type_span)
+                                          : std::string();
+            if (!paint.empty()) {
+                target.back().text += chain_mark + paint;
+                based = true;
+            } else if (result.contributed) {
+                group(kids.base);
+            }
         } else if (kind == NodeType::Intersection) {
             result.contributed = kids.pieces > 0;
             if (kids.pieces > 1) {

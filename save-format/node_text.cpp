@@ -201,7 +201,8 @@ std::string leaf_text(Importer &in, const NodeTypeRow &row, Properties &properti
         break;
     case NodeType::Box: text = exact("box(") + reading.vector_text("Size") + ")"; break;
     case NodeType::MengerSponge:
-        text = "dfmodel.menger(" + reading.text("Size") + ", " + reading.text("Iterations") + ")";
+        text = "dfmodel.menger_sponge(" + reading.text("Size") + ", " + reading.text("Iterations") +
+               ")";
         break;
     case NodeType::GeneralizedDistanceFunction: text = gdf_call(in, reading, properties, at); break;
     case NodeType::BlobbyObjects:
@@ -329,7 +330,11 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
     }
     case NodeType::Hyperize: {
         const double exponent = reading.number("Exponent");
-        return exponent == 1 ? std::string() : ".hyperize(" + sdf_number(exponent) + ")";
+        const std::string region =
+            reading["Within"].given ? region_text(reading["Within"].tree) : std::string();
+        if (exponent == 1) return {};
+        return ".hyperize(" + sdf_number(exponent) + (region.empty() ? "" : ", within: " + region) +
+               ")";
     }
     case NodeType::Offset: {
         const double distance = reading.number("Distance");
@@ -401,7 +406,9 @@ void operator_text(Importer &in, const NodeTypeRow &row, Properties &properties,
     if (row.type == NodeType::ProfileBlend) {
         const std::string profile = spelling_key(reading.word("Profile")),
                           operation = spelling_key(reading.word("Operation"));
+        if (operation == "xor") return block("xor {");
         const bool stepped = profile == "stairs" || profile == "columns";
+        const bool mixed = profile == "smooth" && reading.number("Mix") != 0;
         const bool legal =
             (stepped || profile == "smooth" || profile == "round" || profile == "chamfer") &&
             (operation == "union" || operation == "intersection" || operation == "difference");
@@ -411,12 +418,21 @@ void operator_text(Importer &in, const NodeTypeRow &row, Properties &properties,
             return block("union {");
         }
         return block(profile + "_" + operation + "(" + reading.text("Radius") +
-                     (stepped ? ", " + reading.text("Count") : "") + ") {");
+                     (stepped ? ", " + reading.text("Count") : "") + (mixed ? ", mix: true" : "") +
+                     ") {");
     }
     // blend(a, b, t) and pseudonorm_blend(a, b, exponent)
     std::string last;
     if (row.type == NodeType::PseudoNormBlend) {
         last = reading.text("Exponent");
+    } else if (reading["Factor Field"].given) {
+        std::string why;
+        last = program_text(reading["Factor Field"].tree, why);
+        if (last.empty()) {
+            in.report.content(at, "the program of this factor cannot be read: " + why)
+                .note("the factor 0.5 stands in");
+            last = "0.5";
+        }
     } else if (reading["Center"].given) { // 2.14
         double center[3];
         reading.vector("Center", center);
@@ -436,6 +452,35 @@ void operator_text(Importer &in, const NodeTypeRow &row, Properties &properties,
     body.back().text += ',';
     body.push_back({Piece::Kind::Line, std::move(last), {}});
     body.push_back({Piece::Kind::Close, ")", {}});
+}
+
+// {Diffuse: steps, Specular: steps, Exponent: steps, Emission: steps, Repaint: True}
+std::string paint_call(Importer &in, const NodeTypeRow &row, Properties &properties, Span at) {
+    const Reading reading(row, properties);
+    if (row.type != NodeType::Generic || !reading["Paint"].given) return {};
+    const Value &looks = reading["Paint"].tree;
+    std::string arguments;
+    static constexpr std::pair<const char *, const char *> parts[] = {{"Diffuse", "diffuse: "},
+                                                                      {"Specular", "specular: "},
+                                                                      {"Exponent", "exponent: "},
+                                                                      {"Emission", "emission: "}};
+    for (const auto &[key, argument] : parts) {
+        const Value *steps = looks.find(key);
+        if (!steps) continue;
+        std::string why;
+        const std::string lambda = program_text(*steps, why);
+        if (lambda.empty()) {
+            in.report.content(at,
+                              std::string("`") + key + "` of this paint cannot be read: " + why);
+            continue;
+        }
+        arguments += (arguments.empty() ? "" : ", ") + std::string(argument) + lambda;
+    }
+    const Value *over = looks.find("Repaint");
+    const bool repaint = over && switch_of(*over).value_or(false);
+    return arguments.empty()
+               ? std::string()
+               : std::string(repaint ? ".repaint" : ".paint") + "(material(" + arguments + "))";
 }
 
 std::string property_flow(const PropertyType &type, const Property &property) {

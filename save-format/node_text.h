@@ -18,6 +18,9 @@ void operator_text(Importer &in, const NodeTypeRow &row, Properties &properties,
                    std::size_t begin, std::size_t first_end, std::size_t rest_mark,
                    std::size_t rest, Span at);
 
+// Of a group whose looks depend on the point: `.paint(material(…))`, else empty.
+std::string paint_call(Importer &in, const NodeTypeRow &row, Properties &properties, Span at);
+
 std::string property_flow(const PropertyType &type, const Property &property);
 
 } // namespace fathom::save

@@ -44,6 +44,7 @@ constexpr P material = {"Material", K::Material, 0, "<None>"};
 constexpr P texture_offset = {"Offset", K::Carried, 0, "{X: 0, Y: 0}"};
 constexpr P exact = labelled(flag("Exact"));
 
+constexpr P generic[] = {labelled(tree("Paint"))};
 constexpr P sphere[] = {size("Radius", 1), material, texture_offset};
 constexpr P torus[] = {size("Major Radius", 1), size("Minor Radius", 0.25), material,
                        texture_offset};
@@ -62,7 +63,9 @@ constexpr P blobby[] = {whole("Balls", 10, 1, 1000),
                         material,
                         texture_offset};
 constexpr P explicit_field[] = {word("File", ""), material, texture_offset};
-constexpr P blend[] = {number("Factor", 0.5), {"Center", K::Vector, 0, "", -1e9, 1e9, false, true}};
+constexpr P blend[] = {number("Factor", 0.5),
+                       {"Center", K::Vector, 0, "", -1e9, 1e9, false, true},
+                       labelled(tree("Factor Field"))};
 constexpr P translation[] = {vector("Vector", 0)};
 constexpr P rotation[] = {vector("Angles", 0)};
 constexpr P scaling[] = {vector("Factors", 1)};
@@ -70,13 +73,13 @@ constexpr P twist[] = {number("Rate", 1), labelled(word("Axis", "Z"))};
 constexpr P turnaround[] = {labelled(word("Axis", "X"))};
 constexpr P repetition[] = {{"Cell", K::Vector, 0, "", 0, 1e9},
                             labelled({"Count", K::Vector, none, "", 0, none})};
-constexpr P hyperize[] = {size("Exponent", 1)};
+constexpr P hyperize[] = {size("Exponent", 1), labelled(tree("Within"))};
 constexpr P offset[] = {number("Distance", 0)};
 constexpr P displacement[] = {word("Map", "<None>"), number("Amount", 0.1), sizes("Scale", 1),
                               labelled(tree("Field"))};
 constexpr P library[] = {word("Function", ""), tree("Arguments"), material};
 constexpr P profile_blend[] = {word("Operation", "Union"), word("Profile", "Smooth"),
-                               size("Radius", 0.1), number("Count", 4)};
+                               size("Radius", 0.1), number("Count", 4), labelled(flag("Mix"))};
 constexpr P pseudo_norm[] = {size("Exponent", 2)};
 constexpr P field[] = {tree("Field"),
                        tree("Within"),
@@ -96,7 +99,7 @@ constexpr P lighting[] = {number("Ambient R", 0),
                           flag("Skip Shadows & Shading")};
 
 constexpr NodeTypeRow rows[] = {
-    {NodeType::Generic, "Generic", Arity::Many, {}},
+    {NodeType::Generic, "Generic", Arity::Many, generic},
     {NodeType::Sphere, "Sphere", Arity::Leaf, sphere},
     {NodeType::Torus, "Torus", Arity::Leaf, torus},
     {NodeType::Cylinder, "Cylinder", Arity::Leaf, cylinder},

@@ -23,7 +23,7 @@ constexpr Spelling spellings[] = {
     {"Mul", "*", 2, true},
     {"Div", "/", 2, true},
     {"Mod", "%", 2, true},
-    {"Pow", "^", 2, true},
+    {"Pow", "pow", 2, false},
     {"Min", "min", 2, false},
     {"Max", "max", 2, false},
     {"Step", "step", 2, false},

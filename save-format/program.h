@@ -21,6 +21,6 @@ std::string yaml_number(double value); // shortest exact form, `.inf`
 
 // The steps of an expression in flow form; empty where an operation has no words there (loops,
 // grids). `bound` gives steps to variables that stand for something else (a function's parameters).
-std::string program_flow(const ir::Scene &scene, const ir::Graph &graph, ir::NodeId root);
+std::string program_flow(const ir::Graph &graph, ir::NodeId root);
 
 } // namespace fathom::save

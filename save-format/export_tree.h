@@ -1,0 +1,40 @@
+// From the scene's tree of shapes to nodes of a save file, at the present values of params. Private
+// to save-format.
+#pragma once
+
+#include "ir/scene.h"
+#include "save-format/kept_items.h"
+#include "save-format/yaml_writer.h"
+
+#include <functional>
+#include <optional>
+
+namespace fathom::save {
+
+// Expressions as numbers: params and time stand for their values, variables for what the walk has
+// put in their place.
+class Numbers {
+  public:
+    explicit Numbers(const ir::Scene &scene);
+
+    std::optional<ir::Constant> constant(ir::NodeId id);
+    std::optional<double> number(ir::NodeId id);
+    std::optional<std::array<double, 3>> vector(ir::NodeId id); // a vec2's third component is 0
+    ir::NodeId reduced(ir::NodeId id); // the expression, with those values in it
+    void set(ir::NodeId variable, const ir::Constant &value);
+    ir::Graph &graph() { return graph_; }
+
+  private:
+    ir::Graph graph_;
+    ir::Substitution values_;
+};
+
+// Names a material (an index into Shapes::materials) as the file does; empty where its looks depend
+// on the point.
+using MaterialName = std::function<std::string(std::uint32_t)>;
+
+// The nodes that unite to the scene, in the order of its text.
+std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers,
+                                  const MaterialName &material_name, Diagnostics &diagnostics);
+
+} // namespace fathom::save

@@ -1,0 +1,51 @@
+// What `dfmodel.keep(…)` statements brought through the scene, read back for an export. Private to
+// save-format.
+#pragma once
+
+#include "save-format/yaml_reader.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fathom::save {
+
+struct TreeRecord {
+    std::string label;             // name, type, properties, group, node, extra
+    std::vector<std::size_t> path; // from the root
+    Value value;
+};
+
+struct MainItem {
+    std::string label; // steps, camera, view, setting
+    Value value;
+};
+
+struct KeptItems {
+    std::optional<Value> version;
+    std::vector<Value> textures, materials, lights;
+    std::vector<TreeRecord> tree;
+    std::optional<Value> lighting;   // [in the tree, name, {properties}]
+    std::vector<MainItem> items;     // behind the tree, in order
+    std::vector<std::string> unread; // statements that are none of these
+};
+
+KeptItems read_kept(const std::vector<std::string> &statements);
+
+// A node of the file to be. `given` names and types were in a file; others follow from the scene.
+struct TreeNode {
+    std::string type, name;
+    bool named = false;
+    bool head = false; // of a group that a record brought back: it counts in no ordinal
+    std::vector<std::pair<std::string, Value>> properties;
+    std::vector<TreeNode> children;
+    std::optional<Value> verbatim; // instead of all that
+    std::vector<Value> extra;
+};
+
+// Brings groups, names, properties and unknown nodes back, in the order of the records. What no
+// longer has a place is returned.
+std::vector<const TreeRecord *> apply_records(const std::vector<TreeRecord> &records,
+                                              TreeNode &root);
+
+} // namespace fathom::save

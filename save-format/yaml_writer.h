@@ -1,0 +1,27 @@
+// Save files as text: values in block form, the way the thesis prints them. Needs no libyaml; what
+// it writes, yaml_reader reads back as the same.
+#pragma once
+
+#include "save-format/yaml_reader.h"
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+namespace fathom::save {
+
+Value yaml_scalar(double number);
+Value yaml_word(std::string_view text); // plain where it reads back as text
+Value yaml_switch(bool on);             // True, False
+Value yaml_mapping(std::initializer_list<std::pair<std::string, Value>> entries);
+Value yaml_xyz(double x, double y, double z);
+Value yaml_list(std::vector<Value> items);
+
+// Appends the value behind what stands in the line (`- ` or `Key:`); `indent` is the column of its
+// own lines.
+void write_value(const Value &value, std::size_t indent, std::string &out);
+// An item of a block sequence at `indent`.
+void write_item(const Value &value, std::size_t indent, std::string &out);
+std::string flow_text(const Value &value);
+
+} // namespace fathom::save
