@@ -143,6 +143,7 @@ template <int size> static Value mat_call(Evaluator &ev, const CallSite &site, s
     auto list = want_list(ev, args[0], site.arg(0), fmt::format("`{}`", site.name));
     if (!list) return poison();
     std::vector<Value> parts = *list;
+    if (parts.size() == 1 && parts[0].kind == ValueKind::List) parts = std::vector<Value>(ev.lists[parts[0].id]);
     std::vector<Value> numbers;
     if (parts.size() == 1 && is_scalar(ev, parts[0])) {
         for (int i = 0; i < size * size; ++i) numbers.push_back(i % (size + 1) == 0 ? to_float(ev, parts[0]) : number(0));

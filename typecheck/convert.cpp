@@ -166,7 +166,7 @@ Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span pl
     ok = false;
     Diagnostic &d = report(ev, Code::TypeMismatch, place,
                            fmt::format("{} wants a `{}`, this is {}", what, type_text(type), describe(ev, v)));
-    if (type.span.source && !(type.span == place)) d.label(type.span, "because of this type");
+    if (!is_library_place(ev, type.span) && !(type.span == place)) d.label(type.span, "because of this type");
     if (type.kind == lang::TypeExpr::Kind::Name && type.name == "shape" && v.kind == ValueKind::Shape && v.size == 2)
         d.help("make it solid with `.extrude(height)` or `.revolve()`");
     if (type.kind == lang::TypeExpr::Kind::Name && type.name == "int" && is_numeric(v)) d.help("`int(x)` cuts the fraction off");

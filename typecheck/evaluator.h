@@ -188,6 +188,7 @@ void check_names(Evaluator &ev, const lang::Ast &ast, std::uint32_t module_frame
 
 // -- report.cpp
 Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message);
+bool is_library_place(const Evaluator &ev, Span span);              // or no place at all
 std::string describe(const Evaluator &ev, const Value &value);      // "a float", "a list of 3", "a shape"
 std::string print_value(const Evaluator &ev, const Value &value);   // for print(…)
 bool spend(Evaluator &ev, Span place, std::size_t amount = 1);      // false once the budget is gone

@@ -7,6 +7,13 @@
 
 namespace fathom::typecheck {
 
+bool is_library_place(const Evaluator &ev, Span span) {
+    if (!span.source) return true;
+    for (const Module &m : ev.modules)
+        if (m.library && m.source == span.source) return true;
+    return false;
+}
+
 // An error inside the library is the caller's: it is shown at the innermost call that the user wrote.
 Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message) {
     static thread_local Diagnostic swallowed;
@@ -15,12 +22,7 @@ Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message) {
         swallowed = {};
         return swallowed;
     }
-    auto of_library = [&](Span span) {
-        if (!span.source) return true;
-        for (const Module &m : ev.modules)
-            if (m.library && m.source == span.source) return true;
-        return false;
-    };
+    auto of_library = [&](Span span) { return is_library_place(ev, span); };
     if (ev.quiet > 0) {
         swallowed = {};
         return swallowed;
