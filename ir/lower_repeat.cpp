@@ -164,10 +164,15 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Frame frame) {
 
     // The copies that were not asked lie, along some axis, beyond the first or the last asked. Each side's are held by a box that
     // is bounded there by the nearest of them, and elsewhere by what all copies together extend to.
+    Box held = known.repeat.copy;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (repetition.mirrored && repetition.along[i]) { // a copy or its reflection
+            held.hi[i] = std::max(-held.lo[i], held.hi[i]);
+            held.lo[i] = -held.hi[i];
+        }
     const auto outside = [&](int i) -> NodeId { // how far p is beyond all copies along axis i; invalid: never
         const Axis &a = axes[static_cast<std::size_t>(i)];
-        const double lo = known.repeat.copy.lo[static_cast<std::size_t>(i)];
-        const double hi = known.repeat.copy.hi[static_cast<std::size_t>(i)];
+        const double lo = held.lo[static_cast<std::size_t>(i)], hi = held.hi[static_cast<std::size_t>(i)];
         if (!std::isfinite(lo) || !std::isfinite(hi) || (a.repeats && !a.last)) return {};
         const NodeId reach = a.repeats ? g.mul(a.shift, a.cell) : g.number(0);
         return g.make(Op::Max, {g.sub(g.sub(g.number(lo), reach), a.x), g.sub(g.sub(a.x, reach), g.number(hi))});
@@ -176,8 +181,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Frame frame) {
     for (int i = 0; i < dims; ++i) {
         const Axis &a = axes[static_cast<std::size_t>(i)];
         if (!a.repeats) continue;
-        const double lo = known.repeat.copy.lo[static_cast<std::size_t>(i)];
-        const double hi = known.repeat.copy.hi[static_cast<std::size_t>(i)];
+        const double lo = held.lo[static_cast<std::size_t>(i)], hi = held.hi[static_cast<std::size_t>(i)];
         if (!std::isfinite(lo) || !std::isfinite(hi)) continue;
         const NodeId before = g.sub(a.base, g.number(1)), after = g.add(a.base, g.number(a.copies));
         NodeId left = g.sub(a.x, g.add(g.mul(g.sub(before, a.shift), a.cell), g.number(hi)));

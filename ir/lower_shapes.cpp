@@ -96,15 +96,17 @@ NodeId Lowering::answer(Reading reading, ShapeId id, Frame frame) {
     return guarded(reading, id, frame, divided(id, ask(Reading::Raw, id, frame)));
 }
 
-// A bound below 1 lengthens the step, as it may.
-NodeId Lowering::divided(ShapeId id, NodeId raw) {
+// raw / (L * times). A bound below 1 lengthens the step, as it may.
+NodeId Lowering::divided(ShapeId id, NodeId raw, double times) {
     const ShapeFact &known = fact(id);
-    if (known.lipschitz && !graph_.is_constant(known.lipschitz))
-        return graph_.div(raw, graph_.make(Op::Max, {known.lipschitz, graph_.number(1e-6)}));
+    if (known.lipschitz && !graph_.is_constant(known.lipschitz)) {
+        const NodeId bound = graph_.mul(known.lipschitz, graph_.number(times));
+        return graph_.div(raw, graph_.make(Op::Max, {bound, graph_.number(1e-6)}));
+    }
     const double bound = known.lipschitz ? *graph_.as_number(known.lipschitz) : known.lipschitz_sup;
     // No proof, or a field that is constant: as it is. The first has been reported.
     if (!std::isfinite(bound) || bound <= 0) return raw;
-    return graph_.div(raw, graph_.number(bound));
+    return graph_.div(raw, graph_.number(bound * times));
 }
 
 NodeId Lowering::guarded(Reading reading, ShapeId id, Frame frame, NodeId value) {
@@ -271,8 +273,11 @@ NodeId Lowering::within(Reading reading, ShapeId id, Frame frame) {
     const Region region =
         map_region(shapes_.regions[shape(id).payload], [&](NodeId number) { return read(number, frame); });
     const NodeId p = point3(frame.p);
-    NodeId field = ask(Reading::Raw, shape(id).children.front(), inside(id, frame));
-    if (reading == Reading::Marched) field = divided(id, field);
+    const ShapeId child = shape(id).children.front();
+    NodeId field = ask(Reading::Raw, child, inside(id, frame));
+    // The child's bound holds in the region. Round what is carved from it the way is up to pi/2 times the straight one.
+    if (reading == Reading::Marched)
+        field = divided(child, field, region.less.empty() ? 1 : 2 * std::atan(1.0));
     NodeId q = region_nearest(g, region, p);
     for (const Region &less : region.less) {
         const NodeId out = region_way_out(g, less, q);

@@ -40,7 +40,7 @@ class Lowering {
     NodeId raw_only(ShapeId id, Frame frame);                    // kinds whose field consumes raw fields
     NodeId colored(ShapeId id, Frame frame);                     // whose surface shows on a leaf: a Hit, distance aside
     bool passes_through(ShapeId id) const;
-    NodeId divided(ShapeId id, NodeId raw);
+    NodeId divided(ShapeId id, NodeId raw, double times = 1);
     NodeId guarded(Reading reading, ShapeId id, Frame frame, NodeId value);
 
     // -- per kind

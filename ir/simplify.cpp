@@ -160,8 +160,7 @@ NodeId Graph::simplified(Op op, Type type, std::span<const NodeId> args, std::ui
         return {};
     case Op::Mix:
         if (is(2, 0)) return args[0];
-        if (is(2, 1)) return args[1];
-        return args[0] == args[1] ? args[0] : NodeId{};
+        return is(2, 1) ? args[1] : NodeId{};
     case Op::Floor:
     case Op::Ceil:
     case Op::Trunc:

@@ -248,7 +248,7 @@ TEST_CASE("within: the part inside the region, and a bound outside") {
         const auto wave = [&](double k, int i) { return u.g.make(Op::Sin, {u.g.mul(u.n(k), u.g.component(p, i))}); };
         const ShapeId field = u.leaf(u.g.add(u.g.add(wave(2, 0), wave(3, 1)), u.g.component(p, 2)));
         const ShapeId part = u.within(field, c.region);
-        u.fact(part).lipschitz = u.n(bound);
+        u.fact(field).lipschitz = u.n(bound);
         const auto expected = [&](P at) {
             const double sd = c.distance(at), g = f(sd > 0 ? c.nearest(at) : at) / bound;
             return sd > 0 ? std::hypot(length(minus(at, c.nearest(at))), std::max(g, 0.0)) : std::max(g, sd);
@@ -292,7 +292,6 @@ TEST_CASE("raw fields do not depend on proofs") {
         const ShapeId field = t.leaf(t.g.sub(t.g.make(Op::Length, {p}), t.n(1)));
         const ShapeId part = t.within(field, {RegionKind::Ball, t.v(0, 0, 0), t.n(3), 1, {}});
         const ShapeId grown = t.add(ShapeKind::Offset, {part}, {t.n(0.25)});
-        t.fact(part).lipschitz = t.n(bound);
         t.fact(field).lipschitz = t.n(bound);
         t.fact(grown).lipschitz = t.n(1);
         Reference reference(t.lowered(grown));
