@@ -2,6 +2,7 @@
 // ops without one look like; helper functions are only named here (helpers.cpp holds them).
 #include "backend-glsl/module.h"
 #include "backend-glsl/schedule.h"
+#include "backend-glsl/unshare.h"
 
 #include <algorithm>
 #include <cassert>
@@ -62,8 +63,8 @@ const char *profile_helper(ir::Profile profile) {
 
 class Writer {
   public:
-    Writer(Module &module, std::span<Bound> bound, std::span<const NodeId> roots)
-        : module_(module), graph_(module.scene.graph), plan_(schedule(graph_, roots)), names_(module.names) {
+    Writer(Module &module, const ir::Graph &graph, std::span<Bound> bound, std::span<const NodeId> roots)
+        : module_(module), graph_(graph), plan_(schedule(graph_, roots)), names_(module.names) {
         for (Bound &b : bound) name_[b.var] = b.name = names_.unique(b.name);
     }
 
@@ -308,7 +309,7 @@ class Writer {
             return {helper("fathom_grid") + "(" + module_.grids.at(node.payload) + ", " + list(id) + ")", Primary};
         case Op::Call: return {module_.functions.at(node.payload) + "(" + list(id) + ")", Primary};
         case Op::Cached: {
-            const auto field = module_.scene.graph.cache(ir::CacheId{node.payload}).field;
+            const auto field = graph_.cache(ir::CacheId{node.payload}).field;
             return {module_.functions.at(field.index) + "(" + list(id) + ")", Primary};
         }
         case Op::Fold: return {name_.at(id), Primary};
@@ -554,7 +555,9 @@ class Writer {
 } // namespace
 
 Body body(Module &module, std::span<Bound> bound, std::span<const NodeId> roots) {
-    Writer writer(module, bound, roots);
+    const std::optional<Unshared> apart = unshare(module.scene.graph, roots);
+    if (apart) roots = apart->roots;
+    Writer writer(module, apart ? apart->graph : module.scene.graph, bound, roots);
     writer.block(0, 1);
     Body result;
     for (NodeId root : roots) result.values.push_back(writer.value(root));

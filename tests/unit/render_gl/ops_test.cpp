@@ -1,131 +1,19 @@
 // Every op in a shader against its meaning (ir/fold.h), over arguments that break careless code. The arguments come from
 // a table, one row a pixel, so that no compiler can fold them.
-#include "tests/unit/render_gl/context.h"
-
-#include "backend-glsl/emit.h"
 #include "ir/fold.h"
+#include "tests/unit/glsl/op_cases.h"
 #include "tests/unit/glsl/scenes.h"
-
-#include <catch2/catch.hpp>
-#include <epoxy/gl.h>
+#include "tests/unit/render_gl/harness.h"
 
 #include <cmath>
 #include <limits>
-#include <span>
 
 using namespace fathom;
+using namespace fathom::scenes;
 using ir::Constant;
 using ir::NodeId;
-using ir::Op;
-using ir::Type;
 
 namespace {
-
-constexpr Type int_and_floats[] = {Type::Int,  Type::Float, Type::Vec2, Type::Vec3,
-                                   Type::Vec4, Type::Mat2,  Type::Mat3, Type::Mat4};
-constexpr std::span<const Type> with_int(int_and_floats), all = with_int.subspan(1),
-                                vectors_and_float = all.subspan(0, 4), vectors = all.subspan(1, 3),
-                                matrices = all.subspan(4), vec3(&int_and_floats[3], 1);
-
-struct Case {
-    Op op;
-    std::vector<Type> args;
-    Type result;
-};
-
-// The types that each op is asked with. Ops that have no value of their own (inputs, structure, hits) are in other tests.
-std::vector<Case> cases_of(Op op) {
-    std::vector<Case> cases;
-    const auto same = [&](std::size_t arity, std::span<const Type> types) {
-        for (Type t : types) cases.push_back({op, std::vector<Type>(arity, t), t});
-    };
-    switch (op) {
-    case Op::Const: case Op::Point: case Op::Normal: case Op::Direction: case Op::Time: case Op::Param: case Op::Var:
-    case Op::TableRead: case Op::Image: case Op::Grid: case Op::Call: case Op::Fold: case Op::FoldResult:
-    case Op::Cached: case Op::MakeHit: case Op::HitDistance: case Op::HitPaint: case Op::HitPoint: case Op::HitExtra:
-    case Op::NearestHit: case Op::FarthestHit: case Op::HitWith: case Op::FillPaint:
-        break;
-    case Op::Neg: case Op::Abs: case Op::Sign: same(1, with_int); break;
-    case Op::Add: case Op::Sub: case Op::Mul: case Op::Div: case Op::Mod: case Op::Min: case Op::Max:
-        same(2, with_int);
-        break;
-    case Op::Pow: case Op::Step: case Op::Atan2: same(2, all); break;
-    case Op::Floor: case Op::Ceil: case Op::Round: case Op::Trunc: case Op::Fract: case Op::Sqrt: case Op::InverseSqrt:
-    case Op::Exp: case Op::Exp2: case Op::Log: case Op::Log2: case Op::Sin: case Op::Cos: case Op::Tan: case Op::Asin:
-    case Op::Acos: case Op::Atan: case Op::Sinh: case Op::Cosh: case Op::Tanh:
-        same(1, all);
-        break;
-    case Op::Clamp: same(3, with_int); break;
-    case Op::Mix: case Op::Smoothstep: same(3, all); break;
-    case Op::Dot:
-        for (Type t : vectors_and_float) cases.push_back({op, {t, t}, Type::Float});
-        break;
-    case Op::Length:
-        for (Type t : vectors_and_float) cases.push_back({op, {t}, Type::Float});
-        break;
-    case Op::Cross: same(2, vec3); break;
-    case Op::Normalize: same(1, vectors); break;
-    case Op::Less: case Op::LessEqual: case Op::Equal: case Op::NotEqual:
-        for (Type t : {Type::Float, Type::Int}) cases.push_back({op, {t, t}, Type::Bool});
-        break;
-    case Op::And: case Op::Or: cases.push_back({op, {Type::Bool, Type::Bool}, Type::Bool}); break;
-    case Op::Not: cases.push_back({op, {Type::Bool}, Type::Bool}); break;
-    case Op::Select:
-        for (Type t : with_int) cases.push_back({op, {Type::Bool, t, t}, t});
-        break;
-    case Op::ToFloat:
-        cases.push_back({op, {Type::Int}, Type::Float});
-        cases.push_back({op, {Type::Bool}, Type::Float});
-        break;
-    case Op::ToInt:
-        cases.push_back({op, {Type::Float}, Type::Int});
-        cases.push_back({op, {Type::Bool}, Type::Int});
-        break;
-    case Op::Splat:
-        for (Type t : all)
-            if (t != Type::Float) cases.push_back({op, {Type::Float}, t});
-        break;
-    case Op::Make:
-        for (int n = 2; n <= 4; ++n) {
-            cases.push_back({op, std::vector<Type>(static_cast<std::size_t>(n), Type::Float), ir::vector_type(n)});
-            cases.push_back({op, std::vector<Type>(static_cast<std::size_t>(n), ir::vector_type(n)), ir::matrix_type(n)});
-        }
-        break;
-    case Op::Swizzle: cases.push_back({op, {Type::Vec4}, Type::Vec3}); break;
-    case Op::Column: cases.push_back({op, {Type::Mat3}, Type::Vec3}); break;
-    case Op::MatMul:
-        for (int n = 2; n <= 4; ++n) {
-            const Type m = ir::matrix_type(n), v = ir::vector_type(n);
-            cases.push_back({op, {m, v}, v});
-            cases.push_back({op, {v, m}, v});
-            cases.push_back({op, {m, m}, m});
-        }
-        break;
-    case Op::Transpose: same(1, matrices); break;
-    case Op::Hash:
-        for (Type t : {Type::Int, Type::Float, Type::Vec2, Type::Vec3, Type::Vec4})
-            cases.push_back({op, {t}, Type::Float});
-        break;
-    case Op::Perlin: case Op::Simplex: case Op::ValueNoise: case Op::Worley:
-        cases.push_back({op, {Type::Vec3}, Type::Float});
-        break;
-    case Op::SpotNoise: cases.push_back({op, {Type::Vec3, Type::Float, Type::Float}, Type::Float}); break;
-    case Op::Union: case Op::Intersection:
-        for (std::size_t n : {1u, 2u, 3u, 5u}) cases.push_back({op, std::vector<Type>(n, Type::Float), Type::Float});
-        break;
-    case Op::Blend:
-        for (std::size_t n : {3u, 4u, 6u}) cases.push_back({op, std::vector<Type>(n, Type::Float), Type::Float});
-        break;
-    }
-    return cases;
-}
-
-std::vector<std::uint32_t> payloads_of(Op op) {
-    if (op == Op::Blend) return {0, 1, 2, 3, 4};
-    if (op == Op::Swizzle) return {ir::swizzle_mask(std::array{3, 0, 1}), ir::swizzle_mask(std::array{2, 2, 0})};
-    if (op == Op::Column) return {0, 2};
-    return {0};
-}
 
 // A small generator of its own, so that a failure can be repeated.
 struct Random {
@@ -154,69 +42,9 @@ double nasty_value(Random &random, Op op, Type type) {
         constexpr double special[] = {0, 1, -1, 2, -2, 3, 7, -7, 100, 65536, -65536};
         return special[random.next() % std::size(special)];
     }
+    // A spot's radius and density; below that, coordinates divided by it leave what float32 can tell apart.
+    if (op == Op::SpotNoise && type == Type::Float) return static_cast<float>(0.2 + 9 * random.unit());
     return nasty(random, op);
-}
-
-struct Harness {
-    GLuint program = 0, framebuffer = 0, texture = 0, vertex_array = 0, buffer = 0, buffer_texture = 0;
-    ~Harness() {
-        glDeleteProgram(program);
-        glDeleteFramebuffers(1, &framebuffer);
-        glDeleteTextures(1, &texture);
-        glDeleteTextures(1, &buffer_texture);
-        glDeleteBuffers(1, &buffer);
-        glDeleteVertexArrays(1, &vertex_array);
-    }
-};
-
-// `sdf(vec3(row, component, 0))` of an emitted field for rows 0 … count-1 and `components` components.
-std::vector<float> run_shader(const glsl::Output &output, int count, int components) {
-    Harness h;
-    const std::string main = "\nout vec4 value;\nvoid main() {\n    value = vec4(sdf(vec3(gl_FragCoord.xy - 0.5, 0.0)));\n}\n";
-    const std::string fragment = output.text + main;
-    const char *vertex = "#version 330 core\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == "
-                         "2 ? 3.0 : -1.0, 0.0, 1.0); }\n";
-    h.program = glCreateProgram();
-    for (const auto &[kind, text] : {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment.c_str()}}) {
-        const GLuint shader = glCreateShader(static_cast<GLenum>(kind));
-        glShaderSource(shader, 1, &text, nullptr);
-        glCompileShader(shader);
-        glAttachShader(h.program, shader);
-        glDeleteShader(shader);
-    }
-    glLinkProgram(h.program);
-    GLint good = 0;
-    glGetProgramiv(h.program, GL_LINK_STATUS, &good);
-    if (!good) {
-        char log[2000] = "";
-        glGetProgramInfoLog(h.program, sizeof log, nullptr, log);
-        FAIL(log << "\n" << fragment);
-    }
-    glGenTextures(1, &h.texture);
-    glBindTexture(GL_TEXTURE_2D, h.texture);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, count, components, 0, GL_RGBA, GL_FLOAT, nullptr);
-    glGenFramebuffers(1, &h.framebuffer);
-    glBindFramebuffer(GL_FRAMEBUFFER, h.framebuffer);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, h.texture, 0);
-    glGenVertexArrays(1, &h.vertex_array);
-    glBindVertexArray(h.vertex_array);
-    glUseProgram(h.program);
-    if (!output.tables.empty()) {
-        glGenBuffers(1, &h.buffer);
-        glBindBuffer(GL_TEXTURE_BUFFER, h.buffer);
-        glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(output.tables.size() * 4), output.tables.data(), GL_STATIC_DRAW);
-        glGenTextures(1, &h.buffer_texture);
-        glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_BUFFER, h.buffer_texture);
-        glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, h.buffer);
-        glUniform1i(glGetUniformLocation(h.program, "fathom_tables"), 0);
-    }
-    glViewport(0, 0, count, components);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    std::vector<float> rgba(static_cast<std::size_t>(count * components * 4)), result;
-    glReadPixels(0, 0, count, components, GL_RGBA, GL_FLOAT, rgba.data());
-    for (std::size_t i = 0; i < rgba.size(); i += 4) result.push_back(rgba[i]);
-    return result;
 }
 
 // How far a shader's float may be from the exact value: drivers are allowed a few units in the last place, more in the
