@@ -181,8 +181,8 @@ struct Reader {
         sub->add_option("--fps", render.frame_rate, "frames in a second, 30 unless said")
             ->check(CLI::Range(0.001, 1000.0))
             ->type_name("N");
-        sub->add_option("--samples", render.samples, "rays across a pixel each way, 1 to 8: N*N a pixel")
-            ->check(CLI::Range(1, 8))
+        sub->add_option("--samples", render.samples, "rays a pixel, 1 to 256")
+            ->check(CLI::Range(1, 256))
             ->type_name("N");
 
         sub = command("eval", "print the field at points: distance gx gy gz", eval);

@@ -132,31 +132,7 @@ std::optional<ir::ImageData> decode_jpeg(std::string_view bytes, std::string &er
     return image;
 }
 
-void append_png(png_structp png, png_bytep data, png_size_t size) {
-    static_cast<std::string *>(png_get_io_ptr(png))->append(reinterpret_cast<const char *>(data), size);
-}
-
 } // namespace
-
-std::string encode_png(int width, int height, const std::vector<std::uint8_t> &rgb) {
-    std::string bytes;
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-    png_infop info = png_create_info_struct(png);
-    if (setjmp(png_jmpbuf(png))) { // out of memory: nothing else can go wrong here
-        png_destroy_write_struct(&png, &info);
-        return {};
-    }
-    png_set_write_fn(png, &bytes, append_png, nullptr);
-    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-    png_write_info(png, info);
-    for (int y = 0; y < height; ++y)
-        png_write_row(png, rgb.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width) * 3);
-    png_write_end(png, info);
-    png_destroy_write_struct(&png, &info);
-    return bytes;
-}
 
 std::optional<ir::ImageData> decode_image(std::string_view bytes, std::string &error) {
     if (bytes.starts_with("\x89PNG")) return decode_png(bytes, error);

@@ -37,7 +37,7 @@ const std::map<std::string, std::string> owners{
     {"tao/", "lang/"},        {"yaml.h", "save-format/"}, {"GLFW/", "viewer/"},
     {"imgui", "viewer/"},     {"epoxy/", "render-gl/"},   {"GL/", "render-gl/"},
     {"EGL/", "render-gl/"},   {"glslang/", "backend-glsl/"}, {"spirv", "backend-glsl/"},
-    {"CLI/", "cli/"},         {"png.h", "driver/"},       {"jpeglib.h", "driver/"},
+    {"CLI/", "cli/"},         {"jpeglib.h", "driver/"},
     {"sys/inotify.h", "driver/"},
 };
 // Seen by one file alone.

@@ -1,4 +1,5 @@
 // What a scene may read: its own folder and the -I folders, and nothing else, whatever its paths say.
+#include "base/picture.h"
 #include "driver/image.h"
 #include "driver/scene_files.h"
 #include "scratch_folder.h"
@@ -90,7 +91,7 @@ TEST_CASE("all that was looked for is remembered, found or not, for the watcher"
 }
 
 TEST_CASE("a picture goes through PNG and comes back linear") {
-    std::string png = driver::encode_png(2, 1, {255, 0, 128, 0, 255, 10});
+    std::string png = encode_png({2, 1, {255, 0, 128, 255, 0, 255, 10, 255}});
     std::string error;
     std::optional<ir::ImageData> image = driver::decode_image(png, error);
     REQUIRE(image);

@@ -1,0 +1,123 @@
+// fathom render: pictures without a window, by GL or by the CPU. Every picture is whole before its file appears.
+#include "backend-cpu/march.h"
+#include "base/picture.h"
+#include "cli/terminal.h"
+#include "render-gl/context.h"
+#include "render-gl/render.h"
+
+#include <fmt/format.h>
+
+namespace fathom::cli {
+namespace {
+
+// What makes the pictures of one command: the program is built once, for however many frames.
+struct Painter {
+    std::optional<gl::Context> context; // none: the CPU
+    std::optional<gl::Program> program;
+};
+
+// `out` with the frame's number in place of its `#`s, or before its extension where it has none.
+std::string frame_name(const std::string &out, int frame) {
+    std::size_t last = out.find_last_of('#');
+    if (last != out.npos) {
+        std::size_t before = out.find_last_not_of('#', last);
+        std::size_t first = before == out.npos ? 0 : before + 1;
+        return fmt::format("{}{:0{}}{}", out.substr(0, first), frame, last + 1 - first, out.substr(last + 1));
+    }
+    std::filesystem::path path(out);
+    path.replace_filename(fmt::format("{}_{:04}{}", path.stem().string(), frame, path.extension().string()));
+    return path.string();
+}
+
+Exit prepare_gl(Painter &painter, const driver::Compilation &compilation, const RenderCommand &command,
+                Terminal &terminal) {
+    auto context = gl::Context::make();
+    if (const std::string *why = std::get_if<std::string>(&context)) {
+        if (command.backend == Backend::Auto) return done;
+        terminal.say(fmt::format("fathom: no picture by GL: {}; --backend cpu needs none", *why));
+        return device_error;
+    }
+    painter.context = std::move(std::get<gl::Context>(context));
+    if (std::max(command.width, command.height) > gl::largest_side()) {
+        if (command.backend == Backend::Auto) {
+            painter.context.reset();
+            return done;
+        }
+        terminal.say(fmt::format("fathom: this GL draws at most {0}x{0} pixels; --backend cpu draws any size",
+                                 gl::largest_side()));
+        return device_error;
+    }
+    Diagnostics diagnostics;
+    glsl::Options options;
+    options.target = glsl::Target::Glsl330;
+    options.buffers = true;
+    glsl::Output output = glsl::emit(compilation.scene, options, diagnostics);
+    print_diagnostics(diagnostics, compilation.sources, terminal);
+    if (diagnostics.has_errors()) return scene_error;
+    auto program = gl::Program::build(output, compilation.scene);
+    if (const auto *error = std::get_if<gl::ProgramError>(&program)) {
+        Diagnostics refused;
+        Diagnostic &diagnostic =
+            refused.add(Code::ShaderInvalid, {}, "the graphics driver refuses the shader: " + error->message);
+        if (error->line > 0) diagnostic.note(fmt::format("line {} of the shader: {}", error->line, error->source_line));
+        print_diagnostics(refused, compilation.sources, terminal);
+        return scene_error;
+    }
+    painter.program = std::move(std::get<gl::Program>(program));
+    return done;
+}
+
+std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene, const RenderCommand &command, double time,
+                             const std::function<void(double)> &progress) {
+    if (painter.program) {
+        gl::Request request;
+        request.width = command.width;
+        request.height = command.height;
+        request.samples = command.samples;
+        request.time = time;
+        request.progress = [&](double share) { return progress(share), true; };
+        std::optional<gl::Pixels> pixels = gl::draw(*painter.program, scene, request, gl::Mode::Linear);
+        if (!pixels) return std::nullopt;
+        return picture_of_linear(pixels->width, pixels->height, pixels->rgba);
+    }
+    double aspect = static_cast<double>(command.width) / command.height;
+    cpu::Stage stage =
+        cpu::prepare(scene, ir::view_of(scene, time, aspect), command.width, command.height, time);
+    cpu::PictureOptions options;
+    options.samples = command.samples;
+    cpu::Picture made = cpu::render(stage, options, [&](double share, const cpu::Tile &, const cpu::Picture &) {
+        return progress(share), true;
+    });
+    return Picture{made.width, made.height, std::move(made.rgba)};
+}
+
+} // namespace
+
+Exit run(const RenderCommand &command, Terminal &terminal) {
+    driver::Compilation compilation = driver::compile_file(command.scene.file, compile_options(command.scene));
+    Exit exit = report(compilation, command.scene, terminal);
+    if (exit != done) return exit;
+    Painter painter;
+    if (command.backend != Backend::Cpu) exit = prepare_gl(painter, compilation, command, terminal);
+    if (exit != done) return exit;
+
+    auto [first, last] = command.frames.value_or(std::pair(0, 1));
+    for (int frame = first; frame < last; ++frame) {
+        std::string out = command.frames ? frame_name(command.out, frame) : command.out;
+        double time = command.time + (command.frames ? frame / command.frame_rate : 0);
+        std::optional<Picture> picture =
+            paint(painter, compilation.scene, command, time, [&](double share) {
+                terminal.progress(out, (frame - first + share) / (last - first));
+            });
+        if (!picture) {
+            terminal.say(fmt::format("fathom: there is no memory for a picture of {}x{}", command.width, command.height));
+            return device_error;
+        }
+        exit = write_result(out, encode_png(*picture), terminal);
+        if (exit != done) return exit;
+    }
+    terminal.finish_progress();
+    return done;
+}
+
+} // namespace fathom::cli

@@ -1,0 +1,95 @@
+#include "viewer/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+namespace fathom::viewer {
+namespace {
+
+using ir::Triple;
+constexpr double pi = std::numbers::pi;
+constexpr double steepest = pi / 2 - 1e-3; // straight up, right and left would have no meaning
+
+Triple from_target(const Camera &camera) {
+    return {std::sin(camera.yaw) * std::cos(camera.pitch), std::sin(camera.pitch),
+            std::cos(camera.yaw) * std::cos(camera.pitch)};
+}
+
+void move(Triple &point, const Triple &along, double by) {
+    for (std::size_t i = 0; i < 3; ++i) point[i] += along[i] * by;
+}
+
+} // namespace
+
+Camera camera_of(const ir::View &view) {
+    Camera camera;
+    camera.orthographic = view.orthographic;
+    camera.distance = std::max(view.focus, 1e-6);
+    camera.target = view.origin;
+    move(camera.target, view.forward, camera.distance);
+    // Looking along y there is no yaw in the direction; the picture's up still has one.
+    Triple level = std::abs(view.forward[1]) < 1 - 1e-9
+                       ? Triple{-view.forward[0], 0, -view.forward[2]}
+                       : Triple{-view.up[0] * -view.forward[1], 0, -view.up[2] * -view.forward[1]};
+    camera.yaw = std::atan2(level[0], level[2]);
+    camera.pitch = std::clamp(std::asin(std::clamp(-view.forward[1], -1.0, 1.0)), -steepest, steepest);
+    camera.slope = view.orthographic ? view.extent / camera.distance : view.extent;
+    return camera;
+}
+
+ir::View view_of(const Camera &camera) {
+    Triple eye = camera.target;
+    move(eye, from_target(camera), camera.distance);
+    return ir::look_at(eye, camera.target, camera.orthographic ? camera.slope * camera.distance : camera.slope,
+                       camera.orthographic);
+}
+
+void orbit(Camera &camera, double dx, double dy) {
+    camera.yaw = std::remainder(camera.yaw - dx * pi, 2 * pi);
+    camera.pitch = std::clamp(camera.pitch + dy * pi, -steepest, steepest);
+}
+
+void pan(Camera &camera, double dx, double dy) {
+    ir::View view = view_of(camera);
+    double height = 2 * camera.slope * camera.distance; // of the window, at the target
+    move(camera.target, view.right, -dx * height);
+    move(camera.target, view.up, dy * height);
+}
+
+void dolly(Camera &camera, double steps) {
+    camera.distance = std::clamp(camera.distance * std::pow(0.9, steps), 1e-4, 1e6);
+}
+
+void fly(Camera &camera, const Triple &by) {
+    ir::View view = view_of(camera);
+    move(camera.target, view.right, by[0] * camera.distance);
+    move(camera.target, view.up, by[1] * camera.distance);
+    move(camera.target, view.forward, by[2] * camera.distance);
+}
+
+void look_from(Camera &camera, Side side) {
+    switch (side) {
+    case Side::Front: camera.yaw = 0, camera.pitch = 0; break;
+    case Side::Right: camera.yaw = pi / 2, camera.pitch = 0; break;
+    case Side::Top: camera.yaw = 0, camera.pitch = steepest; break;
+    }
+}
+
+void frame(Camera &camera, const Triple &center, double radius, double aspect) {
+    camera.target = center;
+    // The narrower way across has to hold the sphere: sin of half the angle is radius over distance.
+    double slope = camera.slope * std::min(1.0, aspect);
+    camera.distance = camera.orthographic ? radius / slope : radius * std::sqrt(1 + 1 / (slope * slope));
+}
+
+std::string camera_line(const Camera &camera) {
+    Triple eye = camera.target;
+    move(eye, from_target(camera), camera.distance);
+    auto triple = [](const Triple &t) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", t[0], t[1], t[2]); };
+    return fmt::format("camera(at: {}, look_at: {}, fov: {:.4g}deg{})", triple(eye), triple(camera.target),
+                       2 * std::atan(camera.slope) * 180 / pi, camera.orthographic ? ", orthographic: true" : "");
+}
+
+} // namespace fathom::viewer

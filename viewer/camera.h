@@ -1,0 +1,35 @@
+// The viewer's camera: turns round a target, without roll. Knows no window and no scene's text.
+#pragma once
+
+#include "ir/view.h"
+
+#include <string>
+
+namespace fathom::viewer {
+
+struct Camera {
+    ir::Triple target{};
+    double yaw = 0, pitch = 0; // of the eye as seen from the target: yaw 0 on +z, pitch up; radians
+    double distance = 5;
+    double slope = 0.4142135623730951; // tan(fov/2)
+    bool orthographic = false;
+    friend bool operator==(const Camera &, const Camera &) = default;
+};
+
+enum class Side { Front, Right, Top };
+
+Camera camera_of(const ir::View &view);
+ir::View view_of(const Camera &camera);
+
+// Drags, in fractions of the window's height.
+void orbit(Camera &camera, double dx, double dy);
+void pan(Camera &camera, double dx, double dy);
+void dolly(Camera &camera, double steps);  // > 0 nearer
+void fly(Camera &camera, const ir::Triple &by); // right, up, forward, in units of the distance to the target
+void look_from(Camera &camera, Side side);
+void frame(Camera &camera, const ir::Triple &center, double radius, double aspect);
+
+// `camera(at: […], look_at: […], fov: …deg)`, four digits each: a line to paste into the scene.
+std::string camera_line(const Camera &camera);
+
+} // namespace fathom::viewer
