@@ -24,7 +24,6 @@ struct Formal {
     bool takes_rest = false; // the last one, of type [shape], or a builtin's of any number
     bool opens_list = true;  // a single list among the rest is the rest
     Span declared;
-    bool or_a_list = true;   // takes_rest: one list stands for its elements
 };
 
 struct Bound {
@@ -121,7 +120,7 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
     }
     if (!rest.empty()) {
         Argument a;
-        a.value = rest.size() == 1 && rest[0].kind == ValueKind::List && formals.back().or_a_list ? rest[0] : list_value(ev, rest);
+        a.value = rest.size() == 1 && rest[0].kind == ValueKind::List && formals.back().opens_list ? rest[0] : list_value(ev, rest);
         a.span = rest_span;
         give(formals.size() - 1, a);
     }
@@ -424,8 +423,8 @@ static Value call_closure(Evaluator &ev, const Value &callee, const std::string 
 static Value call_builtin(Evaluator &ev, const Value &callee, const std::vector<Argument> &args, Span call, Span callee_span) {
     const Builtin &b = builtins()[callee.id];
     std::vector<Formal> formals;
-    for (const BuiltinParameter &p : b.parameters) formals.push_back({p.name, p.optional, false, {}});
-    if (b.variadic) formals.back().takes_rest = true, formals.back().or_a_list = b.name != "concat"; // whose rest are lists
+    for (const BuiltinParameter &p : b.parameters) formals.push_back({p.name, p.optional, false, true, {}});
+    if (b.variadic) formals.back().takes_rest = true, formals.back().opens_list = b.name != "concat"; // whose rest are lists
     auto bound = bind_arguments(ev, b.name, formals, args, call, callee_span);
     if (!bound) return poison();
     CallSite site{b.name, call, callee_span, bound->spans};
