@@ -148,7 +148,7 @@ std::vector<Solid> transformed_solids() {
              return false;
          },
          1.2, false},
-        {"sphere(0.1).repeat([0.6, 0, 0], count: [3, 1, 1], (s, id) => s.offset(0.08 * id.x))",
+        {"sphere(0.1).repeat([0.6, 0, 0], count: [3, 1, 1], copies: (s, id) => s.offset(0.08 * id.x))",
          [](Point p) {
              for (int i = 0; i < 3; ++i)
                  if (in_ball(p, {0.6 * (i - 1), 0, 0}, 0.1 + 0.08 * i)) return true;
