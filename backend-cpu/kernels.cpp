@@ -84,15 +84,21 @@ namespace avx2 { Loops<std::uint32_t> point_loops(); }
 namespace avx512 { Loops<std::uint32_t> point_loops(); }
 #endif
 
-Loops<std::uint32_t> point_loops() {
+std::vector<LoopSet> point_loop_sets() {
+    std::vector<LoopSet> sets{{"base", base::point_loops()}};
 #ifdef FATHOM_WIDE
     __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx2")) sets.push_back({"avx2", avx2::point_loops()});
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw"))
-        return avx512::point_loops();
-    if (__builtin_cpu_supports("avx2")) return avx2::point_loops();
+        sets.push_back({"avx512", avx512::point_loops()});
 #endif
-    return base::point_loops();
+    return sets;
+}
+
+Loops<std::uint32_t> point_loops() {
+    static const Loops<std::uint32_t> fastest = point_loop_sets().back().loops;
+    return fastest;
 }
 
 } // namespace fathom::cpu

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace fathom::cpu {
 
@@ -45,8 +46,12 @@ Mask mask_of_variant(std::uint32_t index);
 // One loop a variant: operands are addresses in cells, outputs first.
 template <class Cell> using Loops = std::span<void (*const)(Cell *cells, const std::uint32_t *operands, std::size_t n)>;
 
-// The fastest set for the processor that this runs on.
-Loops<std::uint32_t> point_loops();
+struct LoopSet {
+    const char *name; // the instruction set
+    Loops<std::uint32_t> loops;
+};
+std::vector<LoopSet> point_loop_sets(); // those that this processor runs, the fastest last
+Loops<std::uint32_t> point_loops();     // the fastest
 Loops<DualCell> gradient_loops();
 
 } // namespace fathom::cpu

@@ -58,7 +58,9 @@ void loop_of(R (*)(P...), std::index_sequence<i...>, Cell *cells, const std::uin
     }
 }
 
-template <class Row, class Cell, Mask mask> void loop(Cell *cells, const std::uint32_t *operands, std::size_t n) {
+// Flat: a call inside would keep the loop from being vectorised.
+template <class Row, class Cell, Mask mask>
+[[gnu::flatten]] void loop(Cell *cells, const std::uint32_t *operands, std::size_t n) {
     loop_of<Row, Cell, mask>(&Row::run, std::make_index_sequence<inputs_of_row<Row>>{}, cells, operands, n);
 }
 

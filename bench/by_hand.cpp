@@ -1,4 +1,4 @@
-// The hand-fused loops, for this processor and for any.
+// The hand-fused loops.
 #include "bench/by_hand.h"
 
 #include <cmath>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t block = 64; // points kept in registers while the spheres go by
 
-[[gnu::always_inline]] inline void fused(const Spheres &s, float k, const float *x, const float *y, const float *z,
+void fused(const Spheres &s, float k, const float *x, const float *y, const float *z,
                                          float *out) {
     float acc[block];
     for (std::size_t i = 0; i < block; ++i) acc[i] = 1e9f;
@@ -41,9 +41,6 @@ constexpr std::size_t block = 64; // points kept in registers while the spheres 
 
 } // namespace
 
-#if defined(__x86_64__)
-[[gnu::target_clones("default", "avx2", "arch=skylake-avx512")]]
-#endif
 void smooth_spheres_by_hand(const Spheres &s, float k, const float *x, const float *y, const float *z, float *out,
                             std::size_t n) {
     for (std::size_t i = 0; i + block <= n; i += block) fused(s, k, x + i, y + i, z + i, out + i);
