@@ -141,7 +141,8 @@ std::string fault_in_shader(const Question &question, std::size_t index, const C
         const double slack = absolute + relative * std::max(std::abs(w), cancels ? scale : 0);
         bool good = !whole && std::abs(got - w) <= slack;
         if (!whole && std::isinf(w)) // the sign of a zero that is divided by means nothing
-            good = std::abs(got) > 1e37 && (question.c.op == Op::Pow || std::signbit(w) == std::signbit(got));
+            good = std::abs(got) > 1e37 && (question.c.op == Op::Pow || question.c.op == Op::InverseSqrt ||
+                                         std::signbit(w) == std::signbit(got));
         if (!whole && question.c.op == Op::Mod) // next to a multiple of the divisor, either end of a turn
             good |= std::abs(std::abs(got - w) - std::abs(row[1].value[i])) <= slack;
         if (!good)
