@@ -394,7 +394,7 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
     case Wanted::Type:
         if (found == Tok::Assign && kind(before) == Tok::Colon) {
             foreign(span(before, at), "a name is bound with `=`")
-                .help("write `=`", {{span(before, at), "="}});
+                .help("leave the `:` away", {{span(before), ""}});
             return true;
         }
         return false;

@@ -9,7 +9,7 @@
 #include "lang/token.h"
 
 #include <algorithm>
-#include <cassert>
+#include <limits>
 
 namespace fathom::lang {
 
@@ -147,6 +147,11 @@ std::vector<Piece> read_pieces(const Source &source, const Tokens &tokens,
             statement = true;
             continue;
         }
+        // No comma stands before a closing bracket.
+        const bool last =
+            i + 1 < tokens.tokens.size() && (tokens.tokens[i + 1].kind == Tok::Close ||
+                                             tokens.tokens[i + 1].kind == Tok::ListClose);
+        if (token.kind == Tok::Comma && last) continue;
         put_comments_before(token.begin);
         place[i] = pieces.size();
         Piece &piece = put(token.begin, token.end);
@@ -463,18 +468,18 @@ bool Formatter::break_up(std::size_t begin, std::size_t end, std::size_t indent)
     const auto outer = [&](std::size_t i) { return depths[i - begin] == outermost; };
 
     // A block on this line gets lines of its own; all those of one `if` together.
-    int block_depth = -1;
+    const auto opens_here = [&](std::size_t i) {
+        return is_block_open(at(i).kind) && at(i).inline_block && i + 1 < at(i).match;
+    };
+    int block_depth = std::numeric_limits<int>::max();
     for (std::size_t i = begin; i < end; ++i)
-        if (is_block_open(at(i).kind) && at(i).inline_block && i + 1 < at(i).match &&
-            (block_depth < 0 || depths[i - begin] < block_depth))
-            block_depth = depths[i - begin];
+        if (opens_here(i)) block_depth = std::min(block_depth, depths[i - begin]);
     bool opened = false;
-    for (std::size_t i = begin; i < end; ++i)
-        if (is_block_open(at(i).kind) && at(i).inline_block && depths[i - begin] == block_depth &&
-            block_depth >= 0 && i + 1 < at(i).match) {
-            open_block(i);
-            opened = true;
-        }
+    for (std::size_t i = begin; i < end; ++i) {
+        if (!opens_here(i) || depths[i - begin] != block_depth) continue;
+        open_block(i);
+        opened = true;
+    }
     if (opened) return true;
 
     bool added = false;

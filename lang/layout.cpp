@@ -215,6 +215,7 @@ void Layout::line_begins(const Token &t) {
         close_missing();
     }
     if (!lines_count() || out_.tokens.empty() || out_.tokens.back().kind == Tok::End) return;
+    if (begins_declaration(t.kind)) return end_statement(); // it is no operand
     const Tok last = previous();
     if (last == Tok::Body || last == Tok::Trailing || last == Tok::StrayBrace ||
         continues_after(last))
@@ -274,6 +275,7 @@ void Layout::close(const Token &t, std::size_t i) {
         const std::string sign(text_of(source_, t));
         diagnostics_.add(Code::SyntaxError, span(t), "this `" + sign + "` closes nothing")
             .help("remove it", {{span(t), ""}});
+        if (continues_after(previous())) put(t, Tok::Bad);
         return;
     }
     if (found != levels_.rbegin()) {
@@ -326,6 +328,15 @@ void Layout::place(std::size_t i) {
     case Tok::While: level().waits = Header::While; break;
     case Tok::Fn: level().waits = Header::Fn; break;
     case Tok::End: level().waits = Header::None; break;
+    case Tok::GreaterEqual: {
+        // `s: shape<1>= a`: comparisons do not chain, so that this is a type's end and a `=`.
+        const std::size_t n = out_.tokens.size();
+        if (n < 3 || previous() != Tok::Number || out_.tokens[n - 2].kind != Tok::Less ||
+            out_.tokens[n - 3].kind != Tok::Name)
+            break;
+        put({Tok::Greater, false, t.begin, t.begin + 1}, Tok::Greater);
+        return put({Tok::Assign, false, t.begin + 1, t.end}, Tok::Assign);
+    }
     case Tok::Assign:
         if (level().waits == Header::Fn) level().waits = Header::None;
         break;

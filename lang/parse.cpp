@@ -70,7 +70,8 @@ struct sign
               '*', '/', '%', '^', '?', '!'>> {};
 // Bytes outside ASCII hang together, with what touches them.
 struct strange
-    : sor<seq<pegtl::range<'\x80', '\xFF'>, star<sor<pegtl::range<'\x80', '\xFF'>>>>, pegtl::any> {
+    : sor<seq<one<'$', '@', '~', '\\', '`'>, star<word_char>>,
+          seq<pegtl::range<'\x80', '\xFF'>, star<sor<pegtl::range<'\x80', '\xFF'>>>>, pegtl::any> {
 };
 
 struct any_word : sor<blank, word, line_end, line_comment, block_comment, unclosed_comment, number,
