@@ -4,9 +4,10 @@
 // Three readings of a shape (semantics.md, 10 and 11); looks (normals, occlusion, |f|/|grad f|) use the marched one,
 // normalised by its gradient:
 //   raw      the field itself, which offsets, blends and displacements consume
-//   marched  through the outermost min/max tree (Union, Intersection, Complement, Paint, rigid and uniformly scaled Map,
-//            Repeat, Many, Library without claims) down to its leaves, each divided there by its own bound
-//            (facts[s].lipschitz); Within answers by its region; `guard`ed shapes by max with their box's distance
+//   marched  through the outermost min/max tree (Union, Intersection, Complement, Xor, Paint, Repeat, Many, Library without
+//            claims, and Maps that keep or undo lengths: rigid, uniformly scaled, Fold, Revolve; Extrude) down to its leaves,
+//            each divided there by its own bound (facts[s].lipschitz); Within answers by its region, with its child's
+//            bound, which is to hold in the region; `guard`ed shapes by max with their box's distance
 //   hit      marched, carrying which surface decides
 // A shape asked at more than one point becomes a function of its own (named after its library call or place); so
 // the lowered scene is linear in the shapes. Complete only after the analysis has filled `facts`.

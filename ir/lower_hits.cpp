@@ -21,10 +21,11 @@ NodeId Lowering::colored(ShapeId id, Frame frame) {
     if (s.kind == ShapeKind::Within)
         return ask(Reading::Hit, s.children.front(), inside(id, frame));
     if (s.kind == ShapeKind::Many) return many(Reading::Hit, id, frame);
-    if (s.kind == ShapeKind::Lerp) // the operand with the greater weight
-        return graph_.make(Op::Select, Type::Hit,
-                           {graph_.make(Op::Less, {read(s.args[0], frame), graph_.number(0.5)}),
-                            child(1), child(0)});
+    if (s.kind == ShapeKind::Lerp) { // the operand with the greater weight: t against 1 - t
+        const NodeId t = read(s.args[0], frame), half = graph_.number(0.5);
+        return least(Reading::Hit, std::array{at_distance(Reading::Hit, child(0), graph_.sub(half, t)),
+                                              at_distance(Reading::Hit, child(1), graph_.sub(t, half))});
+    }
     const bool of_first = s.kind == ShapeKind::Seam && static_cast<SeamKind>(s.payload) != SeamKind::Pipe;
     const std::size_t count = of_first ? 1 : s.children.size();
     std::vector<NodeId> hits;

@@ -267,8 +267,10 @@ NodeId Lowering::many(Reading reading, ShapeId id, Frame frame) {
     const NodeId count = g.integer(family.count);
     const bool smooth = family.smooth && reading == Reading::Raw;
     const NodeId k = smooth ? read(s.args[0], frame) : NodeId{};
-    return least_of(reading, count, family.count, family.index, [&](NodeId best) {
-        const NodeId value = ask(reading, s.children.front(), frame);
+    const NodeId row = g.fresh_var(Type::Int); // each loop counts for itself
+    const Frame inside = bind(frame, family.index, row);
+    return least_of(reading, count, family.count, row, [&](NodeId best) {
+        const NodeId value = ask(reading, s.children.front(), inside);
         if (!smooth) return least(reading, std::array{best, value});
         return g.make(Op::Blend, Type::Float, {k, g.number(1), best, value},
                       static_cast<std::uint32_t>(Profile::Smooth));

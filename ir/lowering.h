@@ -64,7 +64,7 @@ class Lowering {
     NodeId at_distance(Reading reading, NodeId value, NodeId distance);
     NodeId far_away(Reading reading);
     NodeId unpainted(NodeId distance);
-    // The least over `count` turns of what `each` asks, by a Fold; `each` is given the turn's number (Int).
+    // A Fold of `count` turns that begins far away: `each` says what the value so far becomes, with `index` the turn's number.
     template <class F> NodeId least_of(Reading reading, NodeId count, int max_count, NodeId index, F each);
 
     // -- frames
