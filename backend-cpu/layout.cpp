@@ -45,7 +45,7 @@ class LayoutMaker {
         layout_.stays.assign(code_.values.size(), false);
         for (Value param : code_.params) first_[param.index] = 0;
         live(layout_.body);
-        for (Value result : code_.results) use(result, position_);
+        for (Value result : code_.results) use(result, position_ + 1); // after all
         for (Value param : code_.params) use(param, 0);
         layout_.slot.assign(code_.values.size(), nowhere);
         for (Value param : code_.params) place(param);
