@@ -20,21 +20,51 @@ using Monomial = std::vector<NodeId>; // sorted, repeats allowed
 using Polynomial = std::map<Monomial, double>;
 constexpr std::size_t most_terms = 64;
 
-std::optional<Polynomial> multiply(const Polynomial &a, const Polynomial &b) {
+NodeId rebuilt(Graph &graph, const Polynomial &polynomial) {
+    NodeId sum = graph.number(0);
+    for (const auto &[m, c] : polynomial) {
+        if (c == 0) continue;
+        NodeId term = graph.number(c);
+        for (NodeId f : m) term = graph.mul(term, f);
+        sum = graph.add(sum, term);
+    }
+    return sum;
+}
+
+std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth = 0);
+
+// |a|*|a| is a*a.
+std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Polynomial &b) {
     Polynomial out;
     for (const auto &[m, x] : a)
         for (const auto &[n, y] : b) {
             Monomial product = m;
             product.insert(product.end(), n.begin(), n.end());
             std::sort(product.begin(), product.end());
-            out[product] += x * y;
+            auto twice = std::adjacent_find(product.begin(), product.end(), [&](NodeId u, NodeId v) {
+                return u == v && graph[u].op == Op::Abs;
+            });
+            if (twice != product.end()) {
+                auto inner = polynomial(graph, graph.arg(*twice, 0));
+                product.erase(twice, twice + 2);
+                if (!inner) return {};
+                auto squared = multiply(graph, *inner, *inner);
+                if (!squared) return {};
+                auto whole = multiply(graph, *squared, Polynomial{{product, x * y}});
+                if (!whole) return {};
+                for (const auto &[k, z] : *whole) out[k] += z;
+            } else {
+                out[product] += x * y;
+            }
             if (out.size() > most_terms || product.size() > 8) return {};
         }
     return out;
 }
 
-std::optional<Polynomial> polynomial(const Graph &graph, NodeId id, int depth = 0) {
-    const ir::Node &node = graph[id];
+bool by_component(Op op) { return ir::info(op).rule == ir::TypeRule::Same && op != Op::Cross && op != Op::Normalize && op != Op::Transpose; }
+
+std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
+    const ir::Node node = graph[id];
     if (auto c = graph.as_number(id)) return Polynomial{{{}, *c}};
     if (depth > 32) return {};
     auto sub = [&](int i) { return polynomial(graph, graph.arg(id, i), depth + 1); };
@@ -54,7 +84,7 @@ std::optional<Polynomial> polynomial(const Graph &graph, NodeId id, int depth = 
         if (node.op == Op::Mul) {
             auto a = sub(0), b = sub(1);
             if (!a || !b) return {};
-            return multiply(*a, *b);
+            return multiply(graph, *a, *b);
         }
         if (node.op == Op::Div)
             if (auto c = graph.as_number(graph.arg(id, 1)); c && *c != 0) {
@@ -67,9 +97,34 @@ std::optional<Polynomial> polynomial(const Graph &graph, NodeId id, int depth = 
             if (auto c = graph.as_number(graph.arg(id, 1)); c && std::floor(*c) == *c && *c >= 1 && *c <= 6) {
                 auto a = sub(0);
                 auto out = a;
-                for (int i = 1; a && out && i < int(*c); ++i) out = multiply(*out, *a);
+                for (int i = 1; a && out && i < int(*c); ++i) out = multiply(graph, *out, *a);
                 return out;
             }
+        if (node.op == Op::Dot) {
+            NodeId u = graph.arg(id, 0), v = graph.arg(id, 1);
+            Polynomial sum;
+            for (int i = 0; i < ir::components(graph[u].type); ++i) {
+                auto a = polynomial(graph, component_of(graph, u, i), depth + 1);
+                auto b = polynomial(graph, component_of(graph, v, i), depth + 1);
+                if (!a || !b) return {};
+                auto product = multiply(graph, *a, *b);
+                if (!product) return {};
+                for (const auto &[m, x] : *product) sum[m] += x;
+            }
+            return sum;
+        }
+        if (node.op == Op::Swizzle) {
+            NodeId inner = component_of(graph, graph.arg(id, 0), ir::swizzle_component(node.payload, 0));
+            if (inner != id) return polynomial(graph, inner, depth + 1);
+        }
+        if (by_component(node.op) && node.count > 0) { // the same function of arguments in one form
+            std::vector<NodeId> args;
+            for (int i = 0; i < int(node.count); ++i) {
+                auto a = sub(i);
+                args.push_back(a ? rebuilt(graph, *a) : graph.arg(id, i));
+            }
+            return Polynomial{{{graph.make(node.op, node.type, args, node.payload)}, 1.0}};
+        }
     }
     return Polynomial{{{id}, 1.0}};
 }
@@ -77,9 +132,9 @@ std::optional<Polynomial> polynomial(const Graph &graph, NodeId id, int depth = 
 // Sums of products of doubles that are equal in exact arithmetic may differ by rounding of this relative size.
 constexpr double rounding = 1e-12;
 
-bool same(const Graph &graph, NodeId a, NodeId b) {
+bool same(Graph &graph, NodeId a, NodeId b) {
     if (a == b) return true;
-    const ir::Node &x = graph[a], &y = graph[b];
+    const ir::Node x = graph[a], y = graph[b];
     if (x.type != y.type) return false;
     if (x.type != ir::Type::Float) { // by component, where both are made of them
         if (x.op != y.op || x.count != y.count || x.payload != y.payload || x.count == 0) return false;
@@ -134,14 +189,41 @@ std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {
     auto p = polynomial(graph, a), q = polynomial(graph, b);
     if (!p || !q) return {};
     for (const auto &[m, c] : *q) (*p)[m] -= c;
-    NodeId sum = graph.number(0);
-    for (const auto &[m, c] : *p) {
-        if (c == 0) continue;
-        NodeId term = graph.number(c);
-        for (NodeId f : m) term = graph.mul(term, f);
-        sum = graph.add(sum, term);
+    return rebuilt(graph, *p);
+}
+
+NodeId component_of(Graph &graph, NodeId vector, int i) {
+    const ir::Node node = graph[vector];
+    if (node.op == Op::Swizzle) return component_of(graph, graph.arg(vector, 0), ir::swizzle_component(node.payload, i));
+    if (node.op == Op::Splat) return graph.arg(vector, 0);
+    if (ir::is_vector(node.type) && node.count > 0 && ir::info(node.op).rule == ir::TypeRule::Same && node.op != Op::Cross &&
+        node.op != Op::Normalize) {
+        std::vector<NodeId> parts;
+        for (int k = 0; k < int(node.count); ++k) parts.push_back(component_of(graph, graph.arg(vector, k), i));
+        return graph.make(node.op, ir::Type::Float, parts, node.payload);
     }
-    return sum;
+    return graph.component(vector, i);
+}
+
+NodeId in_one_form(Graph &graph, NodeId scalar) {
+    auto p = polynomial(graph, scalar);
+    return p ? rebuilt(graph, *p) : scalar;
+}
+
+bool keeps_length(Graph &graph, NodeId q) {
+    NodeId p = graph.point(graph[q].type);
+    Polynomial sum;
+    for (int i = 0; i < ir::components(graph[q].type); ++i) {
+        auto a = polynomial(graph, component_of(graph, q, i)), b = polynomial(graph, graph.component(p, i));
+        if (!a || !b) return false;
+        auto x = multiply(graph, *a, *a), y = multiply(graph, *b, *b);
+        if (!x || !y) return false;
+        for (const auto &[m, c] : *x) sum[m] += c;
+        for (const auto &[m, c] : *y) sum[m] -= c;
+    }
+    for (const auto &[m, c] : sum)
+        if (std::fabs(c) > rounding) return false;
+    return true;
 }
 
 bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b) {

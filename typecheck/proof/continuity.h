@@ -1,4 +1,5 @@
-// Do the two arms of a choice agree where the choice turns? Decided on the expressions, never by sampling.
+// Expressions as polynomials in what they are made of: do the two arms of a choice agree where the choice turns, does
+// a fold keep lengths? Decided on the expressions, never by sampling.
 #pragma once
 
 #include "ir/graph.h"
@@ -9,6 +10,13 @@ namespace fathom::proof {
 
 // True where `condition ? a : b` is proved continuous across the condition's border, given that a and b are.
 bool arms_agree(ir::Graph &graph, ir::NodeId condition, ir::NodeId a, ir::NodeId b);
+
+// One component of a vector, written with scalars as far as that goes.
+ir::NodeId component_of(ir::Graph &graph, ir::NodeId vector, int i);
+// The same number as a sum of products: equal sums become one node.
+ir::NodeId in_one_form(ir::Graph &graph, ir::NodeId scalar);
+// |q| = |p| for all p, as of reflections: proved as polynomials.
+bool keeps_length(ir::Graph &graph, ir::NodeId q);
 
 // a - b as a sum in which equal terms have cancelled; nothing where the expressions are too large.
 std::optional<ir::NodeId> difference(ir::Graph &graph, ir::NodeId a, ir::NodeId b);

@@ -176,7 +176,7 @@ Box Prover::fold_preimage(NodeId q, const Box &box) {
     NodeId p = graph.point(graph[q].type);
     for (int i = 0; i < n; ++i) {
         auto k = static_cast<std::size_t>(i);
-        NodeId c = graph.component(q, i), own = graph.component(p, i);
+        NodeId c = in_one_form(graph, component_of(graph, q, i)), own = graph.component(p, i);
         if (c == own) continue;
         if (graph[c].op == Op::Abs && graph.arg(c, 0) == own) {
             double r = std::max(box.hi[k], 0.0);
@@ -192,7 +192,10 @@ Box Prover::fold_preimage(NodeId q, const Box &box) {
         }
         // Any other fold: 1-Lipschitz and continuous, but it may gather from anywhere.
         if (auto whole = whole_shift(q)) return moved(box, *whole);
-        return Box::everything();
+        if (!keeps_length(graph, q)) return Box::everything();
+        double r = norm_of(box);
+        for (int j = 0; j < n; ++j) out.lo[static_cast<std::size_t>(j)] = -r, out.hi[static_cast<std::size_t>(j)] = r;
+        return out;
     }
     return out;
 }
@@ -200,12 +203,7 @@ Box Prover::fold_preimage(NodeId q, const Box &box) {
 // p - q in one component.
 std::optional<NodeId> Prover::shift_of(NodeId q, int i) {
     NodeId p = graph.point(graph[q].type);
-    const ir::Node node = graph[q];
-    if (node.op == Op::Sub && graph.arg(q, 0) == p) return graph.component(graph.arg(q, 1), i);
-    if (node.op == Op::Add)
-        for (int k = 0; k < 2; ++k)
-            if (graph.arg(q, k) == p) return graph.neg(graph.component(graph.arg(q, 1 - k), i));
-    return difference(graph, graph.component(p, i), graph.component(q, i));
+    return difference(graph, graph.component(p, i), component_of(graph, q, i));
 }
 
 // The interval of p - q over all p, where that is limited.
@@ -226,7 +224,7 @@ Interval Prover::number_anywhere(NodeId id) { return range_of(flattening, ranges
 bool Prover::fold_is_clean(NodeId q, const Box &box) {
     NodeId p = graph.point(graph[q].type);
     for (int i = 0; i < ir::components(graph[q].type); ++i) {
-        NodeId c = graph.component(q, i), own = graph.component(p, i);
+        NodeId c = in_one_form(graph, component_of(graph, q, i)), own = graph.component(p, i);
         if (c == own) continue;
         bool mirror = graph[c].op == Op::Abs && graph.arg(c, 0) == own;
         if (mirror ? box.lo[static_cast<std::size_t>(i)] < 0 : !number_anywhere(shift_of(q, i).value_or(own)).finite()) return false;
@@ -239,7 +237,7 @@ std::array<bool, 3> Prover::fold_symmetry(NodeId q, std::array<bool, 3> child) {
     std::array<bool, 3> out{};
     for (int i = 0; i < ir::components(graph[q].type); ++i) {
         auto k = static_cast<std::size_t>(i);
-        NodeId c = graph.component(q, i), own = graph.component(p, i);
+        NodeId c = in_one_form(graph, component_of(graph, q, i)), own = graph.component(p, i);
         if (c == own) out[k] = child[k];
         else if (graph[c].op == Op::Abs && graph.arg(c, 0) == own) out[k] = true;
     }

@@ -145,6 +145,10 @@ Known Prover::know_repeat(ShapeId id) {
             if (need > most_per_axis) too_many = true;
             plan.neighbors[a] = need;
             product *= need;
+            // Which copies are asked changes in the middle between two; the guard is continuous there if the boxes lie
+            // evenly about their cells' middles.
+            plan.copy.hi[a] = std::max(-lo, hi);
+            plan.copy.lo[a] = -plan.copy.hi[a];
             bool endless = counts[a].hi >= 1e8;
             double extent = endless ? infinity : up((counts[a].hi - 1) / 2 * cells[a].hi);
             if (repetition.mirrored) {
