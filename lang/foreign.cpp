@@ -355,7 +355,7 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
         const Index open = enclosing(at);
         const bool head = open >= 2 && kind(open - 2) == Tok::Fn;
         if ((head || kind(open) == Tok::LambdaOpen) && found == Tok::Name &&
-            kind(before) == Tok::Name) {
+            kind(before) == Tok::Name && !token(at).first_on_line) {
             const bool swapped = is_one_of(text(at), type_words);
             const std::string name(text(swapped ? before : at)), type(text(swapped ? at : before));
             foreign(span(before, at), "a parameter's type stands behind its name, after a `:`")

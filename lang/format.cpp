@@ -6,7 +6,7 @@
 #include "lang/format.h"
 
 #include "base/text.h"
-#include "lang/token.h"
+#include "lang/pieces.h"
 
 #include <algorithm>
 #include <limits>
@@ -17,32 +17,6 @@ namespace {
 
 constexpr std::size_t widest = 100;
 constexpr std::size_t step = 2; // columns of one level
-
-// A word or a comment, and whether it begins a line.
-struct Piece {
-    Tok kind = Tok::End;
-    bool is_comment = false, is_line_comment = false;
-    bool starts_statement = false;
-    bool is_prefix = false;     // a `-` with one operand
-    bool is_call = false;       // a `(` or `[` that applies to what stands before it
-    bool in_type = false;       // the `<`, number and `>` of `shape<1>`
-    bool breaks = false;        // begins a line
-    bool blank_above = false;   // with an empty line above it
-    bool inline_block = false;  // a `{` whose block stands on its line
-    std::uint32_t newlines = 0; // in the source, before it
-    std::size_t match = 0;      // of a bracket
-    std::string_view text;
-};
-
-bool is_block_open(Tok kind) { return kind == Tok::Body || kind == Tok::Trailing; }
-bool is_group_open(Tok kind) {
-    return kind == Tok::Open || kind == Tok::FreshOpen || kind == Tok::LambdaOpen ||
-           kind == Tok::ListOpen || kind == Tok::FreshListOpen;
-}
-bool is_open(Tok kind) { return is_block_open(kind) || is_group_open(kind); }
-bool is_close(Tok kind) {
-    return kind == Tok::Close || kind == Tok::ListClose || kind == Tok::BraceClose;
-}
 
 bool ends_operand(const Piece &p) {
     switch (p.kind) {
@@ -109,63 +83,6 @@ std::size_t display_columns(std::string_view text) {
         i += c.length;
     }
     return columns;
-}
-
-// -- pieces --------------------------------------------------------------------------------------
-
-std::vector<Piece> read_pieces(const Source &source, const Tokens &tokens,
-                               const std::vector<Comment> &comments) {
-    const std::string_view text = source.text;
-    std::vector<Piece> pieces;
-    std::vector<std::size_t> place(tokens.tokens.size()); // of each token among the pieces
-    std::uint32_t done = 0;
-    std::size_t next_comment = 0;
-    bool statement = true;
-    const auto put = [&](std::uint32_t begin, std::uint32_t end) -> Piece & {
-        Piece piece;
-        const std::string_view gap = text.substr(done, begin - done);
-        piece.newlines = static_cast<std::uint32_t>(std::count(gap.begin(), gap.end(), '\n'));
-        piece.text = text.substr(begin, end - begin);
-        done = end;
-        pieces.push_back(piece);
-        return pieces.back();
-    };
-    const auto put_comments_before = [&](std::uint32_t begin) {
-        for (; next_comment < comments.size() && comments[next_comment].begin < begin;
-             ++next_comment) {
-            const Comment &comment = comments[next_comment];
-            Piece &piece = put(comment.begin, comment.end);
-            piece.is_comment = true;
-            piece.is_line_comment = comment.is_line;
-            while (comment.is_line && piece.text.find_last_of(" \t") == piece.text.size() - 1)
-                piece.text.remove_suffix(1);
-        }
-    };
-    for (std::size_t i = 0; i < tokens.tokens.size(); ++i) {
-        const Token &token = tokens.tokens[i];
-        if (token.kind == Tok::End) {
-            statement = true;
-            continue;
-        }
-        // No comma stands before a closing bracket.
-        const bool last =
-            i + 1 < tokens.tokens.size() && (tokens.tokens[i + 1].kind == Tok::Close ||
-                                             tokens.tokens[i + 1].kind == Tok::ListClose);
-        if (token.kind == Tok::Comma && last) continue;
-        put_comments_before(token.begin);
-        place[i] = pieces.size();
-        Piece &piece = put(token.begin, token.end);
-        piece.kind = token.kind;
-        piece.starts_statement = statement && token.kind != Tok::BraceClose;
-        piece.match = place[i];
-        if (tokens.match[i] < i) {
-            piece.match = place[tokens.match[i]];
-            pieces[piece.match].match = place[i];
-        }
-        statement = is_block_open(token.kind);
-    }
-    put_comments_before(static_cast<std::uint32_t>(text.size()));
-    return pieces;
 }
 
 class Formatter {

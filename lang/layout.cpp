@@ -166,6 +166,7 @@ class Layout {
     void close_missing();
     void report_unclosed(const Level &open, const Token *instead);
     bool else_if_of_other_languages(const Token &t);
+    bool ends_with_callee() const;
     Tok brace_kind();
 
     std::uint32_t indent_of(const Token &t) const {
@@ -183,6 +184,17 @@ class Layout {
     std::vector<bool> never_closed_; // of the words
     std::optional<Level> suspect_;   // the first `{` whose `}` stands further left than its line
 };
+
+// Whether the line above is `name` or `name(…)`, perhaps behind a `=`: what a block may belong to.
+bool Layout::ends_with_callee() const {
+    std::size_t callee = out_.tokens.size() - 1;
+    if (out_.tokens[callee].kind == Tok::Close && out_.match[callee] > 0)
+        callee = out_.match[callee] - 1;
+    if (out_.tokens[callee].kind != Tok::Name) return false;
+    const Tok before = callee == 0 ? Tok::End : out_.tokens[callee - 1].kind;
+    return before == Tok::End || before == Tok::Assign || before == Tok::Body ||
+           before == Tok::Trailing;
+}
 
 void Layout::report_unclosed(const Level &open, const Token *instead) {
     const Token &token = out_.tokens[open.index];
@@ -226,7 +238,7 @@ void Layout::line_begins(const Token &t) {
         if (!range && t.kind != Tok::Number && t.kind != Tok::OtherAssign) return;
     }
     if (t.kind == Tok::Body) {
-        if (level().waits == Header::None && !takes_block(last)) return end_statement();
+        if (level().waits == Header::None && !ends_with_callee()) return end_statement();
         const std::uint32_t end = previous_end();
         diagnostics_
             .add(Code::ForeignSyntax, span(t), "the `{` stands on the line of what it belongs to")
