@@ -155,14 +155,63 @@ bool Lowering::shared(ShapeId id) const {
     return uses_[id.index] > 1 && cost_[id.index] >= cheap && !is_transparent(shape(id), shapes_);
 }
 
-// A library shape's name is handed down to what does the work for it.
+// A function is called after the library shape that it is, or what was done to which: "twisted_box".
 void Lowering::find_names() {
+    const auto done = [](const Shape &s) -> const char * {
+        switch (s.kind) {
+        case ShapeKind::Map:
+            switch (s.map) {
+            case MapKind::Translate: return "moved";
+            case MapKind::Rotate: return "turned";
+            case MapKind::Scale: return "scaled";
+            case MapKind::Fold: return "folded";
+            case MapKind::Revolve: return "revolved";
+            case MapKind::Twist: return "twisted";
+            case MapKind::Bend: return "bent";
+            case MapKind::Taper: return "tapered";
+            case MapKind::Distort: return "distorted";
+            }
+            return "";
+        case ShapeKind::Complement: return "inverted";
+        case ShapeKind::Offset: return "offset";
+        case ShapeKind::Shell: return "hollow";
+        case ShapeKind::Displace: return "displaced";
+        case ShapeKind::Extrude: return "extruded";
+        case ShapeKind::Repeat: return "repeated";
+        case ShapeKind::Within: return "cut";
+        case ShapeKind::Many: return "many";
+        case ShapeKind::Empty:
+        case ShapeKind::Leaf:
+        case ShapeKind::Union:
+        case ShapeKind::Intersection:
+        case ShapeKind::Xor:
+        case ShapeKind::Blend:
+        case ShapeKind::Seam:
+        case ShapeKind::Lerp:
+        case ShapeKind::PseudoNorm:
+        case ShapeKind::Paint:
+        case ShapeKind::Repaint:
+        case ShapeKind::Mixed:
+        case ShapeKind::Library:
+        case ShapeKind::Contract: return "";
+        }
+        return "";
+    };
     names_.assign(shapes_.size(), "");
+    std::vector<std::string> nouns(shapes_.size());
+    for (std::size_t i = 0; i < shapes_.size(); ++i) {
+        const Shape &s = shape(ShapeId{i});
+        const std::string participle = done(s);
+        const bool wraps = !participle.empty() || is_transparent(s, shapes_);
+        if (s.kind == ShapeKind::Library) nouns[i] = shapes_.libraries[s.payload].name;
+        else if (wraps && !s.children.empty()) nouns[i] = nouns[s.children.front().index];
+        else nouns[i] = shape_kind_name(s.kind);
+        names_[i] = participle.empty() ? nouns[i] : participle + "_" + nouns[i];
+    }
+    // What stands for a library shape that claims nothing is called like it.
     for (std::size_t i = shapes_.size(); i-- > 0;) {
         const Shape &s = shape(ShapeId{i});
-        if (s.kind == ShapeKind::Library) names_[i] = shapes_.libraries[s.payload].name;
-        if (names_[i].empty()) names_[i] = shape_kind_name(s.kind);
-        else if (is_transparent(s, shapes_)) names_[s.children.front().index] = names_[i];
+        if (s.kind == ShapeKind::Library && is_transparent(s, shapes_)) names_[s.children.front().index] = nouns[i];
     }
 }
 

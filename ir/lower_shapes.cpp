@@ -93,7 +93,15 @@ NodeId Lowering::answer(Reading reading, ShapeId id, Frame frame) {
         return guarded(reading, id, frame, within(reading, id, frame));
     if (reading == Reading::Hit)
         return graph_.make(Op::HitWith, {colored(id, frame), ask(Reading::Marched, id, frame)});
-    return guarded(reading, id, frame, divided(id, ask(Reading::Raw, id, frame)));
+    NodeId marched = divided(id, ask(Reading::Raw, id, frame));
+    // The range shell: a displaced solid lies where f <= A, the most that it moves outward; further out the smooth field, less A,
+    // is the better bound, with its own slope. Inside, where f - a < 0, f - A is lower still: so signs agree.
+    if (shape(id).kind == ShapeKind::Displace && std::isfinite(fact(id).outward)) {
+        const ShapeId child = shape(id).children.front();
+        const NodeId shell = graph_.sub(ask(Reading::Raw, child, frame), graph_.number(fact(id).outward));
+        marched = graph_.make(Op::Max, {marched, divided(child, shell)});
+    }
+    return guarded(reading, id, frame, marched);
 }
 
 // raw / (L * times). A bound below 1 lengthens the step, as it may.

@@ -23,6 +23,7 @@ struct ShapeFact {
     Box bounds = Box::everything(); // holds the solid, for all params and times
     std::array<bool, 3> symmetric{};
     std::array<double, 3> lever{}; // sup |(p x grad f)_axis| over space; infinity: unknown
+    double outward = std::numeric_limits<double>::infinity(); // Displace: the most by which it moves the surface outward
     bool guard = false;          // when marched, take the max with the distance to `bounds` (cheap far away)
     RepeatPlan repeat;
 };

@@ -95,7 +95,7 @@ template <class T> T sqrt(T x) { // 0 below 0
     using std::sqrt;
     return sqrt(max(x, T(0)));
 }
-template <class T> T inverse_sqrt(T x) { return T(1) / sqrt(x); } // +infinity at 0 and below
+template <class T> T inverse_sqrt(T x) { return T(1) / sem::sqrt(x); } // +infinity at 0 and below
 template <class T> T log(T x) {                                   // -infinity at 0 and below
     using std::log;
     return log(max(x, T(0)));

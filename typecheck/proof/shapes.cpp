@@ -516,6 +516,8 @@ Known Prover::know_displaced(ShapeId id) {
         fail(k);
         return k;
     }
+    // Beyond this the marched field is the smooth one (the range shell); float32's noise may pass the range by a little.
+    k.fact.outward = shape.kind == ShapeKind::Displace ? up(amount.hi + 1e-5 * amount.magnitude()) : infinity;
     slope *= options.rules[Rule::Displace];
     double sup = up(k.fact.lipschitz_sup + slope);
     set_lipschitz(k, slope == 0 ? k.fact.lipschitz : graph.add(k.fact.lipschitz, graph.number(slope)), sup);

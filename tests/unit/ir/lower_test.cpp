@@ -298,3 +298,19 @@ TEST_CASE("raw fields do not depend on proofs") {
         CHECK(reference.distance({0, 1.5, 0}) == Approx(0.25));
     }
 }
+
+TEST_CASE("a displaced shape is left to its smooth field outside the displacement's reach") {
+    Builder t;
+    const NodeId wave = t.g.mul(t.n(0.1), t.g.make(Op::Sin, {t.g.mul(t.n(40), t.g.component(t.g.point(), 1))}));
+    const ShapeId rough = t.add(ShapeKind::Displace, {t.sphere(1)}, {wave});
+    t.fact(rough).lipschitz = t.n(5); // 1 + 0.1*40
+    t.fact(rough).outward = 0.1;
+    const auto raw = [](P p) { return length(p) - 1 - 0.1 * std::sin(40 * p[1]); };
+    agrees(t.lowered(rough), [&](P p) { return std::max(raw(p) / 5, length(p) - 1.1); });
+    Reference reference(t.scene);
+    Random random;
+    for (int i = 0; i < 1000; ++i) {
+        const P p = random.point(1.5);
+        CHECK((reference.distance(p) < 0) == (raw(p) < 0)); // the same solid
+    }
+}
