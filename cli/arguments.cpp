@@ -140,6 +140,9 @@ struct Reader {
         CLI::App *sub = command("view", "open a window that follows the file", view);
         add_scene(sub, view.scene);
         add_size(sub, view.width, view.height);
+        sub->add_option("--record", view.record, "save a picture of the window here after every reload")
+            ->type_name("DIR")
+            ->check(CLI::ExistingDirectory);
 
         sub = command("check", "parse, type and prove a scene", check);
         add_scene(sub, check.scene);

@@ -60,6 +60,7 @@ struct EvalCommand {
 struct ViewCommand {
     SceneArguments scene;
     int width = 1280, height = 800;
+    std::string record; // a folder for a picture after every reload
 };
 struct ImportCommand {
     std::string file, out;

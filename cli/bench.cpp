@@ -1,0 +1,130 @@
+// fathom bench: what a scene costs, phase by phase: medians of several runs on this machine, and counts that do not
+// depend on it.
+#include "backend-cpu/march.h"
+#include "backend-glsl/emit.h"
+#include "cli/terminal.h"
+#include "render-gl/context.h"
+#include "render-gl/render.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+#include <map>
+
+namespace fathom::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return values[values.size() / 2];
+}
+
+// The median time of a few calls: as many as fit into a second, at least three, at most 25.
+double measure(const std::function<void()> &work) {
+    std::vector<double> times;
+    Clock::time_point start = Clock::now();
+    while (times.size() < 3 || (times.size() < 25 && milliseconds_since(start) < 1000)) {
+        Clock::time_point begin = Clock::now();
+        work();
+        times.push_back(milliseconds_since(begin));
+    }
+    return median(times);
+}
+
+void row(Terminal &terminal, std::string_view what, double value, std::string_view unit) {
+    terminal.put(fmt::format("{:<26} {:>10.4g} {}\n", what, value, unit));
+}
+
+std::string_view phase_name(driver::Phase phase) {
+    switch (phase) {
+    case driver::Phase::Read: return "read";
+    case driver::Phase::Check: return "parse and check";
+    case driver::Phase::Prove: return "prove";
+    case driver::Phase::Lower: return "lower";
+    case driver::Phase::Done: return "";
+    }
+    return "";
+}
+
+void bench_front_end(const BenchCommand &command, Terminal &terminal) {
+    std::map<driver::Phase, std::vector<double>> times;
+    driver::CompileOptions options = compile_options(command.scene);
+    std::optional<driver::Phase> current;
+    Clock::time_point entered;
+    options.entered = [&](driver::Phase phase) {
+        if (current) times[*current].push_back(milliseconds_since(entered));
+        current = phase == driver::Phase::Done ? std::nullopt : std::optional(phase);
+        entered = Clock::now();
+    };
+    double whole = measure([&] { driver::compile_file(command.scene.file, options); });
+    for (const auto &[phase, each] : times) row(terminal, phase_name(phase), median(each), "ms");
+    row(terminal, "front end, all", whole, "ms");
+}
+
+void bench_gl(const BenchCommand &command, const ir::Scene &scene, Terminal &terminal) {
+    Diagnostics diagnostics;
+    glsl::Options options;
+    options.target = glsl::Target::Glsl330;
+    options.buffers = true;
+    glsl::Output output;
+    double emitting = measure([&] { output = glsl::emit(scene, options, diagnostics); });
+    row(terminal, "emit and validate", emitting, "ms");
+    row(terminal, "shader", static_cast<double>(output.text.size()) / 1024, "KB");
+    if (diagnostics.has_errors()) return;
+    auto context = gl::Context::make();
+    if (const std::string *why = std::get_if<std::string>(&context)) {
+        terminal.say(fmt::format("fathom: nothing is measured by GL: {}", *why));
+        return;
+    }
+    terminal.put(fmt::format("{:<26} {}\n", "GL", std::get<gl::Context>(context).describe()));
+    Clock::time_point start = Clock::now();
+    auto program = gl::Program::build(output, scene);
+    row(terminal, "driver: compile and link", milliseconds_since(start), "ms"); // once: drivers keep what they compiled
+    if (!std::holds_alternative<gl::Program>(program)) return;
+    gl::Request request;
+    request.width = command.width;
+    request.height = command.height;
+    auto draw = [&] { gl::draw(std::get<gl::Program>(program), scene, request, gl::Mode::Linear); };
+    start = Clock::now();
+    draw();
+    row(terminal, "first frame", milliseconds_since(start), "ms");
+    row(terminal, "frame", measure(draw), "ms");
+}
+
+void bench_cpu(const BenchCommand &command, const ir::Scene &scene, Terminal &terminal) {
+    double aspect = static_cast<double>(command.width) / command.height;
+    cpu::Work work;
+    double time = measure([&] {
+        cpu::Stage stage = cpu::prepare(scene, ir::view_of(scene, 0, aspect), command.width, command.height, 0);
+        work = cpu::render(stage, {}).work;
+    });
+    row(terminal, "CPU frame", time, "ms");
+    row(terminal, "steps a ray", static_cast<double>(work.steps) / static_cast<double>(std::max<std::uint64_t>(work.rays, 1)), "");
+    row(terminal, "evaluations a pixel",
+        static_cast<double>(work.evaluations) / static_cast<double>(std::max<std::uint64_t>(work.rays, 1)), "");
+}
+
+} // namespace
+
+Exit run(const BenchCommand &command, Terminal &terminal) {
+    if (command.scene.file == "-") {
+        terminal.say("fathom: bench reads its file many times; standard input can be read once");
+        return usage_error;
+    }
+    driver::Compilation compilation = driver::compile_file(command.scene.file, compile_options(command.scene));
+    Exit exit = report(compilation, command.scene, terminal);
+    if (exit != done) return exit;
+    terminal.put(fmt::format("{} at {}x{}\n", command.scene.file, command.width, command.height));
+    bench_front_end(command, terminal);
+    bench_gl(command, compilation.scene, terminal);
+    bench_cpu(command, compilation.scene, terminal);
+    return done;
+}
+
+} // namespace fathom::cli
