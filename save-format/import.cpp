@@ -123,10 +123,14 @@ class Settings {
 // A node as it stands in the file, in flow form: its lines are given their indentation back and
 // read again.
 std::string verbatim_flow(std::string_view text, Span span) {
+    // A block's first line begins in the middle of one of the file's; flow text needs no column.
     std::size_t column = 0;
-    while (column < span.begin && text[span.begin - column - 1] != '\n' &&
-           text[span.begin - column - 1] != '\r')
-        ++column;
+    const auto at_line = [&] {
+        const char before = text[span.begin - column - 1];
+        return before == '\n' || before == '\r';
+    };
+    if (text[span.begin] == '-')
+        while (column < span.begin && !at_line()) ++column;
     std::string slice(column, ' ');
     slice += text.substr(span.begin, span.end - span.begin);
     Diagnostics unheard;

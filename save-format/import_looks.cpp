@@ -126,6 +126,7 @@ void read_material(Importer &in, const TakenValue &taken) {
         all.entries.insert(all.entries.end(), part.entries.begin(), part.entries.end());
     }
     in.keep("material", "", taken.flow);
+    if (in.reader.broken()) return; // half a material is kept, and no more
     if (!legal) {
         in.report.content(taken.value.span, "a material has to be a list of mappings")
             .note("it is left out, and kept for an export");
@@ -206,6 +207,7 @@ void read_material(Importer &in, const TakenValue &taken) {
 
 void read_light(Importer &in, const TakenValue &taken) {
     in.keep("light", "", taken.flow);
+    if (in.reader.broken()) return;
     const auto &items = taken.value.items;
     if (taken.value.kind != Value::Kind::Sequence || items.empty() ||
         items[0].kind != Value::Kind::Scalar) {

@@ -148,6 +148,7 @@ void Importer::read_property(const NodeTypeRow &row, const Event &key, Propertie
     }
     const TakenValue taken =
         take_value(reader, reader.next(), type->kind == PropertyKind::Tree ? 1u << 22 : 64);
+    if (reader.broken()) return; // reported; half a value says nothing
     Property &property = properties.values[static_cast<std::size_t>(type - row.properties.data())];
     if (property.given) {
         report.content(key.span,

@@ -89,6 +89,7 @@ constexpr std::size_t block_limit = 24;
 void TreeReader::children(const Event &key, const NodeTypeRow *row, Body &body, Children &into,
                           Properties &properties) {
     Event list = in_.reader.next();
+    if (list.kind == EventKind::Broken) return;
     const bool null = list.kind == EventKind::Scalar && list.plain && is_none(list.text);
     if (list.kind != EventKind::SequenceStart || into.given) {
         if (!null)
@@ -261,17 +262,19 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     blocks_ = blocks_mark;
 
     const std::string name_flow = flow_scalar(name, name_plain);
+    // A head that an export cannot know is recorded with all that it said.
     const auto as_group = [&](std::size_t base) {
-        std::string head = "[" + std::to_string(base) + ", " + flow_scalar(type, true) + ", " +
-                           name_flow + ", {" + properties.unknown + "}]";
-        in_.kept[slot] = {"group", path_text(), std::move(head), {}, true};
-    };
-    const auto whole_properties = [&] { // of a group that stands for a transform which does nothing
         for (std::size_t i = 0; row && i < row->properties.size(); ++i) {
             const PropertyType &property = row->properties[i];
             if (!properties.values[i].given || property.kind == PropertyKind::Carried) continue;
             properties.keep(property.name, property_flow(property, properties.values[i]));
         }
+        in_.kept[slot] = {"group",
+                          path_text(),
+                          "[" + std::to_string(base) + ", " + flow_scalar(type, true) + ", " +
+                              name_flow + ", {" + properties.unknown + "}]",
+                          {},
+                          true};
     };
 
     Result result;
@@ -341,7 +344,6 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
         const std::string call = transform_call(in_, *row, properties, type_span);
         if (!result.contributed) {
         } else if (call.empty()) {
-            whole_properties();
             group(kids.base);
         } else {
             target.back().text += chain_mark;

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "save-format/program.h"
+#include "save-format/yaml_writer.h"
 
 #include <cmath>
 
@@ -275,14 +276,16 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
     case NodeType::Rotation: {
         reading.vector("Angles",
                        v); // 2.5: d(R p), R = Rx Ry Rz, turns the object by Rz(-z) Ry(-y) Rx(-x)
-        std::string calls;
-        for (int axis = 0; axis < 3; ++axis) {
-            if (v[axis] != 0) {
-                if (!calls.empty()) calls += chain_mark;
-                calls += ".rotate(" + sdf_number(-v[axis]) + "deg, axis: " + "XYZ"[axis] + ")";
-            }
+        const int turned = (v[0] != 0) + (v[1] != 0) + (v[2] != 0);
+        if (turned == 0) return {};
+        if (turned == 1) {
+            const int axis = v[0] != 0 ? 0 : v[1] != 0 ? 1 : 2;
+            return ".rotate(" + sdf_number(-v[axis]) + "deg, axis: " + "XYZ"[axis] + ")";
         }
-        return calls;
+        std::string angles;
+        for (const double part : v)
+            angles += (angles.empty() ? "" : ", ") + (part == 0 ? "0" : sdf_number(-part) + "deg");
+        return ".rotate_euler([" + angles + "])";
     }
     case NodeType::Scaling: {
         reading.vector("Factors", v); // 2.10, 2.12: d(S p) is the object 1/a as large
@@ -494,8 +497,8 @@ std::string property_flow(const PropertyType &type, const Property &property) {
     case PropertyKind::Switch: return property.number[0] != 0 ? "True" : "False";
     case PropertyKind::Word:
     case PropertyKind::Material: return flow_scalar(property.word, true);
-    case PropertyKind::Carried:
-    case PropertyKind::Tree: break;
+    case PropertyKind::Tree: return flow_text(property.tree);
+    case PropertyKind::Carried: break;
     }
     return "~";
 }

@@ -38,8 +38,9 @@ YamlReader::YamlReader(std::string_view text, SourceId source, Report report, st
     }
     // The format is UTF-8; libyaml would also guess UTF-16.
     yaml_parser_set_encoding(&parser_->yaml, YAML_UTF8_ENCODING);
-    yaml_parser_set_input_string(
-        &parser_->yaml, reinterpret_cast<const unsigned char *>(text_.data()), text_.size());
+    yaml_parser_set_input_string(&parser_->yaml,
+                                 reinterpret_cast<const unsigned char *>(text_.data()) + skipped_,
+                                 text_.size() - skipped_);
 }
 
 YamlReader::~YamlReader() = default;
@@ -85,7 +86,8 @@ Event YamlReader::next() {
             std::uint32_t at = 0;
             std::string why = yaml.problem ? yaml.problem : "it cannot be read";
             if (yaml.error == YAML_READER_ERROR) {
-                at = static_cast<std::uint32_t>(std::min(yaml.problem_offset, text_.size()));
+                at = static_cast<std::uint32_t>(
+                    std::min(yaml.problem_offset + skipped_, text_.size()));
                 return fail(
                     Span{source_, at,
                          std::min<std::uint32_t>(at + 1, static_cast<std::uint32_t>(text_.size()))},

@@ -67,6 +67,7 @@ class YamlReader {
     std::size_t depth_ = 0;
     std::size_t cursor_character_ = 0;
     std::uint32_t cursor_byte_ = 0;
+    std::uint32_t skipped_ = 0; // bytes before the text proper
     bool broken_ = false;
     bool ended_ = false;
 };
