@@ -1,0 +1,119 @@
+// Cameras, frames and the values of closed expressions.
+#include "ir/view.h"
+#include "tests/unit/glsl/scenes.h"
+
+#include <catch2/catch.hpp>
+
+#include <set>
+
+using namespace fathom;
+using namespace fathom::scenes;
+
+namespace {
+
+double dot(Triple a, Triple b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+void check_frame(const View &v) {
+    CHECK(dot(v.right, v.right) == Approx(1));
+    CHECK(dot(v.up, v.up) == Approx(1));
+    CHECK(dot(v.forward, v.forward) == Approx(1));
+    CHECK(dot(v.right, v.up) == Approx(0).margin(1e-12));
+    CHECK(dot(v.right, v.forward) == Approx(0).margin(1e-12));
+    const Triple back{v.right[1] * v.up[2] - v.right[2] * v.up[1], v.right[2] * v.up[0] - v.right[0] * v.up[2],
+                      v.right[0] * v.up[1] - v.right[1] * v.up[0]};
+    CHECK(dot(back, v.forward) == Approx(-1)); // right-handed
+}
+
+} // namespace
+
+TEST_CASE("a view is a right-handed frame, also straight up and down") {
+    for (Triple from : {Triple{3, 2, 5}, Triple{0, 4, 0}, Triple{0, -4, 0}, Triple{0, 0, 0}, Triple{-1e6, 1, 1}})
+        check_frame(look_at(from, {0, 0, 0}, 1, false));
+    CHECK(look_at({0, 4, 0}, {0, 0, 0}, 1, false).right[0] == Approx(1)); // a map: x to the right, -z up
+    CHECK(look_at({0, 4, 0}, {0, 0, 0}, 1, false).up[2] == Approx(-1));
+}
+
+TEST_CASE("without a camera the finite parts' bounding sphere just fits, in wide and in tall pictures") {
+    Scene scene = sphere();
+    scene.bounds = {{1, 2, 3}, {3, 4, 5}};
+    const double radius = std::sqrt(3.0);
+    for (double aspect : {0.5, 1.0, 2.0})
+        for (bool orthographic : {false, true}) {
+            scene.camera.orthographic = orthographic;
+            const View view = view_of(scene, 0, aspect);
+            CHECK(view.forward[0] / view.forward[2] == Approx(3.0 / 5));
+            CHECK(view.forward[1] / view.forward[2] == Approx(2.0 / 5));
+            for (std::size_t i = 0; i < 3; ++i)
+                CHECK(view.origin[i] + view.focus * view.forward[i] == Approx(scene.bounds.lo[i] + 1));
+            const double half = view.extent * std::min(aspect, 1.0); // the narrower half of the picture
+            if (orthographic) CHECK(half == Approx(radius));
+            else CHECK(std::sin(std::atan(half)) * view.focus == Approx(radius));
+        }
+}
+
+TEST_CASE("closed expressions have values: params, time, functions, loops, tables") {
+    Scene scene;
+    Graph &g = scene.graph;
+    Param size;
+    size.value = {3, 0, 0, 0};
+    scene.params.push_back(size);
+    const NodeId n = g.param(0, Type::Float);
+    CHECK(value_of(scene, g.add(g.time(), n), 2.5)[0] == 5.5);
+    const NodeId x = g.fresh_var(Type::Float);
+    const FunctionId square = g.add_function({"square", {}, {x}, g.mul(x, x)});
+    CHECK(value_of(scene, g.call(square, {&n, 1}), 0)[0] == 9);
+
+    // The sum of a table's rows below the limit, by a loop in which the limit is a variable of an outer loop.
+    const TableId table = g.add_table({4, 1, {1, 10, 100, 1000}});
+    const NodeId sum = g.fresh_var(Type::Float), i = g.fresh_var(Type::Int);
+    const NodeId outer = g.fresh_var(Type::Float), j = g.fresh_var(Type::Int);
+    const NodeId row = g.make(Op::TableRead, Type::Float, {i}, table_slot(table, 0));
+    const FoldId inner_fold = g.add_fold({j, i, {sum}, {g.add(sum, row)}, {}, 4});
+    const NodeId inner = g.make(Op::FoldResult, Type::Float, {g.make(Op::Fold, Type::Float, {g.number(0)}, inner_fold.index)}, 0);
+    const FoldId outer_fold = g.add_fold({g.integer(4), j, {outer}, {g.add(outer, inner)}, {}, 4});
+    const NodeId all = g.make(Op::FoldResult, Type::Float, {g.make(Op::Fold, Type::Float, {g.number(0)}, outer_fold.index)}, 0);
+    CHECK(value_of(scene, all, 0)[0] == 0 + 1 + 11 + 111);
+    CHECK(value_of(scene, {}, 0)[0] == 0);
+}
+
+TEST_CASE("samples of a pixel begin in its middle, lie in it and differ") {
+    CHECK(sample_offset(0) == std::array{0.5, 0.5});
+    std::set<std::array<double, 2>> seen;
+    double x = 0, y = 0;
+    for (int k = 0; k < 64; ++k) {
+        const auto at = sample_offset(k);
+        CHECK((at[0] >= 0 && at[0] < 1 && at[1] >= 0 && at[1] < 1));
+        seen.insert(at);
+        x += at[0] / 64, y += at[1] / 64;
+    }
+    CHECK(seen.size() == 64);
+    CHECK(x == Approx(0.5).margin(0.02));
+    CHECK(y == Approx(0.5).margin(0.02));
+}
+
+TEST_CASE("rays are held in a box only where everything is finite") {
+    Scene scene = sphere();
+    const View view = view_of(scene, 0, 1);
+    CHECK(frame_of(scene, view, 100).boxed);
+    CHECK(frame_of(scene, view, 100).lo[0] < -1);
+    scene.facts[scene.root.index].bounds = Box::everything();
+    CHECK_FALSE(frame_of(scene, view, 100).boxed);
+    CHECK_FALSE(frame_of(scene, view, 100).steep);
+    scene.facts[scene.root.index].lipschitz_sup = 2;
+    CHECK(frame_of(scene, view, 100).steep);
+    scene.render.far = 7;
+    CHECK(frame_of(scene, view, 100).far == 7);
+}
+
+TEST_CASE("without a light a sun shines from the upper left behind the camera") {
+    Scene scene = sphere();
+    const View view = view_of(scene, 0, 1);
+    const auto lights = lights_of(scene, 0, view);
+    REQUIRE(lights.size() == 1);
+    CHECK(lights[0].directional);
+    CHECK(dot(lights[0].position, view.right) < 0);
+    CHECK(dot(lights[0].position, view.up) > 0);
+    CHECK(dot(lights[0].position, view.forward) < 0);
+    scene.lights.push_back({false, scene.graph.vec3(1, 2, 3), scene.graph.vec3(1, 1, 1)});
+    CHECK(lights_of(scene, 0, view)[0].position == Triple{1, 2, 3});
+}
