@@ -1,0 +1,189 @@
+// The program as scripts and editors see it: exit statuses, which stream says what, what is left behind. Runs the real
+// one, through a shell.
+#include "scratch_folder.h"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <sys/wait.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+    int exit = -1;
+    std::string out, err;
+};
+
+// Runs a shell line in the folder, with `fathom` for the program.
+Result shell(const ScratchFolder &folder, const std::string &line) {
+    std::string whole = "cd '" + folder.path().string() + "' && fathom() { '" FATHOM_PROGRAM "' \"$@\"; } && { " +
+                        line + "; } >.out 2>.err";
+    int status = std::system(whole.c_str());
+    Result result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder.read(".out"), folder.read(".err")};
+    fs::remove(folder / ".out");
+    fs::remove(folder / ".err");
+    return result;
+}
+
+bool contains(const std::string &text, const std::string &part) { return text.find(part) != text.npos; }
+
+struct Scenes : ScratchFolder {
+    Scenes() {
+        write("good.sdf", "sphere(1)\n");
+        write("bad.sdf", "spere(1)\nbox(1).rotate(90)\n");
+        write("missing.sdf", "import \"nowhere.sdf\"\nsphere(1)\n");
+        write("param.sdf", "param radius = 1.0 in 0.5..2.0\nsphere(radius)\n");
+        write("broken.sdf", "sphere(\n");
+    }
+};
+
+} // namespace
+
+TEST_CASE("the exit status tells what went wrong") {
+    Scenes folder;
+    CHECK(shell(folder, "fathom check good.sdf").exit == 0);
+    CHECK(shell(folder, "fathom check bad.sdf").exit == 1);
+    CHECK(shell(folder, "fathom check missing.sdf").exit == 1); // a missing import is the scene's error
+    CHECK(shell(folder, "fathom check nothing.sdf").exit == 3);
+    CHECK(shell(folder, "fathom check .").exit == 3);
+    CHECK(shell(folder, "fathom").exit == 2);
+    CHECK(shell(folder, "fathom check").exit == 2);
+    CHECK(shell(folder, "fathom check --nonsense good.sdf").exit == 2);
+    CHECK(shell(folder, "fathom render good.sdf -o x.png --size 10").exit == 2);
+    CHECK(shell(folder, "fathom compile good.sdf --target metal").exit == 2);
+    CHECK(shell(folder, "fathom check param.sdf -D radius=3").exit == 2);
+    CHECK(shell(folder, "fathom check param.sdf -D radios=1").exit == 2);
+    CHECK(shell(folder, "fathom check param.sdf -D radius=1.5").exit == 0);
+    CHECK(shell(folder, "fathom compile good.sdf -o none/x.glsl").exit == 3);
+}
+
+TEST_CASE("results go to standard output, words to standard error") {
+    Scenes folder;
+    Result check = shell(folder, "fathom check bad.sdf");
+    CHECK(check.out.empty());
+    CHECK(contains(check.err, "bad.sdf:1:1: error[unknown-name]:"));
+    CHECK(contains(check.err, "bad.sdf:2:"));
+    Result json = shell(folder, "fathom check --json bad.sdf");
+    CHECK(json.exit == 1);
+    CHECK(json.err.empty());
+    CHECK(json.out.starts_with("{\"ok\": false"));
+    CHECK(contains(json.out, "\"code\": \"unknown-name\""));
+    Result good = shell(folder, "fathom check --json good.sdf");
+    CHECK(contains(good.out, "\"ok\": true, \"lipschitz\": 1, \"status\": \"proved\", \"exact\": true"));
+    CHECK(contains(good.out, "\"bounds\": [[-1, -1, -1], [1, 1, 1]]"));
+    CHECK(shell(folder, "fathom compile good.sdf").out.starts_with("#version"));
+    CHECK(shell(folder, "fathom compile bad.sdf").out.empty());
+}
+
+TEST_CASE("a scene can come from standard input") {
+    Scenes folder;
+    CHECK(shell(folder, "echo 'sphere(2)' | fathom eval - --at 0,0,0").out.starts_with("-2 "));
+    CHECK(contains(shell(folder, "echo 'spere(2)' | fathom check -").err, "<stdin>:1:1: error"));
+}
+
+TEST_CASE("points are answered with distance and gradient") {
+    Scenes folder;
+    CHECK(shell(folder, "fathom eval good.sdf --at 3,0,0").out == "2 1 0 0\n");
+    CHECK(shell(folder, "fathom eval good.sdf --at 3,0,0 --at 0,-2,0").out == "2 1 0 0\n1 0 -1 0\n");
+    CHECK(shell(folder, "fathom eval good.sdf --at -3,0,0").out == "2 -1 0 0\n");
+    Result many = shell(folder, "printf '2 0 0\\n\\n0 3 0\\n0 0 4' | fathom eval good.sdf --points -");
+    CHECK(many.out == "1 1 0 0\n2 0 1 0\n3 0 0 1\n");
+    Result wrong = shell(folder, "printf '2 0 0\\n1 2\\n' | fathom eval good.sdf --points -");
+    CHECK(wrong.exit == 2);
+    CHECK(contains(wrong.err, "line 2"));
+    CHECK(shell(folder, "fathom eval good.sdf").exit == 2);
+    CHECK(shell(folder, "fathom eval param.sdf -Dradius=1.5 --at 3,0,0").out.starts_with("1.5 1"));
+}
+
+TEST_CASE("a failed command leaves the old file") {
+    Scenes folder;
+    folder.write("out.glsl", "old");
+    CHECK(shell(folder, "fathom compile bad.sdf -o out.glsl").exit == 1);
+    CHECK(folder.read("out.glsl") == "old");
+    CHECK(shell(folder, "fathom compile good.sdf -o out.glsl").exit == 0);
+    CHECK(folder.read("out.glsl").starts_with("#version"));
+    folder.write("out.png", "old");
+    CHECK(shell(folder, "ulimit -f 0; trap '' XFSZ; fathom render good.sdf -o out.png --backend cpu --size 64x48").exit == 3);
+    CHECK(folder.read("out.png") == "old");
+    for (const auto &entry : fs::directory_iterator(folder.path()))
+        CHECK_FALSE(contains(entry.path().filename().string(), "fathom-tmp"));
+}
+
+TEST_CASE("a reader that leaves ends the program quietly, a full disk does not") {
+    Scenes folder;
+    Result head = shell(folder, "fathom explain | head -n 1");
+    CHECK(head.exit == 0);
+    CHECK(head.err.empty());
+    Result full = shell(folder, "fathom explain >/dev/full");
+    CHECK(full.exit == 3);
+    CHECK(contains(full.err, "no space left"));
+}
+
+TEST_CASE("colours are for terminals, or for those who ask") {
+    Scenes folder;
+    CHECK_FALSE(contains(shell(folder, "fathom check bad.sdf").err, "\x1b["));
+    CHECK(contains(shell(folder, "fathom check bad.sdf --color always").err, "\x1b["));
+    CHECK(contains(shell(folder, "fathom --color always check bad.sdf").err, "\x1b["));
+    CHECK_FALSE(contains(shell(folder, "NO_COLOR=1 fathom check bad.sdf").err, "\x1b["));
+}
+
+TEST_CASE("the formatter changes files, or only names them") {
+    Scenes folder;
+    folder.write("messy.sdf", "sphere( 1 )\n");
+    Result check = shell(folder, "fathom fmt --check messy.sdf good.sdf");
+    CHECK(check.exit == 1);
+    CHECK(check.out == "messy.sdf\n");
+    CHECK(folder.read("messy.sdf") == "sphere( 1 )\n");
+    CHECK(shell(folder, "fathom fmt messy.sdf").exit == 0);
+    CHECK(folder.read("messy.sdf") == "sphere(1)\n");
+    CHECK(shell(folder, "echo 'box( 2 )' | fathom fmt -").out == "box(2)\n");
+    CHECK(shell(folder, "fathom fmt broken.sdf good.sdf").exit == 1);
+    CHECK(folder.read("broken.sdf") == "sphere(\n");
+}
+
+TEST_CASE("what is misspelt is answered with what is near") {
+    Scenes folder;
+    CHECK(contains(shell(folder, "fathom rendr good.sdf").err, "did you mean `render`"));
+    CHECK(contains(shell(folder, "fathom good.sdf").err, "fathom view good.sdf"));
+    CHECK(contains(shell(folder, "fathom explain unknown-nam").err, "did you mean `unknown-name`"));
+    CHECK(contains(shell(folder, "fathom doc spher").err, "did you mean `sphere`"));
+    CHECK(shell(folder, "fathom explain unknown-name").out.starts_with("# unknown-name"));
+    CHECK(contains(shell(folder, "fathom doc sphere").out, "sphere(radius"));
+    CHECK(shell(folder, "fathom help").exit == 0);
+    CHECK(contains(shell(folder, "fathom help render").out, "--backend"));
+    CHECK(contains(shell(folder, "fathom render --help").out, "--backend"));
+    CHECK(contains(shell(folder, "fathom --version").out, "fathom "));
+}
+
+TEST_CASE("pictures are made, one or many, named by their frame") {
+    Scenes folder;
+    CHECK(shell(folder, "fathom render good.sdf -o one.png --size 32x24 --backend cpu").exit == 0);
+    CHECK(folder.read("one.png").starts_with("\x89PNG"));
+    CHECK(shell(folder, "fathom render good.sdf -o f.png --size 8x8 --backend cpu --frames 0..3").exit == 0);
+    for (std::string name : {"f_0000.png", "f_0001.png", "f_0002.png"}) CHECK(fs::exists(folder / name));
+    CHECK_FALSE(fs::exists(folder / "f_0003.png"));
+    CHECK(shell(folder, "fathom render good.sdf -o 'g##.png' --size 8x8 --backend cpu --frames 9..=10").exit == 0);
+    CHECK((fs::exists(folder / "g09.png") && fs::exists(folder / "g10.png")));
+    CHECK(shell(folder, "fathom render good.sdf -o x.png --frames 3..3").exit == 2);
+}
+
+TEST_CASE("watch goes on after an error and sees the next save") {
+    Scenes folder;
+    folder.write("w.sdf", "spere(1)\n");
+    Result result = shell(folder, "timeout 60 sh -c '\"" FATHOM_PROGRAM "\" compile --watch w.sdf -o w.glsl & p=$!; "
+                                  "sleep 1; echo \"sphere(1)\" > w.sdf; "
+                                  "until [ -s w.glsl ]; do sleep 0.1; done; kill $p'");
+    CHECK(result.exit == 0);
+    CHECK(contains(result.err, "unknown-name"));
+    CHECK(folder.read("w.glsl").starts_with("#version"));
+}
+
+TEST_CASE("no display is a sentence and status 3") {
+    Scenes folder;
+    Result result = shell(folder, "env -u DISPLAY -u WAYLAND_DISPLAY '" FATHOM_PROGRAM "' view good.sdf");
+    CHECK(result.exit == 3);
+    CHECK(contains(result.err, "no display"));
+    CHECK(shell(folder, "fathom view nothing.sdf").exit == 3);
+    CHECK(shell(folder, "fathom view -").exit == 2);
+}

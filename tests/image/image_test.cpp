@@ -1,0 +1,81 @@
+// Each example's picture by GL and by the CPU, compared. Small, so that a software GL is quick.
+//
+// Edges apart means: where a pixel of one picture lies beside an edge, float32 may put it on either side. So a pixel
+// agrees when each of its channels lies within 2/255 of the range that the other picture has in the 3 x 3 pixels around.
+#include "backend-cpu/march.h"
+#include "driver/compile.h"
+#include "render-gl/context.h"
+#include "render-gl/render.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+using namespace fathom;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int width = 160, height = 120;
+
+int disagreeing(const std::vector<std::uint8_t> &a, const std::vector<std::uint8_t> &b) {
+    int count = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            bool agrees = true;
+            for (int c = 0; c < 3; ++c) {
+                int lo = 255, hi = 0;
+                for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v)
+                    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u) {
+                        int value = b[static_cast<std::size_t>(4 * (v * width + u) + c)];
+                        lo = std::min(lo, value);
+                        hi = std::max(hi, value);
+                    }
+                int value = a[static_cast<std::size_t>(4 * (y * width + x) + c)];
+                agrees = agrees && value >= lo - 2 && value <= hi + 2;
+            }
+            count += !agrees;
+        }
+    return count;
+}
+
+bool all_one_color(const std::vector<std::uint8_t> &rgba) {
+    for (std::size_t i = 4; i < rgba.size(); ++i)
+        if (rgba[i] != rgba[i % 4]) return false;
+    return true;
+}
+
+} // namespace
+
+TEST_CASE("GL and the CPU draw the same picture of each example") {
+    auto context = gl::Context::make();
+    INFO("this test needs EGL and Mesa (./fathom-test installs them)");
+    REQUIRE(std::holds_alternative<gl::Context>(context));
+    std::vector<fs::path> files;
+    for (const fs::directory_entry &entry : fs::directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "examples"))
+        if (entry.path().extension() == ".sdf") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    CHECK(files.size() >= 10);
+    for (const fs::path &file : files) {
+        INFO(file.filename().string());
+        driver::Compilation compilation = driver::compile_file(file, {});
+        if (!compilation.good()) {
+            FAIL_CHECK(file.filename().string() << " does not compile");
+            continue;
+        }
+        CHECK(compilation.diagnostics.warnings() == 0);
+        gl::Request request;
+        request.width = width;
+        request.height = height;
+        Diagnostics diagnostics;
+        std::optional<Picture> by_gl = gl::render(compilation.scene, request, diagnostics);
+        CHECK(by_gl);
+        if (!by_gl) continue;
+        ir::View view = ir::view_of(compilation.scene, 0, static_cast<double>(width) / height);
+        cpu::Picture by_cpu = cpu::render(cpu::prepare(compilation.scene, view, width, height, 0), {});
+        CHECK_FALSE(all_one_color(by_gl->rgba));
+        constexpr int allowed = width * height / 1000; // fewer than 0.1 %
+        CHECK(disagreeing(by_gl->rgba, by_cpu.rgba) < allowed);
+        CHECK(disagreeing(by_cpu.rgba, by_gl->rgba) < allowed);
+    }
+}
