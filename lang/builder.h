@@ -224,6 +224,7 @@ class Builder {
     bool foreign_head(Index first);
     bool foreign_body(Index at);
     bool foreign_lambda(Index at);
+    bool separated_unit(Index at);
     std::string parameters_text(Index open) const;
     bool foreign_junk(Index first, Index at);
     bool juxtaposed_calls(Index first, Index at);
@@ -262,6 +263,7 @@ class Builder {
     std::vector<std::uint32_t> expr_heights_, block_heights_;
     std::size_t depth_ = 0;
     bool in_function_ = false;
+    bool body_missing_ = false;         // of an `if` that was just abandoned: an `else` may follow
     bool expression_body_ = false;      // of the function whose body was just read
     std::uint32_t last_too_tall_ = ~0u; // where the chain began that was reported
     Index failed_ = 0;                  // where the statement that is being abandoned broke

@@ -2,6 +2,8 @@
 // what was found, and the bracket that it concerns.
 #include "lang/builder.h"
 
+#include <utility>
+
 namespace fathom::lang {
 
 namespace {
@@ -132,6 +134,7 @@ void Builder::generic_failure(Wanted wanted, Index at) {
         return;
     }
     if (exists && found == Tok::Else) {
+        if (std::exchange(body_missing_, false)) return; // the cause was reported
         diagnostics_.add(Code::SyntaxError, span(at), "this `else` belongs to no `if`");
         return;
     }
@@ -154,7 +157,7 @@ void Builder::generic_failure(Wanted wanted, Index at) {
         if (exists && is_keyword(found)) d.note("a keyword cannot be a name");
         break;
     case Wanted::StatementEnd:
-        if (begins_operand(found)) {
+        if (begins_operand(found) && kind(at - 1) != Tok::Name) {
             const std::uint32_t end = token(at - 1).end;
             d.help("begin a new line, or part statements by `;`", {{{id_, end, end}, ";"}});
         }

@@ -242,8 +242,17 @@ bool Builder::foreign_junk(Index first, Index at) {
                     {{id_, token(at - 1).end, token(at - 1).end}, " }"}});
         return true;
     }
-    if (foreign_lambda(at)) return true;
+    if (foreign_lambda(at) || separated_unit(at)) return true;
     const std::string name(text(first));
+    const bool literal = found == Tok::Number || found == Tok::String || found == Tok::Color;
+    if (literal && kind(first) == Tok::Name && at == first + 1) {
+        Diagnostic &d = foreign(span(first, at), "a call's arguments stand in parentheses");
+        if (ends_statement(at + 1))
+            d.help("write " + code(name + "(" + std::string(text(at)) + ")"),
+                   {{{id_, token(first).end, token(at).begin}, "("},
+                    {{id_, token(at).end, token(at).end}, ")"}});
+        return true;
+    }
     switch (found) {
     case Tok::Arrow:
         foreign(span(at), "a function without a name is written with `=>`")
@@ -296,6 +305,16 @@ bool Builder::foreign_lambda(Index at) {
     return true;
 }
 
+// `45 deg`.
+bool Builder::separated_unit(Index at) {
+    if (at == 0 || kind(at) != Tok::Name || kind(at - 1) != Tok::Number) return false;
+    if (text(at) != "deg" && text(at) != "rad" && text(at) != "turn") return false;
+    const std::string angle = std::string(text(at - 1)) + std::string(text(at));
+    diagnostics_.add(Code::BadNumber, span(at - 1, at), "a unit touches its number")
+        .help("write " + code(angle), {{span(at - 1, at), angle}});
+    return true;
+}
+
 // -- where a rule could not go on ----------------------------------------------------------------
 
 bool Builder::foreign_failure(Wanted wanted, Index at) {
@@ -327,6 +346,18 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
                 .help("write `[for … { … }]` for a list, `union { for … { … } }` for a shape");
             return true;
         }
+        if (found == Tok::Bar && kind(at + 1) == Tok::Name && kind(at + 2) == Tok::Bar) {
+            const std::string head = std::string(text(at + 1)) + " =>";
+            foreign(span(at, at + 2), "a function without a name is written `p => …`")
+                .help("write " + code(head + " …"), {{span(at, at + 2), head}});
+            return true;
+        }
+        if (found == Tok::Greater && kind(before) == Tok::Bar &&
+            token(before).end == token(at).begin) {
+            foreign(span(before, at), "there is no operator `|>`")
+                .help("write `a.f(b)` for `f(a, b)`");
+            return true;
+        }
         if (found == Tok::Fn) {
             foreign(span(at), "a function without a name is written `p => …`");
             return true;
@@ -351,7 +382,7 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
         }
         [[fallthrough]];
     case Wanted::CloseParen: {
-        if (foreign_lambda(at)) return true;
+        if (foreign_lambda(at) || separated_unit(at)) return true;
         const Index open = enclosing(at);
         const bool head = open >= 2 && kind(open - 2) == Tok::Fn;
         if ((head || kind(open) == Tok::LambdaOpen) && found == Tok::Name &&
@@ -442,6 +473,12 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
 // A header without its `{`: `if a = b {`, `if x:`, `if (c) return 1`.
 bool Builder::foreign_body(Index at) {
     const Tok found = kind(at);
+    body_missing_ = true;
+    if (at < tokens_.tokens.size() && found == Tok::End) {
+        foreign(place(at), "a body stands in braces, which begin on the line of its header")
+            .help("write `{ … }`");
+        return true;
+    }
     if (found == Tok::Assign) {
         foreign(span(at), "a comparison is written `==`").help("write `==`", {{span(at), "=="}});
         return true;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 
@@ -201,7 +202,13 @@ void Lexer::number(std::uint32_t begin, std::uint32_t end) {
         report(Code::BadNumber, begin, end, "this number is too large or too small to be held");
         return;
     }
-    BadNumber bad = explain_bad_number(word);
+    const char left = begin > 0 ? source_.text[begin - 1] : ' ';
+    const bool component =
+        word[0] == '.' && (is_digit(left) || std::isalpha(static_cast<unsigned char>(left)) ||
+                           left == '_' || left == ')' || left == ']');
+    BadNumber bad = component ? BadNumber{"a component is a name or an index", "write an index",
+                                          "[" + std::string(word.substr(1)) + "]"}
+                              : explain_bad_number(word);
     Diagnostic &d = report(Code::BadNumber, begin, end, std::move(bad.message));
     if (!bad.help.empty())
         d.help(std::move(bad.help), {{span(begin, end), std::move(bad.replacement)}});
@@ -305,6 +312,13 @@ constexpr Sign long_signs[] = {
 void Lexer::sign(std::uint32_t begin, std::uint32_t end) {
     const std::string_view text = slice(begin, end);
     if (text == "!") {
+        const bool behind_operand = !words_.tokens.empty() && words_.tokens.back().end == begin &&
+                                    words_.tokens.back().kind == Tok::Name;
+        if (behind_operand) {
+            add(Tok::Bad, begin, end);
+            report(Code::ForeignSyntax, begin, end, "the language does not use `!`");
+            return;
+        }
         add(Tok::Not, begin, end);
         foreign(begin, end, "the logical not is a word", "not ");
         return;
