@@ -608,6 +608,25 @@ static Value lipschitz_call(Evaluator &ev, const CallSite &site, std::vector<Val
     return number(*l);
 }
 
+// _extent(s, axis): where the shape begins and ends along an axis, as a vec2; none where it has no ends
+static Value extent_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+    auto s = first_shape(ev, site, args, 3);
+    auto axis = axis_argument(ev, site, args[1], 1);
+    if (!s || !axis) return poison();
+    auto extent = ev.options.extent ? ev.options.extent(ev.scene, *s, *axis) : std::nullopt;
+    if (!extent || !std::isfinite(extent->first) || !std::isfinite(extent->second)) return none();
+    return vec(2, {extent->first, extent->second, 0, 0});
+}
+
+// _known(x): whether a value, or all of a list, is known at scene time
+static bool is_known(Evaluator &ev, const Value &v) {
+    if (v.kind != ValueKind::List) return v.kind != ValueKind::Field;
+    for (const Value &item : ev.lists[v.id])
+        if (!is_known(ev, item)) return false;
+    return true;
+}
+static Value known_call(Evaluator &ev, const CallSite &, std::vector<Value> &args) { return boolean(is_known(ev, args[0])); }
+
 static Value is_flat_call(Evaluator &, const CallSite &, std::vector<Value> &args) {
     return boolean(args[0].kind == ValueKind::Shape && args[0].size == 2);
 }
@@ -711,6 +730,8 @@ void add_shape_builtins(std::vector<Builtin> &table) {
     add("_paint", {{"s"}, {"m"}}, paint_call<ShapeKind::Paint>);
     add("_repaint", {{"s"}, {"m"}}, paint_call<ShapeKind::Repaint>);
     add("_is_flat", {{"s"}}, is_flat_call);
+    add("_extent", {{"s"}, {"axis"}}, extent_call);
+    add("_known", {{"x"}}, known_call);
     add("hide", {{"s"}}, hide_call, "the scene without this shape");
     add("only", {{"s"}}, only_call, "the scene with nothing but this shape; at the top of the file");
     add("lipschitz", {{"s"}}, lipschitz_call, "the proved bound of a shape's field, as a number");
