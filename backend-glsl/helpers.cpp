@@ -153,7 +153,7 @@ $T fathom_normalize($T x) {
         {"fathom_blend_smooth", Form::One, {}, R"(
 float fathom_blend_smooth(float a, float b, float k) {
     float h = max(k - abs(a - b), 0.0);
-    return min(a, b) - h * h / (4.0 * max(k, 1e-9));
+    return min(a, b) - h * h * (0.25 / max(k, 1e-9));
 }
 )"},
         {"fathom_blend_round", Form::One, {}, R"(

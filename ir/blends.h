@@ -1,11 +1,14 @@
-// The blend profiles and the seams: what joins two distances near the line where their surfaces meet. For unions;
-// intersections and differences negate (a & b = -blend(-a, -b)). Knows nothing of graphs.
+// The blend profiles and the seams: what joins two distances near the line where their surfaces
+// meet. For unions; intersections and differences negate (a & b = -blend(-a, -b)). Knows nothing of
+// graphs.
 //
-// All profiles but Columns have the form min(a, b) - g(|a - b|), with g = 0 from r on and slope g' in [-1, 0]. So they are
-// exactly min where the two differ by r or more, and their weights, 1 + g' on the lesser and -g' on the greater,
-// are positive and sum to 1: the gradient is a mean of the operands', L = max(La, Lb). g follows from the contour that
-// the name promises between two perpendicular walls a = 0 and b = 0: the point with d = |a - b| on it has
-// lesser coordinate g(d). (The usual forms, length(r-a, r-b) and (a+b-r)*sqrt(1/2), have the same contour, but slope sqrt 2.)
+// All profiles but Columns have the form min(a, b) - g(|a - b|), with g = 0 from r on and slope g'
+// in [-1, 0]. So they are exactly min where the two differ by r or more, and their weights, 1 + g'
+// on the lesser and -g' on the greater, are positive and sum to 1: the gradient is a mean of the
+// operands', L = max(La, Lb). g follows from the contour that the name promises between two
+// perpendicular walls a = 0 and b = 0: the point with d = |a - b| on it has lesser coordinate g(d).
+// (The usual forms, length(r-a, r-b) and (a+b-r)*sqrt(1/2), have the same contour, but slope
+// sqrt 2.)
 #pragma once
 
 #include <cmath>
@@ -21,11 +24,14 @@ constexpr float least_radius = 1e-9f; // in place of 0, where a radius divides
 // Quilez' quadratic: g = (k - d)^2 / 4k. dg/dk in [0, 1/4]. At d = 0 it is k/4.
 template <class T> T blend_smooth(T a, T b, T k) {
     const T h = greatest(k - gap(a, b), T(0));
-    return least(a, b) - h * h / (T(4) * greatest(k, T(least_radius)));
+    const T scale =
+        T(0.25) / greatest(k, T(least_radius)); // one division where k is the same for many
+    return least(a, b) - h * h * scale;
 }
 
-// A fillet: the quarter circle of radius r about (r, r). With u = r - m, where m is the lesser coordinate,
-// u^2 + (u - d)^2 = r^2, so u = (d + sqrt(2r^2 - d^2))/2 and g = r - u. g' = -(1 - d/sqrt(2r^2 - d^2))/2 in [-1/2, 0].
+// A fillet: the quarter circle of radius r about (r, r). With u = r - m, where m is the lesser
+// coordinate, u^2 + (u - d)^2 = r^2, so u = (d + sqrt(2r^2 - d^2))/2 and g = r - u. g' = -(1 -
+// d/sqrt(2r^2 - d^2))/2 in [-1/2, 0].
 template <class T> T blend_round(T a, T b, T r) {
     using std::sqrt;
     const T radius = greatest(r, T(0)), d = least(gap(a, b), radius);
@@ -38,20 +44,22 @@ template <class T> T blend_chamfer(T a, T b, T r) {
     return least(a, b) - T(0.5) * greatest(r - gap(a, b), T(0));
 }
 
-// n steps between (0, r) and (r, 0): n treads and n + 1 risers of s = r/(n+1). The contour is a + b = r - w(d), w the
-// triangle wave of height s that is 0 at d = r, r - 2s, …; so g = (r - d - w)/2, g' is 0 or -1.
+// n steps between (0, r) and (r, 0): n treads and n + 1 risers of s = r/(n+1). The contour is a + b
+// = r - w(d), w the triangle wave of height s that is 0 at d = r, r - 2s, …; so g = (r - d - w)/2,
+// g' is 0 or -1.
 template <class T> T blend_stairs(T a, T b, T r, T n) {
     using std::floor;
     const T s = greatest(r, T(least_radius)) / (greatest(floor(n + T(0.5)), T(0)) + T(1));
     const T d = gap(a, b), x = (greatest(r, T(0)) - d) / (s + s);
-    const T turn = x - floor(x);                                     // 0..1 through one step
-    const T wave = (s + s) * least(turn, T(1) - turn);               // 0..s
+    const T turn = x - floor(x);                       // 0..1 through one step
+    const T wave = (s + s) * least(turn, T(1) - turn); // 0..s
     return least(a, b) - T(0.5) * greatest(greatest(r, T(0)) - d - wave, T(0));
 }
 
-// n columns of radius c side by side on the chamfer a + b = r - 2c, c = r*sqrt2 / (2(n-1) + sqrt2), as in hg_sdf. Their circles keep
-// below r in a and b, hence again exactly min where a and b differ by r or more; but the distance to a circle weighs the
-// gradients by a unit vector: L = sqrt(La^2 + Lb^2).
+// n columns of radius c side by side on the chamfer a + b = r - 2c, c = r*sqrt2 / (2(n-1) + sqrt2),
+// as in hg_sdf. Their circles keep below r in a and b, hence again exactly min where a and b differ
+// by r or more; but the distance to a circle weighs the gradients by a unit vector: L = sqrt(La^2 +
+// Lb^2).
 template <class T> T blend_columns(T a, T b, T r, T n) {
     using std::floor;
     using std::sqrt;
@@ -62,7 +70,8 @@ template <class T> T blend_columns(T a, T b, T r, T n) {
     const T line = greatest(radius - (c + c) - gap(a, b), T(0)); // the chamfer behind them
     const T across = (a + b - (radius - (c + c))) * half_root2, along = (b - a) * half_root2;
     const T half = T(0.5) * (count - T(1));
-    const T k = floor(along / greatest(c + c, T(least_radius)) + half + T(0.5)); // the nearest column's number
+    const T k = floor(along / greatest(c + c, T(least_radius)) + half +
+                      T(0.5)); // the nearest column's number
     const T y = along - (c + c) * (least(greatest(k, T(0)), count - T(1)) - half);
     const T column = sqrt(across * across + y * y) - c;
     return least(least(a, b) - T(0.5) * line, column);
@@ -74,12 +83,13 @@ template <class T> T seam_pipe(T a, T b, T r) {
     using std::sqrt;
     return sqrt(a * a + b * b) - r;
 }
-// a with a V-shaped notch, r deep, where b's surface meets it. L = max(La, Lb); with hg_sdf's sqrt(1/2) it would be
-// sqrt 2 times that, for the same contour.
+// a with a V-shaped notch, r deep, where b's surface meets it. L = max(La, Lb); with hg_sdf's
+// sqrt(1/2) it would be sqrt 2 times that, for the same contour.
 template <class T> T seam_engrave(T a, T b, T r) {
     return greatest(a, T(0.5) * (a + r - gap(b, T(0))));
 }
-// a with a groove `width` wide and `depth` deep, or a tongue as wide and as high, along b's surface. L = max(La, Lb).
+// a with a groove `width` wide and `depth` deep, or a tongue as wide and as high, along b's
+// surface. L = max(La, Lb).
 template <class T> T seam_groove(T a, T b, T width, T depth) {
     return greatest(a, least(a + depth, T(0.5) * width - gap(b, T(0))));
 }
@@ -87,8 +97,9 @@ template <class T> T seam_tongue(T a, T b, T width, T depth) {
     return least(a, greatest(a - depth, gap(b, T(0)) - T(0.5) * width));
 }
 
-// Hart 1996: superelliptic union within distance 1 of both: 1 - |((1-a)+, (1-b)+)|_p, and min further out. Written with the
-// greater term divided out, so that no power overflows. By Hoelder L = (La^p + Lb^p)^(1/p). p is at least 1.
+// Hart 1996: superelliptic union within distance 1 of both: 1 - |((1-a)+, (1-b)+)|_p, and min
+// further out. Written with the greater term divided out, so that no power overflows. By Hoelder L
+// = (La^p + Lb^p)^(1/p). p is at least 1.
 template <class T> T pseudonorm(T a, T b, T exponent) {
     using std::pow;
     const T p = greatest(exponent, T(1));

@@ -99,7 +99,8 @@ TEST_CASE("gradients are what differences say, where there is one") {
                 for (std::size_t i = 0; i < static_cast<std::size_t>(ir::components(type)); ++i) {
                     const bool fixed = type == Type::Int || type == Type::Bool;
                     base.value[i] = fixed ? random.below(2) : static_cast<float>(random.between(0.3, 2.3));
-                    if (!fixed && random.below(3) == 0) base.value[i] = -base.value[i];
+                    const bool size = question.c.op == Op::SpotNoise && type == Type::Float; // a radius, a density
+                    if (!fixed && !size && random.below(3) == 0) base.value[i] = -base.value[i];
                     moves.value[i] = fixed ? -1 : static_cast<double>(random.below(3));
                     if (!fixed)
                         numbers.push_back(g.add(g.number(base.value[i]), g.component(p, static_cast<int>(moves.value[i]))));

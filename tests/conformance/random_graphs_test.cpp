@@ -31,7 +31,7 @@ class Walker {
   private:
     Constant compute(NodeId id) {
         const ir::Node &node = g_[id];
-        if (node.op == Op::Const) return g_.constant_of(id);
+        if (node.op == Op::Const) return rounded(g_.constant_of(id));
         if (node.op == Op::Fold) return loop(id)[0];
         if (node.op == Op::FoldResult) return loop(g_.arg(id, 0))[node.payload];
         std::vector<Constant> args;
@@ -42,9 +42,12 @@ class Walker {
             for (std::size_t i = 0; i < args.size(); ++i) inner.known[function.params[i]] = args[i];
             return inner.value(function.result);
         }
-        Constant result = ir::evaluate(node.op, node.type, args, node.payload).value();
-        for (double &x : result.value) x = static_cast<float>(x);
-        return result;
+        return rounded(ir::evaluate(node.op, node.type, args, node.payload).value());
+    }
+
+    static Constant rounded(Constant constant) {
+        for (double &x : constant.value) x = static_cast<float>(x);
+        return constant;
     }
 
     std::vector<Constant> loop(NodeId id) {
