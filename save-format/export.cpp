@@ -198,7 +198,8 @@ Value node_value(const TreeNode &node, std::map<std::string, int> &ordinals) {
     return yaml_list(std::move(items));
 }
 
-Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> kept) {
+Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> kept,
+                   bool imported) {
     // A kept light without a place is the language's own; the others stand for the scene's lights,
     // in order.
     std::vector<Value> lights;
@@ -276,7 +277,7 @@ Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> 
         lights.push_back(refresh(fresh(lights.size() + 1), scene.lights[next]));
         ++next;
     }
-    if (lights.empty() && kept.empty()) lights.push_back(fresh(1));
+    if (lights.empty() && !imported) lights.push_back(fresh(1));
     return yaml_list(std::move(lights));
 }
 
@@ -307,8 +308,8 @@ Value lighting_value(const ir::Scene &scene, Numbers &numbers, KeptItems &kept) 
                 *present = value;
         }
     }
-    properties.entries.emplace_back("Children",
-                                    lights_value(scene, numbers, std::move(kept.lights)));
+    properties.entries.emplace_back("Children", lights_value(scene, numbers, std::move(kept.lights),
+                                                             kept.lighting || !kept.items.empty()));
     return yaml_list({yaml_word("LightingNode"), std::move(name), std::move(properties)});
 }
 

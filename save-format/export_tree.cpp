@@ -530,11 +530,12 @@ void TreeWriter::repeat(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
 
 std::optional<TreeNode> TreeWriter::intersection(ShapeId id, const Paint &paint) {
     std::vector<TreeNode> kept, taken;
-    bool nothing = false;
+    bool nothing = false, cut = false;
     const auto collect = [&](auto &self, ShapeId at) -> void {
         for (ShapeId child : shape(at).children) {
             child = bare(child);
             if (shape(child).kind == ShapeKind::Complement) {
+                cut = true;
                 united(shape(child).children[0], paint, taken);
                 continue;
             }
@@ -560,9 +561,9 @@ std::optional<TreeNode> TreeWriter::intersection(ShapeId id, const Paint &paint)
         return result;
     }
     TreeNode result = made(NodeType::Intersection);
-    if (taken.empty() || kept.size() > 1) {
+    if ((taken.empty() && !cut) || kept.size() > 1) {
         result.children = std::move(kept);
-        if (taken.empty())
+        if (taken.empty() && !cut)
             return result.children.size() == 1 ? std::move(result.children[0]) : std::move(result);
         kept.clear();
         kept.push_back(std::move(result));

@@ -201,6 +201,7 @@ void read_material(Importer &in, const TakenValue &taken) {
         call += ", emission: " +
                 color_text(read_color(in, emission, "Emission", {0, 0, 0}, emission->span));
     }
+    info.twin = !in.looks.emplace(call, name->text).second;
     in.out += "let " + info.identifier + " = " + call + ", name: " + sdf_string(name->text) + ")\n";
     in.materials.emplace(name->text, std::move(info));
 }

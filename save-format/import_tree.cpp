@@ -8,6 +8,7 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace fathom::save {
 namespace {
@@ -23,6 +24,7 @@ struct Result {
     bool contributed = false;
     std::size_t base = 0; // nodes that an export has at this place before the records are applied
     std::string display;  // what a person would call it
+    std::optional<Place> dissolves; // it would, where it stood at such a place
 };
 
 // How the children of a node came out.
@@ -31,7 +33,8 @@ struct Children {
     std::size_t read = 0;   // in the file
     std::size_t pieces = 0; // expressions
     std::size_t base = 0;
-    bool first = false; // the first one contributed (differences and blends need it)
+    std::optional<Place> dissolves; // of the only one
+    bool first = false;             // the first one contributed (differences and blends need it)
     std::size_t first_base = 0, first_end = 0; // its nodes, and the piece behind it
     std::size_t rest_mark = 0;                 // the held piece before the second one
     std::size_t rest_pieces = 0;
@@ -107,8 +110,11 @@ void TreeReader::children(const Event &key, const NodeTypeRow *row, Body &body, 
     for (;; ++into.read) {
         Event event = in_.reader.next();
         if (event.kind == EventKind::SequenceEnd || event.kind == EventKind::Broken ||
-            event.kind == EventKind::End)
+            event.kind == EventKind::End) {
+            // the last piece has to be the one that a transform's call is appended to
+            if (into.read > 1 && body.size() == into.rest_mark + 1) body.pop_back();
             return;
+        }
         Place place = Place::United;
         if (type == NodeType::Intersection) place = Place::Intersected;
         if (type == NodeType::ProfileBlend || (first_alone && into.read == 0)) place = Place::Alone;
@@ -121,6 +127,7 @@ void TreeReader::children(const Event &key, const NodeTypeRow *row, Body &body, 
         path_.pop_back();
         if (!result.contributed) continue;
         into.display = into.pieces == 0 ? result.display : std::string();
+        into.dissolves = into.pieces == 0 ? result.dissolves : std::nullopt;
         ++into.pieces;
         into.base += result.base;
         if (into.read == 0) {
@@ -300,6 +307,17 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
         }
     };
 
+    // An operator of which one operand is left is no more than that; but a group that would
+    // dissolve in its new place needs something to stand in.
+    const auto hold = [&] {
+        target[begin] = {Piece::Kind::Open, "difference {", {}};
+        target.push_back({Piece::Kind::Line, "empty", {}});
+        target.push_back({Piece::Kind::Close, "}", {}});
+        if (base_type != "Difference")
+            in_.kept[slot] = {"type", path_text(), flow_scalar(type, true), {}, true};
+        based = true;
+    };
+
     if (!row || row->children == Arity::Many || row->children == Arity::Two) {
         const NodeType kind = row ? row->type : NodeType::Generic;
         if (kind == NodeType::Generic || kind == NodeType::Union) {
@@ -319,7 +337,9 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
                 target[begin] = {Piece::Kind::Open, "intersection {", {}};
                 target.push_back({Piece::Kind::Close, "}", {}});
             }
-            if (kids.base == 1 || (place == Place::Intersected && result.contributed)) {
+            if (kids.pieces == 1 && kids.dissolves == place) {
+                hold();
+            } else if (kids.base == 1 || (place == Place::Intersected && result.contributed)) {
                 as_group(kids.base);
                 result.base = kids.base;
             } else {
@@ -333,7 +353,10 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
                     type_span, "the first child of this node is missing, so that it is left out");
         } else if (kids.pieces == 1) {
             result.contributed = true;
-            group(kids.base);
+            if (kids.dissolves == place)
+                hold();
+            else
+                group(kids.base);
         } else if (kids.pieces > 1) {
             result.contributed = based = true;
             operator_text(in_, *row, properties, target, begin, kids.first_end, kids.rest_mark,
@@ -374,6 +397,13 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
              true});
         return {};
     }
+    const bool held = based && target[begin].text == "difference {";
+    if (!based)
+        result.dissolves = kids.dissolves;
+    else if (!held && (!row || row->type == NodeType::Generic || row->type == NodeType::Union))
+        result.dissolves = Place::United;
+    else if (!held && row->type == NodeType::Intersection)
+        result.dissolves = Place::Intersected;
     if (based) {
         result.base = 1;
         // An export names nodes by their type and its ordinal among the nodes that it finds itself,

@@ -43,6 +43,7 @@ struct Properties {
 
 struct MaterialInfo {
     std::string identifier;
+    bool twin = false;        // another one before it looks the same, and the scene does not tell them apart
     std::string displacement; // a call `displace_map(…)`, empty for none
 };
 

@@ -256,6 +256,7 @@ std::string leaf_text(Importer &in, const NodeTypeRow &row, Properties &properti
         properties.keep("Material", flow_scalar(material, true));
         return text;
     }
+    if (found->second.twin) properties.keep("Material", flow_scalar(material, true));
     if (!found->second.displacement.empty()) text += chain_mark + found->second.displacement;
     return text + chain_mark + ".paint(" + found->second.identifier + ")";
 }

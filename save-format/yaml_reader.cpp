@@ -37,6 +37,8 @@ YamlReader::YamlReader(std::string_view text, SourceId source, Report report, st
         return;
     }
     // The format is UTF-8; libyaml would also guess UTF-16.
+    if (text_.substr(0, 3) == "\xEF\xBB\xBF")
+        skipped_ = cursor_byte_ = 3; // a byte order mark says nothing here
     yaml_parser_set_encoding(&parser_->yaml, YAML_UTF8_ENCODING);
     yaml_parser_set_input_string(&parser_->yaml,
                                  reinterpret_cast<const unsigned char *>(text_.data()) + skipped_,

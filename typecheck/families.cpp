@@ -271,9 +271,10 @@ ShapeId unite(Evaluator &ev, std::vector<ShapeId> shapes, int dims, Span origin)
     out.dims = static_cast<std::uint8_t>(dims);
     out.origin = origin;
     if (flat.size() == 1) {
-        const bool one = std::find(listed.begin(), listed.end(), flat[0]) != listed.end(); // it stands for itself
-        if (gathered && !one) ev.scene.shapes.listed.emplace(flat[0], std::move(listed));
-        return flat[0];
+        const bool doubles = std::find(listed.begin(), listed.end(), flat[0]) != listed.end();
+        if (gathered && !doubles) ev.scene.shapes.listed.emplace(flat[0], std::move(listed));
+        if (!gathered || !doubles) return flat[0];
+        // the same shape several times: a union of one, so that what was listed has a shape to stand by
     }
     if (!flat.empty()) out.kind = ShapeKind::Union, out.children = std::move(flat);
     ShapeId united = ev.scene.shapes.add(std::move(out));
