@@ -1,5 +1,5 @@
-// Text forms of expressions and shapes, for goldens and for people who look inside. Stable: numbers count from the root, never
-// from the arena.
+// Text forms of expressions and shapes, for goldens and for people who look inside. Stable: numbers
+// count from the root, never from the arena.
 #include "ir/shape.h"
 
 #include "base/text.h"
@@ -53,8 +53,8 @@ class Dumper {
     explicit Dumper(const Graph &graph) : graph_(graph) {}
     std::string out;
 
-    // The short name of a node: a constant's value, an input's name, or the number of its line, which is written first
-    // if it has not been.
+    // The short name of a node: a constant's value, an input's name, or the number of its line,
+    // which is written first if it has not been.
     std::string name(NodeId id, int indent) {
         if (const auto it = names_.find(id); it != names_.end()) return it->second;
         const Node &node = graph_[id];
@@ -101,8 +101,9 @@ class Dumper {
 
   private:
     static std::string lower(std::string text) {
-        std::transform(text.begin(), text.end(), text.begin(),
-                       [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+        std::transform(text.begin(), text.end(), text.begin(), [](char c) {
+            return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        });
         return text;
     }
 
@@ -131,7 +132,8 @@ class Dumper {
             text += " " + graph_.function(FunctionId{std::size_t{node.payload}}).name;
         } else if (node.op == Op::Cached) {
             const Cache &cache = graph_.cache(CacheId{std::size_t{node.payload}});
-            text += " " + graph_.function(cache.field).name + " cell " + format_shortest(cache.cell);
+            text +=
+                " " + graph_.function(cache.field).name + " cell " + format_shortest(cache.cell);
         } else if (node.op == Op::Column || node.op == Op::Image || node.op == Op::Grid ||
                    node.op == Op::FoldResult) {
             text += " " + std::to_string(node.payload);
@@ -151,9 +153,10 @@ class Dumper {
         const std::string index = name(fold.index, indent), count = name(fold.count, indent);
         std::string next;
         for (NodeId result : fold.next) next += " " + name(result, indent);
-        const std::string condition = fold.condition ? " while " + name(fold.condition, indent) : "";
-        return " for " + index + " < " + count + " (at most " + std::to_string(fold.max_count) + ")" +
-               condition + ":" + vars + " <-" + next;
+        const std::string condition =
+            fold.condition ? " while " + name(fold.condition, indent) : "";
+        return " for " + index + " < " + count + " (at most " + std::to_string(fold.max_count) +
+               ")" + condition + ":" + vars + " <-" + next;
     }
 
     const Graph &graph_;
@@ -166,14 +169,16 @@ void dump_region(Dumper &dumper, const Region &region, int indent, const char *w
     switch (region.kind) {
     case RegionKind::Everywhere: dumper.put(indent, std::string(word) + " everywhere"); break;
     case RegionKind::Ball:
-        dumper.put(indent, std::string(word) + " ball " + text(region.size) + " at " + text(region.center));
+        dumper.put(indent,
+                   std::string(word) + " ball " + text(region.size) + " at " + text(region.center));
         break;
     case RegionKind::Box:
-        dumper.put(indent, std::string(word) + " box " + text(region.size) + " at " + text(region.center));
+        dumper.put(indent,
+                   std::string(word) + " box " + text(region.size) + " at " + text(region.center));
         break;
     case RegionKind::Tube:
-        dumper.put(indent,
-                   std::string(word) + " tube " + axis_names[region.axis] + " " + text(region.size));
+        dumper.put(indent, std::string(word) + " tube " + axis_names[region.axis] + " " +
+                               text(region.size));
         break;
     }
     for (const Region &less : region.less) dump_region(dumper, less, indent + 1, "less");
@@ -193,12 +198,18 @@ void dump_shape(Dumper &dumper, const Shapes &shapes, ShapeId id, int indent,
     switch (shape.kind) {
     case ShapeKind::Map:
         text += std::string(" ") + map_name(shape.map);
-        if (shape.map == MapKind::Twist || shape.map == MapKind::Bend || shape.map == MapKind::Taper)
+        if (shape.map == MapKind::Twist || shape.map == MapKind::Bend ||
+            shape.map == MapKind::Taper)
             text += std::string(" ") + axis_names[shape.axis];
-        if (shape.map == MapKind::Bend) text += std::string(" towards ") + axis_names[shape.towards];
+        if (shape.map == MapKind::Bend)
+            text += std::string(" towards ") + axis_names[shape.towards];
         break;
-    case ShapeKind::Blend: text += std::string(" ") + profile_name(static_cast<Profile>(shape.payload)); break;
-    case ShapeKind::Seam: text += std::string(" ") + seam_name(static_cast<SeamKind>(shape.payload)); break;
+    case ShapeKind::Blend:
+        text += std::string(" ") + profile_name(static_cast<Profile>(shape.payload));
+        break;
+    case ShapeKind::Seam:
+        text += std::string(" ") + seam_name(static_cast<SeamKind>(shape.payload));
+        break;
     case ShapeKind::Library: {
         const Library &library = shapes.libraries[shape.payload];
         text += " " + library.name;
@@ -251,10 +262,10 @@ void dump_shape(Dumper &dumper, const Shapes &shapes, ShapeId id, int indent,
         dump_region(dumper, shapes.regions[shape.payload], indent + 1, "in");
     if (shape.kind == ShapeKind::Paint || shape.kind == ShapeKind::Repaint) {
         const Material &material = shapes.materials[shape.payload];
-        dumper.put(indent + 1, "diffuse " + dumper.name(material.diffuse, indent + 1) + " specular " +
-                                   dumper.name(material.specular, indent + 1) + " exponent " +
-                                   dumper.name(material.exponent, indent + 1) + " emission " +
-                                   dumper.name(material.emission, indent + 1));
+        dumper.put(indent + 1, "diffuse " + dumper.name(material.diffuse, indent + 1) +
+                                   " specular " + dumper.name(material.specular, indent + 1) +
+                                   " exponent " + dumper.name(material.exponent, indent + 1) +
+                                   " emission " + dumper.name(material.emission, indent + 1));
     }
     for (ShapeId child : shape.children) dump_shape(dumper, shapes, child, indent + 1, seen);
 }

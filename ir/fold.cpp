@@ -1,5 +1,5 @@
-// Folding of constants: each op's meaning (ir/semantics.h) applied to numbers. Ints and bools are doubles that hold
-// whole numbers.
+// Folding of constants: each op's meaning (ir/semantics.h) applied to numbers. Ints and bools are
+// doubles that hold whole numbers.
 #include "ir/fold.h"
 
 #include "ir/semantics.h"
@@ -40,8 +40,7 @@ std::int32_t whole(double x) { return sem::saturate(x); }
 
 // The arithmetic of ints where it differs from that of floats.
 template <class I, class F> Constant arithmetic(Type type, Args a, I of_int, F of_float) {
-    if (type == Type::Int)
-        return scalar(type, of_int(whole(a[0].value[0]), whole(a[1].value[0])));
+    if (type == Type::Int) return scalar(type, of_int(whole(a[0].value[0]), whole(a[1].value[0])));
     return map2(type, a[0], a[1], of_float);
 }
 
@@ -60,7 +59,8 @@ Constant multiply_matrices(Type type, const Constant &a, const Constant &b) {
         for (std::size_t r = 0; r < rows; ++r) {
             double sum = 0;
             for (std::size_t k = 0; k < n; ++k)
-                sum += a.value[is_matrix(a.type) ? k * n + r : k] * b.value[is_matrix(b.type) ? c * n + k : k];
+                sum += a.value[is_matrix(a.type) ? k * n + r : k] *
+                       b.value[is_matrix(b.type) ? c * n + k : k];
             result.value[c * rows + r] = sum;
         }
     return result;
@@ -167,7 +167,8 @@ std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload
     case Op::Mod: return arithmetic(type, a, sem::int_mod, sem::mod<D>);
     case Op::Pow:
         return arithmetic(
-            type, a, [](std::int32_t u, std::int32_t v) { return whole(sem::pow<D>(u, v)); }, sem::pow<D>);
+            type, a, [](std::int32_t u, std::int32_t v) { return whole(sem::pow<D>(u, v)); },
+            sem::pow<D>);
     case Op::Min: return map2(type, a[0], a[1], sem::min<D>);
     case Op::Max: return map2(type, a[0], a[1], sem::max<D>);
     case Op::Step: return map2(type, a[0], a[1], sem::step<D>);
@@ -241,8 +242,7 @@ std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload
     case Op::Simplex: return number(sem::simplex(at(0, 0), at(0, 1), at(0, 2)));
     case Op::ValueNoise: return number(sem::value_noise(at(0, 0), at(0, 1), at(0, 2)));
     case Op::Worley: return number(sem::worley(at(0, 0), at(0, 1), at(0, 2)));
-    case Op::SpotNoise:
-        return number(sem::spot_noise(at(0, 0), at(0, 1), at(0, 2), x(1), x(2)));
+    case Op::SpotNoise: return number(sem::spot_noise(at(0, 0), at(0, 1), at(0, 2), x(1), x(2)));
 
     case Op::Union:
     case Op::Intersection: {

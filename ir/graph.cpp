@@ -1,4 +1,5 @@
-// The graph's storage: making, finding and copying nodes. What a node simplifies to stands in simplify.cpp.
+// The graph's storage: making and finding nodes. What a node simplifies to stands in simplify.cpp,
+// what hangs below it in walk.cpp.
 #include "ir/graph.h"
 
 #include "ir/fold.h"
@@ -7,11 +8,10 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <unordered_set>
 
 namespace fathom::ir {
 
-// -- types and ops ---------------------------------------------------------------------------------------------------
+// -- types and ops
 
 int components(Type type) {
     switch (type) {
@@ -46,12 +46,8 @@ int side(Type matrix) {
     return matrix == Type::Mat2 ? 2 : matrix == Type::Mat3 ? 3 : 4;
 }
 
-bool is_vector(Type type) {
-    return type == Type::Vec2 || type == Type::Vec3 || type == Type::Vec4;
-}
-bool is_matrix(Type type) {
-    return type == Type::Mat2 || type == Type::Mat3 || type == Type::Mat4;
-}
+bool is_vector(Type type) { return type == Type::Vec2 || type == Type::Vec3 || type == Type::Vec4; }
+bool is_matrix(Type type) { return type == Type::Mat2 || type == Type::Mat3 || type == Type::Mat4; }
 
 const char *type_name(Type type) {
     switch (type) {
@@ -85,7 +81,7 @@ bool commutes(Op op) {
 const OpInfo &info(Op op) { return infos[static_cast<std::size_t>(op)]; }
 std::size_t op_count() { return std::size(infos); }
 
-// -- packed payloads -------------------------------------------------------------------------------------------------
+// -- packed payloads
 
 std::uint32_t table_slot(TableId table, int column) {
     assert(table.index < (1u << 20) && column >= 0 && column < 4096);
@@ -106,7 +102,7 @@ std::uint32_t swizzle_mask(std::span<const int> parts) {
 int swizzle_size(std::uint32_t mask) { return static_cast<int>(mask >> 8); }
 int swizzle_component(std::uint32_t mask, int i) { return static_cast<int>(mask >> (2 * i) & 3u); }
 
-// -- making nodes ----------------------------------------------------------------------------------------------------
+// -- making nodes
 
 namespace {
 
@@ -116,9 +112,11 @@ std::uint64_t stir(std::uint64_t h, std::uint64_t word) {
 }
 
 std::uint64_t hash_of(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
-    std::uint64_t h = stir(static_cast<std::uint64_t>(op) << 8 | static_cast<std::uint64_t>(type), payload);
+    std::uint64_t h =
+        stir(static_cast<std::uint64_t>(op) << 8 | static_cast<std::uint64_t>(type), payload);
     if (commutes(op)) // the same in either order
-        return stir(stir(h, std::min(args[0].index, args[1].index)), std::max(args[0].index, args[1].index));
+        return stir(stir(h, std::min(args[0].index, args[1].index)),
+                    std::max(args[0].index, args[1].index));
     for (NodeId arg : args) h = stir(h, arg.index);
     return h;
 }
@@ -164,7 +162,8 @@ NodeId Graph::make(Op op, std::span<const NodeId> args) {
 }
 
 NodeId Graph::make(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
-    assert(info(op).arity < 0 ? !args.empty() : args.size() == static_cast<std::size_t>(info(op).arity));
+    assert(info(op).arity < 0 ? !args.empty()
+                              : args.size() == static_cast<std::size_t>(info(op).arity));
     assert(op != Op::Const);
     if (info(op).rule == TypeRule::Same && op != Op::Transpose)
         for ([[maybe_unused]] NodeId arg : args) assert(this->type(arg) == type);
@@ -183,7 +182,8 @@ NodeId Graph::make(Op op, Type type, std::initializer_list<NodeId> args, std::ui
 NodeId Graph::intern(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
     const auto equal = [&](NodeId id) {
         const Node &node = nodes_[id];
-        if (node.op != op || node.type != type || node.payload != payload || node.count != args.size())
+        if (node.op != op || node.type != type || node.payload != payload ||
+            node.count != args.size())
             return false;
         const std::span<const NodeId> have = this->args(id);
         return std::equal(have.begin(), have.end(), args.begin()) ||
@@ -194,7 +194,8 @@ NodeId Graph::intern(Op op, Type type, std::span<const NodeId> args, std::uint32
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             const Node &node = nodes_[NodeId{i}];
             std::size_t at = hash_of(node.op, node.type, this->args(NodeId{i}), node.payload);
-            for (at &= grown.size() - 1; grown[at]; at = (at + 1) & (grown.size() - 1)) {}
+            for (at &= grown.size() - 1; grown[at]; at = (at + 1) & (grown.size() - 1)) {
+            }
             grown[at] = NodeId{i};
         }
         slots_ = std::move(grown);
@@ -235,7 +236,7 @@ NodeId Graph::folded(Op op, Type type, std::span<const NodeId> args, std::uint32
     return constant(*result);
 }
 
-// -- leaves ----------------------------------------------------------------------------------------------------------
+// -- leaves
 
 NodeId Graph::constant(const Constant &wanted) {
     Constant value = wanted;
@@ -248,10 +249,11 @@ NodeId Graph::constant(const Constant &wanted) {
     const auto [first, last] = interned_constants_.equal_range(h);
     for (auto it = first; it != last; ++it) {
         const Constant &have = constants_[Id<Constant>{std::size_t{it->second}}];
-        if (have.type == value.type &&
-            std::equal(have.value.begin(), have.value.end(), value.value.begin(), [](double a, double b) {
-                return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-            }))
+        if (have.type == value.type && std::equal(have.value.begin(), have.value.end(),
+                                                  value.value.begin(), [](double a, double b) {
+                                                      return std::bit_cast<std::uint64_t>(a) ==
+                                                             std::bit_cast<std::uint64_t>(b);
+                                                  }))
             return intern(Op::Const, value.type, {}, it->second);
     }
     const Id<Constant> id = constants_.add(value);
@@ -291,12 +293,14 @@ bool Graph::is_all(NodeId id, double value) const {
     return true;
 }
 
-// -- short forms -----------------------------------------------------------------------------------------------------
+// -- short forms
 
 namespace {
 NodeId spread(Graph &graph, Op op, NodeId a, NodeId b) {
-    if (graph.type(a) == Type::Float && graph.type(b) != Type::Float) a = graph.splat(a, graph.type(b));
-    if (graph.type(b) == Type::Float && graph.type(a) != Type::Float) b = graph.splat(b, graph.type(a));
+    if (graph.type(a) == Type::Float && graph.type(b) != Type::Float)
+        a = graph.splat(a, graph.type(b));
+    if (graph.type(b) == Type::Float && graph.type(a) != Type::Float)
+        b = graph.splat(b, graph.type(a));
     return graph.make(op, {a, b});
 }
 } // namespace
@@ -311,7 +315,8 @@ NodeId Graph::component(NodeId vector, int i) {
     return swizzle(vector, std::array{i});
 }
 NodeId Graph::swizzle(NodeId vector, std::span<const int> parts) {
-    return make(Op::Swizzle, vector_type(static_cast<int>(parts.size())), {vector}, swizzle_mask(parts));
+    return make(Op::Swizzle, vector_type(static_cast<int>(parts.size())), {vector},
+                swizzle_mask(parts));
 }
 NodeId Graph::splat(NodeId scalar, Type to) {
     return type(scalar) == to ? scalar : make(Op::Splat, to, {scalar});
@@ -320,187 +325,11 @@ NodeId Graph::call(FunctionId id, std::span<const NodeId> args) {
     return make(Op::Call, type(function(id).result), args, id.index);
 }
 
-// -- what nodes refer to ---------------------------------------------------------------------------------------------
+// -- what nodes refer to
 
 FunctionId Graph::add_function(Function function) { return functions_.add(std::move(function)); }
 FoldId Graph::add_fold(Fold fold) { return folds_.add(std::move(fold)); }
 TableId Graph::add_table(Table table) { return tables_.add(std::move(table)); }
 CacheId Graph::add_cache(Cache cache) { return caches_.add(cache); }
-
-namespace {
-
-std::vector<NodeId> body_of(const Fold &fold) {
-    std::vector<NodeId> body{fold.count};
-    if (fold.condition) body.push_back(fold.condition);
-    body.insert(body.end(), fold.next.begin(), fold.next.end());
-    return body;
-}
-
-// Variables are made for one binder, so the free ones are those that no fold below binds.
-std::vector<NodeId> unbound(const Graph &graph, std::vector<NodeId> stack) {
-    std::unordered_set<NodeId> seen, bound;
-    std::vector<NodeId> found;
-    while (!stack.empty()) {
-        const NodeId id = stack.back();
-        stack.pop_back();
-        const Node &node = graph[id];
-        if (!graph.reads(id).free_vars || !seen.insert(id).second) continue;
-        if (node.op == Op::Var) found.push_back(id);
-        if (node.op == Op::Fold) {
-            const Fold &fold = graph.fold(FoldId{std::size_t{node.payload}});
-            bound.insert(fold.index);
-            bound.insert(fold.vars.begin(), fold.vars.end());
-            for (NodeId part : body_of(fold)) stack.push_back(part);
-        }
-        for (NodeId arg : graph.args(id)) stack.push_back(arg);
-    }
-    std::erase_if(found, [&](NodeId id) { return bound.contains(id); });
-    std::sort(found.begin(), found.end(),
-              [&](NodeId a, NodeId b) { return graph[a].payload < graph[b].payload; });
-    return found;
-}
-
-} // namespace
-
-Graph::Reads Graph::reads_of(const Node &node) const {
-    Reads reads;
-    const auto join = [&](Reads other) {
-        reads.point |= other.point;
-        reads.normal |= other.normal;
-        reads.direction |= other.direction;
-        reads.time |= other.time;
-        reads.params |= other.params;
-        reads.free_vars |= other.free_vars;
-    };
-    for (std::uint32_t i = 0; i < node.count; ++i) join(reads_[args_[node.first + i].index]);
-    const auto join_function = [&](FunctionId id) {
-        const Reads body = reads_[function(id).result.index];
-        reads.time |= body.time;
-        reads.params |= body.params;
-    };
-    if (node.op == Op::Point) reads.point = true;
-    if (node.op == Op::Normal) reads.normal = true;
-    if (node.op == Op::Direction) reads.direction = true;
-    if (node.op == Op::Time) reads.time = true;
-    if (node.op == Op::Param) reads.params = true;
-    if (node.op == Op::Var) reads.free_vars = true;
-    if (node.op == Op::Call) join_function(FunctionId{std::size_t{node.payload}});
-    if (node.op == Op::Cached) join_function(cache(CacheId{std::size_t{node.payload}}).field);
-    if (node.op == Op::Fold) {
-        const Fold &fold = folds_[FoldId{std::size_t{node.payload}}];
-        const bool outside = reads.free_vars;
-        const std::vector<NodeId> body = body_of(fold);
-        for (NodeId part : body) join(reads_[part.index]);
-        reads.free_vars = outside;
-        if (!outside) {
-            std::vector<NodeId> free = unbound(*this, body);
-            std::erase_if(free, [&](NodeId id) {
-                return id == fold.index || std::find(fold.vars.begin(), fold.vars.end(), id) != fold.vars.end();
-            });
-            reads.free_vars = !free.empty();
-        }
-    }
-    return reads;
-}
-
-std::vector<NodeId> Graph::free_vars(NodeId id) const { return unbound(*this, {id}); }
-
-// -- copying ---------------------------------------------------------------------------------------------------------
-
-namespace {
-
-struct Copier {
-    Graph &graph;
-    Substitution done;
-    bool points;   // whether a Point is among the replaced
-    bool any_kind; // something else than Points and Vars is replaced
-
-    // Whether nothing below the node can have been replaced, as far as `reads` tells.
-    bool untouched(NodeId id) const {
-        const Graph::Reads reads = graph.reads(id);
-        return !any_kind && !reads.free_vars && !(points && reads.point);
-    }
-
-    NodeId copy(NodeId root) {
-        std::vector<NodeId> stack{root};
-        while (!stack.empty()) {
-            const NodeId id = stack.back();
-            if (done.contains(id)) {
-                stack.pop_back();
-                continue;
-            }
-            if (untouched(id)) {
-                done.emplace(id, id);
-                stack.pop_back();
-                continue;
-            }
-            const std::size_t before = stack.size();
-            for (NodeId arg : graph.args(id))
-                if (!done.contains(arg)) stack.push_back(arg);
-            if (stack.size() > before) continue;
-            stack.pop_back();
-            const NodeId made = remade(id);
-            done.emplace(id, made);
-        }
-        return done.at(root);
-    }
-
-    NodeId remade(NodeId id) {
-        const Node node = graph[id];
-        if (node.count == 0) return id;
-        std::vector<NodeId> args;
-        bool changed = false;
-        for (NodeId arg : graph.args(id)) {
-            args.push_back(done.at(arg));
-            changed |= args.back() != arg;
-        }
-        std::uint32_t payload = node.payload;
-        if (node.op == Op::Fold) payload = fold(FoldId{std::size_t{node.payload}}).index;
-        if (!changed && payload == node.payload) return id;
-        return graph.make(node.op, node.type, args, payload);
-    }
-
-    bool touches(const std::vector<NodeId> &parts) {
-        if (any_kind) {
-            Copier probe{graph, done, points, any_kind};
-            return std::any_of(parts.begin(), parts.end(), [&](NodeId id) { return probe.copy(id) != id; });
-        }
-        for (NodeId part : parts)
-            if (points && graph.reads(part).point) return true;
-        for (NodeId var : unbound(graph, parts))
-            if (const auto to = done.find(var); to != done.end() && to->second != var) return true;
-        return false;
-    }
-
-    // A fold whose body changes gets fresh variables: the copy may come to stand inside the original.
-    FoldId fold(FoldId id) {
-        const Fold old = graph.fold(id);
-        const std::vector<NodeId> parts = body_of(old);
-        if (!touches(parts)) return id;
-        Copier inside{graph, done, points, any_kind};
-        Fold made = old;
-        made.index = inside.done[old.index] = graph.fresh_var(Type::Int);
-        for (NodeId &var : made.vars) {
-            const NodeId fresh = graph.fresh_var(graph.type(var));
-            inside.done[var] = fresh;
-            var = fresh;
-        }
-        made.count = inside.copy(old.count);
-        if (old.condition) made.condition = inside.copy(old.condition);
-        for (NodeId &next : made.next) next = inside.copy(next);
-        return graph.add_fold(std::move(made));
-    }
-};
-
-} // namespace
-
-NodeId substitute(Graph &graph, NodeId root, const Substitution &map) {
-    Copier copier{graph, map, false, false};
-    for (const auto &[from, to] : map) {
-        copier.points |= graph[from].op == Op::Point;
-        copier.any_kind |= graph[from].op != Op::Point && graph[from].op != Op::Var;
-    }
-    return copier.copy(root);
-}
 
 } // namespace fathom::ir

@@ -1,4 +1,5 @@
-// Shapes to functions: the driver, functions for what is shared, and the frames in which shapes are asked.
+// Shapes to functions: the driver, functions for what is shared, and the frames in which shapes are
+// asked.
 #include "ir/lowering.h"
 
 #include <algorithm>
@@ -8,7 +9,8 @@
 namespace fathom::ir {
 namespace {
 
-// A shape that is asked in several places becomes a function when it is more than this many operations.
+// A shape that is asked in several places becomes a function when it is more than this many
+// operations.
 constexpr double cheap = 8;
 constexpr double plenty = 1e6; // where counts saturate
 
@@ -97,7 +99,8 @@ void Lowering::run() {
     const NodeId hit = ask(Reading::Hit, scene_.root, frame);
     scene_.hit = graph_.add_function({"scene_hit", {}, {p3_}, hit});
 
-    Surface plain = blank_surface(); // what nobody painted: the gray of sRGB 0.7, with a white highlight
+    Surface plain =
+        blank_surface(); // what nobody painted: the gray of sRGB 0.7, with a white highlight
     const double gray = 0.448;
     plain.diffuse = graph_.vec3(gray, gray, gray);
     plain.specular = graph_.vec3(1, 1, 1);
@@ -107,13 +110,14 @@ void Lowering::run() {
 
     const NodeId direction = graph_.fresh_var(Type::Vec3);
     const NodeId background = scene_.background ? scene_.background : graph_.vec3(0.6, 0.7, 0.8);
-    Substitution map{{graph_.make(Op::Direction, Type::Vec3, std::span<const NodeId>{}), direction}};
+    Substitution map{
+        {graph_.make(Op::Direction, Type::Vec3, std::span<const NodeId>{}), direction}};
     scene_.background_function =
         graph_.add_function({"background", {}, {direction}, substitute(graph_, background, map)});
     find_bounds();
 }
 
-// -- what is known before --------------------------------------------------------------------------------------------
+// -- what is known before
 
 // Children come before their parents in Shapes, so one pass up gives the costs, one down the uses.
 void Lowering::count_uses() {
@@ -155,7 +159,8 @@ bool Lowering::shared(ShapeId id) const {
     return uses_[id.index] > 1 && cost_[id.index] >= cheap && !is_transparent(shape(id), shapes_);
 }
 
-// A function is called after the library shape that it is, or what was done to which: "twisted_box".
+// A function is called after the library shape that it is, or what was done to which:
+// "twisted_box".
 void Lowering::find_names() {
     const auto done = [](const Shape &s) -> const char * {
         switch (s.kind) {
@@ -203,15 +208,19 @@ void Lowering::find_names() {
         const Shape &s = shape(ShapeId{i});
         const std::string participle = done(s);
         const bool wraps = !participle.empty() || is_transparent(s, shapes_);
-        if (s.kind == ShapeKind::Library) nouns[i] = shapes_.libraries[s.payload].name;
-        else if (wraps && !s.children.empty()) nouns[i] = nouns[s.children.front().index];
-        else nouns[i] = shape_kind_name(s.kind);
+        if (s.kind == ShapeKind::Library)
+            nouns[i] = shapes_.libraries[s.payload].name;
+        else if (wraps && !s.children.empty())
+            nouns[i] = nouns[s.children.front().index];
+        else
+            nouns[i] = shape_kind_name(s.kind);
         names_[i] = participle.empty() ? nouns[i] : participle + "_" + nouns[i];
     }
     // What stands for a library shape that claims nothing is called like it.
     for (std::size_t i = shapes_.size(); i-- > 0;) {
         const Shape &s = shape(ShapeId{i});
-        if (s.kind == ShapeKind::Library && is_transparent(s, shapes_)) names_[s.children.front().index] = nouns[i];
+        if (s.kind == ShapeKind::Library && is_transparent(s, shapes_))
+            names_[s.children.front().index] = nouns[i];
     }
 }
 
@@ -240,14 +249,16 @@ void Lowering::find_free_vars() {
     }
 }
 
-// -- asking ----------------------------------------------------------------------------------------------------------
+// -- asking
 
-// Whether a reading of the shape is made from another function at once, so that one of its own would only call that.
+// Whether a reading of the shape is made from another function at once, so that one of its own
+// would only call that.
 bool Lowering::is_wrapper(Reading reading, ShapeId id) const {
     if (reading == Reading::Raw) return false;
     if (fact(id).guard && reading == Reading::Marched) return false;
     if (reading == Reading::Hit && !paint_[id.index]) return true;
-    return !passes_through(id) && shape(id).kind != ShapeKind::Within && reading == Reading::Marched;
+    return !passes_through(id) && shape(id).kind != ShapeKind::Within &&
+           reading == Reading::Marched;
 }
 
 NodeId Lowering::ask(Reading reading, ShapeId id, Frame frame) {
@@ -279,7 +290,7 @@ FunctionId Lowering::function(Reading reading, ShapeId id) {
     return made;
 }
 
-// -- frames ----------------------------------------------------------------------------------------------------------
+// -- frames
 
 NodeId Lowering::value_of(NodeId var, Frame frame) const {
     const Substitution &values = environments_[frame.values];
@@ -307,7 +318,7 @@ Frame Lowering::bind(Frame frame, NodeId var, NodeId value) {
     return {frame.p, it->second};
 }
 
-// -- the scene's extent (semantics.md, 23) -----------------------------------------------------------------------------
+// -- the scene's extent (semantics.md, 23)
 
 void Lowering::find_bounds() {
     scene_.bounds = Box{};

@@ -1,4 +1,5 @@
-// Which surface decides, and how it looks: paints, the numbers that travel with a hit, and mixed materials.
+// Which surface decides, and how it looks: paints, the numbers that travel with a hit, and mixed
+// materials.
 #include "ir/lowering.h"
 
 #include <algorithm>
@@ -23,10 +24,12 @@ NodeId Lowering::colored(ShapeId id, Frame frame) {
     if (s.kind == ShapeKind::Many) return many(Reading::Hit, id, frame);
     if (s.kind == ShapeKind::Lerp) { // the operand with the greater weight: t against 1 - t
         const NodeId t = read(s.args[0], frame), half = graph_.number(0.5);
-        return least(Reading::Hit, std::array{at_distance(Reading::Hit, child(0), graph_.sub(half, t)),
-                                              at_distance(Reading::Hit, child(1), graph_.sub(t, half))});
+        return least(Reading::Hit,
+                     std::array{at_distance(Reading::Hit, child(0), graph_.sub(half, t)),
+                                at_distance(Reading::Hit, child(1), graph_.sub(t, half))});
     }
-    const bool of_first = s.kind == ShapeKind::Seam && static_cast<SeamKind>(s.payload) != SeamKind::Pipe;
+    const bool of_first =
+        s.kind == ShapeKind::Seam && static_cast<SeamKind>(s.payload) != SeamKind::Pipe;
     const std::size_t count = of_first ? 1 : s.children.size();
     std::vector<NodeId> hits;
     for (std::size_t i = 0; i < count; ++i) hits.push_back(child(i));
@@ -48,9 +51,11 @@ NodeId Lowering::painted(ShapeId id, Frame frame) {
     return graph_.make(Op::FillPaint, {ask(Reading::Hit, child, frame), paint, point, extra});
 }
 
-// -- the four floats that travel with a hit --------------------------------------------------------------------------
-// Variables that shapes bind (ids of repetition, rows of families) are whole numbers. Up to four travel as they are; of more,
-// k share a float, each with 24/k bits: two keep -2048..2047, three -128..127. Beyond, ids wrap and colours repeat.
+// -- the four floats that travel with a hit
+// -------------------------------------------------------------------------- Variables that shapes
+// bind (ids of repetition, rows of families) are whole numbers. Up to four travel as they are; of
+// more, k share a float, each with 24/k bits: two keep -2048..2047, three -128..127. Beyond, ids
+// wrap and colours repeat.
 
 namespace {
 
@@ -59,7 +64,9 @@ constexpr int extra_floats = 4;
 int numbers_a_float(const Packing &packing) {
     return std::max(1, (packing.numbers + extra_floats - 1) / extra_floats);
 }
-double radix_of(const Packing &packing) { return std::exp2(std::max(1, 24 / numbers_a_float(packing))); }
+double radix_of(const Packing &packing) {
+    return std::exp2(std::max(1, 24 / numbers_a_float(packing)));
+}
 
 } // namespace
 
@@ -113,11 +120,12 @@ NodeId Lowering::unpack(const Packing &packing, std::size_t which, NodeId extra)
         }
         parts.push_back(part);
     }
-    if (type == Type::Int) return g.make(Op::ToInt, Type::Int, {g.make(Op::Round, {parts.front()})});
+    if (type == Type::Int)
+        return g.make(Op::ToInt, Type::Int, {g.make(Op::Round, {parts.front()})});
     return parts.size() == 1 ? parts.front() : g.make(Op::Make, type, parts);
 }
 
-// -- surfaces --------------------------------------------------------------------------------------------------------
+// -- surfaces
 
 Surface Lowering::blank_surface() {
     Surface surface;
@@ -153,10 +161,11 @@ std::int32_t Lowering::surface_of(std::uint32_t material, bool flat) {
     return it->second;
 }
 
-// -- mixed materials -------------------------------------------------------------------------------------------------
+// -- mixed materials
 
-// The materials of a blend's operands, each as it is at the point, by the blend's weights: of two whose distances differ
-// by d < r, the lesser weighs 1 - (r - d)/2r and the greater the rest (the slope of the quadratic profile); folded in order.
+// The materials of a blend's operands, each as it is at the point, by the blend's weights: of two
+// whose distances differ by d < r, the lesser weighs 1 - (r - d)/2r and the greater the rest (the
+// slope of the quadratic profile); folded in order.
 NodeId Lowering::mixed(ShapeId id, Frame frame) {
     const NodeId paint = graph_.integer(mixed_surface(id));
     const NodeId extra = pack(packing_of(free_vars_[id.index]), frame);
@@ -168,12 +177,14 @@ std::int32_t Lowering::mixed_surface(ShapeId id) {
     if (const auto it = mixed_surfaces_.find(id); it != mixed_surfaces_.end()) return it->second;
     Graph &g = graph_;
     Surface surface = blank_surface();
-    Frame frame{shape(id).dims == 2 ? g.swizzle(surface.point, std::array{0, 1}) : surface.point, 0};
+    Frame frame{shape(id).dims == 2 ? g.swizzle(surface.point, std::array{0, 1}) : surface.point,
+                0};
     const Packing packing = packing_of(free_vars_[id.index]);
     for (std::size_t i = 0; i < packing.vars.size(); ++i)
         frame = bind(frame, packing.vars[i], unpack(packing, i, surface.extra));
 
-    // The blend, below what does not move the point: an intersection or difference is -blend(-f, -g).
+    // The blend, below what does not move the point: an intersection or difference is -blend(-f,
+    // -g).
     ShapeId core = shape(id).children.front();
     const auto goes_on = [&](const Shape &s) {
         return s.kind == ShapeKind::Complement || s.kind == ShapeKind::Contract ||
@@ -183,7 +194,8 @@ std::int32_t Lowering::mixed_surface(ShapeId id) {
     const bool blends = shape(core).kind == ShapeKind::Blend;
     const std::vector<ShapeId> operands = blends ? shape(core).children : std::vector{core};
 
-    // What the paints found below look like; those of the operands are made first, so all of them are known here.
+    // What the paints found below look like; those of the operands are made first, so all of them
+    // are known here.
     using Look = std::array<NodeId, 4>; // diffuse, specular, exponent, emission
     const auto look_of = [&](NodeId hit) {
         Look look{g.vec3(0.448, 0.448, 0.448), g.vec3(1, 1, 1), g.number(32), g.vec3(0, 0, 0)};
@@ -214,8 +226,9 @@ std::int32_t Lowering::mixed_surface(ShapeId id) {
     for (std::size_t i = 1; i < hits.size(); ++i) {
         const NodeId d = g.sub(fields[i], field);
         // 0 where the next is greater by r or more, 1 where it is less by r or more.
-        const NodeId t = g.make(Op::Clamp, {g.mul(g.sub(g.number(1), g.div(d, width)), g.number(0.5)),
-                                            g.number(0), g.number(1)});
+        const NodeId t =
+            g.make(Op::Clamp, {g.mul(g.sub(g.number(1), g.div(d, width)), g.number(0.5)),
+                               g.number(0), g.number(1)});
         const Look next = look_of(hits[i]);
         for (std::size_t k = 0; k < look.size(); ++k)
             look[k] = g.make(Op::Mix, {look[k], next[k], g.splat(t, g.type(look[k]))});

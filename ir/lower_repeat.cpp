@@ -1,5 +1,6 @@
-// Unions of many copies: lattices, rings, and families whose members differ by a row of numbers. (semantics.md, 14;
-// lipschitz.md, 3: the nearest copy and the next on the side of the fraction.) How many copies are asked is the analysis's.
+// Unions of many copies: lattices, rings, and families whose members differ by a row of numbers.
+// (semantics.md, 14; lipschitz.md, 3: the nearest copy and the next on the side of the fraction.)
+// How many copies are asked is the analysis's.
 #include "ir/lowering.h"
 
 #include <algorithm>
@@ -8,7 +9,8 @@
 namespace fathom::ir {
 namespace {
 
-constexpr double infinite_count = 1e8; // counts from here on mean "without end" (stdlib's inf arrives as 1e9)
+constexpr double infinite_count =
+    1e8; // counts from here on mean "without end" (stdlib's inf arrives as 1e9)
 
 // Copies evaluated along each axis. Without a plan both neighbours are.
 std::array<int, 3> neighbors_of(const Scene &scene, ShapeId id) {
@@ -24,7 +26,8 @@ std::array<int, 3> neighbors_of(const Scene &scene, ShapeId id) {
             const NodeId count = shape.args[1];
             if (scene.graph.is_constant(count)) {
                 const double n = scene.graph.constant_of(count).value[i];
-                if (n < infinite_count) result[i] = std::clamp(result[i], 1, std::max(1, static_cast<int>(n)));
+                if (n < infinite_count)
+                    result[i] = std::clamp(result[i], 1, std::max(1, static_cast<int>(n)));
             }
         }
     return result;
@@ -34,7 +37,9 @@ std::array<int, 3> neighbors_of(const Scene &scene, ShapeId id) {
 int sectors_of(const Scene &scene, ShapeId id, int count) {
     const RepeatPlan &plan = scene.facts[id.index].repeat;
     const int asked = *std::max_element(plan.neighbors.begin(), plan.neighbors.end());
-    if (plan.guard) return count; // copies that differ: a wedge bounds nothing that a box knows, so all are asked
+    if (plan.guard)
+        return count; // copies that differ: a wedge bounds nothing that a box knows, so all are
+                      // asked
     return std::min(asked > 0 ? asked : 3, count);
 }
 
@@ -44,7 +49,9 @@ int copies_evaluated(const Scene &scene, ShapeId id) {
     const Shape &shape = scene.shapes[id];
     int copies = 1;
     if (scene.shapes.repetitions[shape.payload].polar)
-        copies = sectors_of(scene, id, std::max(1, static_cast<int>(scene.graph.as_number(shape.args[0]).value_or(1))));
+        copies = sectors_of(
+            scene, id,
+            std::max(1, static_cast<int>(scene.graph.as_number(shape.args[0]).value_or(1))));
     else
         for (int n : neighbors_of(scene, id)) copies *= std::max(n, 1);
     return copies > most_unrolled ? 1 : copies;
@@ -69,9 +76,9 @@ NodeId Lowering::repeated(Reading reading, ShapeId id, Frame frame) {
                                                         : lattice(reading, id, frame);
 }
 
-// Along an axis with cells of width c, u = x/c + h counts cells; h puts cell 0 at the origin, or, of a finite number n of
-// them, the middle there: copy i stands at (i - h) c. The first of N copies asked is floor(u) - N/2 + 1 for even N, the nearest
-// less (N-1)/2 for odd, kept within 0 .. n-N.
+// Along an axis with cells of width c, u = x/c + h counts cells; h puts cell 0 at the origin, or,
+// of a finite number n of them, the middle there: copy i stands at (i - h) c. The first of N copies
+// asked is floor(u) - N/2 + 1 for even N, the nearest less (N-1)/2 for odd, kept within 0 .. n-N.
 NodeId Lowering::lattice(Reading reading, ShapeId id, Frame frame) {
     Graph &g = graph_;
     const Shape &s = shape(id);
@@ -125,7 +132,9 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Frame frame) {
             cell_id[static_cast<std::size_t>(i)] = index;
             NodeId local = g.sub(a.x, g.mul(g.sub(index, a.shift), a.cell));
             if (repetition.mirrored)
-                local = g.mul(local, g.sub(g.number(1), g.mul(g.number(2), g.make(Op::Mod, {index, g.number(2)}))));
+                local =
+                    g.mul(local, g.sub(g.number(1),
+                                       g.mul(g.number(2), g.make(Op::Mod, {index, g.number(2)}))));
             q.push_back(local);
         }
         const NodeId point = g.make(Op::Make, vector_type(dims), q);
@@ -162,26 +171,31 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Frame frame) {
     }
     if (!known.repeat.guard) return result;
 
-    // The copies that were not asked lie, along some axis, beyond the first or the last asked. Each side's are held by a box that
-    // is bounded there by the nearest of them, and elsewhere by what all copies together extend to.
+    // The copies that were not asked lie, along some axis, beyond the first or the last asked. Each
+    // side's are held by a box that is bounded there by the nearest of them, and elsewhere by what
+    // all copies together extend to.
     Box held = known.repeat.copy;
     for (std::size_t i = 0; i < 3; ++i)
         if (repetition.mirrored && repetition.along[i]) { // a copy or its reflection
             held.hi[i] = std::max(-held.lo[i], held.hi[i]);
             held.lo[i] = -held.hi[i];
         }
-    const auto outside = [&](int i) -> NodeId { // how far p is beyond all copies along axis i; invalid: never
+    const auto outside =
+        [&](int i) -> NodeId { // how far p is beyond all copies along axis i; invalid: never
         const Axis &a = axes[static_cast<std::size_t>(i)];
-        const double lo = held.lo[static_cast<std::size_t>(i)], hi = held.hi[static_cast<std::size_t>(i)];
+        const double lo = held.lo[static_cast<std::size_t>(i)],
+                     hi = held.hi[static_cast<std::size_t>(i)];
         if (!std::isfinite(lo) || !std::isfinite(hi) || (a.repeats && !a.last)) return {};
         const NodeId reach = a.repeats ? g.mul(a.shift, a.cell) : g.number(0);
-        return g.make(Op::Max, {g.sub(g.sub(g.number(lo), reach), a.x), g.sub(g.sub(a.x, reach), g.number(hi))});
+        return g.make(Op::Max, {g.sub(g.sub(g.number(lo), reach), a.x),
+                                g.sub(g.sub(a.x, reach), g.number(hi))});
     };
     NodeId nearest = distance_of(reading, result);
     for (int i = 0; i < dims; ++i) {
         const Axis &a = axes[static_cast<std::size_t>(i)];
         if (!a.repeats) continue;
-        const double lo = held.lo[static_cast<std::size_t>(i)], hi = held.hi[static_cast<std::size_t>(i)];
+        const double lo = held.lo[static_cast<std::size_t>(i)],
+                     hi = held.hi[static_cast<std::size_t>(i)];
         if (!std::isfinite(lo) || !std::isfinite(hi)) continue;
         const NodeId before = g.sub(a.base, g.number(1)), after = g.add(a.base, g.number(a.copies));
         NodeId left = g.sub(a.x, g.add(g.mul(g.sub(before, a.shift), a.cell), g.number(hi)));
@@ -208,7 +222,8 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Frame frame) {
     const int count = std::max(1, static_cast<int>(g.as_number(s.args[0]).value_or(1)));
     const int sectors = sectors_of(scene_, id, count);
     const int axis = s.dims == 2 ? 2 : repetition.axis;
-    // Angles count from where the first copy usually stands: x of the axes y and z, y of x. (x, -z, y) is right-handed.
+    // Angles count from where the first copy usually stands: x of the axes y and z, y of x. (x, -z,
+    // y) is right-handed.
     const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
     const auto turned = [&](NodeId part) { return axis == 1 ? g.neg(part) : part; };
     const NodeId x = g.component(frame.p, u), y = turned(g.component(frame.p, v));
@@ -221,8 +236,8 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Frame frame) {
         if (s.dims == 3) q[static_cast<std::size_t>(axis)] = g.component(frame.p, axis);
         q[static_cast<std::size_t>(u)] = g.add(g.mul(c, x), g.mul(sine, y));
         q[static_cast<std::size_t>(v)] = turned(g.sub(g.mul(c, y), g.mul(sine, x)));
-        const NodeId point =
-            g.make(Op::Make, vector_type(s.dims), std::span(q).first(static_cast<std::size_t>(s.dims)));
+        const NodeId point = g.make(Op::Make, vector_type(s.dims),
+                                    std::span(q).first(static_cast<std::size_t>(s.dims)));
         const NodeId cell_id = g.make(Op::Make, Type::Vec3, {k, g.number(0), g.number(0)});
         return ask(reading, s.children.front(), bind(at(frame, point), repetition.id, cell_id));
     };
@@ -254,12 +269,13 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Frame frame) {
     }
     const NodeId turn = g.fresh_var(Type::Int);
     return least_of(reading, g.integer(sectors), sectors, turn, [&](NodeId best) {
-        return least(reading, std::array{best, copy(sector(g.make(Op::ToFloat, Type::Float, {turn})))});
+        return least(reading,
+                     std::array{best, copy(sector(g.make(Op::ToFloat, Type::Float, {turn})))});
     });
 }
 
-// A loop over the rows, carrying the least so far. A smooth union carries the blend instead: its raw field only; 1e9 to begin
-// with is further off than any blend reaches.
+// A loop over the rows, carrying the least so far. A smooth union carries the blend instead: its
+// raw field only; 1e9 to begin with is further off than any blend reaches.
 NodeId Lowering::many(Reading reading, ShapeId id, Frame frame) {
     Graph &g = graph_;
     const Shape &s = shape(id);

@@ -5,7 +5,7 @@
 
 namespace fathom::ir {
 
-// -- values by reading -----------------------------------------------------------------------------------------------
+// -- values by reading
 
 NodeId Lowering::least(Reading reading, std::span<const NodeId> values) {
     return reading == Reading::Hit ? graph_.make(Op::NearestHit, Type::Hit, values)
@@ -33,10 +33,11 @@ NodeId Lowering::far_away(Reading reading) {
     return reading == Reading::Hit ? unpainted(far) : far;
 }
 
-// -- the three readings ----------------------------------------------------------------------------------------------
+// -- the three readings
 
-// Whether marched and hit go on to the children: min, max and negation, and what maps points without lengthening. For such a
-// map q with q(result) inside the child's surface, |f(q(p))| <= dist(q(p), child) <= dist(p, result).
+// Whether marched and hit go on to the children: min, max and negation, and what maps points
+// without lengthening. For such a map q with q(result) inside the child's surface, |f(q(p))| <=
+// dist(q(p), child) <= dist(p, result).
 bool Lowering::passes_through(ShapeId id) const {
     const Shape &s = shape(id);
     switch (s.kind) {
@@ -63,7 +64,8 @@ bool Lowering::passes_through(ShapeId id) const {
             if (!graph_.is_constant(s.args[2])) return graph_[s.args[2]].op == Op::Splat;
             const Constant &by = graph_.constant_of(s.args[2]);
             for (int i = 1; i < components(by.type); ++i)
-                if (std::abs(by.value[static_cast<std::size_t>(i)]) != std::abs(by.value[0])) return false;
+                if (std::abs(by.value[static_cast<std::size_t>(i)]) != std::abs(by.value[0]))
+                    return false;
             return true;
         }
         case MapKind::Twist:
@@ -86,19 +88,28 @@ bool Lowering::passes_through(ShapeId id) const {
 }
 
 NodeId Lowering::answer(Reading reading, ShapeId id, Frame frame) {
+    if (reading == Reading::Raw && fact(id).local) {
+        const Box &box = fact(id).bounds;
+        const NodeId q = graph_.make(Op::Clamp, {frame.p, graph_.vec3(box.lo[0], box.lo[1], box.lo[2]),
+                                                 graph_.vec3(box.hi[0], box.hi[1], box.hi[2])});
+        return joined_distance(graph_, std::array{box_distance(graph_, box, frame.p), structural(reading, id, at(frame, q))});
+    }
     if (reading == Reading::Raw) return structural(reading, id, frame);
-    if (reading == Reading::Hit && !paint_[id.index]) return unpainted(ask(Reading::Marched, id, frame));
+    if (reading == Reading::Hit && !paint_[id.index])
+        return unpainted(ask(Reading::Marched, id, frame));
     if (passes_through(id)) return guarded(reading, id, frame, structural(reading, id, frame));
     if (reading == Reading::Marched && shape(id).kind == ShapeKind::Within)
         return guarded(reading, id, frame, within(reading, id, frame));
     if (reading == Reading::Hit)
         return graph_.make(Op::HitWith, {colored(id, frame), ask(Reading::Marched, id, frame)});
     NodeId marched = divided(id, ask(Reading::Raw, id, frame));
-    // The range shell: a displaced solid lies where f <= A, the most that it moves outward; further out the smooth field, less A,
-    // is the better bound, with its own slope. Inside, where f - a < 0, f - A is lower still: so signs agree.
+    // The range shell: a displaced solid lies where f <= A, the most that it moves outward; further
+    // out the smooth field, less A, is the better bound, with its own slope. Inside, where f - a <
+    // 0, f - A is lower still: so signs agree.
     if (shape(id).kind == ShapeKind::Displace && std::isfinite(fact(id).outward)) {
         const ShapeId child = shape(id).children.front();
-        const NodeId shell = graph_.sub(ask(Reading::Raw, child, frame), graph_.number(fact(id).outward));
+        const NodeId shell =
+            graph_.sub(ask(Reading::Raw, child, frame), graph_.number(fact(id).outward));
         marched = graph_.make(Op::Max, {marched, divided(child, shell)});
     }
     return guarded(reading, id, frame, marched);
@@ -133,11 +144,13 @@ NodeId Lowering::structural(Reading reading, ShapeId id, Frame frame) {
     };
     switch (s.kind) {
     case ShapeKind::Empty: return far_away(reading);
-    case ShapeKind::Union: return s.children.empty() ? far_away(reading) : least(reading, children());
+    case ShapeKind::Union:
+        return s.children.empty() ? far_away(reading) : least(reading, children());
     case ShapeKind::Intersection:
         return s.children.empty() ? far_away(reading) : greatest(reading, children());
     case ShapeKind::Complement: {
-        // -blend(-f, -g) is an intersection: so its surface is the farthest operand's (semantics.md, 22).
+        // -blend(-f, -g) is an intersection: so its surface is the farthest operand's
+        // (semantics.md, 22).
         const ShapeId inner = s.children.front();
         if (reading == Reading::Hit && shape(inner).kind == ShapeKind::Blend) {
             std::vector<NodeId> hits;
@@ -166,8 +179,7 @@ NodeId Lowering::structural(Reading reading, ShapeId id, Frame frame) {
         const NodeId flat = graph_.swizzle(frame.p, std::array{0, 1});
         const NodeId value = ask(reading, s.children.front(), at(frame, flat));
         const NodeId half = graph_.mul(read(s.args[0], frame), graph_.number(0.5));
-        const NodeId cap =
-            graph_.sub(graph_.make(Op::Abs, {graph_.component(frame.p, 2)}), half);
+        const NodeId cap = graph_.sub(graph_.make(Op::Abs, {graph_.component(frame.p, 2)}), half);
         return at_distance(reading, value,
                            joined_distance(graph_, std::array{distance_of(reading, value), cap}));
     }
@@ -210,8 +222,9 @@ NodeId Lowering::blend(const Shape &s, Frame frame) {
     std::vector<NodeId> args;
     for (NodeId number : s.args) {
         const NodeId value = read(number, frame);
-        args.push_back(graph_.type(value) == Type::Int ? graph_.make(Op::ToFloat, Type::Float, {value})
-                                                       : value);
+        args.push_back(graph_.type(value) == Type::Int
+                           ? graph_.make(Op::ToFloat, Type::Float, {value})
+                           : value);
     }
     args.resize(2, graph_.number(1)); // a profile without a count
     for (ShapeId child : s.children) args.push_back(ask(Reading::Raw, child, frame));
@@ -221,7 +234,8 @@ NodeId Lowering::blend(const Shape &s, Frame frame) {
 // The formulas of blends.h.
 NodeId Lowering::seam(const Shape &s, Frame frame) {
     Graph &g = graph_;
-    const NodeId a = ask(Reading::Raw, s.children[0], frame), b = ask(Reading::Raw, s.children[1], frame);
+    const NodeId a = ask(Reading::Raw, s.children[0], frame),
+                 b = ask(Reading::Raw, s.children[1], frame);
     const NodeId r = read(s.args[0], frame), half = g.number(0.5);
     const NodeId depth = s.args.size() > 1 ? read(s.args[1], frame) : r;
     const auto away = [&] { return g.make(Op::Abs, {b}); };
@@ -234,8 +248,8 @@ NodeId Lowering::seam(const Shape &s, Frame frame) {
         return g.make(Op::Intersection,
                       {a, g.make(Op::Union, {g.add(a, depth), g.sub(g.mul(r, half), away())})});
     case SeamKind::Tongue:
-        return g.make(Op::Union,
-                      {a, g.make(Op::Intersection, {g.sub(a, depth), g.sub(away(), g.mul(r, half))})});
+        return g.make(Op::Union, {a, g.make(Op::Intersection,
+                                            {g.sub(a, depth), g.sub(away(), g.mul(r, half))})});
     }
     return {};
 }
@@ -244,8 +258,10 @@ NodeId Lowering::pseudonorm(const Shape &s, Frame frame) {
     Graph &g = graph_;
     const NodeId zero = g.number(0), one = g.number(1);
     const NodeId p = g.make(Op::Max, {read(s.args[0], frame), one});
-    const NodeId a = ask(Reading::Raw, s.children[0], frame), b = ask(Reading::Raw, s.children[1], frame);
-    const NodeId u = g.make(Op::Max, {g.sub(one, a), zero}), v = g.make(Op::Max, {g.sub(one, b), zero});
+    const NodeId a = ask(Reading::Raw, s.children[0], frame),
+                 b = ask(Reading::Raw, s.children[1], frame);
+    const NodeId u = g.make(Op::Max, {g.sub(one, a), zero}),
+                 v = g.make(Op::Max, {g.sub(one, b), zero});
     const NodeId most = g.make(Op::Max, {u, v});
     const NodeId ratio = g.div(g.make(Op::Min, {u, v}), g.make(Op::Max, {most, g.number(1e-9)}));
     const NodeId norm =
@@ -253,7 +269,7 @@ NodeId Lowering::pseudonorm(const Shape &s, Frame frame) {
     return g.sub(g.make(Op::Max, {one, g.make(Op::Union, {a, b})}), norm);
 }
 
-// -- within (semantics.md, 11; lipschitz.md, 9) ------------------------------------------------------------------------
+// -- within (semantics.md, 11; lipschitz.md, 9)
 
 namespace {
 template <class F> Region map_region(const Region &region, F read) {
@@ -266,24 +282,26 @@ template <class F> Region map_region(const Region &region, F read) {
 } // namespace
 
 Frame Lowering::inside(ShapeId id, Frame frame) {
-    const Region region =
-        map_region(shapes_.regions[shape(id).payload], [&](NodeId number) { return read(number, frame); });
+    const Region region = map_region(shapes_.regions[shape(id).payload],
+                                     [&](NodeId number) { return read(number, frame); });
     NodeId q = region_nearest(graph_, region, point3(frame.p));
     for (const Region &less : region.less) q = region_way_out(graph_, less, q);
     return at(frame, graph_.type(frame.p) == Type::Vec2 ? graph_.swizzle(q, std::array{0, 1}) : q);
 }
 
-// The field is asked once, at a point q where its bound L holds; g = f(q)/L there. In the region: max(g, sd_R); outside,
-// with q the nearest point of R: sqrt(|p-q|^2 + max(g, 0)^2). Both are |(max(sd_R,0), max(g,0))| + min(max(sd_R, g), 0). A carved region
-// cuts with -sd; in it q is the point where one gets out of it, and g is less by the way there. Raw is the same with L = 1.
+// The field is asked once, at a point q where its bound L holds; g = f(q)/L there. In the region:
+// max(g, sd_R); outside, with q the nearest point of R: sqrt(|p-q|^2 + max(g, 0)^2). Both are
+// |(max(sd_R,0), max(g,0))| + min(max(sd_R, g), 0). A carved region cuts with -sd; in it q is the
+// point where one gets out of it, and g is less by the way there. Raw is the same with L = 1.
 NodeId Lowering::within(Reading reading, ShapeId id, Frame frame) {
     Graph &g = graph_;
-    const Region region =
-        map_region(shapes_.regions[shape(id).payload], [&](NodeId number) { return read(number, frame); });
+    const Region region = map_region(shapes_.regions[shape(id).payload],
+                                     [&](NodeId number) { return read(number, frame); });
     const NodeId p = point3(frame.p);
     const ShapeId child = shape(id).children.front();
     NodeId field = ask(Reading::Raw, child, inside(id, frame));
-    // The child's bound holds in the region. Round what is carved from it the way is up to pi/2 times the straight one.
+    // The child's bound holds in the region. Round what is carved from it the way is up to pi/2
+    // times the straight one.
     if (reading == Reading::Marched)
         field = divided(child, field, region.less.empty() ? 1 : 2 * std::atan(1.0));
     NodeId q = region_nearest(g, region, p);

@@ -1,7 +1,9 @@
-// The lowering's own parts, shared by lower*.cpp and regions.cpp only. Knows shapes, not the language.
+// The lowering's own parts, shared by lower*.cpp and regions.cpp only. Knows shapes, not the
+// language.
 //
-// A shape is asked in one of three readings (lower.h) at a frame: a point, and values for the variables that shapes above bind.
-// Every answer is made once; a shape that would be written out in several places becomes a function.
+// A shape is asked in one of three readings (lower.h) at a frame: a point, and values for the
+// variables that shapes above bind. Every answer is made once; a shape that would be written out in
+// several places becomes a function.
 #pragma once
 
 #include "ir/lower.h"
@@ -35,10 +37,12 @@ class Lowering {
   private:
     // -- asking
     NodeId ask(Reading reading, ShapeId id, Frame frame);
-    NodeId answer(Reading reading, ShapeId id, Frame frame);    // without a function of its own, unless its children's
-    NodeId structural(Reading reading, ShapeId id, Frame frame); // through the shape's own combination
-    NodeId raw_only(ShapeId id, Frame frame);                    // kinds whose field consumes raw fields
-    NodeId colored(ShapeId id, Frame frame);                     // whose surface shows on a leaf: a Hit, distance aside
+    NodeId answer(Reading reading, ShapeId id,
+                  Frame frame); // without a function of its own, unless its children's
+    NodeId structural(Reading reading, ShapeId id,
+                      Frame frame);           // through the shape's own combination
+    NodeId raw_only(ShapeId id, Frame frame); // kinds whose field consumes raw fields
+    NodeId colored(ShapeId id, Frame frame); // whose surface shows on a leaf: a Hit, distance aside
     bool passes_through(ShapeId id) const;
     NodeId divided(ShapeId id, NodeId raw, double times = 1);
     NodeId guarded(Reading reading, ShapeId id, Frame frame, NodeId value);
@@ -64,8 +68,10 @@ class Lowering {
     NodeId at_distance(Reading reading, NodeId value, NodeId distance);
     NodeId far_away(Reading reading);
     NodeId unpainted(NodeId distance);
-    // A Fold of `count` turns that begins far away: `each` says what the value so far becomes, with `index` the turn's number.
-    template <class F> NodeId least_of(Reading reading, NodeId count, int max_count, NodeId index, F each);
+    // A Fold of `count` turns that begins far away: `each` says what the value so far becomes, with
+    // `index` the turn's number.
+    template <class F>
+    NodeId least_of(Reading reading, NodeId count, int max_count, NodeId index, F each);
 
     // -- frames
     NodeId read(NodeId expression, Frame frame);
@@ -113,7 +119,8 @@ class Lowering {
 
 // regions.cpp
 NodeId joined_distance(Graph &graph, std::span<const NodeId> distances);
-NodeId region_way_out(Graph &graph, const Region &region, NodeId p); // convex part: the nearest point not inside
+NodeId region_way_out(Graph &graph, const Region &region,
+                      NodeId p); // convex part: the nearest point not inside
 NodeId box_distance(Graph &graph, const Box &box, NodeId p);
 
 // repeat.cpp: how many copies are evaluated one by one, before a loop does it

@@ -18,7 +18,8 @@ Shape mapped(Graph &graph, MapKind kind, ShapeId child, NodeId q, std::vector<No
     return shape;
 }
 
-// p with the plane of the axes (u, v) turned by -angle: the point of the object that a turn by `angle` brings to p.
+// p with the plane of the axes (u, v) turned by -angle: the point of the object that a turn by
+// `angle` brings to p.
 NodeId turned_back(Graph &graph, NodeId p, int u, int v, NodeId angle) {
     const NodeId c = graph.make(Op::Cos, {angle}), s = graph.make(Op::Sin, {angle});
     const NodeId pu = graph.component(p, u), pv = graph.component(p, v);
@@ -43,7 +44,8 @@ NodeId axis_vector(Graph &graph, int axis) {
 } // namespace
 
 Shape translated(Graph &graph, ShapeId child, NodeId by) {
-    return mapped(graph, MapKind::Translate, child, graph.sub(graph.point(graph.type(by)), by), {by});
+    return mapped(graph, MapKind::Translate, child, graph.sub(graph.point(graph.type(by)), by),
+                  {by});
 }
 
 Shape rotated(Graph &graph, ShapeId child, NodeId matrix) {
@@ -62,7 +64,9 @@ Shape scaled(Graph &graph, ShapeId child, NodeId by) {
     return mapped(graph, MapKind::Scale, child, graph.div(graph.point(type), by), {by}, factor);
 }
 
-Shape folded(Graph &graph, ShapeId child, NodeId q) { return mapped(graph, MapKind::Fold, child, q, {}); }
+Shape folded(Graph &graph, ShapeId child, NodeId q) {
+    return mapped(graph, MapKind::Fold, child, q, {});
+}
 
 Shape revolved(Graph &graph, ShapeId flat_child, NodeId offset) {
     const NodeId p = graph.point();
@@ -87,7 +91,8 @@ Shape bent(Graph &graph, ShapeId child, NodeId rate, int axis, int towards) {
     assert(axis != towards);
     const NodeId p = graph.point();
     const NodeId angle = graph.mul(rate, graph.component(p, axis));
-    // The axis' tip leans towards `towards`: a turn from axis to towards; so (u, v) = (axis, towards).
+    // The axis' tip leans towards `towards`: a turn from axis to towards; so (u, v) = (axis,
+    // towards).
     const NodeId q = turned_back(graph, p, axis, towards, angle);
     Shape shape = mapped(graph, MapKind::Bend, child, q, {rate});
     shape.axis = static_cast<std::uint8_t>(axis);
@@ -97,8 +102,8 @@ Shape bent(Graph &graph, ShapeId child, NodeId rate, int axis, int towards) {
 
 NodeId taper_factor(Graph &graph, NodeId height, NodeId ratio, NodeId from, NodeId to) {
     const NodeId zero = graph.number(0), one = graph.number(1);
-    const NodeId t = graph.make(
-        Op::Clamp, {graph.div(graph.sub(height, from), graph.sub(to, from)), zero, one});
+    const NodeId t =
+        graph.make(Op::Clamp, {graph.div(graph.sub(height, from), graph.sub(to, from)), zero, one});
     return graph.make(Op::Max, {graph.make(Op::Mix, {one, ratio, t}), graph.number(taper_least)});
 }
 
@@ -136,7 +141,8 @@ NodeId elongate_point(Graph &graph, NodeId p, NodeId by) {
 }
 
 NodeId hyperize_point(Graph &graph, NodeId p, NodeId v) {
-    const NodeId power = graph.make(Op::Pow, {graph.make(Op::Abs, {p}), graph.splat(v, graph.type(p))});
+    const NodeId power =
+        graph.make(Op::Pow, {graph.make(Op::Abs, {p}), graph.splat(v, graph.type(p))});
     return graph.mul(graph.make(Op::Sign, {p}), power);
 }
 
@@ -145,8 +151,7 @@ NodeId rotation(Graph &graph, NodeId axis, NodeId angle) {
     const NodeId a = graph.make(Op::Normalize, {axis});
     // A zero axis normalises to 0, which leaves cos I: so the cosine is made 1 there.
     const NodeId some = graph.make(Op::Less, {graph.number(0), graph.make(Op::Dot, {a, a})});
-    const NodeId c =
-        graph.make(Op::Select, {some, graph.make(Op::Cos, {angle}), graph.number(1)});
+    const NodeId c = graph.make(Op::Select, {some, graph.make(Op::Cos, {angle}), graph.number(1)});
     const NodeId s = graph.make(Op::Sin, {angle});
     const NodeId t = graph.sub(graph.number(1), c);
     std::array<NodeId, 9> m;
@@ -159,7 +164,8 @@ NodeId rotation(Graph &graph, NodeId axis, NodeId angle) {
                 value = graph.add(c, outer);
             } else {
                 const NodeId turn = graph.mul(s, graph.component(a, 3 - row - column));
-                // [a]x has -a_k above the cyclic diagonal: (row, column) = (0,1): -z, (1,2): -x, (2,0): -y
+                // [a]x has -a_k above the cyclic diagonal: (row, column) = (0,1): -z, (1,2): -x,
+                // (2,0): -y
                 value = column == (row + 1) % 3 ? graph.sub(outer, turn) : graph.add(outer, turn);
             }
             m[static_cast<std::size_t>(3 * column + row)] = value;
@@ -177,27 +183,30 @@ NodeId rotation2(Graph &graph, NodeId angle) {
 NodeId rotation_euler(Graph &graph, NodeId angles) {
     NodeId result;
     for (int axis = 0; axis < 3; ++axis) {
-        const NodeId turn = rotation(graph, axis_vector(graph, axis), graph.component(angles, axis));
+        const NodeId turn =
+            rotation(graph, axis_vector(graph, axis), graph.component(angles, axis));
         result = result ? graph.make(Op::MatMul, Type::Mat3, {turn, result}) : turn;
     }
     return result;
 }
 
-// For unit a and b: the two reflections I - 2 u u^T, first in the plane across a + b, then in that across b, give the turn
-// from a to b. Where a = -b any u across a does; it is taken from the axis that a is least along.
+// For unit a and b: the two reflections I - 2 u u^T, first in the plane across a + b, then in that
+// across b, give the turn from a to b. Where a = -b any u across a does; it is taken from the axis
+// that a is least along.
 NodeId rotation_between(Graph &graph, NodeId from, NodeId to) {
     const NodeId a = graph.make(Op::Normalize, {from}), b = graph.make(Op::Normalize, {to});
     const NodeId x = graph.make(Op::Abs, {graph.component(a, 0)});
     const NodeId y = graph.make(Op::Abs, {graph.component(a, 1)});
     const NodeId z = graph.make(Op::Abs, {graph.component(a, 2)});
-    const NodeId x_least = graph.make(
-        Op::And, {graph.make(Op::LessEqual, {x, y}), graph.make(Op::LessEqual, {x, z})});
+    const NodeId x_least =
+        graph.make(Op::And, {graph.make(Op::LessEqual, {x, y}), graph.make(Op::LessEqual, {x, z})});
     const NodeId other = graph.make(
         Op::Select, {x_least, axis_vector(graph, 0),
-                     graph.make(Op::Select, {graph.make(Op::LessEqual, {y, z}), axis_vector(graph, 1),
-                                             axis_vector(graph, 2)})});
+                     graph.make(Op::Select, {graph.make(Op::LessEqual, {y, z}),
+                                             axis_vector(graph, 1), axis_vector(graph, 2)})});
     const NodeId sum = graph.add(a, b);
-    const NodeId near = graph.make(Op::Less, {graph.number(1e-12), graph.make(Op::Dot, {sum, sum})});
+    const NodeId near =
+        graph.make(Op::Less, {graph.number(1e-12), graph.make(Op::Dot, {sum, sum})});
     const NodeId u = graph.make(
         Op::Normalize, {graph.make(Op::Select, {near, sum, graph.make(Op::Cross, {a, other})})});
     // a = -b: reflecting across u leaves a, then across b takes it to -a = b.

@@ -1,10 +1,12 @@
-// Convex regions as expressions: signed distance, nearest point, and the way out. And the distance to a box of bounds.
+// Convex regions as expressions: signed distance, nearest point, and the way out. And the distance
+// to a box of bounds.
 #include "ir/lowering.h"
 
 namespace fathom::ir {
 
-// |d+| + min(max d, 0), for d the distances along perpendicular directions: exact outside, at least exact's
-// sign inside. The same form joins an extrusion's sides and caps, and a region with the solid in it.
+// |d+| + min(max d, 0), for d the distances along perpendicular directions: exact outside, at least
+// exact's sign inside. The same form joins an extrusion's sides and caps, and a region with the
+// solid in it.
 NodeId joined_distance(Graph &graph, std::span<const NodeId> d) {
     NodeId most = d.front();
     std::vector<NodeId> outside;
@@ -86,7 +88,8 @@ NodeId region_nearest(Graph &graph, const Region &region, NodeId p) {
                            shortened(graph, across(graph, p, region.axis), region.size));
     case RegionKind::Box: {
         const NodeId half = graph.mul(region.size, graph.number(0.5));
-        return graph.make(Op::Clamp, {p, graph.sub(region.center, half), graph.add(region.center, half)});
+        return graph.make(Op::Clamp,
+                          {p, graph.sub(region.center, half), graph.add(region.center, half)});
     }
     }
     return {};
@@ -96,7 +99,8 @@ NodeId region_way_out(Graph &graph, const Region &region, NodeId p) {
     switch (region.kind) {
     case RegionKind::Everywhere: return p; // there is none; nothing of the solid is left either
     case RegionKind::Ball:
-        return graph.add(region.center, lengthened(graph, graph.sub(p, region.center), region.size));
+        return graph.add(region.center,
+                         lengthened(graph, graph.sub(p, region.center), region.size));
     case RegionKind::Tube:
         return with_across(graph, p, region.axis,
                            lengthened(graph, across(graph, p, region.axis), region.size));
@@ -105,15 +109,14 @@ NodeId region_way_out(Graph &graph, const Region &region, NodeId p) {
         const NodeId half = graph.mul(region.size, graph.number(0.5));
         const NodeId v = graph.sub(p, region.center);
         const NodeId d = graph.sub(graph.make(Op::Abs, {v}), half);
-        const NodeId most =
-            graph.make(Op::Max, {graph.make(Op::Max, {graph.component(d, 0), graph.component(d, 1)}),
-                                 graph.component(d, 2)});
+        const NodeId most = graph.make(
+            Op::Max, {graph.make(Op::Max, {graph.component(d, 0), graph.component(d, 1)}),
+                      graph.component(d, 2)});
         std::array<NodeId, 3> parts;
         for (int i = 0; i < 3; ++i) {
             const NodeId x = graph.component(v, i), face = graph.component(half, i);
             const NodeId out = graph.make(
-                Op::Select,
-                {graph.make(Op::Less, {x, graph.number(0)}), graph.neg(face), face});
+                Op::Select, {graph.make(Op::Less, {x, graph.number(0)}), graph.neg(face), face});
             const NodeId here =
                 graph.make(Op::And, {graph.make(Op::LessEqual, {most, graph.component(d, i)}),
                                      graph.make(Op::Less, {most, graph.number(0)})});
@@ -128,7 +131,8 @@ NodeId region_way_out(Graph &graph, const Region &region, NodeId p) {
 NodeId box_distance(Graph &graph, const Box &box, NodeId p) {
     std::vector<NodeId> d;
     for (int i = 0; i < components(graph.type(p)); ++i) {
-        const double lo = box.lo[static_cast<std::size_t>(i)], hi = box.hi[static_cast<std::size_t>(i)];
+        const double lo = box.lo[static_cast<std::size_t>(i)],
+                     hi = box.hi[static_cast<std::size_t>(i)];
         const NodeId x = graph.component(p, i);
         if (std::isfinite(lo) && std::isfinite(hi))
             d.push_back(graph.sub(graph.make(Op::Abs, {graph.sub(x, graph.number((lo + hi) / 2))}),

@@ -24,6 +24,8 @@ struct ShapeFact {
     std::array<bool, 3> symmetric{};
     std::array<double, 3> lever{}; // sup |(p x grad f)_axis| over space; infinity: unknown
     double outward = std::numeric_limits<double>::infinity(); // Displace: the most by which it moves the surface outward
+    bool local = false;          // the bound holds within `bounds` alone: the raw field is asked at the nearest point there, and
+                                 // joined with the way to it as Within's is
     bool guard = false;          // when marched, take the max with the distance to `bounds` (cheap far away)
     RepeatPlan repeat;
 };

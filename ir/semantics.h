@@ -1,9 +1,10 @@
-// The meaning of every scalar op, once, as templates over the number type; all evaluators and the folding of constants
-// are made from these (vectors are by component). Total: every argument has a stated result. Noise and blends stand in
-// headers of their own. Knows nothing of graphs.
+// The meaning of every scalar op, once, as templates over the number type; all evaluators and the
+// folding of constants are made from these (vectors are by component). Total: every argument has a
+// stated result. Noise and blends stand in headers of their own. Knows nothing of graphs.
 //
-// T is float, double, or someone's dual number or interval with + - * /, comparison, `plain`, and floor, sqrt, sin, … by
-// ADL. Choices are written as ?: on values already computed, so that loops over batches vectorise.
+// T is float, double, or someone's dual number or interval with + - * /, comparison, `plain`, and
+// floor, sqrt, sin, … by ADL. Choices are written as ?: on values already computed, so that loops
+// over batches vectorise.
 #pragma once
 
 #include "ir/blends.h"
@@ -15,7 +16,7 @@
 
 namespace fathom::ir::sem {
 
-// -- ints: 32 bits, saturating ---------------------------------------------------------------------------------------
+// -- ints: 32 bits, saturating
 
 // The nearest int: where 32 bits do not suffice, the first or last one; 0 for NaN. Truncates.
 constexpr std::int32_t saturate(double x) {
@@ -24,9 +25,15 @@ constexpr std::int32_t saturate(double x) {
            : x != x             ? 0
                                 : static_cast<std::int32_t>(x);
 }
-constexpr std::int32_t int_add(std::int32_t x, std::int32_t y) { return saturate(double(x) + double(y)); }
-constexpr std::int32_t int_sub(std::int32_t x, std::int32_t y) { return saturate(double(x) - double(y)); }
-constexpr std::int32_t int_mul(std::int32_t x, std::int32_t y) { return saturate(double(x) * double(y)); }
+constexpr std::int32_t int_add(std::int32_t x, std::int32_t y) {
+    return saturate(double(x) + double(y));
+}
+constexpr std::int32_t int_sub(std::int32_t x, std::int32_t y) {
+    return saturate(double(x) - double(y));
+}
+constexpr std::int32_t int_mul(std::int32_t x, std::int32_t y) {
+    return saturate(double(x) * double(y));
+}
 constexpr std::int32_t int_neg(std::int32_t x) { return saturate(-double(x)); }
 // Truncates; x/0 = 0.
 constexpr std::int32_t int_div(std::int32_t x, std::int32_t y) {
@@ -39,7 +46,7 @@ constexpr std::int32_t int_mod(std::int32_t x, std::int32_t y) {
     return rest != 0 && (rest < 0) != (y < 0) ? rest + y : rest;
 }
 
-// -- arithmetic ------------------------------------------------------------------------------------------------------
+// -- arithmetic
 
 template <class T> T min(T x, T y) { return y < x ? y : x; }
 template <class T> T max(T x, T y) { return x < y ? y : x; }
@@ -69,19 +76,21 @@ template <class T> T mod(T x, T y) {
     return y == T(0) ? x : rest;
 }
 
-// t^2 (3 - 2t), t = clamp((x - lo)/(hi - lo), 0, 1); slope at most 1.5/|hi - lo|. lo = hi: step(lo, x).
+// t^2 (3 - 2t), t = clamp((x - lo)/(hi - lo), 0, 1); slope at most 1.5/|hi - lo|. lo = hi: step(lo,
+// x).
 template <class T> T smoothstep(T lo, T hi, T x) {
     const T width = lo == hi ? T(1) : hi - lo;
     const T t = clamp((x - lo) / width, T(0), T(1));
     return lo == hi ? step(lo, x) : t * t * (T(3) - T(2) * t);
 }
 
-// -- powers and roots ------------------------------------------------------------------------------------------------
+// -- powers and roots
 
 // Defined for all arguments:
 //   x > 0   exp(y log x)
 //   x = 0   1 for y = 0, 0 for y > 0, +infinity for y < 0
-//   x < 0   whole y: |x|^y, negated where y is odd (so x^2 and x^3 are what they look like); other y: 0
+//   x < 0   whole y: |x|^y, negated where y is odd (so x^2 and x^3 are what they look like); other
+//   y: 0
 template <class T> T pow(T x, T y) {
     using std::floor;
     using std::pow;
@@ -96,7 +105,7 @@ template <class T> T sqrt(T x) { // 0 below 0
     return sqrt(max(x, T(0)));
 }
 template <class T> T inverse_sqrt(T x) { return T(1) / sem::sqrt(x); } // +infinity at 0 and below
-template <class T> T log(T x) {                                   // -infinity at 0 and below
+template <class T> T log(T x) {                                        // -infinity at 0 and below
     using std::log;
     return log(max(x, T(0)));
 }
@@ -105,7 +114,7 @@ template <class T> T log2(T x) {
     return log2(max(x, T(0)));
 }
 
-// -- angles ----------------------------------------------------------------------------------------------------------
+// -- angles
 
 template <class T> T asin(T x) {
     using std::asin;
@@ -115,13 +124,14 @@ template <class T> T acos(T x) {
     using std::acos;
     return acos(clamp(x, T(-1), T(1)));
 }
-// The angle of (x, y) in (-pi, pi]; 0 at the origin. The sign of a zero means nothing: adding +0 takes it away.
+// The angle of (x, y) in (-pi, pi]; 0 at the origin. The sign of a zero means nothing: adding +0
+// takes it away.
 template <class T> T atan2(T y, T x) {
     using std::atan2;
     return atan2(y + T(0), x + T(0));
 }
 
-// -- vectors ---------------------------------------------------------------------------------------------------------
+// -- vectors
 
 // What a vector of that squared length is multiplied by to be normalised: 0 for the zero vector.
 template <class T> T normalizer(T squared_length) {
@@ -130,9 +140,10 @@ template <class T> T normalizer(T squared_length) {
     return T(0) < squared_length ? T(1) / sqrt(some) : T(0);
 }
 
-// The other unary ops (floor, ceil, trunc, exp, exp2, sin, cos, tan, atan, sinh, cosh, tanh) are the functions of those
-// names in <cmath>, or those found by ADL.
+// The other unary ops (floor, ceil, trunc, exp, exp2, sin, cos, tan, atan, sinh, cosh, tanh) are
+// the functions of those names in <cmath>, or those found by ADL.
 
-// A division by zero is IEEE's (an infinity, or NaN for 0/0). NaN in gives an unspecified number out.
+// A division by zero is IEEE's (an infinity, or NaN for 0/0). NaN in gives an unspecified number
+// out.
 
 } // namespace fathom::ir::sem

@@ -1,5 +1,6 @@
-// Cheap identities, applied as nodes are made. Each keeps the value for all finite arguments (x*0 is 0, also for
-// an infinite x: an infinity that survives to a product with 0 is no number that a scene means).
+// Cheap identities, applied as nodes are made. Each keeps the value for all finite arguments (x*0
+// is 0, also for an infinite x: an infinity that survives to a product with 0 is no number that a
+// scene means).
 #include "ir/graph.h"
 
 #include <cassert>
@@ -31,7 +32,8 @@ NodeId simple_swizzle(Graph &graph, Type type, NodeId vector, std::uint32_t mask
     }
     if (node.op != Op::Make && node.op != Op::Splat) return {};
     std::vector<NodeId> parts;
-    for (int i = 0; i < size; ++i) parts.push_back(part_of(graph, vector, swizzle_component(mask, i)));
+    for (int i = 0; i < size; ++i)
+        parts.push_back(part_of(graph, vector, swizzle_component(mask, i)));
     return size == 1 ? parts.front() : graph.make(Op::Make, type, parts);
 }
 
@@ -53,7 +55,8 @@ NodeId simple_make(Graph &graph, Type type, std::span<const NodeId> args) {
         parts.push_back(swizzle_component(node.payload, 0));
     }
     if (ordered) return graph.swizzle(vector, parts);
-    if (equal && !graph.is_constant(args.front())) return graph.make(Op::Splat, type, {args.front()});
+    if (equal && !graph.is_constant(args.front()))
+        return graph.make(Op::Splat, type, {args.front()});
     return {};
 }
 
@@ -82,7 +85,8 @@ NodeId simple_hit(Graph &graph, Op op, std::span<const NodeId> args) {
     }
     if (op == Op::HitWith) {
         if (made == Op::MakeHit)
-            return graph.make(Op::MakeHit, {args[1], graph.arg(hit, 1), graph.arg(hit, 2), graph.arg(hit, 3)});
+            return graph.make(Op::MakeHit,
+                              {args[1], graph.arg(hit, 1), graph.arg(hit, 2), graph.arg(hit, 3)});
         if (made == Op::HitWith) return graph.make(Op::HitWith, {graph.arg(hit, 0), args[1]});
         return {};
     }
@@ -165,8 +169,8 @@ NodeId Graph::simplified(Op op, Type type, std::span<const NodeId> args, std::ui
     case Op::Ceil:
     case Op::Trunc:
     case Op::Round: {
-        const bool whole_already = op_of(0) == Op::Floor || op_of(0) == Op::Ceil || op_of(0) == Op::Trunc ||
-                                   op_of(0) == Op::Round;
+        const bool whole_already = op_of(0) == Op::Floor || op_of(0) == Op::Ceil ||
+                                   op_of(0) == Op::Trunc || op_of(0) == Op::Round;
         return whole || whole_already ? args[0] : NodeId{};
     }
     case Op::And:
@@ -188,9 +192,11 @@ NodeId Graph::simplified(Op op, Type type, std::span<const NodeId> args, std::ui
     case Op::Column:
         return op_of(0) == Op::Make ? arg(args[0], static_cast<int>(payload)) : NodeId{};
     case Op::MatMul:
-        if (is_constant(args[0]) && is_matrix(nodes_[args[0]].type) && is_identity(constant_of(args[0])))
+        if (is_constant(args[0]) && is_matrix(nodes_[args[0]].type) &&
+            is_identity(constant_of(args[0])))
             return args[1];
-        if (is_constant(args[1]) && is_matrix(nodes_[args[1]].type) && is_identity(constant_of(args[1])))
+        if (is_constant(args[1]) && is_matrix(nodes_[args[1]].type) &&
+            is_identity(constant_of(args[1])))
             return args[0];
         return {};
     case Op::Transpose: return op_of(0) == Op::Transpose ? arg(args[0], 0) : NodeId{};
@@ -207,7 +213,8 @@ NodeId Graph::simplified(Op op, Type type, std::span<const NodeId> args, std::ui
     case Op::HitWith:
     case Op::FillPaint: return simple_hit(*this, op, args);
 
-    case Op::Length: return type == nodes_[args[0]].type ? make(Op::Abs, type, {args[0]}) : NodeId{};
+    case Op::Length:
+        return type == nodes_[args[0]].type ? make(Op::Abs, type, {args[0]}) : NodeId{};
 
     case Op::Const:
     case Op::Point:

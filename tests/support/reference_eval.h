@@ -1,5 +1,6 @@
-// The slowest evaluator: a plain recursion over the graph, in double, for tests to hold the quick ones against. It
-// says what structure means (calls, folds, hits, tables, samples); single ops are ir::evaluate's.
+// The slowest evaluator: a plain recursion over the graph, in double, for tests to hold the quick
+// ones against. It says what structure means (calls, folds, hits, tables, samples); single ops are
+// ir::evaluate's.
 #pragma once
 
 #include "ir/fold.h"
@@ -88,19 +89,23 @@ class Reference {
         using ir::Op;
         const ir::Node &node = graph_[id];
         if (node.op == Op::Const) return graph_.constant_of(id);
-        if (node.op == Op::Point) return {node.type, {point[0], point[1], node.type == ir::Type::Vec2 ? 0 : point[2]}};
+        if (node.op == Op::Point)
+            return {node.type, {point[0], point[1], node.type == ir::Type::Vec2 ? 0 : point[2]}};
         if (node.op == Op::Normal) return vec3(normal);
         if (node.op == Op::Direction) return vec3(direction);
         if (node.op == Op::Time) return of(node.type, {time});
         if (node.op == Op::Param) return param(node);
         if (node.op == Op::Var) throw std::logic_error("an unbound variable");
-        if (node.op == Op::Select) // only the arm that counts, so that tests may ask about the other
-            return eval(graph_.arg(id, eval(graph_.arg(id, 0), scope).value[0] != 0 ? 1 : 2), scope);
+        if (node.op ==
+            Op::Select) // only the arm that counts, so that tests may ask about the other
+            return eval(graph_.arg(id, eval(graph_.arg(id, 0), scope).value[0] != 0 ? 1 : 2),
+                        scope);
 
         std::vector<Value> args;
         for (ir::NodeId arg : graph_.args(id)) args.push_back(eval(arg, scope));
         if (node.op == Op::Call) return call(ir::FunctionId{std::size_t{node.payload}}, args);
-        if (node.op == Op::Cached) return call(graph_.cache(ir::CacheId{std::size_t{node.payload}}).field, args);
+        if (node.op == Op::Cached)
+            return call(graph_.cache(ir::CacheId{std::size_t{node.payload}}).field, args);
         if (node.op == Op::Fold) return fold(node, args, scope).front();
         if (node.op == Op::FoldResult) {
             const ir::NodeId of_fold = graph_.arg(id, 0);
@@ -111,7 +116,8 @@ class Reference {
         if (node.op == Op::TableRead) return table(node, args[0].value[0]);
         if (node.op == Op::Image) return image(node, args[0]);
         if (node.op == Op::Grid) return grid(node, args[0]);
-        if (node.type == ir::Type::Hit || (graph_[graph_.arg(id, 0)].type == ir::Type::Hit)) return hit_op(node, args);
+        if (node.type == ir::Type::Hit || (graph_[graph_.arg(id, 0)].type == ir::Type::Hit))
+            return hit_op(node, args);
         const auto v = ir::evaluate(node.op, node.type, args, node.payload);
         if (!v) throw std::logic_error("an op without a value");
         return *v;
@@ -119,7 +125,8 @@ class Reference {
 
     Value param(const ir::Node &node) const {
         Value v{node.type, {}};
-        const auto &from = node.payload < params.size() ? params[node.payload] : scene_->params.at(node.payload).value;
+        const auto &from = node.payload < params.size() ? params[node.payload]
+                                                        : scene_->params.at(node.payload).value;
         std::copy(from.begin(), from.end(), v.value.begin());
         return v;
     }
@@ -127,7 +134,8 @@ class Reference {
     std::vector<Value> fold(const ir::Node &node, std::vector<Value> values, Scope &outer) {
         const ir::Fold &fold = graph_.fold(ir::FoldId{std::size_t{node.payload}});
         const int count = static_cast<int>(eval(fold.count, outer).value[0]);
-        // Inside, only what was bound outside is kept: everything else may depend on the loop's variables.
+        // Inside, only what was bound outside is kept: everything else may depend on the loop's
+        // variables.
         Scope bound;
         for (const auto &[id, value] : outer)
             if (graph_[id].op == ir::Op::Var) bound[id] = value;
@@ -148,8 +156,8 @@ class Reference {
         const int at = std::clamp(static_cast<int>(row), 0, table.rows - 1);
         Value v{node.type, {}};
         for (int i = 0; i < ir::components(node.type); ++i)
-            v.value[static_cast<std::size_t>(i)] =
-                table.data[static_cast<std::size_t>(at * table.stride + ir::column_of(node.payload) + i)];
+            v.value[static_cast<std::size_t>(i)] = table.data[static_cast<std::size_t>(
+                at * table.stride + ir::column_of(node.payload) + i)];
         return v;
     }
 
@@ -161,11 +169,15 @@ class Reference {
         Value v{ir::Type::Vec4, {}};
         for (int j = 0; j < 2; ++j)
             for (int i = 0; i < 2; ++i) {
-                const auto wrap = [](double a, int n) { return static_cast<int>(a - n * std::floor(a / n)); };
-                const int tx = wrap(std::floor(x) + i, image.width), ty = wrap(std::floor(y) + j, image.height);
+                const auto wrap = [](double a, int n) {
+                    return static_cast<int>(a - n * std::floor(a / n));
+                };
+                const int tx = wrap(std::floor(x) + i, image.width),
+                          ty = wrap(std::floor(y) + j, image.height);
                 const double w = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
                 for (std::size_t c = 0; c < 4; ++c)
-                    v.value[c] += w * image.rgba[static_cast<std::size_t>(ty * image.width + tx) * 4 + c];
+                    v.value[c] +=
+                        w * image.rgba[static_cast<std::size_t>(ty * image.width + tx) * 4 + c];
             }
         return v;
     }
@@ -190,7 +202,8 @@ class Reference {
                 w *= up ? t[u] : 1 - t[u];
                 at[u] = std::min(low[u] + up, grid.size[u] - 1);
             }
-            v.value[0] += w * grid.values[static_cast<std::size_t>((at[2] * grid.size[1] + at[1]) * grid.size[0] + at[0])];
+            v.value[0] += w * grid.values[static_cast<std::size_t>(
+                                  (at[2] * grid.size[1] + at[1]) * grid.size[0] + at[0])];
         }
         return v;
     }
@@ -201,7 +214,8 @@ class Reference {
         if (node.op == Op::HitDistance) return of(node.type, {v.value[0]});
         if (node.op == Op::HitPaint) return of(node.type, {v.value[1]});
         if (node.op == Op::HitPoint) return of(node.type, {v.value[2], v.value[3], v.value[4]});
-        if (node.op == Op::HitExtra) return of(node.type, {v.value[5], v.value[6], v.value[7], v.value[8]});
+        if (node.op == Op::HitExtra)
+            return of(node.type, {v.value[5], v.value[6], v.value[7], v.value[8]});
         const auto dress = [&](std::size_t first) {
             v.value[1] = a[first].value[0];
             for (std::size_t i = 0; i < 3; ++i) v.value[2 + i] = a[first + 1].value[i];

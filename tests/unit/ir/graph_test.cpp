@@ -1,4 +1,5 @@
-// The graph: one node for equal things, constants folded, identities applied, copies made where asked.
+// The graph: one node for equal things, constants folded, identities applied, copies made where
+// asked.
 #include "ir/fold.h"
 #include "ir/lower.h"
 #include "ir/semantics.h"
@@ -75,14 +76,16 @@ TEST_CASE("identities") {
     CHECK(g.component(g.make(Op::Make, Type::Vec3, {y, x, z}), 0) == y);
     CHECK(g.component(g.splat(x, Type::Vec3), 2) == x);
     CHECK(g.make(Op::Union, {x}) == x);
-    CHECK(g.make(Op::MatMul, Type::Vec3, {g.constant({Type::Mat3, {1, 0, 0, 0, 1, 0, 0, 0, 1}}), p}) == p);
+    CHECK(g.make(Op::MatMul, Type::Vec3,
+                 {g.constant({Type::Mat3, {1, 0, 0, 0, 1, 0, 0, 0, 1}}), p}) == p);
     // Not identities: they would change a value.
     CHECK(g.div(x, x) != one);
     CHECK(g.make(Op::Pow, {x, g.number(0.5)}) != g.make(Op::Sqrt, {x}));
 }
 
 TEST_CASE("folding agrees with the evaluation of the same op on inputs, for nasty arguments") {
-    const double nasty[] = {0, 1, -1, 0.5, -0.5, 2, -2, 3, -3, 1.5, -2.5, 1e-9, 1e9, -1e9, 3.14159265358979};
+    const double nasty[] = {
+        0, 1, -1, 0.5, -0.5, 2, -2, 3, -3, 1.5, -2.5, 1e-9, 1e9, -1e9, 3.14159265358979};
     for (std::size_t k = 0; k < op_count(); ++k) {
         const Op op = static_cast<Op>(k);
         const OpInfo &row = info(op);
@@ -108,7 +111,9 @@ TEST_CASE("folding agrees with the evaluation of the same op on inputs, for nast
 
 TEST_CASE("ints saturate, and division by zero is 0") {
     Graph g;
-    const auto value = [&](Op op, int a, int b) { return *g.as_number(g.make(op, {g.integer(a), g.integer(b)})); };
+    const auto value = [&](Op op, int a, int b) {
+        return *g.as_number(g.make(op, {g.integer(a), g.integer(b)}));
+    };
     CHECK(value(Op::Add, 2147483647, 1) == 2147483647);
     CHECK(value(Op::Mul, -2147483647, 2) == -2147483648.0);
     CHECK(value(Op::Sub, -2147483647 - 1, 1) == -2147483648.0);
@@ -132,9 +137,12 @@ TEST_CASE("matrices: columns, products and transposes") {
         return std::vector<double>(c.value.begin(), c.value.begin() + components(c.type));
     };
     for (bool hidden : {false, true}) {
-        const NodeId mn = hidden ? u.hide(m) : g.constant(m), vn = hidden ? u.hide(v) : g.constant(v);
-        CHECK(numbers(g.make(Op::MatMul, {mn, vn})) == std::vector<double>{1 * 5 + 3 * 6, 2 * 5 + 4 * 6});
-        CHECK(numbers(g.make(Op::MatMul, {vn, mn})) == std::vector<double>{1 * 5 + 2 * 6, 3 * 5 + 4 * 6});
+        const NodeId mn = hidden ? u.hide(m) : g.constant(m),
+                     vn = hidden ? u.hide(v) : g.constant(v);
+        CHECK(numbers(g.make(Op::MatMul, {mn, vn})) ==
+              std::vector<double>{1 * 5 + 3 * 6, 2 * 5 + 4 * 6});
+        CHECK(numbers(g.make(Op::MatMul, {vn, mn})) ==
+              std::vector<double>{1 * 5 + 2 * 6, 3 * 5 + 4 * 6});
         CHECK(numbers(g.make(Op::MatMul, {mn, mn})) == std::vector<double>{7, 10, 15, 22});
         CHECK(numbers(g.make(Op::Transpose, {mn})) == std::vector<double>{1, 3, 2, 4});
         CHECK(numbers(g.make(Op::Column, Type::Vec2, {mn}, 1)) == std::vector<double>{3, 4});
@@ -163,7 +171,8 @@ NodeId loop(Graph &g, NodeId count, NodeId start, NodeId y) {
     fold.count = count;
     fold.index = g.fresh_var(Type::Int);
     fold.vars = {g.fresh_var(Type::Float), g.fresh_var(Type::Float)};
-    fold.next = {g.add(fold.vars[0], g.mul(g.make(Op::ToFloat, {fold.index}), y)), g.add(fold.vars[1], g.number(1))};
+    fold.next = {g.add(fold.vars[0], g.mul(g.make(Op::ToFloat, {fold.index}), y)),
+                 g.add(fold.vars[1], g.number(1))};
     fold.condition = g.make(Op::Less, {fold.vars[0], g.number(100)});
     fold.max_count = 10;
     return g.make(Op::Fold, Type::Float, {start, g.number(0)}, g.add_fold(fold).index);
@@ -172,7 +181,8 @@ NodeId loop(Graph &g, NodeId count, NodeId start, NodeId y) {
 
 TEST_CASE("folds carry values, stop at their condition, and bind their variables") {
     Graph g;
-    const NodeId x = g.component(g.point(), 0), y = g.component(g.point(), 1), free = g.fresh_var(Type::Float);
+    const NodeId x = g.component(g.point(), 0), y = g.component(g.point(), 1),
+                 free = g.fresh_var(Type::Float);
     const NodeId sum = loop(g, g.integer(4), x, y);
     const NodeId turns = g.make(Op::FoldResult, Type::Float, {sum}, 1);
     CHECK(g.make(Op::FoldResult, Type::Float, {sum}, 0) == sum);

@@ -27,7 +27,8 @@ TEST_CASE("an unpainted subtrahend shows the minuend's paint, a painted one its 
         const ShapeId a = t.painted(t.sphere(1), color(t, red));
         ShapeId b = t.moved(t.sphere(1), 1, 0, 0);
         if (painted) b = t.painted(b, color(t, green));
-        Reference r(t.lowered(t.add(ShapeKind::Intersection, {a, t.add(ShapeKind::Complement, {b})})));
+        Reference r(
+            t.lowered(t.add(ShapeKind::Intersection, {a, t.add(ShapeKind::Complement, {b})})));
         CHECK(r.diffuse({-1, 0, 0}) == red);
         CHECK(r.diffuse({0.01, 0, 0}) == (painted ? green : red));
     }
@@ -37,7 +38,8 @@ TEST_CASE("the same holds for smooth differences") {
     Builder t;
     const ShapeId a = t.painted(t.sphere(1), color(t, red));
     const ShapeId b = t.moved(t.sphere(1), 1, 0, 0);
-    const ShapeId blend = t.add(ShapeKind::Blend, {t.add(ShapeKind::Complement, {a}), b}, {t.n(0.1), t.n(1)});
+    const ShapeId blend =
+        t.add(ShapeKind::Blend, {t.add(ShapeKind::Complement, {a}), b}, {t.n(0.1), t.n(1)});
     const Scene &scene = t.lowered(t.add(ShapeKind::Complement, {blend}));
     REQUIRE(verify(scene) == "");
     Reference r(scene);
@@ -48,8 +50,9 @@ TEST_CASE("the same holds for smooth differences") {
 
 TEST_CASE("an inner paint wins over an outer one; repaint overrides") {
     Builder t;
-    const ShapeId some = t.add(ShapeKind::Union, {t.painted(t.moved(t.sphere(1), -2, 0, 0), color(t, red)),
-                                                  t.moved(t.sphere(1), 2, 0, 0)});
+    const ShapeId some =
+        t.add(ShapeKind::Union, {t.painted(t.moved(t.sphere(1), -2, 0, 0), color(t, red)),
+                                 t.moved(t.sphere(1), 2, 0, 0)});
     SECTION("paint") {
         Reference r(t.lowered(t.painted(some, color(t, green))));
         CHECK(r.diffuse({-1, 0, 0}) == red);
@@ -68,10 +71,13 @@ TEST_CASE("an inner paint wins over an outer one; repaint overrides") {
 TEST_CASE("a material turns with what is painted") {
     // Coloured by its own x, then moved and turned: the material sees the point before that.
     Builder t;
-    const ShapeId ball = t.painted(t.sphere(1), t.g.splat(t.g.component(t.g.point(), 0), Type::Vec3));
-    const ShapeId turned = t.add(rotated(t.g, ball, rotation(t.g, t.v(0, 0, 1), t.n(std::acos(0.0)))));
+    const ShapeId ball =
+        t.painted(t.sphere(1), t.g.splat(t.g.component(t.g.point(), 0), Type::Vec3));
+    const ShapeId turned =
+        t.add(rotated(t.g, ball, rotation(t.g, t.v(0, 0, 1), t.n(std::acos(0.0)))));
     const ShapeId moved = t.moved(turned, 5, 0, 0);
-    const ShapeId grown = t.add(ShapeKind::Offset, {moved}, {t.n(0.1)}); // also through what is no min or max
+    const ShapeId grown =
+        t.add(ShapeKind::Offset, {moved}, {t.n(0.1)}); // also through what is no min or max
     Reference r(t.lowered(grown));
     CHECK(r.diffuse({5, 0.7, 0})[0] == Approx(0.7)); // x turned to y
     CHECK(r.diffuse({5.7, 0, 0})[0] == Approx(0).margin(1e-12));
@@ -79,8 +85,9 @@ TEST_CASE("a material turns with what is painted") {
 
 TEST_CASE("a flat paint and its point") {
     Builder t;
-    t.scene.shapes.materials.push_back({t.g.splat(t.g.component(t.g.point(Type::Vec2), 1), Type::Vec3),
-                                        t.v(1, 1, 1), t.n(32), t.v(0, 0, 0)});
+    t.scene.shapes.materials.push_back(
+        {t.g.splat(t.g.component(t.g.point(Type::Vec2), 1), Type::Vec3), t.v(1, 1, 1), t.n(32),
+         t.v(0, 0, 0)});
     const ShapeId flat = t.add(ShapeKind::Paint, {t.circle(1)}, {}, 0, 2);
     Reference r(t.lowered(t.add(ShapeKind::Extrude, {flat}, {t.n(1)})));
     CHECK(r.diffuse({0.3, 0.6, 0.4})[0] == Approx(0.6));
@@ -140,7 +147,8 @@ TEST_CASE("the normal that a material wants follows from the hits' points") {
     Builder t;
     const NodeId normal = t.g.make(Op::Normal, Type::Vec3, std::span<const NodeId>{});
     const ShapeId ball = t.painted(t.sphere(1), normal);
-    const ShapeId turned = t.add(rotated(t.g, ball, rotation(t.g, t.v(0, 0, 1), t.n(std::acos(0.0)))));
+    const ShapeId turned =
+        t.add(rotated(t.g, ball, rotation(t.g, t.v(0, 0, 1), t.n(std::acos(0.0)))));
     const Scene &scene = t.lowered(turned);
     CHECK(scene.surfaces[0].reads_normal);
     Reference r(scene);

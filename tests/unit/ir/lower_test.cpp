@@ -35,13 +35,17 @@ struct Two : Builder {
 
 TEST_CASE("combinations") {
     Two t;
-    SECTION("empty") { agrees(t.lowered(t.add(ShapeKind::Empty, {})), [](P) { return 1e9; }); }
+    SECTION("empty") {
+        agrees(t.lowered(t.add(ShapeKind::Empty, {})), [](P) { return 1e9; });
+    }
     SECTION("union") {
-        agrees(t.lowered(t.add(ShapeKind::Union, {t.a, t.b})), [](P p) { return std::min(a_of(p), b_of(p)); });
+        agrees(t.lowered(t.add(ShapeKind::Union, {t.a, t.b})),
+               [](P p) { return std::min(a_of(p), b_of(p)); });
     }
     SECTION("difference") {
         const ShapeId not_b = t.add(ShapeKind::Complement, {t.b});
-        agrees(t.lowered(t.add(ShapeKind::Intersection, {t.a, not_b})), [](P p) { return std::max(a_of(p), -b_of(p)); });
+        agrees(t.lowered(t.add(ShapeKind::Intersection, {t.a, not_b})),
+               [](P p) { return std::max(a_of(p), -b_of(p)); });
     }
     SECTION("exclusive or") {
         agrees(t.lowered(t.add(ShapeKind::Xor, {t.a, t.b})), [](P p) {
@@ -53,9 +57,11 @@ TEST_CASE("combinations") {
                [](P p) { return 0.3 * a_of(p) + 0.7 * b_of(p); });
     }
     SECTION("offset, shell, displacement") {
-        agrees(t.lowered(t.add(ShapeKind::Offset, {t.b}, {t.n(0.2)})), [](P p) { return b_of(p) - 0.2; });
+        agrees(t.lowered(t.add(ShapeKind::Offset, {t.b}, {t.n(0.2)})),
+               [](P p) { return b_of(p) - 0.2; });
         Two u;
-        agrees(u.lowered(u.add(ShapeKind::Shell, {u.b}, {u.n(0.2)})), [](P p) { return std::abs(b_of(p)) - 0.1; });
+        agrees(u.lowered(u.add(ShapeKind::Shell, {u.b}, {u.n(0.2)})),
+               [](P p) { return std::abs(b_of(p)) - 0.1; });
         Two w;
         const NodeId wave = w.g.make(Op::Sin, {w.g.component(w.g.point(), 1)});
         agrees(w.lowered(w.add(ShapeKind::Displace, {w.a}, {w.g.mul(w.n(0.1), wave)})),
@@ -74,8 +80,8 @@ TEST_CASE("blends are those of blends.h, folded in order") {
     for (int profile = 0; profile < 5; ++profile) {
         Two t;
         const ShapeId c = t.sphere(0.5);
-        const ShapeId blend =
-            t.add(ShapeKind::Blend, {t.a, t.b, c}, {t.n(0.4), t.n(3)}, static_cast<std::uint32_t>(profile));
+        const ShapeId blend = t.add(ShapeKind::Blend, {t.a, t.b, c}, {t.n(0.4), t.n(3)},
+                                    static_cast<std::uint32_t>(profile));
         const auto two = [profile](double x, double y) {
             switch (static_cast<Profile>(profile)) {
             case Profile::Smooth: return sem::blend_smooth(x, y, 0.4);
@@ -93,8 +99,8 @@ TEST_CASE("blends are those of blends.h, folded in order") {
 TEST_CASE("seams and the pseudo-norm are those of blends.h") {
     for (int kind = 0; kind < 4; ++kind) {
         Two t;
-        const ShapeId seam =
-            t.add(ShapeKind::Seam, {t.a, t.b}, {t.n(0.2), t.n(0.1)}, static_cast<std::uint32_t>(kind));
+        const ShapeId seam = t.add(ShapeKind::Seam, {t.a, t.b}, {t.n(0.2), t.n(0.1)},
+                                   static_cast<std::uint32_t>(kind));
         agrees(t.lowered(seam), [&](P p) {
             const double a = a_of(p), b = b_of(p);
             switch (static_cast<SeamKind>(kind)) {
@@ -117,29 +123,38 @@ TEST_CASE("maps act on the object") {
     const auto f = [](P p) { return box_distance({p[0] - 0.7, p[1], p[2]}, {1, 2, 0.5}); };
     SECTION("a quarter turn about y takes x to -z") {
         const NodeId turn = rotation(t.g, t.v(0, 1, 0), t.n(std::acos(0.0)));
-        agrees(t.lowered(t.add(rotated(t.g, child, turn))), [&](P p) { return f({-p[2], p[1], p[0]}); });
+        agrees(t.lowered(t.add(rotated(t.g, child, turn))), [&](P p) {
+            return f({-p[2], p[1], p[0]});
+        });
     }
     SECTION("euler angles: about x, then y, then z") {
         const double q = std::acos(0.0);
         // x -> (x) x -> (y) -z; y -> z -> x -> y; z -> -y -> -y -> x
-        agrees(t.lowered(t.add(rotated(t.g, child, rotation_euler(t.g, t.v(q, q, q))))),
-               [&](P p) { return f({-p[2], p[1], p[0]}); });
+        agrees(t.lowered(t.add(rotated(t.g, child, rotation_euler(t.g, t.v(q, q, q))))), [&](P p) {
+            return f({-p[2], p[1], p[0]});
+        });
     }
     SECTION("orient") {
         const NodeId turn = rotation_between(t.g, t.v(2, 0, 0), t.v(0, 3, 0));
-        agrees(t.lowered(t.add(rotated(t.g, child, turn))), [&](P p) { return f({p[1], -p[0], p[2]}); });
+        agrees(t.lowered(t.add(rotated(t.g, child, turn))), [&](P p) {
+            return f({p[1], -p[0], p[2]});
+        });
         const NodeId back = rotation_between(t.g, t.v(1, 0, 0), t.v(-1, 0, 0));
         Reference reference(t.g);
         const Constant m = reference(back);
         CHECK(m.value[0] == Approx(-1));
-        CHECK(m.value[4] * m.value[8] - m.value[5] * m.value[7] == Approx(-1)); // a turn, no reflection
+        CHECK(m.value[4] * m.value[8] - m.value[5] * m.value[7] ==
+              Approx(-1)); // a turn, no reflection
     }
     SECTION("uniform and other scales") {
-        agrees(t.lowered(t.add(scaled(t.g, child, t.v(2, 2, 2)))), [&](P p) { return 2 * f({p[0] / 2, p[1] / 2, p[2] / 2}); });
+        agrees(t.lowered(t.add(scaled(t.g, child, t.v(2, 2, 2)))), [&](P p) {
+            return 2 * f({p[0] / 2, p[1] / 2, p[2] / 2});
+        });
         Builder u;
         const ShapeId same = u.moved(u.box(1, 2, 0.5), 0.7, 0, 0);
-        agrees(u.lowered(u.add(scaled(u.g, same, u.v(2, 0.5, -1)))),
-               [&](P p) { return 0.5 * f({p[0] / 2, p[1] / 0.5, -p[2]}); });
+        agrees(u.lowered(u.add(scaled(u.g, same, u.v(2, 0.5, -1)))), [&](P p) {
+            return 0.5 * f({p[0] / 2, p[1] / 0.5, -p[2]});
+        });
     }
     SECTION("twist") {
         agrees(t.lowered(t.add(twisted(t.g, child, t.n(0.8), 1))), [&](P p) {
@@ -150,7 +165,8 @@ TEST_CASE("maps act on the object") {
     SECTION("bend: a straight rod along y curves towards x") {
         agrees(t.lowered(t.add(bent(t.g, child, t.n(0.4), 1, 0))), [&](P p) {
             const double a = 0.4 * p[1];
-            return f({std::cos(a) * p[0] - std::sin(a) * p[1], std::sin(a) * p[0] + std::cos(a) * p[1], p[2]});
+            return f({std::cos(a) * p[0] - std::sin(a) * p[1],
+                      std::sin(a) * p[0] + std::cos(a) * p[1], p[2]});
         });
         Builder u;
         const ShapeId rod = u.box(0.1, 2, 0.1);
@@ -165,8 +181,9 @@ TEST_CASE("maps act on the object") {
         });
     }
     SECTION("mirror, elongate, revolve, distort") {
-        agrees(t.lowered(t.add(folded(t.g, child, mirror_point(t.g, t.g.point(), 0)))),
-               [&](P p) { return f({std::abs(p[0]), p[1], p[2]}); });
+        agrees(t.lowered(t.add(folded(t.g, child, mirror_point(t.g, t.g.point(), 0)))), [&](P p) {
+            return f({std::abs(p[0]), p[1], p[2]});
+        });
         Builder u;
         const NodeId q = elongate_point(u.g, u.g.point(), u.v(1, 0, 0));
         agrees(u.lowered(u.add(folded(u.g, u.sphere(0.5), q))), [](P p) {
@@ -178,14 +195,16 @@ TEST_CASE("maps act on the object") {
         Builder d;
         const ShapeId warped = d.add(distorted(d.g, d.sphere(1), d.g.make(Op::Sin, {d.g.point()})));
         d.fact(warped).lipschitz = d.n(2);
-        agrees(d.lowered(warped),
-               [](P p) { return (length({std::sin(p[0]), std::sin(p[1]), std::sin(p[2])}) - 1) / 2; });
+        agrees(d.lowered(warped), [](P p) {
+            return (length({std::sin(p[0]), std::sin(p[1]), std::sin(p[2])}) - 1) / 2;
+        });
     }
 }
 
 TEST_CASE("each leaf of the outermost tree is divided by its own bound") {
     Builder t;
-    const ShapeId steep = t.leaf(t.g.mul(t.n(4), t.g.sub(t.g.make(Op::Length, {t.g.point()}), t.n(1))));
+    const ShapeId steep =
+        t.leaf(t.g.mul(t.n(4), t.g.sub(t.g.make(Op::Length, {t.g.point()}), t.n(1))));
     const ShapeId flat = t.leaf(t.g.mul(t.n(0.5), t.g.component(t.g.point(), 1)));
     const ShapeId grown = t.add(ShapeKind::Offset, {steep}, {t.n(2)}); // takes the raw field
     const ShapeId far = t.moved(grown, 5, 0, 0);
@@ -204,11 +223,16 @@ TEST_CASE("each leaf of the outermost tree is divided by its own bound") {
 
 TEST_CASE("a guarded shape is never nearer than its box") {
     Builder t;
-    const ShapeId weak = t.leaf(t.g.mul(t.n(0.1), t.g.sub(t.g.make(Op::Length, {t.g.point()}), t.n(1))));
+    const ShapeId weak =
+        t.leaf(t.g.mul(t.n(0.1), t.g.sub(t.g.make(Op::Length, {t.g.point()}), t.n(1))));
     t.fact(weak).guard = true;
     t.fact(weak).bounds = {{-1, -1, -1}, {1, 1, 1}};
-    agrees(t.lowered(weak),
-           [](P p) { return std::max(0.1 * (length(p) - 1), fathom::test::box_distance(p, {2, 2, 2})); }, 5);
+    agrees(
+        t.lowered(weak),
+        [](P p) {
+            return std::max(0.1 * (length(p) - 1), fathom::test::box_distance(p, {2, 2, 2}));
+        },
+        5);
 }
 
 TEST_CASE("within: the part inside the region, and a bound outside") {
@@ -219,19 +243,26 @@ TEST_CASE("within: the part inside the region, and a bound outside") {
     };
     Builder t;
     const auto clamp3 = [](P p, P lo, P hi) {
-        return P{std::clamp(p[0], lo[0], hi[0]), std::clamp(p[1], lo[1], hi[1]), std::clamp(p[2], lo[2], hi[2])};
+        return P{std::clamp(p[0], lo[0], hi[0]), std::clamp(p[1], lo[1], hi[1]),
+                 std::clamp(p[2], lo[2], hi[2])};
     };
     const std::vector<Case> cases{
         {{RegionKind::Ball, t.v(0.5, 0, 0), t.n(1.2), 1, {}},
-         [](P p) { return length(minus(p, {0.5, 0, 0})) - 1.2; },
+         [](P p) {
+             return length(minus(p, {0.5, 0, 0})) - 1.2;
+         },
          [](P p) {
              const P v = minus(p, {0.5, 0, 0});
              const double s = std::min(1.0, 1.2 / length(v));
              return P{0.5 + s * v[0], s * v[1], s * v[2]};
          }},
         {{RegionKind::Box, t.v(0, 0.5, 0), t.v(2, 1, 3), 1, {}},
-         [](P p) { return box_distance(minus(p, {0, 0.5, 0}), {2, 1, 3}); },
-         [&](P p) { return clamp3(p, {-1, 0, -1.5}, {1, 1, 1.5}); }},
+         [](P p) {
+             return box_distance(minus(p, {0, 0.5, 0}), {2, 1, 3});
+         },
+         [&](P p) {
+             return clamp3(p, {-1, 0, -1.5}, {1, 1, 1.5});
+         }},
         {{RegionKind::Tube, {}, t.n(0.8), 2, {}},
          [](P p) { return std::hypot(p[0], p[1]) - 0.8; },
          [](P p) {
@@ -245,13 +276,16 @@ TEST_CASE("within: the part inside the region, and a bound outside") {
         Builder u;
         u.scene.graph = t.scene.graph;
         const NodeId p = u.g.point();
-        const auto wave = [&](double k, int i) { return u.g.make(Op::Sin, {u.g.mul(u.n(k), u.g.component(p, i))}); };
+        const auto wave = [&](double k, int i) {
+            return u.g.make(Op::Sin, {u.g.mul(u.n(k), u.g.component(p, i))});
+        };
         const ShapeId field = u.leaf(u.g.add(u.g.add(wave(2, 0), wave(3, 1)), u.g.component(p, 2)));
         const ShapeId part = u.within(field, c.region);
         u.fact(field).lipschitz = u.n(bound);
         const auto expected = [&](P at) {
             const double sd = c.distance(at), g = f(sd > 0 ? c.nearest(at) : at) / bound;
-            return sd > 0 ? std::hypot(length(minus(at, c.nearest(at))), std::max(g, 0.0)) : std::max(g, sd);
+            return sd > 0 ? std::hypot(length(minus(at, c.nearest(at))), std::max(g, 0.0))
+                          : std::max(g, sd);
         };
         const Scene &scene = u.lowered(part);
         agrees(scene, expected);
@@ -261,13 +295,15 @@ TEST_CASE("within: the part inside the region, and a bound outside") {
         for (int i = 0; i < 500; ++i) {
             const P a = random.point(2), d = random.point(0.3);
             const P b{a[0] + d[0], a[1] + d[1], a[2] + d[2]};
-            CHECK(std::abs(reference.distance(a) - reference.distance(b)) <= length(d) * (1 + 1e-9));
+            CHECK(std::abs(reference.distance(a) - reference.distance(b)) <=
+                  length(d) * (1 + 1e-9));
         }
     }
 }
 
 TEST_CASE("a carved region removes the solid there, and stays a bound") {
-    // The whole ball is solid, less a tube of radius 0.3 about y: outside the tube's wall the distance is known.
+    // The whole ball is solid, less a tube of radius 0.3 about y: outside the tube's wall the
+    // distance is known.
     Builder t;
     const ShapeId solid = t.leaf(t.n(-1));
     Region region{RegionKind::Ball, t.v(0, 0, 0), t.n(2), 1, {}};
@@ -285,7 +321,8 @@ TEST_CASE("a carved region removes the solid there, and stays a bound") {
 }
 
 TEST_CASE("raw fields do not depend on proofs") {
-    // An offset of a part within a region: the surface stays where it is when the bound is proved tighter.
+    // An offset of a part within a region: the surface stays where it is when the bound is proved
+    // tighter.
     for (double bound : {1.0, 4.0}) {
         Builder t;
         const NodeId p = t.g.point();
@@ -301,7 +338,8 @@ TEST_CASE("raw fields do not depend on proofs") {
 
 TEST_CASE("a displaced shape is left to its smooth field outside the displacement's reach") {
     Builder t;
-    const NodeId wave = t.g.mul(t.n(0.1), t.g.make(Op::Sin, {t.g.mul(t.n(40), t.g.component(t.g.point(), 1))}));
+    const NodeId wave =
+        t.g.mul(t.n(0.1), t.g.make(Op::Sin, {t.g.mul(t.n(40), t.g.component(t.g.point(), 1))}));
     const ShapeId rough = t.add(ShapeKind::Displace, {t.sphere(1)}, {wave});
     t.fact(rough).lipschitz = t.n(5); // 1 + 0.1*40
     t.fact(rough).outward = 0.1;

@@ -11,7 +11,8 @@ namespace {
 using Copy = std::function<double(P, P)>; // (point in the cell's space, id) -> distance
 
 // The union of the copies, written out.
-double brute_lattice(P p, P cell, std::array<int, 3> lo, std::array<int, 3> hi, P shift, bool mirrored, const Copy &f) {
+double brute_lattice(P p, P cell, std::array<int, 3> lo, std::array<int, 3> hi, P shift,
+                     bool mirrored, const Copy &f) {
     double least = 1e9;
     for (int i = lo[0]; i <= hi[0]; ++i)
         for (int j = lo[1]; j <= hi[1]; ++j)
@@ -27,7 +28,9 @@ double brute_lattice(P p, P cell, std::array<int, 3> lo, std::array<int, 3> hi, 
     return least;
 }
 
-void plan(Builder &t, ShapeId repeat, std::array<int, 3> neighbors) { t.fact(repeat).repeat.neighbors = neighbors; }
+void plan(Builder &t, ShapeId repeat, std::array<int, 3> neighbors) {
+    t.fact(repeat).repeat.neighbors = neighbors;
+}
 
 // A motif that fits its cell and lies to one side of it.
 ShapeId motif(Builder &t) { return t.moved(t.sphere(0.15), 0.3, 0.1, -0.2); }
@@ -53,7 +56,8 @@ TEST_CASE("an endless lattice of equal copies: two a axis are exact") {
         const ShapeId all = t.lattice(motif(t), {1, 1.2, 1}, {1e9, 1e9, 1e9});
         plan(t, all, {neighbors, neighbors, neighbors}); // 8 are written out, 27 and 64 looped over
         equals(t.lowered(all), 3, [](P p) {
-            return brute_lattice(p, {1, 1.2, 1}, {-5, -5, -5}, {5, 5, 5}, {0, 0, 0}, false, motif_at);
+            return brute_lattice(p, {1, 1.2, 1}, {-5, -5, -5}, {5, 5, 5}, {0, 0, 0}, false,
+                                 motif_at);
         });
     }
 }
@@ -115,8 +119,9 @@ TEST_CASE("copies that differ: the guard keeps a bound, and the surface is the u
         for (int i = 0; i < 600; ++i) {
             const P p = random.point(3);
             const double truth =
-                endless ? brute_lattice(p, {1, 0, 1}, {-6, 0, -6}, {6, 0, 6}, {0, 0, 0}, false, copy)
-                        : brute_lattice(p, {1, 0, 1}, {0, 0, 0}, {4, 0, 4}, {2, 0, 2}, false, copy);
+                endless
+                    ? brute_lattice(p, {1, 0, 1}, {-6, 0, -6}, {6, 0, 6}, {0, 0, 0}, false, copy)
+                    : brute_lattice(p, {1, 0, 1}, {0, 0, 0}, {4, 0, 4}, {2, 0, 2}, false, copy);
             const double d = reference.distance(p);
             CAPTURE(p[0], p[1], p[2]);
             CHECK(d <= truth + 1e-9);
@@ -124,7 +129,7 @@ TEST_CASE("copies that differ: the guard keeps a bound, and the surface is the u
             exact += std::abs(d - truth) < 1e-9;
         }
         CHECK(exact > 200); // not merely a bound
-        if (!endless) { // from afar the guard is a box, not a slab: it lets the ray come near
+        if (!endless) {     // from afar the guard is a box, not a slab: it lets the ray come near
             const P far{0, 40, 0};
             CHECK(reference.distance(far) > 39);
         }
@@ -144,7 +149,8 @@ TEST_CASE("rings of copies") {
                 for (int k = 0; k < count; ++k) {
                     // the copy turned by a counter-clockwise seen from +y: x to -z
                     const double a = k * 8 * std::atan(1.0) / count;
-                    const P c{1.5 * std::cos(a) - 0.15 * std::sin(a), 0.1, -1.5 * std::sin(a) - 0.15 * std::cos(a)};
+                    const P c{1.5 * std::cos(a) - 0.15 * std::sin(a), 0.1,
+                              -1.5 * std::sin(a) - 0.15 * std::cos(a)};
                     least = std::min(least, length(minus(p, c)) - 0.2);
                 }
                 return least;
@@ -161,7 +167,8 @@ TEST_CASE("a ring's copies know their number") {
     Reference reference(t.lowered(all));
     for (int k = 0; k < 6; ++k) {
         const double a = k * 8 * std::atan(1.0) / 6;
-        CHECK(reference.distance({3 * std::cos(a), 3 * std::sin(a), 0}) == Approx(1 - (0.1 + 0.05 * k)));
+        CHECK(reference.distance({3 * std::cos(a), 3 * std::sin(a), 0}) ==
+              Approx(1 - (0.1 + 0.05 * k)));
     }
 }
 
@@ -173,15 +180,21 @@ TEST_CASE("families: a loop over rows") {
         for (int i = 0; i < 24; ++i) table.data.push_back(static_cast<float>(random.in(0.2, 1)));
         const TableId rows = t.g.add_table(table);
         Family family{t.g.fresh_var(Type::Int), 6, smooth};
-        const NodeId center = t.g.make(Op::TableRead, Type::Vec3, {family.index}, table_slot(rows, 0));
-        const NodeId size = t.g.make(Op::TableRead, Type::Float, {family.index}, table_slot(rows, 3));
+        const NodeId center =
+            t.g.make(Op::TableRead, Type::Vec3, {family.index}, table_slot(rows, 0));
+        const NodeId size =
+            t.g.make(Op::TableRead, Type::Float, {family.index}, table_slot(rows, 3));
         const ShapeId ball = t.add(translated(t.g, t.sphere(t.g.mul(size, t.n(0.3))), center));
         t.scene.shapes.families.push_back(family);
         const ShapeId all = t.add(ShapeKind::Many, {t.painted(ball, t.g.splat(size, Type::Vec3))},
                                   smooth ? std::vector{t.n(0.2)} : std::vector<NodeId>{});
         const Scene &scene = t.lowered(all);
-        const auto row = [&](int i, std::size_t c) { return double(table.data[static_cast<std::size_t>(4 * i) + c]); };
-        const auto ball_at = [&](P p, int i) { return length(minus(p, {row(i, 0), row(i, 1), row(i, 2)})) - 0.3 * row(i, 3); };
+        const auto row = [&](int i, std::size_t c) {
+            return double(table.data[static_cast<std::size_t>(4 * i) + c]);
+        };
+        const auto ball_at = [&](P p, int i) {
+            return length(minus(p, {row(i, 0), row(i, 1), row(i, 2)})) - 0.3 * row(i, 3);
+        };
         equals(scene, 2, [&](P p) {
             double result = 1e9;
             for (int i = 0; i < 6; ++i) {

@@ -30,8 +30,8 @@ struct Builder {
     NodeId v(double x, double y, double z) { return g.vec3(x, y, z); }
 
     ShapeId add(Shape shape) { return scene.shapes.add(std::move(shape)); }
-    ShapeId add(ShapeKind kind, std::vector<ShapeId> children, std::vector<NodeId> args = {}, std::uint32_t payload = 0,
-                std::uint8_t dims = 3) {
+    ShapeId add(ShapeKind kind, std::vector<ShapeId> children, std::vector<NodeId> args = {},
+                std::uint32_t payload = 0, std::uint8_t dims = 3) {
         Shape shape;
         shape.kind = kind;
         shape.dims = dims;
@@ -40,25 +40,33 @@ struct Builder {
         shape.payload = payload;
         return add(std::move(shape));
     }
-    ShapeId leaf(NodeId field, std::uint8_t dims = 3) { return add(ShapeKind::Leaf, {}, {field}, 0, dims); }
+    ShapeId leaf(NodeId field, std::uint8_t dims = 3) {
+        return add(ShapeKind::Leaf, {}, {field}, 0, dims);
+    }
     ShapeId sphere(NodeId radius) { return leaf(g.sub(g.make(Op::Length, {g.point()}), radius)); }
     ShapeId sphere(double radius) { return sphere(n(radius)); }
-    ShapeId circle(double radius) { return leaf(g.sub(g.make(Op::Length, {g.point(Type::Vec2)}), n(radius)), 2); }
+    ShapeId circle(double radius) {
+        return leaf(g.sub(g.make(Op::Length, {g.point(Type::Vec2)}), n(radius)), 2);
+    }
     ShapeId box(double x, double y, double z) {
         const NodeId d = g.sub(g.make(Op::Abs, {g.point()}), v(x / 2, y / 2, z / 2));
         const NodeId out = g.make(Op::Length, {g.make(Op::Max, {d, v(0, 0, 0)})});
-        const NodeId most =
-            g.make(Op::Max, {g.make(Op::Max, {g.component(d, 0), g.component(d, 1)}), g.component(d, 2)});
+        const NodeId most = g.make(
+            Op::Max, {g.make(Op::Max, {g.component(d, 0), g.component(d, 1)}), g.component(d, 2)});
         return leaf(g.add(out, g.make(Op::Min, {most, n(0)})));
     }
-    ShapeId moved(ShapeId child, double x, double y, double z) { return add(translated(g, child, v(x, y, z))); }
+    ShapeId moved(ShapeId child, double x, double y, double z) {
+        return add(translated(g, child, v(x, y, z)));
+    }
     ShapeId painted(ShapeId child, NodeId diffuse, ShapeKind kind = ShapeKind::Paint) {
         scene.shapes.materials.push_back({diffuse, v(1, 1, 1), n(32), v(0, 0, 0)});
-        return add(kind, {child}, {}, static_cast<std::uint32_t>(scene.shapes.materials.size() - 1));
+        return add(kind, {child}, {},
+                   static_cast<std::uint32_t>(scene.shapes.materials.size() - 1));
     }
     ShapeId within(ShapeId child, Region region) {
         scene.shapes.regions.push_back(std::move(region));
-        return add(ShapeKind::Within, {child}, {}, static_cast<std::uint32_t>(scene.shapes.regions.size() - 1));
+        return add(ShapeKind::Within, {child}, {},
+                   static_cast<std::uint32_t>(scene.shapes.regions.size() - 1));
     }
     ShapeId lattice(ShapeId child, P cell, P count, NodeId id = {}, bool mirrored = false) {
         Repetition r;
@@ -66,7 +74,8 @@ struct Builder {
         r.mirrored = mirrored;
         r.id = id;
         scene.shapes.repetitions.push_back(r);
-        return add(ShapeKind::Repeat, {child}, {v(cell[0], cell[1], cell[2]), v(count[0], count[1], count[2])},
+        return add(ShapeKind::Repeat, {child},
+                   {v(cell[0], cell[1], cell[2]), v(count[0], count[1], count[2])},
                    static_cast<std::uint32_t>(scene.shapes.repetitions.size() - 1));
     }
     ShapeId ring(ShapeId child, int count, int axis, NodeId id = {}) {

@@ -1,4 +1,5 @@
-// What the ops promise: totality, ranges, slopes, the blends' support and contours, the hash's mixing.
+// What the ops promise: totality, ranges, slopes, the blends' support and contours, the hash's
+// mixing.
 #include "ir/semantics.h"
 #include "tests/unit/ir/scenes.h"
 
@@ -68,7 +69,9 @@ TEST_CASE("noise: range, slope, and how near the bound is") {
     keeps(sem::simplex<double>, -sem::simplex_range, sem::simplex_range, sem::simplex_slope, 0.7);
     keeps(sem::value_noise<double>, 0, 1, sem::value_noise_slope, 0.75);
     keeps(sem::worley<double>, 0, 1, sem::worley_slope, 0.99);
-    const auto spots = [](double x, double y, double z) { return sem::spot_noise(x, y, z, 0.8, 1.0); };
+    const auto spots = [](double x, double y, double z) {
+        return sem::spot_noise(x, y, z, 0.8, 1.0);
+    };
     keeps(spots, -sem::spot_range, sem::spot_range, sem::spot_slope / 0.8, 0.05);
 }
 
@@ -76,7 +79,8 @@ TEST_CASE("Perlin's slope of 3.75 is reached at a cell's centre") {
     // For some cell among many: all eight gradients point along one diagonal pair.
     double most = 0;
     for (int i = 0; i < 100000; ++i)
-        most = std::max(most, slope(sem::perlin<double>, {i % 100 + 0.5, i / 100 % 100 + 0.5, i / 10000 + 0.5}));
+        most = std::max(most, slope(sem::perlin<double>,
+                                    {i % 100 + 0.5, i / 100 % 100 + 0.5, i / 10000 + 0.5}));
     CHECK(most > 0.85 * 3.75);
     CHECK(most <= 3.75 + 1e-6);
 }
@@ -91,8 +95,7 @@ TEST_CASE("noise is the same in float and double, seamless at cell walls, and de
         CHECK(sem::worley(x, y, z) == Approx(sem::worley<double>(x, y, z)).margin(2e-5));
         CHECK(sem::value_noise(x, y, z) == Approx(sem::value_noise<double>(x, y, z)).margin(2e-5));
     }
-    for (double far : {1e10, -1e10, 1e300})
-        CHECK(std::isfinite(sem::perlin(far, far, far)));
+    for (double far : {1e10, -1e10, 1e300}) CHECK(std::isfinite(sem::perlin(far, far, far)));
     CHECK(sem::perlin(3.0, -7.0, 12.0) == 0);
 }
 
@@ -102,13 +105,16 @@ TEST_CASE("worley is min(1, distance to the nearest point), by search twice as w
     for (int i = 0; i < 20000; ++i) {
         const P p = random.point(30);
         double least = 1;
-        const std::array<int, 3> cell{int(std::floor(p[0])), int(std::floor(p[1])), int(std::floor(p[2]))};
+        const std::array<int, 3> cell{int(std::floor(p[0])), int(std::floor(p[1])),
+                                      int(std::floor(p[2]))};
         for (int a = -2; a <= 2; ++a)
             for (int b = -2; b <= 2; ++b)
                 for (int c = -2; c <= 2; ++c) {
-                    const auto at = sem::worley_point<double>(sem::hash_lattice(
-                        std::uint32_t(cell[0] + a), std::uint32_t(cell[1] + b), std::uint32_t(cell[2] + c), 0x1b56c4e9u));
-                    least = std::min(least, length(minus(p, {cell[0] + a + at.x, cell[1] + b + at.y, cell[2] + c + at.z})));
+                    const auto at = sem::worley_point<double>(
+                        sem::hash_lattice(std::uint32_t(cell[0] + a), std::uint32_t(cell[1] + b),
+                                          std::uint32_t(cell[2] + c), 0x1b56c4e9u));
+                    least = std::min(least, length(minus(p, {cell[0] + a + at.x, cell[1] + b + at.y,
+                                                             cell[2] + c + at.z})));
                 }
         CHECK(sem::worley(p[0], p[1], p[2]) == Approx(least));
         cut += least >= 1;
@@ -124,20 +130,25 @@ TEST_CASE("the hash: neighbours are independent, and equal numbers hash equal") 
     for (int x = -20; x < 20; ++x)
         for (int y = -20; y < 20; ++y)
             for (int z = -20; z < 20; ++z, ++n) {
-                const std::uint32_t h = sem::hash_lattice(std::uint32_t(x), std::uint32_t(y), std::uint32_t(z), 0u);
+                const std::uint32_t h =
+                    sem::hash_lattice(std::uint32_t(x), std::uint32_t(y), std::uint32_t(z), 0u);
                 seen.insert(h);
                 const double u = sem::unit<double>(h) - 0.5;
-                const double w = sem::unit<double>(sem::hash_lattice(std::uint32_t(x + 1), std::uint32_t(y), std::uint32_t(z), 0u)) - 0.5;
+                const double w =
+                    sem::unit<double>(sem::hash_lattice(std::uint32_t(x + 1), std::uint32_t(y),
+                                                        std::uint32_t(z), 0u)) -
+                    0.5;
                 mean += u;
                 beside += u * w * 12;
             }
     CHECK(seen.size() + 8 > std::size_t(n));
-    CHECK(std::abs(mean / n) < 0.005); // deviation 0.29/sqrt(64000) = 0.0011
+    CHECK(std::abs(mean / n) < 0.005);  // deviation 0.29/sqrt(64000) = 0.0011
     CHECK(std::abs(beside / n) < 0.02); // deviation 0.004
     // One bit in moves half the bits out.
     double flips = 0;
     for (std::uint32_t i = 0; i < 3200; ++i)
-        flips += std::popcount(sem::scramble(i * 77u) ^ sem::scramble((i * 77u) ^ (1u << (i % 32))));
+        flips +=
+            std::popcount(sem::scramble(i * 77u) ^ sem::scramble((i * 77u) ^ (1u << (i % 32))));
     CHECK(flips / 3200 == Approx(16).margin(0.3));
 }
 
@@ -164,8 +175,10 @@ TEST_CASE("blends: min outside their support, never above it, and as steep as sa
             CHECK(v == Approx(all(profile, b, a)).margin(1e-12));
             // The sum of the weights' sizes: the slope where both gradients are parallel.
             const double e = 1e-7;
-            const double wa = (all(profile, a + e, b) - v) / e, wb = (all(profile, a, b + e) - v) / e;
-            steepest = std::max(steepest, columns ? std::hypot(wa, wb) : std::abs(wa) + std::abs(wb));
+            const double wa = (all(profile, a + e, b) - v) / e,
+                         wb = (all(profile, a, b + e) - v) / e;
+            steepest =
+                std::max(steepest, columns ? std::hypot(wa, wb) : std::abs(wa) + std::abs(wb));
         }
         CHECK(steepest == Approx(1).margin(1e-4));
     }
@@ -173,12 +186,14 @@ TEST_CASE("blends: min outside their support, never above it, and as steep as sa
 
 TEST_CASE("blends have the contour that they are named for") {
     const double r = 0.7;
-    // Between the walls a = 0 and b = 0: points of the fillet's circle, of the chamfer's line, of the steps, of the columns.
+    // Between the walls a = 0 and b = 0: points of the fillet's circle, of the chamfer's line, of
+    // the steps, of the columns.
     for (double t = 0.05; t < 1.55; t += 0.1) {
         const double a = r - r * std::cos(t), b = r - r * std::sin(t);
         CHECK(sem::blend_round(a, b, r) == Approx(0).margin(1e-12));
     }
-    for (double t = 0; t <= 1; t += 0.125) CHECK(sem::blend_chamfer(t * r, (1 - t) * r, r) == Approx(0).margin(1e-12));
+    for (double t = 0; t <= 1; t += 0.125)
+        CHECK(sem::blend_chamfer(t * r, (1 - t) * r, r) == Approx(0).margin(1e-12));
     // Two steps: treads at b = 2r/3 for a in 0..r/3, and at b = r/3 for a in r/3..2r/3.
     for (double t = 0.01; t < 0.33; t += 0.05) {
         CHECK(sem::blend_stairs(t * r, 2 * r / 3, r, 2.0) == Approx(0).margin(1e-12));
@@ -186,7 +201,8 @@ TEST_CASE("blends have the contour that they are named for") {
     }
     // The columns' outermost reach is a tangent of a circle of radius c, and none comes past r.
     const double c = r * std::sqrt(2.0) / (4 + std::sqrt(2.0)), line = (r - 2 * c) / 2;
-    CHECK(sem::blend_columns(line + c / std::sqrt(2.0), line + c / std::sqrt(2.0), r, 3.0) == Approx(0).margin(1e-12));
+    CHECK(sem::blend_columns(line + c / std::sqrt(2.0), line + c / std::sqrt(2.0), r, 3.0) ==
+          Approx(0).margin(1e-12));
     CHECK(sem::blend_smooth(r / 4, r / 4, r) == Approx(0).margin(1e-12));
 }
 

@@ -1,0 +1,188 @@
+// What hangs below a node: what it reads, which variables are free in it, and copies with parts
+// replaced.
+#include "ir/graph.h"
+
+#include <algorithm>
+#include <unordered_set>
+
+namespace fathom::ir {
+namespace {
+
+std::vector<NodeId> body_of(const Fold &fold) {
+    std::vector<NodeId> body{fold.count};
+    if (fold.condition) body.push_back(fold.condition);
+    body.insert(body.end(), fold.next.begin(), fold.next.end());
+    return body;
+}
+
+// Variables are made for one binder, so the free ones are those that no fold below binds.
+std::vector<NodeId> unbound(const Graph &graph, std::vector<NodeId> stack) {
+    std::unordered_set<NodeId> seen, bound;
+    std::vector<NodeId> found;
+    while (!stack.empty()) {
+        const NodeId id = stack.back();
+        stack.pop_back();
+        const Node &node = graph[id];
+        if (!graph.reads(id).free_vars || !seen.insert(id).second) continue;
+        if (node.op == Op::Var) found.push_back(id);
+        if (node.op == Op::Fold) {
+            const Fold &fold = graph.fold(FoldId{std::size_t{node.payload}});
+            bound.insert(fold.index);
+            bound.insert(fold.vars.begin(), fold.vars.end());
+            for (NodeId part : body_of(fold)) stack.push_back(part);
+        }
+        for (NodeId arg : graph.args(id)) stack.push_back(arg);
+    }
+    std::erase_if(found, [&](NodeId id) { return bound.contains(id); });
+    std::sort(found.begin(), found.end(),
+              [&](NodeId a, NodeId b) { return graph[a].payload < graph[b].payload; });
+    return found;
+}
+
+} // namespace
+
+Graph::Reads Graph::reads_of(const Node &node) const {
+    Reads reads;
+    const auto join = [&](Reads other) {
+        reads.point |= other.point;
+        reads.normal |= other.normal;
+        reads.direction |= other.direction;
+        reads.time |= other.time;
+        reads.params |= other.params;
+        reads.free_vars |= other.free_vars;
+    };
+    for (std::uint32_t i = 0; i < node.count; ++i) join(reads_[args_[node.first + i].index]);
+    const auto join_function = [&](FunctionId id) {
+        const Reads body = reads_[function(id).result.index];
+        reads.time |= body.time;
+        reads.params |= body.params;
+    };
+    if (node.op == Op::Point) reads.point = true;
+    if (node.op == Op::Normal) reads.normal = true;
+    if (node.op == Op::Direction) reads.direction = true;
+    if (node.op == Op::Time) reads.time = true;
+    if (node.op == Op::Param) reads.params = true;
+    if (node.op == Op::Var) reads.free_vars = true;
+    if (node.op == Op::Call) join_function(FunctionId{std::size_t{node.payload}});
+    if (node.op == Op::Cached) join_function(cache(CacheId{std::size_t{node.payload}}).field);
+    if (node.op == Op::Fold) {
+        const Fold &fold = folds_[FoldId{std::size_t{node.payload}}];
+        const bool outside = reads.free_vars;
+        const std::vector<NodeId> body = body_of(fold);
+        for (NodeId part : body) join(reads_[part.index]);
+        reads.free_vars = outside;
+        if (!outside) {
+            std::vector<NodeId> free = unbound(*this, body);
+            std::erase_if(free, [&](NodeId id) {
+                return id == fold.index ||
+                       std::find(fold.vars.begin(), fold.vars.end(), id) != fold.vars.end();
+            });
+            reads.free_vars = !free.empty();
+        }
+    }
+    return reads;
+}
+
+std::vector<NodeId> Graph::free_vars(NodeId id) const { return unbound(*this, {id}); }
+
+// -- copying
+
+namespace {
+
+struct Copier {
+    Graph &graph;
+    Substitution done;
+    bool points;   // whether a Point is among the replaced
+    bool any_kind; // something else than Points and Vars is replaced
+
+    // Whether nothing below the node can have been replaced, as far as `reads` tells.
+    bool untouched(NodeId id) const {
+        const Graph::Reads reads = graph.reads(id);
+        return !any_kind && !reads.free_vars && !(points && reads.point);
+    }
+
+    NodeId copy(NodeId root) {
+        std::vector<NodeId> stack{root};
+        while (!stack.empty()) {
+            const NodeId id = stack.back();
+            if (done.contains(id)) {
+                stack.pop_back();
+                continue;
+            }
+            if (untouched(id)) {
+                done.emplace(id, id);
+                stack.pop_back();
+                continue;
+            }
+            const std::size_t before = stack.size();
+            for (NodeId arg : graph.args(id))
+                if (!done.contains(arg)) stack.push_back(arg);
+            if (stack.size() > before) continue;
+            stack.pop_back();
+            const NodeId made = remade(id);
+            done.emplace(id, made);
+        }
+        return done.at(root);
+    }
+
+    NodeId remade(NodeId id) {
+        const Node node = graph[id];
+        if (node.count == 0) return id;
+        std::vector<NodeId> args;
+        bool changed = false;
+        for (NodeId arg : graph.args(id)) {
+            args.push_back(done.at(arg));
+            changed |= args.back() != arg;
+        }
+        std::uint32_t payload = node.payload;
+        if (node.op == Op::Fold) payload = fold(FoldId{std::size_t{node.payload}}).index;
+        if (!changed && payload == node.payload) return id;
+        return graph.make(node.op, node.type, args, payload);
+    }
+
+    bool touches(const std::vector<NodeId> &parts) {
+        if (any_kind) {
+            Copier probe{graph, done, points, any_kind};
+            return std::any_of(parts.begin(), parts.end(),
+                               [&](NodeId id) { return probe.copy(id) != id; });
+        }
+        for (NodeId part : parts)
+            if (points && graph.reads(part).point) return true;
+        for (NodeId var : unbound(graph, parts))
+            if (const auto to = done.find(var); to != done.end() && to->second != var) return true;
+        return false;
+    }
+
+    // A fold whose body changes gets fresh variables: the copy may come to stand inside the
+    // original.
+    FoldId fold(FoldId id) {
+        const Fold old = graph.fold(id);
+        const std::vector<NodeId> parts = body_of(old);
+        if (!touches(parts)) return id;
+        Copier inside{graph, done, points, any_kind};
+        Fold made = old;
+        made.index = inside.done[old.index] = graph.fresh_var(Type::Int);
+        for (NodeId &var : made.vars) {
+            const NodeId fresh = graph.fresh_var(graph.type(var));
+            inside.done[var] = fresh;
+            var = fresh;
+        }
+        made.count = inside.copy(old.count);
+        if (old.condition) made.condition = inside.copy(old.condition);
+        for (NodeId &next : made.next) next = inside.copy(next);
+        return graph.add_fold(std::move(made));
+    }
+};
+
+} // namespace
+
+NodeId substitute(Graph &graph, NodeId root, const Substitution &map) {
+    Copier copier{graph, map, false, false};
+    for (const auto &[from, to] : map) {
+        copier.points |= graph[from].op == Op::Point;
+        copier.any_kind |= graph[from].op != Op::Point && graph[from].op != Op::Var;
+    }
+    return copier.copy(root);
+}
+
+} // namespace fathom::ir
