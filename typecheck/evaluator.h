@@ -167,8 +167,8 @@ struct Evaluator {
 // The limits that bound what a scene can make the checker do; stated in docs/language.md.
 constexpr int max_call_depth = 1000;
 constexpr int max_depth = 40000;               // nested evaluations; the stack is sized for it (check.cpp)
-constexpr std::size_t max_evaluations = 100'000'000;
-constexpr std::size_t max_list_elements = 20'000'000;
+constexpr std::size_t max_evaluations = 20'000'000;
+constexpr std::size_t max_list_elements = 10'000'000;
 constexpr int max_unrolled = 4096;
 constexpr int max_fold_turns = 100'000;
 
