@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace fathom::ir::sem {
 
@@ -198,17 +199,19 @@ template <class T> T worley(T px, T py, T pz) {
     const std::uint32_t ix = lattice(fx), iy = lattice(fy), iz = lattice(fz);
     const T x = px - T(fx), y = py - T(fy), z = pz - T(fz);
     T least(1);
-    for (int k = -1; k <= 1; ++k)
-        for (int j = -1; j <= 1; ++j)
-            for (int i = -1; i <= 1; ++i) {
-                const V3<T> q =
-                    worley_point<T>(hash_lattice(ix + std::uint32_t(i), iy + std::uint32_t(j),
-                                                 iz + std::uint32_t(k), 0x1b56c4e9u));
-                const T dx = x - (T(float(i)) + q.x), dy = y - (T(float(j)) + q.y),
-                        dz = z - (T(float(k)) + q.z);
-                const T d = dx * dx + dy * dy + dz * dz;
-                least = d < least ? d : least;
-            }
+    const auto cell = [&](int i, int j, int k) {
+        const V3<T> q =
+            worley_point<T>(hash_lattice(ix + std::uint32_t(i), iy + std::uint32_t(j),
+                                         iz + std::uint32_t(k), 0x1b56c4e9u));
+        const T dx = x - (T(float(i)) + q.x), dy = y - (T(float(j)) + q.y),
+                dz = z - (T(float(k)) + q.z);
+        const T d = dx * dx + dy * dy + dz * dz;
+        least = d < least ? d : least;
+    };
+    // Written out, not looped over: loops over batches of points vectorise only where none is inside.
+    [&]<int... n>(std::integer_sequence<int, n...>) {
+        (cell(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1), ...);
+    }(std::make_integer_sequence<int, 27>{});
     return sqrt(least);
 }
 
