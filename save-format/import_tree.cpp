@@ -269,13 +269,16 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     blocks_ = blocks_mark;
 
     const std::string name_flow = flow_scalar(name, name_plain);
-    // A head that an export cannot know is recorded with all that it said.
-    const auto as_group = [&](std::size_t base) {
+    const auto keep_given = [&] {
         for (std::size_t i = 0; row && i < row->properties.size(); ++i) {
             const PropertyType &property = row->properties[i];
-            if (!properties.values[i].given || property.kind == PropertyKind::Carried) continue;
-            properties.keep(property.name, property_flow(property, properties.values[i]));
+            if (properties.values[i].given && property.kind != PropertyKind::Carried)
+                properties.keep(property.name, property_flow(property, properties.values[i]));
         }
+    };
+    // A head that an export cannot know is recorded with all that it said.
+    const auto as_group = [&](std::size_t base) {
+        keep_given();
         in_.kept[slot] = {"group",
                           path_text(),
                           "[" + std::to_string(base) + ", " + flow_scalar(type, true) + ", " +
