@@ -451,21 +451,37 @@ class Writer {
     Text infix(NodeId id, const char *op) {
         const Level level = level_of(graph_[id].op);
         const auto tighter = static_cast<Level>(level - 1);
-        return {at_least(expression(graph_.arg(id, 0)), level) + op + at_least(expression(graph_.arg(id, 1)), tighter),
-                level};
+        return {at_least(operand(id, 0), level) + op + at_least(operand(id, 1), tighter), level};
+    }
+
+    // An operand of + - * /: GLSL lets a float stand for a vector of equal components where the other is a vector.
+    Text operand(NodeId id, int which) {
+        const NodeId mine = graph_.arg(id, which), other = graph_.arg(id, 1 - which);
+        const bool applies = graph_[id].op != Op::MatMul && ir::is_vector(graph_[mine].type) && !as_scalar(other) &&
+                             !plan_.named(mine) && as_scalar(mine);
+        return applies ? *as_scalar(mine) : expression(mine);
+    }
+
+    std::optional<Text> as_scalar(NodeId id) {
+        if (graph_[id].op == Op::Splat && graph_[graph_.arg(id, 0)].type == Type::Float) return expression(graph_.arg(id, 0));
+        const auto c = constant(id);
+        if (!c || !ir::is_vector(c->type)) return std::nullopt;
+        for (int i = 1; i < ir::components(c->type); ++i)
+            if (c->value[static_cast<std::size_t>(i)] != c->value[0]) return std::nullopt;
+        const std::string text = literal({Type::Float, {c->value[0]}});
+        return Text{text, text[0] == '-' ? Unary : Primary};
     }
 
     // a + -3 is written a - 3, and a + -b as a - b: the same number.
     Text sum(NodeId id) {
         const ir::Node &node = graph_[id];
-        const NodeId left = graph_.arg(id, 0), right = graph_.arg(id, 1);
         bool minus = node.op == Op::Sub;
-        Text operand = expression(right);
-        if (operand.level == Unary && operand.text[0] == '-') {
+        Text right = operand(id, 1);
+        if (right.level == Unary && right.text[0] == '-') {
             minus = !minus;
-            operand = {operand.text.substr(1), Primary};
+            right = {right.text.substr(1), Primary};
         }
-        return {at_least(expression(left), Sum) + (minus ? " - " : " + ") + at_least(operand, Product), Sum};
+        return {at_least(operand(id, 0), Sum) + (minus ? " - " : " + ") + at_least(right, Product), Sum};
     }
 
     Text splat(NodeId id) {

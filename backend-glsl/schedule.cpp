@@ -215,7 +215,7 @@ class Scheduler {
                 branches = busy_.contains(arms->second.first) || busy_.contains(arms->second.second);
             bool part = node.count == 1; // chains of these must end, too
             bool named = !is_trivial(graph_, id) && (uses_[id] > 1 || hoisted_.contains(id));
-            named |= text > long_text && (part || !is_trivial(graph_, id));
+            named |= text > long_text && (part || !is_trivial(graph_, id)) && !(uses_[id] == 1 && is_root(id));
             if (node.op == Op::Const) text = 6 * ir::components(node.type);
             if (named || many || branches) {
                 set_named(id);
@@ -224,6 +224,9 @@ class Scheduler {
             length[id] = text;
         }
     }
+
+    // What a function hands back needs no name only for being long.
+    bool is_root(NodeId id) const { return roots_.size() == 1 && roots_[0] == id; }
 
     void set_named(NodeId id) {
         result_.named_.insert(id);
