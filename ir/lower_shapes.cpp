@@ -300,10 +300,9 @@ NodeId Lowering::within(Reading reading, ShapeId id, Frame frame) {
     const NodeId p = point3(frame.p);
     const ShapeId child = shape(id).children.front();
     NodeId field = ask(Reading::Raw, child, inside(id, frame));
-    // The child's bound holds in the region. Round what is carved from it the way is up to pi/2
-    // times the straight one.
-    if (reading == Reading::Marched)
-        field = divided(child, field, region.less.empty() ? 1 : 2 * std::atan(1.0));
+    // The child's bound holds in the region. Round what is carved from it the way is longer than the
+    // straight one: the shape's own bound counts that.
+    if (reading == Reading::Marched) field = divided(region.less.empty() ? child : id, field);
     NodeId q = region_nearest(g, region, p);
     for (const Region &less : region.less) {
         const NodeId out = region_way_out(g, less, q);

@@ -159,6 +159,10 @@ TEST_CASE("kinds that must not lengthen, in float32") {
                          return s.add(twisted(s.g, both, s.n(1.5), 1));
                      }});
     plain.push_back({"a taper of a box", [](Scenery &s) { return s.add(tapered(s.g, s.box(1.2, 5, 1.2), s.n(0.3), s.n(-2.5), s.n(2.5), 1)); }});
+    plain.push_back({"a bend of what only bounds", [](Scenery &s) {
+                         ShapeId flat = s.add(scaled(s.g, s.sphere(1), s.g.vec3(1, 0.3, 0.5)));
+                         return s.add(bent(s.g, flat, s.n(0.7), 0, 1));
+                     }});
     plain.push_back({"a bend of a long box", [](Scenery &s) { return s.add(bent(s.g, s.box(1.2, 5, 1.2), s.n(0.3), 1, 0)); }});
     for (const Plain &test : plain) {
         SECTION(test.name) {

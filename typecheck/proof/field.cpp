@@ -222,6 +222,43 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field, 
     return out;
 }
 
+double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar, const Domain &domain, const Budget &budget) {
+    Tape tape = flatten(context, scalar);
+    if (tape.too_large) return infinity;
+    Machine machine(tape, ranges);
+    const std::array<bool, 3> all{true, true, true};
+    std::priority_queue<Candidate, std::vector<Candidate>, Worse> queue;
+    double seen = 0;
+    auto push = [&](const Cell &cell, int depth) {
+        if (domain.zone && misses(*domain.zone, cell)) return;
+        machine.run(cell);
+        Interval value = machine.value(0);
+        double reach = 0; // by the mean value theorem no value is further from the middle's than that
+        for (std::size_t i = 0; i < 3; ++i)
+            reach += ir::rounding::times(machine.row(0)[i].magnitude(), (cell.p[i] - Interval(cell.p[i].middle())).magnitude());
+        if (machine.norm() != infinity && std::isfinite(reach)) {
+            machine.run(at_point(middle(cell)));
+            seen = std::max(seen, machine.value(0).mignitude());
+            value = meet(machine.value(0) + Interval(-reach, reach), value);
+        }
+        queue.push({value.magnitude(), depth, cell, value});
+    };
+    push(domain.box, 0);
+    while (!queue.empty()) {
+        Candidate top = queue.top();
+        if (top.bound <= seen * budget.tolerance || machine.work() > budget.instructions) return top.bound;
+        queue.pop();
+        int axis = 0;
+        if (widest(top.cell, all, &axis) <= 1e-9) return top.bound;
+        auto k = static_cast<std::size_t>(axis);
+        Cell left = top.cell, right = top.cell;
+        left.p[k].hi = right.p[k].lo = top.cell.p[k].middle();
+        push(left, top.depth + 1);
+        push(right, top.depth + 1);
+    }
+    return 0;
+}
+
 std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, NodeId expression, const Cell &cell) {
     std::array<Interval, 16> out{};
     Tape tape = flatten(context, expression);

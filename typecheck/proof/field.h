@@ -43,6 +43,9 @@ struct FieldBound {
 
 FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field, const Domain &domain, const Budget &budget);
 
+// An upper bound of |value| over the domain.
+double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar, const Domain &domain, const Budget &budget);
+
 // All components of an expression that reads no point (or reads it over `cell`).
 std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, NodeId expression, const Cell &cell = {});
 

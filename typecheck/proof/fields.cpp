@@ -48,6 +48,47 @@ FieldBound Prover::bound(ShapeId id, NodeId field, const std::string &what, bool
     return out;
 }
 
+std::optional<NodeId> Prover::expression(ShapeId id, int depth) {
+    const Shape shape = scene.shapes[id];
+    if (depth > 16) return {};
+    auto inner = [&](std::size_t i) { return expression(shape.children[i], depth + 1); };
+    switch (shape.kind) {
+    case ShapeKind::Leaf: return shape.args[0];
+    case ShapeKind::Library:
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint:
+    case ShapeKind::Mixed:
+    case ShapeKind::Contract: return inner(0);
+    case ShapeKind::Complement:
+        if (auto f = inner(0)) return graph.neg(*f);
+        return {};
+    case ShapeKind::Union:
+    case ShapeKind::Intersection: {
+        auto sum = inner(0);
+        for (std::size_t i = 1; sum && i < shape.children.size(); ++i) {
+            auto f = inner(i);
+            if (!f) return {};
+            sum = graph.make(shape.kind == ShapeKind::Union ? Op::Min : Op::Max, {*sum, *f});
+        }
+        return sum;
+    }
+    case ShapeKind::Map: {
+        auto f = inner(0);
+        if (!f) return {};
+        NodeId point = graph.point(scene.shapes[shape.children[0]].dims == 2 ? ir::Type::Vec2 : ir::Type::Vec3);
+        return graph.mul(ir::substitute(graph, *f, {{point, shape.args[0]}}), shape.args[1]);
+    }
+    case ShapeKind::Offset:
+    case ShapeKind::Displace:
+        if (auto f = inner(0)) return graph.sub(*f, shape.args[0]);
+        return {};
+    case ShapeKind::Empty: case ShapeKind::Xor: case ShapeKind::Blend: case ShapeKind::Seam: case ShapeKind::Lerp:
+    case ShapeKind::PseudoNorm: case ShapeKind::Shell: case ShapeKind::Extrude: case ShapeKind::Repeat:
+    case ShapeKind::Within: case ShapeKind::Many: break;
+    }
+    return {};
+}
+
 namespace {
 
 std::string cause_text(const ir::Graph &graph, NodeId cause) {

@@ -277,6 +277,9 @@ Known Prover::know_deformed(ShapeId id) {
         k.failed = true;
     };
     const std::string child_name = operation_name(scene, shape.children[0]);
+    // Without a lever arm or a region, a shape that has bounds is proved within them, and joined with the way to them.
+    auto own_box = [&] { return shape.dims == 3 && k.fact.bounds.finite() && !k.fact.bounds.empty(); };
+    bool alone = false;
 
     switch (shape.map) {
     case MapKind::Twist: {
@@ -294,6 +297,10 @@ Known Prover::know_deformed(ShapeId id) {
         k.fact.lever[a] = lever; // turning about the axis commutes with the twist
         bool still = rate == Interval(0.0);
         if (!still) k.fact.symmetric = {false, false, false};
+        if (!std::isfinite(arm) && !still && own_box()) {
+            arm = radius_about(padded(k.fact.bounds), axis);
+            alone = true;
+        }
         if (!std::isfinite(arm) && !still) {
             needs_region("a twist of " + child_name + ", whose surface is not all near the axis, has no bound");
             break;
@@ -304,7 +311,8 @@ Known Prover::know_deformed(ShapeId id) {
         NodeId s = graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(still ? 0 : arm));
         NodeId root = graph.make(Op::Sqrt, {graph.add(graph.mul(s, s), graph.number(4))});
         NodeId formula = graph.mul(graph.mul(graph.add(s, root), graph.number(0.5 * (1 + slack))), inner.fact.lipschitz);
-        if (!k.failed) set_lipschitz(k, formula, sup);
+        if (alone && !k.failed) keep_local(k, sup, formula);
+        else if (!k.failed) set_lipschitz(k, formula, sup);
         break;
     }
     case MapKind::Bend: {
@@ -321,6 +329,10 @@ Known Prover::know_deformed(ShapeId id) {
         bool still = rate == Interval(0.0);
         for (std::size_t i = 0; i < 3; ++i)
             if (i != t && !still) k.fact.symmetric[i] = false;
+        if (!std::isfinite(arm) && !still && own_box()) {
+            arm = radius_about(padded(k.fact.bounds), third);
+            alone = true;
+        }
         if (!std::isfinite(arm) && !still) {
             needs_region("a bend of " + child_name + ", whose surface is not all near the axis, has no bound");
             break;
@@ -329,7 +341,8 @@ Known Prover::know_deformed(ShapeId id) {
         double add = still ? 0 : up(rate.magnitude() * arm);
         NodeId excess = graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(still ? 0 : arm * (1 + slack)));
         NodeId formula = graph.mul(graph.add(graph.number(1), excess), inner.fact.lipschitz);
-        if (!k.failed) set_lipschitz(k, formula, up(l * up(1 + add)));
+        if (alone && !k.failed) keep_local(k, up(l * up(1 + add)), formula);
+        else if (!k.failed) set_lipschitz(k, formula, up(l * up(1 + add)));
         break;
     }
     case MapKind::Taper: {
@@ -363,18 +376,24 @@ Known Prover::know_deformed(ShapeId id) {
         double norm = infinity;
         if (inner.parts_exact && std::isfinite(r) && std::isfinite(v))
             norm = lower_triangle_norm(up(most + steepness * v * options.rules[Rule::Taper]), up(steepness * r * options.rules[Rule::Taper]));
-        if (here.finite() && !here.empty() && inner.fact.bounds.finite() && !inner.fact.bounds.empty()) {
+        Box inside = here;
+        if (!std::isfinite(norm) && !here.finite() && own_box()) {
+            inside = padded(k.fact.bounds);
+            alone = true;
+        }
+        if (inside.finite() && !inside.empty() && inner.fact.bounds.finite() && !inner.fact.bounds.empty()) {
             // In a region: |grad| <= L [[1,0],[|c'| r/c, c]] + |c'| |f|, |f| <= L * the distance across.
             double least = std::max(std::min(1.0, ratio.lo), 1e-4);
-            double across = region_radius(id, shape.axis) / least;
-            double size = up(norm_of(here) / least + norm_of(inner.fact.bounds));
+            double across = (alone ? radius_about(inside, shape.axis) : region_radius(id, shape.axis)) / least;
+            double size = up(norm_of(inside) / least + norm_of(inner.fact.bounds));
             norm = std::min(norm, up(lower_triangle_norm(most, up(steepness * across)) + steepness * size));
         }
         if (!std::isfinite(norm)) {
             needs_region("a taper of " + child_name + ", which is not made of exact parts of limited size, has no bound");
             break;
         }
-        if (!k.failed) set_lipschitz(k, up(l * norm));
+        if (alone && !k.failed) keep_local(k, up(l * norm), graph.number(up(l * norm)));
+        else if (!k.failed) set_lipschitz(k, up(l * norm));
         break;
     }
     case MapKind::Distort: {
@@ -395,13 +414,26 @@ Known Prover::know_deformed(ShapeId id) {
             k.fact.status = std::max(k.fact.status, shape.assumed > 0 ? ir::ProofStatus::Assumed : ir::ProofStatus::Estimated);
             if (shape.assumed <= 0) k.fact.kind = FieldKind::Estimate;
         } else {
-            FieldBound b = bound(id, shape.args[0], "the map");
+            FieldBound b;
+            if (everywhere(here) && own_box() && place(id).audible) {
+                b = bound(id, shape.args[0], "the map", false);
+                if (!std::isfinite(b.lipschitz)) { // steeper without limit far away, perhaps; but not in the shape's own box
+                    Budget budget;
+                    budget.instructions = options.field_instructions;
+                    b = bound_field(flattening, ranges, shape.args[0], {to_cell(padded(k.fact.bounds)), nullptr}, budget);
+                    alone = true;
+                    if (!std::isfinite(b.lipschitz)) report_field(id, b, "the map");
+                }
+            } else {
+                b = bound(id, shape.args[0], "the map");
+            }
             factor = 1 + (b.lipschitz - 1) * (b.lipschitz > 1 ? options.rules[Rule::Distort] : 1);
             if (!std::isfinite(b.lipschitz)) k.failed = true;
         }
         if (!k.failed) {
             NodeId formula = graph.mul(inner.fact.lipschitz, graph.number(factor));
-            set_lipschitz(k, formula, up(l * factor));
+            if (alone) keep_local(k, up(l * factor), formula);
+            else set_lipschitz(k, formula, up(l * factor));
         }
         break;
     }

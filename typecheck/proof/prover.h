@@ -27,6 +27,8 @@ struct Prover {
     std::vector<Known> known;
     std::vector<Place> places;
     std::deque<Zone> zones; // stable addresses
+    double outward = 0;     // ShapeFact::outward of the shape at hand
+    bool local = false;     // the shape at hand is proved in its own box alone (ShapeFact::local)
 
     Prover(ir::Scene &s, Diagnostics &d, const Options &o)
         : scene(s), diagnostics(d), options(o), graph(s.graph), flattening{s.graph, {}}, ranges(ranges_of(s)) {}
@@ -72,9 +74,13 @@ struct Prover {
     std::optional<Vec> whole_shift(ir::NodeId q);     // the interval of p - q, where limited
     Interval number_anywhere(ir::NodeId id);
 
+    // The raw field as one expression in Point, where the shape is made of leaves, maps, min and max; else nothing.
+    std::optional<ir::NodeId> expression(ir::ShapeId id, int depth = 0);
+
     // The bound of an expression of the point over where the shape is asked. Reports failures.
     FieldBound bound(ir::ShapeId id, ir::NodeId field, const std::string &what, bool report = true);
 
+    void keep_local(Known &k, double sup, ir::NodeId formula);   // the bound of a field that is joined with its box
     void set_lipschitz(Known &k, double value);                 // a constant
     void set_lipschitz(Known &k, ir::NodeId formula, double sup); // an expression in params; constant where it reads none
     void fail(Known &k);                                        // no proof: infinity, facts usable

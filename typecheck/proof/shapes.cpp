@@ -56,7 +56,11 @@ void Prover::run() {
         Known k;
         set_lipschitz(k, 1);
         if (places[i].reached) { // what no one asks keeps facts that say nothing
+            local = false;
+            outward = infinity;
             k = know(ShapeId{i});
+            k.fact.local = local;
+            k.fact.outward = outward;
             finish(ShapeId{i}, k);
         }
         known[i] = k;
@@ -119,6 +123,14 @@ void Prover::set_lipschitz(Known &k, NodeId formula, double sup) {
     bool in_params = (reads.params || reads.time) && !reads.point && !reads.free_vars;
     set_lipschitz(k, sup);
     if (in_params && std::isfinite(sup)) k.fact.lipschitz = formula;
+}
+// Within the box the field; outside sqrt(|p-q|^2 + max(f(q), 0)^2), whose two gradients are perpendicular: max(L, 1).
+void Prover::keep_local(Known &k, double sup, NodeId formula) {
+    local = true;
+    k.swell = 1;
+    k.fact.lever = {infinity, infinity, infinity};
+    for (std::size_t a = 0; a < 3; ++a) k.fact.symmetric[a] = k.fact.symmetric[a] && k.fact.bounds.lo[a] == -k.fact.bounds.hi[a];
+    set_lipschitz(k, graph.make(Op::Max, {formula, graph.number(1)}), std::max(sup, 1.0));
 }
 void Prover::fail(Known &k) {
     k.failed = true;
@@ -431,15 +443,20 @@ Known Prover::know_lerp(ShapeId id) {
         k.fact.lever = {infinity, infinity, infinity};
     }
     if (varies && std::isfinite(weight.lipschitz) && weight.lipschitz > 0) {
-        // |grad| <= the mean's + |grad t| * |a - b|. Two fields with |f - signed distance to their own solid| small differ, for
-        // solids within a common box of diagonal D, by at most 3/2 D: outside both each lies in [d_U, d_U + D]; in one of
-        // them it is above -D/2.
+        // |grad| <= the mean's + |grad t| * |a - b|. For exact a and b of solids A and B the difference is greatest inside
+        // one of them: outside both, |a - b| is at most their Hausdorff distance, which is a difference at a point of A or B.
         double gap = infinity;
         Box common = ir::hull(a.fact.bounds, b.fact.bounds);
         if (a.exact_outside && b.exact_outside && common.finite() && !common.empty()) {
-            double diagonal = 0;
+            double diagonal = 0; // of the box that holds both: outside both fields lie in [d, d + D], inside above -D/2
             for (std::size_t i = 0; i < 3; ++i) diagonal += std::pow(common.hi[i] - common.lo[i], 2);
             gap = 1.5 * std::sqrt(diagonal);
+            auto f = expression(shape.children[0]), g = expression(shape.children[1]);
+            if (f && g) {
+                Budget budget;
+                budget.instructions = options.field_instructions / 4;
+                gap = std::min(gap, bound_magnitude(flattening, ranges, graph.sub(*f, *g), {to_cell(common), nullptr}, budget));
+            }
         }
         Box box = place(id).box;
         if (box.finite() && !box.empty() && a.fact.bounds.finite() && b.fact.bounds.finite()) {
@@ -509,6 +526,8 @@ Known Prover::know_displaced(ShapeId id) {
         k.fact.bounds = grow(k.fact.bounds, k.swell * std::max(amount.hi, 0.0));
         k.outer = grow(k.outer, k.swell_out * std::max(-amount.lo, 0.0));
         k.exact_outside = k.exact_outside && !varies;
+        // What moves inward only is still below the child's field: the shell begins at the surface itself.
+        if (shape.kind == ShapeKind::Displace && !k.failed) outward = std::max(amount.hi, 0.0) * (1 + slack);
     }
     k.parts_exact = false;
     if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
@@ -552,6 +571,56 @@ Known Prover::know_extrude(ShapeId id) {
     return k;
 }
 
+namespace {
+
+// The longest way round the holes over the straight line through them (lipschitz.md, regions): pi/2 for a ball or a tube,
+// 1 + the second smallest side over the smallest for a box. Infinity where the way round may leave the region.
+double detour_of(const Zone &zone) {
+    double worst = 1;
+    const bool bounded = zone.kind != ir::RegionKind::Everywhere;
+    const Box whole = from_cell(outer_box(zone), 3);
+    for (std::size_t i = 0; i < zone.less.size(); ++i) {
+        const Zone &hole = zone.less[i];
+        const Box box = from_cell(outer_box(hole), 3);
+        bool fits = !bounded;
+        if (hole.kind == ir::RegionKind::Tube) { // the region looks the same all round the tube's axis, and is wider
+            fits = fits || (zone.kind == ir::RegionKind::Tube && zone.axis == hole.axis && zone.half[0].lo > hole.half[0].hi);
+            bool centred = true, wider = true;
+            for (std::size_t a = 0; a < 3; ++a) {
+                if (int(a) == hole.axis) continue;
+                centred = centred && zone.center[a] == Interval(0.0);
+                wider = wider && zone.half[zone.kind == ir::RegionKind::Box ? a : 0].lo > hole.half[0].hi;
+            }
+            fits = fits || ((zone.kind == ir::RegionKind::Ball || zone.kind == ir::RegionKind::Box) && centred && wider);
+        } else if (zone.kind == ir::RegionKind::Ball) {
+            double far = 0;
+            for (std::size_t a = 0; a < 3; ++a) {
+                Interval off = hole.center[a] - zone.center[a];
+                double reach = off.magnitude() + hole.half[hole.kind == ir::RegionKind::Box ? a : 0].hi;
+                if (hole.kind == ir::RegionKind::Ball) reach = off.magnitude();
+                far += reach * reach;
+            }
+            far = std::sqrt(far) + (hole.kind == ir::RegionKind::Ball ? hole.half[0].hi : 0);
+            fits = far < zone.half[0].lo;
+        } else {
+            fits = fits || holds(whole, box);
+        }
+        for (std::size_t j = 0; j < i; ++j) fits = fits && disjoint(box, from_cell(outer_box(zone.less[j]), 3));
+        if (!fits || hole.kind == ir::RegionKind::Everywhere) return infinity;
+        double round = 1.5707963267948968;
+        if (hole.kind == ir::RegionKind::Box) {
+            std::array<double, 3> sides{hole.half[0].lo, hole.half[1].lo, hole.half[2].lo}, most{hole.half[0].hi, hole.half[1].hi, hole.half[2].hi};
+            std::sort(sides.begin(), sides.end());
+            std::sort(most.begin(), most.end());
+            round = sides[0] > 0 ? std::max(1.4142135623730952, up(1 + most[1] / sides[0], 4)) : infinity;
+        }
+        worst = std::max(worst, round);
+    }
+    return worst;
+}
+
+} // namespace
+
 Known Prover::know_within(ShapeId id) {
     const Shape shape = scene.shapes[id];
     Known k = child(shape);
@@ -579,8 +648,13 @@ Known Prover::know_within(ShapeId id) {
         fail(k);
         return k;
     }
-    // A path round a hole is at most pi/2 times as long as the straight line through it (lipschitz.md, regions).
-    double detour = zone.less.empty() ? 1 : 1.5707963267948968;
+    double detour = detour_of(zone);
+    if (!std::isfinite(detour)) {
+        if (Diagnostic *d = report(id, Code::NeedsRegion, "a region's hole that reaches over its border, or into another hole, cannot be used for a proof"))
+            d->help("keep the holes apart and inside the region, or centre the region on the tube's axis");
+        fail(k);
+        return k;
+    }
     NodeId formula = graph.make(Op::Max, {graph.mul(k.fact.lipschitz, graph.number(detour)), graph.number(1)});
     set_lipschitz(k, formula, std::max(up(k.fact.lipschitz_sup * detour), 1.0));
     return k;

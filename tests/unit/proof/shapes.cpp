@@ -216,3 +216,44 @@ TEST_CASE("the explanation names the operation that costs") {
     CHECK(t.share == Approx(1));
     CHECK(t.factor == Approx(proof::sigma(1.5)).epsilon(1e-5));
 }
+
+TEST_CASE("what has bounds but no lever arm is deformed within its own box") {
+    Scenery s;
+    ShapeId flat = s.add(scaled(s.g, s.sphere(1), s.g.vec3(1, 0.3, 0.5)));
+    ShapeId bend = s.add(bent(s.g, flat, s.n(0.7), 0, 1));
+    Diagnostics d;
+    const ShapeFact &f = s.prove(bend, d);
+    INFO(said(d));
+    CHECK(!d.has_errors());
+    CHECK(f.local);
+    CHECK(f.lipschitz_sup < 1 + 0.7 * 1.7);
+    CHECK(!s.scene.facts[flat.index].local);
+}
+
+TEST_CASE("a fold is bounded by what it gathers") {
+    Scenery s;
+    Graph &g = s.g;
+    ShapeId ball = s.add(translated(g, s.sphere(0.5), g.vec3(1, 0, 0)));
+    ShapeId mirror = s.add(folded(g, ball, mirror_point(g, s.p, 0)));
+    CHECK(s.prove(mirror).bounds.lo[0] == Approx(-1.5).epsilon(1e-4));
+    ShapeId longer = s.add(folded(g, s.sphere(0.5), elongate_point(g, s.p, g.vec3(2, 0, 0))));
+    CHECK(s.prove(longer).bounds.hi[0] == Approx(1.5).epsilon(1e-4));
+    // The thesis's fold, written for any axis: p + (|d| - d) n, d = dot(p, n).
+    NodeId n = g.vec3(0.6, 0.8, 0), along = g.make(Op::Dot, {s.p, n});
+    NodeId q = g.add(s.p, g.mul(g.sub(s.call(Op::Abs, along), along), n));
+    double reach = s.prove(s.add(folded(g, ball, q))).bounds.hi[0];
+    CHECK(reach >= 1.5);
+    CHECK(reach < 1.7);
+}
+
+TEST_CASE("a region's holes have to leave a way round them") {
+    Scenery s;
+    Region region = s.ball(2), hole;
+    hole.kind = RegionKind::Ball;
+    hole.center = s.g.vec3(1.8, 0, 0);
+    hole.size = s.n(0.5);
+    region.less = {hole};
+    Diagnostics d;
+    s.prove(s.within(s.leaf(s.g.sub(s.length(s.p), s.n(1))), region), d);
+    CHECK(has(d, Code::NeedsRegion));
+}
