@@ -276,7 +276,7 @@ std::variant<Invocation, Answer> read_arguments(int count, const char *const *ar
         app.parse(count, const_cast<char **>(arguments));
     } catch (const CLI::CallForHelp &) {
         std::vector<CLI::App *> chosen = app.get_subcommands();
-        return Answer{done, chosen.empty() ? app.help() : chosen.front()->help(), ""};
+        return Answer{done, chosen.empty() ? app.help() : chosen.front()->help("fathom"), ""};
     } catch (const CLI::ParseError &error) {
         return wrong(fmt::format("{}; {}", error.what(), help_hint(app)));
     }
@@ -285,7 +285,7 @@ std::variant<Invocation, Answer> read_arguments(int count, const char *const *ar
         if (reader.help_about.empty()) return Answer{done, app.help(), ""};
         const CLI::App *about = find_command(app, reader.help_about);
         if (!about) return unknown_command(app, reader.help_about);
-        return Answer{done, about->help("fathom " + reader.help_about), ""};
+        return Answer{done, about->help("fathom"), ""};
     }
     if (app.get_subcommands().empty()) return Answer{usage_error, "", app.help()};
     if (reader.eval.scene.file == "-" && reader.eval.points)

@@ -1,7 +1,9 @@
 // fathom check: parses, types, proves; says what it found to people, or to editors as JSON.
 #include "cli/terminal.h"
 #include "driver/verdict.h"
+#include "typecheck/proof/prove.h"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace fathom::cli {
@@ -14,10 +16,41 @@ std::string verdict_line(const driver::Compilation &compilation, const std::stri
                        verdict.exact ? ", exact" : "");
 }
 
+// A line for an operation: what it is, the bound after it, what it does to its children's, and where it was written.
+// `*` marks the chain of the steepest.
+void explain(const proof::Explanation &node, const Sources &sources, const std::string &lead, const std::string &below,
+             Terminal &terminal) {
+    std::string line = fmt::format("{}{} {}: {:.4g}", lead, node.worst ? "*" : " ", node.operation, node.lipschitz);
+    if (std::abs(node.factor - 1) > 1e-9) line += fmt::format(" (x {:.4g})", node.factor);
+    if (node.share > 0.005) line += fmt::format(", {:.0f} % of the bound", 100 * node.share);
+    if (!node.rule.empty()) line += ", " + node.rule;
+    if (!node.region.empty() && node.region != "everywhere") line += ", in " + node.region;
+    if (node.place.source) {
+        const Source &source = sources[node.place.source];
+        line += fmt::format("  [{}:{}]", source.name, position(source, node.place.begin).line);
+    }
+    terminal.put(line + "\n");
+    for (std::size_t i = 0; i < node.children.size(); ++i) {
+        bool last = i + 1 == node.children.size();
+        explain(node.children[i], sources, below + (last ? "`-" : "|-"), below + (last ? "  " : "| "), terminal);
+    }
+}
+
+void explain_params(const ir::Scene &scene, Terminal &terminal) {
+    for (const ir::Param &param : scene.params)
+        terminal.put(fmt::format("param {}: {}\n", param.name,
+                                 param.structural ? "decides what there is: moving it builds the scene anew"
+                                                  : "a number of the shader: moving it costs nothing"));
+}
+
 Exit say(const CheckCommand &command, const driver::Compilation &compilation, Terminal &terminal) {
     if (!command.json || !compilation.unreadable.empty() || !compilation.usage_errors.empty()) {
         Exit exit = report(compilation, command.scene, terminal);
         if (exit != done) return exit;
+        if (command.explain) {
+            explain(proof::explain(compilation.scene), compilation.sources, "", "", terminal);
+            explain_params(compilation.scene, terminal);
+        }
         if (!command.json) terminal.say(verdict_line(compilation, command.scene.file));
     }
     if (command.json) terminal.put(driver::verdict_json(compilation));
