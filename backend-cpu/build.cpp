@@ -46,7 +46,7 @@ struct Frame {
 class FunctionBuilder {
   public:
     FunctionBuilder(const Scene &scene, Calls &calls, Code &code)
-        : scene_(scene), graph_(scene.graph), calls_(calls), code_(code), builder_(code) {}
+        : graph_(scene.graph), calls_(calls), code_(code), builder_(code) {}
 
     void run(std::size_t index) {
         const Body &body = calls_.bodies[index];
@@ -101,7 +101,6 @@ class FunctionBuilder {
     Value moved(const LoopCode &loop, Value next);
     Values outside(const LoopCode &loop) const;
 
-    const Scene &scene_;
     const Graph &graph_;
     Calls &calls_;
     Code &code_;

@@ -28,7 +28,6 @@ void fused(const Spheres &s, float k, const float *x, const float *y, const floa
     const float quarter = 1 / (4 * k);
     for (std::size_t b = 0; b < s.x.size(); ++b) {
         const float cx = s.x[b], cy = s.y[b], cz = s.z[b], r = s.r[b];
-#pragma GCC ivdep
         for (std::size_t i = 0; i < block; ++i) {
             const float dx = x[i] - cx, dy = y[i] - cy, dz = z[i] - cz;
             const float d = std::sqrt(dx * dx + dy * dy + dz * dz) - r, a = acc[i];
