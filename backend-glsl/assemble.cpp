@@ -18,7 +18,8 @@ constexpr std::size_t material_table_from = 5; // so many plain materials are a 
 
 class Assembler {
   public:
-    explicit Assembler(Module &module) : module_(module), scene_(module.scene), graph_(module.scene.graph) {}
+    explicit Assembler(Module &module)
+        : module_(module), scene_(module.scene), graph_(module.scene.graph) {}
 
     SceneText run(bool with_looks) {
         std::vector<NodeId> roots;
@@ -37,7 +38,8 @@ class Assembler {
         if (with_looks) {
             want_function(scene_.background_function, "fathom_background");
             const ir::Lighting &l = scene_.lighting;
-            for (NodeId id : {l.ambient, l.ambient_occlusion, l.shadow_darkness, l.soft_shadows, l.specular_intensity})
+            for (NodeId id : {l.ambient, l.ambient_occlusion, l.shadow_darkness, l.soft_shadows,
+                              l.specular_intensity})
                 want(id);
             for (const ir::Light &light : scene_.lights) {
                 want(light.position);
@@ -48,16 +50,19 @@ class Assembler {
         gather(module_, roots);
 
         std::string functions;
-        for (const auto &[index, name] : module_.functions) functions += function(FunctionId{index}, name);
+        for (const auto &[index, name] : module_.functions)
+            functions += function(FunctionId{index}, name);
         if (!scene_.distance) functions += "\nfloat sdf(vec3 p) {\n    return 1e9;\n}\n";
         std::string looks = materials();
         if (with_looks) looks += lighting() + lights();
         if (with_looks && !scene_.background_function) {
             const auto &c = ir::look::background;
-            looks += "\nvec3 fathom_background(vec3 direction) {\n    return vec3(" + float_literal(c[0]) + ", " +
-                     float_literal(c[1]) + ", " + float_literal(c[2]) + ");\n}\n";
+            looks += "\nvec3 fathom_background(vec3 direction) {\n    return vec3(" +
+                     float_literal(c[0]) + ", " + float_literal(c[1]) + ", " + float_literal(c[2]) +
+                     ");\n}\n";
         }
-        result_.functions = "\nstruct Hit {\n    float distance;\n    int paint;\n    vec3 point;\n    vec4 extra;\n};\n" +
+        result_.functions = "\nstruct Hit {\n    float distance;\n    int paint;\n    vec3 "
+                            "point;\n    vec4 extra;\n};\n" +
                             helper_text(module_.helpers) + functions;
         result_.looks = looks;
         for (const auto &[index, use] : module_.tables) result_.tables += table(use);
@@ -71,12 +76,15 @@ class Assembler {
         std::vector<Bound> bound;
         const char *const names[] = {"p", "q", "a", "b", "c"};
         for (std::size_t i = 0; i < f.params.size(); ++i)
-            bound.push_back({f.params[i], i < std::size(names) ? names[i] : "x" + std::to_string(i)});
+            bound.push_back(
+                {f.params[i], i < std::size(names) ? names[i] : "x" + std::to_string(i)});
         const NodeId root = f.result;
         Body text = body(module_, bound, {&root, 1});
-        std::string head = "\n" + place(f) + std::string(glsl_type(graph_[root].type)) + " " + name + "(";
+        std::string head =
+            "\n" + place(f) + std::string(glsl_type(graph_[root].type)) + " " + name + "(";
         for (std::size_t i = 0; i < bound.size(); ++i)
-            head += std::string(i ? ", " : "") + glsl_type(graph_[bound[i].var].type) + " " + bound[i].name;
+            head += std::string(i ? ", " : "") + glsl_type(graph_[bound[i].var].type) + " " +
+                    bound[i].name;
         return head + ") {\n" + text.statements + "    return " + text.values[0] + ";\n}\n";
     }
 
@@ -86,9 +94,12 @@ class Assembler {
         return where.empty() ? "" : "// " + f.name + ", " + where + "\n";
     }
 
-    // -- materials ---------------------------------------------------------------------------------------------------
+    // -- materials
+    // ---------------------------------------------------------------------------------------------------
 
-    static std::vector<NodeId> roots_of(const ir::Surface &s) { return {s.diffuse, s.specular, s.exponent, s.emission}; }
+    static std::vector<NodeId> roots_of(const ir::Surface &s) {
+        return {s.diffuse, s.specular, s.exponent, s.emission};
+    }
 
     bool is_plain(const ir::Surface &s) const {
         return std::ranges::all_of(roots_of(s), [&](NodeId id) { return graph_.is_constant(id); });
@@ -96,13 +107,15 @@ class Assembler {
 
     bool reads(const ir::Surface &s, NodeId var) const {
         return var && std::ranges::any_of(roots_of(s), [&](NodeId id) {
-                   return graph_.reads(id).free_vars && std::ranges::count(graph_.free_vars(id), var) > 0;
+                   return graph_.reads(id).free_vars &&
+                          std::ranges::count(graph_.free_vars(id), var) > 0;
                });
     }
 
     std::string materials() {
         const auto &surfaces = scene_.surfaces;
-        std::string text = "\nstruct fathom_Material {\n    vec3 diffuse;\n    vec3 specular;\n    float exponent;\n"
+        std::string text = "\nstruct fathom_Material {\n    vec3 diffuse;\n    vec3 specular;\n    "
+                           "float exponent;\n"
                            "    vec3 emission;\n};\n";
         const auto plain = static_cast<std::size_t>(
             std::ranges::count_if(surfaces, [&](const ir::Surface &s) { return is_plain(s); }));
@@ -112,7 +125,8 @@ class Assembler {
             const ir::Surface &s = surfaces[i];
             if (as_table && is_plain(s)) continue;
             const bool last = i + 1 == surfaces.size() && !as_table;
-            const std::string when = last ? "    return " : "    if (paint == " + std::to_string(i) + ") return ";
+            const std::string when =
+                last ? "    return " : "    if (paint == " + std::to_string(i) + ") return ";
             if (is_plain(s)) {
                 std::vector<Bound> none;
                 choices += when + constructor(body(module_, none, roots_of(s)).values) + ";\n";
@@ -125,14 +139,15 @@ class Assembler {
             if (s.extra) bound.push_back({s.extra, "extra"});
             result_.local_normals |= reads(s, s.normal);
             const Body values = body(module_, bound, roots_of(s));
-            text += "\nfathom_Material " + name + "(vec3 point, vec3 normal, vec4 extra) {\n" + values.statements +
-                    "    return " + constructor(values.values) + ";\n}\n";
+            text += "\nfathom_Material " + name + "(vec3 point, vec3 normal, vec4 extra) {\n" +
+                    values.statements + "    return " + constructor(values.values) + ";\n}\n";
             choices += when + name + "(s.point, normal, s.extra);\n";
         }
         text += "\nfathom_Material fathom_material(Hit s, vec3 normal) {\n";
-        if (surfaces.empty()) return text + "    return fathom_Material(vec3(0.8), vec3(1.0), 32.0, vec3(0.0));\n}\n";
-        text += "    int paint = s.paint < 0 || s.paint >= " + std::to_string(surfaces.size()) + " ? " +
-                std::to_string(surfaces.size() - 1) + " : s.paint;\n" + choices;
+        if (surfaces.empty())
+            return text + "    return fathom_Material(vec3(0.8), vec3(1.0), 32.0, vec3(0.0));\n}\n";
+        text += "    int paint = s.paint < 0 || s.paint >= " + std::to_string(surfaces.size()) +
+                " ? " + std::to_string(surfaces.size() - 1) + " : s.paint;\n" + choices;
         if (as_table) text += plain_materials();
         return text + "}\n";
     }
@@ -158,34 +173,40 @@ class Assembler {
             }
             data.insert(data.end(), row.begin(), row.end());
         }
-        own_tables_.push_back(add_table(module_, "materials", static_cast<int>(scene_.surfaces.size()), 12, data));
+        own_tables_.push_back(
+            add_table(module_, "materials", static_cast<int>(scene_.surfaces.size()), 12, data));
         const TableUse &use = own_tables_.back();
-        return "    vec4 first = " + texel(use, "paint * 3") + ";\n    return fathom_Material(first.xyz, " +
-               texel(use, "paint * 3 + 1") + ".xyz, first.w, " + texel(use, "paint * 3 + 2") + ".xyz);\n";
+        return "    vec4 first = " + texel(use, "paint * 3") +
+               ";\n    return fathom_Material(first.xyz, " + texel(use, "paint * 3 + 1") +
+               ".xyz, first.w, " + texel(use, "paint * 3 + 2") + ".xyz);\n";
     }
 
-    // -- light -------------------------------------------------------------------------------------------------------
+    // -- light
+    // -------------------------------------------------------------------------------------------------------
 
     std::string lighting() {
         const ir::Lighting &l = scene_.lighting;
-        const std::vector<NodeId> all{l.ambient, l.ambient_occlusion, l.shadow_darkness, l.soft_shadows,
-                                      l.specular_intensity};
+        const std::vector<NodeId> all{l.ambient, l.ambient_occlusion, l.shadow_darkness,
+                                      l.soft_shadows, l.specular_intensity};
         const std::array<const char *, 5> absent{"vec3(0.25)", "1.0", "0.5", "0.03", "0.4"};
         std::vector<NodeId> given;
-        std::ranges::copy_if(all, std::back_inserter(given), [](NodeId id) { return static_cast<bool>(id); });
+        std::ranges::copy_if(all, std::back_inserter(given),
+                             [](NodeId id) { return static_cast<bool>(id); });
         std::vector<Bound> none;
         const Body values = body(module_, none, given);
         std::string list;
         for (std::size_t i = 0, k = 0; i < all.size(); ++i)
             list += (i ? ", " : "") + (all[i] ? values.values[k++] : std::string(absent[i]));
-        return "\nstruct fathom_Lighting {\n    vec3 ambient;\n    float ambient_occlusion;\n    float shadow_darkness;\n"
+        return "\nstruct fathom_Lighting {\n    vec3 ambient;\n    float ambient_occlusion;\n    "
+               "float shadow_darkness;\n"
                "    float soft_shadows;\n    float specular_intensity;\n};\n"
                "\nfathom_Lighting fathom_lighting() {\n" +
                values.statements + "    return fathom_Lighting(" + list + ");\n}\n";
     }
 
     std::string lights() {
-        std::string text = "\nstruct fathom_Light {\n    bool directional;\n    vec3 position;\n    vec3 color;\n};\n"
+        std::string text = "\nstruct fathom_Light {\n    bool directional;\n    vec3 position;\n   "
+                           " vec3 color;\n};\n"
                            "\nfathom_Light fathom_light(int i) {\n";
         const std::size_t count = scene_.lights.size();
         result_.lights = static_cast<int>(std::max<std::size_t>(count, 1));
@@ -195,26 +216,31 @@ class Assembler {
             std::vector<Bound> none;
             const std::vector<NodeId> roots{light.position, light.color};
             const Body values = body(module_, none, roots);
-            const std::string value = std::string("fathom_Light(") + (light.directional ? "true" : "false") + ", " +
-                                      (light.directional ? "normalize(" + values.values[0] + ")" : values.values[0]) +
-                                      ", " + values.values[1] + ")";
+            const std::string value =
+                std::string("fathom_Light(") + (light.directional ? "true" : "false") + ", " +
+                (light.directional ? "normalize(" + values.values[0] + ")" : values.values[0]) +
+                ", " + values.values[1] + ")";
             const bool last = i + 1 == count;
             if (!last) text += "    if (i == " + std::to_string(i) + ") {\n";
-            text += values.statements + std::string(last ? "    " : "        ") + "return " + value + ";\n";
+            text += values.statements + std::string(last ? "    " : "        ") + "return " +
+                    value + ";\n";
             if (!last) text += "    }\n";
         }
         return text + "}\n";
     }
 
-    // -- data --------------------------------------------------------------------------------------------------------
+    // -- data
+    // --------------------------------------------------------------------------------------------------------
 
     static std::string table(const TableUse &use) {
         if (use.buffer) return "";
         const std::size_t size = use.data.size() / 4;
-        std::string text = "\nconst vec4 " + use.name + "[" + std::to_string(size) + "] = vec4[](\n";
+        std::string text =
+            "\nconst vec4 " + use.name + "[" + std::to_string(size) + "] = vec4[](\n";
         for (std::size_t i = 0; i < size; ++i) {
             text += "    vec4(";
-            for (std::size_t k = 0; k < 4; ++k) text += (k ? ", " : "") + float_literal(use.data[i * 4 + k]);
+            for (std::size_t k = 0; k < 4; ++k)
+                text += (k ? ", " : "") + float_literal(use.data[i * 4 + k]);
             text += i + 1 < size ? "),\n" : "));\n";
         }
         return text;

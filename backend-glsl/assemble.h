@@ -8,7 +8,8 @@ namespace fathom::glsl {
 struct SceneText {
     std::string tables;    // constants, where the data stands in the text
     std::string functions; // helpers, the scene's functions, `sdf`
-    std::string looks;     // fathom_hit, fathom_material, fathom_lighting, fathom_light, fathom_background
+    std::string
+        looks; // fathom_hit, fathom_material, fathom_lighting, fathom_light, fathom_background
     bool local_normals = false;
     int lights = 0;
 };

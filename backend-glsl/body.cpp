@@ -1,5 +1,7 @@
-// Spells a scheduled body (schedule.h) as GLSL statements and expressions. Knows the op table's spelling column and what the
-// ops without one look like; helper functions are only named here (helpers.cpp holds them).
+// Spells a scheduled body (schedule.h) as GLSL statements and expressions. Knows the op table's
+// spelling column and what the ops without one look like; helper functions are only named here
+// (helpers.cpp holds them).
+#include "backend-glsl/known.h"
 #include "backend-glsl/module.h"
 #include "backend-glsl/schedule.h"
 #include "backend-glsl/unshare.h"
@@ -36,15 +38,21 @@ Level level_of(Op op) {
     return Primary;
 }
 
-std::string at_least(const Text &t, Level level) { return t.level <= level ? t.text : "(" + t.text + ")"; }
+std::string at_least(const Text &t, Level level) {
+    return t.level <= level ? t.text : "(" + t.text + ")";
+}
 
 char prefix_of(Type type) {
     switch (type) {
     case Type::Bool: return 'b';
     case Type::Int: return 'n';
     case Type::Float: return 'd';
-    case Type::Vec2: case Type::Vec3: case Type::Vec4: return 'v';
-    case Type::Mat2: case Type::Mat3: case Type::Mat4: return 'm';
+    case Type::Vec2:
+    case Type::Vec3:
+    case Type::Vec4: return 'v';
+    case Type::Mat2:
+    case Type::Mat3:
+    case Type::Mat4: return 'm';
     case Type::Hit: return 'h';
     }
     return 'x';
@@ -63,13 +71,17 @@ const char *profile_helper(ir::Profile profile) {
 
 class Writer {
   public:
-    Writer(Module &module, const ir::Graph &graph, std::span<Bound> bound, std::span<const NodeId> roots)
-        : module_(module), graph_(graph), plan_(schedule(graph_, roots)), names_(module.names) {
+    Writer(Module &module, const ir::Graph &graph, std::span<Bound> bound,
+           std::span<const NodeId> roots)
+        : module_(module), graph_(graph), plan_(schedule(graph_, roots)), known_{graph_, plan_},
+          names_(module.names) {
         for (Bound &b : bound) name_[b.var] = b.name = names_.unique(b.name);
     }
 
     std::string take() { return std::move(out_); }
-    void block(BlockId id, int indent) { statements(plan_.blocks[static_cast<std::size_t>(id)].statements, indent); }
+    void block(BlockId id, int indent) {
+        statements(plan_.blocks[static_cast<std::size_t>(id)].statements, indent);
+    }
     std::string value(NodeId id) { return expression(id).text; }
 
   private:
@@ -106,7 +118,8 @@ class Writer {
                 line(indent, "Hit " + aside + " = " + name + ";");
             }
             for (std::size_t i = first + 1; i < node.count; ++i)
-                line(indent, name + " = " + joined(id, name, value(graph_.args(id)[i]), aside) + ";");
+                line(indent,
+                     name + " = " + joined(id, name, value(graph_.args(id)[i]), aside) + ";");
             name_[id] = name;
             return;
         }
@@ -117,21 +130,24 @@ class Writer {
     }
 
     static bool is_folded(Op op) {
-        return op == Op::Union || op == Op::Intersection || op == Op::NearestHit || op == Op::FarthestHit ||
-               op == Op::Blend;
+        return op == Op::Union || op == Op::Intersection || op == Op::NearestHit ||
+               op == Op::FarthestHit || op == Op::Blend;
     }
 
     // One turn of an n-ary combination.
-    std::string joined(NodeId id, const std::string &a, const std::string &b, const std::string &first = "") {
+    std::string joined(NodeId id, const std::string &a, const std::string &b,
+                       const std::string &first = "") {
         const ir::Node &node = graph_[id];
         if (node.op == Op::Union) return "min(" + a + ", " + b + ")";
         if (node.op == Op::Intersection) return "max(" + a + ", " + b + ")";
         if (node.op == Op::NearestHit) return helper("fathom_nearest") + "(" + a + ", " + b + ")";
-        if (node.op == Op::FarthestHit && first.empty()) return helper("fathom_farthest") + "(" + a + ", " + b + ")";
+        if (node.op == Op::FarthestHit && first.empty())
+            return helper("fathom_farthest") + "(" + a + ", " + b + ")";
         if (node.op == Op::FarthestHit)
             return helper("fathom_farthest_of") + "(" + first + ", " + a + ", " + b + ")";
         const auto profile = static_cast<ir::Profile>(node.payload);
-        std::string text = helper(profile_helper(profile)) + "(" + a + ", " + b + ", " + value(graph_.arg(id, 0));
+        std::string text =
+            helper(profile_helper(profile)) + "(" + a + ", " + b + ", " + value(graph_.arg(id, 0));
         if (profile == ir::Profile::Stairs || profile == ir::Profile::Columns)
             text += ", " + value(graph_.arg(id, 1));
         return text + ")";
@@ -154,7 +170,9 @@ class Writer {
         line(indent, "}");
     }
 
-    void assign(int indent, const std::string &target, NodeId id) { line(indent, target + " = " + value(id) + ";"); }
+    void assign(int indent, const std::string &target, NodeId id) {
+        line(indent, target + " = " + value(id) + ";");
+    }
 
     void loop(NodeId id, int indent) {
         const ir::Fold &fold = graph_.fold(ir::FoldId{graph_[id].payload});
@@ -166,7 +184,8 @@ class Writer {
             name_[fold.vars[k]] = name;
         }
         const std::string i = names_.numbered('i');
-        line(indent, "for (int " + i + " = 0; " + i + " < " + at_least(expression(fold.count), Sum) + "; ++" + i + ") {");
+        line(indent, "for (int " + i + " = 0; " + i + " < " +
+                         at_least(expression(fold.count), Sum) + "; ++" + i + ") {");
         name_[fold.index] = i;
 
         // What the condition needs comes first, then the way out, then the rest.
@@ -188,14 +207,15 @@ class Writer {
             if (fold.next[k] == fold.vars[k]) continue;
             const std::string &target = name_[fold.vars[k]];
             bool read_later = false;
-            for (std::size_t j = k + 1; j < fold.vars.size(); ++j) read_later |= mentions(fold.next[j], fold.vars[k]);
+            for (std::size_t j = k + 1; j < fold.vars.size(); ++j)
+                read_later |= mentions(fold.next[j], fold.vars[k]);
             if (!read_later) {
                 assign(indent + 1, target, fold.next[k]);
                 continue;
             }
             const std::string name = names_.numbered(prefix_of(graph_[fold.vars[k]].type));
-            line(indent + 1, std::string(glsl_type(graph_[fold.vars[k]].type)) + " " + name + " = " +
-                                 value(fold.next[k]) + ";");
+            line(indent + 1, std::string(glsl_type(graph_[fold.vars[k]].type)) + " " + name +
+                                 " = " + value(fold.next[k]) + ";");
             moves.emplace_back(target, name);
         }
         for (const auto &[target, name] : moves) line(indent + 1, target + " = " + name + ";");
@@ -257,23 +277,28 @@ class Writer {
             const std::string text = literal(graph_.constant_of(id));
             return {text, text[0] == '-' ? Unary : Primary};
         }
-        case Op::Point: case Op::Normal: case Op::Direction: case Op::Var:
-            assert(!"inputs of a function are its parameters");
-            return {"0.0", Primary};
+        case Op::Point:
+        case Op::Normal:
+        case Op::Direction:
+        case Op::Var: assert(!"inputs of a function are its parameters"); return {"0.0", Primary};
         case Op::Time: module_.reads_time = true; return {"fathom_time", Primary};
         case Op::Param: return {module_.params.at(node.payload), Primary};
-        case Op::Neg: case Op::Not:
-            if (node.type == Type::Int && !in_range(id)) return saturating(id, "fathom_neg");
-            return {(node.op == Op::Neg ? "-" : "!") + at_least(expression(arg(0)), Primary), Unary};
+        case Op::Neg:
+        case Op::Not:
+            if (node.type == Type::Int && !known_.in_range(id)) return saturating(id, "fathom_neg");
+            return {(node.op == Op::Neg ? "-" : "!") + at_least(expression(arg(0)), Primary),
+                    Unary};
         case Op::Mul:
             if (ir::is_matrix(node.type)) return {"matrixCompMult(" + list(id) + ")", Primary};
-            if (node.type == Type::Int && !in_range(id)) return saturating(id, "fathom_mul");
+            if (node.type == Type::Int && !known_.in_range(id)) return saturating(id, "fathom_mul");
             return infix(id, " * ");
         case Op::Div:
-            if (node.type == Type::Int) return {helper("fathom_div") + "(" + list(id) + ")", Primary};
+            if (node.type == Type::Int)
+                return {helper("fathom_div") + "(" + list(id) + ")", Primary};
             return infix(id, " / ");
-        case Op::Add: case Op::Sub:
-            if (node.type == Type::Int && !in_range(id))
+        case Op::Add:
+        case Op::Sub:
+            if (node.type == Type::Int && !known_.in_range(id))
                 return saturating(id, node.op == Op::Add ? "fathom_add" : "fathom_sub");
             return sum(id);
         case Op::MatMul: return infix(id, " * ");
@@ -284,12 +309,14 @@ class Writer {
         case Op::And: return infix(id, " && ");
         case Op::Or: return infix(id, " || ");
         case Op::Select:
-            return {at_least(expression(arg(0)), Disjunction) + " ? " + at_least(expression(arg(1)), Disjunction) +
-                        " : " + at_least(expression(arg(2)), Choice),
+            return {at_least(expression(arg(0)), Disjunction) + " ? " +
+                        at_least(expression(arg(1)), Disjunction) + " : " +
+                        at_least(expression(arg(2)), Choice),
                     Choice};
         case Op::ToFloat: return {"float(" + value(arg(0)) + ")", Primary};
         case Op::ToInt:
-            if (graph_[arg(0)].type == Type::Float) return {helper("fathom_int") + "(" + value(arg(0)) + ")", Primary};
+            if (graph_[arg(0)].type == Type::Float)
+                return {helper("fathom_int") + "(" + value(arg(0)) + ")", Primary};
             return {"int(" + value(arg(0)) + ")", Primary};
         case Op::Splat: return splat(id);
         case Op::Make: return {std::string(glsl_type(node.type)) + "(" + list(id) + ")", Primary};
@@ -302,11 +329,16 @@ class Writer {
         case Op::Column: return part(id, "[" + std::to_string(node.payload) + "]");
         case Op::TableRead: return table_read(id);
         case Op::Hash:
-            return {helper("fathom_hash", glsl_type(graph_[arg(0)].type)) + "(" + list(id) + ")", Primary};
+            return {helper("fathom_hash", glsl_type(graph_[arg(0)].type)) + "(" + list(id) + ")",
+                    Primary};
         case Op::Image:
-            return {helper("fathom_image") + "(" + module_.images.at(node.payload) + ", " + list(id) + ")", Primary};
+            return {helper("fathom_image") + "(" + module_.images.at(node.payload) + ", " +
+                        list(id) + ")",
+                    Primary};
         case Op::Grid:
-            return {helper("fathom_grid") + "(" + module_.grids.at(node.payload) + ", " + list(id) + ")", Primary};
+            return {helper("fathom_grid") + "(" + module_.grids.at(node.payload) + ", " + list(id) +
+                        ")",
+                    Primary};
         case Op::Call: return {module_.functions.at(node.payload) + "(" + list(id) + ")", Primary};
         case Op::Cached: {
             const auto field = graph_.cache(ir::CacheId{node.payload}).field;
@@ -317,7 +349,11 @@ class Writer {
             const ir::Fold &fold = graph_.fold(ir::FoldId{graph_[arg(0)].payload});
             return {name_.at(fold.vars[node.payload]), Primary};
         }
-        case Op::Union: case Op::Intersection: case Op::NearestHit: case Op::FarthestHit: case Op::Blend: {
+        case Op::Union:
+        case Op::Intersection:
+        case Op::NearestHit:
+        case Op::FarthestHit:
+        case Op::Blend: {
             const int first = node.op == Op::Blend ? 2 : 0;
             if (static_cast<int>(node.count) == first + 1) return expression(arg(first));
             return {joined(id, value(arg(first)), value(arg(first + 1))), Primary};
@@ -333,105 +369,64 @@ class Writer {
             if (node.type == Type::Int) return saturating(id, "fathom_abs");
             return by_table(id);
         case Op::Mod: // by a constant it is GLSL's own
-            if (node.type != Type::Int && !ir::is_matrix(node.type) && is_nonzero(arg(1)))
+            if (node.type != Type::Int && !ir::is_matrix(node.type) && known_.is_nonzero(arg(1)))
                 return {"mod(" + list(id) + ")", Primary};
             return by_table(id);
         case Op::Smoothstep:
-            if (!ir::is_matrix(node.type) && differ(arg(0), arg(1)))
+            if (!ir::is_matrix(node.type) && known_.below(arg(0), arg(1)))
                 return {"smoothstep(" + list(id) + ")", Primary};
             return {filled_by_helper(id, "fathom_smoothstep"), Primary};
         case Op::Pow:
-            if (const double n = whole_power(arg(1)); !ir::is_matrix(node.type) && (n == 2 || n == 3))
-                return {helper(n == 2 ? "fathom_square" : "fathom_cube", glsl_type(node.type)) + "(" + value(arg(0)) + ")", Primary};
+            if (const double n = known_.whole_power(arg(1));
+                !ir::is_matrix(node.type) && (n == 2 || n == 3))
+                return {helper(n == 2 ? "fathom_square" : "fathom_cube", glsl_type(node.type)) +
+                            "(" + value(arg(0)) + ")",
+                        Primary};
             return by_table(id);
-        case Op::Min: case Op::Max: case Op::Step: case Op::Atan2:
-        case Op::Sign: case Op::Floor: case Op::Ceil: case Op::Round: case Op::Trunc: case Op::Fract: case Op::Sqrt:
-        case Op::InverseSqrt: case Op::Exp: case Op::Exp2: case Op::Log: case Op::Log2: case Op::Sin: case Op::Cos:
-        case Op::Tan: case Op::Asin: case Op::Acos: case Op::Atan: case Op::Sinh: case Op::Cosh: case Op::Tanh:
-        case Op::Clamp: case Op::Mix: case Op::Dot: case Op::Length: case Op::Cross:
-        case Op::Normalize: case Op::Transpose: case Op::Perlin: case Op::Simplex: case Op::ValueNoise:
-        case Op::Worley: case Op::SpotNoise:
-            return by_table(id);
+        case Op::Min:
+        case Op::Max:
+        case Op::Step:
+        case Op::Atan2:
+        case Op::Sign:
+        case Op::Floor:
+        case Op::Ceil:
+        case Op::Round:
+        case Op::Trunc:
+        case Op::Fract:
+        case Op::Sqrt:
+        case Op::InverseSqrt:
+        case Op::Exp:
+        case Op::Exp2:
+        case Op::Log:
+        case Op::Log2:
+        case Op::Sin:
+        case Op::Cos:
+        case Op::Tan:
+        case Op::Asin:
+        case Op::Acos:
+        case Op::Atan:
+        case Op::Sinh:
+        case Op::Cosh:
+        case Op::Tanh:
+        case Op::Clamp:
+        case Op::Mix:
+        case Op::Dot:
+        case Op::Length:
+        case Op::Cross:
+        case Op::Normalize:
+        case Op::Transpose:
+        case Op::Perlin:
+        case Op::Simplex:
+        case Op::ValueNoise:
+        case Op::Worley:
+        case Op::SpotNoise: return by_table(id);
         }
         return {};
     }
 
-    // -- what is known of values ---------------------------------------------------------------------------------
-
-    std::optional<ir::Constant> constant(NodeId id) {
-        if (!graph_.is_constant(id)) return std::nullopt;
-        return graph_.constant_of(id);
+    Text saturating(NodeId id, const char *name) {
+        return {helper(name, "int") + "(" + list(id) + ")", Primary};
     }
-
-    bool is_nonzero(NodeId id) {
-        const auto c = constant(id);
-        if (!c) return false;
-        for (int i = 0; i < ir::components(c->type); ++i)
-            if (static_cast<float>(c->value[static_cast<std::size_t>(i)]) == 0) return false;
-        return true;
-    }
-
-    bool differ(NodeId a, NodeId b) {
-        const auto x = constant(a), y = constant(b);
-        if (!x || !y) return false;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(ir::components(x->type)); ++i)
-            if (!(static_cast<float>(x->value[i]) < static_cast<float>(y->value[i]))) return false;
-        return true;
-    }
-
-    // The exponent where it is one constant in all components, else 0.
-    double whole_power(NodeId id) {
-        const auto c = constant(id);
-        if (!c) return 0;
-        for (int i = 1; i < ir::components(c->type); ++i)
-            if (c->value[static_cast<std::size_t>(i)] != c->value[0]) return 0;
-        return c->value[0];
-    }
-
-    // Between which numbers an int certainly lies: counters and constants, mostly. Ints saturate (semantics.h), GLSL's wrap; so
-    // only sums that cannot leave the range are written with GLSL's operators.
-    std::pair<double, double> range(NodeId id, int depth = 0) {
-        constexpr std::pair<double, double> all{-2147483648.0, 2147483647.0};
-        const ir::Node &node = graph_[id];
-        if (depth > 8) return all;
-        auto of = [&](int i) { return range(graph_.arg(id, i), depth + 1); };
-        if (node.op == Op::Const) return {graph_.constant_of(id).value[0], graph_.constant_of(id).value[0]};
-        if (node.op == Op::Var) {
-            const auto counter = plan_.rows.find(id);
-            if (counter != plan_.rows.end() && counter->second > 0) return {0, counter->second};
-        }
-        if (node.op == Op::ToInt && graph_[graph_.arg(id, 0)].type == Type::Bool) return {0, 1};
-        if (node.op == Op::Add || node.op == Op::Sub || node.op == Op::Mul || node.op == Op::Neg) {
-            const auto [lo, hi] = exact_range(id, depth);
-            return {std::max(lo, all.first), std::min(hi, all.second)};
-        }
-        if (node.op == Op::Clamp) {
-            const auto low = of(1), high = of(2);
-            return {std::min(low.first, high.first), high.second};
-        }
-        if (node.op == Op::Mod) {
-            const auto [lo, hi] = of(1);
-            if (lo > 0) return {0, hi - 1};
-        }
-        return all;
-    }
-
-    std::pair<double, double> exact_range(NodeId id, int depth = 0) {
-        const auto [a, b] = range(graph_.arg(id, 0), depth + 1);
-        const Op op = graph_[id].op;
-        if (op == Op::Neg) return {-b, -a};
-        const auto [c, d] = range(graph_.arg(id, 1), depth + 1);
-        if (op == Op::Add) return {a + c, b + d};
-        if (op == Op::Sub) return {a - d, b - c};
-        return {std::min({a * c, a * d, b * c, b * d}), std::max({a * c, a * d, b * c, b * d})};
-    }
-
-    bool in_range(NodeId id) {
-        const auto [lo, hi] = exact_range(id);
-        return lo >= -2147483648.0 && hi <= 2147483647.0;
-    }
-
-    Text saturating(NodeId id, const char *name) { return {helper(name, "int") + "(" + list(id) + ")", Primary}; }
 
     std::string filled_by_helper(NodeId id, const std::string &name) {
         const Type type = graph_[id].type;
@@ -440,7 +435,8 @@ class Writer {
         helper(name, glsl_type(column));
         std::string text = std::string(glsl_type(type)) + "(";
         for (int i = 0; i < ir::side(type); ++i)
-            text += (i ? ", " : "") + filled(id, name + "({0}, {1}, {2})", column, "[" + std::to_string(i) + "]");
+            text += (i ? ", " : "") +
+                    filled(id, name + "({0}, {1}, {2})", column, "[" + std::to_string(i) + "]");
         return text + ")";
     }
 
@@ -454,17 +450,19 @@ class Writer {
         return {at_least(operand(id, 0), level) + op + at_least(operand(id, 1), tighter), level};
     }
 
-    // An operand of + - * /: GLSL lets a float stand for a vector of equal components where the other is a vector.
+    // An operand of + - * /: GLSL lets a float stand for a vector of equal components where the
+    // other is a vector.
     Text operand(NodeId id, int which) {
         const NodeId mine = graph_.arg(id, which), other = graph_.arg(id, 1 - which);
-        const bool applies = graph_[id].op != Op::MatMul && ir::is_vector(graph_[mine].type) && !as_scalar(other) &&
-                             !plan_.named(mine) && as_scalar(mine);
+        const bool applies = graph_[id].op != Op::MatMul && ir::is_vector(graph_[mine].type) &&
+                             !as_scalar(other) && !plan_.named(mine) && as_scalar(mine);
         return applies ? *as_scalar(mine) : expression(mine);
     }
 
     std::optional<Text> as_scalar(NodeId id) {
-        if (graph_[id].op == Op::Splat && graph_[graph_.arg(id, 0)].type == Type::Float) return expression(graph_.arg(id, 0));
-        const auto c = constant(id);
+        if (graph_[id].op == Op::Splat && graph_[graph_.arg(id, 0)].type == Type::Float)
+            return expression(graph_.arg(id, 0));
+        const auto c = known_.constant(id);
         if (!c || !ir::is_vector(c->type)) return std::nullopt;
         for (int i = 1; i < ir::components(c->type); ++i)
             if (c->value[static_cast<std::size_t>(i)] != c->value[0]) return std::nullopt;
@@ -481,20 +479,25 @@ class Writer {
             minus = !minus;
             right = {right.text.substr(1), Primary};
         }
-        return {at_least(operand(id, 0), Sum) + (minus ? " - " : " + ") + at_least(right, Product), Sum};
+        return {at_least(operand(id, 0), Sum) + (minus ? " - " : " + ") + at_least(right, Product),
+                Sum};
     }
 
     Text splat(NodeId id) {
         const Type type = graph_[id].type;
         const std::string scalar = value(graph_.arg(id, 0));
-        if (!ir::is_matrix(type)) return {std::string(glsl_type(type)) + "(" + scalar + ")", Primary};
-        std::string text = std::string(glsl_type(type)) + "("; // mat3(x) would be x times the identity
-        const std::string column = std::string(glsl_type(ir::vector_type(ir::side(type)))) + "(" + scalar + ")";
+        if (!ir::is_matrix(type))
+            return {std::string(glsl_type(type)) + "(" + scalar + ")", Primary};
+        std::string text =
+            std::string(glsl_type(type)) + "("; // mat3(x) would be x times the identity
+        const std::string column =
+            std::string(glsl_type(ir::vector_type(ir::side(type)))) + "(" + scalar + ")";
         for (int i = 0; i < ir::side(type); ++i) text += (i ? ", " : "") + column;
         return {text + ")", Primary};
     }
 
-    // Ops that the table spells as a call. GLSL's built-in functions take no matrices: those go column by column.
+    // Ops that the table spells as a call. GLSL's built-in functions take no matrices: those go
+    // column by column.
     Text by_table(NodeId id) {
         const ir::Node &node = graph_[id];
         const std::string_view form = ir::info(node.op).glsl;
@@ -527,8 +530,8 @@ class Writer {
         if (form.starts_with("fathom_")) {
             const std::string name(form.substr(0, form.find('(')));
             const Op op = graph_[id].op;
-            const bool fixed = op == Op::Perlin || op == Op::Simplex || op == Op::ValueNoise || op == Op::Worley ||
-                               op == Op::SpotNoise;
+            const bool fixed = op == Op::Perlin || op == Op::Simplex || op == Op::ValueNoise ||
+                               op == Op::Worley || op == Op::SpotNoise;
             helper(name, fixed ? "" : glsl_type(type));
         }
         return text;
@@ -540,16 +543,20 @@ class Writer {
         const NodeId row = graph_.arg(id, 0);
         const auto counted = plan_.rows.find(row);
         const bool inside = counted != plan_.rows.end() && counted->second <= use.rows;
-        std::string at = inside ? at_least(expression(row), Product)
-                                : "clamp(" + value(row) + ", 0, " + std::to_string(use.rows - 1) + ")";
+        std::string at = inside
+                             ? at_least(expression(row), Product)
+                             : "clamp(" + value(row) + ", 0, " + std::to_string(use.rows - 1) + ")";
         if (use.texels > 1) at += " * " + std::to_string(use.texels);
         const int size = ir::components(node.type);
         int column = ir::column_of(node.payload), left = size;
         std::string parts;
         for (int piece = 0; left > 0; ++piece) {
             const int first = column / 4, from = column % 4, count = std::min(left, 4 - from);
-            parts += (piece ? ", " : "") + texel(use, at + (first ? " + " + std::to_string(first) : ""));
-            if (count < 4) parts += "." + std::string("xyzw").substr(static_cast<std::size_t>(from), static_cast<std::size_t>(count));
+            parts +=
+                (piece ? ", " : "") + texel(use, at + (first ? " + " + std::to_string(first) : ""));
+            if (count < 4)
+                parts += "." + std::string("xyzw").substr(static_cast<std::size_t>(from),
+                                                          static_cast<std::size_t>(count));
             column += count;
             left -= count;
         }
@@ -563,6 +570,7 @@ class Writer {
     Module &module_;
     const ir::Graph &graph_;
     Schedule plan_;
+    Known known_;
     Names names_;
     std::unordered_map<NodeId, std::string> name_;
     std::string out_;

@@ -15,13 +15,14 @@ namespace fathom::glsl {
 
 namespace {
 
-constexpr std::array<std::pair<Target, const char *>, 7> targets{{{Target::Glsl450, "glsl450"},
-                                                                  {Target::Glsl330, "glsl330"},
-                                                                  {Target::Es300, "es300"},
-                                                                  {Target::Shadertoy, "shadertoy"},
-                                                                  {Target::GlslViewer, "glslviewer"},
-                                                                  {Target::Spirv, "spirv"},
-                                                                  {Target::Html, "html"}}};
+constexpr std::array<std::pair<Target, const char *>, 7> targets{
+    {{Target::Glsl450, "glsl450"},
+     {Target::Glsl330, "glsl330"},
+     {Target::Es300, "es300"},
+     {Target::Shadertoy, "shadertoy"},
+     {Target::GlslViewer, "glslviewer"},
+     {Target::Spirv, "spirv"},
+     {Target::Html, "html"}}};
 
 bool is_es(Target t) { return t == Target::Es300 || t == Target::Html || t == Target::Shadertoy; }
 
@@ -30,18 +31,22 @@ bool is_hosted(Target t) { return t != Target::Shadertoy && t != Target::GlslVie
 
 std::string vector_text(const ir::Triple &v) {
     std::string text = "vec3(";
-    for (std::size_t i = 0; i < 3; ++i) text += (i ? ", " : "") + float_literal(static_cast<float>(v[i]));
+    for (std::size_t i = 0; i < 3; ++i)
+        text += (i ? ", " : "") + float_literal(static_cast<float>(v[i]));
     return text + ")";
 }
 
 std::string number(double value) { return float_literal(static_cast<float>(value)); }
 
-std::string param_value(const ir::Param &param) { return literal({param.type, {param.value[0], param.value[1], param.value[2], param.value[3]}}); }
+std::string param_value(const ir::Param &param) {
+    return literal({param.type, {param.value[0], param.value[1], param.value[2], param.value[3]}});
+}
 
 class Emitter {
   public:
     Emitter(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics)
-        : scene_(scene), options_(options), diagnostics_(diagnostics), module_{scene, options, {}, {}, {}, {}, {}, {}, {}, {}} {}
+        : scene_(scene), options_(options),
+          diagnostics_(diagnostics), module_{scene, options, {}, {}, {}, {}, {}, {}, {}, {}} {}
 
     Output run() {
         const SceneText scene = assemble(module_, !options_.field_only);
@@ -53,8 +58,11 @@ class Emitter {
         for (const auto &[index, name] : module_.images) output.images.push_back({name, index});
         for (const auto &[index, name] : module_.grids) output.grids.push_back({name, index});
         const Target target = options_.target;
-        if ((!module_.images.empty() || !module_.grids.empty()) && (!is_hosted(target) || target == Target::Html)) {
-            diagnostics_.add(Code::Unsupported, {}, std::string("images and grids cannot be put into a text for `") + target_name(target) + "`");
+        if ((!module_.images.empty() || !module_.grids.empty()) &&
+            (!is_hosted(target) || target == Target::Html)) {
+            diagnostics_.add(Code::Unsupported, {},
+                             std::string("images and grids cannot be put into a text for `") +
+                                 target_name(target) + "`");
             return {};
         }
 
@@ -71,7 +79,8 @@ class Emitter {
     }
 
   private:
-    // -- a whole picture -----------------------------------------------------------------------------------------------
+    // -- a whole picture
+    // -----------------------------------------------------------------------------------------------
 
     std::string picture_text(const SceneText &scene) {
         const ir::View view = ir::view_of(scene_, options_.time, 16.0 / 9.0);
@@ -90,8 +99,8 @@ class Emitter {
         marcher.lo = vector_text(frame.lo);
         marcher.hi = vector_text(frame.hi);
         marcher.zero = zero();
-        return head() + inputs(view) + scene.tables + scene.functions + hit_function() + scene.looks +
-               marcher_text(marcher) + entry(view);
+        return head() + inputs(view) + scene.tables + scene.functions + hit_function() +
+               scene.looks + marcher_text(marcher) + entry(view);
     }
 
     std::string hit_function() const {
@@ -104,7 +113,11 @@ class Emitter {
         switch (options_.target) {
         case Target::Shadertoy: return "min(iFrame, 0)";
         case Target::GlslViewer: return "int(min(u_time, 0.0))";
-        case Target::Glsl450: case Target::Glsl330: case Target::Es300: case Target::Spirv: case Target::Html: break;
+        case Target::Glsl450:
+        case Target::Glsl330:
+        case Target::Es300:
+        case Target::Spirv:
+        case Target::Html: break;
         }
         return "min(fathom_mode, 0)";
     }
@@ -112,8 +125,11 @@ class Emitter {
     std::string head() const {
         std::string text;
         switch (options_.target) {
-        case Target::Glsl450: case Target::Glsl330: case Target::GlslViewer: text = "#version 330 core\n"; break;
-        case Target::Es300: case Target::Html: text = "#version 300 es\n"; break;
+        case Target::Glsl450:
+        case Target::Glsl330:
+        case Target::GlslViewer: text = "#version 330 core\n"; break;
+        case Target::Es300:
+        case Target::Html: text = "#version 300 es\n"; break;
         case Target::Spirv: text = "#version 450 core\n"; break;
         case Target::Shadertoy: break;
         }
@@ -125,23 +141,28 @@ class Emitter {
         } else if (options_.target == Target::GlslViewer) {
             text += "// For glslViewer: glslViewer FILE.frag. Drag to look around.\n";
         } else {
-            text += "// Draw one triangle over the picture. The uniforms' defaults show the scene's first view.\n";
+            text += "// Draw one triangle over the picture. The uniforms' defaults show the "
+                    "scene's first view.\n";
         }
         if (options_.target == Target::Es300 || options_.target == Target::Html)
-            text += "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp sampler3D;\n";
+            text += "precision highp float;\nprecision highp int;\nprecision highp "
+                    "sampler2D;\nprecision highp sampler3D;\n";
         return text;
     }
 
-    std::string uniform(const std::string &type, const std::string &name, const std::string &value) {
+    std::string uniform(const std::string &type, const std::string &name,
+                        const std::string &value) {
         if (options_.target == Target::Spirv)
-            return "layout(location = " + std::to_string(location_++) + ") uniform " + type + " " + name + ";\n";
+            return "layout(location = " + std::to_string(location_++) + ") uniform " + type + " " +
+                   name + ";\n";
         const bool es = is_es(options_.target);
         return "uniform " + type + " " + name + (es || value.empty() ? "" : " = " + value) + ";\n";
     }
 
     std::string sampler(const std::string &type, const std::string &name) {
         if (options_.target == Target::Spirv)
-            return "layout(binding = " + std::to_string(binding_++) + ") uniform " + type + " " + name + ";\n";
+            return "layout(binding = " + std::to_string(binding_++) + ") uniform " + type + " " +
+                   name + ";\n";
         return "uniform " + type + " " + name + ";\n";
     }
 
@@ -150,7 +171,8 @@ class Emitter {
         std::string text;
         if (options_.target == Target::Shadertoy || options_.target == Target::GlslViewer) {
             if (module_.reads_time)
-                text += std::string("#define fathom_time ") + (options_.target == Target::Shadertoy ? "iTime\n" : "u_time\n");
+                text += std::string("#define fathom_time ") +
+                        (options_.target == Target::Shadertoy ? "iTime\n" : "u_time\n");
         } else if (module_.reads_time || !options_.field_only) {
             text += uniform("float", "fathom_time", number(options_.time));
         }
@@ -158,8 +180,10 @@ class Emitter {
             const ir::Param &param = scene_.params[index];
             const std::string value = param_value(param), type = glsl_type(param.type);
             if (!param.label.empty()) text += "// " + one_line(param.label) + "\n";
-            if (is_hosted(options_.target)) text += uniform(type, name, value);
-            else text += "const " + type + " " + name + " = " + value + ";\n";
+            if (is_hosted(options_.target))
+                text += uniform(type, name, value);
+            else
+                text += "const " + type + " " + name + " = " + value + ";\n";
         }
         if (!module_.texels.empty()) text += sampler("samplerBuffer", "fathom_tables");
         for (const auto &[index, name] : module_.images) text += sampler("sampler2D", name);
@@ -168,12 +192,15 @@ class Emitter {
     }
 
     static std::string one_line(std::string text) {
-        std::ranges::replace_if(text, [](char c) { return c == '\n' || c == '\r' || c == '\\'; }, ' ');
+        std::ranges::replace_if(
+            text, [](char c) { return c == '\n' || c == '\r' || c == '\\'; }, ' ');
         return text;
     }
 
     std::string inputs(const ir::View &view) {
-        const ir::Triple sun = scene_.lights.empty() ? ir::lights_of(scene_, options_.time, view)[0].position : ir::Triple{0, 1, 0};
+        const ir::Triple sun = scene_.lights.empty()
+                                   ? ir::lights_of(scene_, options_.time, view)[0].position
+                                   : ir::Triple{0, 1, 0};
         std::string text = "\n";
         struct Input {
             const char *type, *name;
@@ -196,13 +223,17 @@ class Emitter {
         }
         if (options_.target == Target::GlslViewer)
             text += "uniform vec2 u_resolution;\nuniform vec3 u_camera;\nuniform float u_time;\n\n";
-        // The scene's camera may be turned about its target; these are set before anything is drawn.
+        // The scene's camera may be turned about its target; these are set before anything is
+        // drawn.
         for (const Input &i : all) {
             const std::string name = i.name;
-            const bool fixed = name == "fathom_extent" || name == "fathom_focus" || name == "fathom_orthographic" ||
-                               name == "fathom_sun" || name == "fathom_mode";
-            if (fixed) text += std::string("const ") + i.type + " " + name + " = " + i.value + ";\n";
-            else if (name != "fathom_offset") text += std::string(i.type) + " " + name + ";\n";
+            const bool fixed = name == "fathom_extent" || name == "fathom_focus" ||
+                               name == "fathom_orthographic" || name == "fathom_sun" ||
+                               name == "fathom_mode";
+            if (fixed)
+                text += std::string("const ") + i.type + " " + name + " = " + i.value + ";\n";
+            else if (name != "fathom_offset")
+                text += std::string(i.type) + " " + name + ";\n";
         }
         return text + scene_inputs();
     }
@@ -210,70 +241,92 @@ class Emitter {
     // Sets the camera to look along `back` (reversed) at the first view's target; GLSL.
     static std::string turned_camera(const ir::View &view, const std::string &back) {
         ir::Triple target;
-        for (std::size_t i = 0; i < 3; ++i) target[i] = view.origin[i] + view.focus * view.forward[i];
-        return "    vec3 back = " + back + ";\n    fathom_forward = -back;\n"
+        for (std::size_t i = 0; i < 3; ++i)
+            target[i] = view.origin[i] + view.focus * view.forward[i];
+        return "    vec3 back = " + back +
+               ";\n    fathom_forward = -back;\n"
                "    fathom_right = normalize(vec3(back.z, 0.0, -back.x));\n"
                "    fathom_up = cross(fathom_right, fathom_forward);\n"
-               "    fathom_origin = " + vector_text(target) + " + fathom_focus * back;\n";
+               "    fathom_origin = " +
+               vector_text(target) + " + fathom_focus * back;\n";
     }
 
     std::string entry(const ir::View &view) const {
-        const std::string first = "    fathom_origin = " + vector_text(view.origin) + ";\n    fathom_right = " +
-                                  vector_text(view.right) + ";\n    fathom_up = " + vector_text(view.up) +
+        const std::string first = "    fathom_origin = " + vector_text(view.origin) +
+                                  ";\n    fathom_right = " + vector_text(view.right) +
+                                  ";\n    fathom_up = " + vector_text(view.up) +
                                   ";\n    fathom_forward = " + vector_text(view.forward) + ";\n";
         ir::Triple away = view.forward;
         for (double &c : away) c = -c;
         if (options_.target == Target::Shadertoy) {
             return "\nvoid mainImage(out vec4 fragColor, in vec2 fragCoord) {\n"
-                   "    fathom_resolution = iResolution.xy;\n" + first +
+                   "    fathom_resolution = iResolution.xy;\n" +
+                   first +
                    "    if (iMouse.x > 0.0) {\n"
                    "    vec2 turn = (iMouse.xy / iResolution.xy - 0.5) * vec2(6.2831853, 3.0);\n"
-                   "    float around = atan(" + number(away[0]) + ", " + number(away[2]) + ") - turn.x;\n"
+                   "    float around = atan(" +
+                   number(away[0]) + ", " + number(away[2]) +
+                   ") - turn.x;\n"
                    "    float above = clamp(-turn.y, -1.5, 1.5);\n" +
-                   turned_camera(view, "vec3(cos(above) * sin(around), sin(above), cos(above) * cos(around))") +
+                   turned_camera(
+                       view,
+                       "vec3(cos(above) * sin(around), sin(above), cos(above) * cos(around))") +
                    "    }\n"
-                   "    fragColor = fathom_picture(vec2(fragCoord.x, iResolution.y - fragCoord.y));\n}\n";
+                   "    fragColor = fathom_picture(vec2(fragCoord.x, iResolution.y - "
+                   "fragCoord.y));\n}\n";
         }
         if (options_.target == Target::GlslViewer) {
             return "\nout vec4 fathom_color;\n\nvoid main() {\n"
-                   "    fathom_resolution = u_resolution;\n" + first +
-                   "    if (length(u_camera.xz) > 0.0) {\n" + turned_camera(view, "normalize(u_camera)") +
+                   "    fathom_resolution = u_resolution;\n" +
+                   first + "    if (length(u_camera.xz) > 0.0) {\n" +
+                   turned_camera(view, "normalize(u_camera)") +
                    "    }\n"
-                   "    fathom_color = fathom_picture(vec2(gl_FragCoord.x, u_resolution.y - gl_FragCoord.y));\n}\n";
+                   "    fathom_color = fathom_picture(vec2(gl_FragCoord.x, u_resolution.y - "
+                   "gl_FragCoord.y));\n}\n";
         }
-        return std::string("\n") + (options_.target == Target::Spirv ? "layout(location = 0) " : "") +
+        return std::string("\n") +
+               (options_.target == Target::Spirv ? "layout(location = 0) " : "") +
                "out vec4 fathom_color;\n\nvoid main() {\n"
                "    vec2 place = vec2(gl_FragCoord.x, fathom_resolution.y - gl_FragCoord.y);\n"
                "    fathom_color = fathom_picture(place + fathom_offset - 0.5);\n}\n";
     }
 
-    // -- the field alone -----------------------------------------------------------------------------------------------
+    // -- the field alone
+    // -----------------------------------------------------------------------------------------------
 
     std::string field_text(const SceneText &scene) {
         double bound = 0;
         for (const ir::TopLevel &top : scene_.top_level)
-            if (top.shape.index < scene_.facts.size()) bound = std::max(bound, scene_.facts[top.shape.index].lipschitz_sup);
+            if (top.shape.index < scene_.facts.size())
+                bound = std::max(bound, scene_.facts[top.shape.index].lipschitz_sup);
         std::string text = head() + "\n" + scene_inputs();
-        text += "\n// The largest slope of a shape's field before it was divided by it; that of sdf is at most 1.\n"
-                "const float sdf_lipschitz = " + number(bound > 0 ? bound : 1) + ";\n";
+        text += "\n// The largest slope of a shape's field before it was divided by it; that of "
+                "sdf is at most 1.\n"
+                "const float sdf_lipschitz = " +
+                number(bound > 0 ? bound : 1) + ";\n";
         text += scene.tables + scene.functions + hit_function() + scene.looks;
         text += "\n// What p, on or near a surface with that normal, is made of.\n"
-                "fathom_Material material(vec3 p, vec3 normal) {\n    return fathom_material(fathom_hit(p), normal);\n}\n";
+                "fathom_Material material(vec3 p, vec3 normal) {\n    return "
+                "fathom_material(fathom_hit(p), normal);\n}\n";
         return text;
     }
 
-    // -- the check -------------------------------------------------------------------------------------------------------
+    // -- the check
+    // -------------------------------------------------------------------------------------------------------
 
     bool check(const std::string &text, Output &output) {
         std::string before, after;
         if (options_.target == Target::Shadertoy)
-            before = "#version 300 es\nprecision highp float;\nprecision highp int;\nuniform vec3 iResolution;\nuniform float iTime;\n"
+            before = "#version 300 es\nprecision highp float;\nprecision highp int;\nuniform vec3 "
+                     "iResolution;\nuniform float iTime;\n"
                      "uniform vec4 iMouse;\nuniform int iFrame;\n";
         if (options_.field_only) {
-            after = "\nout vec4 fathom_color;\nvoid main() {\n    fathom_color = vec4(material(vec3(sdf(vec3(0.0))), vec3(1.0)).diffuse, 1.0);\n}\n";
+            after = "\nout vec4 fathom_color;\nvoid main() {\n    fathom_color = "
+                    "vec4(material(vec3(sdf(vec3(0.0))), vec3(1.0)).diffuse, 1.0);\n}\n";
             if (options_.target == Target::Spirv) after.replace(1, 3, "layout(location = 0) out");
         } else if (options_.target == Target::Shadertoy) {
-            after = "\nout vec4 fathom_color;\nvoid main() {\n    mainImage(fathom_color, gl_FragCoord.xy);\n}\n";
+            after = "\nout vec4 fathom_color;\nvoid main() {\n    mainImage(fathom_color, "
+                    "gl_FragCoord.xy);\n}\n";
         }
         const std::string whole = before + text + after;
         std::optional<Complaint> complaint;
@@ -285,17 +338,20 @@ class Emitter {
             complaint = validate(whole);
         }
         if (!complaint) return true;
-        Diagnostic &d = diagnostics_.add(Code::ShaderInvalid, {}, "the `" + std::string(target_name(options_.target)) +
-                                                                      "` text is not valid: " + complaint->message);
+        Diagnostic &d = diagnostics_.add(Code::ShaderInvalid, {},
+                                         "the `" + std::string(target_name(options_.target)) +
+                                             "` text is not valid: " + complaint->message);
         const int line = complaint->line - static_cast<int>(std::ranges::count(before, '\n'));
-        if (line > 0) d.note("line " + std::to_string(line) + " of the text: " + nth_line(text, line));
+        if (line > 0)
+            d.note("line " + std::to_string(line) + " of the text: " + nth_line(text, line));
         d.note("this is a fault of the compiler, not of the scene");
         return false;
     }
 
     static std::string nth_line(const std::string &text, int line) {
         std::size_t begin = 0;
-        for (int i = 1; i < line && begin != std::string::npos; ++i) begin = text.find('\n', begin) + 1;
+        for (int i = 1; i < line && begin != std::string::npos; ++i)
+            begin = text.find('\n', begin) + 1;
         return text.substr(begin, text.find('\n', begin) - begin);
     }
 

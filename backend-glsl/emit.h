@@ -1,5 +1,6 @@
-// From a lowered scene to shader text, for each target of cli.md. What is given out has been checked by glslang.
-// Sees expressions, functions, folds and tables only; knows no language, opens no file, calls no GL.
+// From a lowered scene to shader text, for each target of cli.md. What is given out has been
+// checked by glslang. Sees expressions, functions, folds and tables only; knows no language, opens
+// no file, calls no GL.
 #pragma once
 
 #include "base/diagnostic.h"
@@ -20,9 +21,11 @@ const char *target_name(Target target);
 struct Options {
     Target target = Target::Glsl450;
     bool field_only = false; // just `float sdf(vec3 p)`, the material function and the bound
-    bool buffers = false;    // the host binds large tables as the texture buffer `fathom_tables`; else all data is text
-    double time = 0;         // where a target has no host that sets a camera: the moment whose camera is the first view
-    std::string title = "scene";             // html: the page's title
+    bool buffers = false; // the host binds large tables as the texture buffer `fathom_tables`; else
+                          // all data is text
+    double time = 0; // where a target has no host that sets a camera: the moment whose camera is
+                     // the first view
+    std::string title = "scene";              // html: the page's title
     std::function<std::string(Span)> place{}; // "arch.sdf:12", or an empty text
 };
 
@@ -43,7 +46,8 @@ struct Output {
     std::string text;                 // empty where an error was reported
     std::vector<std::uint32_t> words; // spirv
     std::vector<Uniform> uniforms;    // the params that the text reads
-    std::vector<float> tables;        // RGBA32F texels of `fathom_tables`; empty where the text holds the data
+    std::vector<float>
+        tables; // RGBA32F texels of `fathom_tables`; empty where the text holds the data
     std::vector<Sampler> images, grids;
     bool reads_time = false;
 };

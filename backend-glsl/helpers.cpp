@@ -1,4 +1,5 @@
-// See helpers.h. Each text is a line-by-line port; the formulas are explained where they are defined, in ir/.
+// See helpers.h. Each text is a line-by-line port; the formulas are explained where they are
+// defined, in ir/.
 #include "backend-glsl/helpers.h"
 
 #include <algorithm>
@@ -125,7 +126,8 @@ $T fathom_sqrt($T x) {
     return sqrt(max(x, 0.0));
 }
 )"},
-        // By atan, which drivers compute to a few units in the last place; their asin and acos are often cubic fits.
+        // By atan, which drivers compute to a few units in the last place; their asin and acos are
+        // often cubic fits.
         {"fathom_asin", Form::Lifted, {}, R"(
 float fathom_asin(float x) {
     float y = clamp(x, -1.0, 1.0);
@@ -265,18 +267,21 @@ std::string replaced(std::string text, const std::string &what, const std::strin
 }
 
 // A function of floats, called for each component.
-std::string lifted(const std::string &scalar_text, const std::string &name, const std::string &type) {
-    const std::size_t arguments =
-        1 + static_cast<std::size_t>(std::ranges::count(scalar_text.substr(0, scalar_text.find(')')), ','));
+std::string lifted(const std::string &scalar_text, const std::string &name,
+                   const std::string &type) {
+    const std::size_t arguments = 1 + static_cast<std::size_t>(std::ranges::count(
+                                          scalar_text.substr(0, scalar_text.find(')')), ','));
     const std::array<std::string, 3> letters{"a", "b", "c"};
     std::string parameters, calls;
-    for (std::size_t i = 0; i < arguments; ++i) parameters += (i ? ", " : "") + type + " " + letters[i];
+    for (std::size_t i = 0; i < arguments; ++i)
+        parameters += (i ? ", " : "") + type + " " + letters[i];
     for (char c : std::string("xyzw").substr(0, static_cast<std::size_t>(type.back() - '0'))) {
         std::string inner;
         for (std::size_t i = 0; i < arguments; ++i) inner += (i ? ", " : "") + letters[i] + "." + c;
         calls += (calls.empty() ? "" : ", ") + name + "(" + inner + ")";
     }
-    return "\n" + type + " " + name + "(" + parameters + ") {\n    return " + type + "(" + calls + ");\n}\n";
+    return "\n" + type + " " + name + "(" + parameters + ") {\n    return " + type + "(" + calls +
+           ");\n}\n";
 }
 
 class Printer {

@@ -1,4 +1,5 @@
-// The GLSL functions named `fathom_…` that ops and the marcher need: ports of ir/semantics.h, ir/noise.h and ir/blends.h.
+// The GLSL functions named `fathom_…` that ops and the marcher need: ports of ir/semantics.h,
+// ir/noise.h and ir/blends.h.
 #pragma once
 
 #include "backend-glsl/module.h"

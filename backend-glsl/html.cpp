@@ -11,10 +11,14 @@ namespace {
 std::string escaped(const std::string &text) {
     std::string out;
     for (char c : text) {
-        if (c == '<') out += "&lt;";
-        else if (c == '&') out += "&amp;";
-        else if (c == '"') out += "&quot;";
-        else out += c;
+        if (c == '<')
+            out += "&lt;";
+        else if (c == '&')
+            out += "&amp;";
+        else if (c == '"')
+            out += "&quot;";
+        else
+            out += c;
     }
     return out;
 }
@@ -22,7 +26,8 @@ std::string escaped(const std::string &text) {
 // A JavaScript string that a page's own end tag cannot end.
 std::string script_string(const std::string &text) {
     std::string quoted = json_string(text);
-    for (std::size_t at = 0; (at = quoted.find("</", at)) != std::string::npos; at += 3) quoted.replace(at, 2, "<\\/");
+    for (std::size_t at = 0; (at = quoted.find("</", at)) != std::string::npos; at += 3)
+        quoted.replace(at, 2, "<\\/");
     return quoted;
 }
 
@@ -39,10 +44,12 @@ std::string controls(const ir::Scene &scene, const std::vector<Uniform> &uniform
         const ir::Param &p = scene.params[u.param];
         const std::size_t size = static_cast<std::size_t>(ir::components(p.type));
         if (text.size() > 1) text += ",\n  ";
-        text += "{name: " + script_string(u.name) + ", label: " + script_string(p.label.empty() ? p.name : p.label) +
-                ", type: \"" + ir::type_name(p.type) + "\", color: " + (p.is_color ? "true" : "false") +
-                ", range: " + (p.has_range ? "true" : "false") + ", value: " + array(p.value.data(), size) +
-                ", lo: " + array(p.lo.data(), size) + ", hi: " + array(p.hi.data(), size) + "}";
+        text += "{name: " + script_string(u.name) +
+                ", label: " + script_string(p.label.empty() ? p.name : p.label) + ", type: \"" +
+                ir::type_name(p.type) + "\", color: " + (p.is_color ? "true" : "false") +
+                ", range: " + (p.has_range ? "true" : "false") +
+                ", value: " + array(p.value.data(), size) + ", lo: " + array(p.lo.data(), size) +
+                ", hi: " + array(p.hi.data(), size) + "}";
     }
     return text + "]";
 }
@@ -200,8 +207,8 @@ requestAnimationFrame(draw);
 
 } // namespace
 
-std::string html_page(const ir::Scene &scene, const Options &options, const std::vector<Uniform> &uniforms,
-                      const std::string &fragment) {
+std::string html_page(const ir::Scene &scene, const Options &options,
+                      const std::vector<Uniform> &uniforms, const std::string &fragment) {
     const ir::View view = ir::view_of(scene, options.time, 16.0 / 9.0);
     const ir::Triple sun = ir::lights_of(scene, options.time, view)[0].position;
     ir::Triple target, back;
@@ -209,17 +216,20 @@ std::string html_page(const ir::Scene &scene, const Options &options, const std:
         target[i] = view.origin[i] + view.focus * view.forward[i];
         back[i] = -view.forward[i];
     }
-    const std::string head = fill(page_head, {
-        {"TITLE", escaped(options.title)},
-        {"PARAMS", controls(scene, uniforms)},
-        {"TARGET", array(target.data(), 3)},
-        {"BACK", array(back.data(), 3)},
-        {"FOCUS", format_shortest(view.focus)},
-        {"EXTENT", format_shortest(view.extent)},
-        {"ORTHOGRAPHIC", view.orthographic ? "true" : "false"},
-        {"SUN", array(sun.data(), 3)},
-        {"ANIMATED", fragment.find("fathom_time", fragment.find("fathom_time;") + 1) != std::string::npos ? "true" : "false"},
-        {"FRAGMENT", script_string(fragment)}});
+    const std::string head =
+        fill(page_head, {{"TITLE", escaped(options.title)},
+                         {"PARAMS", controls(scene, uniforms)},
+                         {"TARGET", array(target.data(), 3)},
+                         {"BACK", array(back.data(), 3)},
+                         {"FOCUS", format_shortest(view.focus)},
+                         {"EXTENT", format_shortest(view.extent)},
+                         {"ORTHOGRAPHIC", view.orthographic ? "true" : "false"},
+                         {"SUN", array(sun.data(), 3)},
+                         {"ANIMATED", fragment.find("fathom_time", fragment.find("fathom_time;") +
+                                                                       1) != std::string::npos
+                                          ? "true"
+                                          : "false"},
+                         {"FRAGMENT", script_string(fragment)}});
     return head + page_tail;
 }
 

@@ -1,4 +1,5 @@
-// See marcher.h. Names and order follow ir/look.h, which explains; backend-cpu/march.cpp is this file's sibling.
+// See marcher.h. Names and order follow ir/look.h, which explains; backend-cpu/march.cpp is this
+// file's sibling.
 #include "backend-glsl/marcher.h"
 
 #include "backend-glsl/fill.h"
@@ -226,41 +227,46 @@ std::string marcher_text(const MarcherOptions &options) {
     text += march;
     if (!options.skip_shading) text += occlusion;
     text += shade_head;
-    text += options.local_normals ? local_normal : "    fathom_Material m = fathom_material(s, n);\n";
+    text +=
+        options.local_normals ? local_normal : "    fathom_Material m = fathom_material(s, n);\n";
     text += options.skip_shading ? "    return m.diffuse + m.emission;\n}\n" : shade_phong;
     text += output;
 
     const std::string clip = "    vec2 inside = fathom_box(origin, direction);\n"
                              "    begin = max(begin, inside.x);\n"
                              "    end = min(end, inside.y);\n";
-    const std::string far =
-        "100.0 * max(" + number(options.radius) + ", length(fathom_origin - " + options.center + "))";
-    return fill(text, {
-        {"AND_NEAR", options.steep ? " && fathom_near(p, d, fathom_arm(t)) <= fathom_tolerance(t)" : ""},
-        {"NEAR_Q", options.steep ? "fathom_near(q, sdf(q), h)" : "sdf(q)"},
-        {"NEAR_P", options.steep ? "fathom_near(p, d, h)" : "d"},
-        {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
-        {"CLIP", options.boxed ? clip : ""},
-        {"FAR", options.far > 0 ? number(options.far) : far},
-        {"RADIUS", number(options.radius)},
-        {"CENTER", options.center},
-        {"LO", options.lo},
-        {"HI", options.hi},
-        {"EPSILON", number(options.epsilon)},
-        {"MAX_STEPS", std::to_string(options.max_steps)},
-        {"ZERO", options.zero},
-        {"LIGHTS", std::to_string(options.lights)},
-        {"FLOAT_SLACK", number(look::float_slack)},
-        {"NORMAL_SLACK", number(look::normal_slack)},
-        {"LEAST_SLOPE", number(look::least_slope)},
-        {"RELAXATION", number(look::relaxation)},
-        {"FLATTEST", number(look::flattest)},
-        {"OCCLUSION_SAMPLES", std::to_string(look::occlusion_samples)},
-        {"OCCLUSION_REACH", number(look::occlusion_reach * options.radius / look::occlusion_samples)},
-        {"SHADOW_STEPS", std::to_string(look::shadow_steps)},
-        {"SHADOW_BIAS", number(look::shadow_bias)},
-        {"LEAST_ANGLE", number(look::least_angle)},
-    });
+    const std::string far = "100.0 * max(" + number(options.radius) + ", length(fathom_origin - " +
+                            options.center + "))";
+    return fill(
+        text,
+        {
+            {"AND_NEAR",
+             options.steep ? " && fathom_near(p, d, fathom_arm(t)) <= fathom_tolerance(t)" : ""},
+            {"NEAR_Q", options.steep ? "fathom_near(q, sdf(q), h)" : "sdf(q)"},
+            {"NEAR_P", options.steep ? "fathom_near(p, d, h)" : "d"},
+            {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
+            {"CLIP", options.boxed ? clip : ""},
+            {"FAR", options.far > 0 ? number(options.far) : far},
+            {"RADIUS", number(options.radius)},
+            {"CENTER", options.center},
+            {"LO", options.lo},
+            {"HI", options.hi},
+            {"EPSILON", number(options.epsilon)},
+            {"MAX_STEPS", std::to_string(options.max_steps)},
+            {"ZERO", options.zero},
+            {"LIGHTS", std::to_string(options.lights)},
+            {"FLOAT_SLACK", number(look::float_slack)},
+            {"NORMAL_SLACK", number(look::normal_slack)},
+            {"LEAST_SLOPE", number(look::least_slope)},
+            {"RELAXATION", number(look::relaxation)},
+            {"FLATTEST", number(look::flattest)},
+            {"OCCLUSION_SAMPLES", std::to_string(look::occlusion_samples)},
+            {"OCCLUSION_REACH",
+             number(look::occlusion_reach * options.radius / look::occlusion_samples)},
+            {"SHADOW_STEPS", std::to_string(look::shadow_steps)},
+            {"SHADOW_BIAS", number(look::shadow_bias)},
+            {"LEAST_ANGLE", number(look::least_angle)},
+        });
 }
 
 } // namespace fathom::glsl

@@ -1,14 +1,15 @@
-// The frame code in GLSL: camera ray, march, shading, output; ir/look.h line by line. Knows the scene only as the functions
-//   float sdf(vec3), Hit fathom_hit(vec3), fathom_Material fathom_material(Hit, vec3 local normal), fathom_Lighting
-//   fathom_lighting(), fathom_Light fathom_light(int), vec3 fathom_background(vec3)
-// and the host as these inputs (uniforms; where a target has no host of ours, globals that its main sets):
+// The frame code in GLSL: camera ray, march, shading, output; ir/look.h line by line. Knows the
+// scene only as the functions
+//   float sdf(vec3), Hit fathom_hit(vec3), fathom_Material fathom_material(Hit, vec3 local normal),
+//   fathom_Lighting fathom_lighting(), fathom_Light fathom_light(int), vec3 fathom_background(vec3)
+// and the host as these inputs (uniforms; where a target has no host of ours, globals that its main
+// sets):
 //   vec2 fathom_resolution          the whole picture's size in pixels
-//   vec2 fathom_offset              the sample's place in the pixel, from its top left, 0..1 (ir::sample_offset)
-//   vec3 fathom_origin, fathom_right, fathom_up, fathom_forward; float fathom_extent, fathom_focus;
-//   int fathom_orthographic         ir::View
-//   vec3 fathom_sun                 towards the default sun, where the scene has no light
-//   float fathom_time
-//   int fathom_mode                 0 the picture, sRGB; 1 steps as a heat map; 2 (steps, t, paint, hit) as numbers; 3 linear colour
+//   vec2 fathom_offset              the sample's place in the pixel, from its top left, 0..1
+//   (ir::sample_offset) vec3 fathom_origin, fathom_right, fathom_up, fathom_forward; float
+//   fathom_extent, fathom_focus; int fathom_orthographic         ir::View vec3 fathom_sun towards
+//   the default sun, where the scene has no light float fathom_time int fathom_mode 0 the picture,
+//   sRGB; 1 steps as a heat map; 2 (steps, t, paint, hit) as numbers; 3 linear colour
 #pragma once
 
 #include <string>
@@ -16,8 +17,8 @@
 namespace fathom::glsl {
 
 struct MarcherOptions {
-    bool boxed = false;       // rays live between FATHOM_LO and FATHOM_HI
-    bool steep = false;       // ir::steep
+    bool boxed = false; // rays live between FATHOM_LO and FATHOM_HI
+    bool steep = false; // ir::steep
     bool skip_shading = false;
     bool local_normals = false; // some material reads its normal
     bool default_sun = false;

@@ -32,14 +32,17 @@ const char *glsl_type(Type type) {
 // GLSL has no words for infinity and NaN; both versions that we write know the bits.
 std::string float_literal(float value) {
     if (std::isnan(value)) return "uintBitsToFloat(0x7fc00000u)";
-    if (std::isinf(value)) return value > 0 ? "uintBitsToFloat(0x7f800000u)" : "uintBitsToFloat(0xff800000u)";
+    if (std::isinf(value))
+        return value > 0 ? "uintBitsToFloat(0x7f800000u)" : "uintBitsToFloat(0xff800000u)";
     std::string text = format_shortest(value);
     if (text.find_first_of(".e") == std::string::npos) text += ".0";
     return text;
 }
 
 std::string literal(const ir::Constant &constant) {
-    const auto number = [&](std::size_t i) { return float_literal(static_cast<float>(constant.value[i])); };
+    const auto number = [&](std::size_t i) {
+        return float_literal(static_cast<float>(constant.value[i]));
+    };
     switch (constant.type) {
     case Type::Bool: return constant.value[0] != 0 ? "true" : "false";
     case Type::Int: {
@@ -47,8 +50,13 @@ std::string literal(const ir::Constant &constant) {
         return value <= -2147483648 ? "(-2147483647 - 1)" : std::to_string(value);
     }
     case Type::Float: return number(0);
-    case Type::Vec2: case Type::Vec3: case Type::Vec4: case Type::Mat2: case Type::Mat3: case Type::Mat4: case Type::Hit:
-        break;
+    case Type::Vec2:
+    case Type::Vec3:
+    case Type::Vec4:
+    case Type::Mat2:
+    case Type::Mat3:
+    case Type::Mat4:
+    case Type::Hit: break;
     }
     const std::size_t size = static_cast<std::size_t>(ir::components(constant.type));
     std::string text = std::string(glsl_type(constant.type)) + "(" + number(0);
@@ -60,7 +68,8 @@ std::string literal(const ir::Constant &constant) {
 
 namespace {
 
-constexpr int small_table = 16; // rows up to which a table is text even where the host could bind a buffer
+constexpr int small_table =
+    16; // rows up to which a table is text even where the host could bind a buffer
 
 class Gatherer {
   public:
@@ -99,9 +108,11 @@ class Gatherer {
     void name() {
         for (std::uint32_t index : functions_)
             if (!module_.functions.contains(index))
-                module_.functions[index] = module_.names.unique(graph_.function(ir::FunctionId{index}).name);
+                module_.functions[index] =
+                    module_.names.unique(graph_.function(ir::FunctionId{index}).name);
         for (std::uint32_t index : params_)
-            module_.params[index] = module_.names.unique("param_" + module_.scene.params[index].name);
+            module_.params[index] =
+                module_.names.unique("param_" + module_.scene.params[index].name);
         for (std::uint32_t index : images_)
             module_.images[index] = module_.names.unique("image_" + std::to_string(index));
         for (std::uint32_t index : grids_)
@@ -111,7 +122,8 @@ class Gatherer {
 
   private:
     void function(std::uint32_t index, std::vector<NodeId> &todo) {
-        if (functions_.insert(index).second) todo.push_back(graph_.function(ir::FunctionId{index}).result);
+        if (functions_.insert(index).second)
+            todo.push_back(graph_.function(ir::FunctionId{index}).result);
     }
 
     void table(std::uint32_t index) {
@@ -129,12 +141,14 @@ class Gatherer {
 } // namespace
 
 // So that reading a vector takes one or two texels.
-TableUse add_table(Module &module, const std::string &name, int rows, int stride, const std::vector<float> &data) {
+TableUse add_table(Module &module, const std::string &name, int rows, int stride,
+                   const std::vector<float> &data) {
     TableUse use;
     use.name = module.names.unique(name);
     use.rows = std::max(rows, 1);
     use.texels = std::max((stride + 3) / 4, 1);
-    use.data.assign(static_cast<std::size_t>(use.rows) * static_cast<std::size_t>(use.texels) * 4, 0.0f);
+    use.data.assign(static_cast<std::size_t>(use.rows) * static_cast<std::size_t>(use.texels) * 4,
+                    0.0f);
     for (int row = 0; row < rows; ++row)
         std::copy_n(data.begin() + row * stride, stride, use.data.begin() + row * use.texels * 4);
     use.buffer = module.options.buffers && rows > small_table;
@@ -147,7 +161,8 @@ TableUse add_table(Module &module, const std::string &name, int rows, int stride
 
 std::string texel(const TableUse &use, const std::string &place) {
     if (!use.buffer) return use.name + "[" + place + "]";
-    return "texelFetch(fathom_tables, " + place + (use.start ? " + " + std::to_string(use.start) : "") + ")";
+    return "texelFetch(fathom_tables, " + place +
+           (use.start ? " + " + std::to_string(use.start) : "") + ")";
 }
 
 void gather(Module &module, std::span<const NodeId> roots) {

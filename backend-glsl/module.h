@@ -1,4 +1,5 @@
-// What the functions of one emitted text share: names, and a record of what was used, so that only that is emitted.
+// What the functions of one emitted text share: names, and a record of what was used, so that only
+// that is emitted.
 #pragma once
 
 #include "backend-glsl/emit.h"
@@ -19,7 +20,7 @@ struct TableUse {
     int rows = 0, texels = 0; // a row is that many vec4
     int start = 0;            // in the texture buffer
     bool buffer = false;
-    std::vector<float> data;  // padded to whole texels; where it stands in the text
+    std::vector<float> data; // padded to whole texels; where it stands in the text
 };
 
 struct Module {
@@ -39,20 +40,23 @@ const char *glsl_type(ir::Type type);
 std::string literal(const ir::Constant &constant); // "1.0", "vec3(0.0, 1.0, 0.0)"
 std::string float_literal(float value);
 
-// Every function, table, image and grid that the roots need gets its name here; functions by ascending id.
+// Every function, table, image and grid that the roots need gets its name here; functions by
+// ascending id.
 void gather(Module &module, std::span<const ir::NodeId> roots);
 
 // Rows of floats, padded to whole vec4, as text or in the buffer.
-TableUse add_table(Module &module, const std::string &name, int rows, int stride, const std::vector<float> &data);
-std::string texel(const TableUse &use, const std::string &place); // "table_0[i * 2]", of an index from the table's start
+TableUse add_table(Module &module, const std::string &name, int rows, int stride,
+                   const std::vector<float> &data);
+std::string texel(const TableUse &use,
+                  const std::string &place); // "table_0[i * 2]", of an index from the table's start
 
 struct Bound {
     ir::NodeId var;
     std::string name; // what it is to be called in the text; `body` makes it unique
 };
 
-// The statements of a function's body, each line indented by four: locals, loops, branches. Then, for each root, the
-// expression of its value, in `values`.
+// The statements of a function's body, each line indented by four: locals, loops, branches. Then,
+// for each root, the expression of its value, in `values`.
 struct Body {
     std::string statements;
     std::vector<std::string> values;

@@ -7,8 +7,10 @@ namespace fathom::glsl {
 
 namespace {
 
-// Sorted. Keywords, words reserved for later, types and built-in functions of both dialects (GLSL 4.50, 3.6 and 8;
-// GLSL ES 3.00, 3.8 and 8), and what Shadertoy's and glslViewer's prologues define.
+// Sorted. Keywords, words reserved for later, types and built-in functions of both dialects
+// (GLSL 4.50, 3.6 and 8; GLSL ES 3.00, 3.8 and 8), and what Shadertoy's and glslViewer's prologues
+// define.
+// clang-format off
 constexpr auto reserved = std::to_array<std::string_view>({
     "Hit", "abs", "acos", "acosh", "active", "all", "any", "asin", "asinh", "asm", "atan", "atanh", "atomicAdd",
     "atomicAnd", "atomicCompSwap", "atomicCounter", "atomicExchange", "atomicMax", "atomicMin", "atomicOr",
@@ -52,6 +54,7 @@ constexpr auto reserved = std::to_array<std::string_view>({
     "usampler2D", "usampler2DArray", "usampler3D", "usamplerBuffer", "usamplerCube", "using", "usubBorrow", "uvec2",
     "uvec3", "uvec4", "varying", "vec2", "vec3", "vec4", "void", "volatile", "while", "writeonly",
 });
+// clang-format on
 static_assert(std::ranges::is_sorted(reserved));
 
 bool is_word(char c) {
@@ -61,12 +64,15 @@ bool is_word(char c) {
 std::string legal(std::string_view wanted) {
     std::string name;
     for (char c : wanted) {
-        if (is_word(c)) name += c;
-        else if (!name.empty() && name.back() != '_') name += '_'; // `__` is reserved everywhere
+        if (is_word(c))
+            name += c;
+        else if (!name.empty() && name.back() != '_')
+            name += '_'; // `__` is reserved everywhere
     }
     if (name.empty()) name = "f";
     if (name[0] >= '0' && name[0] <= '9') name.insert(0, 1, 'n');
-    if (name.starts_with("gl_") || name.starts_with("GL_") || name.starts_with("fathom_") || name.starts_with("webgl_"))
+    if (name.starts_with("gl_") || name.starts_with("GL_") || name.starts_with("fathom_") ||
+        name.starts_with("webgl_"))
         name.insert(0, "my_");
     return name;
 }

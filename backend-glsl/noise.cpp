@@ -1,11 +1,13 @@
-// The noise helpers, ports of ir/noise.h; see there for what they are and why their constants are these.
+// The noise helpers, ports of ir/noise.h; see there for what they are and why their constants are
+// these.
 #include "backend-glsl/helpers.h"
 
 namespace fathom::glsl {
 
 std::string hash_helper(const std::string &type) {
     const int size = type == "int" || type == "float" ? 1 : type.back() - '0';
-    std::string text = "\nfloat fathom_hash(" + type + " x) {\n    uint h = " + std::to_string(size) + "u;\n";
+    std::string text =
+        "\nfloat fathom_hash(" + type + " x) {\n    uint h = " + std::to_string(size) + "u;\n";
     for (int i = 0; i < size; ++i) {
         const std::string part = size == 1 ? "x" : std::string("x.") + "xyzw"[i];
         const std::string word =

@@ -12,30 +12,99 @@ using ir::Op;
 
 namespace {
 
-constexpr int long_text = 90;  // an expression that would print longer than this gets a name
-constexpr int cheap_arm = 6;   // what an arm may cost and still be computed before the choice
+constexpr int long_text = 90; // an expression that would print longer than this gets a name
+constexpr int cheap_arm = 6;  // what an arm may cost and still be computed before the choice
 
 int own_cost(Op op) {
     switch (op) {
-    case Op::Const: case Op::Point: case Op::Normal: case Op::Direction: case Op::Time: case Op::Param: case Op::Var:
-    case Op::Swizzle: case Op::Column: case Op::FoldResult: case Op::HitDistance: case Op::HitPaint: case Op::HitPoint: case Op::HitExtra: case Op::Transpose: case Op::Splat:
-    case Op::Make: case Op::MakeHit: case Op::ToFloat: case Op::ToInt: case Op::Neg:
-        return 0;
-    case Op::Add: case Op::Sub: case Op::Mul: case Op::Min: case Op::Max: case Op::Step: case Op::Abs: case Op::Sign:
-    case Op::Floor: case Op::Ceil: case Op::Round: case Op::Trunc: case Op::Fract: case Op::Less: case Op::LessEqual:
-    case Op::Equal: case Op::NotEqual: case Op::And: case Op::Or: case Op::Not: case Op::Select: case Op::HitWith:
-        return 1;
-    case Op::Div: case Op::Mod: case Op::Sqrt: case Op::InverseSqrt: case Op::Clamp: case Op::Mix: case Op::Smoothstep:
-    case Op::Dot: case Op::Length: case Op::Cross: case Op::Normalize: case Op::MatMul: case Op::Union:
-    case Op::Intersection: case Op::NearestHit: case Op::FarthestHit: case Op::FillPaint:
-        return 3;
-    case Op::Pow: case Op::Atan2: case Op::Exp: case Op::Exp2: case Op::Log: case Op::Log2: case Op::Sin: case Op::Cos:
-    case Op::Tan: case Op::Asin: case Op::Acos: case Op::Atan: case Op::Sinh: case Op::Cosh: case Op::Tanh:
-    case Op::TableRead: case Op::Hash: case Op::Blend:
-        return 5;
-    case Op::Perlin: case Op::Simplex: case Op::ValueNoise: case Op::Worley: case Op::SpotNoise: case Op::Image:
-    case Op::Grid: case Op::Call: case Op::Fold: case Op::Cached:
-        return 40;
+    case Op::Const:
+    case Op::Point:
+    case Op::Normal:
+    case Op::Direction:
+    case Op::Time:
+    case Op::Param:
+    case Op::Var:
+    case Op::Swizzle:
+    case Op::Column:
+    case Op::FoldResult:
+    case Op::HitDistance:
+    case Op::HitPaint:
+    case Op::HitPoint:
+    case Op::HitExtra:
+    case Op::Transpose:
+    case Op::Splat:
+    case Op::Make:
+    case Op::MakeHit:
+    case Op::ToFloat:
+    case Op::ToInt:
+    case Op::Neg: return 0;
+    case Op::Add:
+    case Op::Sub:
+    case Op::Mul:
+    case Op::Min:
+    case Op::Max:
+    case Op::Step:
+    case Op::Abs:
+    case Op::Sign:
+    case Op::Floor:
+    case Op::Ceil:
+    case Op::Round:
+    case Op::Trunc:
+    case Op::Fract:
+    case Op::Less:
+    case Op::LessEqual:
+    case Op::Equal:
+    case Op::NotEqual:
+    case Op::And:
+    case Op::Or:
+    case Op::Not:
+    case Op::Select:
+    case Op::HitWith: return 1;
+    case Op::Div:
+    case Op::Mod:
+    case Op::Sqrt:
+    case Op::InverseSqrt:
+    case Op::Clamp:
+    case Op::Mix:
+    case Op::Smoothstep:
+    case Op::Dot:
+    case Op::Length:
+    case Op::Cross:
+    case Op::Normalize:
+    case Op::MatMul:
+    case Op::Union:
+    case Op::Intersection:
+    case Op::NearestHit:
+    case Op::FarthestHit:
+    case Op::FillPaint: return 3;
+    case Op::Pow:
+    case Op::Atan2:
+    case Op::Exp:
+    case Op::Exp2:
+    case Op::Log:
+    case Op::Log2:
+    case Op::Sin:
+    case Op::Cos:
+    case Op::Tan:
+    case Op::Asin:
+    case Op::Acos:
+    case Op::Atan:
+    case Op::Sinh:
+    case Op::Cosh:
+    case Op::Tanh:
+    case Op::TableRead:
+    case Op::Hash:
+    case Op::Blend: return 5;
+    case Op::Perlin:
+    case Op::Simplex:
+    case Op::ValueNoise:
+    case Op::Worley:
+    case Op::SpotNoise:
+    case Op::Image:
+    case Op::Grid:
+    case Op::Call:
+    case Op::Fold:
+    case Op::Cached: return 40;
     }
     return 40;
 }
@@ -45,33 +114,107 @@ int copies(const ir::Graph &graph, NodeId user) {
     const ir::Node &node = graph[user];
     if (!ir::is_matrix(node.type) && node.op != Op::TableRead) return 1;
     switch (node.op) { // written column by column
-    case Op::Splat: case Op::Mod: case Op::Pow: case Op::Min: case Op::Max: case Op::Step: case Op::Atan2: case Op::Abs:
-    case Op::Sign: case Op::Floor: case Op::Ceil: case Op::Round: case Op::Trunc: case Op::Fract: case Op::Sqrt:
-    case Op::InverseSqrt: case Op::Exp: case Op::Exp2: case Op::Log: case Op::Log2: case Op::Sin: case Op::Cos:
-    case Op::Tan: case Op::Asin: case Op::Acos: case Op::Atan: case Op::Sinh: case Op::Cosh: case Op::Tanh:
-    case Op::Clamp: case Op::Mix: case Op::Smoothstep:
-        return ir::side(node.type);
+    case Op::Splat:
+    case Op::Mod:
+    case Op::Pow:
+    case Op::Min:
+    case Op::Max:
+    case Op::Step:
+    case Op::Atan2:
+    case Op::Abs:
+    case Op::Sign:
+    case Op::Floor:
+    case Op::Ceil:
+    case Op::Round:
+    case Op::Trunc:
+    case Op::Fract:
+    case Op::Sqrt:
+    case Op::InverseSqrt:
+    case Op::Exp:
+    case Op::Exp2:
+    case Op::Log:
+    case Op::Log2:
+    case Op::Sin:
+    case Op::Cos:
+    case Op::Tan:
+    case Op::Asin:
+    case Op::Acos:
+    case Op::Atan:
+    case Op::Sinh:
+    case Op::Cosh:
+    case Op::Tanh:
+    case Op::Clamp:
+    case Op::Mix:
+    case Op::Smoothstep: return ir::side(node.type);
     case Op::TableRead: return 2; // may lie in two texels
-    case Op::Const: case Op::Point: case Op::Normal: case Op::Direction: case Op::Time: case Op::Param: case Op::Var:
-    case Op::Neg: case Op::Add: case Op::Sub: case Op::Mul: case Op::Div: case Op::Dot: case Op::Length: case Op::Cross:
-    case Op::Normalize: case Op::Less: case Op::LessEqual: case Op::Equal: case Op::NotEqual: case Op::And: case Op::Or:
-    case Op::Not: case Op::Select: case Op::ToFloat: case Op::ToInt: case Op::Make: case Op::Swizzle: case Op::Column:
-    case Op::MatMul: case Op::Transpose: case Op::Hash: case Op::Perlin: case Op::Simplex:
-    case Op::ValueNoise: case Op::Worley: case Op::SpotNoise: case Op::Image: case Op::Grid: case Op::Call: case Op::Fold:
-    case Op::FoldResult: case Op::Cached: case Op::Union: case Op::Intersection: case Op::Blend: case Op::MakeHit:
-    case Op::HitDistance: case Op::HitPaint: case Op::HitPoint: case Op::HitExtra: case Op::NearestHit: case Op::FarthestHit: case Op::HitWith: case Op::FillPaint:
-        return 1;
+    case Op::Const:
+    case Op::Point:
+    case Op::Normal:
+    case Op::Direction:
+    case Op::Time:
+    case Op::Param:
+    case Op::Var:
+    case Op::Neg:
+    case Op::Add:
+    case Op::Sub:
+    case Op::Mul:
+    case Op::Div:
+    case Op::Dot:
+    case Op::Length:
+    case Op::Cross:
+    case Op::Normalize:
+    case Op::Less:
+    case Op::LessEqual:
+    case Op::Equal:
+    case Op::NotEqual:
+    case Op::And:
+    case Op::Or:
+    case Op::Not:
+    case Op::Select:
+    case Op::ToFloat:
+    case Op::ToInt:
+    case Op::Make:
+    case Op::Swizzle:
+    case Op::Column:
+    case Op::MatMul:
+    case Op::Transpose:
+    case Op::Hash:
+    case Op::Perlin:
+    case Op::Simplex:
+    case Op::ValueNoise:
+    case Op::Worley:
+    case Op::SpotNoise:
+    case Op::Image:
+    case Op::Grid:
+    case Op::Call:
+    case Op::Fold:
+    case Op::FoldResult:
+    case Op::Cached:
+    case Op::Union:
+    case Op::Intersection:
+    case Op::Blend:
+    case Op::MakeHit:
+    case Op::HitDistance:
+    case Op::HitPaint:
+    case Op::HitPoint:
+    case Op::HitExtra:
+    case Op::NearestHit:
+    case Op::FarthestHit:
+    case Op::HitWith:
+    case Op::FillPaint: return 1;
     }
     return 1;
 }
 
 class Scheduler {
   public:
-    Scheduler(const ir::Graph &graph, std::span<const NodeId> roots) : graph_(graph), roots_(roots) {}
+    Scheduler(const ir::Graph &graph, std::span<const NodeId> roots)
+        : graph_(graph), roots_(roots) {}
 
     Schedule run() {
         collect();
-        // Arms that turn out cheap are computed with their surroundings; that may make others cheap, once.
+        // Arms that turn out cheap are computed with their surroundings; that may make others
+        // cheap, once.
         for (int pass = 0; pass < 3; ++pass) {
             place();
             name();
@@ -82,7 +225,8 @@ class Scheduler {
     }
 
   private:
-    // The nodes that the roots need, ascending, and the loop variables that each reads from outside itself.
+    // The nodes that the roots need, ascending, and the loop variables that each reads from outside
+    // itself.
     void collect() {
         std::vector<NodeId> todo(roots_.begin(), roots_.end());
         std::unordered_set<NodeId> seen;
@@ -126,7 +270,8 @@ class Scheduler {
 
     BlockId open(BlockId parent, NodeId owner, bool loop) {
         BlockId id = static_cast<BlockId>(result_.blocks.size());
-        result_.blocks.push_back({parent, result_.blocks[static_cast<std::size_t>(parent)].depth + 1, owner, loop, {}});
+        result_.blocks.push_back(
+            {parent, result_.blocks[static_cast<std::size_t>(parent)].depth + 1, owner, loop, {}});
         return id;
     }
 
@@ -207,15 +352,18 @@ class Scheduler {
             }
             int text = 6;
             for (std::size_t i = 0; i < node.count; ++i) text += length[graph_.args(id)[i]];
-            bool many = (node.op == Op::Union || node.op == Op::Intersection || node.op == Op::NearestHit ||
-                         node.op == Op::FarthestHit || node.op == Op::Blend) &&
-                        node.count > (node.op == Op::Blend ? 4u : 2u);
+            bool many =
+                (node.op == Op::Union || node.op == Op::Intersection || node.op == Op::NearestHit ||
+                 node.op == Op::FarthestHit || node.op == Op::Blend) &&
+                node.count > (node.op == Op::Blend ? 4u : 2u);
             bool branches = false; // an arm with statements of its own makes the choice a statement
             if (auto arms = result_.arms.find(id); arms != result_.arms.end())
-                branches = busy_.contains(arms->second.first) || busy_.contains(arms->second.second);
+                branches =
+                    busy_.contains(arms->second.first) || busy_.contains(arms->second.second);
             bool part = node.count == 1; // chains of these must end, too
             bool named = !is_trivial(graph_, id) && (uses_[id] > 1 || hoisted_.contains(id));
-            named |= text > long_text && (part || !is_trivial(graph_, id)) && !(uses_[id] == 1 && is_root(id));
+            named |= text > long_text && (part || !is_trivial(graph_, id)) &&
+                     !(uses_[id] == 1 && is_root(id));
             if (node.op == Op::Const) text = 6 * ir::components(node.type);
             if (named || many || branches) {
                 set_named(id);
@@ -233,11 +381,13 @@ class Scheduler {
         for (BlockId b = result_.home[id]; b != 0; b = block(b).parent) busy_.insert(b);
     }
 
-    // Marks the choices whose named arms are cheap enough to be computed beforehand. Says whether there are any.
+    // Marks the choices whose named arms are cheap enough to be computed beforehand. Says whether
+    // there are any.
     bool dissolve() {
         std::unordered_map<BlockId, int> cost;
         for (NodeId id : nodes_)
-            for (BlockId b = result_.home[id]; b != 0; b = block(b).parent) cost[b] += own_cost(graph_[id].op);
+            for (BlockId b = result_.home[id]; b != 0; b = block(b).parent)
+                cost[b] += own_cost(graph_[id].op);
         bool any = false;
         for (const auto &[id, arms] : result_.arms) {
             auto [yes, no] = arms;
@@ -253,7 +403,8 @@ class Scheduler {
         for (NodeId id : nodes_)
             if (result_.named(id)) block(result_.home[id]).statements.push_back(id);
         std::erase_if(result_.arms, [&](const auto &entry) {
-            return block(entry.second.first).statements.empty() && block(entry.second.second).statements.empty();
+            return block(entry.second.first).statements.empty() &&
+                   block(entry.second.second).statements.empty();
         });
     }
 
@@ -271,11 +422,11 @@ class Scheduler {
 
 bool is_trivial(const ir::Graph &graph, NodeId id) {
     const Op op = graph[id].op;
-    return op == Op::Const || op == Op::Point || op == Op::Normal || op == Op::Direction || op == Op::Time ||
-           op == Op::Param || op == Op::Var || op == Op::FoldResult ||
+    return op == Op::Const || op == Op::Point || op == Op::Normal || op == Op::Direction ||
+           op == Op::Time || op == Op::Param || op == Op::Var || op == Op::FoldResult ||
            // parts: what they are taken from is counted once for each place where they are written
-           op == Op::Swizzle || op == Op::Column || op == Op::HitDistance || op == Op::HitPaint || op == Op::HitPoint ||
-           op == Op::HitExtra;
+           op == Op::Swizzle || op == Op::Column || op == Op::HitDistance || op == Op::HitPaint ||
+           op == Op::HitPoint || op == Op::HitExtra;
 }
 
 Schedule schedule(const ir::Graph &graph, std::span<const NodeId> roots) {

@@ -38,7 +38,8 @@ NodeId copy_of(ir::Graph &graph, NodeId id) {
     const auto rename = [&](NodeId var) { return fresh[var] = graph.fresh_var(graph[var].type); };
     copy.index = rename(fold.index);
     for (std::size_t k = 0; k < fold.vars.size(); ++k) copy.vars[k] = rename(fold.vars[k]);
-    for (std::size_t k = 0; k < fold.next.size(); ++k) copy.next[k] = substitute(graph, fold.next[k], fresh);
+    for (std::size_t k = 0; k < fold.next.size(); ++k)
+        copy.next[k] = substitute(graph, fold.next[k], fresh);
     if (fold.condition) copy.condition = substitute(graph, fold.condition, fresh);
     const std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
     return graph.make(Op::Fold, graph[id].type, args, graph.add_fold(std::move(copy)).index);

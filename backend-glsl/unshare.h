@@ -1,5 +1,6 @@
-// Gives every loop of a function its own variables. Two Fold nodes may share one Fold record (the same loop begun with
-// other values); as text they are two loops, and a node of the body stands in both.
+// Gives every loop of a function its own variables. Two Fold nodes may share one Fold record (the
+// same loop begun with other values); as text they are two loops, and a node of the body stands in
+// both.
 #pragma once
 
 #include "ir/graph.h"

@@ -30,7 +30,8 @@ Complaint first_complaint(std::string_view log) {
         if (!line.starts_with(start)) continue;
         line.remove_prefix(start.size());
         const std::size_t first = line.find(':');
-        const std::size_t second = first == std::string_view::npos ? first : line.find(':', first + 1);
+        const std::size_t second =
+            first == std::string_view::npos ? first : line.find(':', first + 1);
         if (second != std::string_view::npos)
             if (const auto number = parse_number(line.substr(first + 1, second - first - 1))) {
                 complaint.line = static_cast<int>(*number);
@@ -51,7 +52,8 @@ std::optional<Complaint> validate(const std::string &text) {
     const char *texts[] = {text.c_str()};
     const int lengths[] = {static_cast<int>(text.size())};
     shader.setStringsWithLengths(texts, lengths, 1);
-    if (!shader.parse(GetDefaultResources(), 330, false, EShMsgDefault)) return first_complaint(shader.getInfoLog());
+    if (!shader.parse(GetDefaultResources(), 330, false, EShMsgDefault))
+        return first_complaint(shader.getInfoLog());
     glslang::TProgram program;
     program.addShader(&shader);
     if (!program.link(EShMsgDefault)) return first_complaint(program.getInfoLog());

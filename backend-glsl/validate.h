@@ -1,4 +1,5 @@
-// Checks a shader's text with the glslang library, in process. The only file that includes glslang is validate.cpp.
+// Checks a shader's text with the glslang library, in process. The only file that includes glslang
+// is validate.cpp.
 #pragma once
 
 #include <cstdint>

@@ -9,14 +9,16 @@ namespace fathom {
 std::uint8_t srgb_byte(float linear) {
     if (!(linear > 0)) return 0;
     if (linear >= 1) return 255;
-    const float encoded = linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+    const float encoded =
+        linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
     return static_cast<std::uint8_t>(encoded * 255 + 0.5f);
 }
 
 Picture picture_of_linear(int width, int height, std::span<const float> rgba) {
     Picture picture{width, height, {}};
     picture.rgba.resize(rgba.size());
-    for (std::size_t i = 0; i < rgba.size(); ++i) picture.rgba[i] = i % 4 == 3 ? 255 : srgb_byte(rgba[i]);
+    for (std::size_t i = 0; i < rgba.size(); ++i)
+        picture.rgba[i] = i % 4 == 3 ? 255 : srgb_byte(rgba[i]);
     return picture;
 }
 
@@ -31,7 +33,8 @@ std::string encode_png(const Picture &picture) {
         !png_image_write_to_memory(&image, nullptr, &size, 0, picture.rgba.data(), 0, nullptr))
         return {};
     std::string bytes(size, '\0');
-    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.rgba.data(), 0, nullptr)) return {};
+    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.rgba.data(), 0, nullptr))
+        return {};
     bytes.resize(size);
     return bytes;
 }

@@ -1,4 +1,5 @@
-// Pictures as bytes: sRGB encoding and PNG. Opens no file; knows nothing of how a picture came to be.
+// Pictures as bytes: sRGB encoding and PNG. Opens no file; knows nothing of how a picture came to
+// be.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// See view.h. Values of closed expressions come from ir/fold.h, which is the ops' meaning in double.
+// See view.h. Values of closed expressions come from ir/fold.h, which is the ops' meaning in
+// double.
 #include "ir/view.h"
 
 #include "ir/fold.h"
@@ -15,8 +16,8 @@ namespace fathom::ir {
 
 namespace {
 
-// Walks an expression and keeps what it has computed. Variables of functions and loops live in `env_`; what was computed under
-// them is forgotten when they change.
+// Walks an expression and keeps what it has computed. Variables of functions and loops live in
+// `env_`; what was computed under them is forgotten when they change.
 class Evaluator {
   public:
     Evaluator(const Scene &scene, double time) : scene_(scene), graph_(scene.graph), time_(time) {}
@@ -45,14 +46,16 @@ class Evaluator {
         for (NodeId arg : graph_.args(id)) args.push_back(value(arg));
         if (node.op == Op::Call) {
             const Function &function = graph_.function(FunctionId{node.payload});
-            return in_scope(function.params, args, [&](Evaluator &inner) { return inner.value(function.result); });
+            return in_scope(function.params, args,
+                            [&](Evaluator &inner) { return inner.value(function.result); });
         }
         const std::optional<Constant> result = evaluate(node.op, node.type, args, node.payload);
         assert(result && "a closed expression is made of ops that have a value");
         return result.value_or(Constant{node.type, {}});
     }
 
-    template <class F> Constant in_scope(std::span<const NodeId> vars, std::span<const Constant> args, F run) {
+    template <class F>
+    Constant in_scope(std::span<const NodeId> vars, std::span<const Constant> args, F run) {
         Evaluator inner(scene_, time_);
         for (std::size_t i = 0; i < vars.size(); ++i) inner.values_[vars[i]] = args[i];
         return run(inner);
@@ -66,7 +69,8 @@ class Evaluator {
         for (int i = 0; i < count; ++i) {
             Evaluator turn(scene_, time_);
             for (NodeId var : graph_.free_vars(id))
-                if (auto known = values_.find(var); known != values_.end()) turn.values_[var] = known->second;
+                if (auto known = values_.find(var); known != values_.end())
+                    turn.values_[var] = known->second;
             turn.values_[fold.index] = {Type::Int, {static_cast<double>(i)}};
             for (std::size_t k = 0; k < now.size(); ++k) turn.values_[fold.vars[k]] = now[k];
             if (fold.condition && turn.value(fold.condition).value[0] == 0) break;
@@ -80,11 +84,12 @@ class Evaluator {
     Constant row(NodeId id) {
         const Node &node = graph_[id];
         const Table &table = graph_.table(table_of(node.payload));
-        const int at = std::clamp(static_cast<int>(value(graph_.arg(id, 0)).value[0]), 0, std::max(table.rows - 1, 0));
+        const int at = std::clamp(static_cast<int>(value(graph_.arg(id, 0)).value[0]), 0,
+                                  std::max(table.rows - 1, 0));
         Constant result{node.type, {}};
         for (int i = 0; i < components(node.type); ++i)
-            result.value[static_cast<std::size_t>(i)] =
-                table.data[static_cast<std::size_t>(at * table.stride + column_of(node.payload) + i)];
+            result.value[static_cast<std::size_t>(i)] = table.data[static_cast<std::size_t>(
+                at * table.stride + column_of(node.payload) + i)];
         return result;
     }
 
@@ -160,14 +165,17 @@ View view_of(const Scene &scene, double time, double aspect) {
     const Camera &camera = scene.camera;
     if (!camera.given) {
         const auto [center, radius] = sphere_of(scene.bounds);
-        const View from = look_at(plus(center, {3, 2, 5}), center, std::tan(default_fov / 2), camera.orthographic);
+        const View from = look_at(plus(center, {3, 2, 5}), center, std::tan(default_fov / 2),
+                                  camera.orthographic);
         return frame_sphere(from, center, radius, aspect);
     }
-    const Triple at = triple_of(scene, camera.at, time), target = triple_of(scene, camera.look_at, time);
+    const Triple at = triple_of(scene, camera.at, time),
+                 target = triple_of(scene, camera.look_at, time);
     const double fov = camera.fov ? value_of(scene, camera.fov, time)[0] : default_fov;
     const double extent = std::tan(std::clamp(fov, 1e-4, std::numbers::pi - 1e-4) / 2);
     View view = look_at(at, target, extent, camera.orthographic);
-    if (view.orthographic) view.extent *= view.focus; // shows what the perspective camera would, at the target
+    if (view.orthographic)
+        view.extent *= view.focus; // shows what the perspective camera would, at the target
     return view;
 }
 
@@ -185,13 +193,15 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
     frame.radius = radius;
     frame.slack = look::float_slack * (length(view.origin) + radius);
     frame.pixel = 2 * view.extent / height;
-    const double sharp = std::min(scene.render.epsilon * (view.orthographic ? view.focus : 1), frame.pixel / 2);
+    const double sharp =
+        std::min(scene.render.epsilon * (view.orthographic ? view.focus : 1), frame.pixel / 2);
     frame.tolerance_slope = view.orthographic ? 0 : sharp;
     frame.tolerance_base = (view.orthographic ? sharp : 0) + frame.slack;
     frame.far = scene.render.far > 0 ? scene.render.far
                                      : 100 * std::max(radius, length(minus(view.origin, center)));
-    const Box all = scene.root && scene.root.index < scene.facts.size() ? scene.facts[scene.root.index].bounds
-                                                                        : Box::everything();
+    const Box all = scene.root && scene.root.index < scene.facts.size()
+                        ? scene.facts[scene.root.index].bounds
+                        : Box::everything();
     frame.boxed = all.finite();
     if (frame.boxed) {
         // Not flush with flat faces, on which a ray would graze its own entry.
@@ -204,7 +214,8 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
 }
 
 bool steep(const Scene &scene) {
-    return std::ranges::any_of(scene.facts, [](const ShapeFact &fact) { return fact.lipschitz_sup > 1 + 1e-6; });
+    return std::ranges::any_of(scene.facts,
+                               [](const ShapeFact &fact) { return fact.lipschitz_sup > 1 + 1e-6; });
 }
 
 std::vector<LightValue> lights_of(const Scene &scene, double time, const View &view) {
@@ -215,7 +226,8 @@ std::vector<LightValue> lights_of(const Scene &scene, double time, const View &v
         lights.push_back({light.directional, position, triple_of(scene, light.color, time)});
     }
     if (lights.empty()) {
-        const Triple towards = plus(plus(scaled(view.right, -0.5), scaled(view.up, 0.8)), scaled(view.forward, -0.6));
+        const Triple towards =
+            plus(plus(scaled(view.right, -0.5), scaled(view.up, 0.8)), scaled(view.forward, -0.6));
         lights.push_back({true, normalized(towards, {0, 1, 0}), {1, 1, 1}});
     }
     return lights;

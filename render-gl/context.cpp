@@ -27,29 +27,36 @@ bool offers(EGLDisplay display, std::string_view extension) {
     return all && std::string_view(all).find(extension) != std::string_view::npos;
 }
 
-// Devices first: a GPU's driver shows up there. Mesa's surfaceless platform chooses by itself, software included.
+// Devices first: a GPU's driver shows up there. Mesa's surfaceless platform chooses by itself,
+// software included.
 std::vector<EGLDisplay> displays() {
     std::vector<EGLDisplay> result;
-    if (offers(EGL_NO_DISPLAY, "EGL_EXT_platform_device") && offers(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration")) {
+    if (offers(EGL_NO_DISPLAY, "EGL_EXT_platform_device") &&
+        offers(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration")) {
         std::array<EGLDeviceEXT, 16> devices{};
         EGLint count = 0;
         if (eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count)) {
             for (EGLint i = 0; i < count; ++i) {
-                const char *extensions = eglQueryDeviceStringEXT(devices[static_cast<std::size_t>(i)], EGL_EXTENSIONS);
+                const char *extensions =
+                    eglQueryDeviceStringEXT(devices[static_cast<std::size_t>(i)], EGL_EXTENSIONS);
                 const bool software =
-                    extensions && std::string_view(extensions).find("EGL_MESA_device_software") != std::string_view::npos;
+                    extensions && std::string_view(extensions).find("EGL_MESA_device_software") !=
+                                      std::string_view::npos;
                 if (software) continue;
-                result.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], nullptr));
+                result.push_back(eglGetPlatformDisplayEXT(
+                    EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], nullptr));
             }
         }
     }
     if (offers(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
-        result.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+        result.push_back(
+            eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
     return result;
 }
 
 EGLContext core_context(EGLDisplay display) {
-    constexpr std::array<std::pair<int, int>, 6> versions{{{4, 6}, {4, 5}, {4, 3}, {4, 2}, {4, 0}, {3, 3}}};
+    constexpr std::array<std::pair<int, int>, 6> versions{
+        {{4, 6}, {4, 5}, {4, 3}, {4, 2}, {4, 0}, {3, 3}}};
     for (const auto &[major, minor] : versions) {
         const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
                                  major,
@@ -58,7 +65,8 @@ EGLContext core_context(EGLDisplay display) {
                                  EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                  EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                  EGL_NONE};
-        const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
+        const EGLContext context =
+            eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
         if (context != EGL_NO_CONTEXT) return context;
     }
     return EGL_NO_CONTEXT;
@@ -67,14 +75,16 @@ EGLContext core_context(EGLDisplay display) {
 } // namespace
 
 std::variant<Context, std::string> Context::make() {
-    if (!eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS)) return "this machine's EGL offers no displays without a window";
+    if (!eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS))
+        return "this machine's EGL offers no displays without a window";
     std::string reason = "EGL finds no device and no surfaceless platform to draw on";
     for (EGLDisplay display : displays()) {
         if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) {
             reason = "EGL finds a device but cannot use it";
             continue;
         }
-        if (!offers(display, "EGL_KHR_no_config_context") || !offers(display, "EGL_KHR_surfaceless_context")) {
+        if (!offers(display, "EGL_KHR_no_config_context") ||
+            !offers(display, "EGL_KHR_surfaceless_context")) {
             reason = "EGL cannot draw without a window here";
             continue;
         }

@@ -1,4 +1,5 @@
-// A GL context without a window or a display, by EGL. Programs and passes do not need it: any current context will do.
+// A GL context without a window or a display, by EGL. Programs and passes do not need it: any
+// current context will do.
 #pragma once
 
 #include <memory>
@@ -9,8 +10,9 @@ namespace fathom::gl {
 
 class Context {
   public:
-    // The newest core context from 4.6 down to 3.3: of the device EGL offers first, of Mesa without a surface otherwise. It
-    // is current on this thread. Else a sentence that says what could not be had.
+    // The newest core context from 4.6 down to 3.3: of the device EGL offers first, of Mesa without
+    // a surface otherwise. It is current on this thread. Else a sentence that says what could not
+    // be had.
     static std::variant<Context, std::string> make();
 
     void make_current() const;

@@ -29,8 +29,8 @@ std::string nth_line(const std::string &text, int n) {
     return text.substr(begin, text.find('\n', begin) - begin);
 }
 
-// Drivers write "0:12(5): error: …" (Mesa), "0(12) : error …" (NVIDIA) or "ERROR: 0:12: …" (others): the line is the first
-// number that follows "0:" or "0(".
+// Drivers write "0:12(5): error: …" (Mesa), "0(12) : error …" (NVIDIA) or "ERROR: 0:12: …"
+// (others): the line is the first number that follows "0:" or "0(".
 ProgramError read_log(const std::string &log, const std::string &text) {
     ProgramError error;
     error.message = log.substr(0, log.find('\n'));
@@ -79,7 +79,8 @@ void unfiltered(GLenum target) {
 
 } // namespace
 
-std::variant<Program, ProgramError> Program::build(const glsl::Output &output, const ir::Scene &scene) {
+std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
+                                                   const ir::Scene &scene) {
     Program result;
     result.uniforms_ = output.uniforms;
     Shader vertex(GL_VERTEX_SHADER), fragment(GL_FRAGMENT_SHADER);
@@ -106,7 +107,8 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output, c
     if (!output.tables.empty()) {
         glGenBuffers(1, &result.table_buffer_);
         glBindBuffer(GL_TEXTURE_BUFFER, result.table_buffer_);
-        glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(output.tables.size() * sizeof(float)),
+        glBufferData(GL_TEXTURE_BUFFER,
+                     static_cast<GLsizeiptr>(output.tables.size() * sizeof(float)),
                      output.tables.data(), GL_DYNAMIC_DRAW);
         glGenTextures(1, &result.table_texture_);
         glBindTexture(GL_TEXTURE_BUFFER, result.table_texture_);
@@ -119,7 +121,8 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output, c
         GLuint texture = 0;
         glGenTextures(1, &texture);
         glBindTexture(GL_TEXTURE_2D, texture);
-        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, image.width, image.height, 0, GL_RGBA, GL_FLOAT, image.rgba.data());
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, image.width, image.height, 0, GL_RGBA, GL_FLOAT,
+                     image.rgba.data());
         unfiltered(GL_TEXTURE_2D);
         result.textures_.emplace_back(GL_TEXTURE_2D, texture);
         glUniform1i(result.location(sampler.name.c_str()), unit++);
@@ -130,8 +133,8 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output, c
         glGenTextures(1, &texture);
         glBindTexture(GL_TEXTURE_3D, texture);
         glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-        glTexImage3D(GL_TEXTURE_3D, 0, GL_R32F, grid.size[0], grid.size[1], grid.size[2], 0, GL_RED, GL_FLOAT,
-                     grid.values.data());
+        glTexImage3D(GL_TEXTURE_3D, 0, GL_R32F, grid.size[0], grid.size[1], grid.size[2], 0, GL_RED,
+                     GL_FLOAT, grid.values.data());
         unfiltered(GL_TEXTURE_3D);
         result.textures_.emplace_back(GL_TEXTURE_3D, texture);
         glUniform1i(result.location(sampler.name.c_str()), unit++);
@@ -144,10 +147,13 @@ int Program::location(const char *name) const { return glGetUniformLocation(prog
 void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) const {
     glUseProgram(program_);
     const auto vector = [&](const char *name, const ir::Triple &v) {
-        glUniform3f(location(name), static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
+        glUniform3f(location(name), static_cast<float>(v[0]), static_cast<float>(v[1]),
+                    static_cast<float>(v[2]));
     };
-    glUniform2f(location("fathom_resolution"), static_cast<float>(in.width), static_cast<float>(in.height));
-    glUniform2f(location("fathom_offset"), static_cast<float>(in.offset[0]), static_cast<float>(in.offset[1]));
+    glUniform2f(location("fathom_resolution"), static_cast<float>(in.width),
+                static_cast<float>(in.height));
+    glUniform2f(location("fathom_offset"), static_cast<float>(in.offset[0]),
+                static_cast<float>(in.offset[1]));
     vector("fathom_origin", in.view.origin);
     vector("fathom_right", in.view.right);
     vector("fathom_up", in.view.up);
@@ -161,16 +167,20 @@ void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) 
 
     for (const glsl::Uniform &uniform : uniforms_) {
         const std::array<double, 4> &v = params[uniform.param].value;
-        const std::array<float, 4> f{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
-                                     static_cast<float>(v[3])};
+        const std::array<float, 4> f{static_cast<float>(v[0]), static_cast<float>(v[1]),
+                                     static_cast<float>(v[2]), static_cast<float>(v[3])};
         const int at = location(uniform.name.c_str());
         switch (uniform.type) {
-        case ir::Type::Bool: case ir::Type::Int: glUniform1i(at, static_cast<GLint>(v[0])); break;
+        case ir::Type::Bool:
+        case ir::Type::Int: glUniform1i(at, static_cast<GLint>(v[0])); break;
         case ir::Type::Float: glUniform1fv(at, 1, f.data()); break;
         case ir::Type::Vec2: glUniform2fv(at, 1, f.data()); break;
         case ir::Type::Vec3: glUniform3fv(at, 1, f.data()); break;
         case ir::Type::Vec4: glUniform4fv(at, 1, f.data()); break;
-        case ir::Type::Mat2: case ir::Type::Mat3: case ir::Type::Mat4: case ir::Type::Hit: break; // no such params
+        case ir::Type::Mat2:
+        case ir::Type::Mat3:
+        case ir::Type::Mat4:
+        case ir::Type::Hit: break; // no such params
         }
     }
     if (table_texture_) {
@@ -188,7 +198,8 @@ void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) 
 void Program::upload_tables(const std::vector<float> &texels) const {
     if (!table_buffer_) return;
     glBindBuffer(GL_TEXTURE_BUFFER, table_buffer_);
-    glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(texels.size() * sizeof(float)), texels.data());
+    glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(texels.size() * sizeof(float)),
+                    texels.data());
 }
 
 void Program::release() {

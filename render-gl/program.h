@@ -1,5 +1,5 @@
-// An emitted text as a linked GL program with its data, and the one pass that it draws. Needs a current context of GL 3.3 or
-// later, its own or a window's; makes none.
+// An emitted text as a linked GL program with its data, and the one pass that it draws. Needs a
+// current context of GL 3.3 or later, its own or a window's; makes none.
 #pragma once
 
 #include "backend-glsl/emit.h"
@@ -31,10 +31,13 @@ struct FrameInputs {
 
 class Program {
   public:
-    // `output` is of Target::Glsl330 or Glsl450; the images and grids that it names are taken from `scene`.
-    static std::variant<Program, ProgramError> build(const glsl::Output &output, const ir::Scene &scene);
+    // `output` is of Target::Glsl330 or Glsl450; the images and grids that it names are taken from
+    // `scene`.
+    static std::variant<Program, ProgramError> build(const glsl::Output &output,
+                                                     const ir::Scene &scene);
 
-    // Draws over the current framebuffer and viewport (the scissor rectangle applies), with the params' values of `params`.
+    // Draws over the current framebuffer and viewport (the scissor rectangle applies), with the
+    // params' values of `params`.
     void draw(const FrameInputs &inputs, const std::vector<ir::Param> &params) const;
 
     // Replaces the tables' numbers where only these changed. Their size must be the same.

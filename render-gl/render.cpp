@@ -24,7 +24,8 @@ class Target {
         glGenFramebuffers(1, &framebuffer_);
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
-        complete_ = glGetError() == GL_NO_ERROR && glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+        complete_ = glGetError() == GL_NO_ERROR &&
+                    glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
         glViewport(0, 0, width, height);
     }
     ~Target() {
@@ -53,17 +54,24 @@ int largest_side() {
     return std::min({texture, viewport[0], viewport[1]});
 }
 
-std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const Request &request, Mode mode) {
-    const int width = request.width, height = request.height, samples = std::max(request.samples, 1);
+std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const Request &request,
+                           Mode mode) {
+    const int width = request.width, height = request.height,
+              samples = std::max(request.samples, 1);
     if (width <= 0 || height <= 0 || std::max(width, height) > largest_side()) return std::nullopt;
-    while (glGetError() != GL_NO_ERROR) {} // what was wrong before is not ours to report
+    while (glGetError() != GL_NO_ERROR) {
+    } // what was wrong before is not ours to report
     const Target target(width, height);
     if (!target.complete()) return std::nullopt;
 
     FrameInputs inputs;
-    inputs.view = request.view ? *request.view
-                               : ir::view_of(scene, request.time, static_cast<double>(width) / height);
-    inputs.sun = ir::lights_of(scene, request.time, ir::view_of(scene, request.time, static_cast<double>(width) / height))[0].position;
+    inputs.view = request.view
+                      ? *request.view
+                      : ir::view_of(scene, request.time, static_cast<double>(width) / height);
+    inputs.sun =
+        ir::lights_of(scene, request.time,
+                      ir::view_of(scene, request.time, static_cast<double>(width) / height))[0]
+            .position;
     inputs.width = width;
     inputs.height = height;
     inputs.time = request.time;
@@ -100,17 +108,23 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
     pixels.rgba.resize(upward.size());
     for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
         for (std::size_t x = 0; x < row; ++x)
-            pixels.rgba[y * row + x] = upward[(static_cast<std::size_t>(height) - 1 - y) * row + x] / static_cast<float>(samples);
+            pixels.rgba[y * row + x] =
+                upward[(static_cast<std::size_t>(height) - 1 - y) * row + x] /
+                static_cast<float>(samples);
     return pixels;
 }
 
-std::optional<Picture> render(const ir::Scene &scene, const Request &request, Diagnostics &diagnostics) {
-    const glsl::Output output = glsl::emit(scene, {.target = glsl::Target::Glsl330, .buffers = true}, diagnostics);
+std::optional<Picture> render(const ir::Scene &scene, const Request &request,
+                              Diagnostics &diagnostics) {
+    const glsl::Output output =
+        glsl::emit(scene, {.target = glsl::Target::Glsl330, .buffers = true}, diagnostics);
     if (output.text.empty()) return std::nullopt;
     const auto built = Program::build(output, scene);
     if (const auto *error = std::get_if<ProgramError>(&built)) {
-        Diagnostic &d = diagnostics.add(Code::ShaderInvalid, {}, "the graphics driver refuses the shader: " + error->message);
-        if (error->line > 0) d.note("line " + std::to_string(error->line) + " of the shader: " + error->source_line);
+        Diagnostic &d = diagnostics.add(
+            Code::ShaderInvalid, {}, "the graphics driver refuses the shader: " + error->message);
+        if (error->line > 0)
+            d.note("line " + std::to_string(error->line) + " of the shader: " + error->source_line);
         return std::nullopt;
     }
     const auto pixels = draw(std::get<Program>(built), scene, request, Mode::Linear);

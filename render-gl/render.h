@@ -1,4 +1,5 @@
-// Off-screen pictures of a scene: emits, builds, draws strip by strip, reads back. Needs a current context.
+// Off-screen pictures of a scene: emits, builds, draws strip by strip, reads back. Needs a current
+// context.
 #pragma once
 
 #include "base/diagnostic.h"
@@ -14,8 +15,8 @@ struct Request {
     int width = 800, height = 600;
     int samples = 1; // a pixel
     double time = 0;
-    std::optional<ir::View> view{};           // else the scene's own
-    std::function<bool(double)> progress{};   // asked now and then with 0..1; false stops
+    std::optional<ir::View> view{};         // else the scene's own
+    std::function<bool(double)> progress{}; // asked now and then with 0..1; false stops
 };
 
 // Rows from the top, RGBA.
@@ -27,11 +28,14 @@ struct Pixels {
 // The largest width and height that the context can draw at once.
 int largest_side();
 
-// What `mode` writes, averaged over the samples. Nothing where `progress` stopped it or the framebuffer cannot be made
-// (too large, no memory).
-std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const Request &request, Mode mode);
+// What `mode` writes, averaged over the samples. Nothing where `progress` stopped it or the
+// framebuffer cannot be made (too large, no memory).
+std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const Request &request,
+                           Mode mode);
 
-// The whole way. Nothing where the scene cannot be emitted or built (said in `diagnostics`), or it was stopped.
-std::optional<Picture> render(const ir::Scene &scene, const Request &request, Diagnostics &diagnostics);
+// The whole way. Nothing where the scene cannot be emitted or built (said in `diagnostics`), or it
+// was stopped.
+std::optional<Picture> render(const ir::Scene &scene, const Request &request,
+                              Diagnostics &diagnostics);
 
 } // namespace fathom::gl

@@ -11,9 +11,9 @@ using namespace fathom::scenes;
 
 namespace {
 
-const glsl::Target all_targets[] = {glsl::Target::Glsl450,   glsl::Target::Glsl330,    glsl::Target::Es300,
-                                    glsl::Target::Shadertoy, glsl::Target::GlslViewer, glsl::Target::Spirv,
-                                    glsl::Target::Html};
+const glsl::Target all_targets[] = {
+    glsl::Target::Glsl450,    glsl::Target::Glsl330, glsl::Target::Es300, glsl::Target::Shadertoy,
+    glsl::Target::GlslViewer, glsl::Target::Spirv,   glsl::Target::Html};
 
 glsl::Output emitted(const Scene &scene, const glsl::Options &options = {}) {
     Diagnostics diagnostics;
@@ -37,13 +37,15 @@ std::string sdf_of(const Scene &scene, glsl::Options options = {}) {
 
 std::size_t count(const std::string &text, const std::string &what) {
     std::size_t n = 0;
-    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += what.size()) ++n;
+    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += what.size())
+        ++n;
     return n;
 }
 
 NodeId fold(Graph &g, Fold record, NodeId start) {
     const FoldId id = g.add_fold(std::move(record));
-    return g.make(Op::FoldResult, g[start].type, {g.make(Op::Fold, g[start].type, {start}, id.index)}, 0);
+    return g.make(Op::FoldResult, g[start].type,
+                  {g.make(Op::Fold, g[start].type, {start}, id.index)}, 0);
 }
 
 } // namespace
@@ -52,7 +54,8 @@ TEST_CASE("a sphere is emitted for every target") {
     for (glsl::Target target : all_targets)
         for (bool field_only : {false, true}) {
             CAPTURE(glsl::target_name(target), field_only);
-            const glsl::Output out = emitted(sphere(), {.target = target, .field_only = field_only});
+            const glsl::Output out =
+                emitted(sphere(), {.target = target, .field_only = field_only});
             CHECK(out.text.empty() == (target == glsl::Target::Spirv));
             CHECK(out.words.empty() == (target != glsl::Target::Spirv));
         }
@@ -69,15 +72,21 @@ TEST_CASE("every op is emitted for every target") {
                         std::vector<NodeId> args; // different ones, none constant
                         for (std::size_t i = 0; i < c.args.size(); ++i) {
                             const Type t = c.args[i];
-                            const NodeId x = g.add(g.component(p, static_cast<int>(i % 3)), g.number(static_cast<double>(i) + 1));
-                            if (t == Type::Bool) args.push_back(g.make(Op::Less, {x, g.number(0)}));
-                            else if (t == Type::Int) args.push_back(g.make(Op::ToInt, Type::Int, {x}));
-                            else args.push_back(t == Type::Float ? x : g.splat(x, t));
+                            const NodeId x = g.add(g.component(p, static_cast<int>(i % 3)),
+                                                   g.number(static_cast<double>(i) + 1));
+                            if (t == Type::Bool)
+                                args.push_back(g.make(Op::Less, {x, g.number(0)}));
+                            else if (t == Type::Int)
+                                args.push_back(g.make(Op::ToInt, Type::Int, {x}));
+                            else
+                                args.push_back(t == Type::Float ? x : g.splat(x, t));
                         }
                         NodeId value = g.make(op, c.result, args, payload);
-                        if (is_matrix(c.result)) value = g.make(Op::Column, vector_type(side(c.result)), {value}, 0);
+                        if (is_matrix(c.result))
+                            value = g.make(Op::Column, vector_type(side(c.result)), {value}, 0);
                         if (is_vector(g[value].type)) value = g.make(Op::Length, {value});
-                        if (g[value].type != Type::Float) value = g.make(Op::ToFloat, Type::Float, {value});
+                        if (g[value].type != Type::Float)
+                            value = g.make(Op::ToFloat, Type::Float, {value});
                         sum = g.add(sum, value);
                     }
             }
@@ -119,7 +128,8 @@ TEST_CASE("an arm with work of its own is a block, and a chain of them stays fla
             const NodeId s = g.make(Op::Sin, {g.mul(y, g.number(k))});
             return g.add(g.mul(s, s), g.make(Op::Exp, {s}));
         };
-        const NodeId rest = g.make(Op::Select, {g.make(Op::Less, {x, g.number(2)}), arm(2), arm(3)});
+        const NodeId rest =
+            g.make(Op::Select, {g.make(Op::Less, {x, g.number(2)}), arm(2), arm(3)});
         return g.make(Op::Select, {g.make(Op::Less, {x, g.number(1)}), arm(5), rest});
     });
     CHECK(sdf_of(scene) == R"(float sdf(vec3 p) {
@@ -142,7 +152,8 @@ TEST_CASE("an arm with work of its own is a block, and a chain of them stays fla
 TEST_CASE("a cheap choice is an expression") {
     const Scene scene = of_field([](Graph &g, NodeId p) {
         const NodeId x = g.component(p, 0);
-        return g.make(Op::Select, {g.make(Op::Less, {x, g.number(0)}), g.neg(x), g.mul(x, g.number(2))});
+        return g.make(Op::Select,
+                      {g.make(Op::Less, {x, g.number(0)}), g.neg(x), g.mul(x, g.number(2))});
     });
     CHECK(sdf_of(scene) == R"(float sdf(vec3 p) {
     return p.x < 0.0 ? -p.x : p.x * 2.0;
@@ -154,7 +165,8 @@ TEST_CASE("a loop stays a loop, and what does not change in it stands before") {
     const Scene scene = of_field([](Graph &g, NodeId p) {
         const NodeId x = g.fresh_var(Type::Float), i = g.fresh_var(Type::Int);
         const NodeId steady = g.make(Op::Sin, {g.component(p, 1)});
-        const NodeId next = g.make(Op::Union, Type::Float, {x, g.mul(g.make(Op::ToFloat, Type::Float, {i}), steady)});
+        const NodeId next = g.make(Op::Union, Type::Float,
+                                   {x, g.mul(g.make(Op::ToFloat, Type::Float, {i}), steady)});
         const NodeId condition = g.make(Op::Less, {g.number(0), x});
         return fold(g, {g.integer(8), i, {x}, {next}, condition, 8}, g.component(p, 0));
     });
@@ -170,7 +182,8 @@ TEST_CASE("a loop stays a loop, and what does not change in it stands before") {
 )");
 }
 
-TEST_CASE("256 spheres that differ by their row are a loop over a table, under 64 KB with their data") {
+TEST_CASE(
+    "256 spheres that differ by their row are a loop over a table, under 64 KB with their data") {
     const glsl::Output text = emitted(table_of_spheres(256));
     CHECK(text.text.size() < 65536);
     CHECK(count(text.text, "length(p - ") == 2); // the distance and the hit
@@ -186,14 +199,16 @@ TEST_CASE("users' names are kept where GLSL allows them, and made so where not")
             double k = 1;
             for (const std::string &name : names) {
                 const NodeId q = g.fresh_var(Type::Vec3);
-                const FunctionId f = g.add_function({name, {}, {q}, g.mul(g.make(Op::Length, {q}), g.number(++k))});
+                const FunctionId f =
+                    g.add_function({name, {}, {q}, g.mul(g.make(Op::Length, {q}), g.number(++k))});
                 sum = g.add(sum, g.call(f, {&p, 1}));
             }
             return sum;
         });
         return sdf_of(scene);
     };
-    CHECK(named({"pillar", "pillar", "mix", "sdf", "gl_x", "a__b", "d1", "\xc3\xa9tage"}) == R"(float sdf(vec3 p) {
+    CHECK(named({"pillar", "pillar", "mix", "sdf", "gl_x", "a__b", "d1", "\xc3\xa9tage"}) ==
+          R"(float sdf(vec3 p) {
     float d2 = pillar(p) + pillar_2(p) + mix_2(p) + sdf_2(p) + my_gl_x(p) + a_b(p) + d1(p);
     return d2 + tage(p);
 }
@@ -202,7 +217,8 @@ TEST_CASE("users' names are kept where GLSL allows them, and made so where not")
 
 TEST_CASE("params are uniforms where there is a host, constants where there is none") {
     Scene scene = of_field([](Graph &g, NodeId p) {
-        return g.sub(g.make(Op::Length, {p}), g.add(g.param(0, Type::Float), g.make(Op::Sin, {g.time()})));
+        return g.sub(g.make(Op::Length, {p}),
+                     g.add(g.param(0, Type::Float), g.make(Op::Sin, {g.time()})));
     });
     Param radius;
     radius.name = "radius";
@@ -213,14 +229,16 @@ TEST_CASE("params are uniforms where there is a host, constants where there is n
     CHECK(hosted.uniforms[0].name == "param_radius");
     CHECK(hosted.reads_time);
     CHECK(count(hosted.text, "uniform float param_radius = 1.25;") == 1);
-    CHECK(count(emitted(scene, {.target = glsl::Target::Shadertoy}).text, "const float param_radius = 1.25;") == 1);
+    CHECK(count(emitted(scene, {.target = glsl::Target::Shadertoy}).text,
+                "const float param_radius = 1.25;") == 1);
     CHECK(count(emitted(scene, {.target = glsl::Target::Html}).text, "param_radius") > 1);
 }
 
 TEST_CASE("many plain materials are a table") {
     Scene scene = sphere();
     scene.surfaces.clear();
-    for (int i = 0; i < 300; ++i) scene.surfaces.push_back(plain_surface(scene.graph, i / 300.0, 0.5, 0.5));
+    for (int i = 0; i < 300; ++i)
+        scene.surfaces.push_back(plain_surface(scene.graph, i / 300.0, 0.5, 0.5));
     const std::string text = emitted(scene, {.buffers = true}).text;
     CHECK(count(text, "if (paint ==") == 0);
     CHECK(text.size() < 12000);
@@ -228,8 +246,11 @@ TEST_CASE("many plain materials are a table") {
 
 TEST_CASE("infinities and the least int are written so that GLSL reads them") {
     const Scene scene = of_field([](Graph &g, NodeId p) {
-        const NodeId i = g.make(Op::Min, {g.make(Op::ToInt, Type::Int, {g.component(p, 0)}), g.integer(-2147483647 - 1)});
-        return g.make(Op::Min, {g.number(INFINITY), g.make(Op::Max, {g.make(Op::ToFloat, Type::Float, {i}), g.number(-INFINITY)})});
+        const NodeId i = g.make(Op::Min, {g.make(Op::ToInt, Type::Int, {g.component(p, 0)}),
+                                          g.integer(-2147483647 - 1)});
+        return g.make(Op::Min,
+                      {g.number(INFINITY), g.make(Op::Max, {g.make(Op::ToFloat, Type::Float, {i}),
+                                                            g.number(-INFINITY)})});
     });
     for (glsl::Target target : all_targets) emitted(scene, {.target = target});
 }

@@ -1,4 +1,5 @@
-// The types that each op is asked with in tests. Ops that have no value of their own (inputs, structure, hits) have no cases.
+// The types that each op is asked with in tests. Ops that have no value of their own (inputs,
+// structure, hits) have no cases.
 #pragma once
 
 #include "ir/graph.h"
@@ -13,10 +14,11 @@ using ir::Op;
 using ir::Type;
 
 inline constexpr Type int_and_floats[] = {Type::Int,  Type::Float, Type::Vec2, Type::Vec3,
-                                   Type::Vec4, Type::Mat2,  Type::Mat3, Type::Mat4};
-inline constexpr std::span<const Type> with_int(int_and_floats), all = with_int.subspan(1),
-                                vectors_and_float = all.subspan(0, 4), vectors = all.subspan(1, 3),
-                                matrices = all.subspan(4), vec3(&int_and_floats[3], 1);
+                                          Type::Vec4, Type::Mat2,  Type::Mat3, Type::Mat4};
+inline constexpr std::span<const Type>
+    with_int(int_and_floats), all = with_int.subspan(1), vectors_and_float = all.subspan(0, 4),
+                              vectors = all.subspan(1, 3), matrices = all.subspan(4),
+                              vec3(&int_and_floats[3], 1);
 
 struct Case {
     Op op;
@@ -30,23 +32,65 @@ inline std::vector<Case> cases_of(Op op) {
         for (Type t : types) cases.push_back({op, std::vector<Type>(arity, t), t});
     };
     switch (op) {
-    case Op::Const: case Op::Point: case Op::Normal: case Op::Direction: case Op::Time: case Op::Param: case Op::Var:
-    case Op::TableRead: case Op::Image: case Op::Grid: case Op::Call: case Op::Fold: case Op::FoldResult:
-    case Op::Cached: case Op::MakeHit: case Op::HitDistance: case Op::HitPaint: case Op::HitPoint: case Op::HitExtra:
-    case Op::NearestHit: case Op::FarthestHit: case Op::HitWith: case Op::FillPaint:
-        break;
-    case Op::Neg: case Op::Abs: case Op::Sign: same(1, with_int); break;
-    case Op::Add: case Op::Sub: case Op::Mul: case Op::Div: case Op::Mod: case Op::Min: case Op::Max:
-        same(2, with_int);
-        break;
-    case Op::Pow: case Op::Step: case Op::Atan2: same(2, all); break;
-    case Op::Floor: case Op::Ceil: case Op::Round: case Op::Trunc: case Op::Fract: case Op::Sqrt: case Op::InverseSqrt:
-    case Op::Exp: case Op::Exp2: case Op::Log: case Op::Log2: case Op::Sin: case Op::Cos: case Op::Tan: case Op::Asin:
-    case Op::Acos: case Op::Atan: case Op::Sinh: case Op::Cosh: case Op::Tanh:
-        same(1, all);
-        break;
+    case Op::Const:
+    case Op::Point:
+    case Op::Normal:
+    case Op::Direction:
+    case Op::Time:
+    case Op::Param:
+    case Op::Var:
+    case Op::TableRead:
+    case Op::Image:
+    case Op::Grid:
+    case Op::Call:
+    case Op::Fold:
+    case Op::FoldResult:
+    case Op::Cached:
+    case Op::MakeHit:
+    case Op::HitDistance:
+    case Op::HitPaint:
+    case Op::HitPoint:
+    case Op::HitExtra:
+    case Op::NearestHit:
+    case Op::FarthestHit:
+    case Op::HitWith:
+    case Op::FillPaint: break;
+    case Op::Neg:
+    case Op::Abs:
+    case Op::Sign: same(1, with_int); break;
+    case Op::Add:
+    case Op::Sub:
+    case Op::Mul:
+    case Op::Div:
+    case Op::Mod:
+    case Op::Min:
+    case Op::Max: same(2, with_int); break;
+    case Op::Pow:
+    case Op::Step:
+    case Op::Atan2: same(2, all); break;
+    case Op::Floor:
+    case Op::Ceil:
+    case Op::Round:
+    case Op::Trunc:
+    case Op::Fract:
+    case Op::Sqrt:
+    case Op::InverseSqrt:
+    case Op::Exp:
+    case Op::Exp2:
+    case Op::Log:
+    case Op::Log2:
+    case Op::Sin:
+    case Op::Cos:
+    case Op::Tan:
+    case Op::Asin:
+    case Op::Acos:
+    case Op::Atan:
+    case Op::Sinh:
+    case Op::Cosh:
+    case Op::Tanh: same(1, all); break;
     case Op::Clamp: same(3, with_int); break;
-    case Op::Mix: case Op::Smoothstep: same(3, all); break;
+    case Op::Mix:
+    case Op::Smoothstep: same(3, all); break;
     case Op::Dot:
         for (Type t : vectors_and_float) cases.push_back({op, {t, t}, Type::Float});
         break;
@@ -55,10 +99,14 @@ inline std::vector<Case> cases_of(Op op) {
         break;
     case Op::Cross: same(2, vec3); break;
     case Op::Normalize: same(1, vectors); break;
-    case Op::Less: case Op::LessEqual: case Op::Equal: case Op::NotEqual:
+    case Op::Less:
+    case Op::LessEqual:
+    case Op::Equal:
+    case Op::NotEqual:
         for (Type t : {Type::Float, Type::Int}) cases.push_back({op, {t, t}, Type::Bool});
         break;
-    case Op::And: case Op::Or: cases.push_back({op, {Type::Bool, Type::Bool}, Type::Bool}); break;
+    case Op::And:
+    case Op::Or: cases.push_back({op, {Type::Bool, Type::Bool}, Type::Bool}); break;
     case Op::Not: cases.push_back({op, {Type::Bool}, Type::Bool}); break;
     case Op::Select:
         for (Type t : with_int) cases.push_back({op, {Type::Bool, t, t}, t});
@@ -77,8 +125,10 @@ inline std::vector<Case> cases_of(Op op) {
         break;
     case Op::Make:
         for (int n = 2; n <= 4; ++n) {
-            cases.push_back({op, std::vector<Type>(static_cast<std::size_t>(n), Type::Float), ir::vector_type(n)});
-            cases.push_back({op, std::vector<Type>(static_cast<std::size_t>(n), ir::vector_type(n)), ir::matrix_type(n)});
+            cases.push_back({op, std::vector<Type>(static_cast<std::size_t>(n), Type::Float),
+                             ir::vector_type(n)});
+            cases.push_back({op, std::vector<Type>(static_cast<std::size_t>(n), ir::vector_type(n)),
+                             ir::matrix_type(n)});
         }
         break;
     case Op::Swizzle: cases.push_back({op, {Type::Vec4}, Type::Vec3}); break;
@@ -96,15 +146,21 @@ inline std::vector<Case> cases_of(Op op) {
         for (Type t : {Type::Int, Type::Float, Type::Vec2, Type::Vec3, Type::Vec4})
             cases.push_back({op, {t}, Type::Float});
         break;
-    case Op::Perlin: case Op::Simplex: case Op::ValueNoise: case Op::Worley:
-        cases.push_back({op, {Type::Vec3}, Type::Float});
+    case Op::Perlin:
+    case Op::Simplex:
+    case Op::ValueNoise:
+    case Op::Worley: cases.push_back({op, {Type::Vec3}, Type::Float}); break;
+    case Op::SpotNoise:
+        cases.push_back({op, {Type::Vec3, Type::Float, Type::Float}, Type::Float});
         break;
-    case Op::SpotNoise: cases.push_back({op, {Type::Vec3, Type::Float, Type::Float}, Type::Float}); break;
-    case Op::Union: case Op::Intersection:
-        for (std::size_t n : {1u, 2u, 3u, 5u}) cases.push_back({op, std::vector<Type>(n, Type::Float), Type::Float});
+    case Op::Union:
+    case Op::Intersection:
+        for (std::size_t n : {1u, 2u, 3u, 5u})
+            cases.push_back({op, std::vector<Type>(n, Type::Float), Type::Float});
         break;
     case Op::Blend:
-        for (std::size_t n : {3u, 4u, 6u}) cases.push_back({op, std::vector<Type>(n, Type::Float), Type::Float});
+        for (std::size_t n : {3u, 4u, 6u})
+            cases.push_back({op, std::vector<Type>(n, Type::Float), Type::Float});
         break;
     }
     return cases;
@@ -112,7 +168,8 @@ inline std::vector<Case> cases_of(Op op) {
 
 inline std::vector<std::uint32_t> payloads_of(Op op) {
     if (op == Op::Blend) return {0, 1, 2, 3, 4};
-    if (op == Op::Swizzle) return {ir::swizzle_mask(std::array{3, 0, 1}), ir::swizzle_mask(std::array{2, 2, 0})};
+    if (op == Op::Swizzle)
+        return {ir::swizzle_mask(std::array{3, 0, 1}), ir::swizzle_mask(std::array{2, 2, 0})};
     if (op == Op::Column) return {0, 2};
     return {0};
 }

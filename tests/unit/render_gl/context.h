@@ -7,7 +7,8 @@
 
 namespace fathom {
 
-// Whether there is a context; where there is none the reason is printed once, and the tests that need it skip.
+// Whether there is a context; where there is none the reason is printed once, and the tests that
+// need it skip.
 inline bool has_context() {
     static const std::variant<gl::Context, std::string> context = [] {
         auto made = gl::Context::make();

@@ -12,7 +12,8 @@
 namespace fathom {
 
 struct Harness {
-    GLuint program = 0, framebuffer = 0, texture = 0, vertex_array = 0, buffer = 0, buffer_texture = 0;
+    GLuint program = 0, framebuffer = 0, texture = 0, vertex_array = 0, buffer = 0,
+           buffer_texture = 0;
     ~Harness() {
         glDeleteProgram(program);
         glDeleteFramebuffers(1, &framebuffer);
@@ -23,15 +24,19 @@ struct Harness {
     }
 };
 
-// `sdf(vec3(row, component, 0))` of an emitted field for rows 0 … count-1 and `components` components.
+// `sdf(vec3(row, component, 0))` of an emitted field for rows 0 … count-1 and `components`
+// components.
 inline std::vector<float> run_shader(const glsl::Output &output, int count, int components) {
     Harness h;
-    const std::string main = "\nout vec4 value;\nvoid main() {\n    value = vec4(sdf(vec3(gl_FragCoord.xy - 0.5, 0.0)));\n}\n";
+    const std::string main = "\nout vec4 value;\nvoid main() {\n    value = "
+                             "vec4(sdf(vec3(gl_FragCoord.xy - 0.5, 0.0)));\n}\n";
     const std::string fragment = output.text + main;
-    const char *vertex = "#version 330 core\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == "
+    const char *vertex = "#version 330 core\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? "
+                         "3.0 : -1.0, gl_VertexID == "
                          "2 ? 3.0 : -1.0, 0.0, 1.0); }\n";
     h.program = glCreateProgram();
-    for (const auto &[kind, text] : {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment.c_str()}}) {
+    for (const auto &[kind, text] :
+         {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment.c_str()}}) {
         const GLuint shader = glCreateShader(static_cast<GLenum>(kind));
         glShaderSource(shader, 1, &text, nullptr);
         glCompileShader(shader);
@@ -58,7 +63,8 @@ inline std::vector<float> run_shader(const glsl::Output &output, int count, int 
     if (!output.tables.empty()) {
         glGenBuffers(1, &h.buffer);
         glBindBuffer(GL_TEXTURE_BUFFER, h.buffer);
-        glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(output.tables.size() * 4), output.tables.data(), GL_STATIC_DRAW);
+        glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(output.tables.size() * 4),
+                     output.tables.data(), GL_STATIC_DRAW);
         glGenTextures(1, &h.buffer_texture);
         glActiveTexture(GL_TEXTURE0);
         glBindTexture(GL_TEXTURE_BUFFER, h.buffer_texture);

@@ -15,7 +15,8 @@ constexpr int width = 160, height = 120;
 
 gl::Program built(const Scene &scene, bool buffers = true) {
     Diagnostics diagnostics;
-    const glsl::Output output = glsl::emit(scene, {.target = glsl::Target::Glsl330, .buffers = buffers}, diagnostics);
+    const glsl::Output output =
+        glsl::emit(scene, {.target = glsl::Target::Glsl330, .buffers = buffers}, diagnostics);
     REQUIRE_FALSE(diagnostics.has_errors());
     auto result = gl::Program::build(output, scene);
     if (const auto *error = std::get_if<gl::ProgramError>(&result)) FAIL(error->message);
@@ -53,7 +54,8 @@ PixelRay ray(const View &view, double x, double y) {
 // Where a ray first meets the unit sphere; negative where it does not.
 double meets(const PixelRay &r, double radius = 1) {
     double b = 0, c = -radius * radius;
-    for (std::size_t i = 0; i < 3; ++i) b += r.origin[i] * r.direction[i], c += r.origin[i] * r.origin[i];
+    for (std::size_t i = 0; i < 3; ++i)
+        b += r.origin[i] * r.direction[i], c += r.origin[i] * r.origin[i];
     return b * b < c ? -1 : -b - std::sqrt(b * b - c);
 }
 
@@ -80,7 +82,8 @@ TEST_CASE("a sphere's silhouette and depth stand where geometry puts them") {
                 double away = 0; // of the point that was hit from the middle
                 for (std::size_t i = 0; i < 3; ++i)
                     away += std::pow(r.origin[i] + at(numbers, x, y, 1) * r.direction[i], 2);
-                if (hit && std::abs(std::sqrt(away) - 1) > 3e-3) ++wrong; // render.epsilon at that distance, and a little
+                if (hit && std::abs(std::sqrt(away) - 1) > 3e-3)
+                    ++wrong; // render.epsilon at that distance, and a little
             }
         CHECK(wrong == 0);
         CHECK(inside > 1000);
@@ -101,10 +104,12 @@ TEST_CASE("a sphere's normals point away from its middle") {
         for (int x = 0; x < width; ++x) {
             const PixelRay r = ray(view, x + 0.5, y + 0.5);
             const double t = meets(r);
-            if (meets(r, 0.9) < 0) continue; // nearer to the edge a hit's tolerance is long along the ray
+            if (meets(r, 0.9) < 0)
+                continue; // nearer to the edge a hit's tolerance is long along the ray
             for (std::size_t i = 0; i < 3; ++i) {
                 const double normal = r.origin[i] + t * r.direction[i];
-                worst = std::max(worst, std::abs(at(colors, x, y, static_cast<int>(i)) - (0.5 + 0.5 * normal)));
+                worst = std::max(
+                    worst, std::abs(at(colors, x, y, static_cast<int>(i)) - (0.5 + 0.5 * normal)));
             }
         }
     CHECK(worst < 3e-3);
@@ -113,27 +118,33 @@ TEST_CASE("a sphere's normals point away from its middle") {
 TEST_CASE("a bound that was divided out does not change the look") {
     if (!has_context()) return;
     const auto scaled = [](double by) {
-        Scene scene = of_field([&](Graph &g, NodeId p) {
-            const NodeId ball = sphere_distance(g, p, g.vec3(0, 0, 0), g.number(1));
-            const NodeId small = sphere_distance(g, p, g.vec3(1, 0.6, 0.6), g.number(0.4));
-            return g.mul(g.make(Op::Union, Type::Float, {ball, small}), g.number(1 / by));
-        }, cube(1.5));
+        Scene scene = of_field(
+            [&](Graph &g, NodeId p) {
+                const NodeId ball = sphere_distance(g, p, g.vec3(0, 0, 0), g.number(1));
+                const NodeId small = sphere_distance(g, p, g.vec3(1, 0.6, 0.6), g.number(0.4));
+                return g.mul(g.make(Op::Union, Type::Float, {ball, small}), g.number(1 / by));
+            },
+            cube(1.5));
         scene.facts[scene.root.index].lipschitz_sup = by;
         return scene;
     };
-    const std::vector<float> plain = drawn(scaled(1), gl::Mode::Linear), divided = drawn(scaled(8), gl::Mode::Linear);
+    const std::vector<float> plain = drawn(scaled(1), gl::Mode::Linear),
+                             divided = drawn(scaled(8), gl::Mode::Linear);
     int different = 0;
-    for (std::size_t i = 0; i < plain.size(); ++i) different += std::abs(plain[i] - divided[i]) > 0.02f;
+    for (std::size_t i = 0; i < plain.size(); ++i)
+        different += std::abs(plain[i] - divided[i]) > 0.02f;
     CHECK(different < 40); // silhouettes, by less than a pixel
 }
 
 TEST_CASE("a point in a shadow is darker, by as much as is asked") {
     if (!has_context()) return;
     const auto ground = [](double darkness) {
-        Scene scene = of_field([](Graph &g, NodeId p) {
-            const NodeId ball = sphere_distance(g, p, g.vec3(0, 1.5, 0), g.number(0.5));
-            return g.make(Op::Union, Type::Float, {ball, g.component(p, 1)});
-        }, cube(2));
+        Scene scene = of_field(
+            [](Graph &g, NodeId p) {
+                const NodeId ball = sphere_distance(g, p, g.vec3(0, 1.5, 0), g.number(0.5));
+                return g.make(Op::Union, Type::Float, {ball, g.component(p, 1)});
+            },
+            cube(2));
         Graph &g = scene.graph;
         scene.facts[scene.root.index].bounds = Box::everything();
         scene.lights.push_back({true, g.vec3(0, 1, 0), g.vec3(1, 1, 1)});
@@ -147,10 +158,12 @@ TEST_CASE("a point in a shadow is darker, by as much as is asked") {
         scene.camera.fov = g.number(0.4);
         return scene;
     };
-    const std::vector<float> lit = drawn(ground(0), gl::Mode::Linear), half = drawn(ground(0.5), gl::Mode::Linear);
+    const std::vector<float> lit = drawn(ground(0), gl::Mode::Linear),
+                             half = drawn(ground(0.5), gl::Mode::Linear);
     CHECK(at(lit, width / 2, height / 2, 0) == Approx(0.8).epsilon(1e-3));
     CHECK(at(half, width / 2, height / 2, 0) == Approx(0.4).epsilon(1e-3));
-    CHECK(at(half, 2, height / 2, 0) == Approx(at(lit, 2, height / 2, 0)).epsilon(1e-3)); // beside the shadow
+    CHECK(at(half, 2, height / 2, 0) ==
+          Approx(at(lit, 2, height / 2, 0)).epsilon(1e-3)); // beside the shadow
 }
 
 TEST_CASE("samples are averaged, strips join, and a picture can be stopped") {
@@ -187,21 +200,22 @@ TEST_CASE("samples are averaged, strips join, and a picture can be stopped") {
     CHECK(between > 100);
     request.progress = [](double done) { return done < 0.5; };
     CHECK_FALSE(gl::draw(program, scene, request, gl::Mode::Linear));
-    CHECK_FALSE(gl::draw(program, scene, {.width = gl::largest_side() + 1, .height = 1}, gl::Mode::Linear));
+    CHECK_FALSE(
+        gl::draw(program, scene, {.width = gl::largest_side() + 1, .height = 1}, gl::Mode::Linear));
 }
 
 TEST_CASE("params move the picture without a new program") {
     if (!has_context()) return;
-    Scene scene = of_field([](Graph &g, NodeId p) {
-        return g.sub(g.make(Op::Length, {p}), g.param(0, Type::Float));
-    });
+    Scene scene = of_field(
+        [](Graph &g, NodeId p) { return g.sub(g.make(Op::Length, {p}), g.param(0, Type::Float)); });
     Param radius;
     radius.name = "radius";
     radius.value[0] = 1;
     scene.params.push_back(radius);
     const gl::Program program = built(scene);
     const auto covered = [&] {
-        const auto numbers = gl::draw(program, scene, {.width = width, .height = height}, gl::Mode::Numbers);
+        const auto numbers =
+            gl::draw(program, scene, {.width = width, .height = height}, gl::Mode::Numbers);
         int hits = 0;
         for (std::size_t i = 3; i < numbers->rgba.size(); i += 4) hits += numbers->rgba[i] > 0.5f;
         return hits;

@@ -19,7 +19,8 @@ void check_frame(const View &v) {
     CHECK(dot(v.forward, v.forward) == Approx(1));
     CHECK(dot(v.right, v.up) == Approx(0).margin(1e-12));
     CHECK(dot(v.right, v.forward) == Approx(0).margin(1e-12));
-    const Triple back{v.right[1] * v.up[2] - v.right[2] * v.up[1], v.right[2] * v.up[0] - v.right[0] * v.up[2],
+    const Triple back{v.right[1] * v.up[2] - v.right[2] * v.up[1],
+                      v.right[2] * v.up[0] - v.right[0] * v.up[2],
                       v.right[0] * v.up[1] - v.right[1] * v.up[0]};
     CHECK(dot(back, v.forward) == Approx(-1)); // right-handed
 }
@@ -27,13 +28,16 @@ void check_frame(const View &v) {
 } // namespace
 
 TEST_CASE("a view is a right-handed frame, also straight up and down") {
-    for (Triple from : {Triple{3, 2, 5}, Triple{0, 4, 0}, Triple{0, -4, 0}, Triple{0, 0, 0}, Triple{-1e6, 1, 1}})
+    for (Triple from :
+         {Triple{3, 2, 5}, Triple{0, 4, 0}, Triple{0, -4, 0}, Triple{0, 0, 0}, Triple{-1e6, 1, 1}})
         check_frame(look_at(from, {0, 0, 0}, 1, false));
-    CHECK(look_at({0, 4, 0}, {0, 0, 0}, 1, false).right[0] == Approx(1)); // a map: x to the right, -z up
+    CHECK(look_at({0, 4, 0}, {0, 0, 0}, 1, false).right[0] ==
+          Approx(1)); // a map: x to the right, -z up
     CHECK(look_at({0, 4, 0}, {0, 0, 0}, 1, false).up[2] == Approx(-1));
 }
 
-TEST_CASE("without a camera the finite parts' bounding sphere just fits, in wide and in tall pictures") {
+TEST_CASE(
+    "without a camera the finite parts' bounding sphere just fits, in wide and in tall pictures") {
     Scene scene = sphere();
     scene.bounds = {{1, 2, 3}, {3, 4, 5}};
     const double radius = std::sqrt(3.0);
@@ -44,10 +48,14 @@ TEST_CASE("without a camera the finite parts' bounding sphere just fits, in wide
             CHECK(view.forward[0] / view.forward[2] == Approx(3.0 / 5));
             CHECK(view.forward[1] / view.forward[2] == Approx(2.0 / 5));
             for (std::size_t i = 0; i < 3; ++i)
-                CHECK(view.origin[i] + view.focus * view.forward[i] == Approx(scene.bounds.lo[i] + 1));
-            const double half = view.extent * std::min(aspect, 1.0); // the narrower half of the picture
-            if (orthographic) CHECK(half == Approx(radius));
-            else CHECK(std::sin(std::atan(half)) * view.focus == Approx(radius));
+                CHECK(view.origin[i] + view.focus * view.forward[i] ==
+                      Approx(scene.bounds.lo[i] + 1));
+            const double half =
+                view.extent * std::min(aspect, 1.0); // the narrower half of the picture
+            if (orthographic)
+                CHECK(half == Approx(radius));
+            else
+                CHECK(std::sin(std::atan(half)) * view.focus == Approx(radius));
         }
 }
 
@@ -63,15 +71,19 @@ TEST_CASE("closed expressions have values: params, time, functions, loops, table
     const FunctionId square = g.add_function({"square", {}, {x}, g.mul(x, x)});
     CHECK(value_of(scene, g.call(square, {&n, 1}), 0)[0] == 9);
 
-    // The sum of a table's rows below the limit, by a loop in which the limit is a variable of an outer loop.
+    // The sum of a table's rows below the limit, by a loop in which the limit is a variable of an
+    // outer loop.
     const TableId table = g.add_table({4, 1, {1, 10, 100, 1000}});
     const NodeId sum = g.fresh_var(Type::Float), i = g.fresh_var(Type::Int);
     const NodeId outer = g.fresh_var(Type::Float), j = g.fresh_var(Type::Int);
     const NodeId row = g.make(Op::TableRead, Type::Float, {i}, table_slot(table, 0));
     const FoldId inner_fold = g.add_fold({j, i, {sum}, {g.add(sum, row)}, {}, 4});
-    const NodeId inner = g.make(Op::FoldResult, Type::Float, {g.make(Op::Fold, Type::Float, {g.number(0)}, inner_fold.index)}, 0);
+    const NodeId inner =
+        g.make(Op::FoldResult, Type::Float,
+               {g.make(Op::Fold, Type::Float, {g.number(0)}, inner_fold.index)}, 0);
     const FoldId outer_fold = g.add_fold({g.integer(4), j, {outer}, {g.add(outer, inner)}, {}, 4});
-    const NodeId all = g.make(Op::FoldResult, Type::Float, {g.make(Op::Fold, Type::Float, {g.number(0)}, outer_fold.index)}, 0);
+    const NodeId all = g.make(Op::FoldResult, Type::Float,
+                              {g.make(Op::Fold, Type::Float, {g.number(0)}, outer_fold.index)}, 0);
     CHECK(value_of(scene, all, 0)[0] == 0 + 1 + 11 + 111);
     CHECK(value_of(scene, {}, 0)[0] == 0);
 }
