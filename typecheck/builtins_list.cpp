@@ -14,14 +14,16 @@ namespace fathom::typecheck {
 static Value len_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     if (args[0].kind == ValueKind::String) return integer(double(ev.strings[args[0].id].size()));
     if (args[0].kind == ValueKind::Range)
-        return integer(std::max(0.0, std::ceil((args[0].num[1] - args[0].num[0]) / args[0].num[2])));
+        return integer(
+            std::max(0.0, std::ceil((args[0].num[1] - args[0].num[0]) / args[0].num[2])));
     auto list = want_list(ev, args[0], site.arg(0), "`len`");
     return list ? integer(double(list->size())) : poison();
 }
 
 static bool wants_function(Evaluator &ev, const CallSite &site, const Value &v, std::size_t i) {
     if (is_function(v)) return true;
-    report(ev, Code::TypeMismatch, site.arg(i), fmt::format("`{}` wants a function, this is {}", site.name, describe(ev, v)));
+    report(ev, Code::TypeMismatch, site.arg(i),
+           fmt::format("`{}` wants a function, this is {}", site.name, describe(ev, v)));
     return false;
 }
 
@@ -43,7 +45,8 @@ static Value filter_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     std::vector<Value> out;
     for (const Value &item : *list) {
         if (!spend(ev, site.call)) return poison();
-        auto keep = want_known_bool(ev, call_with(ev, args[1], {item}, site.arg(1)), site.arg(1), "`filter`'s function");
+        auto keep = want_known_bool(ev, call_with(ev, args[1], {item}, site.arg(1)), site.arg(1),
+                                    "`filter`'s function");
         if (!keep) return poison();
         if (*keep) out.push_back(item);
     }
@@ -63,10 +66,13 @@ static Value fold_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
 }
 
 static Value zip_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
-    auto a = want_list(ev, args[0], site.arg(0), "`zip`"), b = want_list(ev, args[1], site.arg(1), "`zip`");
+    auto a = want_list(ev, args[0], site.arg(0), "`zip`"),
+         b = want_list(ev, args[1], site.arg(1), "`zip`");
     if (!a || !b || !wants_function(ev, site, args[2], 2)) return poison();
     if (a->size() != b->size()) {
-        report(ev, Code::BadArgument, site.call, fmt::format("`zip` pairs lists of one length, these have {} and {} elements", a->size(), b->size()));
+        report(ev, Code::BadArgument, site.call,
+               fmt::format("`zip` pairs lists of one length, these have {} and {} elements",
+                           a->size(), b->size()));
         return poison();
     }
     std::vector<Value> out;
@@ -111,12 +117,16 @@ static Value sort_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     std::vector<std::pair<double, Value>> keyed;
     for (const Value &item : *list) {
         if (!spend(ev, site.call)) return poison();
-        Value key = is(args[1], ValueKind::None) ? item : call_with(ev, args[1], {item}, site.arg(1));
-        auto k = want_known_number(ev, key, site.arg(0), is(args[1], ValueKind::None) ? "`sort` without a key" : "`sort`'s key");
+        Value key =
+            is(args[1], ValueKind::None) ? item : call_with(ev, args[1], {item}, site.arg(1));
+        auto k = want_known_number(ev, key, site.arg(0),
+                                   is(args[1], ValueKind::None) ? "`sort` without a key"
+                                                                : "`sort`'s key");
         if (!k) return poison();
         keyed.emplace_back(*k, item);
     }
-    std::stable_sort(keyed.begin(), keyed.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
+    std::stable_sort(keyed.begin(), keyed.end(),
+                     [](const auto &a, const auto &b) { return a.first < b.first; });
     std::vector<Value> out;
     for (auto &[k, v] : keyed) out.push_back(v);
     return list_value(ev, std::move(out));
@@ -124,10 +134,13 @@ static Value sort_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
 
 static Value range_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     bool whole = true;
-    for (const Value &a : args) whole = whole && (a.kind == ValueKind::Int || a.kind == ValueKind::None);
-    auto a = want_known_number(ev, args[0], site.arg(0), "`range`"), b = want_known_number(ev, args[1], site.arg(1), "`range`");
+    for (const Value &a : args)
+        whole = whole && (a.kind == ValueKind::Int || a.kind == ValueKind::None);
+    auto a = want_known_number(ev, args[0], site.arg(0), "`range`"),
+         b = want_known_number(ev, args[1], site.arg(1), "`range`");
     std::optional<double> step = 1.0;
-    if (!is(args[2], ValueKind::None)) step = want_known_number(ev, args[2], site.arg(2), "`range`'s step");
+    if (!is(args[2], ValueKind::None))
+        step = want_known_number(ev, args[2], site.arg(2), "`range`'s step");
     if (!a || !b || !step) return poison();
     if (*step == 0) {
         report(ev, Code::BadArgument, site.arg(2), "`range` wants a step that is not 0");
@@ -135,15 +148,18 @@ static Value range_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     }
     double count = std::max(0.0, std::ceil((*b - *a) / *step - 1e-9));
     if (count > 10'000'000 || !spend(ev, site.call, static_cast<std::size_t>(count))) {
-        report(ev, Code::LoopLimit, site.call, fmt::format("a range of {:.0f} numbers is too long", count));
+        report(ev, Code::LoopLimit, site.call,
+               fmt::format("a range of {:.0f} numbers is too long", count));
         return poison();
     }
     std::vector<Value> out;
-    for (double i = 0; i < count; ++i) out.push_back(whole ? integer(*a + i * *step) : number(*a + i * *step));
+    for (double i = 0; i < count; ++i)
+        out.push_back(whole ? integer(*a + i * *step) : number(*a + i * *step));
     return list_value(ev, std::move(out));
 }
 
-// -- randomness: a 64-bit mix (the finalizer's form is Steele, Lea and Flood's SplitMix) of the seed's bits and a counter
+// -- randomness: a 64-bit mix (the finalizer's form is Steele, Lea and Flood's SplitMix) of the
+// seed's bits and a counter
 
 static std::uint64_t mixed(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15ull;
@@ -160,10 +176,12 @@ static double random_unit(double seed, double k) {
     return double(mixed(mixed(a) ^ (b + 0x632be59bd9b4e019ull)) >> 11) * 0x1p-53;
 }
 
-static std::optional<double> seed_of(Evaluator &ev, const CallSite &site, const Value &v, std::size_t i) {
+static std::optional<double> seed_of(Evaluator &ev, const CallSite &site, const Value &v,
+                                     std::size_t i) {
     if (is_numeric(v) && ir::is_vector(numeric_type(ev, v)) && v.kind == ValueKind::Vec) {
         double total = 0;
-        for (int c = 0; c < v.size; ++c) total = random_unit(total, v.num[std::size_t(c)]) * 4294967296.0;
+        for (int c = 0; c < v.size; ++c)
+            total = random_unit(total, v.num[std::size_t(c)]) * 4294967296.0;
         return total;
     }
     return want_known_number(ev, v, site.arg(i), "a seed");
@@ -173,7 +191,8 @@ static std::optional<double> seed_of(Evaluator &ev, const CallSite &site, const 
 static Value random_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     bool no_lo = is(args[0], ValueKind::None), no_seed = is(args[2], ValueKind::None);
     if (no_lo && no_seed) {
-        report(ev, Code::MissingArgument, site.call, "`random` wants a seed").note("it is `random(seed, k = 0)` or `random(lo, hi, seed)`");
+        report(ev, Code::MissingArgument, site.call, "`random` wants a seed")
+            .note("it is `random(seed, k = 0)` or `random(lo, hi, seed)`");
         return poison();
     }
     if (no_lo || no_seed || is(args[1], ValueKind::None)) {
@@ -186,12 +205,14 @@ static Value random_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     auto seed = seed_of(ev, site, args[2], 2);
     if (!seed) return poison();
     if (is_scalar(ev, args[0]) && is_scalar(ev, args[1])) {
-        auto lo = want_known_number(ev, args[0], site.arg(0), "`lo`"), hi = want_known_number(ev, args[1], site.arg(1), "`hi`");
+        auto lo = want_known_number(ev, args[0], site.arg(0), "`lo`"),
+             hi = want_known_number(ev, args[1], site.arg(1), "`hi`");
         if (!lo || !hi) return poison();
         return number(*lo + (*hi - *lo) * random_unit(*seed, 0));
     }
     // vectors: each component for itself
-    auto lo = want_vec_node(ev, args[0], 3, site.arg(0), "`lo`"), hi = want_vec_node(ev, args[1], 3, site.arg(1), "`hi`");
+    auto lo = want_vec_node(ev, args[0], 3, site.arg(0), "`lo`"),
+         hi = want_vec_node(ev, args[1], 3, site.arg(1), "`hi`");
     if (!lo || !hi) return poison();
     std::vector<double> t{random_unit(*seed, 1), random_unit(*seed, 2), random_unit(*seed, 3)};
     ir::Graph &g = ev.scene.graph;
@@ -206,7 +227,8 @@ static Value pick_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
         report(ev, Code::BadArgument, site.arg(0), "`pick` from an empty list");
         return poison();
     }
-    return (*list)[std::min(list->size() - 1, static_cast<std::size_t>(random_unit(*seed, 0) * double(list->size())))];
+    return (*list)[std::min(
+        list->size() - 1, static_cast<std::size_t>(random_unit(*seed, 0) * double(list->size())))];
 }
 
 static Value shuffle_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
@@ -214,11 +236,14 @@ static Value shuffle_call(Evaluator &ev, const CallSite &site, std::vector<Value
     auto seed = seed_of(ev, site, args[1], 1);
     if (!list || !seed) return poison();
     for (std::size_t i = list->size(); i > 1; --i)
-        std::swap((*list)[i - 1], (*list)[std::min(i - 1, static_cast<std::size_t>(random_unit(*seed, double(i)) * double(i)))]);
+        std::swap((*list)[i - 1],
+                  (*list)[std::min(
+                      i - 1, static_cast<std::size_t>(random_unit(*seed, double(i)) * double(i)))]);
     return list_value(ev, std::move(*list));
 }
 
-// -- looking in, and refusing ----------------------------------------------------------------------
+// -- looking in, and refusing
+// ----------------------------------------------------------------------
 
 static Value print_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     report(ev, Code::Printed, site.call, print_value(ev, args[0]));
@@ -228,43 +253,55 @@ static Value print_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
 static Value assert_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto holds = want_known_bool(ev, args[0], site.arg(0), "`assert`");
     if (!holds) return poison();
-    std::string why = args[1].kind == ValueKind::String ? ev.strings[args[1].id] : "this does not hold";
+    std::string why =
+        args[1].kind == ValueKind::String ? ev.strings[args[1].id] : "this does not hold";
     if (!*holds) report(ev, Code::AssertFailed, site.arg(0), why);
     return unit();
 }
 
 // The library's own refusal: an error at the user's call.
 static Value check_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
-    if (is_numeric(args[0]) && args[0].kind == ValueKind::Field) return unit(); // a param: its range is judged where it is declared
+    if (is_numeric(args[0]) && args[0].kind == ValueKind::Field)
+        return unit(); // a param: its range is judged where it is declared
     auto holds = want_known_bool(ev, args[0], site.arg(0), "this");
     if (!holds) return poison();
     if (!*holds) {
-        report(ev, Code::BadArgument, site.call, args[1].kind == ValueKind::String ? ev.strings[args[1].id] : "this argument cannot be taken");
+        report(ev, Code::BadArgument, site.call,
+               args[1].kind == ValueKind::String ? ev.strings[args[1].id]
+                                                 : "this argument cannot be taken");
         return poison();
     }
     return unit();
 }
 
-static Value given_call(Evaluator &, const CallSite &, std::vector<Value> &args) { return boolean(!is(args[0], ValueKind::None)); }
+static Value given_call(Evaluator &, const CallSite &, std::vector<Value> &args) {
+    return boolean(!is(args[0], ValueKind::None));
+}
 
 void add_list_builtins(std::vector<Builtin> &table) {
-    auto add = [&](const char *name, std::vector<BuiltinParameter> parameters, auto call, const char *doc, bool variadic = false, bool library = false) {
+    auto add = [&](const char *name, std::vector<BuiltinParameter> parameters, auto call,
+                   const char *doc, bool variadic = false, bool library = false) {
         table.push_back({name, std::move(parameters), variadic, library, call, "", doc});
     };
     add("len", {{"list"}}, len_call, "how many elements");
     add("map", {{"list"}, {"f"}}, map_call, "f of each element");
     add("filter", {{"list"}, {"f"}}, filter_call, "the elements for which f is true");
-    add("fold", {{"list"}, {"start"}, {"f"}}, fold_call, "f(total, element) over all elements, from `start`");
+    add("fold", {{"list"}, {"start"}, {"f"}}, fold_call,
+        "f(total, element) over all elements, from `start`");
     add("zip", {{"a"}, {"b"}, {"f"}}, zip_call, "f(element of a, element of b) for each pair");
     add("concat", {{"a"}, {"b", true}}, concat_call, "the lists one after another", true);
     add("reverse", {{"list"}}, reverse_call, "the last element first");
-    add("sort", {{"list"}, {"key", true}}, sort_call, "in rising order, of the numbers or of `key` of each element");
-    add("range", {{"first"}, {"last"}, {"step", true}}, range_call, "first, first + step, … below last");
-    add("random", {{"lo", true}, {"hi", true}, {"seed", true}, {"k", true}}, random_call, "random(seed, k = 0) in 0..1; random(lo, hi, seed)");
+    add("sort", {{"list"}, {"key", true}}, sort_call,
+        "in rising order, of the numbers or of `key` of each element");
+    add("range", {{"first"}, {"last"}, {"step", true}}, range_call,
+        "first, first + step, … below last");
+    add("random", {{"lo", true}, {"hi", true}, {"seed", true}, {"k", true}}, random_call,
+        "random(seed, k = 0) in 0..1; random(lo, hi, seed)");
     add("pick", {{"list"}, {"seed"}}, pick_call, "one of the elements");
     add("shuffle", {{"list"}, {"seed"}}, shuffle_call, "the elements in another order");
     add("print", {{"x"}}, print_call, "shows a value as a note, where the call stands");
-    add("assert", {{"condition"}, {"why", true}}, assert_call, "an error with the words `why` where the condition is false");
+    add("assert", {{"condition"}, {"why", true}}, assert_call,
+        "an error with the words `why` where the condition is false");
     add("_check", {{"condition"}, {"why"}}, check_call, "", false, true);
     add("_given", {{"x"}}, given_call, "", false, true);
 }

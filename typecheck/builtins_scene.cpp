@@ -28,12 +28,14 @@ static Value material_call(Evaluator &ev, const CallSite &site, std::vector<Valu
             ok = ok && node;
             return node.value_or(otherwise);
         }
-        auto node = type == Type::Float ? want_scalar_node(ev, args[i], site.arg(i), what) : want_color_node(ev, args[i], site.arg(i), what);
+        auto node = type == Type::Float ? want_scalar_node(ev, args[i], site.arg(i), what)
+                                        : want_color_node(ev, args[i], site.arg(i), what);
         ok = ok && node;
         return node.value_or(otherwise);
     };
     ir::Material m;
-    m.diffuse = property(0, Type::Vec3, "`diffuse`", g.vec3(0.2158605, 0.2158605, 0.2158605)); // CSS gray, linear
+    m.diffuse = property(0, Type::Vec3, "`diffuse`",
+                         g.vec3(0.2158605, 0.2158605, 0.2158605)); // CSS gray, linear
     m.specular = property(1, Type::Vec3, "`specular`", g.vec3(1, 1, 1));
     m.exponent = property(2, Type::Float, "`exponent`", g.number(32));
     m.emission = property(3, Type::Vec3, "`emission`", g.vec3(0, 0, 0));
@@ -50,18 +52,24 @@ static Value camera_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     ir::Graph &g = ev.scene.graph;
     Setting s{Setting::Kind::Camera, {}, {}, {}, {}, {}, {}};
     auto at = want_vec_node(ev, args[0], 3, site.arg(0), "`at`");
-    auto look = given(args[1]) ? want_vec_node(ev, args[1], 3, site.arg(1), "`look_at`") : std::optional(g.vec3(0, 0, 0));
-    auto fov = given(args[2]) ? want_scalar_node(ev, args[2], site.arg(2), "`fov`") : std::optional(g.number(0.78539816339744831));
-    auto ortho = given(args[3]) ? want_known_bool(ev, args[3], site.arg(3), "`orthographic`") : std::optional(false);
+    auto look = given(args[1]) ? want_vec_node(ev, args[1], 3, site.arg(1), "`look_at`")
+                               : std::optional(g.vec3(0, 0, 0));
+    auto fov = given(args[2]) ? want_scalar_node(ev, args[2], site.arg(2), "`fov`")
+                              : std::optional(g.number(0.78539816339744831));
+    auto ortho = given(args[3]) ? want_known_bool(ev, args[3], site.arg(3), "`orthographic`")
+                                : std::optional(false);
     if (!at || !look || !fov || !ortho) return poison();
     s.camera = {*at, *look, *fov, *ortho, true};
     return setting_value(ev, std::move(s));
 }
 
-static std::optional<ir::NodeId> light_color(Evaluator &ev, const CallSite &site, const std::vector<Value> &args) {
+static std::optional<ir::NodeId> light_color(Evaluator &ev, const CallSite &site,
+                                             const std::vector<Value> &args) {
     ir::Graph &g = ev.scene.graph;
-    auto color = given(args[1]) ? want_color_node(ev, args[1], site.arg(1), "`color`") : std::optional(g.vec3(1, 1, 1));
-    auto intensity = given(args[2]) ? want_scalar_node(ev, args[2], site.arg(2), "`intensity`") : std::optional(g.number(1));
+    auto color = given(args[1]) ? want_color_node(ev, args[1], site.arg(1), "`color`")
+                                : std::optional(g.vec3(1, 1, 1));
+    auto intensity = given(args[2]) ? want_scalar_node(ev, args[2], site.arg(2), "`intensity`")
+                                    : std::optional(g.number(1));
     if (!color || !intensity) return std::nullopt;
     return g.mul(*color, *intensity);
 }
@@ -81,7 +89,8 @@ static Value sun_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
     auto direction = want_vec_node(ev, args[0], 3, site.arg(0), "`direction`");
     auto color = light_color(ev, site, args);
     if (!direction || !color) return poison();
-    if (g.is_constant(*direction) && g.constant_of(*direction).value[0] == 0 && g.constant_of(*direction).value[1] == 0 && g.constant_of(*direction).value[2] == 0) {
+    if (g.is_constant(*direction) && g.constant_of(*direction).value[0] == 0 &&
+        g.constant_of(*direction).value[1] == 0 && g.constant_of(*direction).value[2] == 0) {
         report(ev, Code::BadArgument, site.arg(0), "a sun's direction cannot be 0");
         return poison();
     }
@@ -91,7 +100,8 @@ static Value sun_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
 
 ir::Lighting default_lighting(Evaluator &ev) {
     ir::Graph &g = ev.scene.graph;
-    return {g.vec3(0.18, 0.18, 0.18), g.number(0.6), g.number(0.75), g.number(0.02), g.number(0.4), false};
+    return {g.vec3(0.18, 0.18, 0.18), g.number(0.6), g.number(0.75),
+            g.number(0.02),           g.number(0.4), false};
 }
 
 static Value lighting_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
@@ -124,7 +134,8 @@ static Value background_call(Evaluator &ev, const CallSite &site, std::vector<Va
     Setting s{Setting::Kind::Background, {}, {}, {}, {}, {}, {}};
     ir::Graph &g = ev.scene.graph;
     if (is_function(args[0])) {
-        ir::NodeId direction = g.make(ir::Op::Direction, Type::Vec3, std::initializer_list<ir::NodeId>{});
+        ir::NodeId direction =
+            g.make(ir::Op::Direction, Type::Vec3, std::initializer_list<ir::NodeId>{});
         auto node = apply_field(ev, args[0], {direction}, Type::Vec3, site.arg(0), "`background`");
         if (!node) return poison();
         s.background = *node;
@@ -143,13 +154,15 @@ static Value render_call(Evaluator &ev, const CallSite &site, std::vector<Value>
         if (!given(args[i])) return std::nullopt;
         auto x = want_known_number(ev, args[i], site.arg(i), what);
         if (x && !(*x > 0)) {
-            report(ev, Code::BadArgument, site.arg(i), fmt::format("{} wants a number above 0", what));
+            report(ev, Code::BadArgument, site.arg(i),
+                   fmt::format("{} wants a number above 0", what));
             x.reset();
         }
         ok = ok && x;
         return x;
     };
-    if (auto steps = positive(0, "`max_steps`")) s.render.max_steps = static_cast<int>(std::min(*steps, 100000.0));
+    if (auto steps = positive(0, "`max_steps`"))
+        s.render.max_steps = static_cast<int>(std::min(*steps, 100000.0));
     if (auto epsilon = positive(1, "`epsilon`")) s.render.epsilon = *epsilon;
     if (auto far = positive(2, "`far`")) s.render.far = *far;
     if (auto time = positive(3, "`time`")) s.render.time_end = *time;
@@ -158,7 +171,8 @@ static Value render_call(Evaluator &ev, const CallSite &site, std::vector<Value>
 
 static Value image_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto path = want_string(ev, args[0], site.arg(0), "`image`");
-    auto scale = given(args[1]) ? want_known_number(ev, args[1], site.arg(1), "`scale`") : std::optional(1.0);
+    auto scale = given(args[1]) ? want_known_number(ev, args[1], site.arg(1), "`scale`")
+                                : std::optional(1.0);
     if (!path || !scale) return poison();
     if (*scale == 0) {
         report(ev, Code::BadArgument, site.arg(1), "an image's scale cannot be 0");
@@ -166,12 +180,14 @@ static Value image_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     }
     auto loaded = ev.loader.image(*path, ev.modules[ev.current_module].identity);
     if (auto *error = std::get_if<LoadError>(&loaded)) {
-        Code code = error->reason == LoadError::Reason::Outside ? Code::ImportOutside : Code::FileNotFound;
+        Code code =
+            error->reason == LoadError::Reason::Outside ? Code::ImportOutside : Code::FileNotFound;
         report(ev, code, site.arg(0), fmt::format("the image `{}`: {}", *path, error->why));
         return poison();
     }
     ev.scene.images.push_back(std::move(std::get<ir::ImageData>(loaded)));
-    Value v = make_value(ValueKind::ImageField, static_cast<std::uint32_t>(ev.scene.images.size() - 1));
+    Value v =
+        make_value(ValueKind::ImageField, static_cast<std::uint32_t>(ev.scene.images.size() - 1));
     v.num[0] = *scale;
     return v;
 }
@@ -184,18 +200,38 @@ static Value keep_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
 }
 
 void add_scene_builtins(std::vector<Builtin> &table) {
-    auto add = [&](const char *name, std::vector<BuiltinParameter> parameters, auto call, const char *doc) {
+    auto add = [&](const char *name, std::vector<BuiltinParameter> parameters, auto call,
+                   const char *doc) {
         table.push_back({name, std::move(parameters), false, name[0] == '_', call, "", doc});
     };
-    add("material", {{"diffuse", true}, {"specular", true}, {"exponent", true}, {"emission", true}, {"name", true}}, material_call,
-        "how a surface looks; each property a constant or a function of the point, or of the point and the normal");
-    add("camera", {{"at"}, {"look_at", true}, {"fov", true}, {"orthographic", true}}, camera_call, "where the scene is seen from; `fov` is vertical");
+    add("material",
+        {{"diffuse", true},
+         {"specular", true},
+         {"exponent", true},
+         {"emission", true},
+         {"name", true}},
+        material_call,
+        "how a surface looks; each property a constant or a function of the point, or of the point "
+        "and the normal");
+    add("camera", {{"at"}, {"look_at", true}, {"fov", true}, {"orthographic", true}}, camera_call,
+        "where the scene is seen from; `fov` is vertical");
     add("light", {{"at"}, {"color", true}, {"intensity", true}}, light_call, "a light at a place");
-    add("sun", {{"direction"}, {"color", true}, {"intensity", true}}, sun_call, "a light from far away; the direction points towards it");
-    add("lighting", {{"ambient", true}, {"ambient_occlusion", true}, {"shadow_darkness", true}, {"soft_shadows", true}, {"specular_intensity", true}, {"skip", true}}, lighting_call, "how the lights act");
-    add("background", {{"color"}}, background_call, "a colour, or a function of the ray's direction");
-    add("render", {{"max_steps", true}, {"epsilon", true}, {"far", true}, {"time", true}}, render_call, "limits of the march; `time`: the seconds that the proof covers");
-    add("image", {{"file"}, {"scale", true}}, image_call, "a picture as a function of a vec2, repeated; 0..1 times `scale` is the whole of it");
+    add("sun", {{"direction"}, {"color", true}, {"intensity", true}}, sun_call,
+        "a light from far away; the direction points towards it");
+    add("lighting",
+        {{"ambient", true},
+         {"ambient_occlusion", true},
+         {"shadow_darkness", true},
+         {"soft_shadows", true},
+         {"specular_intensity", true},
+         {"skip", true}},
+        lighting_call, "how the lights act");
+    add("background", {{"color"}}, background_call,
+        "a colour, or a function of the ray's direction");
+    add("render", {{"max_steps", true}, {"epsilon", true}, {"far", true}, {"time", true}},
+        render_call, "limits of the march; `time`: the seconds that the proof covers");
+    add("image", {{"file"}, {"scale", true}}, image_call,
+        "a picture as a function of a vec2, repeated; 0..1 times `scale` is the whole of it");
     add("_keep", {{"text"}}, keep_call, "");
 }
 

@@ -1,5 +1,6 @@
-// What makes shapes: the intrinsics from which the library in stdlib/*.sdf is written (their names begin with `_` and
-// only the library sees them), and the few public forms that the language itself cannot say (`implicit`, `cached`).
+// What makes shapes: the intrinsics from which the library in stdlib/*.sdf is written (their names
+// begin with `_` and only the library sees them), and the few public forms that the language itself
+// cannot say (`implicit`, `cached`).
 #include "typecheck/evaluator.h"
 
 #include "ir/maps.h"
@@ -30,14 +31,19 @@ static Value added(Evaluator &ev, ir::Shape shape, const CallSite &site, int dim
 }
 
 static bool given(const Value &v) { return v.kind != ValueKind::None; }
-static bool is_empty(Evaluator &ev, ir::ShapeId id) { return ev.scene.shapes[id].kind == ShapeKind::Empty; }
+static bool is_empty(Evaluator &ev, ir::ShapeId id) {
+    return ev.scene.shapes[id].kind == ShapeKind::Empty;
+}
 
 // -- leaves --------------------------------------------------------------------------------------
 
-// _solid(f, exact, lipschitz, lo, hi, symmetric, lever) and _flat(…): a field with the library's claims.
-template <int dims> static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+// _solid(f, exact, lipschitz, lo, hi, symmetric, lever) and _flat(…): a field with the library's
+// claims.
+template <int dims>
+static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     ir::Graph &g = ev.scene.graph;
-    auto field = apply_field(ev, args[0], {g.point(ir::vector_type(dims))}, Type::Float, site.arg(0), "a shape");
+    auto field = apply_field(ev, args[0], {g.point(ir::vector_type(dims))}, Type::Float,
+                             site.arg(0), "a shape");
     if (!field) return poison();
     ir::Shape leaf;
     leaf.kind = ShapeKind::Leaf;
@@ -48,7 +54,8 @@ template <int dims> static Value leaf_call(Evaluator &ev, const CallSite &site, 
     library.name = ev.calls.empty() ? site.name : ev.calls.back().name;
     library.has_claims = true;
     ir::Claims &c = library.claims;
-    if (given(args[1]) && args[1].kind != ValueKind::Field) { // true only for some values of a param is not true
+    if (given(args[1]) &&
+        args[1].kind != ValueKind::Field) { // true only for some values of a param is not true
         auto exact = want_known_bool(ev, args[1], site.arg(1), "`exact`");
         if (exact && *exact) c.kind = ir::FieldKind::Exact, c.lipschitz = g.number(1);
     }
@@ -57,7 +64,8 @@ template <int dims> static Value leaf_call(Evaluator &ev, const CallSite &site, 
         if (l) c.lipschitz = *l;
     }
     if (given(args[3]) && given(args[4])) {
-        auto lo = want_vec_node(ev, args[3], dims, site.arg(3), "`lo`"), hi = want_vec_node(ev, args[4], dims, site.arg(4), "`hi`");
+        auto lo = want_vec_node(ev, args[3], dims, site.arg(3), "`lo`"),
+             hi = want_vec_node(ev, args[4], dims, site.arg(4), "`hi`");
         if (lo && hi) c.lo = *lo, c.hi = *hi;
     }
     if (given(args[5])) {
@@ -67,7 +75,8 @@ template <int dims> static Value leaf_call(Evaluator &ev, const CallSite &site, 
     if (given(args[6])) {
         auto lever = want_vec_node(ev, args[6], 3, site.arg(6), "`lever`");
         if (lever)
-            for (int i = 0; i < 3; ++i) c.lever[static_cast<std::size_t>(i)] = g.component(*lever, i);
+            for (int i = 0; i < 3; ++i)
+                c.lever[static_cast<std::size_t>(i)] = g.component(*lever, i);
     }
     return library_shape(ev, std::move(library), body, ev.scene.shapes[shape_of(body)].origin);
 }
@@ -75,15 +84,19 @@ template <int dims> static Value leaf_call(Evaluator &ev, const CallSite &site, 
 // implicit(f, within, lipschitz, estimate)
 static Value implicit_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     if (!is_function(args[0]) && !is_numeric(args[0])) {
-        report(ev, Code::TypeMismatch, site.arg(0), fmt::format("`implicit` wants a function of the point, this is {}", describe(ev, args[0])))
+        report(ev, Code::TypeMismatch, site.arg(0),
+               fmt::format("`implicit` wants a function of the point, this is {}",
+                           describe(ev, args[0])))
             .help("write `implicit(p => …)`");
         return poison();
     }
     if (ev.in_field > 0) {
-        report(ev, Code::StageMismatch, site.call, "a shape cannot be made inside a function of the point");
+        report(ev, Code::StageMismatch, site.call,
+               "a shape cannot be made inside a function of the point");
         return poison();
     }
-    auto field = apply_field(ev, args[0], {ev.scene.graph.point()}, Type::Float, site.arg(0), "`implicit`");
+    auto field =
+        apply_field(ev, args[0], {ev.scene.graph.point()}, Type::Float, site.arg(0), "`implicit`");
     if (!field) return poison();
     ir::Shape leaf;
     leaf.kind = ShapeKind::Leaf;
@@ -91,7 +104,8 @@ static Value implicit_call(Evaluator &ev, const CallSite &site, std::vector<Valu
     auto positive = [&](std::size_t i, const char *name) {
         auto x = want_known_number(ev, args[i], site.arg(i), name);
         if (x && !(*x > 0)) {
-            report(ev, Code::BadArgument, site.arg(i), fmt::format("{} wants a number above 0", name));
+            report(ev, Code::BadArgument, site.arg(i),
+                   fmt::format("{} wants a number above 0", name));
             x.reset();
         }
         return x;
@@ -127,7 +141,9 @@ static Value cached_call(Evaluator &ev, const CallSite &site, std::vector<Value>
         return poison();
     }
     if (!is_function(args[0])) {
-        report(ev, Code::TypeMismatch, site.arg(0), fmt::format("`cached` wants a function of the point, this is {}", describe(ev, args[0])));
+        report(ev, Code::TypeMismatch, site.arg(0),
+               fmt::format("`cached` wants a function of the point, this is {}",
+                           describe(ev, args[0])));
         return poison();
     }
     ir::Graph &g = ev.scene.graph;
@@ -136,9 +152,12 @@ static Value cached_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     Value v = call_with(ev, args[0], {from_node(ev, p)}, site.arg(0));
     --ev.in_field;
     if (is_poison(v)) return v;
-    bool vector = is_numeric(v) && (numeric_type(ev, v) == Type::Vec3 || numeric_type(ev, v) == Type::Vec4);
+    bool vector =
+        is_numeric(v) && (numeric_type(ev, v) == Type::Vec3 || numeric_type(ev, v) == Type::Vec4);
     if (!vector && !is_scalar(ev, v)) {
-        report(ev, Code::TypeMismatch, site.arg(0), fmt::format("`cached` keeps numbers, vec3 and colours, this function gives {}", describe(ev, v)));
+        report(ev, Code::TypeMismatch, site.arg(0),
+               fmt::format("`cached` keeps numbers, vec3 and colours, this function gives {}",
+                           describe(ev, v)));
         return poison();
     }
     if (is_scalar(ev, v)) v = to_float(ev, v);
@@ -155,11 +174,15 @@ static Value cached_call(Evaluator &ev, const CallSite &site, std::vector<Value>
 
 // -- combination ---------------------------------------------------------------------------------
 
-static std::optional<std::vector<ir::ShapeId>> shapes_argument(Evaluator &ev, const CallSite &site, const Value &v, std::size_t i, int &dims) {
-    return want_shapes(ev, v, site.arg(i), fmt::format("`{}`", ev.calls.empty() ? site.name : ev.calls.back().name), dims);
+static std::optional<std::vector<ir::ShapeId>>
+shapes_argument(Evaluator &ev, const CallSite &site, const Value &v, std::size_t i, int &dims) {
+    return want_shapes(ev, v, site.arg(i),
+                       fmt::format("`{}`", ev.calls.empty() ? site.name : ev.calls.back().name),
+                       dims);
 }
 
-static Value n_ary(Evaluator &ev, const CallSite &site, ShapeKind kind, std::vector<ir::ShapeId> children, int dims) {
+static Value n_ary(Evaluator &ev, const CallSite &site, ShapeKind kind,
+                   std::vector<ir::ShapeId> children, int dims) {
     if (dims == 0) dims = 3;
     if (children.empty()) {
         ir::Shape empty;
@@ -211,14 +234,18 @@ static Value xor_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
 // _blend(profile, r, n, shapes)
 static Value blend_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto profile = want_string(ev, args[0], site.arg(0), "the profile");
-    auto r = want_scalar_node(ev, args[1], site.arg(1), "the blend's size"), n = want_scalar_node(ev, args[2], site.arg(2), "the blend's count");
+    auto r = want_scalar_node(ev, args[1], site.arg(1), "the blend's size"),
+         n = want_scalar_node(ev, args[2], site.arg(2), "the blend's count");
     int dims = 0;
     auto shapes = shapes_argument(ev, site, args[3], 3, dims);
     if (!profile || !r || !n || !shapes) return poison();
     std::erase_if(*shapes, [&](ir::ShapeId s) { return is_empty(ev, s); });
     if (dims == 0) dims = 3;
-    ir::Profile p = *profile == "smooth" ? ir::Profile::Smooth : *profile == "round" ? ir::Profile::Round
-                    : *profile == "chamfer" ? ir::Profile::Chamfer : *profile == "stairs" ? ir::Profile::Stairs : ir::Profile::Columns;
+    ir::Profile p = *profile == "smooth"    ? ir::Profile::Smooth
+                    : *profile == "round"   ? ir::Profile::Round
+                    : *profile == "chamfer" ? ir::Profile::Chamfer
+                    : *profile == "stairs"  ? ir::Profile::Stairs
+                                            : ir::Profile::Columns;
     if (shapes->size() < 2) return n_ary(ev, site, ShapeKind::Union, std::move(*shapes), dims);
     if (p == ir::Profile::Smooth)
         if (auto family = smooth_family(ev, *shapes, *r, dims)) return shape_value(*family, dims);
@@ -244,7 +271,8 @@ struct Pair {
     ir::ShapeId a, b;
     int dims;
 };
-static std::optional<Pair> pair_argument(Evaluator &ev, const CallSite &site, const std::vector<Value> &args, std::size_t at) {
+static std::optional<Pair> pair_argument(Evaluator &ev, const CallSite &site,
+                                         const std::vector<Value> &args, std::size_t at) {
     auto a = want_shape(ev, args[at], site.arg(at), fmt::format("`{}`", site.name));
     auto b = want_shape(ev, args[at + 1], site.arg(at + 1), fmt::format("`{}`", site.name));
     if (!a || !b) return std::nullopt;
@@ -259,12 +287,15 @@ static Value seam_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     auto kind = want_string(ev, args[0], site.arg(0), "the seam");
     auto pair = pair_argument(ev, site, args, 1);
     auto r = want_scalar_node(ev, args[3], site.arg(3), "the seam's size");
-    auto depth = given(args[4]) ? want_scalar_node(ev, args[4], site.arg(4), "`depth`") : std::optional(ev.scene.graph.number(0));
+    auto depth = given(args[4]) ? want_scalar_node(ev, args[4], site.arg(4), "`depth`")
+                                : std::optional(ev.scene.graph.number(0));
     if (!kind || !pair || !r || !depth) return poison();
     ir::Shape s;
     s.kind = ShapeKind::Seam;
-    s.payload = static_cast<std::uint32_t>(*kind == "pipe" ? ir::SeamKind::Pipe : *kind == "engrave" ? ir::SeamKind::Engrave
-                                           : *kind == "groove" ? ir::SeamKind::Groove : ir::SeamKind::Tongue);
+    s.payload = static_cast<std::uint32_t>(*kind == "pipe"      ? ir::SeamKind::Pipe
+                                           : *kind == "engrave" ? ir::SeamKind::Engrave
+                                           : *kind == "groove"  ? ir::SeamKind::Groove
+                                                                : ir::SeamKind::Tongue);
     s.args = {*r, *depth};
     s.children = {pair->a, pair->b};
     return added(ev, std::move(s), site, pair->dims);
@@ -273,7 +304,8 @@ static Value seam_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
 static Value lerp_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto pair = pair_argument(ev, site, args, 0);
     if (!pair) return poison();
-    auto t = apply_field(ev, args[2], {ev.scene.graph.point(ir::vector_type(pair->dims))}, Type::Float, site.arg(2), "`t`");
+    auto t = apply_field(ev, args[2], {ev.scene.graph.point(ir::vector_type(pair->dims))},
+                         Type::Float, site.arg(2), "`t`");
     if (!t) return poison();
     ir::Shape s;
     s.kind = ShapeKind::Lerp;
@@ -295,7 +327,8 @@ static Value pseudonorm_call(Evaluator &ev, const CallSite &site, std::vector<Va
 
 // -- transforms ----------------------------------------------------------------------------------
 
-static std::optional<ir::ShapeId> first_shape(Evaluator &ev, const CallSite &site, const std::vector<Value> &args, int dims = 0) {
+static std::optional<ir::ShapeId> first_shape(Evaluator &ev, const CallSite &site,
+                                              const std::vector<Value> &args, int dims = 0) {
     std::string name = ev.calls.empty() ? site.name : ev.calls.back().name;
     return want_shape(ev, args[0], site.arg(0), fmt::format("`{}`", name), dims);
 }
@@ -312,7 +345,8 @@ static Value rotate_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     auto s = first_shape(ev, site, args);
     if (!s) return poison();
     if (!is_numeric(args[1]) || numeric_type(ev, args[1]) != ir::matrix_type(args[0].size)) {
-        report(ev, Code::TypeMismatch, site.arg(1), fmt::format("a rotation is a mat{}", int{args[0].size}));
+        report(ev, Code::TypeMismatch, site.arg(1),
+               fmt::format("a rotation is a mat{}", int{args[0].size}));
         return poison();
     }
     if (is_empty(ev, *s)) return args[0];
@@ -327,7 +361,8 @@ static Value scale_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     if (ev.scene.graph.is_constant(*by))
         for (int i = 0; i < args[0].size; ++i)
             if (ev.scene.graph.constant_of(*by).value[std::size_t(i)] == 0) {
-                report(ev, Code::BadArgument, site.arg(1), "a scale of 0 flattens the shape to nothing");
+                report(ev, Code::BadArgument, site.arg(1),
+                       "a scale of 0 flattens the shape to nothing");
                 return poison();
             }
     return added(ev, ir::scaled(ev.scene.graph, *s, *by), site, args[0].size);
@@ -344,7 +379,8 @@ static Value fold_shape_call(Evaluator &ev, const CallSite &site, std::vector<Va
 
 static Value revolve_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args, 2);
-    auto offset = given(args[1]) ? want_scalar_node(ev, args[1], site.arg(1), "`offset`") : std::optional(ev.scene.graph.number(0));
+    auto offset = given(args[1]) ? want_scalar_node(ev, args[1], site.arg(1), "`offset`")
+                                 : std::optional(ev.scene.graph.number(0));
     if (!s || !offset) return poison();
     return added(ev, ir::revolved(ev.scene.graph, *s, *offset), site, 3);
 }
@@ -360,7 +396,8 @@ static Value extrude_call(Evaluator &ev, const CallSite &site, std::vector<Value
     return added(ev, std::move(out), site, 3);
 }
 
-static std::optional<int> axis_argument(Evaluator &ev, const CallSite &site, const Value &v, std::size_t i) {
+static std::optional<int> axis_argument(Evaluator &ev, const CallSite &site, const Value &v,
+                                        std::size_t i) {
     auto axis = want_known_int(ev, v, site.arg(i), "an axis");
     if (axis && (*axis < 0 || *axis > 2)) {
         report(ev, Code::BadArgument, site.arg(i), "an axis is X, Y or Z here");
@@ -403,7 +440,8 @@ static Value taper_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     if (!ends[0] || !ends[1]) {
         auto extent = ev.options.extent ? ev.options.extent(ev.scene, *s, *axis) : std::nullopt;
         if (!extent) {
-            report(ev, Code::NeedsRegion, site.call, "this shape has no ends along the axis, so its taper needs them")
+            report(ev, Code::NeedsRegion, site.call,
+                   "this shape has no ends along the axis, so its taper needs them")
                 .help("say where it begins and ends: `from: -1, to: 1`");
             return poison();
         }
@@ -413,7 +451,8 @@ static Value taper_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     return added(ev, ir::tapered(ev.scene.graph, *s, *ratio, *ends[0], *ends[1], *axis), site, 3);
 }
 
-static Value within_shape(Evaluator &ev, const CallSite &site, const Value &shape, const ir::Region &region) {
+static Value within_shape(Evaluator &ev, const CallSite &site, const Value &shape,
+                          const ir::Region &region) {
     if (region.kind == ir::RegionKind::Everywhere && region.less.empty()) return shape;
     ir::Shape within;
     within.kind = ShapeKind::Within;
@@ -440,9 +479,11 @@ static Value within_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     return s && region ? within_shape(ev, site, args[0], *region) : poison();
 }
 
-template <ShapeKind kind> static Value offset_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+template <ShapeKind kind>
+static Value offset_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
-    auto r = want_scalar_node(ev, args[1], site.arg(1), kind == ShapeKind::Offset ? "`r`" : "`thickness`");
+    auto r = want_scalar_node(ev, args[1], site.arg(1),
+                              kind == ShapeKind::Offset ? "`r`" : "`thickness`");
     if (!s || !r) return poison();
     if (is_empty(ev, *s)) return args[0];
     ir::Shape out;
@@ -455,7 +496,8 @@ template <ShapeKind kind> static Value offset_call(Evaluator &ev, const CallSite
 static Value displace_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     if (!s) return poison();
-    auto f = apply_field(ev, args[1], {ev.scene.graph.point(ir::vector_type(args[0].size))}, Type::Float, site.arg(1), "`displace`");
+    auto f = apply_field(ev, args[1], {ev.scene.graph.point(ir::vector_type(args[0].size))},
+                         Type::Float, site.arg(1), "`displace`");
     if (!f) return poison();
     ir::Shape out;
     out.kind = ShapeKind::Displace;
@@ -467,11 +509,15 @@ static Value displace_call(Evaluator &ev, const CallSite &site, std::vector<Valu
 // -- repetition ----------------------------------------------------------------------------------
 
 // The copies may differ: `copies(s, id)` is asked once, with a variable for the cell's id.
-static std::optional<ir::ShapeId> one_copy(Evaluator &ev, const CallSite &site, const std::vector<Value> &args, std::size_t at, ir::NodeId &id) {
+static std::optional<ir::ShapeId> one_copy(Evaluator &ev, const CallSite &site,
+                                           const std::vector<Value> &args, std::size_t at,
+                                           ir::NodeId &id) {
     ir::ShapeId child = shape_of(args[0]);
     if (!given(args[at])) return child;
     if (!is_function(args[at])) {
-        report(ev, Code::TypeMismatch, site.arg(at), fmt::format("the copies are made by a function `(s, id) => …`, this is {}", describe(ev, args[at])));
+        report(ev, Code::TypeMismatch, site.arg(at),
+               fmt::format("the copies are made by a function `(s, id) => …`, this is {}",
+                           describe(ev, args[at])));
         return std::nullopt;
     }
     id = ev.scene.graph.fresh_var(Type::Vec3);
@@ -480,9 +526,12 @@ static std::optional<ir::ShapeId> one_copy(Evaluator &ev, const CallSite &site, 
     return want_shape(ev, v, site.arg(at), "a copy", args[0].size);
 }
 
-static Value repeated(Evaluator &ev, const CallSite &site, ir::Repetition r, ir::ShapeId child, std::vector<ir::NodeId> numbers, int dims) {
-    std::string key = fmt::format("repeat:{}{}{}{}{}{}:{}", r.polar, r.axis, r.along[0], r.along[1], r.along[2], r.mirrored, r.id.index);
-    auto [it, fresh] = ev.interned_records.try_emplace(key, static_cast<std::uint32_t>(ev.scene.shapes.repetitions.size()));
+static Value repeated(Evaluator &ev, const CallSite &site, ir::Repetition r, ir::ShapeId child,
+                      std::vector<ir::NodeId> numbers, int dims) {
+    std::string key = fmt::format("repeat:{}{}{}{}{}{}:{}", r.polar, r.axis, r.along[0], r.along[1],
+                                  r.along[2], r.mirrored, r.id.index);
+    auto [it, fresh] = ev.interned_records.try_emplace(
+        key, static_cast<std::uint32_t>(ev.scene.shapes.repetitions.size()));
     if (fresh) ev.scene.shapes.repetitions.push_back(r);
     ir::Shape s;
     s.kind = ShapeKind::Repeat;
@@ -498,11 +547,13 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
     int dims = args[0].size;
     ir::Graph &g = ev.scene.graph;
     // a flat shape's cell may be a vec2; the third axis does not repeat
-    auto as_cell = [&](const Value &v, std::size_t i, const char *what, double third) -> std::optional<ir::NodeId> {
+    auto as_cell = [&](const Value &v, std::size_t i, const char *what,
+                       double third) -> std::optional<ir::NodeId> {
         if (dims == 3) return want_vec_node(ev, v, 3, site.arg(i), what);
         auto two = want_vec_node(ev, v, 2, site.arg(i), what);
         if (!two) return std::nullopt;
-        return g.make(Op::Make, Type::Vec3, {g.component(*two, 0), g.component(*two, 1), g.number(third)});
+        return g.make(Op::Make, Type::Vec3,
+                      {g.component(*two, 0), g.component(*two, 1), g.number(third)});
     };
     auto cell = as_cell(args[1], 1, "`cell`", 0);
     if (!cell) return poison();
@@ -517,7 +568,8 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
         Value known = from_node(ev, *c);
         auto k = element_as_known(ev, known, site.arg(2), "`count`");
         if (!k) return poison();
-        for (std::size_t i = 0; i < 3; ++i) count.value[i] = std::isfinite(k->num[i]) ? k->num[i] : 1e9;
+        for (std::size_t i = 0; i < 3; ++i)
+            count.value[i] = std::isfinite(k->num[i]) ? k->num[i] : 1e9;
     }
     // which axes repeat is structure: a param that can reach 0 decides it at its present value
     Value known_cell = from_node(ev, *cell);
@@ -533,8 +585,11 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
             report(ev, Code::BadArgument, site.arg(1), "a cell's size cannot be negative");
             return poison();
         }
-        if (r.along[i] && (count.value[i] < 1 || (count.value[i] < 1e9 && count.value[i] != std::floor(count.value[i])))) {
-            report(ev, Code::BadArgument, site.arg(2), fmt::format("`count` wants whole numbers from 1 on, this has {}", count.value[i]));
+        if (r.along[i] && (count.value[i] < 1 || (count.value[i] < 1e9 &&
+                                                  count.value[i] != std::floor(count.value[i])))) {
+            report(
+                ev, Code::BadArgument, site.arg(2),
+                fmt::format("`count` wants whole numbers from 1 on, this has {}", count.value[i]));
             return poison();
         }
     }
@@ -547,10 +602,13 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
 
 static Value repeat_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     // `repeat(cell, (s, id) => …)`: the copies may stand where the count would
-    if (is_function(args[2]) && args[2].kind != ValueKind::ConstField && !given(args[3])) args[3] = args[2], args[2] = none();
+    if (is_function(args[2]) && args[2].kind != ValueKind::ConstField && !given(args[3]))
+        args[3] = args[2], args[2] = none();
     return lattice(ev, site, args, false);
 }
-static Value repeat_mirror_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) { return lattice(ev, site, args, true); }
+static Value repeat_mirror_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+    return lattice(ev, site, args, true);
+}
 
 static Value repeat_polar_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
@@ -558,7 +616,8 @@ static Value repeat_polar_call(Evaluator &ev, const CallSite &site, std::vector<
     auto axis = axis_argument(ev, site, args[2], 2);
     if (!s || !n || !axis) return poison();
     if (*n < 1) {
-        report(ev, Code::BadArgument, site.arg(1), fmt::format("`n` wants a whole number from 1 on, this is {}", *n));
+        report(ev, Code::BadArgument, site.arg(1),
+               fmt::format("`n` wants a whole number from 1 on, this is {}", *n));
         return poison();
     }
     ir::Repetition r;
@@ -572,7 +631,8 @@ static Value repeat_polar_call(Evaluator &ev, const CallSite &site, std::vector<
 
 // -- looks and looking into ----------------------------------------------------------------------
 
-template <ShapeKind kind> static Value paint_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+template <ShapeKind kind>
+static Value paint_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     auto m = want_material(ev, args[1], site.arg(1), "`paint`");
     if (!s || !m) return poison();
@@ -602,13 +662,15 @@ static Value lipschitz_call(Evaluator &ev, const CallSite &site, std::vector<Val
     if (!s) return poison();
     auto l = ev.options.lipschitz ? ev.options.lipschitz(ev.scene, *s) : std::nullopt;
     if (!l || !std::isfinite(*l)) {
-        report(ev, Code::LipschitzUnbounded, site.call, "no bound can be proved for this shape, so `lipschitz` has no value");
+        report(ev, Code::LipschitzUnbounded, site.call,
+               "no bound can be proved for this shape, so `lipschitz` has no value");
         return poison();
     }
     return number(*l);
 }
 
-// _extent(s, axis): where the shape begins and ends along an axis, as a vec2; none where it has no ends
+// _extent(s, axis): where the shape begins and ends along an axis, as a vec2; none where it has no
+// ends
 static Value extent_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args, 3);
     auto axis = axis_argument(ev, site, args[1], 1);
@@ -625,7 +687,9 @@ static bool is_known(Evaluator &ev, const Value &v) {
         if (!is_known(ev, item)) return false;
     return true;
 }
-static Value known_call(Evaluator &ev, const CallSite &, std::vector<Value> &args) { return boolean(is_known(ev, args[0])); }
+static Value known_call(Evaluator &ev, const CallSite &, std::vector<Value> &args) {
+    return boolean(is_known(ev, args[0]));
+}
 
 static Value is_flat_call(Evaluator &, const CallSite &, std::vector<Value> &args) {
     return boolean(args[0].kind == ValueKind::Shape && args[0].size == 2);
@@ -651,7 +715,8 @@ static bool positive_sizes(Evaluator &ev, const CallSite &site, ir::NodeId node,
 
 static Value ball_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto r = want_scalar_node(ev, args[0], site.arg(0), "`r`");
-    auto at = given(args[1]) ? want_vec_node(ev, args[1], 3, site.arg(1), "`at`") : std::optional(ev.scene.graph.vec3(0, 0, 0));
+    auto at = given(args[1]) ? want_vec_node(ev, args[1], 3, site.arg(1), "`at`")
+                             : std::optional(ev.scene.graph.vec3(0, 0, 0));
     if (!r || !at || !positive_sizes(ev, site, *r, 0)) return poison();
     ir::Region region;
     region.kind = ir::RegionKind::Ball;
@@ -661,7 +726,8 @@ static Value ball_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
 }
 
 static Value aabb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
-    auto lo = want_vec_node(ev, args[0], 3, site.arg(0), "`lo`"), hi = want_vec_node(ev, args[1], 3, site.arg(1), "`hi`");
+    auto lo = want_vec_node(ev, args[0], 3, site.arg(0), "`lo`"),
+         hi = want_vec_node(ev, args[1], 3, site.arg(1), "`hi`");
     if (!lo || !hi) return poison();
     ir::Graph &g = ev.scene.graph;
     ir::Region region;
@@ -683,7 +749,8 @@ static Value tube_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     if (ev.scene.graph.is_constant(*axis)) {
         const ir::Constant c = ev.scene.graph.constant_of(*axis);
         for (std::size_t i = 0; i < 3; ++i)
-            if (c.value[i] != 0 && c.value[(i + 1) % 3] == 0 && c.value[(i + 2) % 3] == 0) region.axis = int(i);
+            if (c.value[i] != 0 && c.value[(i + 1) % 3] == 0 && c.value[(i + 2) % 3] == 0)
+                region.axis = int(i);
     }
     if (region.axis < 0) {
         report(ev, Code::BadArgument, site.arg(0), "a tube runs along X, Y or Z");
@@ -693,14 +760,20 @@ static Value tube_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
 }
 
 void add_shape_builtins(std::vector<Builtin> &table) {
-    auto add = [&](const char *name, std::vector<BuiltinParameter> parameters, auto call, const char *doc = "") {
+    auto add = [&](const char *name, std::vector<BuiltinParameter> parameters, auto call,
+                   const char *doc = "") {
         table.push_back({name, std::move(parameters), false, name[0] == '_', call, "", doc});
     };
-    std::vector<BuiltinParameter> claims{{"f"}, {"exact", true}, {"lipschitz", true}, {"lo", true}, {"hi", true}, {"symmetric", true}, {"lever", true}};
+    std::vector<BuiltinParameter> claims{{"f"},          {"exact", true}, {"lipschitz", true},
+                                         {"lo", true},   {"hi", true},    {"symmetric", true},
+                                         {"lever", true}};
     add("_solid", claims, leaf_call<3>);
     add("_flat", claims, leaf_call<2>);
-    add("implicit", {{"f"}, {"within", true}, {"lipschitz", true}, {"estimate", true}}, implicit_call, "the solid where a function of the point is below 0, inside the region `within`");
-    add("cached", {{"f"}, {"cell"}}, cached_call, "the same field; its values may come from the noise cache with cells of that size");
+    add("implicit", {{"f"}, {"within", true}, {"lipschitz", true}, {"estimate", true}},
+        implicit_call,
+        "the solid where a function of the point is below 0, inside the region `within`");
+    add("cached", {{"f"}, {"cell"}}, cached_call,
+        "the same field; its values may come from the noise cache with cells of that size");
     add("_union", {{"shapes"}}, union_call);
     add("_intersection", {{"shapes"}}, intersection_call);
     add("_complement", {{"s"}}, complement_call);
@@ -733,7 +806,8 @@ void add_shape_builtins(std::vector<Builtin> &table) {
     add("_extent", {{"s"}, {"axis"}}, extent_call);
     add("_known", {{"x"}}, known_call);
     add("hide", {{"s"}}, hide_call, "the scene without this shape");
-    add("only", {{"s"}}, only_call, "the scene with nothing but this shape; at the top of the file");
+    add("only", {{"s"}}, only_call,
+        "the scene with nothing but this shape; at the top of the file");
     add("lipschitz", {{"s"}}, lipschitz_call, "the proved bound of a shape's field, as a number");
     add("ball", {{"r"}, {"at", true}}, ball_call, "a region: the ball of radius r");
     add("aabb", {{"lo"}, {"hi"}}, aabb_call, "a region: the box between two corners");

@@ -1,5 +1,5 @@
-// Calls: which argument goes to which parameter, overloads of the library, running a body, and functions of the graph
-// for calls with numbers that are known only at field time.
+// Calls: which argument goes to which parameter, overloads of the library, running a body, and
+// functions of the graph for calls with numbers that are known only at field time.
 #include "typecheck/evaluator.h"
 
 #include "base/suggest.h"
@@ -34,14 +34,17 @@ struct Bound {
 
 std::string signature_text(const std::string &name, const std::vector<Formal> &formals) {
     std::string out = name + "(";
-    for (std::size_t i = 0; i < formals.size(); ++i) out += (i ? ", " : "") + formals[i].name + (formals[i].optional ? " = …" : "");
+    for (std::size_t i = 0; i < formals.size(); ++i)
+        out += (i ? ", " : "") + formals[i].name + (formals[i].optional ? " = …" : "");
     return out + ")";
 }
 
 } // namespace
 
-static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &name, const std::vector<Formal> &formals,
-                                 const std::vector<Argument> &args, Span call, Span callee) {
+static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &name,
+                                           const std::vector<Formal> &formals,
+                                           const std::vector<Argument> &args, Span call,
+                                           Span callee) {
     Bound bound;
     bound.values.resize(formals.size());
     bound.spans.assign(formals.size(), callee);
@@ -54,8 +57,9 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
     bool has_rest = !formals.empty() && formals.back().takes_rest;
     auto give = [&](std::size_t i, const Argument &a) {
         if (bound.values[i]) {
-            Diagnostic &d = report(ev, Code::DuplicateArgument, a.name ? a.name_span : a.span,
-                                   fmt::format("`{}` is given twice in this call of `{}`", formals[i].name, name));
+            Diagnostic &d = report(
+                ev, Code::DuplicateArgument, a.name ? a.name_span : a.span,
+                fmt::format("`{}` is given twice in this call of `{}`", formals[i].name, name));
             d.label(bound.spans[i], "given here");
             ok = false;
             return;
@@ -67,7 +71,8 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
     for (const Argument &a : args) {
         if (a.trailing) {
             if (formals.empty()) {
-                report(ev, Code::TooManyArguments, a.span, fmt::format("`{}` takes no block", name));
+                report(ev, Code::TooManyArguments, a.span,
+                       fmt::format("`{}` takes no block", name));
                 return std::nullopt;
             }
             if (!rest.empty()) { // shapes before the block join it
@@ -75,7 +80,8 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
                 std::vector<Value> block = ev.lists[a.value.id];
                 all.insert(all.end(), block.begin(), block.end());
                 rest = std::move(all);
-            } else give(formals.size() - 1, a);
+            } else
+                give(formals.size() - 1, a);
             continue;
         }
         if (a.name) {
@@ -85,9 +91,11 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
             if (i == formals.size() || (*a.name)[0] == '_') {
                 std::vector<std::string> names;
                 for (const Formal &f : formals) names.push_back(f.name);
-                Diagnostic &d = report(ev, Code::UnknownArgument, a.name_span, fmt::format("`{}` has no argument `{}`", name, *a.name));
+                Diagnostic &d = report(ev, Code::UnknownArgument, a.name_span,
+                                       fmt::format("`{}` has no argument `{}`", name, *a.name));
                 std::string near = nearest_name(*a.name, names);
-                if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{a.name_span, near}});
+                if (!near.empty())
+                    d.help(fmt::format("did you mean `{}`?", near), {{a.name_span, near}});
                 d.note(fmt::format("it is `{}`", signature_text(name, formals)));
                 ok = false;
                 continue;
@@ -96,7 +104,8 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
             continue;
         }
         if (first_named) {
-            report(ev, Code::ArgumentOrder, a.span, "an argument without a name stands behind one with a name")
+            report(ev, Code::ArgumentOrder, a.span,
+                   "an argument without a name stands behind one with a name")
                 .label(*first_named, "named here")
                 .help("put it in front, or name it too");
             ok = false;
@@ -112,7 +121,8 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
             std::size_t given = 0;
             for (const Argument &b : args) given += b.trailing ? 0 : 1;
             report(ev, Code::TooManyArguments, a.span,
-                   fmt::format("`{}` takes {} argument{}, not {}", name, formals.size(), formals.size() == 1 ? "" : "s", given))
+                   fmt::format("`{}` takes {} argument{}, not {}", name, formals.size(),
+                               formals.size() == 1 ? "" : "s", given))
                 .note(fmt::format("it is `{}`", signature_text(name, formals)));
             return std::nullopt;
         }
@@ -120,16 +130,20 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
     }
     if (!rest.empty()) {
         Argument a;
-        a.value = rest.size() == 1 && rest[0].kind == ValueKind::List && formals.back().opens_list ? rest[0] : list_value(ev, rest);
+        a.value = rest.size() == 1 && rest[0].kind == ValueKind::List && formals.back().opens_list
+                      ? rest[0]
+                      : list_value(ev, rest);
         a.span = rest_span;
         give(formals.size() - 1, a);
     }
     for (std::size_t i = 0; i < formals.size(); ++i) {
         if (bound.values[i] || formals[i].optional) continue;
         if (!ok) return std::nullopt;
-        Diagnostic &d = report(ev, Code::MissingArgument, call, fmt::format("`{}` wants an argument `{}`", name, formals[i].name));
+        Diagnostic &d = report(ev, Code::MissingArgument, call,
+                               fmt::format("`{}` wants an argument `{}`", name, formals[i].name));
         d.note(fmt::format("it is `{}`", signature_text(name, formals)));
-        if (!is_library_place(ev, formals[i].declared)) d.label(formals[i].declared, "declared here");
+        if (!is_library_place(ev, formals[i].declared))
+            d.label(formals[i].declared, "declared here");
         return std::nullopt;
     }
     if (!ok) return std::nullopt;
@@ -137,14 +151,17 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
 }
 
 static bool is_shape_list(const lang::TypeExpr &type) {
-    return type.kind == lang::TypeExpr::Kind::List && (type.items[0].name == "shape" || type.items[0].name == "_shape" || type.items[0].name == "shape2");
+    return type.kind == lang::TypeExpr::Kind::List &&
+           (type.items[0].name == "shape" || type.items[0].name == "_shape" ||
+            type.items[0].name == "shape2");
 }
 
 static std::vector<Formal> formals_of(const lang::Function &f) {
     std::vector<Formal> out;
     for (const lang::Parameter &p : f.parameters) {
         Formal formal{p.name.text, p.default_value.has_value(), false, true, p.name.span};
-        if (&p == &f.parameters.back() && p.type && is_shape_list(*p.type)) formal.takes_rest = true;
+        if (&p == &f.parameters.back() && p.type && is_shape_list(*p.type))
+            formal.takes_rest = true;
         out.push_back(formal);
     }
     return out;
@@ -160,9 +177,12 @@ static bool varies(Evaluator &ev, const Value &v) {
 
 // Values that hold no number of field time, and so mean the same in every call.
 static bool is_closed(Evaluator &ev, const Value &v, int depth = 0) {
-    if (v.kind == ValueKind::Field || v.kind == ValueKind::Shape || v.kind == ValueKind::Material || depth > 4) return false;
+    if (v.kind == ValueKind::Field || v.kind == ValueKind::Shape || v.kind == ValueKind::Material ||
+        depth > 4)
+        return false;
     if (v.kind == ValueKind::Closure) return !ev.closures[v.id].in_field;
-    if (v.kind == ValueKind::List || v.kind == ValueKind::ConstField || v.kind == ValueKind::Overloads) {
+    if (v.kind == ValueKind::List || v.kind == ValueKind::ConstField ||
+        v.kind == ValueKind::Overloads) {
         const std::vector<Value> items = ev.lists[v.id];
         if (items.size() > 64) {
             for (const Value &item : items)
@@ -199,7 +219,8 @@ static void key_of(Evaluator &ev, const Value &v, std::vector<std::uint64_t> &ke
     }
 }
 
-static Outcome run_body(Evaluator &ev, const Closure &c, const lang::Function &f, std::uint32_t frame) {
+static Outcome run_body(Evaluator &ev, const Closure &c, const lang::Function &f,
+                        std::uint32_t frame) {
     return run_block(ev, *c.ast, f.body, frame);
 }
 
@@ -208,14 +229,18 @@ static Value result_of(Evaluator &ev, const Outcome &out, Span place) {
     const Value &returned = out.exit.returned;
     if (returned.kind == ValueKind::Bool) return returned.num[0] != 0 ? out.exit.value : out.value;
     if (auto merged = select_value(ev, returned, out.exit.value, out.value)) return *merged;
-    report(ev, Code::StageMismatch, place, "what this returns is chosen by the point, so every way has to give numbers of one type");
+    report(
+        ev, Code::StageMismatch, place,
+        "what this returns is chosen by the point, so every way has to give numbers of one type");
     return poison();
 }
 
 static Value finish(Evaluator &ev, Value v, const lang::Function &f, const std::string &name) {
     Span place = f.span;
     if (v.kind == ValueKind::Unit && f.result) {
-        report(ev, Code::MissingValue, f.head.source ? f.head : place, fmt::format("`{}` promises a `{}` and ends without a value", name, type_text(*f.result)));
+        report(ev, Code::MissingValue, f.head.source ? f.head : place,
+               fmt::format("`{}` promises a `{}` and ends without a value", name,
+                           type_text(*f.result)));
         return poison();
     }
     if (!f.result || is_poison(v)) return v;
@@ -226,20 +251,24 @@ static Value finish(Evaluator &ev, Value v, const lang::Function &f, const std::
 
 static bool enter(Evaluator &ev, const std::string &name, Span call, const Closure &c) {
     if (ev.calls.size() >= static_cast<std::size_t>(max_call_depth)) {
-        report(ev, Code::RecursionLimit, call, fmt::format("calls nest deeper than {}; is there an end to this recursion?", max_call_depth));
+        report(ev, Code::RecursionLimit, call,
+               fmt::format("calls nest deeper than {}; is there an end to this recursion?",
+                           max_call_depth));
         return false;
     }
     ev.calls.push_back({name, call, c.library, c.module});
     return true;
 }
 
-static Value run_closure(Evaluator &ev, const Value &callee, const std::string &name, std::vector<Value> values, Span call) {
+static Value run_closure(Evaluator &ev, const Value &callee, const std::string &name,
+                         std::vector<Value> values, Span call) {
     Closure c = ev.closures[callee.id];
     const lang::Function &f = c.ast->functions[c.function];
     if (!enter(ev, name, call, c)) return poison();
     std::uint32_t module = std::exchange(ev.current_module, c.module);
     std::uint32_t frame = push_frame(ev, c.frame);
-    for (std::size_t i = 0; i < values.size(); ++i) declare(ev, frame, f.parameters[i].name.text, values[i], false, f.parameters[i].name.span);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        declare(ev, frame, f.parameters[i].name.text, values[i], false, f.parameters[i].name.span);
     Outcome out = run_body(ev, c, f, frame);
     Value v = finish(ev, result_of(ev, out, f.span), f, name);
     pop_frame(ev, frame);
@@ -248,8 +277,10 @@ static Value run_closure(Evaluator &ev, const Value &callee, const std::string &
     return v;
 }
 
-// A call with numbers of field time: the body becomes a function of the graph, made once for each set of known arguments.
-static std::optional<Value> specialized(Evaluator &ev, const Value &callee, const std::string &name, const std::vector<Value> &values, Span call) {
+// A call with numbers of field time: the body becomes a function of the graph, made once for each
+// set of known arguments.
+static std::optional<Value> specialized(Evaluator &ev, const Value &callee, const std::string &name,
+                                        const std::vector<Value> &values, Span call) {
     const Closure c = ev.closures[callee.id];
     const lang::Function &f = c.ast->functions[c.function];
     if (!f.name || c.in_field) return std::nullopt;
@@ -262,8 +293,10 @@ static std::optional<Value> specialized(Evaluator &ev, const Value &callee, cons
     }
     if (!any || frame_has_vars(ev, c.frame)) return std::nullopt;
     auto id = std::pair{c.ast, c.function.index};
-    if (auto it = ev.never_specialize.find(id); it != ev.never_specialize.end()) return std::nullopt;
-    std::vector<std::uint64_t> key{reinterpret_cast<std::uintptr_t>(c.ast), c.function.index, c.frame};
+    if (auto it = ev.never_specialize.find(id); it != ev.never_specialize.end())
+        return std::nullopt;
+    std::vector<std::uint64_t> key{reinterpret_cast<std::uintptr_t>(c.ast), c.function.index,
+                                   c.frame};
     for (const Value &v : values) key_of(ev, v, key);
     ir::Graph &g = ev.scene.graph;
     auto it = ev.specializations.find(key);
@@ -292,8 +325,11 @@ static std::optional<Value> specialized(Evaluator &ev, const Value &callee, cons
         s.shape_of_result = result;
         if (result.kind == ValueKind::Field) {
             for (ir::NodeId free : g.free_vars(node_of(result)))
-                if (std::find(function.params.begin(), function.params.end(), free) == function.params.end()) return std::nullopt;
-            if (g.reads(node_of(result)).point || g.reads(node_of(result)).normal) return std::nullopt;
+                if (std::find(function.params.begin(), function.params.end(), free) ==
+                    function.params.end())
+                    return std::nullopt;
+            if (g.reads(node_of(result)).point || g.reads(node_of(result)).normal)
+                return std::nullopt;
             function.result = node_of(result);
             s.function = g.add_function(std::move(function));
         }
@@ -315,7 +351,8 @@ Value library_shape(Evaluator &ev, ir::Library library, const Value &body, Span 
     ir::ShapeId child = shape_of(body);
     // a body that only makes claims is this very call: keep its claims under the call's numbers
     const ir::Shape &inner = ev.scene.shapes[child];
-    if (inner.kind == ir::ShapeKind::Library && ev.scene.shapes.libraries[inner.payload].arguments.empty() &&
+    if (inner.kind == ir::ShapeKind::Library &&
+        ev.scene.shapes.libraries[inner.payload].arguments.empty() &&
         ev.scene.shapes.libraries[inner.payload].name == library.name) {
         const ir::Library &claimed = ev.scene.shapes.libraries[inner.payload];
         library.has_claims = claimed.has_claims;
@@ -326,11 +363,13 @@ Value library_shape(Evaluator &ev, ir::Library library, const Value &body, Span 
     for (const auto &[name, node] : library.arguments) key += name + "=" + number_key(node.index);
     if (library.has_claims) {
         const ir::Claims &c = library.claims;
-        key += number_key(static_cast<std::uint32_t>(c.kind)) + number_key(c.lipschitz.index) + number_key(c.lo.index) + number_key(c.hi.index);
+        key += number_key(static_cast<std::uint32_t>(c.kind)) + number_key(c.lipschitz.index) +
+               number_key(c.lo.index) + number_key(c.hi.index);
         for (bool b : c.symmetric) key += b ? "y" : "n";
         for (ir::NodeId n : c.lever) key += number_key(n.index);
     }
-    auto [it, added] = ev.interned_records.try_emplace(key, static_cast<std::uint32_t>(ev.scene.shapes.libraries.size()));
+    auto [it, added] = ev.interned_records.try_emplace(
+        key, static_cast<std::uint32_t>(ev.scene.shapes.libraries.size()));
     if (added) ev.scene.shapes.libraries.push_back(std::move(library));
     ir::Shape s;
     s.kind = ir::ShapeKind::Library;
@@ -342,20 +381,25 @@ Value library_shape(Evaluator &ev, ir::Library library, const Value &body, Span 
 }
 
 static std::string region_key(const ir::Region &r) {
-    std::string key = number_key(static_cast<std::uint32_t>(r.kind)) + number_key(r.center.index) + number_key(r.size.index) + number_key(static_cast<std::uint32_t>(r.axis)) + "(";
+    std::string key = number_key(static_cast<std::uint32_t>(r.kind)) + number_key(r.center.index) +
+                      number_key(r.size.index) + number_key(static_cast<std::uint32_t>(r.axis)) +
+                      "(";
     for (const ir::Region &l : r.less) key += region_key(l);
     return key + ")";
 }
 
 std::uint32_t intern_region(Evaluator &ev, const ir::Region &region) {
-    auto [it, added] = ev.interned_records.try_emplace("region:" + region_key(region), static_cast<std::uint32_t>(ev.scene.shapes.regions.size()));
+    auto [it, added] = ev.interned_records.try_emplace(
+        "region:" + region_key(region), static_cast<std::uint32_t>(ev.scene.shapes.regions.size()));
     if (added) ev.scene.shapes.regions.push_back(region);
     return it->second;
 }
 
 std::uint32_t intern_material(Evaluator &ev, const ir::Material &m) {
-    std::string key = "material:" + number_key(m.diffuse.index) + number_key(m.specular.index) + number_key(m.exponent.index) + number_key(m.emission.index);
-    auto [it, added] = ev.interned_records.try_emplace(key, static_cast<std::uint32_t>(ev.scene.shapes.materials.size()));
+    std::string key = "material:" + number_key(m.diffuse.index) + number_key(m.specular.index) +
+                      number_key(m.exponent.index) + number_key(m.emission.index);
+    auto [it, added] = ev.interned_records.try_emplace(
+        key, static_cast<std::uint32_t>(ev.scene.shapes.materials.size()));
     if (added) ev.scene.shapes.materials.push_back(m);
     return it->second;
 }
@@ -372,7 +416,8 @@ static bool inside_library(Evaluator &ev) { return ev.modules[ev.current_module]
 
 // -- the calls -----------------------------------------------------------------------------------
 
-static Value call_closure(Evaluator &ev, const Value &callee, const std::string &name, const std::vector<Argument> &args, Span call, Span callee_span) {
+static Value call_closure(Evaluator &ev, const Value &callee, const std::string &name,
+                          const std::vector<Argument> &args, Span call, Span callee_span) {
     const Closure c = ev.closures[callee.id];
     const lang::Function &f = c.ast->functions[c.function];
     auto bound = bind_arguments(ev, name, formals_of(f), args, call, callee_span);
@@ -385,7 +430,8 @@ static Value call_closure(Evaluator &ev, const Value &callee, const std::string 
     for (std::size_t i = 0; i < f.parameters.size(); ++i) {
         const lang::Parameter &p = f.parameters[i];
         Value v;
-        if (bound->values[i]) v = *bound->values[i];
+        if (bound->values[i])
+            v = *bound->values[i];
         else {
             ev.current_module = c.module;
             v = eval(ev, *c.ast, *p.default_value, frame);
@@ -393,13 +439,20 @@ static Value call_closure(Evaluator &ev, const Value &callee, const std::string 
         }
         if (p.type && v.kind != ValueKind::None) {
             if (!known_type(*p.type)) {
-                report(ev, Code::UnknownName, p.type->span, fmt::format("there is no type `{}`", type_text(*p.type)));
+                report(ev, Code::UnknownName, p.type->span,
+                       fmt::format("there is no type `{}`", type_text(*p.type)));
                 ok = false;
-            } else v = convert(ev, v, *p.type, bound->spans[i], fmt::format("`{}` of `{}`", p.name.text, name), ok);
+            } else
+                v = convert(ev, v, *p.type, bound->spans[i],
+                            fmt::format("`{}` of `{}`", p.name.text, name), ok);
         }
-        if (bound->literal[i] && (p.name.text == "angle" || p.name.text == "fov") && is_scalar(ev, v) && std::abs(v.num[0]) > 6.5)
-            report(ev, Code::Units, bound->spans[i], fmt::format("`{}` is in radians, and {} of them are {:.0f} turns", p.name.text, v.num[0], std::abs(v.num[0]) / 6.283185307179586))
-                .help(fmt::format("write `{}deg` if degrees are meant", v.num[0]), {{bound->spans[i], fmt::format("{}deg", v.num[0])}});
+        if (bound->literal[i] && (p.name.text == "angle" || p.name.text == "fov") &&
+            is_scalar(ev, v) && std::abs(v.num[0]) > 6.5)
+            report(ev, Code::Units, bound->spans[i],
+                   fmt::format("`{}` is in radians, and {} of them are {:.0f} turns", p.name.text,
+                               v.num[0], std::abs(v.num[0]) / 6.283185307179586))
+                .help(fmt::format("write `{}deg` if degrees are meant", v.num[0]),
+                      {{bound->spans[i], fmt::format("{}deg", v.num[0])}});
         ok = ok && !is_poison(v);
         values.push_back(v);
         declare(ev, frame, p.name.text, v, false, p.name.span);
@@ -413,18 +466,23 @@ static Value call_closure(Evaluator &ev, const Value &callee, const std::string 
         library.name = f.name->text;
         for (std::size_t i = 0; i < values.size(); ++i) {
             if (holds_shape(ev, values[i])) return v;
-            if (is_numeric(values[i])) library.arguments.emplace_back(f.parameters[i].name.text, to_node(ev, values[i]));
+            if (is_numeric(values[i]))
+                library.arguments.emplace_back(f.parameters[i].name.text, to_node(ev, values[i]));
         }
         return library_shape(ev, std::move(library), v, call);
     }
     return v;
 }
 
-static Value call_builtin(Evaluator &ev, const Value &callee, const std::vector<Argument> &args, Span call, Span callee_span) {
+static Value call_builtin(Evaluator &ev, const Value &callee, const std::vector<Argument> &args,
+                          Span call, Span callee_span) {
     const Builtin &b = builtins()[callee.id];
     std::vector<Formal> formals;
-    for (const BuiltinParameter &p : b.parameters) formals.push_back({p.name, p.optional, false, true, {}});
-    if (b.variadic) formals.back().takes_rest = true, formals.back().opens_list = b.name != "concat"; // whose rest are lists
+    for (const BuiltinParameter &p : b.parameters)
+        formals.push_back({p.name, p.optional, false, true, {}});
+    if (b.variadic)
+        formals.back().takes_rest = true,
+        formals.back().opens_list = b.name != "concat"; // whose rest are lists
     auto bound = bind_arguments(ev, b.name, formals, args, call, callee_span);
     if (!bound) return poison();
     CallSite site{b.name, call, callee_span, bound->spans};
@@ -433,13 +491,17 @@ static Value call_builtin(Evaluator &ev, const Value &callee, const std::vector<
         values.push_back(bound->values[i].value_or(none()));
         if (is_poison(values.back()) && bound->values[i]) return poison();
         if (bound->literal[i] && formals[i].name == "fov" && std::abs(values[i].num[0]) > 6.5)
-            report(ev, Code::Units, bound->spans[i], fmt::format("`fov` is in radians, and {} of them are {:.0f} turns", values[i].num[0], std::abs(values[i].num[0]) / 6.283185307179586))
-                .help(fmt::format("write `{}deg` if degrees are meant", values[i].num[0]), {{bound->spans[i], fmt::format("{}deg", values[i].num[0])}});
+            report(ev, Code::Units, bound->spans[i],
+                   fmt::format("`fov` is in radians, and {} of them are {:.0f} turns",
+                               values[i].num[0], std::abs(values[i].num[0]) / 6.283185307179586))
+                .help(fmt::format("write `{}deg` if degrees are meant", values[i].num[0]),
+                      {{bound->spans[i], fmt::format("{}deg", values[i].num[0])}});
     }
     return b.call(ev, site, values);
 }
 
-static Value call_overloads(Evaluator &ev, const Value &callee, const std::string &name, const std::vector<Argument> &args, Span call, Span callee_span) {
+static Value call_overloads(Evaluator &ev, const Value &callee, const std::string &name,
+                            const std::vector<Argument> &args, Span call, Span callee_span) {
     const std::vector<Value> candidates = ev.lists[callee.id];
     for (const Value &candidate : candidates) {
         const Closure &c = ev.closures[candidate.id];
@@ -448,7 +510,8 @@ static Value call_overloads(Evaluator &ev, const Value &callee, const std::strin
         auto bound = bind_arguments(ev, name, formals_of(f), args, call, callee_span);
         bool fits = bound.has_value();
         for (std::size_t i = 0; fits && i < f.parameters.size(); ++i)
-            if (bound->values[i] && f.parameters[i].type) fits = accepts(ev, *bound->values[i], *f.parameters[i].type);
+            if (bound->values[i] && f.parameters[i].type)
+                fits = accepts(ev, *bound->values[i], *f.parameters[i].type);
         --ev.quiet;
         if (fits) return call_closure(ev, candidate, name, args, call, callee_span);
     }
@@ -457,7 +520,8 @@ static Value call_overloads(Evaluator &ev, const Value &callee, const std::strin
     for (const Value &candidate : candidates) {
         const Closure &c = ev.closures[candidate.id];
         const lang::Function &f = c.ast->functions[c.function];
-        if (!args.empty() && !f.parameters.empty() && f.parameters[0].type && accepts(ev, args[0].value, *f.parameters[0].type)) {
+        if (!args.empty() && !f.parameters.empty() && f.parameters[0].type &&
+            accepts(ev, args[0].value, *f.parameters[0].type)) {
             best = &candidate;
             break;
         }
@@ -465,7 +529,8 @@ static Value call_overloads(Evaluator &ev, const Value &callee, const std::strin
     return call_closure(ev, *best, name, args, call, callee_span);
 }
 
-Value call_value(Evaluator &ev, const Value &callee, const std::string &name, std::vector<Argument> args, Span call, Span callee_span) {
+Value call_value(Evaluator &ev, const Value &callee, const std::string &name,
+                 std::vector<Argument> args, Span call, Span callee_span) {
     if (is_poison(callee)) return poison();
     switch (callee.kind) {
     case ValueKind::Closure: return call_closure(ev, callee, name, args, call, callee_span);
@@ -474,13 +539,17 @@ Value call_value(Evaluator &ev, const Value &callee, const std::string &name, st
     case ValueKind::ConstField: return ev.lists[callee.id][0];
     case ValueKind::CachedField:
     case ValueKind::ImageField: {
-        auto bound = bind_arguments(ev, name, {{"p", false, false, true, {}}}, args, call, callee_span);
+        auto bound =
+            bind_arguments(ev, name, {{"p", false, false, true, {}}}, args, call, callee_span);
         if (!bound) return poison();
         bool image = callee.kind == ValueKind::ImageField;
-        auto p = want_vec_node(ev, *bound->values[0], image ? 2 : 3, bound->spans[0], fmt::format("`{}`", name));
+        auto p = want_vec_node(ev, *bound->values[0], image ? 2 : 3, bound->spans[0],
+                               fmt::format("`{}`", name));
         if (!p) return poison();
         ir::Graph &g = ev.scene.graph;
-        if (image) return from_node(ev, g.make(ir::Op::Image, Type::Vec4, {g.div(*p, g.number(callee.num[0]))}, callee.id));
+        if (image)
+            return from_node(ev, g.make(ir::Op::Image, Type::Vec4,
+                                        {g.div(*p, g.number(callee.num[0]))}, callee.id));
         ir::CacheId cache{callee.id};
         Type type = g[g.function(g.cache(cache).field).result].type;
         return from_node(ev, g.make(ir::Op::Cached, type, {*p}, cache.index), callee.color);
@@ -503,8 +572,12 @@ Value call_value(Evaluator &ev, const Value &callee, const std::string &name, st
     case ValueKind::Setting:
     case ValueKind::Module: break;
     }
-    Diagnostic &d = report(ev, Code::NotCallable, callee_span, fmt::format("`{}` is {}, not a function", name.empty() ? "this" : name, describe(ev, callee)));
-    if (callee.kind == ValueKind::List || (is_numeric(callee) && ir::is_vector(numeric_type(ev, callee)))) d.help("an element is `l[i]`");
+    Diagnostic &d = report(ev, Code::NotCallable, callee_span,
+                           fmt::format("`{}` is {}, not a function", name.empty() ? "this" : name,
+                                       describe(ev, callee)));
+    if (callee.kind == ValueKind::List ||
+        (is_numeric(callee) && ir::is_vector(numeric_type(ev, callee))))
+        d.help("an element is `l[i]`");
     if (is_scalar(ev, callee)) d.help("a product is written with `*`");
     return poison();
 }
@@ -521,7 +594,8 @@ Value call_with(Evaluator &ev, const Value &callee, const std::vector<Value> &va
     return call_value(ev, callee, name, std::move(args), place, place);
 }
 
-static void read_arguments(Evaluator &ev, const lang::Ast &ast, const lang::Call &call, std::uint32_t frame, std::vector<Argument> &args) {
+static void read_arguments(Evaluator &ev, const lang::Ast &ast, const lang::Call &call,
+                           std::uint32_t frame, std::vector<Argument> &args) {
     for (const lang::Argument &a : call.arguments) {
         Argument arg;
         const lang::Expr &e = ast.exprs[a.value];
@@ -546,7 +620,8 @@ static void read_arguments(Evaluator &ev, const lang::Ast &ast, const lang::Call
     }
 }
 
-Value eval_call(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, const lang::Call &call, std::uint32_t frame) {
+Value eval_call(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, const lang::Call &call,
+                std::uint32_t frame) {
     Span place = ast.exprs[id].span;
     const lang::Expr &callee = ast.exprs[call.callee];
     std::vector<Argument> args;
@@ -558,27 +633,36 @@ Value eval_call(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, const lang
             auto it = ev.frames[module.frame].index.find(intern(ev, m->name.text));
             if (it == ev.frames[module.frame].index.end() || m->name.text[0] == '_') {
                 std::vector<std::string> names;
-                for (const Binding &b : ev.frames[module.frame].bindings) names.push_back(ev.symbol_names[b.name]);
-                Diagnostic &d = report(ev, Code::UnknownMember, m->name.span,
-                                       m->name.text[0] == '_' ? fmt::format("`{}` is private to `{}`", m->name.text, module.name)
-                                                              : fmt::format("`{}` declares no `{}`", module.name, m->name.text));
+                for (const Binding &b : ev.frames[module.frame].bindings)
+                    names.push_back(ev.symbol_names[b.name]);
+                Diagnostic &d =
+                    report(ev, Code::UnknownMember, m->name.span,
+                           m->name.text[0] == '_'
+                               ? fmt::format("`{}` is private to `{}`", m->name.text, module.name)
+                               : fmt::format("`{}` declares no `{}`", module.name, m->name.text));
                 std::string near = nearest_name(m->name.text, names);
-                if (!near.empty() && near[0] != '_') d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
+                if (!near.empty() && near[0] != '_')
+                    d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
                 return poison();
             }
-            return call_value(ev, ev.frames[module.frame].bindings[it->second].value, m->name.text, std::move(args), place, m->name.span);
+            return call_value(ev, ev.frames[module.frame].bindings[it->second].value, m->name.text,
+                              std::move(args), place, m->name.span);
         }
         auto f = look_up(ev, frame, m->name.text);
         if (!f || !is_function(*f)) {
             read_arguments(ev, ast, call, frame, args); // their own errors are still worth saying
             if (is_poison(object)) return poison();
             if (f) {
-                report(ev, Code::NotCallable, m->name.span, fmt::format("`{}` is {}, not a function", m->name.text, describe(ev, *f)));
+                report(ev, Code::NotCallable, m->name.span,
+                       fmt::format("`{}` is {}, not a function", m->name.text, describe(ev, *f)));
                 return poison();
             }
-            Diagnostic &d = report(ev, Code::UnknownMember, m->name.span, fmt::format("there is no function `{}` for {}", m->name.text, describe(ev, object)));
+            Diagnostic &d = report(ev, Code::UnknownMember, m->name.span,
+                                   fmt::format("there is no function `{}` for {}", m->name.text,
+                                               describe(ev, object)));
             std::string near = nearest_name(m->name.text, visible_names(ev, frame));
-            if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
+            if (!near.empty())
+                d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
             return poison();
         }
         Argument self;

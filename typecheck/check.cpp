@@ -14,8 +14,10 @@ ir::Lighting default_lighting(Evaluator &ev); // builtins_scene.cpp
 
 namespace {
 
-// Evaluation recurses with the scene's own recursion (max_depth, max_call_depth), so it gets a stack made for that.
-constexpr std::size_t stack_bytes = std::size_t{1} << 30; // reserved, not used: pages come as they are touched
+// Evaluation recurses with the scene's own recursion (max_depth, max_call_depth), so it gets a
+// stack made for that.
+constexpr std::size_t stack_bytes = std::size_t{1}
+                                    << 30; // reserved, not used: pages come as they are touched
 
 void with_stack(const std::function<void()> &work) {
     pthread_attr_t attributes;
@@ -26,10 +28,13 @@ void with_stack(const std::function<void()> &work) {
         (*static_cast<const std::function<void()> *>(f))();
         return nullptr;
     };
-    int failed = pthread_create(&thread, &attributes, run, const_cast<std::function<void()> *>(&work));
+    int failed =
+        pthread_create(&thread, &attributes, run, const_cast<std::function<void()> *>(&work));
     pthread_attr_destroy(&attributes);
-    if (failed != 0) work(); // no room for one: the ordinary stack serves all but the deepest scenes
-    else pthread_join(thread, nullptr);
+    if (failed != 0)
+        work(); // no room for one: the ordinary stack serves all but the deepest scenes
+    else
+        pthread_join(thread, nullptr);
 }
 
 void apply(Evaluator &ev, const Setting &s) {
@@ -49,7 +54,8 @@ void add_top_level(Evaluator &ev, const Value &v, Span span, std::vector<ir::Sha
     case ValueKind::Unit: return;
     case ValueKind::Setting: apply(ev, ev.settings[v.id]); return;
     case ValueKind::List:
-        for (const Value &item : std::vector<Value>(ev.lists[v.id])) add_top_level(ev, item, span, shapes);
+        for (const Value &item : std::vector<Value>(ev.lists[v.id]))
+            add_top_level(ev, item, span, shapes);
         return;
     case ValueKind::Shape:
         if (v.size == 2) {
@@ -79,18 +85,27 @@ void add_top_level(Evaluator &ev, const Value &v, Span span, std::vector<ir::Sha
     case ValueKind::Region:
     case ValueKind::Module: break;
     }
-    Diagnostic &d = report(ev, Code::WrongPlace, span, fmt::format("the scene is made of shapes; {} does nothing here", describe(ev, v)));
-    if (is_function(v)) d.help("call it: `name(…)`");
-    else d.help("name it with `let`, or look at it with `print(…)`");
+    Diagnostic &d =
+        report(ev, Code::WrongPlace, span,
+               fmt::format("the scene is made of shapes; {} does nothing here", describe(ev, v)));
+    if (is_function(v))
+        d.help("call it: `name(…)`");
+    else
+        d.help("name it with `let`, or look at it with `print(…)`");
 }
 
-void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions, const lang::Ast &ast) {
+void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions,
+                 const lang::Ast &ast) {
     ir::Scene &scene = ev.scene;
     scene.lighting = default_lighting(ev);
-    ir::NodeId direction = scene.graph.make(ir::Op::Direction, ir::Type::Vec3, std::initializer_list<ir::NodeId>{});
+    ir::NodeId direction =
+        scene.graph.make(ir::Op::Direction, ir::Type::Vec3, std::initializer_list<ir::NodeId>{});
     // a quiet sky: from a warm horizon to a soft blue, linear
-    ir::NodeId up = scene.graph.make(ir::Op::Smoothstep, {scene.graph.number(-0.3), scene.graph.number(0.8), scene.graph.component(direction, 1)});
-    scene.background = scene.graph.make(ir::Op::Mix, {scene.graph.vec3(0.63, 0.66, 0.68), scene.graph.vec3(0.21, 0.34, 0.53),
+    ir::NodeId up =
+        scene.graph.make(ir::Op::Smoothstep, {scene.graph.number(-0.3), scene.graph.number(0.8),
+                                              scene.graph.component(direction, 1)});
+    scene.background = scene.graph.make(ir::Op::Mix, {scene.graph.vec3(0.63, 0.66, 0.68),
+                                                      scene.graph.vec3(0.21, 0.34, 0.53),
                                                       scene.graph.splat(up, ir::Type::Vec3)});
     std::vector<ir::ShapeId> shapes;
     for (const Contribution &c : contributions) add_top_level(ev, c.value, c.span, shapes);
@@ -98,17 +113,22 @@ void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions, 
     for (ir::ShapeId s : shapes) some_only = some_only || ev.only_shapes.count(s.index) > 0;
     if (some_only) {
         std::erase_if(shapes, [&](ir::ShapeId s) { return ev.only_shapes.count(s.index) == 0; });
-        std::erase_if(scene.top_level, [&](const ir::TopLevel &t) { return ev.only_shapes.count(t.shape.index) == 0; });
+        std::erase_if(scene.top_level, [&](const ir::TopLevel &t) {
+            return ev.only_shapes.count(t.shape.index) == 0;
+        });
     }
     bool declares = false;
     for (const lang::Stmt &s : ast.blocks[ast.root].stmts)
-        declares = declares || std::holds_alternative<lang::Let>(s.kind) || std::holds_alternative<lang::FunctionDecl>(s.kind);
+        declares = declares || std::holds_alternative<lang::Let>(s.kind) ||
+                   std::holds_alternative<lang::FunctionDecl>(s.kind);
     if (shapes.empty() && !declares && !ev.diagnostics.has_errors()) {
-        report(ev, Code::EmptyScene, {ast.source, 0, 0}, "this file makes no shape, and declares nothing that another could import")
+        report(ev, Code::EmptyScene, {ast.source, 0, 0},
+               "this file makes no shape, and declares nothing that another could import")
             .help("the smallest scene is `sphere(1)`");
     }
     if (scene.lights.empty()) {
-        // semantics.md, 23: one sun from the upper left behind the camera; view.h turns it with the camera where none is given
+        // semantics.md, 23: one sun from the upper left behind the camera; view.h turns it with the
+        // camera where none is given
         scene.lights.clear();
     }
     scene.root = unite(ev, std::move(shapes), 3, ast.blocks[ast.root].span);
@@ -116,8 +136,9 @@ void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions, 
 
 } // namespace
 
-Checked check(Sources &sources, SourceId root, const std::string &root_identity, const std::vector<LibraryFile> &library,
-              const Loader &loader, const Options &options, Diagnostics &diagnostics) {
+Checked check(Sources &sources, SourceId root, const std::string &root_identity,
+              const std::vector<LibraryFile> &library, const Loader &loader, const Options &options,
+              Diagnostics &diagnostics) {
     Checked out;
     with_stack([&] {
         Evaluator ev{sources, diagnostics, library, loader, options};
@@ -143,7 +164,9 @@ Checked check(Sources &sources, SourceId root, const std::string &root_identity,
         for (const Override &o : options.overrides) {
             bool known = false;
             for (const ir::Param &p : ev.scene.params) known = known || p.name == o.name;
-            if (!known) ev.usage_errors.push_back(fmt::format("-D {}: the scene has no parameter of this name", o.name));
+            if (!known)
+                ev.usage_errors.push_back(
+                    fmt::format("-D {}: the scene has no parameter of this name", o.name));
         }
         out.scene = std::move(ev.scene);
         out.usage_errors = std::move(ev.usage_errors);
@@ -168,9 +191,11 @@ std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &librar
                 const lang::Function &fn = ast.functions[f->function];
                 if (!fn.name || fn.name->text[0] == '_') continue;
                 std::string head = text_of(sources, id, fn.head);
-                out.push_back({fn.name->text, head.starts_with("fn ") ? head.substr(3) : head, fn.doc, std::string(file.name)});
+                out.push_back({fn.name->text, head.starts_with("fn ") ? head.substr(3) : head,
+                               fn.doc, std::string(file.name)});
             } else if (auto *l = std::get_if<lang::Let>(&s.kind)) {
-                if (l->name.text[0] != '_') out.push_back({l->name.text, l->name.text, l->doc, std::string(file.name)});
+                if (l->name.text[0] != '_')
+                    out.push_back({l->name.text, l->name.text, l->doc, std::string(file.name)});
             }
         }
     }
@@ -178,7 +203,8 @@ std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &librar
         if (b.library_only) continue;
         std::string signature = b.name + "(";
         for (std::size_t i = 0; i < b.parameters.size(); ++i)
-            signature += (i ? ", " : "") + b.parameters[i].name + (b.parameters[i].optional ? " = …" : "");
+            signature +=
+                (i ? ", " : "") + b.parameters[i].name + (b.parameters[i].optional ? " = …" : "");
         out.push_back({b.name, signature + ")", b.doc, "built in"});
     }
     return out;

@@ -1,5 +1,6 @@
-// Ast to ir::Scene: names, types, stages, and the evaluation of everything that is scene time. The proof is a step of
-// its own (typecheck/proof). Opens no file: what a scene imports comes through the `Loader` that the driver gives.
+// Ast to ir::Scene: names, types, stages, and the evaluation of everything that is scene time. The
+// proof is a step of its own (typecheck/proof). Opens no file: what a scene imports comes through
+// the `Loader` that the driver gives.
 #pragma once
 
 #include "base/diagnostic.h"
@@ -25,14 +26,22 @@ struct LoadError {
     std::string why; // for people: "no such file", "is not a PNG or JPEG image", …
 };
 
-// What a scene may ask of the world; paths are as the user wrote them, `from` the identity of the file that asks.
+// What a scene may ask of the world; paths are as the user wrote them, `from` the identity of the
+// file that asks.
 struct Loader {
-    std::function<std::variant<LoadedText, LoadError>(const std::string &path, const std::string &from)> text;
-    std::function<std::variant<ir::ImageData, LoadError>(const std::string &path, const std::string &from)> image;
-    std::function<std::variant<ir::GridData, LoadError>(const std::string &path, const std::string &from)> grid;
+    std::function<std::variant<LoadedText, LoadError>(const std::string &path,
+                                                      const std::string &from)>
+        text;
+    std::function<std::variant<ir::ImageData, LoadError>(const std::string &path,
+                                                         const std::string &from)>
+        image;
+    std::function<std::variant<ir::GridData, LoadError>(const std::string &path,
+                                                        const std::string &from)>
+        grid;
 };
 
-// One embedded file of the standard library. Prelude files are visible everywhere, others by `import "name"`.
+// One embedded file of the standard library. Prelude files are visible everywhere, others by
+// `import "name"`.
 struct LibraryFile {
     std::string_view name; // "solids.sdf"; of a module "dfmodel"
     std::string_view text;
@@ -49,18 +58,20 @@ struct LibraryEntry {
     std::string name, signature, doc, file;
 };
 
-// The checker asks the analysis two things while it evaluates: `lipschitz(s)`, and the exact extent of a shape along an
-// axis (`taper` without `from:` and `to:`). The driver wires them to the proof.
+// The checker asks the analysis two things while it evaluates: `lipschitz(s)`, and the exact extent
+// of a shape along an axis (`taper` without `from:` and `to:`). The driver wires them to the proof.
 struct Options {
     std::vector<Override> overrides;
     std::function<std::optional<double>(ir::Scene &, ir::ShapeId)> lipschitz;
-    std::function<std::optional<std::pair<double, double>>(ir::Scene &, ir::ShapeId, int axis)> extent;
+    std::function<std::optional<std::pair<double, double>>(ir::Scene &, ir::ShapeId, int axis)>
+        extent;
 };
 
 struct Checked {
-    ir::Scene scene;                       // without what diagnostics refused; the rest can still be proved
-    std::vector<std::string> usage_errors; // overrides that name no param or are out of range: exit 2
-    std::size_t evaluations = 0;           // counted work of scene time
+    ir::Scene scene; // without what diagnostics refused; the rest can still be proved
+    std::vector<std::string>
+        usage_errors;            // overrides that name no param or are out of range: exit 2
+    std::size_t evaluations = 0; // counted work of scene time
 };
 
 // `root` is already in `sources`; imported files are added to it. Reports every independent error.

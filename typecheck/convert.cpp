@@ -1,5 +1,6 @@
-// Types as the user writes them, and the conversions that happen where one is wanted: an int becomes a float, a number
-// fills a vector, a list of two to four numbers is a vector and back, a constant stands for a field.
+// Types as the user writes them, and the conversions that happen where one is wanted: an int
+// becomes a float, a number fills a vector, a list of two to four numbers is a vector and back, a
+// constant stands for a field.
 #include "typecheck/evaluator.h"
 
 #include <fmt/format.h>
@@ -17,7 +18,8 @@ std::string type_text(const lang::TypeExpr &type) {
     case lang::TypeExpr::Kind::List: return fmt::format("[{}]", type_text(type.items[0]));
     case lang::TypeExpr::Kind::Function: {
         std::string out = "(";
-        for (std::size_t i = 0; i + 1 < type.items.size(); ++i) out += (i ? ", " : "") + type_text(type.items[i]);
+        for (std::size_t i = 0; i + 1 < type.items.size(); ++i)
+            out += (i ? ", " : "") + type_text(type.items[i]);
         return out + ") -> " + type_text(type.items.back());
     }
     }
@@ -30,15 +32,17 @@ bool known_type(const lang::TypeExpr &type) {
             if (!known_type(item)) return false;
         return true;
     }
-    for (const char *name : {"float", "int", "bool", "string", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "color",
-                             "shape", "shape2", "_shape", "material", "light", "region", "_field", "_any"})
+    for (const char *name :
+         {"float", "int", "bool", "string", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "color",
+          "shape", "shape2", "_shape", "material", "light", "region", "_field", "_any"})
         if (type.name == name) return true;
     return false;
 }
 
 bool is_function(const Value &v) {
-    return v.kind == ValueKind::Closure || v.kind == ValueKind::Builtin || v.kind == ValueKind::Overloads ||
-           v.kind == ValueKind::ConstField || v.kind == ValueKind::CachedField || v.kind == ValueKind::ImageField;
+    return v.kind == ValueKind::Closure || v.kind == ValueKind::Builtin ||
+           v.kind == ValueKind::Overloads || v.kind == ValueKind::ConstField ||
+           v.kind == ValueKind::CachedField || v.kind == ValueKind::ImageField;
 }
 
 Value list_value(Evaluator &ev, std::vector<Value> items) {
@@ -105,7 +109,8 @@ static std::optional<Value> as_named(Evaluator &ev, const Value &raw, const lang
     }
     if (name == "color") {
         if (t == Type::Vec4) v = swizzle(ev, v, "xyz", {}), t = Type::Vec3;
-        if (t == Type::Int || t == Type::Float) v = make_vector(ev, {to_float(ev, v)}, 3, {}), t = Type::Vec3;
+        if (t == Type::Int || t == Type::Float)
+            v = make_vector(ev, {to_float(ev, v)}, 3, {}), t = Type::Vec3;
         if (t != Type::Vec3) return std::nullopt;
         v.color = true;
         return v;
@@ -134,13 +139,17 @@ static std::optional<Value> as_type(Evaluator &ev, const Value &v, const lang::T
     }
     case lang::TypeExpr::Kind::List: {
         std::vector<Value> items;
-        if (v.kind == ValueKind::List) items = ev.lists[v.id];
-        else if (v.kind == ValueKind::Range || (is_numeric(v) && ir::is_vector(numeric_type(ev, v)))) {
+        if (v.kind == ValueKind::List)
+            items = ev.lists[v.id];
+        else if (v.kind == ValueKind::Range ||
+                 (is_numeric(v) && ir::is_vector(numeric_type(ev, v)))) {
             auto all = sequence_items(ev, v, {});
             if (!all) return std::nullopt;
             items = std::move(*all);
-        } else if (v.kind == ValueKind::Shape) items = {v};
-        else return std::nullopt;
+        } else if (v.kind == ValueKind::Shape)
+            items = {v};
+        else
+            return std::nullopt;
         bool changed = v.kind != ValueKind::List;
         for (Value &item : items) {
             auto converted = as_type(ev, item, type.items[0]);
@@ -161,26 +170,34 @@ bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type) {
     return ok;
 }
 
-Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place, const std::string &what, bool &ok) {
+Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place,
+              const std::string &what, bool &ok) {
     if (auto converted = as_type(ev, v, type)) return *converted;
     ok = false;
-    Diagnostic &d = report(ev, Code::TypeMismatch, place,
-                           fmt::format("{} wants a `{}`, this is {}", what, type_text(type), describe(ev, v)));
-    if (!is_library_place(ev, type.span) && !(type.span == place)) d.label(type.span, "because of this type");
-    if (type.kind == lang::TypeExpr::Kind::Name && type.name == "shape" && v.kind == ValueKind::Shape && v.size == 2)
+    Diagnostic &d =
+        report(ev, Code::TypeMismatch, place,
+               fmt::format("{} wants a `{}`, this is {}", what, type_text(type), describe(ev, v)));
+    if (!is_library_place(ev, type.span) && !(type.span == place))
+        d.label(type.span, "because of this type");
+    if (type.kind == lang::TypeExpr::Kind::Name && type.name == "shape" &&
+        v.kind == ValueKind::Shape && v.size == 2)
         d.help("make it solid with `.extrude(height)` or `.revolve()`");
-    if (type.kind == lang::TypeExpr::Kind::Name && type.name == "int" && is_numeric(v)) d.help("`int(x)` cuts the fraction off");
+    if (type.kind == lang::TypeExpr::Kind::Name && type.name == "int" && is_numeric(v))
+        d.help("`int(x)` cuts the fraction off");
     return poison();
 }
 
 // -- what builtins ask of their arguments --------------------------------------------------------
 
-static void want(Evaluator &ev, const Value &v, Span place, const std::string &what, const std::string &wanted) {
+static void want(Evaluator &ev, const Value &v, Span place, const std::string &what,
+                 const std::string &wanted) {
     if (is_poison(v)) return;
-    report(ev, Code::TypeMismatch, place, fmt::format("{} wants {}, this is {}", what, wanted, describe(ev, v)));
+    report(ev, Code::TypeMismatch, place,
+           fmt::format("{} wants {}, this is {}", what, wanted, describe(ev, v)));
 }
 
-std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place,
+                                        const std::string &what) {
     if (!is_scalar(ev, v)) {
         want(ev, v, place, what, "a number");
         return std::nullopt;
@@ -189,7 +206,8 @@ std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span plac
     return known ? std::optional(known->num[0]) : std::nullopt;
 }
 
-std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place,
+                                  const std::string &what) {
     if (!is_scalar(ev, v)) {
         want(ev, v, place, what, "a whole number");
         return std::nullopt;
@@ -197,13 +215,15 @@ std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, con
     auto known = element_as_known(ev, v, place, what.c_str());
     if (!known) return std::nullopt;
     if (known->num[0] != std::floor(known->num[0]) || std::abs(known->num[0]) > 2147483647.0) {
-        report(ev, Code::TypeMismatch, place, fmt::format("{} wants a whole number, this is {}", what, known->num[0]));
+        report(ev, Code::TypeMismatch, place,
+               fmt::format("{} wants a whole number, this is {}", what, known->num[0]));
         return std::nullopt;
     }
     return static_cast<int>(known->num[0]);
 }
 
-std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place,
+                                    const std::string &what) {
     if (!is_numeric(v) || numeric_type(ev, v) != Type::Bool) {
         want(ev, v, place, what, "a bool (a comparison, `true` or `false`)");
         return std::nullopt;
@@ -212,30 +232,35 @@ std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, c
     return known ? std::optional(known->num[0] != 0) : std::nullopt;
 }
 
-std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place,
+                                       const std::string &what) {
     if (v.kind == ValueKind::String) return ev.strings[v.id];
     want(ev, v, place, what, "a string");
     return std::nullopt;
 }
 
-std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place,
+                                           const std::string &what) {
     if (is_scalar(ev, v)) return to_node(ev, to_float(ev, v));
     want(ev, v, place, what, "a number");
     return std::nullopt;
 }
 
-std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int size, Span place, const std::string &what) {
+std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int size, Span place,
+                                        const std::string &what) {
     Value v = vector_of_list(ev, raw);
     if (is_numeric(v)) {
         Type t = numeric_type(ev, v);
-        if (t == Type::Int || t == Type::Float) return to_node(ev, make_vector(ev, {to_float(ev, v)}, size, place));
+        if (t == Type::Int || t == Type::Float)
+            return to_node(ev, make_vector(ev, {to_float(ev, v)}, size, place));
         if (t == ir::vector_type(size)) return to_node(ev, v);
     }
     want(ev, raw, place, what, fmt::format("a vec{}", size));
     return std::nullopt;
 }
 
-std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place,
+                                          const std::string &what) {
     lang::TypeExpr type;
     type.name = "color";
     if (auto c = as_named(ev, v, type); c && !is_poison(*c)) return to_node(ev, *c);
@@ -243,10 +268,12 @@ std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span pl
     return std::nullopt;
 }
 
-std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place, const std::string &what, int dims) {
+std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place,
+                                      const std::string &what, int dims) {
     if (v.kind == ValueKind::Shape && (dims == 0 || v.size == dims)) return shape_of(v);
     if (v.kind == ValueKind::Shape && dims == 3) {
-        report(ev, Code::FlatShape, place, fmt::format("{} wants a solid, this is a flat shape", what))
+        report(ev, Code::FlatShape, place,
+               fmt::format("{} wants a solid, this is a flat shape", what))
             .help("make it solid with `.extrude(height)` or `.revolve()`");
         return std::nullopt;
     }
@@ -254,19 +281,23 @@ std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place,
     return std::nullopt;
 }
 
-std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place,
+                                            const std::string &what) {
     if (v.kind == ValueKind::List) return ev.lists[v.id];
-    if (v.kind == ValueKind::Range || (is_numeric(v) && ir::is_vector(numeric_type(ev, v)))) return sequence_items(ev, v, place);
+    if (v.kind == ValueKind::Range || (is_numeric(v) && ir::is_vector(numeric_type(ev, v))))
+        return sequence_items(ev, v, place);
     want(ev, v, place, what, "a list");
     return std::nullopt;
 }
 
-std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &v, Span place, const std::string &what,
-                                                    int &dims) {
+std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &v, Span place,
+                                                    const std::string &what, int &dims) {
     if (is_poison(v)) return std::nullopt;
     std::vector<Value> items;
-    if (v.kind == ValueKind::Shape) items = {v};
-    else if (v.kind == ValueKind::List) items = ev.lists[v.id];
+    if (v.kind == ValueKind::Shape)
+        items = {v};
+    else if (v.kind == ValueKind::List)
+        items = ev.lists[v.id];
     else {
         want(ev, v, place, what, "shapes");
         return std::nullopt;
@@ -295,9 +326,11 @@ std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &
     return shapes;
 }
 
-std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place,
+                                      const std::string &what) {
     if (v.kind == ValueKind::Region) return ev.regions[v.id];
-    want(ev, v, place, what, "a region: `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or `everywhere`");
+    want(ev, v, place, what,
+         "a region: `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or `everywhere`");
     return std::nullopt;
 }
 

@@ -1,8 +1,9 @@
 // The evaluator's state and the functions that its files share. Private to typecheck.
 //
-// Evaluation is partial: an expression over known numbers is computed in double; as soon as a point, a parameter or
-// `time` takes part, nodes of the graph are made instead. An `if` on such a number runs both arms and selects; a loop
-// over such numbers becomes a Fold; a function called with them becomes an ir::Function.
+// Evaluation is partial: an expression over known numbers is computed in double; as soon as a
+// point, a parameter or `time` takes part, nodes of the graph are made instead. An `if` on such a
+// number runs both arms and selects; a loop over such numbers becomes a Fold; a function called
+// with them becomes an ir::Function.
 #pragma once
 
 #include "typecheck/check.h"
@@ -87,7 +88,8 @@ struct Builtin {
     std::string signature, doc; // for `fathom doc`
 };
 
-// How a statement list was left before its end, as conditions that may be nodes (Bool or a Field of Bool).
+// How a statement list was left before its end, as conditions that may be nodes (Bool or a Field of
+// Bool).
 struct Exit {
     Value returned = boolean(false);
     Value value; // where returned
@@ -104,7 +106,8 @@ struct JournalEntry {
     Value old;
 };
 
-// Calls in progress, for errors inside the library (shown at the user's call) and for the notes of others.
+// Calls in progress, for errors inside the library (shown at the user's call) and for the notes of
+// others.
 struct ActiveCall {
     std::string name;
     Span call;
@@ -157,16 +160,18 @@ struct Evaluator {
     std::size_t list_elements = 0;
     bool out_of_budget = false;
     std::map<std::vector<std::uint64_t>, Specialization> specializations{};
-    std::map<std::pair<const lang::Ast *, std::uint32_t>, bool> never_specialize{}; // functions seen to give no number
-    std::map<std::string, std::uint32_t> interned_records{}; // libraries, regions, materials by content
-    std::vector<ir::NodeId> param_nodes{};                      // by Scene::params
+    std::map<std::pair<const lang::Ast *, std::uint32_t>, bool>
+        never_specialize{}; // functions seen to give no number
+    std::map<std::string, std::uint32_t>
+        interned_records{};                // libraries, regions, materials by content
+    std::vector<ir::NodeId> param_nodes{}; // by Scene::params
     std::unordered_map<std::uint32_t, bool> only_shapes{};
     std::vector<std::string> usage_errors{};
 };
 
 // The limits that bound what a scene can make the checker do; stated in docs/language.md.
 constexpr int max_call_depth = 1000;
-constexpr int max_depth = 40000;               // nested evaluations; the stack is sized for it (check.cpp)
+constexpr int max_depth = 40000; // nested evaluations; the stack is sized for it (check.cpp)
 constexpr std::size_t max_evaluations = 20'000'000;
 constexpr std::size_t max_list_elements = 10'000'000;
 constexpr int max_unrolled = 4096;
@@ -176,7 +181,8 @@ constexpr int max_fold_turns = 100'000;
 Symbol intern(Evaluator &ev, const std::string &text);
 std::uint32_t push_frame(Evaluator &ev, std::uint32_t parent);
 void pop_frame(Evaluator &ev, std::uint32_t frame);
-void declare(Evaluator &ev, std::uint32_t frame, const std::string &name, Value value, bool is_var, Span place);
+void declare(Evaluator &ev, std::uint32_t frame, const std::string &name, Value value, bool is_var,
+             Span place);
 struct Found {
     std::uint32_t frame = 0, slot = 0;
 };
@@ -188,75 +194,100 @@ void check_names(Evaluator &ev, const lang::Ast &ast, std::uint32_t module_frame
 
 // -- report.cpp
 Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message);
-bool is_library_place(const Evaluator &ev, Span span);              // or no place at all
-std::string describe(const Evaluator &ev, const Value &value);      // "a float", "a list of 3", "a shape"
-std::string print_value(const Evaluator &ev, const Value &value);   // for print(…)
-bool spend(Evaluator &ev, Span place, std::size_t amount = 1);      // false once the budget is gone
+bool is_library_place(const Evaluator &ev, Span span); // or no place at all
+std::string describe(const Evaluator &ev,
+                     const Value &value); // "a float", "a list of 3", "a shape"
+std::string print_value(const Evaluator &ev, const Value &value); // for print(…)
+bool spend(Evaluator &ev, Span place, std::size_t amount = 1);    // false once the budget is gone
 
 // -- numeric.cpp: numbers of both stages
 bool is_numeric(const Value &v); // Bool, Int, Float, Vec, Mat, Field
 ir::Type numeric_type(const Evaluator &ev, const Value &v);
 bool is_scalar(const Evaluator &ev, const Value &v); // Int or Float, known or not
-ir::NodeId to_node(Evaluator &ev, const Value &v); // of a numeric value
-Value from_node(Evaluator &ev, ir::NodeId node, bool color = false); // constants come back as known numbers
-Value apply_op(Evaluator &ev, ir::Op op, std::vector<Value> args, Span place, const std::string &name);
-Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &a, const Value &b, Span place, Span a_place, Span b_place);
+ir::NodeId to_node(Evaluator &ev, const Value &v);   // of a numeric value
+Value from_node(Evaluator &ev, ir::NodeId node,
+                bool color = false); // constants come back as known numbers
+Value apply_op(Evaluator &ev, ir::Op op, std::vector<Value> args, Span place,
+               const std::string &name);
+Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &a, const Value &b, Span place,
+                 Span a_place, Span b_place);
 Value negate(Evaluator &ev, const Value &v, Span place);
 Value logical_and(Evaluator &ev, const Value &a, const Value &b);
 Value logical_or(Evaluator &ev, const Value &a, const Value &b);
 Value logical_not(Evaluator &ev, const Value &a);
-std::optional<Value> select_value(Evaluator &ev, const Value &condition, const Value &a, const Value &b);
+std::optional<Value> select_value(Evaluator &ev, const Value &condition, const Value &a,
+                                  const Value &b);
 Value swizzle(Evaluator &ev, const Value &v, const std::string &letters, Span place);
 std::optional<std::vector<int>> swizzle_indices(const std::string &letters, int size);
 Value make_vector(Evaluator &ev, const std::vector<Value> &parts, int size, Span place);
-std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place, const char *what); // scene time demanded
+std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place,
+                                      const char *what); // scene time demanded
 Value to_float(Evaluator &ev, const Value &v);
 
 // -- convert.cpp: types as written, and conversions
-Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place, const std::string &what, bool &ok);
+Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place,
+              const std::string &what, bool &ok);
 bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type);
 std::string type_text(const lang::TypeExpr &type);
 bool known_type(const lang::TypeExpr &type);
-std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, const std::string &what);
-std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, const std::string &what);
-std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, const std::string &what);
-std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place, const std::string &what);
-std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, const std::string &what);
-std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &v, int size, Span place, const std::string &what);
-std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, const std::string &what);
-std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place, const std::string &what, int dims = 0);
-std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place, const std::string &what);
-std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &v, Span place, const std::string &what,
-                                                    int &dims);
-std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place, const std::string &what);
-std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span place, const std::string &what);
+std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place,
+                                        const std::string &what);
+std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place,
+                                  const std::string &what);
+std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place,
+                                    const std::string &what);
+std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place,
+                                       const std::string &what);
+std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place,
+                                           const std::string &what);
+std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &v, int size, Span place,
+                                        const std::string &what);
+std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place,
+                                          const std::string &what);
+std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place,
+                                      const std::string &what, int dims = 0);
+std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place,
+                                            const std::string &what);
+std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &v, Span place,
+                                                    const std::string &what, int &dims);
+std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place,
+                                      const std::string &what);
+std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span place,
+                                          const std::string &what);
 Value list_value(Evaluator &ev, std::vector<Value> items);
 Value string_value(Evaluator &ev, std::string text);
 bool is_function(const Value &v);
 
 // -- expressions.cpp, statements.cpp
 Value eval(Evaluator &ev, const lang::Ast &ast, lang::ExprId expr, std::uint32_t frame);
-Outcome run_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame); // as an expression
+Outcome run_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block,
+                  std::uint32_t frame); // as an expression
 struct Contribution {
     Value value;
     Span span;
 };
-// Every expression of the block contributes; true where a `break` ended it. The frame is already pushed.
+// Every expression of the block contributes; true where a `break` ended it. The frame is already
+// pushed.
 bool contribute_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame,
                       std::vector<Contribution> &out);
-// Statements that declare or act the same wherever they stand: let, var, assignment, fn. False for all others.
+// Statements that declare or act the same wherever they stand: let, var, assignment, fn. False for
+// all others.
 bool run_simple(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt, std::uint32_t frame);
-Outcome run_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::uint32_t frame, Span place);
+Outcome run_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::uint32_t frame,
+               Span place);
 void hoist_functions(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame);
 std::optional<std::vector<Value>> sequence_items(Evaluator &ev, const Value &v, Span place);
 void assign(Evaluator &ev, std::uint32_t frame, std::uint32_t slot, Value value);
 
 // -- loops.cpp: loops over numbers that are not known
-Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std::uint32_t frame, Span place);
-Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, std::uint32_t frame, Span place);
+Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std::uint32_t frame,
+                Span place);
+Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, std::uint32_t frame,
+                  Span place);
 // Runs `rest` and keeps what it assigned only where `skip` is false.
 Exit run_unless(Evaluator &ev, const Value &skip, Span place, const std::function<Exit()> &rest);
-// The journal keeps what assignments overwrite, so that a trial can be undone and two arms can be merged.
+// The journal keeps what assignments overwrite, so that a trial can be undone and two arms can be
+// merged.
 struct JournalMark {
     std::size_t entries = 0, frames = 0;
 };
@@ -276,21 +307,27 @@ struct Argument {
     bool trailing = false;      // the block behind the call: belongs to the last parameter
     bool plain_literal = false; // a number without a unit
 };
-Value call_value(Evaluator &ev, const Value &callee, const std::string &name, std::vector<Argument> args, Span call,
-                 Span callee_span);
-Value call_with(Evaluator &ev, const Value &callee, const std::vector<Value> &args, Span place); // positional
-Value eval_call(Evaluator &ev, const lang::Ast &ast, lang::ExprId expr, const lang::Call &call, std::uint32_t frame);
+Value call_value(Evaluator &ev, const Value &callee, const std::string &name,
+                 std::vector<Argument> args, Span call, Span callee_span);
+Value call_with(Evaluator &ev, const Value &callee, const std::vector<Value> &args,
+                Span place); // positional
+Value eval_call(Evaluator &ev, const lang::Ast &ast, lang::ExprId expr, const lang::Call &call,
+                std::uint32_t frame);
 int parameter_count(Evaluator &ev, const Value &function); // -1: any
 
-// One node for a call of a library shape: its name and numbers, with the claims that its body made (semantics.md, 12).
+// One node for a call of a library shape: its name and numbers, with the claims that its body made
+// (semantics.md, 12).
 Value library_shape(Evaluator &ev, ir::Library library, const Value &body, Span origin);
-std::uint32_t intern_region(Evaluator &ev, const ir::Region &region);     // index into Shapes::regions
-std::uint32_t intern_material(Evaluator &ev, const ir::Material &material); // index into Shapes::materials
+std::uint32_t intern_region(Evaluator &ev, const ir::Region &region); // index into Shapes::regions
+std::uint32_t intern_material(Evaluator &ev,
+                              const ir::Material &material); // index into Shapes::materials
 
 // -- fields.cpp: functions of the point
 // The field as an expression of `point` (and `normal`), a graph node of one of `types`.
-std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field, const std::vector<ir::NodeId> &inputs,
-                                      ir::Type result, Span place, const std::string &what, bool *is_color = nullptr);
+std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field,
+                                      const std::vector<ir::NodeId> &inputs, ir::Type result,
+                                      Span place, const std::string &what,
+                                      bool *is_color = nullptr);
 
 // -- builtins: one table of all that the language itself cannot say
 const std::vector<Builtin> &builtins();
@@ -301,13 +338,15 @@ void add_scene_builtins(std::vector<Builtin> &table);
 
 // -- families.cpp
 std::vector<ir::ShapeId> gather_families(Evaluator &ev, std::vector<ir::ShapeId> shapes, int dims);
-std::optional<ir::ShapeId> smooth_family(Evaluator &ev, const std::vector<ir::ShapeId> &shapes, ir::NodeId k, int dims);
+std::optional<ir::ShapeId> smooth_family(Evaluator &ev, const std::vector<ir::ShapeId> &shapes,
+                                         ir::NodeId k, int dims);
 ir::ShapeId unite(Evaluator &ev, std::vector<ir::ShapeId> shapes, int dims, Span origin);
 
 // -- modules.cpp
 Value import_module(Evaluator &ev, const lang::Import &import, Span place, std::uint32_t importer);
 void load_prelude(Evaluator &ev);
-void declare_param(Evaluator &ev, const lang::Ast &ast, const lang::Param &param, std::uint32_t frame);
+void declare_param(Evaluator &ev, const lang::Ast &ast, const lang::Param &param,
+                   std::uint32_t frame);
 // Every module's file: declares its names, in its frame, and gathers what it contributes.
 void run_module(Evaluator &ev, std::uint32_t module, std::vector<Contribution> &out);
 

@@ -11,7 +11,9 @@ namespace fathom::typecheck {
 
 using ir::Type;
 
-static double linear_of_srgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
+static double linear_of_srgb(double c) {
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
 
 static Value eval_name(Evaluator &ev, const lang::Name &name, Span place, std::uint32_t frame) {
     if (auto v = look_up(ev, frame, name.text)) return *v;
@@ -19,7 +21,8 @@ static Value eval_name(Evaluator &ev, const lang::Name &name, Span place, std::u
     return poison();
 }
 
-static Value eval_list(Evaluator &ev, const lang::Ast &ast, const lang::List &list, std::uint32_t frame) {
+static Value eval_list(Evaluator &ev, const lang::Ast &ast, const lang::List &list,
+                       std::uint32_t frame) {
     std::vector<Value> items;
     items.reserve(list.items.size());
     bool numbers = list.items.size() >= 2 && list.items.size() <= 4, wrong = false;
@@ -34,7 +37,8 @@ static Value eval_list(Evaluator &ev, const lang::Ast &ast, const lang::List &li
     return list_value(ev, std::move(items));
 }
 
-static Value eval_range(Evaluator &ev, const lang::Ast &ast, const lang::Range &range, std::uint32_t frame) {
+static Value eval_range(Evaluator &ev, const lang::Ast &ast, const lang::Range &range,
+                        std::uint32_t frame) {
     Value first = eval(ev, ast, range.first, frame), last = eval(ev, ast, range.last, frame);
     if (is_poison(first) || is_poison(last)) return poison();
     auto a = want_known_int(ev, first, ast.exprs[range.first].span, "a range's first number");
@@ -56,18 +60,20 @@ static Value shape_complement(Evaluator &ev, const Value &v, Span place) {
     return shape_value(ev.scene.shapes.add(std::move(s)), v.size);
 }
 
-static Value combine(Evaluator &ev, ir::ShapeKind kind, const std::vector<Value> &values, const std::vector<Span> &places,
-                     Span place) {
+static Value combine(Evaluator &ev, ir::ShapeKind kind, const std::vector<Value> &values,
+                     const std::vector<Span> &places, Span place) {
     int dims = 0;
     std::vector<ir::ShapeId> children;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (is_poison(values[i])) continue;
         if (values[i].kind != ValueKind::Shape) {
             const char *op = kind == ir::ShapeKind::Union ? "|" : "&";
-            Diagnostic &d = report(ev, Code::TypeMismatch, places[i],
-                                   fmt::format("`{}` combines shapes, this is {}", op, describe(ev, values[i])));
+            Diagnostic &d = report(
+                ev, Code::TypeMismatch, places[i],
+                fmt::format("`{}` combines shapes, this is {}", op, describe(ev, values[i])));
             if (is_numeric(values[i]) && numeric_type(ev, values[i]) == Type::Bool)
-                d.help(kind == ir::ShapeKind::Union ? "conditions are joined with `or`" : "conditions are joined with `and`");
+                d.help(kind == ir::ShapeKind::Union ? "conditions are joined with `or`"
+                                                    : "conditions are joined with `and`");
             return poison();
         }
         auto shape = want_shape(ev, values[i], places[i], "this combination", dims);
@@ -77,7 +83,8 @@ static Value combine(Evaluator &ev, ir::ShapeKind kind, const std::vector<Value>
     }
     if (children.empty()) return poison();
     if (dims == 0) dims = 3;
-    if (kind == ir::ShapeKind::Union) return shape_value(unite(ev, std::move(children), dims, place), dims);
+    if (kind == ir::ShapeKind::Union)
+        return shape_value(unite(ev, std::move(children), dims, place), dims);
     for (ir::ShapeId c : children) // the part common with nothing is nothing
         if (ev.scene.shapes[c].kind == ir::ShapeKind::Empty) return shape_value(c, dims);
     if (children.size() == 1) return shape_value(children[0], dims);
@@ -89,7 +96,8 @@ static Value combine(Evaluator &ev, ir::ShapeKind kind, const std::vector<Value>
     return shape_value(ev.scene.shapes.add(std::move(s)), dims);
 }
 
-static Value eval_logic(Evaluator &ev, const lang::Ast &ast, const lang::Binary &b, std::uint32_t frame) {
+static Value eval_logic(Evaluator &ev, const lang::Ast &ast, const lang::Binary &b,
+                        std::uint32_t frame) {
     bool is_and = b.ops[0] == lang::BinaryOp::And;
     Value total = boolean(is_and);
     for (lang::ExprId id : b.operands) {
@@ -97,16 +105,19 @@ static Value eval_logic(Evaluator &ev, const lang::Ast &ast, const lang::Binary 
         if (is_poison(v)) return v;
         if (!is_numeric(v) || numeric_type(ev, v) != Type::Bool) {
             report(ev, Code::TypeMismatch, ast.exprs[id].span,
-                   fmt::format("`{}` joins conditions, this is {}", is_and ? "and" : "or", describe(ev, v)));
+                   fmt::format("`{}` joins conditions, this is {}", is_and ? "and" : "or",
+                               describe(ev, v)));
             return poison();
         }
         total = is_and ? logical_and(ev, total, v) : logical_or(ev, total, v);
-        if (total.kind == ValueKind::Bool && (total.num[0] != 0) != is_and) return total; // decided: the rest is not asked
+        if (total.kind == ValueKind::Bool && (total.num[0] != 0) != is_and)
+            return total; // decided: the rest is not asked
     }
     return total;
 }
 
-static Value eval_binary(Evaluator &ev, const lang::Ast &ast, const lang::Binary &b, Span place, std::uint32_t frame) {
+static Value eval_binary(Evaluator &ev, const lang::Ast &ast, const lang::Binary &b, Span place,
+                         std::uint32_t frame) {
     using lang::BinaryOp;
     if (b.ops[0] == BinaryOp::And || b.ops[0] == BinaryOp::Or) return eval_logic(ev, ast, b, frame);
     if (b.ops[0] == BinaryOp::Union || b.ops[0] == BinaryOp::Intersection) {
@@ -116,8 +127,9 @@ static Value eval_binary(Evaluator &ev, const lang::Ast &ast, const lang::Binary
             values.push_back(eval(ev, ast, id, frame));
             places.push_back(ast.exprs[id].span);
         }
-        return combine(ev, b.ops[0] == BinaryOp::Union ? ir::ShapeKind::Union : ir::ShapeKind::Intersection, values,
-                       places, place);
+        return combine(
+            ev, b.ops[0] == BinaryOp::Union ? ir::ShapeKind::Union : ir::ShapeKind::Intersection,
+            values, places, place);
     }
     Value total = eval(ev, ast, b.operands[0], frame);
     Span total_place = ast.exprs[b.operands[0]].span;
@@ -126,20 +138,25 @@ static Value eval_binary(Evaluator &ev, const lang::Ast &ast, const lang::Binary
         Value right = eval(ev, ast, b.operands[i + 1], frame);
         Span whole = join(total_place, right_place);
         if (b.ops[i] == BinaryOp::Sub && (is_shape_op(total) || is_shape_op(right))) {
-            if (is_poison(total) || is_poison(right)) total = is_poison(right) ? total : poison();
+            if (is_poison(total) || is_poison(right))
+                total = is_poison(right) ? total : poison();
             else if (!is_shape_op(total) || !is_shape_op(right)) {
                 const Value &wrong = is_shape_op(total) ? right : total;
                 report(ev, Code::TypeMismatch, is_shape_op(total) ? right_place : total_place,
-                       fmt::format("`-` cuts a shape out of a shape, this is {}", describe(ev, wrong)));
+                       fmt::format("`-` cuts a shape out of a shape, this is {}",
+                                   describe(ev, wrong)));
                 total = poison();
             } else if (ev.scene.shapes[shape_of(right)].kind != ir::ShapeKind::Empty)
-                total = combine(ev, ir::ShapeKind::Intersection, {total, shape_complement(ev, right, right_place)},
+                total = combine(ev, ir::ShapeKind::Intersection,
+                                {total, shape_complement(ev, right, right_place)},
                                 {total_place, right_place}, whole);
-        } else if (b.ops[i] == BinaryOp::Sub && total.kind == ValueKind::Region && right.kind == ValueKind::Region) {
+        } else if (b.ops[i] == BinaryOp::Sub && total.kind == ValueKind::Region &&
+                   right.kind == ValueKind::Region) {
             ir::Region region = ev.regions[total.id];
             region.less.push_back(ev.regions[right.id]);
             ev.regions.push_back(region);
-            total = make_value(ValueKind::Region, static_cast<std::uint32_t>(ev.regions.size() - 1));
+            total =
+                make_value(ValueKind::Region, static_cast<std::uint32_t>(ev.regions.size() - 1));
         } else {
             total = arithmetic(ev, b.ops[i], total, right, whole, total_place, right_place);
         }
@@ -148,7 +165,8 @@ static Value eval_binary(Evaluator &ev, const lang::Ast &ast, const lang::Binary
     return total;
 }
 
-static Value eval_index(Evaluator &ev, const lang::Ast &ast, const lang::Index &node, Span place, std::uint32_t frame) {
+static Value eval_index(Evaluator &ev, const lang::Ast &ast, const lang::Index &node, Span place,
+                        std::uint32_t frame) {
     Value object = eval(ev, ast, node.object, frame), index = eval(ev, ast, node.index, frame);
     if (is_poison(object) || is_poison(index)) return poison();
     Span index_place = ast.exprs[node.index].span;
@@ -159,12 +177,14 @@ static Value eval_index(Evaluator &ev, const lang::Ast &ast, const lang::Index &
     bool is_matrix = is_numeric(object) && ir::is_matrix(numeric_type(ev, object));
     if (is_matrix) {
         for (int i = 0; i < ir::side(numeric_type(ev, object)); ++i)
-            items.push_back(from_node(ev, g.make(ir::Op::Column, ir::vector_type(ir::side(numeric_type(ev, object))),
-                                                 {to_node(ev, object)}, static_cast<std::uint32_t>(i))));
-    } else if (object.kind == ValueKind::Shape || object.kind == ValueKind::Closure || is_scalar(ev, object) ||
-               object.kind == ValueKind::String) {
+            items.push_back(from_node(
+                ev, g.make(ir::Op::Column, ir::vector_type(ir::side(numeric_type(ev, object))),
+                           {to_node(ev, object)}, static_cast<std::uint32_t>(i))));
+    } else if (object.kind == ValueKind::Shape || object.kind == ValueKind::Closure ||
+               is_scalar(ev, object) || object.kind == ValueKind::String) {
         report(ev, Code::TypeMismatch, ast.exprs[node.object].span,
-               fmt::format("only lists, vectors and matrices have elements, this is {}", describe(ev, object)));
+               fmt::format("only lists, vectors and matrices have elements, this is {}",
+                           describe(ev, object)));
         return poison();
     }
     if (!field_index) {
@@ -172,9 +192,12 @@ static Value eval_index(Evaluator &ev, const lang::Ast &ast, const lang::Index &
         if (!i) return poison();
         int size = 0;
         if (object.kind == ValueKind::Range)
-            size = static_cast<int>(std::max(0.0, std::ceil((object.num[1] - object.num[0]) / object.num[2])));
-        else if (object.kind == ValueKind::List) size = static_cast<int>(ev.lists[object.id].size());
-        else if (is_matrix) size = static_cast<int>(items.size());
+            size = static_cast<int>(
+                std::max(0.0, std::ceil((object.num[1] - object.num[0]) / object.num[2])));
+        else if (object.kind == ValueKind::List)
+            size = static_cast<int>(ev.lists[object.id].size());
+        else if (is_matrix)
+            size = static_cast<int>(items.size());
         else {
             auto all = want_list(ev, object, ast.exprs[node.object].span, "an index");
             if (!all) return poison();
@@ -184,7 +207,8 @@ static Value eval_index(Evaluator &ev, const lang::Ast &ast, const lang::Index &
         if (*i < 0 || *i >= size) {
             report(ev, Code::BadIndex, index_place,
                    size == 0 ? fmt::format("index {} of an empty list", *i)
-                             : fmt::format("index {} of a list of {}: the first is 0, the last {}", *i, size, size - 1));
+                             : fmt::format("index {} of a list of {}: the first is 0, the last {}",
+                                           *i, size, size - 1));
             return poison();
         }
         if (object.kind == ValueKind::Range) return integer(object.num[0] + *i * object.num[2]);
@@ -206,18 +230,22 @@ static Value eval_index(Evaluator &ev, const lang::Ast &ast, const lang::Index &
     for (Value &item : items) {
         if (item.kind == ValueKind::List) { // a list of numbers in a list of vectors
             std::vector<Value> inner = ev.lists[item.id];
-            if (inner.size() >= 2 && inner.size() <= 4) item = make_vector(ev, inner, static_cast<int>(inner.size()), place);
+            if (inner.size() >= 2 && inner.size() <= 4)
+                item = make_vector(ev, inner, static_cast<int>(inner.size()), place);
         }
         if (!is_numeric(item) || ir::is_matrix(numeric_type(ev, item))) {
             report(ev, Code::StageMismatch, index_place,
-                   fmt::format("an index that depends on the point reads numbers or vectors, this list holds {}", describe(ev, item)));
+                   fmt::format("an index that depends on the point reads numbers or vectors, this "
+                               "list holds {}",
+                               describe(ev, item)));
             return poison();
         }
         Type t = numeric_type(ev, item);
         if (type == Type::Int) type = t;
         known = known && item.kind != ValueKind::Field;
         if (t != type && !(t == Type::Int && type == Type::Float)) {
-            report(ev, Code::StageMismatch, index_place, "an index that depends on the point reads a list of one type");
+            report(ev, Code::StageMismatch, index_place,
+                   "an index that depends on the point reads a list of one type");
             return poison();
         }
     }
@@ -227,15 +255,18 @@ static Value eval_index(Evaluator &ev, const lang::Ast &ast, const lang::Index &
         table.rows = static_cast<int>(items.size());
         table.stride = ir::components(type);
         for (const Value &item : items)
-            for (int c = 0; c < table.stride; ++c) table.data.push_back(static_cast<float>(item.num[static_cast<std::size_t>(c)]));
+            for (int c = 0; c < table.stride; ++c)
+                table.data.push_back(static_cast<float>(item.num[static_cast<std::size_t>(c)]));
         ir::TableId id = g.add_table(std::move(table));
-        ir::NodeId read = g.make(ir::Op::TableRead, whole ? Type::Float : type, {node_of(index)}, ir::table_slot(id, 0));
+        ir::NodeId read = g.make(ir::Op::TableRead, whole ? Type::Float : type, {node_of(index)},
+                                 ir::table_slot(id, 0));
         if (whole) read = g.make(ir::Op::ToInt, Type::Int, {read});
         return from_node(ev, read, !items.empty() && items[0].color);
     }
     Value out = items.back();
     for (std::size_t i = items.size() - 1; i-- > 0;) {
-        Value hit = from_node(ev, g.make(ir::Op::LessEqual, {node_of(index), g.integer(static_cast<int>(i))}));
+        Value hit = from_node(
+            ev, g.make(ir::Op::LessEqual, {node_of(index), g.integer(static_cast<int>(i))}));
         auto selected = select_value(ev, hit, items[i], out);
         if (!selected) return poison();
         out = *selected;
@@ -243,25 +274,29 @@ static Value eval_index(Evaluator &ev, const lang::Ast &ast, const lang::Index &
     return out;
 }
 
-static Value eval_member(Evaluator &ev, const lang::Ast &ast, const lang::Member &m, Span place, std::uint32_t frame) {
+static Value eval_member(Evaluator &ev, const lang::Ast &ast, const lang::Member &m, Span place,
+                         std::uint32_t frame) {
     Value object = eval(ev, ast, m.object, frame);
     if (is_poison(object)) return object;
     if (object.kind == ValueKind::Module) {
         const Module &module = ev.modules[object.id];
         if (m.name.text[0] == '_') {
             report(ev, Code::UnknownName, m.name.span,
-                   fmt::format("`{}` is private to `{}`: its name begins with `_`", m.name.text, module.name));
+                   fmt::format("`{}` is private to `{}`: its name begins with `_`", m.name.text,
+                               module.name));
             return poison();
         }
         const Frame &f = ev.frames[module.frame];
         auto it = f.index.find(intern(ev, m.name.text));
         if (it != f.index.end()) return ev.frames[module.frame].bindings[it->second].value;
-        report(ev, Code::UnknownMember, m.name.span, fmt::format("`{}` declares no `{}`", module.name, m.name.text));
+        report(ev, Code::UnknownMember, m.name.span,
+               fmt::format("`{}` declares no `{}`", module.name, m.name.text));
         return poison();
     }
     if (object.kind == ValueKind::List) {
         std::vector<Value> items = ev.lists[object.id];
-        if (items.size() <= 4 && items.size() >= 2 && is_scalar(ev, items[0])) object = make_vector(ev, items, int(items.size()), place);
+        if (items.size() <= 4 && items.size() >= 2 && is_scalar(ev, items[0]))
+            object = make_vector(ev, items, int(items.size()), place);
     }
     if (is_numeric(object) && ir::is_vector(numeric_type(ev, object)) &&
         swizzle_indices(m.name.text, ir::components(numeric_type(ev, object))))
@@ -271,11 +306,13 @@ static Value eval_member(Evaluator &ev, const lang::Ast &ast, const lang::Member
         return call_value(ev, *f, m.name.text, {self}, place, m.name.span);
     }
     if (is_numeric(object)) return swizzle(ev, object, m.name.text, m.name.span);
-    report(ev, Code::UnknownMember, m.name.span, fmt::format("{} has no member `{}`", describe(ev, object), m.name.text));
+    report(ev, Code::UnknownMember, m.name.span,
+           fmt::format("{} has no member `{}`", describe(ev, object), m.name.text));
     return poison();
 }
 
-static Value make_closure(Evaluator &ev, const lang::Ast &ast, lang::FunctionId function, std::uint32_t frame) {
+static Value make_closure(Evaluator &ev, const lang::Ast &ast, lang::FunctionId function,
+                          std::uint32_t frame) {
     Closure c;
     c.ast = &ast;
     c.function = function;
@@ -292,25 +329,29 @@ static Value make_closure(Evaluator &ev, const lang::Ast &ast, lang::FunctionId 
     return make_value(ValueKind::Closure, static_cast<std::uint32_t>(ev.closures.size() - 1));
 }
 
-static Value eval_unary(Evaluator &ev, const lang::Ast &ast, const lang::Unary &u, Span place, std::uint32_t frame) {
+static Value eval_unary(Evaluator &ev, const lang::Ast &ast, const lang::Unary &u, Span place,
+                        std::uint32_t frame) {
     Value v = eval(ev, ast, u.operand, frame);
     if (is_poison(v)) return v;
     if (u.op == lang::UnaryOp::Not) {
         if (!is_numeric(v) || numeric_type(ev, v) != Type::Bool) {
-            report(ev, Code::TypeMismatch, ast.exprs[u.operand].span, fmt::format("`not` wants a condition, this is {}", describe(ev, v)));
+            report(ev, Code::TypeMismatch, ast.exprs[u.operand].span,
+                   fmt::format("`not` wants a condition, this is {}", describe(ev, v)));
             return poison();
         }
         return logical_not(ev, v);
     }
     if (v.kind == ValueKind::Shape) {
         report(ev, Code::LineContinues, place, "a shape cannot be negated")
-            .help("to cut it out of the shape on the line above, move the `-` to the end of that line; the space around a shape is `complement(s)`");
+            .help("to cut it out of the shape on the line above, move the `-` to the end of that "
+                  "line; the space around a shape is `complement(s)`");
         return poison();
     }
     return negate(ev, v, place);
 }
 
-static Value eval_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node, Span place, std::uint32_t frame) {
+static Value eval_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node, Span place,
+                     std::uint32_t frame) {
     Outcome out = run_if(ev, ast, node, frame, place);
     return out.value;
 }
@@ -326,7 +367,8 @@ static Value eval_kind(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, std
         Value operator()(const lang::Poison &) { return poison(); }
         Value operator()(const lang::Number &n) {
             if (n.is_int && std::abs(n.value) > 2147483647.0) {
-                report(ev, Code::NumberRange, span, fmt::format("{:.0f} does not fit a whole number of 32 bits", n.value))
+                report(ev, Code::NumberRange, span,
+                       fmt::format("{:.0f} does not fit a whole number of 32 bits", n.value))
                     .help("write it with a decimal point");
                 return poison();
             }
@@ -335,7 +377,8 @@ static Value eval_kind(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, std
         Value operator()(const lang::String &s) { return string_value(ev, s.value); }
         Value operator()(const lang::Bool &b) { return boolean(b.value); }
         Value operator()(const lang::Color &c) {
-            return color(linear_of_srgb(c.rgba[0]), linear_of_srgb(c.rgba[1]), linear_of_srgb(c.rgba[2]));
+            return color(linear_of_srgb(c.rgba[0]), linear_of_srgb(c.rgba[1]),
+                         linear_of_srgb(c.rgba[2]));
         }
         Value operator()(const lang::Name &n) { return eval_name(ev, n, span, frame); }
         Value operator()(const lang::List &l) { return eval_list(ev, ast, l, frame); }
@@ -356,7 +399,9 @@ static Value eval_kind(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, std
         Value operator()(const lang::Member &m) { return eval_member(ev, ast, m, span, frame); }
         Value operator()(const lang::Lambda &l) { return make_closure(ev, ast, l.function, frame); }
         Value operator()(const lang::If &i) { return eval_if(ev, ast, i, span, frame); }
-        Value operator()(const lang::BlockExpr &b) { return run_block(ev, ast, b.block, frame).value; }
+        Value operator()(const lang::BlockExpr &b) {
+            return run_block(ev, ast, b.block, frame).value;
+        }
     };
     return std::visit(Visit{ev, ast, id, frame, e.span}, e.kind);
 }
@@ -373,7 +418,8 @@ Value eval(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, std::uint32_t f
     return v;
 }
 
-void hoist_functions(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame) {
+void hoist_functions(Evaluator &ev, const lang::Ast &ast, lang::BlockId block,
+                     std::uint32_t frame) {
     for (const lang::Stmt &s : ast.blocks[block].stmts)
         if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind)) {
             const lang::Function &fn = ast.functions[f->function];
@@ -386,9 +432,12 @@ void hoist_functions(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, s
                 auto it = fr.index.find(intern(ev, fn.name->text));
                 if (it != fr.index.end()) {
                     Value old = fr.bindings[it->second].value;
-                    std::vector<Value> all = old.kind == ValueKind::Overloads ? ev.lists[old.id] : std::vector<Value>{old};
+                    std::vector<Value> all = old.kind == ValueKind::Overloads
+                                                 ? ev.lists[old.id]
+                                                 : std::vector<Value>{old};
                     all.push_back(closure);
-                    Value overloads = make_value(ValueKind::Overloads, list_value(ev, std::move(all)).id);
+                    Value overloads =
+                        make_value(ValueKind::Overloads, list_value(ev, std::move(all)).id);
                     ev.frames[frame].bindings[it->second].value = overloads;
                     continue;
                 }

@@ -1,8 +1,9 @@
-// Lists of like shapes become one shape over a table: `for i in 0..256 { sphere(0.1).translate([…]) }` is one `Many`
-// whose rows hold what differs, so that neither the shader nor the proof grows with the count.
+// Lists of like shapes become one shape over a table: `for i in 0..256 { sphere(0.1).translate([…])
+// }` is one `Many` whose rows hold what differs, so that neither the shader nor the proof grows
+// with the count.
 //
-// Two shapes are alike when their trees differ in constants only. A shape's *skeleton* is its tree with the constants
-// taken out, in the order of a walk; the constants, in that order, are its row.
+// Two shapes are alike when their trees differ in constants only. A shape's *skeleton* is its tree
+// with the constants taken out, in the order of a walk; the constants, in that order, are its row.
 #include "typecheck/evaluator.h"
 
 #include <algorithm>
@@ -25,6 +26,9 @@ struct Walk {
     const ir::Scene &scene;
     std::vector<std::uint64_t> skeleton;
     std::vector<ir::Constant> row;
+    std::vector<bool>
+        stated{}; // by row: a library call's number or claim, which no evaluator reads
+    bool in_statement = false;
     bool too_large = false;
 
     void node(NodeId id) {
@@ -34,13 +38,18 @@ struct Walk {
             return;
         }
         const ir::Node &n = scene.graph[id];
-        skeleton.push_back(static_cast<std::uint64_t>(n.op) << 56 | static_cast<std::uint64_t>(n.type) << 48 |
+        skeleton.push_back(static_cast<std::uint64_t>(n.op) << 56 |
+                           static_cast<std::uint64_t>(n.type) << 48 |
                            (n.op == Op::Const ? 0 : n.payload));
-        if (n.op == Op::Const) return row.push_back(scene.graph.constant_of(id));
+        if (n.op == Op::Const) {
+            stated.push_back(in_statement);
+            return row.push_back(scene.graph.constant_of(id));
+        }
         for (NodeId a : scene.graph.args(id)) node(a);
     }
     void region(const ir::Region &r) {
-        skeleton.push_back(static_cast<std::uint64_t>(r.kind) << 8 | static_cast<std::uint64_t>(r.axis + 1));
+        skeleton.push_back(static_cast<std::uint64_t>(r.kind) << 8 |
+                           static_cast<std::uint64_t>(r.axis + 1));
         node(r.center), node(r.size);
         skeleton.push_back(r.less.size());
         for (const ir::Region &l : r.less) region(l);
@@ -51,9 +60,10 @@ struct Walk {
             return;
         }
         const ir::Shape &s = scene.shapes[id];
-        skeleton.push_back(static_cast<std::uint64_t>(s.kind) << 40 | static_cast<std::uint64_t>(s.map) << 32 |
-                           static_cast<std::uint64_t>(s.dims) << 24 | static_cast<std::uint64_t>(s.axis) << 16 |
-                           static_cast<std::uint64_t>(s.towards) << 8);
+        skeleton.push_back(
+            static_cast<std::uint64_t>(s.kind) << 40 | static_cast<std::uint64_t>(s.map) << 32 |
+            static_cast<std::uint64_t>(s.dims) << 24 | static_cast<std::uint64_t>(s.axis) << 16 |
+            static_cast<std::uint64_t>(s.towards) << 8);
         skeleton.push_back(static_cast<std::uint64_t>(s.assumed * 1e6));
         skeleton.push_back(static_cast<std::uint64_t>(s.estimate * 1e6));
         skeleton.push_back(s.children.size() << 16 | s.args.size());
@@ -68,10 +78,14 @@ struct Walk {
         case ShapeKind::Library: {
             const ir::Library &l = scene.shapes.libraries[s.payload];
             skeleton.push_back(std::hash<std::string>{}(l.name));
+            in_statement = true;
             for (const auto &[name, argument] : l.arguments) node(argument);
-            skeleton.push_back(static_cast<std::uint64_t>(l.claims.kind) << 4 | l.has_claims << 3 | l.claims.symmetric[0] << 2 | l.claims.symmetric[1] << 1 | l.claims.symmetric[2]);
+            skeleton.push_back(static_cast<std::uint64_t>(l.claims.kind) << 4 | l.has_claims << 3 |
+                               l.claims.symmetric[0] << 2 | l.claims.symmetric[1] << 1 |
+                               l.claims.symmetric[2]);
             node(l.claims.lipschitz), node(l.claims.lo), node(l.claims.hi);
             for (NodeId lever : l.claims.lever) node(lever);
+            in_statement = false;
             break;
         }
         // these hold variables or a family of their own: alike only where they are the same
@@ -130,12 +144,14 @@ struct Rebuild {
             s.payload = intern_region(ev, r);
         } else if (s.kind == ShapeKind::Paint || s.kind == ShapeKind::Repaint) {
             ir::Material m = ev.scene.shapes.materials[s.payload];
-            m.diffuse = node(m.diffuse), m.specular = node(m.specular), m.exponent = node(m.exponent), m.emission = node(m.emission);
+            m.diffuse = node(m.diffuse), m.specular = node(m.specular),
+            m.exponent = node(m.exponent), m.emission = node(m.emission);
             s.payload = intern_material(ev, m);
         } else if (s.kind == ShapeKind::Library) {
             ir::Library l = ev.scene.shapes.libraries[s.payload];
             for (auto &[name, argument] : l.arguments) argument = node(argument);
-            l.claims.lipschitz = node(l.claims.lipschitz), l.claims.lo = node(l.claims.lo), l.claims.hi = node(l.claims.hi);
+            l.claims.lipschitz = node(l.claims.lipschitz), l.claims.lo = node(l.claims.lo),
+            l.claims.hi = node(l.claims.hi);
             for (NodeId &lever : l.claims.lever) lever = node(lever);
             s.payload = static_cast<std::uint32_t>(ev.scene.shapes.libraries.size());
             ev.scene.shapes.libraries.push_back(std::move(l));
@@ -146,42 +162,71 @@ struct Rebuild {
     }
 };
 
-bool same(const ir::Constant &a, const ir::Constant &b) { return a.type == b.type && a.value == b.value; }
+bool same(const ir::Constant &a, const ir::Constant &b) {
+    return a.type == b.type && a.value == b.value;
+}
 
-ShapeId make_family(Evaluator &ev, const std::vector<ShapeId> &members, const std::vector<std::vector<ir::Constant>> &rows, bool smooth, NodeId k, int dims) {
+// The columns that differ, as a table: of those that evaluators read (stated: false), or of the
+// library's statements, so that a shader holds the first alone. Equal columns stand once. Fills
+// `replacement` for the columns it took.
+bool add_columns(Evaluator &ev, const std::vector<std::vector<ir::Constant>> &rows,
+                 const std::vector<bool> &stated, bool which, NodeId index,
+                 std::vector<NodeId> &replacement) {
     ir::Graph &g = ev.scene.graph;
-    ir::Family family;
-    family.index = g.fresh_var(Type::Int);
-    family.count = static_cast<int>(members.size());
-    family.smooth = smooth;
-    std::size_t columns = rows[0].size();
     ir::Table table;
-    table.rows = family.count;
-    std::vector<int> column_of(columns, -1);
-    for (std::size_t c = 0; c < columns; ++c) {
+    table.rows = static_cast<int>(rows.size());
+    std::vector<std::size_t> taken;             // distinct columns, in order
+    std::vector<int> offset;                    // of each taken one
+    std::map<std::size_t, std::size_t> slot_of; // column -> place in `taken`
+    auto equal_columns = [&](std::size_t a, std::size_t b) {
+        for (const auto &row : rows)
+            if (!same(row[a], row[b])) return false;
+        return true;
+    };
+    for (std::size_t c = 0; c < stated.size(); ++c) {
+        if (stated[c] != which || replacement[c]) continue;
         bool differs = false;
         for (const auto &row : rows) differs = differs || !same(row[c], rows[0][c]);
         if (!differs) continue;
-        column_of[c] = table.stride;
-        table.stride += ir::components(rows[0][c].type);
+        std::size_t k = 0;
+        while (k < taken.size() && !equal_columns(taken[k], c)) ++k;
+        if (k == taken.size()) {
+            taken.push_back(c);
+            offset.push_back(table.stride);
+            table.stride += ir::components(rows[0][c].type);
+        }
+        slot_of[c] = k;
     }
-    if (table.stride == 0 || table.stride > 4000) return {};
-    table.data.reserve(static_cast<std::size_t>(table.rows) * static_cast<std::size_t>(table.stride));
+    if (table.stride > 4000) return false;
+    if (table.stride == 0) return true;
+    table.data.reserve(rows.size() * static_cast<std::size_t>(table.stride));
     for (const auto &row : rows)
-        for (std::size_t c = 0; c < columns; ++c)
-            if (column_of[c] >= 0)
-                for (int i = 0; i < ir::components(row[c].type); ++i) table.data.push_back(static_cast<float>(row[c].value[static_cast<std::size_t>(i)]));
+        for (std::size_t c : taken)
+            for (int i = 0; i < ir::components(row[c].type); ++i)
+                table.data.push_back(static_cast<float>(row[c].value[static_cast<std::size_t>(i)]));
     ir::TableId id = g.add_table(std::move(table));
-    std::vector<NodeId> replacement(columns);
-    for (std::size_t c = 0; c < columns; ++c) {
-        if (column_of[c] < 0) continue;
+    for (const auto &[c, k] : slot_of) {
         Type type = rows[0][c].type;
         bool whole = type == Type::Int || type == Type::Bool;
-        NodeId read = g.make(Op::TableRead, whole ? Type::Float : type, {family.index}, ir::table_slot(id, column_of[c]));
+        NodeId read = g.make(Op::TableRead, whole ? Type::Float : type, {index},
+                             ir::table_slot(id, offset[k]));
         if (type == Type::Int) read = g.make(Op::ToInt, Type::Int, {read});
         if (type == Type::Bool) read = g.make(Op::NotEqual, {read, g.number(0)});
         replacement[c] = read;
     }
+    return true;
+}
+
+ShapeId make_family(Evaluator &ev, const std::vector<ShapeId> &members,
+                    const std::vector<std::vector<ir::Constant>> &rows,
+                    const std::vector<bool> &stated, bool smooth, NodeId k, int dims) {
+    ir::Family family;
+    family.index = ev.scene.graph.fresh_var(Type::Int);
+    family.count = static_cast<int>(members.size());
+    family.smooth = smooth;
+    std::vector<NodeId> replacement(rows[0].size());
+    if (!add_columns(ev, rows, stated, false, family.index, replacement)) return {};
+    if (!add_columns(ev, rows, stated, true, family.index, replacement)) return {};
     Rebuild rebuild{ev, replacement};
     ir::Shape many;
     many.kind = ShapeKind::Many;
@@ -196,12 +241,14 @@ ShapeId make_family(Evaluator &ev, const std::vector<ShapeId> &members, const st
 
 } // namespace
 
-// Order matters to colours only on ties, so a plain union may gather its like members from anywhere in the list.
+// Order matters to colours only on ties, so a plain union may gather its like members from anywhere
+// in the list.
 std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes, int dims) {
     if (shapes.size() < least_family) return shapes;
     struct Group {
         std::vector<std::size_t> members;
         std::vector<std::vector<ir::Constant>> rows;
+        std::vector<bool> stated;
     };
     std::map<std::vector<std::uint64_t>, Group> groups;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -211,6 +258,7 @@ std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes,
         Group &g = groups[walk.skeleton];
         g.members.push_back(i);
         g.rows.push_back(std::move(walk.row));
+        g.stated = std::move(walk.stated);
     }
     std::vector<bool> taken(shapes.size(), false);
     std::map<std::size_t, ShapeId> made; // by the first member's place, to keep a stable order
@@ -218,37 +266,44 @@ std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes,
         if (g.members.size() < least_family) continue;
         std::vector<ShapeId> members;
         for (std::size_t i : g.members) members.push_back(shapes[i]);
-        ShapeId family = make_family(ev, members, g.rows, false, {}, dims);
+        ShapeId family = make_family(ev, members, g.rows, g.stated, false, {}, dims);
         if (!family) continue;
         for (std::size_t i : g.members) taken[i] = true;
         made[g.members[0]] = family;
     }
     std::vector<ShapeId> out;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        if (auto it = made.find(i); it != made.end()) out.push_back(it->second);
-        else if (!taken[i]) out.push_back(shapes[i]);
+        if (auto it = made.find(i); it != made.end())
+            out.push_back(it->second);
+        else if (!taken[i])
+            out.push_back(shapes[i]);
     }
     return out;
 }
 
-// A smooth union folds in the order written, so only a list that is alike as a whole becomes a family.
-std::optional<ShapeId> smooth_family(Evaluator &ev, const std::vector<ShapeId> &shapes, NodeId k, int dims) {
+// A smooth union folds in the order written, so only a list that is alike as a whole becomes a
+// family.
+std::optional<ShapeId> smooth_family(Evaluator &ev, const std::vector<ShapeId> &shapes, NodeId k,
+                                     int dims) {
     if (shapes.size() < least_family) return std::nullopt;
     std::vector<std::vector<ir::Constant>> rows;
     std::vector<std::uint64_t> skeleton;
+    std::vector<bool> stated;
     for (ShapeId s : shapes) {
         Walk walk{ev.scene, {}, {}};
         walk.shape(s);
         if (walk.too_large || (!rows.empty() && walk.skeleton != skeleton)) return std::nullopt;
         skeleton = std::move(walk.skeleton);
         rows.push_back(std::move(walk.row));
+        stated = std::move(walk.stated);
     }
-    ShapeId family = make_family(ev, shapes, rows, true, k, dims);
+    ShapeId family = make_family(ev, shapes, rows, stated, true, k, dims);
     if (family) ev.scene.shapes.listed.emplace(family, shapes);
     return family ? std::optional(family) : std::nullopt;
 }
 
-// The union, flat: unions inside are opened, what is nowhere is left out, what stands twice stands once.
+// The union, flat: unions inside are opened, what is nowhere is left out, what stands twice stands
+// once.
 ShapeId unite(Evaluator &ev, std::vector<ShapeId> shapes, int dims, Span origin) {
     std::vector<ShapeId> flat, listed;
     std::map<std::uint32_t, bool> seen;
@@ -261,7 +316,8 @@ ShapeId unite(Evaluator &ev, std::vector<ShapeId> shapes, int dims, Span origin)
             auto inner = ev.scene.shapes.listed.find(id);
             const auto &all = inner == ev.scene.shapes.listed.end() ? parts : inner->second;
             listed.insert(listed.end(), all.begin(), all.end());
-        } else listed.push_back(id);
+        } else
+            listed.push_back(id);
         for (ShapeId part : parts)
             if (!std::exchange(seen[part.index], true)) flat.push_back(part);
     }
@@ -274,7 +330,8 @@ ShapeId unite(Evaluator &ev, std::vector<ShapeId> shapes, int dims, Span origin)
         const bool doubles = std::find(listed.begin(), listed.end(), flat[0]) != listed.end();
         if (gathered && !doubles) ev.scene.shapes.listed.emplace(flat[0], std::move(listed));
         if (!gathered || !doubles) return flat[0];
-        // the same shape several times: a union of one, so that what was listed has a shape to stand by
+        // the same shape several times: a union of one, so that what was listed has a shape to
+        // stand by
     }
     if (!flat.empty()) out.kind = ShapeKind::Union, out.children = std::move(flat);
     ShapeId united = ev.scene.shapes.add(std::move(out));

@@ -1,4 +1,5 @@
-// Functions of the point: a lambda, a named function, a constant or a cached field becomes one expression of the graph.
+// Functions of the point: a lambda, a named function, a constant or a cached field becomes one
+// expression of the graph.
 #include "typecheck/evaluator.h"
 
 #include <fmt/format.h>
@@ -13,21 +14,25 @@ int parameter_count(Evaluator &ev, const Value &f) {
     return static_cast<int>(c.ast->functions[c.function].parameters.size());
 }
 
-std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field, const std::vector<ir::NodeId> &inputs,
-                                      Type result, Span place, const std::string &what, bool *is_color) {
+std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field,
+                                      const std::vector<ir::NodeId> &inputs, Type result,
+                                      Span place, const std::string &what, bool *is_color) {
     if (is_poison(field)) return std::nullopt;
     Value value;
     if (is_function(field)) {
         std::vector<Value> args;
         int count = parameter_count(ev, field);
-        std::size_t used = count < 0 ? 1 : std::min<std::size_t>(static_cast<std::size_t>(count), inputs.size());
+        std::size_t used =
+            count < 0 ? 1 : std::min<std::size_t>(static_cast<std::size_t>(count), inputs.size());
         if (count > static_cast<int>(inputs.size())) {
             report(ev, Code::TypeMismatch, place,
                    fmt::format("{} wants a function of {}, this one has {} parameters", what,
-                               inputs.size() == 1 ? "the point" : "the point and the normal", count));
+                               inputs.size() == 1 ? "the point" : "the point and the normal",
+                               count));
             return std::nullopt;
         }
-        for (std::size_t i = 0; i < std::max<std::size_t>(used, 1); ++i) args.push_back(from_node(ev, inputs[i]));
+        for (std::size_t i = 0; i < std::max<std::size_t>(used, 1); ++i)
+            args.push_back(from_node(ev, inputs[i]));
         if (count == 0) args.clear();
         ++ev.in_field;
         value = call_with(ev, field, args, place);
@@ -38,12 +43,13 @@ std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field, const s
     if (is_poison(value)) return std::nullopt;
     if (value.kind == ValueKind::List) {
         std::vector<Value> items = ev.lists[value.id];
-        if (items.size() >= 2 && items.size() <= 4) value = make_vector(ev, items, static_cast<int>(items.size()), place);
+        if (items.size() >= 2 && items.size() <= 4)
+            value = make_vector(ev, items, static_cast<int>(items.size()), place);
     }
     if (!is_numeric(value)) {
         report(ev, Code::TypeMismatch, place,
-               fmt::format("{} wants a function that gives a {}, this one gives {}", what, ir::type_name(result),
-                           describe(ev, value)));
+               fmt::format("{} wants a function that gives a {}, this one gives {}", what,
+                           ir::type_name(result), describe(ev, value)));
         return std::nullopt;
     }
     Type type = numeric_type(ev, value);
@@ -54,12 +60,13 @@ std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field, const s
         return result == Type::Float ? scalar : ev.scene.graph.splat(scalar, result);
     }
     report(ev, Code::TypeMismatch, place,
-           fmt::format("{} wants a function that gives a {}, this one gives {}", what, ir::type_name(result),
-                       describe(ev, value)));
+           fmt::format("{} wants a function that gives a {}, this one gives {}", what,
+                       ir::type_name(result), describe(ev, value)));
     return std::nullopt;
 }
 
-std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span place, const std::string &what) {
+std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span place,
+                                          const std::string &what) {
     if (v.kind == ValueKind::Material) return ev.materials[v.id];
     if (is_poison(v)) return std::nullopt;
     ir::Graph &g = ev.scene.graph;

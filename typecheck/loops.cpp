@@ -1,6 +1,7 @@
-// Loops in bodies. While all numbers are known a loop simply runs. As soon as a turn assigns a number that is not known,
-// the loop becomes a Fold: its body is evaluated once with variables for the index and for all that it assigns. Where
-// that cannot be (the body needs the index at scene time, say), the turns are written out one by one.
+// Loops in bodies. While all numbers are known a loop simply runs. As soon as a turn assigns a
+// number that is not known, the loop becomes a Fold: its body is evaluated once with variables for
+// the index and for all that it assigns. Where that cannot be (the body needs the index at scene
+// time, say), the turns are written out one by one.
 #include "typecheck/evaluator.h"
 
 #include <fmt/format.h>
@@ -16,12 +17,13 @@ namespace {
 
 struct Turns {
     int count = 0;
-    std::vector<Value> items;  // of a list; empty for a range
+    std::vector<Value> items;   // of a list; empty for a range
     double first = 0, step = 1; // of a range
 };
 
 Value item_at(const Turns &turns, int i) {
-    return turns.items.empty() ? integer(turns.first + i * turns.step) : turns.items[static_cast<std::size_t>(i)];
+    return turns.items.empty() ? integer(turns.first + i * turns.step)
+                               : turns.items[static_cast<std::size_t>(i)];
 }
 
 bool unknown(const Value &v) { return v.kind == ValueKind::Field; }
@@ -57,12 +59,15 @@ std::optional<Value> symbolic_item(Evaluator &ev, const Turns &turns, ir::NodeId
     table.rows = turns.count;
     table.stride = ir::components(type);
     for (const Value &item : turns.items) {
-        if (!is_numeric(item) || unknown(item) || numeric_type(ev, item) != type) return std::nullopt;
-        for (int c = 0; c < table.stride; ++c) table.data.push_back(static_cast<float>(item.num[static_cast<std::size_t>(c)]));
+        if (!is_numeric(item) || unknown(item) || numeric_type(ev, item) != type)
+            return std::nullopt;
+        for (int c = 0; c < table.stride; ++c)
+            table.data.push_back(static_cast<float>(item.num[static_cast<std::size_t>(c)]));
     }
     bool whole = type == Type::Int || type == Type::Bool;
     ir::TableId id = g.add_table(std::move(table));
-    ir::NodeId read = g.make(Op::TableRead, whole ? Type::Float : type, {index}, ir::table_slot(id, 0));
+    ir::NodeId read =
+        g.make(Op::TableRead, whole ? Type::Float : type, {index}, ir::table_slot(id, 0));
     if (type == Type::Int) read = g.make(Op::ToInt, Type::Int, {read});
     if (type == Type::Bool) read = g.make(Op::NotEqual, {read, g.number(0)});
     return from_node(ev, read, first.color);
@@ -71,12 +76,15 @@ std::optional<Value> symbolic_item(Evaluator &ev, const Turns &turns, ir::NodeId
 struct FoldInput {
     int count = 0;
     ir::NodeId index;
-    std::function<std::optional<Value>()> condition; // evaluated before each turn; none: always true
-    std::function<Exit()> body;                      // with the index set
+    std::function<std::optional<Value>()>
+        condition;              // evaluated before each turn; none: always true
+    std::function<Exit()> body; // with the index set
 };
 
-// Tries the Fold, quietly. On success the assigned variables hold its results and the exit says how it was left.
-std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input, const std::vector<Change> &first_changes, Span place) {
+// Tries the Fold, quietly. On success the assigned variables hold its results and the exit says how
+// it was left.
+std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input,
+                             const std::vector<Change> &first_changes, Span place) {
     ir::Graph &g = ev.scene.graph;
     std::vector<Carried> carried;
     auto carry = [&](const Change &c) {
@@ -104,7 +112,8 @@ std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input, const std::v
         }
         ++ev.quiet;
         std::size_t errors = std::exchange(ev.quiet_errors, 0);
-        std::optional<Value> condition = input.condition ? input.condition() : std::optional(boolean(true));
+        std::optional<Value> condition =
+            input.condition ? input.condition() : std::optional(boolean(true));
         Exit exit = input.body();
         bool failed = ev.quiet_errors > 0 || !condition || is_poison(*condition);
         ev.quiet_errors = errors;
@@ -123,10 +132,14 @@ std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input, const std::v
             if (!changed && !again) v = k.variable;
             if (is_poison(v) || !is_numeric(v)) return std::nullopt;
             Type want = numeric_type(ev, k.initial), have = numeric_type(ev, v);
-            if (want == Type::Int && have == Type::Float) k.initial = to_float(ev, k.initial), again = true;
-            else if (want == Type::Float && have == Type::Int) v = to_float(ev, v);
-            else if (ir::is_vector(want) && ir::components(have) == 1) v = make_vector(ev, {to_float(ev, v)}, ir::components(want), place);
-            else if (want != have) return std::nullopt;
+            if (want == Type::Int && have == Type::Float)
+                k.initial = to_float(ev, k.initial), again = true;
+            else if (want == Type::Float && have == Type::Int)
+                v = to_float(ev, v);
+            else if (ir::is_vector(want) && ir::components(have) == 1)
+                v = make_vector(ev, {to_float(ev, v)}, ir::components(want), place);
+            else if (want != have)
+                return std::nullopt;
             after.push_back(v);
         }
         if (again) continue;
@@ -170,10 +183,13 @@ std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input, const std::v
         ir::FoldId id = g.add_fold(std::move(fold));
         ir::NodeId node = g.make(Op::Fold, g[vars[0]].type, initial, id.index);
         auto result = [&](std::size_t k) {
-            return k == 0 ? node : g.make(Op::FoldResult, g[vars[k]].type, {node}, static_cast<std::uint32_t>(k));
+            return k == 0 ? node
+                          : g.make(Op::FoldResult, g[vars[k]].type, {node},
+                                   static_cast<std::uint32_t>(k));
         };
         for (std::size_t k = 0; k < carried.size(); ++k)
-            assign(ev, carried[k].frame, carried[k].slot, from_node(ev, result(k), carried[k].variable.color));
+            assign(ev, carried[k].frame, carried[k].slot,
+                   from_node(ev, result(k), carried[k].variable.color));
         Exit out;
         if (returns) {
             out.returned = from_node(ev, result(*returned_at));
@@ -186,13 +202,15 @@ std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input, const std::v
 
 } // namespace
 
-Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std::uint32_t frame, Span place) {
+Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std::uint32_t frame,
+                Span place) {
     Outcome out;
     Value seq = eval(ev, ast, node.sequence, frame);
     if (is_poison(seq)) return out;
     Turns turns;
     if (seq.kind == ValueKind::Range) {
-        turns.count = static_cast<int>(std::min(2e9, std::max(0.0, std::ceil((seq.num[1] - seq.num[0]) / seq.num[2]))));
+        turns.count = static_cast<int>(
+            std::min(2e9, std::max(0.0, std::ceil((seq.num[1] - seq.num[0]) / seq.num[2]))));
         turns.first = seq.num[0];
         turns.step = seq.num[2];
     } else {
@@ -231,7 +249,10 @@ Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std:
             }
         }
         if (touched && ++unrolled > max_unrolled) {
-            report(ev, Code::LoopLimit, place, fmt::format("this loop cannot stay a loop, and {} turns are too many to write out", turns.count));
+            report(
+                ev, Code::LoopLimit, place,
+                fmt::format("this loop cannot stay a loop, and {} turns are too many to write out",
+                            turns.count));
             return out;
         }
         for (const Change &c : changes) assign(ev, c.frame, c.slot, c.after);
@@ -249,28 +270,38 @@ Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std:
             Exit e = turn(item_at(turns, at));
             Value gone = logical_or(ev, e.returned, e.broke);
             if (always(gone) || at + 1 >= turns.count || at - i > 256) return e;
-            Exit r = never(gone) ? run_rest(at + 1) : run_unless(ev, gone, place, [&] { return run_rest(at + 1); });
+            Exit r = never(gone) ? run_rest(at + 1)
+                                 : run_unless(ev, gone, place, [&] { return run_rest(at + 1); });
             Exit both;
-            both.returned = logical_or(ev, e.returned, logical_and(ev, logical_not(ev, e.broke), r.returned));
+            both.returned =
+                logical_or(ev, e.returned, logical_and(ev, logical_not(ev, e.broke), r.returned));
             both.broke = boolean(false);
-            both.value = never(r.returned) ? e.value : never(e.returned) ? r.value
-                                                       : select_value(ev, e.returned, e.value, r.value).value_or(poison());
+            both.value = never(r.returned) ? e.value
+                         : never(e.returned)
+                             ? r.value
+                             : select_value(ev, e.returned, e.value, r.value).value_or(poison());
             return both;
         };
         Exit rest = run_unless(ev, left, place, [&] { return run_rest(i + 1); });
-        out.exit.returned = logical_or(ev, exit.returned, logical_and(ev, logical_not(ev, exit.broke), rest.returned));
-        out.exit.value = never(rest.returned) ? exit.value : never(exit.returned) ? rest.value
-                                                             : select_value(ev, exit.returned, exit.value, rest.value).value_or(poison());
+        out.exit.returned = logical_or(ev, exit.returned,
+                                       logical_and(ev, logical_not(ev, exit.broke), rest.returned));
+        out.exit.value =
+            never(rest.returned) ? exit.value
+            : never(exit.returned)
+                ? rest.value
+                : select_value(ev, exit.returned, exit.value, rest.value).value_or(poison());
         return out;
     }
     return out;
 }
 
-Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, std::uint32_t frame, Span place) {
+Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, std::uint32_t frame,
+                  Span place) {
     Outcome out;
     int limit = 1'000'000;
     if (node.limit) {
-        auto n = want_known_int(ev, eval(ev, ast, *node.limit, frame), ast.exprs[*node.limit].span, "a loop's limit");
+        auto n = want_known_int(ev, eval(ev, ast, *node.limit, frame), ast.exprs[*node.limit].span,
+                                "a loop's limit");
         if (!n) return out;
         limit = *n;
     }
@@ -279,7 +310,8 @@ Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, 
         Value v = eval(ev, ast, node.condition, frame);
         if (is_poison(v)) return std::nullopt;
         if (is_numeric(v) && numeric_type(ev, v) == Type::Bool) return v;
-        report(ev, Code::TypeMismatch, condition_place, fmt::format("a condition is a bool, this is {}", describe(ev, v)));
+        report(ev, Code::TypeMismatch, condition_place,
+               fmt::format("a condition is a bool, this is {}", describe(ev, v)));
         return std::nullopt;
     };
     auto turn = [&] { return run_block(ev, ast, node.body, frame).exit; };
@@ -292,7 +324,8 @@ Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, 
         std::vector<Change> changes = journal_take(ev, mark);
         if (unknown(*go) || touches_unknown(exit, changes)) {
             if (!node.limit) {
-                report(ev, Code::LoopLimit, place, "a loop over numbers that hang on the point needs a limit")
+                report(ev, Code::LoopLimit, place,
+                       "a loop over numbers that hang on the point needs a limit")
                     .help("say how many turns it takes at most: `while … limit 32 { … }`");
                 return out;
             }
@@ -305,7 +338,9 @@ Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, 
                 out.exit = *folded;
                 return out;
             }
-            report(ev, Code::StageMismatch, place, "this loop's variables have to be numbers of one type, since it hangs on the point");
+            report(ev, Code::StageMismatch, place,
+                   "this loop's variables have to be numbers of one type, since it hangs on the "
+                   "point");
             return out;
         }
         for (const Change &c : changes) assign(ev, c.frame, c.slot, c.after);
@@ -315,7 +350,9 @@ Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, 
             return out;
         }
     }
-    if (!node.limit) report(ev, Code::LoopLimit, place, fmt::format("this loop did not end within {} turns", limit));
+    if (!node.limit)
+        report(ev, Code::LoopLimit, place,
+               fmt::format("this loop did not end within {} turns", limit));
     return out;
 }
 

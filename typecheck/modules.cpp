@@ -1,4 +1,5 @@
-// Files: the embedded library, imports, the scene's parameters, and the names that are there from the start.
+// Files: the embedded library, imports, the scene's parameters, and the names that are there from
+// the start.
 #include "typecheck/evaluator.h"
 
 #include "lang/parse.h"
@@ -15,37 +16,153 @@ namespace fathom::typecheck {
 static constexpr struct {
     const char *name;
     std::uint32_t rgb;
-} css_colors[] = {
-    {"aliceblue", 0xf0f8ff}, {"antiquewhite", 0xfaebd7}, {"aqua", 0x00ffff}, {"aquamarine", 0x7fffd4}, {"azure", 0xf0ffff},
-    {"beige", 0xf5f5dc}, {"bisque", 0xffe4c4}, {"black", 0x000000}, {"blanchedalmond", 0xffebcd}, {"blue", 0x0000ff},
-    {"blueviolet", 0x8a2be2}, {"brown", 0xa52a2a}, {"burlywood", 0xdeb887}, {"cadetblue", 0x5f9ea0}, {"chartreuse", 0x7fff00},
-    {"chocolate", 0xd2691e}, {"coral", 0xff7f50}, {"cornflowerblue", 0x6495ed}, {"cornsilk", 0xfff8dc}, {"crimson", 0xdc143c},
-    {"cyan", 0x00ffff}, {"darkblue", 0x00008b}, {"darkcyan", 0x008b8b}, {"darkgoldenrod", 0xb8860b}, {"darkgray", 0xa9a9a9},
-    {"darkgreen", 0x006400}, {"darkgrey", 0xa9a9a9}, {"darkkhaki", 0xbdb76b}, {"darkmagenta", 0x8b008b}, {"darkolivegreen", 0x556b2f},
-    {"darkorange", 0xff8c00}, {"darkorchid", 0x9932cc}, {"darkred", 0x8b0000}, {"darksalmon", 0xe9967a}, {"darkseagreen", 0x8fbc8f},
-    {"darkslateblue", 0x483d8b}, {"darkslategray", 0x2f4f4f}, {"darkslategrey", 0x2f4f4f}, {"darkturquoise", 0x00ced1}, {"darkviolet", 0x9400d3},
-    {"deeppink", 0xff1493}, {"deepskyblue", 0x00bfff}, {"dimgray", 0x696969}, {"dimgrey", 0x696969}, {"dodgerblue", 0x1e90ff},
-    {"firebrick", 0xb22222}, {"floralwhite", 0xfffaf0}, {"forestgreen", 0x228b22}, {"fuchsia", 0xff00ff}, {"gainsboro", 0xdcdcdc},
-    {"ghostwhite", 0xf8f8ff}, {"gold", 0xffd700}, {"goldenrod", 0xdaa520}, {"gray", 0x808080}, {"green", 0x008000},
-    {"greenyellow", 0xadff2f}, {"grey", 0x808080}, {"honeydew", 0xf0fff0}, {"hotpink", 0xff69b4}, {"indianred", 0xcd5c5c},
-    {"indigo", 0x4b0082}, {"ivory", 0xfffff0}, {"khaki", 0xf0e68c}, {"lavender", 0xe6e6fa}, {"lavenderblush", 0xfff0f5},
-    {"lawngreen", 0x7cfc00}, {"lemonchiffon", 0xfffacd}, {"lightblue", 0xadd8e6}, {"lightcoral", 0xf08080}, {"lightcyan", 0xe0ffff},
-    {"lightgoldenrodyellow", 0xfafad2}, {"lightgray", 0xd3d3d3}, {"lightgreen", 0x90ee90}, {"lightgrey", 0xd3d3d3}, {"lightpink", 0xffb6c1},
-    {"lightsalmon", 0xffa07a}, {"lightseagreen", 0x20b2aa}, {"lightskyblue", 0x87cefa}, {"lightslategray", 0x778899}, {"lightslategrey", 0x778899},
-    {"lightsteelblue", 0xb0c4de}, {"lightyellow", 0xffffe0}, {"lime", 0x00ff00}, {"limegreen", 0x32cd32}, {"linen", 0xfaf0e6},
-    {"magenta", 0xff00ff}, {"maroon", 0x800000}, {"mediumaquamarine", 0x66cdaa}, {"mediumblue", 0x0000cd}, {"mediumorchid", 0xba55d3},
-    {"mediumpurple", 0x9370db}, {"mediumseagreen", 0x3cb371}, {"mediumslateblue", 0x7b68ee}, {"mediumspringgreen", 0x00fa9a}, {"mediumturquoise", 0x48d1cc},
-    {"mediumvioletred", 0xc71585}, {"midnightblue", 0x191970}, {"mintcream", 0xf5fffa}, {"mistyrose", 0xffe4e1}, {"moccasin", 0xffe4b5},
-    {"navajowhite", 0xffdead}, {"navy", 0x000080}, {"oldlace", 0xfdf5e6}, {"olive", 0x808000}, {"olivedrab", 0x6b8e23},
-    {"orange", 0xffa500}, {"orangered", 0xff4500}, {"orchid", 0xda70d6}, {"palegoldenrod", 0xeee8aa}, {"palegreen", 0x98fb98},
-    {"paleturquoise", 0xafeeee}, {"palevioletred", 0xdb7093}, {"papayawhip", 0xffefd5}, {"peachpuff", 0xffdab9}, {"peru", 0xcd853f},
-    {"pink", 0xffc0cb}, {"plum", 0xdda0dd}, {"powderblue", 0xb0e0e6}, {"purple", 0x800080}, {"rebeccapurple", 0x663399},
-    {"red", 0xff0000}, {"rosybrown", 0xbc8f8f}, {"royalblue", 0x4169e1}, {"saddlebrown", 0x8b4513}, {"salmon", 0xfa8072},
-    {"sandybrown", 0xf4a460}, {"seagreen", 0x2e8b57}, {"seashell", 0xfff5ee}, {"sienna", 0xa0522d}, {"silver", 0xc0c0c0},
-    {"skyblue", 0x87ceeb}, {"slateblue", 0x6a5acd}, {"slategray", 0x708090}, {"slategrey", 0x708090}, {"snow", 0xfffafa},
-    {"springgreen", 0x00ff7f}, {"steelblue", 0x4682b4}, {"teal", 0x008080}, {"thistle", 0xd8bfd8}, {"tomato", 0xff6347},
-    {"turquoise", 0x40e0d0}, {"violet", 0xee82ee}, {"wheat", 0xf5deb3}, {"white", 0xffffff}, {"whitesmoke", 0xf5f5f5},
-    {"yellow", 0xffff00}, {"yellowgreen", 0x9acd32}};
+} css_colors[] = {{"aliceblue", 0xf0f8ff},
+                  {"antiquewhite", 0xfaebd7},
+                  {"aqua", 0x00ffff},
+                  {"aquamarine", 0x7fffd4},
+                  {"azure", 0xf0ffff},
+                  {"beige", 0xf5f5dc},
+                  {"bisque", 0xffe4c4},
+                  {"black", 0x000000},
+                  {"blanchedalmond", 0xffebcd},
+                  {"blue", 0x0000ff},
+                  {"blueviolet", 0x8a2be2},
+                  {"brown", 0xa52a2a},
+                  {"burlywood", 0xdeb887},
+                  {"cadetblue", 0x5f9ea0},
+                  {"chartreuse", 0x7fff00},
+                  {"chocolate", 0xd2691e},
+                  {"coral", 0xff7f50},
+                  {"cornflowerblue", 0x6495ed},
+                  {"cornsilk", 0xfff8dc},
+                  {"crimson", 0xdc143c},
+                  {"cyan", 0x00ffff},
+                  {"darkblue", 0x00008b},
+                  {"darkcyan", 0x008b8b},
+                  {"darkgoldenrod", 0xb8860b},
+                  {"darkgray", 0xa9a9a9},
+                  {"darkgreen", 0x006400},
+                  {"darkgrey", 0xa9a9a9},
+                  {"darkkhaki", 0xbdb76b},
+                  {"darkmagenta", 0x8b008b},
+                  {"darkolivegreen", 0x556b2f},
+                  {"darkorange", 0xff8c00},
+                  {"darkorchid", 0x9932cc},
+                  {"darkred", 0x8b0000},
+                  {"darksalmon", 0xe9967a},
+                  {"darkseagreen", 0x8fbc8f},
+                  {"darkslateblue", 0x483d8b},
+                  {"darkslategray", 0x2f4f4f},
+                  {"darkslategrey", 0x2f4f4f},
+                  {"darkturquoise", 0x00ced1},
+                  {"darkviolet", 0x9400d3},
+                  {"deeppink", 0xff1493},
+                  {"deepskyblue", 0x00bfff},
+                  {"dimgray", 0x696969},
+                  {"dimgrey", 0x696969},
+                  {"dodgerblue", 0x1e90ff},
+                  {"firebrick", 0xb22222},
+                  {"floralwhite", 0xfffaf0},
+                  {"forestgreen", 0x228b22},
+                  {"fuchsia", 0xff00ff},
+                  {"gainsboro", 0xdcdcdc},
+                  {"ghostwhite", 0xf8f8ff},
+                  {"gold", 0xffd700},
+                  {"goldenrod", 0xdaa520},
+                  {"gray", 0x808080},
+                  {"green", 0x008000},
+                  {"greenyellow", 0xadff2f},
+                  {"grey", 0x808080},
+                  {"honeydew", 0xf0fff0},
+                  {"hotpink", 0xff69b4},
+                  {"indianred", 0xcd5c5c},
+                  {"indigo", 0x4b0082},
+                  {"ivory", 0xfffff0},
+                  {"khaki", 0xf0e68c},
+                  {"lavender", 0xe6e6fa},
+                  {"lavenderblush", 0xfff0f5},
+                  {"lawngreen", 0x7cfc00},
+                  {"lemonchiffon", 0xfffacd},
+                  {"lightblue", 0xadd8e6},
+                  {"lightcoral", 0xf08080},
+                  {"lightcyan", 0xe0ffff},
+                  {"lightgoldenrodyellow", 0xfafad2},
+                  {"lightgray", 0xd3d3d3},
+                  {"lightgreen", 0x90ee90},
+                  {"lightgrey", 0xd3d3d3},
+                  {"lightpink", 0xffb6c1},
+                  {"lightsalmon", 0xffa07a},
+                  {"lightseagreen", 0x20b2aa},
+                  {"lightskyblue", 0x87cefa},
+                  {"lightslategray", 0x778899},
+                  {"lightslategrey", 0x778899},
+                  {"lightsteelblue", 0xb0c4de},
+                  {"lightyellow", 0xffffe0},
+                  {"lime", 0x00ff00},
+                  {"limegreen", 0x32cd32},
+                  {"linen", 0xfaf0e6},
+                  {"magenta", 0xff00ff},
+                  {"maroon", 0x800000},
+                  {"mediumaquamarine", 0x66cdaa},
+                  {"mediumblue", 0x0000cd},
+                  {"mediumorchid", 0xba55d3},
+                  {"mediumpurple", 0x9370db},
+                  {"mediumseagreen", 0x3cb371},
+                  {"mediumslateblue", 0x7b68ee},
+                  {"mediumspringgreen", 0x00fa9a},
+                  {"mediumturquoise", 0x48d1cc},
+                  {"mediumvioletred", 0xc71585},
+                  {"midnightblue", 0x191970},
+                  {"mintcream", 0xf5fffa},
+                  {"mistyrose", 0xffe4e1},
+                  {"moccasin", 0xffe4b5},
+                  {"navajowhite", 0xffdead},
+                  {"navy", 0x000080},
+                  {"oldlace", 0xfdf5e6},
+                  {"olive", 0x808000},
+                  {"olivedrab", 0x6b8e23},
+                  {"orange", 0xffa500},
+                  {"orangered", 0xff4500},
+                  {"orchid", 0xda70d6},
+                  {"palegoldenrod", 0xeee8aa},
+                  {"palegreen", 0x98fb98},
+                  {"paleturquoise", 0xafeeee},
+                  {"palevioletred", 0xdb7093},
+                  {"papayawhip", 0xffefd5},
+                  {"peachpuff", 0xffdab9},
+                  {"peru", 0xcd853f},
+                  {"pink", 0xffc0cb},
+                  {"plum", 0xdda0dd},
+                  {"powderblue", 0xb0e0e6},
+                  {"purple", 0x800080},
+                  {"rebeccapurple", 0x663399},
+                  {"red", 0xff0000},
+                  {"rosybrown", 0xbc8f8f},
+                  {"royalblue", 0x4169e1},
+                  {"saddlebrown", 0x8b4513},
+                  {"salmon", 0xfa8072},
+                  {"sandybrown", 0xf4a460},
+                  {"seagreen", 0x2e8b57},
+                  {"seashell", 0xfff5ee},
+                  {"sienna", 0xa0522d},
+                  {"silver", 0xc0c0c0},
+                  {"skyblue", 0x87ceeb},
+                  {"slateblue", 0x6a5acd},
+                  {"slategray", 0x708090},
+                  {"slategrey", 0x708090},
+                  {"snow", 0xfffafa},
+                  {"springgreen", 0x00ff7f},
+                  {"steelblue", 0x4682b4},
+                  {"teal", 0x008080},
+                  {"thistle", 0xd8bfd8},
+                  {"tomato", 0xff6347},
+                  {"turquoise", 0x40e0d0},
+                  {"violet", 0xee82ee},
+                  {"wheat", 0xf5deb3},
+                  {"white", 0xffffff},
+                  {"whitesmoke", 0xf5f5f5},
+                  {"yellow", 0xffff00},
+                  {"yellowgreen", 0x9acd32}};
 
 static Value css_color(std::uint32_t rgb) {
     auto linear = [&](int shift) {
@@ -56,7 +173,9 @@ static Value css_color(std::uint32_t rgb) {
 }
 
 static void declare_constants(Evaluator &ev) {
-    auto let = [&](const char *name, Value v) { declare(ev, ev.prelude_frame, name, std::move(v), false, {}); };
+    auto let = [&](const char *name, Value v) {
+        declare(ev, ev.prelude_frame, name, std::move(v), false, {});
+    };
     let("pi", number(std::numbers::pi));
     let("tau", number(2 * std::numbers::pi));
     let("turn", number(2 * std::numbers::pi));
@@ -67,7 +186,8 @@ static void declare_constants(Evaluator &ev) {
     let("none", none());
     let("time", make_value(ValueKind::Field, ev.scene.graph.time().index));
     ev.regions.push_back({});
-    let("everywhere", make_value(ValueKind::Region, static_cast<std::uint32_t>(ev.regions.size() - 1)));
+    let("everywhere",
+        make_value(ValueKind::Region, static_cast<std::uint32_t>(ev.regions.size() - 1)));
     for (const auto &c : css_colors) let(c.name, css_color(c.rgb));
 }
 
@@ -119,7 +239,8 @@ void load_prelude(Evaluator &ev) {
     none.library = true;
     ev.modules.push_back(none);
     declare_constants(ev);
-    for (std::size_t i = 0; i < builtins().size(); ++i) ev.builtin_index[builtins()[i].name] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < builtins().size(); ++i)
+        ev.builtin_index[builtins()[i].name] = static_cast<std::uint32_t>(i);
     std::vector<std::uint32_t> files;
     for (const LibraryFile &file : ev.library) {
         if (!file.prelude) continue;
@@ -133,10 +254,12 @@ void load_prelude(Evaluator &ev) {
 
 // -- imports -------------------------------------------------------------------------------------
 
-static Value bring(Evaluator &ev, const lang::Import &import, std::uint32_t module, std::uint32_t importer) {
+static Value bring(Evaluator &ev, const lang::Import &import, std::uint32_t module,
+                   std::uint32_t importer) {
     std::uint32_t frame = ev.modules[importer].frame;
     if (import.as) {
-        declare(ev, frame, import.as->text, make_value(ValueKind::Module, module), false, import.as->span);
+        declare(ev, frame, import.as->text, make_value(ValueKind::Module, module), false,
+                import.as->span);
         return unit();
     }
     std::vector<Binding> all = ev.frames[ev.modules[module].frame].bindings;
@@ -144,13 +267,15 @@ static Value bring(Evaluator &ev, const lang::Import &import, std::uint32_t modu
         const std::string name = ev.symbol_names[b.name];
         if (name[0] == '_') continue;
         Frame &f = ev.frames[frame];
-        auto [it, added] = f.index.try_emplace(b.name, static_cast<std::uint32_t>(f.bindings.size()));
+        auto [it, added] =
+            f.index.try_emplace(b.name, static_cast<std::uint32_t>(f.bindings.size()));
         if (added) {
             f.bindings.push_back({b.name, b.value, false, import.path_span});
             continue;
         }
         if (f.bindings[it->second].value == b.value) continue; // the same thing by another way
-        report(ev, Code::DuplicateName, import.path_span, fmt::format("`{}` is brought by this import, and there is one already", name))
+        report(ev, Code::DuplicateName, import.path_span,
+               fmt::format("`{}` is brought by this import, and there is one already", name))
             .label(f.bindings[it->second].declared, "declared here")
             .help("import one of them under a name: `import \"…\" as part`");
     }
@@ -159,7 +284,9 @@ static Value bring(Evaluator &ev, const lang::Import &import, std::uint32_t modu
 
 static Value import_failed(Evaluator &ev, const lang::Import &import) {
     // the names it would have brought are unknown, so those that are asked of it stay quiet
-    if (import.as) declare(ev, ev.modules[ev.current_module].frame, import.as->text, poison(), false, import.as->span);
+    if (import.as)
+        declare(ev, ev.modules[ev.current_module].frame, import.as->text, poison(), false,
+                import.as->span);
     return poison();
 }
 
@@ -177,9 +304,12 @@ Value import_module(Evaluator &ev, const lang::Import &import, Span, std::uint32
     }
     auto loaded = ev.loader.text(import.path, ev.modules[importer].identity);
     if (auto *error = std::get_if<LoadError>(&loaded)) {
-        Code code = error->reason == LoadError::Reason::Outside ? Code::ImportOutside : Code::ImportNotFound;
-        Diagnostic &d = report(ev, code, import.path_span, fmt::format("`{}`: {}", import.path, error->why));
-        if (error->reason == LoadError::Reason::NotFound) d.note("paths are relative to the importing file, then to the -I folders");
+        Code code = error->reason == LoadError::Reason::Outside ? Code::ImportOutside
+                                                                : Code::ImportNotFound;
+        Diagnostic &d =
+            report(ev, code, import.path_span, fmt::format("`{}`: {}", import.path, error->why));
+        if (error->reason == LoadError::Reason::NotFound)
+            d.note("paths are relative to the importing file, then to the -I folders");
         return import_failed(ev, import);
     }
     LoadedText text = std::get<LoadedText>(std::move(loaded));
@@ -192,7 +322,8 @@ Value import_module(Evaluator &ev, const lang::Import &import, Span, std::uint32
             inside = inside || m == i;
             if (inside) cycle += ev.modules[m].name + " imports ";
         }
-        report(ev, Code::ImportCycle, import.path_span, fmt::format("these files import each other: {}{}", cycle, ev.modules[i].name))
+        report(ev, Code::ImportCycle, import.path_span,
+               fmt::format("these files import each other: {}{}", cycle, ev.modules[i].name))
             .help("move what both need into a file of its own");
         return import_failed(ev, import);
     }
@@ -210,7 +341,8 @@ Value import_module(Evaluator &ev, const lang::Import &import, Span, std::uint32
     m.ast = &ev.asts.back();
     std::uint32_t module = add_module(ev, std::move(m));
     ev.importing.push_back(module);
-    std::vector<Contribution> dropped; // a module's own shapes are seen only when it is opened itself
+    std::vector<Contribution>
+        dropped; // a module's own shapes are seen only when it is opened itself
     run_module(ev, module, dropped);
     ev.importing.pop_back();
     ev.modules[module].loaded = true;
@@ -220,7 +352,8 @@ Value import_module(Evaluator &ev, const lang::Import &import, Span, std::uint32
 
 // -- parameters ----------------------------------------------------------------------------------
 
-static std::optional<Value> param_number(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, const ir::Param &p, std::uint32_t frame) {
+static std::optional<Value> param_number(Evaluator &ev, const lang::Ast &ast, lang::ExprId id,
+                                         const ir::Param &p, std::uint32_t frame) {
     Value v = eval(ev, ast, id, frame);
     if (is_poison(v)) return std::nullopt;
     lang::TypeExpr type;
@@ -229,20 +362,23 @@ static std::optional<Value> param_number(Evaluator &ev, const lang::Ast &ast, la
     Value c = convert(ev, v, type, ast.exprs[id].span, fmt::format("`{}`", p.name), ok);
     if (!ok || is_poison(c)) return std::nullopt;
     if (c.kind == ValueKind::Field) {
-        report(ev, Code::StageMismatch, ast.exprs[id].span, "a parameter's value and range are known when the scene is read");
+        report(ev, Code::StageMismatch, ast.exprs[id].span,
+               "a parameter's value and range are known when the scene is read");
         return std::nullopt;
     }
     return c;
 }
 
 // `-D name=text`: an expression of scene time in the file's own names.
-static std::optional<Value> override_value(Evaluator &ev, const Override &o, const ir::Param &p, std::uint32_t frame) {
+static std::optional<Value> override_value(Evaluator &ev, const Override &o, const ir::Param &p,
+                                           std::uint32_t frame) {
     Diagnostics own;
     SourceId source = ev.sources.add(fmt::format("-D {}", o.name), o.text);
     ev.asts.push_back(lang::parse(ev.sources, source, own));
     const lang::Ast &ast = ev.asts.back();
     const lang::Block &root = ast.blocks[ast.root];
-    const lang::ExprStmt *only = root.stmts.size() == 1 ? std::get_if<lang::ExprStmt>(&root.stmts[0].kind) : nullptr;
+    const lang::ExprStmt *only =
+        root.stmts.size() == 1 ? std::get_if<lang::ExprStmt>(&root.stmts[0].kind) : nullptr;
     if (own.has_errors() || !only) {
         ev.usage_errors.push_back(fmt::format("-D {}={}: this is not a value", o.name, o.text));
         return std::nullopt;
@@ -254,11 +390,13 @@ static std::optional<Value> override_value(Evaluator &ev, const Override &o, con
     ev.quiet_errors = errors;
     --ev.quiet;
     if (!failed) return v;
-    ev.usage_errors.push_back(fmt::format("-D {}={}: `{}` is a {}", o.name, o.text, p.name, p.is_color ? "color" : ir::type_name(p.type)));
+    ev.usage_errors.push_back(fmt::format("-D {}={}: `{}` is a {}", o.name, o.text, p.name,
+                                          p.is_color ? "color" : ir::type_name(p.type)));
     return std::nullopt;
 }
 
-void declare_param(Evaluator &ev, const lang::Ast &ast, const lang::Param &param, std::uint32_t frame) {
+void declare_param(Evaluator &ev, const lang::Ast &ast, const lang::Param &param,
+                   std::uint32_t frame) {
     ir::Param p;
     p.name = param.name.text;
     p.label = param.label.value_or(param.name.text);
@@ -267,24 +405,29 @@ void declare_param(Evaluator &ev, const lang::Ast &ast, const lang::Param &param
     Value value = eval(ev, ast, param.value, frame);
     if (param.type && !is_poison(value)) {
         bool ok = true;
-        value = convert(ev, value, *param.type, ast.exprs[param.value].span, fmt::format("`{}`", p.name), ok);
+        value = convert(ev, value, *param.type, ast.exprs[param.value].span,
+                        fmt::format("`{}`", p.name), ok);
     }
     if (is_poison(value)) return fail();
     if (value.kind == ValueKind::List) {
         bool ok = true;
         lang::TypeExpr type;
         type.name = "vec3";
-        value = convert(ev, value, type, ast.exprs[param.value].span, fmt::format("`{}`", p.name), ok);
+        value =
+            convert(ev, value, type, ast.exprs[param.value].span, fmt::format("`{}`", p.name), ok);
         if (is_poison(value)) return fail();
     }
     if (!is_numeric(value) || value.kind == ValueKind::Field || value.kind == ValueKind::Mat) {
-        report(ev, Code::TypeMismatch, ast.exprs[param.value].span, fmt::format("a parameter is a number, a bool, a vector or a color, this is {}", describe(ev, value)));
+        report(ev, Code::TypeMismatch, ast.exprs[param.value].span,
+               fmt::format("a parameter is a number, a bool, a vector or a color, this is {}",
+                           describe(ev, value)));
         return fail();
     }
     p.type = numeric_type(ev, value);
     p.is_color = value.color;
     auto fill = [&](const Value &v) { return v.num; };
-    for (std::size_t i = 0; i < 4; ++i) p.lo[i] = -std::numeric_limits<double>::infinity(), p.hi[i] = -p.lo[i];
+    for (std::size_t i = 0; i < 4; ++i)
+        p.lo[i] = -std::numeric_limits<double>::infinity(), p.hi[i] = -p.lo[i];
     if (p.type == ir::Type::Bool || p.is_color) p.lo = {0, 0, 0, 0}, p.hi = {1, 1, 1, 1};
     if (param.low && param.high) {
         // a whole number with a range of floats is a float
@@ -299,18 +442,23 @@ void declare_param(Evaluator &ev, const lang::Ast &ast, const lang::Param &param
             report(ev, Code::BadArgument, param.name.span, "a bool or a color has no range");
             return fail();
         }
-        auto lo = param_number(ev, ast, *param.low, p, frame), hi = param_number(ev, ast, *param.high, p, frame);
+        auto lo = param_number(ev, ast, *param.low, p, frame),
+             hi = param_number(ev, ast, *param.high, p, frame);
         if (!lo || !hi) return fail();
         p.lo = fill(*lo), p.hi = fill(*hi);
         p.has_range = true;
         for (int i = 0; i < ir::components(p.type); ++i) {
             auto k = static_cast<std::size_t>(i);
             if (p.lo[k] > p.hi[k]) {
-                report(ev, Code::BadArgument, join(ast.exprs[*param.low].span, ast.exprs[*param.high].span), "this range ends before it begins");
+                report(ev, Code::BadArgument,
+                       join(ast.exprs[*param.low].span, ast.exprs[*param.high].span),
+                       "this range ends before it begins");
                 return fail();
             }
             if (value.num[k] < p.lo[k] || value.num[k] > p.hi[k]) {
-                report(ev, Code::BadArgument, ast.exprs[param.value].span, fmt::format("{} is outside its range {}..{}", value.num[k], p.lo[k], p.hi[k]));
+                report(
+                    ev, Code::BadArgument, ast.exprs[param.value].span,
+                    fmt::format("{} is outside its range {}..{}", value.num[k], p.lo[k], p.hi[k]));
                 return fail();
             }
         }
@@ -325,14 +473,18 @@ void declare_param(Evaluator &ev, const lang::Ast &ast, const lang::Param &param
         auto v = override_value(ev, o, p, frame);
         if (!v) continue;
         bool inside = true;
-        for (int i = 0; i < ir::components(p.type); ++i) inside = inside && v->num[std::size_t(i)] >= p.lo[std::size_t(i)] && v->num[std::size_t(i)] <= p.hi[std::size_t(i)];
+        for (int i = 0; i < ir::components(p.type); ++i)
+            inside = inside && v->num[std::size_t(i)] >= p.lo[std::size_t(i)] &&
+                     v->num[std::size_t(i)] <= p.hi[std::size_t(i)];
         if (!inside) {
-            ev.usage_errors.push_back(fmt::format("-D {}={} is outside its range {}..{}", o.name, o.text, p.lo[0], p.hi[0]));
+            ev.usage_errors.push_back(fmt::format("-D {}={} is outside its range {}..{}", o.name,
+                                                  o.text, p.lo[0], p.hi[0]));
             continue;
         }
         p.value = fill(*v);
     }
-    ir::NodeId node = ev.scene.graph.param(static_cast<std::uint32_t>(ev.scene.params.size()), p.type);
+    ir::NodeId node =
+        ev.scene.graph.param(static_cast<std::uint32_t>(ev.scene.params.size()), p.type);
     ev.param_nodes.push_back(node);
     bool is_color = p.is_color;
     ev.scene.params.push_back(std::move(p));

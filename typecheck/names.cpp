@@ -27,17 +27,20 @@ void pop_frame(Evaluator &ev, std::uint32_t frame) {
     if (frame + 1 == ev.frames.size() && !ev.frames[frame].captured) ev.frames.pop_back();
 }
 
-void declare(Evaluator &ev, std::uint32_t frame, const std::string &name, Value value, bool is_var, Span place) {
+void declare(Evaluator &ev, std::uint32_t frame, const std::string &name, Value value, bool is_var,
+             Span place) {
     Frame &f = ev.frames[frame];
     Symbol symbol = intern(ev, name);
     for (const Binding &b : f.bindings) {
         if (f.is_module || b.name != symbol || !b.declared.source || !place.source) continue;
-        report(ev, Code::DuplicateName, place, fmt::format("`{}` is declared twice in this block", name))
+        report(ev, Code::DuplicateName, place,
+               fmt::format("`{}` is declared twice in this block", name))
             .label(b.declared, "first declared here");
         return;
     }
     if (f.is_module) {
-        auto [it, added] = f.index.try_emplace(symbol, static_cast<std::uint32_t>(f.bindings.size()));
+        auto [it, added] =
+            f.index.try_emplace(symbol, static_cast<std::uint32_t>(f.bindings.size()));
         if (!added) {
             report(ev, Code::DuplicateName, place, fmt::format("`{}` is declared twice", name))
                 .label(f.bindings[it->second].declared, "first declared here");
@@ -46,7 +49,8 @@ void declare(Evaluator &ev, std::uint32_t frame, const std::string &name, Value 
         if (frame != ev.prelude_frame && !ev.modules[ev.current_module].library && place.source) {
             const Frame &prelude = ev.frames[ev.prelude_frame];
             if (prelude.index.count(symbol) || ev.builtin_index.count(name))
-                report(ev, Code::HidesName, place, fmt::format("`{}` hides the library's `{}` in this file", name, name));
+                report(ev, Code::HidesName, place,
+                       fmt::format("`{}` hides the library's `{}` in this file", name, name));
         }
     }
     f.bindings.push_back({symbol, std::move(value), is_var, place});
@@ -57,10 +61,12 @@ std::optional<Found> find_name(Evaluator &ev, std::uint32_t frame, const std::st
     for (;;) {
         const Frame &f = ev.frames[frame];
         if (f.is_module) {
-            if (auto it = f.index.find(symbol); it != f.index.end()) return Found{frame, it->second};
+            if (auto it = f.index.find(symbol); it != f.index.end())
+                return Found{frame, it->second};
         } else {
             for (std::size_t i = f.bindings.size(); i-- > 0;)
-                if (f.bindings[i].name == symbol) return Found{frame, static_cast<std::uint32_t>(i)};
+                if (f.bindings[i].name == symbol)
+                    return Found{frame, static_cast<std::uint32_t>(i)};
         }
         if (f.parent == frame) return std::nullopt;
         frame = f.parent;
@@ -70,7 +76,8 @@ std::optional<Found> find_name(Evaluator &ev, std::uint32_t frame, const std::st
 static bool in_library(const Evaluator &ev) { return ev.modules[ev.current_module].library; }
 
 std::optional<Value> look_up(Evaluator &ev, std::uint32_t frame, const std::string &name) {
-    if (auto found = find_name(ev, frame, name)) return ev.frames[found->frame].bindings[found->slot].value;
+    if (auto found = find_name(ev, frame, name))
+        return ev.frames[found->frame].bindings[found->slot].value;
     if (auto it = ev.builtin_index.find(name); it != ev.builtin_index.end()) {
         if (!builtins()[it->second].library_only || in_library(ev))
             return make_value(ValueKind::Builtin, it->second);
@@ -94,7 +101,8 @@ std::vector<std::string> visible_names(Evaluator &ev, std::uint32_t frame) {
 }
 
 void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place) {
-    Diagnostic &d = report(ev, Code::UnknownName, place, fmt::format("nothing here is called `{}`", name));
+    Diagnostic &d =
+        report(ev, Code::UnknownName, place, fmt::format("nothing here is called `{}`", name));
     std::string near = nearest_name(name, visible_names(ev, frame));
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});
 }
@@ -103,7 +111,8 @@ void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &
 
 namespace {
 
-// Walks a tree with the names that each block declares. Only names are judged: what they hold is known when they are used.
+// Walks a tree with the names that each block declares. Only names are judged: what they hold is
+// known when they are used.
 struct NameWalk {
     Evaluator &ev;
     const lang::Ast &ast;
@@ -129,17 +138,24 @@ struct NameWalk {
         const lang::Block &b = ast.blocks[id];
         for (const lang::Stmt &s : b.stmts)
             if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind))
-                if (ast.functions[f->function].name) scopes.back().insert(ast.functions[f->function].name->text);
+                if (ast.functions[f->function].name)
+                    scopes.back().insert(ast.functions[f->function].name->text);
         for (const lang::Stmt &s : b.stmts) stmt(s);
         scopes.pop_back();
     }
     void stmt(const lang::Stmt &s) {
-        if (auto *e = std::get_if<lang::ExprStmt>(&s.kind)) expr(e->value);
-        else if (auto *l = std::get_if<lang::Let>(&s.kind)) expr(l->value), scopes.back().insert(l->name.text);
-        else if (auto *v = std::get_if<lang::Var>(&s.kind)) expr(v->value), scopes.back().insert(v->name.text);
-        else if (auto *a = std::get_if<lang::Assign>(&s.kind)) expr(a->target), expr(a->value);
-        else if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind)) parameters(ast.functions[f->function]);
-        else if (auto *p = std::get_if<lang::Param>(&s.kind)) scopes.back().insert(p->name.text);
+        if (auto *e = std::get_if<lang::ExprStmt>(&s.kind))
+            expr(e->value);
+        else if (auto *l = std::get_if<lang::Let>(&s.kind))
+            expr(l->value), scopes.back().insert(l->name.text);
+        else if (auto *v = std::get_if<lang::Var>(&s.kind))
+            expr(v->value), scopes.back().insert(v->name.text);
+        else if (auto *a = std::get_if<lang::Assign>(&s.kind))
+            expr(a->target), expr(a->value);
+        else if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind))
+            parameters(ast.functions[f->function]);
+        else if (auto *p = std::get_if<lang::Param>(&s.kind))
+            scopes.back().insert(p->name.text);
         else if (auto *i = std::get_if<lang::Import>(&s.kind)) {
             if (i->as) scopes.back().insert(i->as->text);
         } else if (auto *loop = std::get_if<lang::For>(&s.kind)) {
@@ -161,34 +177,46 @@ struct NameWalk {
             if (!known(n->text)) report_unknown_name(ev, frame, n->text, e.span);
         } else if (auto *l = std::get_if<lang::List>(&e.kind)) {
             for (lang::ExprId item : l->items) expr(item);
-        } else if (auto *c = std::get_if<lang::Comprehension>(&e.kind)) block(c->body);
-        else if (auto *r = std::get_if<lang::Range>(&e.kind)) expr(r->first), expr(r->last);
-        else if (auto *u = std::get_if<lang::Unary>(&e.kind)) expr(u->operand);
+        } else if (auto *c = std::get_if<lang::Comprehension>(&e.kind))
+            block(c->body);
+        else if (auto *r = std::get_if<lang::Range>(&e.kind))
+            expr(r->first), expr(r->last);
+        else if (auto *u = std::get_if<lang::Unary>(&e.kind))
+            expr(u->operand);
         else if (auto *b = std::get_if<lang::Binary>(&e.kind)) {
             for (lang::ExprId operand : b->operands) expr(operand);
         } else if (auto *call = std::get_if<lang::Call>(&e.kind)) {
             // the `f` of `a.f(b)` is found when `a` is known
-            if (auto *m = std::get_if<lang::Member>(&ast.exprs[call->callee].kind)) expr(m->object);
-            else expr(call->callee);
+            if (auto *m = std::get_if<lang::Member>(&ast.exprs[call->callee].kind))
+                expr(m->object);
+            else
+                expr(call->callee);
             for (const lang::Argument &a : call->arguments) expr(a.value);
             if (call->trailing) block(*call->trailing);
-        } else if (auto *i = std::get_if<lang::Index>(&e.kind)) expr(i->object), expr(i->index);
-        else if (auto *m = std::get_if<lang::Member>(&e.kind)) expr(m->object);
-        else if (auto *f = std::get_if<lang::Lambda>(&e.kind)) parameters(ast.functions[f->function]);
+        } else if (auto *i = std::get_if<lang::Index>(&e.kind))
+            expr(i->object), expr(i->index);
+        else if (auto *m = std::get_if<lang::Member>(&e.kind))
+            expr(m->object);
+        else if (auto *f = std::get_if<lang::Lambda>(&e.kind))
+            parameters(ast.functions[f->function]);
         else if (auto *choice = std::get_if<lang::If>(&e.kind)) {
-            for (const lang::IfBranch &branch : choice->branches) expr(branch.condition), block(branch.body);
+            for (const lang::IfBranch &branch : choice->branches)
+                expr(branch.condition), block(branch.body);
             if (choice->otherwise) block(*choice->otherwise);
-        } else if (auto *inner = std::get_if<lang::BlockExpr>(&e.kind)) block(inner->block);
+        } else if (auto *inner = std::get_if<lang::BlockExpr>(&e.kind))
+            block(inner->block);
     }
 };
 
 } // namespace
 
-// Called once the module's names all stand, so only function bodies can hold something not yet seen.
+// Called once the module's names all stand, so only function bodies can hold something not yet
+// seen.
 void check_names(Evaluator &ev, const lang::Ast &ast, std::uint32_t module_frame) {
     NameWalk walk{ev, ast, module_frame, {}};
     for (const lang::Stmt &s : ast.blocks[ast.root].stmts)
-        if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind)) walk.parameters(ast.functions[f->function]);
+        if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind))
+            walk.parameters(ast.functions[f->function]);
 }
 
 } // namespace fathom::typecheck

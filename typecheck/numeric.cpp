@@ -1,5 +1,6 @@
-// Arithmetic on numbers of both stages. What is known is computed through the graph's own constant folding (so that an
-// op has one meaning); the everyday operations on plain numbers have a short way. What is not known becomes a node.
+// Arithmetic on numbers of both stages. What is known is computed through the graph's own constant
+// folding (so that an op has one meaning); the everyday operations on plain numbers have a short
+// way. What is not known becomes a node.
 #include "typecheck/evaluator.h"
 
 #include <fmt/format.h>
@@ -57,8 +58,11 @@ ir::NodeId to_node(Evaluator &ev, const Value &v) {
     if (v.kind == ValueKind::Field) return node_of(v);
     ir::Constant constant;
     constant.type = numeric_type(ev, v);
-    if (v.kind == ValueKind::Mat) constant.value = ev.matrices[v.id];
-    else std::copy(v.num.begin(), v.num.begin() + (v.kind == ValueKind::Vec ? v.size : 1), constant.value.begin());
+    if (v.kind == ValueKind::Mat)
+        constant.value = ev.matrices[v.id];
+    else
+        std::copy(v.num.begin(), v.num.begin() + (v.kind == ValueKind::Vec ? v.size : 1),
+                  constant.value.begin());
     return graph.constant(constant);
 }
 
@@ -76,7 +80,9 @@ Value from_node(Evaluator &ev, ir::NodeId node, bool is_color) {
     case Type::Float: return number(c.value[0]);
     case Type::Vec2:
     case Type::Vec3:
-    case Type::Vec4: return vec(ir::components(c.type), {c.value[0], c.value[1], c.value[2], c.value[3]}, is_color);
+    case Type::Vec4:
+        return vec(ir::components(c.type), {c.value[0], c.value[1], c.value[2], c.value[3]},
+                   is_color);
     case Type::Mat2:
     case Type::Mat3:
     case Type::Mat4: {
@@ -92,7 +98,8 @@ Value from_node(Evaluator &ev, ir::NodeId node, bool is_color) {
 
 Value to_float(Evaluator &ev, const Value &v) {
     if (v.kind == ValueKind::Int || v.kind == ValueKind::Bool) return number(v.num[0]);
-    if (v.kind == ValueKind::Field && (numeric_type(ev, v) == Type::Int || numeric_type(ev, v) == Type::Bool))
+    if (v.kind == ValueKind::Field &&
+        (numeric_type(ev, v) == Type::Int || numeric_type(ev, v) == Type::Bool))
         return from_node(ev, ev.scene.graph.make(Op::ToFloat, Type::Float, {node_of(v)}));
     return v;
 }
@@ -105,26 +112,30 @@ static bool any_color(const std::vector<Value> &args) {
 
 // Ops that keep whole numbers whole; all others take floats.
 static bool works_on_ints(Op op) {
-    return op == Op::Add || op == Op::Sub || op == Op::Mul || op == Op::Mod || op == Op::Min || op == Op::Max ||
-           op == Op::Neg || op == Op::Abs || op == Op::Clamp || op == Op::Sign || op == Op::Hash || op == Op::Div;
+    return op == Op::Add || op == Op::Sub || op == Op::Mul || op == Op::Mod || op == Op::Min ||
+           op == Op::Max || op == Op::Neg || op == Op::Abs || op == Op::Clamp || op == Op::Sign ||
+           op == Op::Hash || op == Op::Div;
 }
 
-// Componentwise ops broadcast a number to the widest argument; a whole number becomes a float beside a float.
+// Componentwise ops broadcast a number to the widest argument; a whole number becomes a float
+// beside a float.
 Value apply_op(Evaluator &ev, Op op, std::vector<Value> args, Span place, const std::string &name) {
     Type widest = Type::Int;
     for (Value &a : args) {
         if (is_poison(a)) return poison();
         if (a.kind == ValueKind::List || !is_numeric(a) || numeric_type(ev, a) == Type::Bool) {
-            report(ev, Code::TypeMismatch, place, fmt::format("`{}` wants numbers, this is {}", name, describe(ev, a)));
+            report(ev, Code::TypeMismatch, place,
+                   fmt::format("`{}` wants numbers, this is {}", name, describe(ev, a)));
             return poison();
         }
         Type type = numeric_type(ev, a);
         if (type == Type::Int) continue;
-        if (widest == Type::Int || widest == Type::Float) widest = type;
+        if (widest == Type::Int || widest == Type::Float)
+            widest = type;
         else if (type != Type::Float && type != widest) {
             report(ev, Code::TypeMismatch, place,
-                   fmt::format("`{}` wants vectors of one size, these are {} and {}", name, ir::type_name(widest),
-                               ir::type_name(type)));
+                   fmt::format("`{}` wants vectors of one size, these are {} and {}", name,
+                               ir::type_name(widest), ir::type_name(type)));
             return poison();
         }
     }
@@ -140,13 +151,15 @@ Value apply_op(Evaluator &ev, Op op, std::vector<Value> args, Span place, const 
 }
 
 static Value overflow(Evaluator &ev, Span place, double value) {
-    report(ev, Code::NumberRange, place, fmt::format("{:.0f} does not fit a whole number of 32 bits", value))
+    report(ev, Code::NumberRange, place,
+           fmt::format("{:.0f} does not fit a whole number of 32 bits", value))
         .help("write one of the numbers with a decimal point, and floats are used");
     return poison();
 }
 
 static Value checked_int(Evaluator &ev, double value, Span place) {
-    if (value < std::numeric_limits<std::int32_t>::min() || value > std::numeric_limits<std::int32_t>::max())
+    if (value < std::numeric_limits<std::int32_t>::min() ||
+        value > std::numeric_limits<std::int32_t>::max())
         return overflow(ev, place, value);
     return integer(value);
 }
@@ -173,7 +186,9 @@ static const char *operator_text(lang::BinaryOp op) {
     return "";
 }
 
-static bool known_scalar(const Value &v) { return v.kind == ValueKind::Int || v.kind == ValueKind::Float; }
+static bool known_scalar(const Value &v) {
+    return v.kind == ValueKind::Int || v.kind == ValueKind::Float;
+}
 
 static Value compare(Evaluator &ev, lang::BinaryOp op, const Value &a, const Value &b, Span place) {
     using lang::BinaryOp;
@@ -201,11 +216,15 @@ static Value compare(Evaluator &ev, lang::BinaryOp op, const Value &a, const Val
     }
     if (equality && a.kind == b.kind && a.kind != ValueKind::Field) {
         bool same = false;
-        if (a.kind == ValueKind::String) same = ev.strings[a.id] == ev.strings[b.id];
-        else if (a.kind == ValueKind::Bool || a.kind == ValueKind::Vec) same = a.size == b.size && a.num == b.num;
-        else if (a.kind == ValueKind::None) same = true;
+        if (a.kind == ValueKind::String)
+            same = ev.strings[a.id] == ev.strings[b.id];
+        else if (a.kind == ValueKind::Bool || a.kind == ValueKind::Vec)
+            same = a.size == b.size && a.num == b.num;
+        else if (a.kind == ValueKind::None)
+            same = true;
         else {
-            report(ev, Code::TypeMismatch, place, fmt::format("{} cannot be compared", describe(ev, a)));
+            report(ev, Code::TypeMismatch, place,
+                   fmt::format("{} cannot be compared", describe(ev, a)));
             return poison();
         }
         return boolean(same == (op == BinaryOp::Equal));
@@ -215,12 +234,13 @@ static Value compare(Evaluator &ev, lang::BinaryOp op, const Value &a, const Val
                  numeric_type(ev, b) == Type::Bool;
     if (!scalars && !bools) {
         report(ev, Code::TypeMismatch, place,
-               fmt::format("`{}` compares two numbers, these are {} and {}", operator_text(op), describe(ev, a),
-                           describe(ev, b)));
+               fmt::format("`{}` compares two numbers, these are {} and {}", operator_text(op),
+                           describe(ev, a), describe(ev, b)));
         return poison();
     }
     bool whole = !bools && numeric_type(ev, a) == Type::Int && numeric_type(ev, b) == Type::Int;
-    ir::NodeId x = to_node(ev, whole || bools ? a : to_float(ev, a)), y = to_node(ev, whole || bools ? b : to_float(ev, b));
+    ir::NodeId x = to_node(ev, whole || bools ? a : to_float(ev, a)),
+               y = to_node(ev, whole || bools ? b : to_float(ev, b));
     ir::Graph &g = ev.scene.graph;
     switch (op) {
     case BinaryOp::Less: return from_node(ev, g.make(Op::Less, {x, y}));
@@ -249,14 +269,17 @@ static Value division_by_zero(Evaluator &ev, Span place, const char *what) {
 }
 
 // A matrix times a matrix or a vector of its side.
-static std::optional<Value> matrix_product(Evaluator &ev, const Value &a, const Value &b, Span place) {
+static std::optional<Value> matrix_product(Evaluator &ev, const Value &a, const Value &b,
+                                           Span place) {
     Type ta = numeric_type(ev, a), tb = numeric_type(ev, b);
     bool ma = ir::is_matrix(ta), mb = ir::is_matrix(tb);
     if (!(ma && (mb || ir::is_vector(tb))) && !(mb && ir::is_vector(ta))) return std::nullopt;
-    int side_a = ma ? ir::side(ta) : ir::components(ta), side_b = mb ? ir::side(tb) : ir::components(tb);
+    int side_a = ma ? ir::side(ta) : ir::components(ta),
+        side_b = mb ? ir::side(tb) : ir::components(tb);
     if (side_a != side_b) {
         report(ev, Code::TypeMismatch, place,
-               fmt::format("{} and {} cannot be multiplied: their sizes differ", describe(ev, a), describe(ev, b)));
+               fmt::format("{} and {} cannot be multiplied: their sizes differ", describe(ev, a),
+                           describe(ev, b)));
         return poison();
     }
     Type type = ma && mb ? ta : ma ? tb : ta;
@@ -273,8 +296,8 @@ static Value as_vector(Evaluator &ev, const Value &v) {
     return make_vector(ev, items, static_cast<int>(items.size()), {});
 }
 
-Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Value &right, Span place, Span a_place,
-                 Span b_place) {
+Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Value &right,
+                 Span place, Span a_place, Span b_place) {
     using lang::BinaryOp;
     if (is_poison(left) || is_poison(right)) return poison();
     if (known_scalar(left) && known_scalar(right)) {
@@ -319,7 +342,9 @@ Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Valu
         ev.strings.push_back(ev.strings[a.id] + print_value(ev, b));
         return make_value(ValueKind::String, static_cast<std::uint32_t>(ev.strings.size() - 1));
     }
-    auto numeric = [&](const Value &v) { return is_numeric(v) && numeric_type(ev, v) != Type::Bool; };
+    auto numeric = [&](const Value &v) {
+        return is_numeric(v) && numeric_type(ev, v) != Type::Bool;
+    };
     if (!numeric(a) || !numeric(b)) {
         bool left_wrong = !numeric(a);
         Diagnostic &d = report(ev, Code::TypeMismatch, left_wrong ? a_place : b_place,
@@ -327,8 +352,10 @@ Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Valu
                                            describe(ev, left_wrong ? a : b)));
         const Value &wrong = left_wrong ? a : b;
         if (is_function(wrong)) d.help("call it with a point: `f(p)`");
-        if (wrong.kind == ValueKind::Shape && op == BinaryOp::Add) d.help("shapes are united with `|`");
-        if (wrong.kind == ValueKind::Shape && op == BinaryOp::Mul) d.help("a shape is made larger with `.scale(2)`");
+        if (wrong.kind == ValueKind::Shape && op == BinaryOp::Add)
+            d.help("shapes are united with `|`");
+        if (wrong.kind == ValueKind::Shape && op == BinaryOp::Mul)
+            d.help("a shape is made larger with `.scale(2)`");
         return poison();
     }
     if (op == BinaryOp::Mul)
@@ -337,13 +364,15 @@ Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Valu
     case BinaryOp::Add: return apply_op(ev, Op::Add, {a, b}, place, "+");
     case BinaryOp::Sub: return apply_op(ev, Op::Sub, {a, b}, place, "-");
     case BinaryOp::Mul: return apply_op(ev, Op::Mul, {a, b}, place, "*");
-    case BinaryOp::Div: return apply_op(ev, Op::Div, {to_float(ev, a), to_float(ev, b)}, place, "/");
+    case BinaryOp::Div:
+        return apply_op(ev, Op::Div, {to_float(ev, a), to_float(ev, b)}, place, "/");
     case BinaryOp::Mod: return apply_op(ev, Op::Mod, {a, b}, place, "%");
     case BinaryOp::Pow: {
         // a small whole exponent is repeated multiplication: exact, cheap, and easy to bound
         if (b.kind == ValueKind::Int && b.num[0] >= 1 && b.num[0] <= 8) {
             Value product = a;
-            for (int i = 1; i < static_cast<int>(b.num[0]); ++i) product = apply_op(ev, Op::Mul, {product, a}, place, "^");
+            for (int i = 1; i < static_cast<int>(b.num[0]); ++i)
+                product = apply_op(ev, Op::Mul, {product, a}, place, "^");
             return product;
         }
         return apply_op(ev, Op::Pow, {a, b}, place, "^");
@@ -386,7 +415,8 @@ Value logical_or(Evaluator &ev, const Value &a, const Value &b) {
 }
 
 // Nothing where the two cannot be told apart by a number at field time (a shape in one arm, say).
-std::optional<Value> select_value(Evaluator &ev, const Value &condition, const Value &a, const Value &b) {
+std::optional<Value> select_value(Evaluator &ev, const Value &condition, const Value &a,
+                                  const Value &b) {
     if (condition.kind == ValueKind::Bool) return condition.num[0] != 0 ? a : b;
     if (is_poison(a) || is_poison(b)) return poison();
     if (a == b) return a;
@@ -399,11 +429,15 @@ std::optional<Value> select_value(Evaluator &ev, const Value &condition, const V
     }
     ir::NodeId nx = to_node(ev, x), ny = to_node(ev, y);
     if (tx != ty) {
-        if (tx == Type::Float && ir::is_vector(ty)) nx = ev.scene.graph.splat(nx, ty);
-        else if (ty == Type::Float && ir::is_vector(tx)) ny = ev.scene.graph.splat(ny, tx);
-        else return std::nullopt;
+        if (tx == Type::Float && ir::is_vector(ty))
+            nx = ev.scene.graph.splat(nx, ty);
+        else if (ty == Type::Float && ir::is_vector(tx))
+            ny = ev.scene.graph.splat(ny, tx);
+        else
+            return std::nullopt;
     }
-    return from_node(ev, ev.scene.graph.make(Op::Select, {node_of(condition), nx, ny}), a.color || b.color);
+    return from_node(ev, ev.scene.graph.make(Op::Select, {node_of(condition), nx, ny}),
+                     a.color || b.color);
 }
 
 // -- components ----------------------------------------------------------------------------------
@@ -422,9 +456,11 @@ std::optional<std::vector<int>> swizzle_indices(const std::string &letters, int 
 
 Value swizzle(Evaluator &ev, const Value &v, const std::string &letters, Span place) {
     Type type = numeric_type(ev, v);
-    auto indices = ir::is_vector(type) ? swizzle_indices(letters, ir::components(type)) : std::nullopt;
+    auto indices =
+        ir::is_vector(type) ? swizzle_indices(letters, ir::components(type)) : std::nullopt;
     if (!indices) {
-        report(ev, Code::UnknownMember, place, fmt::format("{} has no component `{}`", describe(ev, v), letters));
+        report(ev, Code::UnknownMember, place,
+               fmt::format("{} has no component `{}`", describe(ev, v), letters));
         return poison();
     }
     bool color = v.color && indices->size() == 3;
@@ -434,31 +470,39 @@ Value swizzle(Evaluator &ev, const Value &v, const std::string &letters, Span pl
             return v.ints ? integer(x) : number(x);
         }
         Value out = vec(static_cast<int>(indices->size()), {}, color);
-        for (std::size_t i = 0; i < indices->size(); ++i) out.num[i] = v.num[static_cast<std::size_t>((*indices)[i])];
+        for (std::size_t i = 0; i < indices->size(); ++i)
+            out.num[i] = v.num[static_cast<std::size_t>((*indices)[i])];
         return out;
     }
     return from_node(ev, ev.scene.graph.swizzle(node_of(v), *indices), color);
 }
 
-// GLSL's constructors: numbers and vectors one after another; one number fills all; a longer vector is cut.
+// GLSL's constructors: numbers and vectors one after another; one number fills all; a longer vector
+// is cut.
 Value make_vector(Evaluator &ev, const std::vector<Value> &parts, int size, Span place) {
     std::vector<Value> scalars;
     bool known = true, whole = true;
     for (const Value &part : parts) {
         if (is_poison(part)) return poison();
-        if (!is_numeric(part) || ir::is_matrix(numeric_type(ev, part)) || numeric_type(ev, part) == Type::Bool) {
-            report(ev, Code::TypeMismatch, place, fmt::format("a vec{} is made of numbers, this is {}", size, describe(ev, part)));
+        if (!is_numeric(part) || ir::is_matrix(numeric_type(ev, part)) ||
+            numeric_type(ev, part) == Type::Bool) {
+            report(ev, Code::TypeMismatch, place,
+                   fmt::format("a vec{} is made of numbers, this is {}", size, describe(ev, part)));
             return poison();
         }
         int n = ir::components(numeric_type(ev, part));
-        if (n == 1) scalars.push_back(part);
+        if (n == 1)
+            scalars.push_back(part);
         else
-            for (int i = 0; i < n; ++i) scalars.push_back(swizzle(ev, part, std::string(1, "xyzw"[i]), place));
+            for (int i = 0; i < n; ++i)
+                scalars.push_back(swizzle(ev, part, std::string(1, "xyzw"[i]), place));
     }
     if (scalars.size() == 1) scalars.assign(static_cast<std::size_t>(size), scalars[0]);
-    if (parts.size() == 1 && scalars.size() > static_cast<std::size_t>(size)) scalars.resize(static_cast<std::size_t>(size));
+    if (parts.size() == 1 && scalars.size() > static_cast<std::size_t>(size))
+        scalars.resize(static_cast<std::size_t>(size));
     if (scalars.size() != static_cast<std::size_t>(size)) {
-        report(ev, Code::BadArgument, place, fmt::format("a vec{} has {} numbers, not {}", size, size, scalars.size()));
+        report(ev, Code::BadArgument, place,
+               fmt::format("a vec{} has {} numbers, not {}", size, size, scalars.size()));
         return poison();
     }
     for (const Value &s : scalars) {
@@ -476,18 +520,20 @@ Value make_vector(Evaluator &ev, const std::vector<Value> &parts, int size, Span
     return from_node(ev, ev.scene.graph.make(Op::Make, ir::vector_type(size), nodes));
 }
 
-// A number that scene time needs. One that hangs on params alone is taken at their present values, and those params
-// become structural: moving them builds the scene anew (semantics.md, 25).
+// A number that scene time needs. One that hangs on params alone is taken at their present values,
+// and those params become structural: moving them builds the scene anew (semantics.md, 25).
 std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place, const char *what) {
     if (v.kind != ValueKind::Field) return v;
     ir::Graph &g = ev.scene.graph;
     ir::Graph::Reads reads = g.reads(node_of(v));
-    if (reads.params && !reads.point && !reads.normal && !reads.direction && !reads.time && !reads.free_vars) {
+    if (reads.params && !reads.point && !reads.normal && !reads.direction && !reads.time &&
+        !reads.free_vars) {
         ir::Substitution values;
         for (std::size_t i = 0; i < ev.scene.params.size(); ++i) {
             ir::Constant c;
             c.type = ev.scene.params[i].type;
-            std::copy(ev.scene.params[i].value.begin(), ev.scene.params[i].value.end(), c.value.begin());
+            std::copy(ev.scene.params[i].value.begin(), ev.scene.params[i].value.end(),
+                      c.value.begin());
             values[ev.param_nodes[i]] = g.constant(c);
         }
         ir::NodeId known = ir::substitute(g, node_of(v), values);
@@ -506,7 +552,9 @@ std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place,
         }
     }
     const char *why = reads.time && !reads.point ? "`time`" : "the point";
-    report(ev, Code::StageMismatch, place, fmt::format("{} has to be known when the scene is read, and this depends on {}", what, why));
+    report(ev, Code::StageMismatch, place,
+           fmt::format("{} has to be known when the scene is read, and this depends on {}", what,
+                       why));
     return std::nullopt;
 }
 

@@ -14,7 +14,8 @@ bool is_library_place(const Evaluator &ev, Span span) {
     return false;
 }
 
-// An error inside the library is the caller's: it is shown at the innermost call that the user wrote.
+// An error inside the library is the caller's: it is shown at the innermost call that the user
+// wrote.
 Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message) {
     static thread_local Diagnostic swallowed;
     if (code_severity(code) == Severity::Error && ev.quiet > 0) {
@@ -32,7 +33,8 @@ Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message) {
         // a generic body is wrong only for this call: say which
         for (std::size_t i = ev.calls.size(); i-- > 0;) {
             const ActiveCall &call = ev.calls[i];
-            if (call.library || call.name.empty() || of_library(call.call) || call.call == place) continue;
+            if (call.library || call.name.empty() || of_library(call.call) || call.call == place)
+                continue;
             d.label(call.call, fmt::format("in this call of `{}`", call.name));
             break;
         }
@@ -40,12 +42,15 @@ Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message) {
     }
     for (std::size_t i = ev.calls.size(); i-- > 0;) {
         if (of_library(ev.calls[i].call)) continue;
-        return ev.diagnostics.add(code, ev.calls[i].call, fmt::format("{}, in `{}`", message, ev.calls[i].name));
+        return ev.diagnostics.add(code, ev.calls[i].call,
+                                  fmt::format("{}, in `{}`", message, ev.calls[i].name));
     }
     return ev.diagnostics.add(code, place, std::move(message));
 }
 
-static const char *vector_name(int size) { return size == 2 ? "vec2" : size == 3 ? "vec3" : "vec4"; }
+static const char *vector_name(int size) {
+    return size == 2 ? "vec2" : size == 3 ? "vec3" : "vec4";
+}
 
 std::string describe(const Evaluator &ev, const Value &v) {
     switch (v.kind) {
@@ -94,7 +99,8 @@ std::string print_value(const Evaluator &ev, const Value &v) {
     case ValueKind::Mat: {
         std::string out = fmt::format("mat{}(", int{v.size});
         for (int i = 0; i < v.size * v.size; ++i)
-            out += (i ? ", " : "") + format_shortest(ev.matrices[v.id][static_cast<std::size_t>(i)]);
+            out +=
+                (i ? ", " : "") + format_shortest(ev.matrices[v.id][static_cast<std::size_t>(i)]);
         return out + ")";
     }
     case ValueKind::String: return ev.strings[v.id];
@@ -109,7 +115,8 @@ std::string print_value(const Evaluator &ev, const Value &v) {
     case ValueKind::Range:
         return v.num[2] == 1 ? fmt::format("{}..{}", v.num[0], v.num[1])
                              : fmt::format("range({}, {}, {})", v.num[0], v.num[1], v.num[2]);
-    case ValueKind::Field: return fmt::format("{} that depends on the point, a param or time", describe(ev, v));
+    case ValueKind::Field:
+        return fmt::format("{} that depends on the point, a param or time", describe(ev, v));
     case ValueKind::Poison:
     case ValueKind::Unit:
     case ValueKind::None:
@@ -135,7 +142,8 @@ bool spend(Evaluator &ev, Span place, std::size_t amount) {
     ev.out_of_budget = true;
     int quiet = std::exchange(ev.quiet, 0); // the one error that no trial may hide
     report(ev, Code::LoopLimit, place, "this scene takes more work than is allowed")
-        .note(fmt::format("scene time may take {} evaluations and {} list elements", max_evaluations, max_list_elements))
+        .note(fmt::format("scene time may take {} evaluations and {} list elements",
+                          max_evaluations, max_list_elements))
         .help("look for a loop or a recursion that does not end where it should");
     ev.quiet = quiet;
     return false;

@@ -1,5 +1,6 @@
-// Blocks and statements, in both places where they stand: a body, whose last expression is its value, and a contributing
-// block (a file, a trailing block, a comprehension), in which every expression counts (semantics.md, 3).
+// Blocks and statements, in both places where they stand: a body, whose last expression is its
+// value, and a contributing block (a file, a trailing block, a comprehension), in which every
+// expression counts (semantics.md, 3).
 #include "typecheck/evaluator.h"
 
 #include <fmt/format.h>
@@ -24,8 +25,10 @@ std::vector<Change> journal_take(Evaluator &ev, JournalMark mark) {
         Change *known = nullptr;
         for (Change &c : changes)
             if (c.frame == entry.frame && c.slot == entry.slot) known = &c;
-        if (known) known->before = entry.old;
-        else changes.push_back({entry.frame, entry.slot, entry.old, binding.value});
+        if (known)
+            known->before = entry.old;
+        else
+            changes.push_back({entry.frame, entry.slot, entry.old, binding.value});
         binding.value = entry.old;
     }
     ev.journal.resize(mark.entries);
@@ -53,54 +56,68 @@ struct Accessor {
 
 } // namespace
 
-static Value store(Evaluator &ev, const Value &old, const std::vector<Accessor> &path, std::size_t k, const Value &value,
-                   Span place);
+static Value store(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+                   std::size_t k, const Value &value, Span place);
 
-static Value store_components(Evaluator &ev, const Value &old, const std::vector<int> &indices, const Value &value,
-                              Span place) {
+static Value store_components(Evaluator &ev, const Value &old, const std::vector<int> &indices,
+                              const Value &value, Span place) {
     int size = ir::components(numeric_type(ev, old));
     std::vector<Value> parts;
-    for (int i = 0; i < size; ++i) parts.push_back(swizzle(ev, old, std::string(1, "xyzw"[i]), place));
+    for (int i = 0; i < size; ++i)
+        parts.push_back(swizzle(ev, old, std::string(1, "xyzw"[i]), place));
     Value source = value;
-    if (is_scalar(ev, value)) source = make_vector(ev, {to_float(ev, value)}, static_cast<int>(std::max<std::size_t>(indices.size(), 2)), place);
+    if (is_scalar(ev, value))
+        source = make_vector(ev, {to_float(ev, value)},
+                             static_cast<int>(std::max<std::size_t>(indices.size(), 2)), place);
     for (std::size_t i = 0; i < indices.size(); ++i)
-        parts[static_cast<std::size_t>(indices[i])] = swizzle(ev, source, std::string(1, "xyzw"[i]), place);
+        parts[static_cast<std::size_t>(indices[i])] =
+            swizzle(ev, source, std::string(1, "xyzw"[i]), place);
     Value out = make_vector(ev, parts, size, place);
     out.color = old.color;
     return out;
 }
 
-static Value store_member(Evaluator &ev, const Value &old, const std::vector<Accessor> &path, std::size_t k,
-                          const Value &value, Span place) {
+static Value store_member(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+                          std::size_t k, const Value &value, Span place) {
     const Accessor &step = path[k];
     auto indices = is_numeric(old) && ir::is_vector(numeric_type(ev, old))
                        ? swizzle_indices(step.letters, ir::components(numeric_type(ev, old)))
                        : std::nullopt;
     if (!indices) {
-        report(ev, Code::UnknownMember, step.span, fmt::format("{} has no component `{}`", describe(ev, old), step.letters));
+        report(ev, Code::UnknownMember, step.span,
+               fmt::format("{} has no component `{}`", describe(ev, old), step.letters));
         return poison();
     }
-    Value part = k + 1 == path.size() ? value : store(ev, swizzle(ev, old, step.letters, step.span), path, k + 1, value, place);
+    Value part = k + 1 == path.size() ? value
+                                      : store(ev, swizzle(ev, old, step.letters, step.span), path,
+                                              k + 1, value, place);
     if (is_poison(part)) return part;
-    bool fits = is_numeric(part) && (is_scalar(ev, part) || (numeric_type(ev, part) == ir::vector_type(int(indices->size()))));
+    bool fits =
+        is_numeric(part) &&
+        (is_scalar(ev, part) || (numeric_type(ev, part) == ir::vector_type(int(indices->size()))));
     if (!fits) {
-        report(ev, Code::TypeMismatch, place, fmt::format("`.{}` holds {} numbers, this is {}", step.letters, indices->size(), describe(ev, part)));
+        report(ev, Code::TypeMismatch, place,
+               fmt::format("`.{}` holds {} numbers, this is {}", step.letters, indices->size(),
+                           describe(ev, part)));
         return poison();
     }
     return store_components(ev, old, *indices, part, place);
 }
 
-static Value store_index(Evaluator &ev, const Value &old, const std::vector<Accessor> &path, std::size_t k, const Value &value,
-                         Span place) {
+static Value store_index(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+                         std::size_t k, const Value &value, Span place) {
     const Accessor &step = path[k];
     bool vector = is_numeric(old) && ir::is_vector(numeric_type(ev, old));
     if (old.kind != ValueKind::List && !vector) {
-        report(ev, Code::TypeMismatch, step.span, fmt::format("only elements of lists and vectors can be set, this is {}", describe(ev, old)));
+        report(ev, Code::TypeMismatch, step.span,
+               fmt::format("only elements of lists and vectors can be set, this is {}",
+                           describe(ev, old)));
         return poison();
     }
     auto i = want_known_int(ev, step.index, step.span, "an index that is assigned to");
     if (!i) return poison();
-    int size = vector ? ir::components(numeric_type(ev, old)) : static_cast<int>(ev.lists[old.id].size());
+    int size =
+        vector ? ir::components(numeric_type(ev, old)) : static_cast<int>(ev.lists[old.id].size());
     if (*i < 0 || *i >= size) {
         report(ev, Code::BadIndex, step.span, fmt::format("index {} of {} elements", *i, size));
         return poison();
@@ -115,10 +132,11 @@ static Value store_index(Evaluator &ev, const Value &old, const std::vector<Acce
     return list_value(ev, std::move(items));
 }
 
-static Value store(Evaluator &ev, const Value &old, const std::vector<Accessor> &path, std::size_t k, const Value &value,
-                   Span place) {
+static Value store(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+                   std::size_t k, const Value &value, Span place) {
     if (k == path.size()) return value;
-    return path[k].is_index ? store_index(ev, old, path, k, value, place) : store_member(ev, old, path, k, value, place);
+    return path[k].is_index ? store_index(ev, old, path, k, value, place)
+                            : store_member(ev, old, path, k, value, place);
 }
 
 // A variable keeps its type, except that a whole number may become a float.
@@ -139,12 +157,15 @@ static bool same_type(Evaluator &ev, Value &old, Value &value) {
     }
     if (is_function(old) && is_function(value)) return true;
     if (old.kind == ValueKind::List || value.kind == ValueKind::List)
-        return (old.kind == ValueKind::List || (is_numeric(old) && ir::is_vector(numeric_type(ev, old)))) &&
-               (value.kind == ValueKind::List || (is_numeric(value) && ir::is_vector(numeric_type(ev, value))));
+        return (old.kind == ValueKind::List ||
+                (is_numeric(old) && ir::is_vector(numeric_type(ev, old)))) &&
+               (value.kind == ValueKind::List ||
+                (is_numeric(value) && ir::is_vector(numeric_type(ev, value))));
     return old.kind == value.kind;
 }
 
-static void run_assign(Evaluator &ev, const lang::Ast &ast, const lang::Assign &node, Span place, std::uint32_t frame) {
+static void run_assign(Evaluator &ev, const lang::Ast &ast, const lang::Assign &node, Span place,
+                       std::uint32_t frame) {
     std::vector<Accessor> path;
     lang::ExprId target = node.target;
     for (;;) {
@@ -155,7 +176,8 @@ static void run_assign(Evaluator &ev, const lang::Ast &ast, const lang::Assign &
         } else if (auto *i = std::get_if<lang::Index>(&e.kind)) {
             path.push_back({true, "", eval(ev, ast, i->index, frame), ast.exprs[i->index].span});
             target = i->object;
-        } else break;
+        } else
+            break;
     }
     std::reverse(path.begin(), path.end());
     Value value = eval(ev, ast, node.value, frame);
@@ -163,18 +185,24 @@ static void run_assign(Evaluator &ev, const lang::Ast &ast, const lang::Assign &
     auto *name = std::get_if<lang::Name>(&base.kind);
     if (!name) {
         if (!std::holds_alternative<lang::Poison>(base.kind))
-            report(ev, Code::NotAssignable, base.span, "only a `var`, or a part of one, can be assigned to");
+            report(ev, Code::NotAssignable, base.span,
+                   "only a `var`, or a part of one, can be assigned to");
         return;
     }
     auto found = find_name(ev, frame, name->text);
     if (!found) {
-        Diagnostic &d = report(ev, Code::UnknownName, base.span, fmt::format("nothing here is called `{}`", name->text));
-        if (!node.op && path.empty()) d.help(fmt::format("declare it: `let {} = …`, or `var {} = …` where it changes", name->text, name->text));
+        Diagnostic &d = report(ev, Code::UnknownName, base.span,
+                               fmt::format("nothing here is called `{}`", name->text));
+        if (!node.op && path.empty())
+            d.help(fmt::format("declare it: `let {} = …`, or `var {} = …` where it changes",
+                               name->text, name->text));
         return;
     }
     const Binding binding = ev.frames[found->frame].bindings[found->slot];
     if (!binding.is_var) {
-        Diagnostic &d = report(ev, Code::NotAssignable, base.span, fmt::format("`{}` was declared with `let` and does not change", name->text));
+        Diagnostic &d =
+            report(ev, Code::NotAssignable, base.span,
+                   fmt::format("`{}` was declared with `let` and does not change", name->text));
         if (binding.declared.source) d.label(binding.declared, "declared here");
         d.help("declare it with `var` inside the function");
         return;
@@ -188,21 +216,27 @@ static void run_assign(Evaluator &ev, const lang::Ast &ast, const lang::Assign &
         Value current = old;
         for (const Accessor &step : path) {
             if (is_poison(current)) break;
-            if (!step.is_index) current = is_numeric(current) ? swizzle(ev, current, step.letters, step.span) : poison();
+            if (!step.is_index)
+                current =
+                    is_numeric(current) ? swizzle(ev, current, step.letters, step.span) : poison();
             else {
                 auto items = want_list(ev, current, step.span, "an index");
                 auto i = want_known_int(ev, step.index, step.span, "an index that is assigned to");
-                current = items && i && *i >= 0 && *i < int(items->size()) ? (*items)[std::size_t(*i)] : poison();
+                current = items && i && *i >= 0 && *i < int(items->size())
+                              ? (*items)[std::size_t(*i)]
+                              : poison();
             }
         }
-        value = arithmetic(ev, *node.op, current, value, place, ast.exprs[node.target].span, ast.exprs[node.value].span);
+        value = arithmetic(ev, *node.op, current, value, place, ast.exprs[node.target].span,
+                           ast.exprs[node.value].span);
         if (is_poison(value)) return;
     }
     if (!path.empty()) value = store(ev, old, path, 0, value, ast.exprs[node.value].span);
     if (is_poison(value)) return;
     if (!same_type(ev, old, value)) {
         Diagnostic &d = report(ev, Code::TypeMismatch, ast.exprs[node.value].span,
-                               fmt::format("`{}` holds {}, this is {}", name->text, describe(ev, old), describe(ev, value)));
+                               fmt::format("`{}` holds {}, this is {}", name->text,
+                                           describe(ev, old), describe(ev, value)));
         if (binding.declared.source) d.label(binding.declared, "declared here");
         return;
     }
@@ -210,14 +244,17 @@ static void run_assign(Evaluator &ev, const lang::Ast &ast, const lang::Assign &
     assign(ev, found->frame, found->slot, value);
 }
 
-// -- statements that are the same everywhere -------------------------------------------------------
+// -- statements that are the same everywhere
+// -------------------------------------------------------
 
-static Value declared_value(Evaluator &ev, const lang::Ast &ast, lang::ExprId value, const std::optional<lang::TypeExpr> &type,
-                            const std::string &name, std::uint32_t frame) {
+static Value declared_value(Evaluator &ev, const lang::Ast &ast, lang::ExprId value,
+                            const std::optional<lang::TypeExpr> &type, const std::string &name,
+                            std::uint32_t frame) {
     Value v = eval(ev, ast, value, frame);
     if (!type || is_poison(v)) return v;
     if (!known_type(*type)) {
-        report(ev, Code::UnknownName, type->span, fmt::format("there is no type `{}`", type_text(*type)));
+        report(ev, Code::UnknownName, type->span,
+               fmt::format("there is no type `{}`", type_text(*type)));
         return v;
     }
     bool ok = true;
@@ -226,45 +263,62 @@ static Value declared_value(Evaluator &ev, const lang::Ast &ast, lang::ExprId va
 
 bool run_simple(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt, std::uint32_t frame) {
     if (auto *l = std::get_if<lang::Let>(&stmt.kind)) {
-        declare(ev, frame, l->name.text, declared_value(ev, ast, l->value, l->type, l->name.text, frame), false, l->name.span);
+        declare(ev, frame, l->name.text,
+                declared_value(ev, ast, l->value, l->type, l->name.text, frame), false,
+                l->name.span);
     } else if (auto *v = std::get_if<lang::Var>(&stmt.kind)) {
         if (ev.frames[frame].is_module)
-            report(ev, Code::WrongPlace, stmt.span, "`var` stands inside a function; at the top of a file names do not change")
+            report(ev, Code::WrongPlace, stmt.span,
+                   "`var` stands inside a function; at the top of a file names do not change")
                 .help("write `let`");
         Value value = declared_value(ev, ast, v->value, v->type, v->name.text, frame);
         value.ints = false;
         declare(ev, frame, v->name.text, value, true, v->name.span);
     } else if (auto *a = std::get_if<lang::Assign>(&stmt.kind)) {
         run_assign(ev, ast, *a, stmt.span, frame);
-    } else if (std::holds_alternative<lang::Bad>(stmt.kind) || std::holds_alternative<lang::FunctionDecl>(stmt.kind)) {
+    } else if (std::holds_alternative<lang::Bad>(stmt.kind) ||
+               std::holds_alternative<lang::FunctionDecl>(stmt.kind)) {
     } else if (auto *p = std::get_if<lang::Param>(&stmt.kind)) {
-        if (ev.frames[frame].is_module) declare_param(ev, ast, *p, frame);
-        else report(ev, Code::WrongPlace, stmt.span, "a `param` stands at the top of a file");
+        if (ev.frames[frame].is_module)
+            declare_param(ev, ast, *p, frame);
+        else
+            report(ev, Code::WrongPlace, stmt.span, "a `param` stands at the top of a file");
     } else if (auto *i = std::get_if<lang::Import>(&stmt.kind)) {
-        if (ev.frames[frame].is_module) import_module(ev, *i, stmt.span, ev.current_module);
-        else report(ev, Code::WrongPlace, stmt.span, "an `import` stands at the top of a file");
-    } else return false;
+        if (ev.frames[frame].is_module)
+            import_module(ev, *i, stmt.span, ev.current_module);
+        else
+            report(ev, Code::WrongPlace, stmt.span, "an `import` stands at the top of a file");
+    } else
+        return false;
     return true;
 }
 
 // -- bodies --------------------------------------------------------------------------------------
 
-static Exit run_from(Evaluator &ev, const lang::Ast &ast, const lang::Block &block, std::size_t at, std::uint32_t frame, Value &last);
+static Exit run_from(Evaluator &ev, const lang::Ast &ast, const lang::Block &block, std::size_t at,
+                     std::uint32_t frame, Value &last);
 
-static Exit sequence(Evaluator &ev, const Exit &first, Span place, const std::function<Exit()> &rest) {
+static Exit sequence(Evaluator &ev, const Exit &first, Span place,
+                     const std::function<Exit()> &rest) {
     Value left = logical_or(ev, first.returned, first.broke);
     if (left.kind == ValueKind::Bool && left.num[0] != 0) return first;
     Exit second = left.kind == ValueKind::Bool ? rest() : run_unless(ev, left, place, rest);
     Exit out;
-    out.returned = logical_or(ev, first.returned, logical_and(ev, logical_not(ev, first.broke), second.returned));
-    out.broke = logical_or(ev, first.broke, logical_and(ev, logical_not(ev, first.returned), second.broke));
+    out.returned = logical_or(ev, first.returned,
+                              logical_and(ev, logical_not(ev, first.broke), second.returned));
+    out.broke =
+        logical_or(ev, first.broke, logical_and(ev, logical_not(ev, first.returned), second.broke));
     out.value = second.value;
     if (!is(first.returned, ValueKind::Bool)) {
         bool second_never = second.returned.kind == ValueKind::Bool && second.returned.num[0] == 0;
-        if (second_never) out.value = first.value;
-        else if (auto merged = select_value(ev, first.returned, first.value, second.value)) out.value = *merged;
+        if (second_never)
+            out.value = first.value;
+        else if (auto merged = select_value(ev, first.returned, first.value, second.value))
+            out.value = *merged;
         else {
-            report(ev, Code::StageMismatch, place, "what this returns is chosen by the point, so both ways have to give numbers of one type");
+            report(ev, Code::StageMismatch, place,
+                   "what this returns is chosen by the point, so both ways have to give numbers of "
+                   "one type");
             out.value = poison();
         }
     }
@@ -276,11 +330,14 @@ static Value dropped(Evaluator &ev, const Value &v, Span place) {
         report(ev, Code::UnusedShape, place, "this shape is made and dropped")
             .note("in a function's body only the last expression is its value")
             .help("unite them: `union { … }` around them, or `|` between them");
-    if (v.kind == ValueKind::Setting) report(ev, Code::WrongPlace, place, "a scene setting stands at the top of the scene's file");
+    if (v.kind == ValueKind::Setting)
+        report(ev, Code::WrongPlace, place,
+               "a scene setting stands at the top of the scene's file");
     return v;
 }
 
-static Exit run_one(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt, bool is_last, std::uint32_t frame, Value &last) {
+static Exit run_one(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt, bool is_last,
+                    std::uint32_t frame, Value &last) {
     Exit exit;
     last = unit();
     if (run_simple(ev, ast, stmt, frame)) return exit;
@@ -289,7 +346,8 @@ static Exit run_one(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt,
             Outcome out = run_if(ev, ast, *choice, frame, stmt.span);
             last = out.value;
             exit = out.exit;
-        } else last = eval(ev, ast, e->value, frame);
+        } else
+            last = eval(ev, ast, e->value, frame);
         if (!is_last) dropped(ev, last, stmt.span), last = unit();
     } else if (auto *f = std::get_if<lang::For>(&stmt.kind)) {
         exit = run_for(ev, ast, *f, frame, stmt.span).exit;
@@ -304,13 +362,15 @@ static Exit run_one(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt,
     return exit;
 }
 
-static Exit run_from(Evaluator &ev, const lang::Ast &ast, const lang::Block &block, std::size_t at, std::uint32_t frame, Value &last) {
+static Exit run_from(Evaluator &ev, const lang::Ast &ast, const lang::Block &block, std::size_t at,
+                     std::uint32_t frame, Value &last) {
     Exit exit;
     for (std::size_t i = at; i < block.stmts.size(); ++i) {
         exit = run_one(ev, ast, block.stmts[i], i + 1 == block.stmts.size(), frame, last);
         Value left = logical_or(ev, exit.returned, exit.broke);
         if (left.kind == ValueKind::Bool && left.num[0] == 0) continue;
-        return sequence(ev, exit, block.stmts[i].span, [&] { return run_from(ev, ast, block, i + 1, frame, last); });
+        return sequence(ev, exit, block.stmts[i].span,
+                        [&] { return run_from(ev, ast, block, i + 1, frame, last); });
     }
     return exit;
 }
@@ -330,7 +390,9 @@ Exit run_unless(Evaluator &ev, const Value &skip, Span place, const std::functio
     for (const Change &c : journal_take(ev, mark)) {
         auto merged = select_value(ev, skip, c.before, c.after);
         if (!merged) {
-            report(ev, Code::StageMismatch, place, "what is assigned after this hangs on the point, so it has to be numbers of one type");
+            report(ev, Code::StageMismatch, place,
+                   "what is assigned after this hangs on the point, so it has to be numbers of one "
+                   "type");
             merged = poison();
         }
         assign(ev, c.frame, c.slot, *merged);
@@ -341,11 +403,13 @@ Exit run_unless(Evaluator &ev, const Value &skip, Span place, const std::functio
 // -- choice --------------------------------------------------------------------------------------
 
 // nullopt: not a condition. Params alone decide now where the arms cannot be merged.
-static std::optional<Value> condition_value(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, std::uint32_t frame) {
+static std::optional<Value> condition_value(Evaluator &ev, const lang::Ast &ast, lang::ExprId id,
+                                            std::uint32_t frame) {
     Value v = eval(ev, ast, id, frame);
     if (is_poison(v)) return std::nullopt;
     if (is_numeric(v) && numeric_type(ev, v) == ir::Type::Bool) return v;
-    Diagnostic &d = report(ev, Code::TypeMismatch, ast.exprs[id].span, fmt::format("a condition is a bool, this is {}", describe(ev, v)));
+    Diagnostic &d = report(ev, Code::TypeMismatch, ast.exprs[id].span,
+                           fmt::format("a condition is a bool, this is {}", describe(ev, v)));
     if (is_scalar(ev, v)) d.help("compare it: `x != 0`");
     return std::nullopt;
 }
@@ -355,11 +419,13 @@ static bool params_only(Evaluator &ev, const Value &v) {
     return r.params && !r.point && !r.normal && !r.direction && !r.time && !r.free_vars;
 }
 
-static Outcome run_otherwise(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::size_t branch, std::uint32_t frame, Span place);
+static Outcome run_otherwise(Evaluator &ev, const lang::Ast &ast, const lang::If &node,
+                             std::size_t branch, std::uint32_t frame, Span place);
 
 // Both arms, each on its own, merged by the condition. Fails (nullopt) where they are not numbers.
-static std::optional<Outcome> run_both(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::size_t branch,
-                                       const Value &condition, std::uint32_t frame, Span place) {
+static std::optional<Outcome> run_both(Evaluator &ev, const lang::Ast &ast, const lang::If &node,
+                                       std::size_t branch, const Value &condition,
+                                       std::uint32_t frame, Span place) {
     JournalMark mark = journal_mark(ev);
     Outcome a = run_block(ev, ast, node.branches[branch].body, frame);
     std::vector<Change> in_a = journal_take(ev, mark);
@@ -375,34 +441,50 @@ static std::optional<Outcome> run_both(Evaluator &ev, const lang::Ast &ast, cons
     };
     auto never = [](const Value &v) { return v.kind == ValueKind::Bool && v.num[0] == 0; };
     auto always = [](const Value &v) { return v.kind == ValueKind::Bool && v.num[0] != 0; };
-    bool a_leaves = always(a.exit.returned) || always(a.exit.broke), b_leaves = always(b.exit.returned) || always(b.exit.broke);
-    if (a_leaves) out.value = b.value;
-    else if (b_leaves) out.value = a.value;
-    else if (a.value.kind == ValueKind::Unit || b.value.kind == ValueKind::Unit) out.value = unit();
-    else out.value = merge(a.value, b.value);
+    bool a_leaves = always(a.exit.returned) || always(a.exit.broke),
+         b_leaves = always(b.exit.returned) || always(b.exit.broke);
+    if (a_leaves)
+        out.value = b.value;
+    else if (b_leaves)
+        out.value = a.value;
+    else if (a.value.kind == ValueKind::Unit || b.value.kind == ValueKind::Unit)
+        out.value = unit();
+    else
+        out.value = merge(a.value, b.value);
     out.exit.returned = merge(a.exit.returned, b.exit.returned);
     out.exit.broke = merge(a.exit.broke, b.exit.broke);
-    if (never(a.exit.returned)) out.exit.value = b.exit.value;
-    else if (never(b.exit.returned)) out.exit.value = a.exit.value;
-    else out.exit.value = merge(a.exit.value, b.exit.value);
+    if (never(a.exit.returned))
+        out.exit.value = b.exit.value;
+    else if (never(b.exit.returned))
+        out.exit.value = a.exit.value;
+    else
+        out.exit.value = merge(a.exit.value, b.exit.value);
     std::vector<Change> merged;
     for (const Change &c : in_a) {
         Value other = c.before;
         for (const Change &d : in_b)
             if (d.frame == c.frame && d.slot == c.slot) other = d.after;
-        merged.push_back({c.frame, c.slot, c.before, a_leaves ? other : b_leaves ? c.after : merge(c.after, other)});
+        merged.push_back({c.frame, c.slot, c.before,
+                          a_leaves   ? other
+                          : b_leaves ? c.after
+                                     : merge(c.after, other)});
     }
     for (const Change &d : in_b) {
         bool seen = false;
         for (const Change &c : in_a) seen = seen || (c.frame == d.frame && c.slot == d.slot);
-        if (!seen) merged.push_back({d.frame, d.slot, d.before, a_leaves ? d.after : b_leaves ? d.before : merge(d.before, d.after)});
+        if (!seen)
+            merged.push_back({d.frame, d.slot, d.before,
+                              a_leaves   ? d.after
+                              : b_leaves ? d.before
+                                         : merge(d.before, d.after)});
     }
     if (!ok) return std::nullopt;
     for (const Change &c : merged) assign(ev, c.frame, c.slot, c.after);
     return out;
 }
 
-static Outcome run_branches(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::size_t branch, std::uint32_t frame, Span place) {
+static Outcome run_branches(Evaluator &ev, const lang::Ast &ast, const lang::If &node,
+                            std::size_t branch, std::uint32_t frame, Span place) {
     auto condition = condition_value(ev, ast, node.branches[branch].condition, frame);
     if (!condition) {
         Outcome out;
@@ -410,7 +492,8 @@ static Outcome run_branches(Evaluator &ev, const lang::Ast &ast, const lang::If 
         return out;
     }
     if (condition->kind == ValueKind::Field && ev.in_field == 0 && params_only(ev, *condition)) {
-        // outside of fields the arms are tried as numbers first, once; else the param's present value decides
+        // outside of fields the arms are tried as numbers first, once; else the param's present
+        // value decides
         if (ev.quiet == 0) {
             ++ev.quiet;
             std::size_t errors = std::exchange(ev.quiet_errors, 0);
@@ -420,7 +503,8 @@ static Outcome run_branches(Evaluator &ev, const lang::Ast &ast, const lang::If 
             --ev.quiet;
             if (!failed) return *both;
         }
-        auto known = element_as_known(ev, *condition, ast.exprs[node.branches[branch].condition].span, "this condition");
+        auto known = element_as_known(
+            ev, *condition, ast.exprs[node.branches[branch].condition].span, "this condition");
         if (known) condition = known;
     }
     if (condition->kind == ValueKind::Bool) {
@@ -429,28 +513,34 @@ static Outcome run_branches(Evaluator &ev, const lang::Ast &ast, const lang::If 
     }
     if (auto both = run_both(ev, ast, node, branch, *condition, frame, place)) return *both;
     report(ev, Code::StageMismatch, ast.exprs[node.branches[branch].condition].span,
-           "this condition hangs on the point or on time, so both arms have to give numbers of one type")
-        .help("choose between shapes with their fields: `blend(a, b, p => …)`, or cut them with `within:` or `&`");
+           "this condition hangs on the point or on time, so both arms have to give numbers of one "
+           "type")
+        .help("choose between shapes with their fields: `blend(a, b, p => …)`, or cut them with "
+              "`within:` or `&`");
     Outcome out;
     out.value = poison();
     return out;
 }
 
-static Outcome run_otherwise(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::size_t branch, std::uint32_t frame, Span place) {
+static Outcome run_otherwise(Evaluator &ev, const lang::Ast &ast, const lang::If &node,
+                             std::size_t branch, std::uint32_t frame, Span place) {
     if (branch < node.branches.size()) return run_branches(ev, ast, node, branch, frame, place);
     if (node.otherwise) return run_block(ev, ast, *node.otherwise, frame);
     return {};
 }
 
-Outcome run_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::uint32_t frame, Span place) {
+Outcome run_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::uint32_t frame,
+               Span place) {
     return run_branches(ev, ast, node, 0, frame, place);
 }
 
 // -- contributing blocks -------------------------------------------------------------------------
 
-static bool contribute_stmt(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt, std::uint32_t frame, std::vector<Contribution> &out);
+static bool contribute_stmt(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt,
+                            std::uint32_t frame, std::vector<Contribution> &out);
 
-bool contribute_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame, std::vector<Contribution> &out) {
+bool contribute_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame,
+                      std::vector<Contribution> &out) {
     hoist_functions(ev, ast, block, frame);
     for (const lang::Stmt &stmt : ast.blocks[block].stmts) {
         if (!spend(ev, stmt.span)) return true;
@@ -459,28 +549,33 @@ bool contribute_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, 
     return false;
 }
 
-static bool contribute_inner(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t parent, std::vector<Contribution> &out) {
+static bool contribute_inner(Evaluator &ev, const lang::Ast &ast, lang::BlockId block,
+                             std::uint32_t parent, std::vector<Contribution> &out) {
     std::uint32_t frame = push_frame(ev, parent);
     bool broke = contribute_block(ev, ast, block, frame, out);
     pop_frame(ev, frame);
     return broke;
 }
 
-static bool contribute_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::uint32_t frame, std::vector<Contribution> &out) {
+static bool contribute_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node,
+                          std::uint32_t frame, std::vector<Contribution> &out) {
     for (const lang::IfBranch &branch : node.branches) {
         auto condition = condition_value(ev, ast, branch.condition, frame);
         if (!condition) return false;
-        auto known = element_as_known(ev, *condition, ast.exprs[branch.condition].span, "a condition that decides which shapes there are");
+        auto known = element_as_known(ev, *condition, ast.exprs[branch.condition].span,
+                                      "a condition that decides which shapes there are");
         if (!known) return false;
         if (known->num[0] != 0) return contribute_inner(ev, ast, branch.body, frame, out);
     }
     return node.otherwise ? contribute_inner(ev, ast, *node.otherwise, frame, out) : false;
 }
 
-static bool contribute_stmt(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt, std::uint32_t frame, std::vector<Contribution> &out) {
+static bool contribute_stmt(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt,
+                            std::uint32_t frame, std::vector<Contribution> &out) {
     if (run_simple(ev, ast, stmt, frame)) return false;
     if (auto *e = std::get_if<lang::ExprStmt>(&stmt.kind)) {
-        if (auto *choice = std::get_if<lang::If>(&ast.exprs[e->value].kind)) return contribute_if(ev, ast, *choice, frame, out);
+        if (auto *choice = std::get_if<lang::If>(&ast.exprs[e->value].kind))
+            return contribute_if(ev, ast, *choice, frame, out);
         Value v = eval(ev, ast, e->value, frame);
         if (v.kind != ValueKind::Unit) out.push_back({v, stmt.span});
     } else if (auto *f = std::get_if<lang::For>(&stmt.kind)) {
@@ -496,11 +591,13 @@ static bool contribute_stmt(Evaluator &ev, const lang::Ast &ast, const lang::Stm
             if (broke) break;
         }
     } else if (std::holds_alternative<lang::While>(stmt.kind)) {
-        report(ev, Code::WrongPlace, stmt.span, "`while` stands inside a function").help("use `for`, or a function that calls itself");
+        report(ev, Code::WrongPlace, stmt.span, "`while` stands inside a function")
+            .help("use `for`, or a function that calls itself");
     } else if (std::holds_alternative<lang::Break>(stmt.kind)) {
         return true;
     } else if (std::holds_alternative<lang::Return>(stmt.kind)) {
-        report(ev, Code::WrongPlace, stmt.span, "`return` stands inside a function; here every expression counts");
+        report(ev, Code::WrongPlace, stmt.span,
+               "`return` stands inside a function; here every expression counts");
     }
     return false;
 }
@@ -511,7 +608,8 @@ std::optional<std::vector<Value>> sequence_items(Evaluator &ev, const Value &v, 
     if (v.kind == ValueKind::Range) {
         double count = std::max(0.0, std::ceil((v.num[1] - v.num[0]) / v.num[2]));
         if (count > 10'000'000 || !spend(ev, place, static_cast<std::size_t>(count))) {
-            report(ev, Code::LoopLimit, place, fmt::format("a range of {:.0f} numbers is too long", count));
+            report(ev, Code::LoopLimit, place,
+                   fmt::format("a range of {:.0f} numbers is too long", count));
             return std::nullopt;
         }
         std::vector<Value> items;
@@ -520,10 +618,13 @@ std::optional<std::vector<Value>> sequence_items(Evaluator &ev, const Value &v, 
     }
     if (is_numeric(v) && ir::is_vector(numeric_type(ev, v))) {
         std::vector<Value> items;
-        for (int i = 0; i < ir::components(numeric_type(ev, v)); ++i) items.push_back(swizzle(ev, v, std::string(1, "xyzw"[i]), place));
+        for (int i = 0; i < ir::components(numeric_type(ev, v)); ++i)
+            items.push_back(swizzle(ev, v, std::string(1, "xyzw"[i]), place));
         return items;
     }
-    Diagnostic &d = report(ev, Code::TypeMismatch, place, fmt::format("a loop runs over a range or a list, this is {}", describe(ev, v)));
+    Diagnostic &d =
+        report(ev, Code::TypeMismatch, place,
+               fmt::format("a loop runs over a range or a list, this is {}", describe(ev, v)));
     if (is_scalar(ev, v)) d.help("write a range: `0..n`");
     return std::nullopt;
 }

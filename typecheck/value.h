@@ -1,6 +1,7 @@
-// What an expression of the language is while it is evaluated. A number is either known now (scene time) or a node of
-// the graph (parameter or field time): one evaluator serves both, and what is known is computed, the rest is lowered.
-// Values are plain data; lists, strings, closures and the like live in the evaluator's arenas and are named by index.
+// What an expression of the language is while it is evaluated. A number is either known now (scene
+// time) or a node of the graph (parameter or field time): one evaluator serves both, and what is
+// known is computed, the rest is lowered. Values are plain data; lists, strings, closures and the
+// like live in the evaluator's arenas and are named by index.
 #pragma once
 
 #include "ir/shape.h"
@@ -41,7 +42,8 @@ struct Value {
     ValueKind kind = ValueKind::Poison;
     std::uint8_t size = 0;
     bool color = false; // Vec of 3, or Field of Vec3, that is a colour
-    bool ints = false;  // Vec from a literal of whole numbers: its elements are ints where it is used as a list
+    bool ints = false;  // Vec from a literal of whole numbers: its elements are ints where it is
+                        // used as a list
     std::uint32_t id = 0;
     std::array<double, 4> num{};
 
