@@ -1,9 +1,11 @@
-// Closed intervals of doubles that round outward: an operation's result holds every value that the operation takes on
-// its arguments. Functions are found by argument-dependent look-up, so that a template written for numbers
-// (ir/semantics.h) works on intervals too. An interval may reach to infinity. Knows nothing of graphs.
+// Closed intervals of doubles that round outward: an operation's result holds every value that the
+// operation takes on its arguments. Functions are found by argument-dependent look-up, so that a
+// template written for numbers (ir/semantics.h) works on intervals too. An interval may reach to
+// infinity. Knows nothing of graphs.
 //
-// Rounding: IEEE operations are right to half a unit in the last place and get one outward; the C library's functions
-// are taken to be right to 4 (glibc's documented errors for these are at most 2) and get 8.
+// Rounding: IEEE operations are right to half a unit in the last place and get one outward; the C
+// library's functions are taken to be right to 4 (glibc's documented errors for these are at most
+// 2) and get 8.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +42,9 @@ inline double down(double x, double units = 1) {
     return x - (std::fabs(x) * (units * 0x1p-52) + std::numeric_limits<double>::denorm_min());
 }
 inline double up(double x, double units = 1) { return -down(-x, units); }
-inline double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; } // 0 * infinity is 0 here
+inline double times(double a, double b) {
+    return a == 0 || b == 0 ? 0 : a * b;
+} // 0 * infinity is 0 here
 constexpr double library = 8;
 } // namespace rounding
 
@@ -55,7 +59,9 @@ inline Interval outward(double lo, double hi, double units = 1) {
     if (std::isnan(hi)) hi = rounding::infinity;
     return {rounding::down(lo, units), rounding::up(hi, units)};
 }
-inline Interval hull(Interval a, Interval b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
+inline Interval hull(Interval a, Interval b) {
+    return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
+}
 // Of two enclosures of one value; where rounding has set them apart, the second is kept.
 inline Interval meet(Interval a, Interval b) {
     Interval r{std::max(a.lo, b.lo), std::min(a.hi, b.hi)};
@@ -74,16 +80,21 @@ inline Interval operator*(Interval a, Interval b) {
     if ((a.lo == 0 && a.hi == 0) || (b.lo == 0 && b.hi == 0)) return 0.0;
     if (a.lo == 1 && a.hi == 1) return b;
     if (b.lo == 1 && b.hi == 1) return a;
-    double p = times(a.lo, b.lo), q = times(a.lo, b.hi), r = times(a.hi, b.lo), s = times(a.hi, b.hi);
-    return outward(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
+    double p = times(a.lo, b.lo), q = times(a.lo, b.hi), r = times(a.hi, b.lo),
+           s = times(a.hi, b.hi);
+    return outward(std::min(std::min(p, q), std::min(r, s)),
+                   std::max(std::max(p, q), std::max(r, s)));
 }
 inline Interval operator/(Interval a, Interval b) {
     if (b.contains(0)) return a.lo == 0 && a.hi == 0 ? Interval(0.0) : Interval::everything();
     if (b.lo == 1 && b.hi == 1) return a;
-    auto over = [](double x, double y) { return std::isinf(y) ? (std::isinf(x) ? NAN : 0.0) : x / y; };
+    auto over = [](double x, double y) {
+        return std::isinf(y) ? (std::isinf(x) ? NAN : 0.0) : x / y;
+    };
     double p = over(a.lo, b.lo), q = over(a.lo, b.hi), r = over(a.hi, b.lo), s = over(a.hi, b.hi);
     if (std::isnan(p + q + r + s)) return Interval::everything();
-    return outward(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
+    return outward(std::min(std::min(p, q), std::min(r, s)),
+                   std::max(std::max(p, q), std::max(r, s)));
 }
 inline Interval &operator+=(Interval &a, Interval b) { return a = a + b; }
 
@@ -108,7 +119,9 @@ inline Interval floor(Interval a) { return {std::floor(a.lo), std::floor(a.hi)};
 inline Interval ceil(Interval a) { return {std::ceil(a.lo), std::ceil(a.hi)}; }
 inline Interval trunc(Interval a) { return {std::trunc(a.lo), std::trunc(a.hi)}; }
 
-inline Interval monotone(double (*f)(double), Interval a) { return outward(f(a.lo), f(a.hi), rounding::library); }
+inline Interval monotone(double (*f)(double), Interval a) {
+    return outward(f(a.lo), f(a.hi), rounding::library);
+}
 inline Interval exp(Interval a) {
     Interval r = monotone(std::exp, a);
     return {std::max(r.lo, 0.0), r.hi};
@@ -118,10 +131,12 @@ inline Interval exp2(Interval a) {
     return {std::max(r.lo, 0.0), r.hi};
 }
 inline Interval log(Interval a) { // of the positive part
-    return a.hi <= 0 ? Interval::everything() : outward(std::log(std::max(a.lo, 0.0)), std::log(a.hi), rounding::library);
+    return a.hi <= 0 ? Interval::everything()
+                     : outward(std::log(std::max(a.lo, 0.0)), std::log(a.hi), rounding::library);
 }
 inline Interval log2(Interval a) {
-    return a.hi <= 0 ? Interval::everything() : outward(std::log2(std::max(a.lo, 0.0)), std::log2(a.hi), rounding::library);
+    return a.hi <= 0 ? Interval::everything()
+                     : outward(std::log2(std::max(a.lo, 0.0)), std::log2(a.hi), rounding::library);
 }
 inline Interval sinh(Interval a) { return monotone(std::sinh, a); }
 inline Interval cosh(Interval a) {
@@ -131,14 +146,16 @@ inline Interval cosh(Interval a) {
 }
 inline Interval tanh(Interval a) { return meet({-1, 1}, monotone(std::tanh, a)); }
 inline Interval atan(Interval a) { return monotone(std::atan, a); }
-inline Interval asin(Interval a) { return monotone(std::asin, {std::clamp(a.lo, -1.0, 1.0), std::clamp(a.hi, -1.0, 1.0)}); }
+inline Interval asin(Interval a) {
+    return monotone(std::asin, {std::clamp(a.lo, -1.0, 1.0), std::clamp(a.hi, -1.0, 1.0)});
+}
 inline Interval acos(Interval a) {
     double lo = std::clamp(a.lo, -1.0, 1.0), hi = std::clamp(a.hi, -1.0, 1.0);
     return outward(std::acos(hi), std::acos(lo), rounding::library);
 }
 
-// cos has its maxima at 2 pi k and its minima between them; k is counted a little generously, so that a rounded
-// quotient never loses one.
+// cos has its maxima at 2 pi k and its minima between them; k is counted a little generously, so
+// that a rounded quotient never loses one.
 inline Interval cos(Interval a) {
     constexpr double tau = 6.283185307179586476925;
     if (!a.finite() || a.width() >= tau || a.magnitude() > 1e9) return {-1, 1};
@@ -173,10 +190,11 @@ inline Interval whole_power(Interval a, int n) {
 // x^y for x >= 0 (the part of `a` below 0 is left out).
 inline Interval positive_power(Interval a, Interval y) {
     double lo = std::max(a.lo, 0.0), hi = std::max(a.hi, 0.0);
-    double p = std::pow(lo, y.lo), q = std::pow(lo, y.hi), r = std::pow(hi, y.lo), s = std::pow(hi, y.hi);
+    double p = std::pow(lo, y.lo), q = std::pow(lo, y.hi), r = std::pow(hi, y.lo),
+           s = std::pow(hi, y.hi);
     if (std::isnan(p + q + r + s)) return Interval::everything();
-    Interval v = outward(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)),
-                         rounding::library);
+    Interval v = outward(std::min(std::min(p, q), std::min(r, s)),
+                         std::max(std::max(p, q), std::max(r, s)), rounding::library);
     if (lo <= 1 && hi >= 1) v = hull(v, 1.0);
     return {std::max(v.lo, 0.0), v.hi};
 }

@@ -1,5 +1,5 @@
-// Each rule of the analysis in a case where its bound is attained: never exceeded, nearly reached, and wrong at once when
-// the rule is halved.
+// Each rule of the analysis in a case where its bound is attained: never exceeded, nearly reached,
+// and wrong at once when the rule is halved.
 #include "build.h"
 #include "ir/lower.h"
 #include "tests/support/slopes.h"
@@ -39,44 +39,81 @@ Slopes run(const Case &test, double factor, double &proved) {
     return measure(s.scene, {-r, -r, -r}, {r, r, r}, 100'000);
 }
 
-ShapeId off_axis(Scenery &s, double x) { return s.add(translated(s.g, s.sphere(0.4), s.g.vec3(x, 0, 0))); }
+ShapeId off_axis(Scenery &s, double x) {
+    return s.add(translated(s.g, s.sphere(0.4), s.g.vec3(x, 0, 0)));
+}
 
 std::vector<Case> cases() {
     std::vector<Case> out;
-    out.push_back({"twist", Rule::Twist, [](Scenery &s) { return s.add(twisted(s.g, off_axis(s, 1), s.n(3), 1)); }, 0.95});
-    out.push_back({"twist of a box", Rule::Twist, [](Scenery &s) { return s.add(twisted(s.g, s.box(1.2, 5, 1.2), s.n(2), 1)); }, 0.95});
-    out.push_back({"bend", Rule::Bend, [](Scenery &s) { return s.add(bent(s.g, off_axis(s, 1), s.n(3), 1, 0)); }, 0.95});
-    out.push_back({"taper", Rule::Taper, [](Scenery &s) { return s.add(tapered(s.g, s.sphere(0.5), s.n(0), s.n(-5), s.n(5), 1)); }, 0.9, 6});
-    out.push_back({"distort", Rule::Distort, [](Scenery &s) {
-                       return s.add(distorted(s.g, s.sphere(1), s.vec(s.g.add(s.x, s.y), s.y, s.z)));
-                   }, 0.95});
-    out.push_back({"displace", Rule::Displace, [](Scenery &s) {
-                       return s.add(ShapeKind::Displace, {s.sphere(1)}, {s.g.mul(s.n(0.3), s.sin(s.g.mul(s.n(5), s.x)))});
-                   }, 0.95});
-    out.push_back({"blend with a varying weight", Rule::LerpVarying, [](Scenery &s) {
+    out.push_back({"twist", Rule::Twist,
+                   [](Scenery &s) { return s.add(twisted(s.g, off_axis(s, 1), s.n(3), 1)); },
+                   0.95});
+    out.push_back({"twist of a box", Rule::Twist,
+                   [](Scenery &s) { return s.add(twisted(s.g, s.box(1.2, 5, 1.2), s.n(2), 1)); },
+                   0.95});
+    out.push_back({"bend", Rule::Bend,
+                   [](Scenery &s) { return s.add(bent(s.g, off_axis(s, 1), s.n(3), 1, 0)); },
+                   0.95});
+    out.push_back(
+        {"taper", Rule::Taper,
+         [](Scenery &s) { return s.add(tapered(s.g, s.sphere(0.5), s.n(0), s.n(-5), s.n(5), 1)); },
+         0.9, 6});
+    out.push_back({"distort", Rule::Distort,
+                   [](Scenery &s) {
+                       return s.add(
+                           distorted(s.g, s.sphere(1), s.vec(s.g.add(s.x, s.y), s.y, s.z)));
+                   },
+                   0.95});
+    out.push_back({"displace", Rule::Displace,
+                   [](Scenery &s) {
+                       return s.add(ShapeKind::Displace, {s.sphere(1)},
+                                    {s.g.mul(s.n(0.3), s.sin(s.g.mul(s.n(5), s.x)))});
+                   },
+                   0.95});
+    out.push_back({"blend with a varying weight", Rule::LerpVarying,
+                   [](Scenery &s) {
                        NodeId t = s.g.add(s.n(0.5), s.g.mul(s.n(0.5), s.sin(s.g.mul(s.n(2), s.x))));
-                       return s.add(ShapeKind::Lerp, {s.sphere(1), s.add(translated(s.g, s.sphere(1), s.g.vec3(2, 0, 0)))}, {t});
-                   }, 0.9, 6});
-    out.push_back({"columns", Rule::Columns, [](Scenery &s) {
-                       return s.add(ShapeKind::Blend, {s.sphere(1), s.sphere(1)}, {s.n(0.5), s.n(1)}, static_cast<std::uint32_t>(Profile::Columns));
-                   }, 0.95});
-    out.push_back({"pipe", Rule::Pipe, [](Scenery &s) {
-                       return s.add(ShapeKind::Seam, {s.sphere(1), s.sphere(1)}, {s.n(0.1)}, static_cast<std::uint32_t>(SeamKind::Pipe));
-                   }, 0.95});
-    out.push_back({"pseudo-norm", Rule::PseudoNorm, [](Scenery &s) {
+                       return s.add(
+                           ShapeKind::Lerp,
+                           {s.sphere(1), s.add(translated(s.g, s.sphere(1), s.g.vec3(2, 0, 0)))},
+                           {t});
+                   },
+                   0.9, 6});
+    out.push_back({"columns", Rule::Columns,
+                   [](Scenery &s) {
+                       return s.add(ShapeKind::Blend, {s.sphere(1), s.sphere(1)},
+                                    {s.n(0.5), s.n(1)},
+                                    static_cast<std::uint32_t>(Profile::Columns));
+                   },
+                   0.95});
+    out.push_back({"pipe", Rule::Pipe,
+                   [](Scenery &s) {
+                       return s.add(ShapeKind::Seam, {s.sphere(1), s.sphere(1)}, {s.n(0.1)},
+                                    static_cast<std::uint32_t>(SeamKind::Pipe));
+                   },
+                   0.95});
+    out.push_back({"pseudo-norm", Rule::PseudoNorm,
+                   [](Scenery &s) {
                        return s.add(ShapeKind::PseudoNorm, {s.sphere(1), s.sphere(1)}, {s.n(2)});
-                   }, 0.95});
-    out.push_back({"field", Rule::Field, [](Scenery &s) {
+                   },
+                   0.95});
+    out.push_back({"field", Rule::Field,
+                   [](Scenery &s) {
                        NodeId q = s.g.mul(s.p, s.n(3));
-                       return s.leaf(s.g.make(Op::Dot, {s.sin(q), s.cos(s.g.swizzle(q, std::array{2, 0, 1}))}));
-                   }, 0.85});
-    out.push_back({"repeat", Rule::RepeatNeighbors, [](Scenery &s) {
+                       return s.leaf(s.g.make(
+                           Op::Dot, {s.sin(q), s.cos(s.g.swizzle(q, std::array{2, 0, 1}))}));
+                   },
+                   0.85});
+    out.push_back({"repeat", Rule::RepeatNeighbors,
+                   [](Scenery &s) {
                        Repetition r;
                        r.along = {true, false, false};
                        s.scene.shapes.repetitions.push_back(r);
-                       return s.add(ShapeKind::Repeat, {s.add(translated(s.g, s.sphere(0.15), s.g.vec3(0.3, 0, 0)))},
+                       return s.add(ShapeKind::Repeat,
+                                    {s.add(translated(s.g, s.sphere(0.15), s.g.vec3(0.3, 0, 0)))},
                                     {s.g.vec3(1, 0, 0), s.g.vec3(1e9, 1, 1)}, 0);
-                   }, 0.95});
+                   },
+                   0.95});
     return out;
 }
 
@@ -87,7 +124,8 @@ TEST_CASE("no rule is exceeded, each is nearly attained, and none can be halved"
         SECTION(test.name) {
             double proved = 0, weakened = 0;
             Slopes truth = run(test, 1, proved);
-            std::cout << test.name << ": proved " << proved << ", sampled/proved " << truth.steepest << "\n";
+            std::cout << test.name << ": proved " << proved << ", sampled/proved " << truth.steepest
+                      << "\n";
             CHECK(truth.unsafe == 0);
             CHECK(truth.steepest <= 1 + 1e-3);
             CHECK(truth.steepest >= test.attained);
@@ -105,43 +143,57 @@ TEST_CASE("kinds that must not lengthen, in float32") {
     std::vector<Plain> plain;
     for (int profile = 0; profile < 4; ++profile)
         plain.push_back({"profile " + std::to_string(profile), [profile](Scenery &s) {
-                             return s.add(ShapeKind::Blend, {s.sphere(1), s.add(translated(s.g, s.box(1, 1.5, 1), s.g.vec3(1, 0.3, 0)))},
+                             return s.add(ShapeKind::Blend,
+                                          {s.sphere(1), s.add(translated(s.g, s.box(1, 1.5, 1),
+                                                                         s.g.vec3(1, 0.3, 0)))},
                                           {s.n(0.5), s.n(3)}, static_cast<std::uint32_t>(profile));
                          }});
     for (int seam = 1; seam < 4; ++seam)
         plain.push_back({"seam " + std::to_string(seam), [seam](Scenery &s) {
-                             return s.add(ShapeKind::Seam, {s.sphere(1), s.add(translated(s.g, s.box(1, 1.5, 1), s.g.vec3(1, 0.3, 0)))},
+                             return s.add(ShapeKind::Seam,
+                                          {s.sphere(1), s.add(translated(s.g, s.box(1, 1.5, 1),
+                                                                         s.g.vec3(1, 0.3, 0)))},
                                           {s.n(0.2), s.n(0.1)}, static_cast<std::uint32_t>(seam));
                          }});
     plain.push_back({"within", [](Scenery &s) {
                          NodeId f = s.g.sub(s.g.mul(s.x, s.x), s.g.mul(s.n(0.5), s.y));
                          return s.within(s.leaf(f), s.ball(1.5));
                      }});
-    plain.push_back({"scale by a vector", [](Scenery &s) { return s.add(scaled(s.g, s.box(1, 1, 1), s.g.vec3(0.5, 2, 1))); }});
-    plain.push_back({"xor", [](Scenery &s) { return s.add(ShapeKind::Xor, {s.sphere(1), off_axis(s, 0.8)}); }});
+    plain.push_back({"scale by a vector", [](Scenery &s) {
+                         return s.add(scaled(s.g, s.box(1, 1, 1), s.g.vec3(0.5, 2, 1)));
+                     }});
+    plain.push_back({"xor", [](Scenery &s) {
+                         return s.add(ShapeKind::Xor, {s.sphere(1), off_axis(s, 0.8)});
+                     }});
     plain.push_back({"copies that differ", [](Scenery &s) {
                          Repetition r;
                          r.along = {true, false, true};
                          r.id = s.g.fresh_var(Type::Vec3);
                          s.scene.shapes.repetitions.push_back(r);
                          NodeId h = s.call(Op::Hash, r.id);
-                         ShapeId motif = s.add(translated(s.g, s.box(0.4, 1, 0.4), s.vec(s.g.mul(s.n(0.2), h), h, s.n(0))));
-                         return s.add(ShapeKind::Repeat, {motif}, {s.g.vec3(1, 0, 1), s.g.vec3(1e9, 1, 1e9)}, 0);
+                         ShapeId motif = s.add(translated(s.g, s.box(0.4, 1, 0.4),
+                                                          s.vec(s.g.mul(s.n(0.2), h), h, s.n(0))));
+                         return s.add(ShapeKind::Repeat, {motif},
+                                      {s.g.vec3(1, 0, 1), s.g.vec3(1e9, 1, 1e9)}, 0);
                      }});
-    plain.push_back({"a wide motif", [](Scenery &s) {
-                         Repetition r;
-                         r.along = {true, false, false};
-                         s.scene.shapes.repetitions.push_back(r);
-                         ShapeId motif = s.add(rotated(s.g, s.box(3, 0.2, 0.2), rotation(s.g, s.g.vec3(0, 0, 1), s.n(0.5))));
-                         return s.add(ShapeKind::Repeat, {motif}, {s.g.vec3(1, 0, 0), s.g.vec3(1e9, 1, 1)}, 0);
-                     }});
+    plain.push_back(
+        {"a wide motif", [](Scenery &s) {
+             Repetition r;
+             r.along = {true, false, false};
+             s.scene.shapes.repetitions.push_back(r);
+             ShapeId motif = s.add(
+                 rotated(s.g, s.box(3, 0.2, 0.2), rotation(s.g, s.g.vec3(0, 0, 1), s.n(0.5))));
+             return s.add(ShapeKind::Repeat, {motif}, {s.g.vec3(1, 0, 0), s.g.vec3(1e9, 1, 1)}, 0);
+         }});
     for (int n : {2, 3, 5, 12})
         plain.push_back({"a ring of " + std::to_string(n), [n](Scenery &s) {
                              Repetition r;
                              r.polar = true;
                              r.axis = 1;
                              s.scene.shapes.repetitions.push_back(r);
-                             ShapeId motif = s.add(rotated(s.g, s.box(0.3, 0.5, 0.15), rotation(s.g, s.g.vec3(0, 1, 0), s.n(0.4))));
+                             ShapeId motif =
+                                 s.add(rotated(s.g, s.box(0.3, 0.5, 0.15),
+                                               rotation(s.g, s.g.vec3(0, 1, 0), s.n(0.4))));
                              motif = s.add(translated(s.g, motif, s.g.vec3(1, 0, 0.1)));
                              return s.add(ShapeKind::Repeat, {motif}, {s.g.integer(n)}, 0);
                          }});
@@ -150,20 +202,30 @@ TEST_CASE("kinds that must not lengthen, in float32") {
                          r.polar = true;
                          r.axis = 2;
                          s.scene.shapes.repetitions.push_back(r);
-                         ShapeId motif = s.add(translated(s.g, s.add(scaled(s.g, s.sphere(0.4), s.g.vec3(1, 0.4, 2))), s.g.vec3(1, 0.2, 0)));
+                         ShapeId motif = s.add(
+                             translated(s.g, s.add(scaled(s.g, s.sphere(0.4), s.g.vec3(1, 0.4, 2))),
+                                        s.g.vec3(1, 0.2, 0)));
                          return s.add(ShapeKind::Repeat, {motif}, {s.g.integer(7)}, 0);
                      }});
     plain.push_back({"a twist of a union, by lever arm", [](Scenery &s) {
-                         ShapeId arm = s.add(rotated(s.g, s.box(0.3, 0.3, 2), rotation(s.g, s.g.vec3(1, 1, 0), s.n(0.7))));
-                         ShapeId both = s.add(ShapeKind::Union, {s.add(translated(s.g, arm, s.g.vec3(0.7, 0, 0))), s.box(0.5, 3, 0.5)});
+                         ShapeId arm = s.add(rotated(s.g, s.box(0.3, 0.3, 2),
+                                                     rotation(s.g, s.g.vec3(1, 1, 0), s.n(0.7))));
+                         ShapeId both = s.add(ShapeKind::Union,
+                                              {s.add(translated(s.g, arm, s.g.vec3(0.7, 0, 0))),
+                                               s.box(0.5, 3, 0.5)});
                          return s.add(twisted(s.g, both, s.n(1.5), 1));
                      }});
-    plain.push_back({"a taper of a box", [](Scenery &s) { return s.add(tapered(s.g, s.box(1.2, 5, 1.2), s.n(0.3), s.n(-2.5), s.n(2.5), 1)); }});
+    plain.push_back({"a taper of a box", [](Scenery &s) {
+                         return s.add(
+                             tapered(s.g, s.box(1.2, 5, 1.2), s.n(0.3), s.n(-2.5), s.n(2.5), 1));
+                     }});
     plain.push_back({"a bend of what only bounds", [](Scenery &s) {
                          ShapeId flat = s.add(scaled(s.g, s.sphere(1), s.g.vec3(1, 0.3, 0.5)));
                          return s.add(bent(s.g, flat, s.n(0.7), 0, 1));
                      }});
-    plain.push_back({"a bend of a long box", [](Scenery &s) { return s.add(bent(s.g, s.box(1.2, 5, 1.2), s.n(0.3), 1, 0)); }});
+    plain.push_back({"a bend of a long box", [](Scenery &s) {
+                         return s.add(bent(s.g, s.box(1.2, 5, 1.2), s.n(0.3), 1, 0));
+                     }});
     for (const Plain &test : plain) {
         SECTION(test.name) {
             for (bool guards : {false, true}) {
@@ -177,9 +239,13 @@ TEST_CASE("kinds that must not lengthen, in float32") {
                     for (ShapeFact &fact : s.scene.facts) fact.guard = false;
                 lower(s.scene);
                 Slopes found = measure(s.scene, {-3, -3, -3}, {3, 3, 3}, 100'000);
-                if (!guards) std::cout << test.name << ": proved " << proved << ", sampled/proved " << found.steepest << "\n";
-                INFO("at " << found.where[0] << " " << found.where[1] << " " << found.where[2] << "; unsafe by " << found.unsafe_by
-                           << " from " << found.unsafe_center[0] << " " << found.unsafe_center[1] << " " << found.unsafe_center[2]);
+                if (!guards)
+                    std::cout << test.name << ": proved " << proved << ", sampled/proved "
+                              << found.steepest << "\n";
+                INFO("at " << found.where[0] << " " << found.where[1] << " " << found.where[2]
+                           << "; unsafe by " << found.unsafe_by << " from "
+                           << found.unsafe_center[0] << " " << found.unsafe_center[1] << " "
+                           << found.unsafe_center[2]);
                 CHECK(found.unsafe == 0);
                 CHECK(found.steepest <= 1 + 1e-3);
             }

@@ -1,6 +1,7 @@
-// The property that everything rests on, measured: a marched distance never exceeds the way to the surface (the safe
-// ball), and is nowhere steeper than 1. Random balls, pairs of points at all distances, and ascent on the gradient's
-// length; the same points every time. Evaluates with the CPU back end, in float32.
+// The property that everything rests on, measured: a marched distance never exceeds the way to the
+// surface (the safe ball), and is nowhere steeper than 1. Random balls, pairs of points at all
+// distances, and ascent on the gradient's length; the same points every time. Evaluates with the
+// CPU back end, in float32.
 #pragma once
 
 #include "backend-cpu/tape.h"
@@ -16,18 +17,19 @@ namespace fathom::test {
 using Point3 = std::array<double, 3>;
 
 struct Slopes {
-    double steepest = 0;      // of the gradient's length and of pairs' slopes
+    double steepest = 0; // of the gradient's length and of pairs' slopes
     Point3 where{};
     int balls = 0, unsafe = 0; // balls, and those in which the field changes its sign
     Point3 unsafe_center{}, unsafe_point{};
-    double unsafe_by = 0;     // distance asked for over the way actually there, at most
+    double unsafe_by = 0; // distance asked for over the way actually there, at most
 };
 
 class Sampler {
   public:
     Sampler(const ir::Scene &scene, double time = 0)
         : program_(cpu::compile(scene, scene.distance)), inputs_(cpu::inputs_of(scene, time)),
-          scratch_(cpu::make_scratch(program_, inputs_)), gradients_(cpu::make_gradient_scratch(program_, inputs_)) {}
+          scratch_(cpu::make_scratch(program_, inputs_)),
+          gradients_(cpu::make_gradient_scratch(program_, inputs_)) {}
 
     std::vector<float> values(const std::vector<Point3> &points) {
         auto [x, y, z] = split(points);
@@ -44,7 +46,8 @@ class Sampler {
         const float *in[3] = {x.data(), y.data(), z.data()};
         float *to[4] = {v.data(), dx.data(), dy.data(), dz.data()};
         cpu::evaluate_gradient(program_, gradients_, in, to, points.size());
-        for (std::size_t i = 0; i < v.size(); ++i) v[i] = std::sqrt(dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i]);
+        for (std::size_t i = 0; i < v.size(); ++i)
+            v[i] = std::sqrt(dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i]);
         return v;
     }
 
@@ -81,12 +84,14 @@ class Sampler {
     std::uint64_t state_ = 7;
 };
 
-// float32 loses some units in the last place of the coordinates and of the field; `rounding` is that, absolutely.
+// float32 loses some units in the last place of the coordinates and of the field; `rounding` is
+// that, absolutely.
 inline Slopes measure(const ir::Scene &scene, Point3 lo, Point3 hi, int count, double time = 0) {
     Sampler sampler(scene, time);
     Slopes out;
     double size = 0;
-    for (std::size_t i = 0; i < 3; ++i) size = std::max({size, std::fabs(lo[i]), std::fabs(hi[i]), hi[i] - lo[i]});
+    for (std::size_t i = 0; i < 3; ++i)
+        size = std::max({size, std::fabs(lo[i]), std::fabs(hi[i]), hi[i] - lo[i]});
     const double rounding = 2e-5 * std::max(1.0, size);
     const int batch = 1024;
     std::vector<std::pair<float, Point3>> best;
@@ -98,7 +103,8 @@ inline Slopes measure(const ir::Scene &scene, Point3 lo, Point3 hi, int count, d
             best.emplace_back(g[i], p[i]);
             q.push_back(sampler.in_ball(p[i], std::min<double>(std::fabs(d[i]), 4 * size)));
         }
-        std::partial_sort(best.begin(), best.begin() + std::min<std::ptrdiff_t>(32, std::ssize(best)), best.end(),
+        std::partial_sort(best.begin(),
+                          best.begin() + std::min<std::ptrdiff_t>(32, std::ssize(best)), best.end(),
                           [](const auto &a, const auto &b) { return a.first > b.first; });
         best.resize(std::min<std::size_t>(best.size(), 32));
         std::vector<float> e = sampler.values(q);
@@ -107,7 +113,8 @@ inline Slopes measure(const ir::Scene &scene, Point3 lo, Point3 hi, int count, d
             for (std::size_t k = 0; k < 3; ++k) run += (p[i][k] - q[i][k]) * (p[i][k] - q[i][k]);
             run = std::sqrt(run);
             ++out.balls;
-            if ((d[i] < 0) != (e[i] < 0) && std::fabs(e[i]) > rounding && std::fabs(d[i]) > rounding) {
+            if ((d[i] < 0) != (e[i] < 0) && std::fabs(e[i]) > rounding &&
+                std::fabs(d[i]) > rounding) {
                 // the way to the sign change is at most `run`
                 if (out.unsafe == 0 || std::fabs(d[i]) / run > out.unsafe_by) {
                     out.unsafe_by = std::fabs(d[i]) / run;

@@ -1,5 +1,5 @@
-// Borders by substitution: where the condition compares u with v, the arms are rewritten for u = v and compared as
-// polynomials in whatever they are made of.
+// Borders by substitution: where the condition compares u with v, the arms are rewritten for u = v
+// and compared as polynomials in whatever they are made of.
 #include "typecheck/proof/continuity.h"
 
 #include <algorithm>
@@ -15,7 +15,8 @@ using ir::Graph;
 using ir::NodeId;
 using ir::Op;
 
-// Sum of coefficient * product of atoms; an atom is a node that is not itself a sum or product of numbers.
+// Sum of coefficient * product of atoms; an atom is a node that is not itself a sum or product of
+// numbers.
 using Monomial = std::vector<NodeId>; // sorted, repeats allowed
 using Polynomial = std::map<Monomial, double>;
 constexpr std::size_t most_terms = 64;
@@ -41,9 +42,10 @@ std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Poly
             Monomial product = m;
             product.insert(product.end(), n.begin(), n.end());
             std::sort(product.begin(), product.end());
-            auto twice = std::adjacent_find(product.begin(), product.end(), [&](NodeId u, NodeId v) {
-                return u == v && graph[u].op == Op::Abs;
-            });
+            auto twice =
+                std::adjacent_find(product.begin(), product.end(), [&](NodeId u, NodeId v) {
+                    return u == v && graph[u].op == Op::Abs;
+                });
             if (twice != product.end()) {
                 auto inner = polynomial(graph, graph.arg(*twice, 0));
                 product.erase(twice, twice + 2);
@@ -61,7 +63,10 @@ std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Poly
     return out;
 }
 
-bool by_component(Op op) { return ir::info(op).rule == ir::TypeRule::Same && op != Op::Cross && op != Op::Normalize && op != Op::Transpose; }
+bool by_component(Op op) {
+    return ir::info(op).rule == ir::TypeRule::Same && op != Op::Cross && op != Op::Normalize &&
+           op != Op::Transpose;
+}
 
 std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
     const ir::Node node = graph[id];
@@ -94,7 +99,8 @@ std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
                 return a;
             }
         if (node.op == Op::Pow)
-            if (auto c = graph.as_number(graph.arg(id, 1)); c && std::floor(*c) == *c && *c >= 1 && *c <= 6) {
+            if (auto c = graph.as_number(graph.arg(id, 1));
+                c && std::floor(*c) == *c && *c >= 1 && *c <= 6) {
                 auto a = sub(0);
                 auto out = a;
                 for (int i = 1; a && out && i < int(*c); ++i) out = multiply(graph, *out, *a);
@@ -114,7 +120,8 @@ std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
             return sum;
         }
         if (node.op == Op::Swizzle) {
-            NodeId inner = component_of(graph, graph.arg(id, 0), ir::swizzle_component(node.payload, 0));
+            NodeId inner =
+                component_of(graph, graph.arg(id, 0), ir::swizzle_component(node.payload, 0));
             if (inner != id) return polynomial(graph, inner, depth + 1);
         }
         if (by_component(node.op) && node.count > 0) { // the same function of arguments in one form
@@ -129,7 +136,8 @@ std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
     return Polynomial{{{id}, 1.0}};
 }
 
-// Sums of products of doubles that are equal in exact arithmetic may differ by rounding of this relative size.
+// Sums of products of doubles that are equal in exact arithmetic may differ by rounding of this
+// relative size.
 constexpr double rounding = 1e-12;
 
 bool same(Graph &graph, NodeId a, NodeId b) {
@@ -137,7 +145,8 @@ bool same(Graph &graph, NodeId a, NodeId b) {
     const ir::Node x = graph[a], y = graph[b];
     if (x.type != y.type) return false;
     if (x.type != ir::Type::Float) { // by component, where both are made of them
-        if (x.op != y.op || x.count != y.count || x.payload != y.payload || x.count == 0) return false;
+        if (x.op != y.op || x.count != y.count || x.payload != y.payload || x.count == 0)
+            return false;
         for (int i = 0; i < int(x.count); ++i)
             if (!same(graph, graph.arg(a, i), graph.arg(b, i))) return false;
         return true;
@@ -194,12 +203,15 @@ std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {
 
 NodeId component_of(Graph &graph, NodeId vector, int i) {
     const ir::Node node = graph[vector];
-    if (node.op == Op::Swizzle) return component_of(graph, graph.arg(vector, 0), ir::swizzle_component(node.payload, i));
+    if (node.op == Op::Swizzle)
+        return component_of(graph, graph.arg(vector, 0), ir::swizzle_component(node.payload, i));
     if (node.op == Op::Splat) return graph.arg(vector, 0);
-    if (ir::is_vector(node.type) && node.count > 0 && ir::info(node.op).rule == ir::TypeRule::Same && node.op != Op::Cross &&
+    if (ir::is_vector(node.type) && node.count > 0 &&
+        ir::info(node.op).rule == ir::TypeRule::Same && node.op != Op::Cross &&
         node.op != Op::Normalize) {
         std::vector<NodeId> parts;
-        for (int k = 0; k < int(node.count); ++k) parts.push_back(component_of(graph, graph.arg(vector, k), i));
+        for (int k = 0; k < int(node.count); ++k)
+            parts.push_back(component_of(graph, graph.arg(vector, k), i));
         return graph.make(node.op, ir::Type::Float, parts, node.payload);
     }
     return graph.component(vector, i);
@@ -214,7 +226,8 @@ bool keeps_length(Graph &graph, NodeId q) {
     NodeId p = graph.point(graph[q].type);
     Polynomial sum;
     for (int i = 0; i < ir::components(graph[q].type); ++i) {
-        auto a = polynomial(graph, component_of(graph, q, i)), b = polynomial(graph, graph.component(p, i));
+        auto a = polynomial(graph, component_of(graph, q, i)),
+             b = polynomial(graph, graph.component(p, i));
         if (!a || !b) return false;
         auto x = multiply(graph, *a, *a), y = multiply(graph, *b, *b);
         if (!x || !y) return false;

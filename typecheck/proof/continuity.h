@@ -1,5 +1,5 @@
-// Expressions as polynomials in what they are made of: do the two arms of a choice agree where the choice turns, does
-// a fold keep lengths? Decided on the expressions, never by sampling.
+// Expressions as polynomials in what they are made of: do the two arms of a choice agree where the
+// choice turns, does a fold keep lengths? Decided on the expressions, never by sampling.
 #pragma once
 
 #include "ir/graph.h"
@@ -8,7 +8,8 @@
 
 namespace fathom::proof {
 
-// True where `condition ? a : b` is proved continuous across the condition's border, given that a and b are.
+// True where `condition ? a : b` is proved continuous across the condition's border, given that a
+// and b are.
 bool arms_agree(ir::Graph &graph, ir::NodeId condition, ir::NodeId a, ir::NodeId b);
 
 // One component of a vector, written with scalars as far as that goes.

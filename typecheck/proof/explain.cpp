@@ -95,22 +95,30 @@ double own_factor(const ir::Scene &scene, ShapeId id) {
 std::string rule_text(const ir::Scene &scene, ShapeId id, Prover &prover) {
     const Shape shape = scene.shapes[id];
     const ir::ShapeFact &fact = scene.facts[id.index];
-    auto child = [&](std::size_t i = 0) -> const ir::ShapeFact & { return scene.facts[shape.children[i].index]; };
+    auto child = [&](std::size_t i = 0) -> const ir::ShapeFact & {
+        return scene.facts[shape.children[i].index];
+    };
     auto span = [](Interval x) {
         return x.is_point() ? number_text(x.lo) : number_text(x.lo) + ".." + number_text(x.hi);
     };
     switch (shape.kind) {
     case ShapeKind::Map:
         switch (shape.map) {
-        case MapKind::Translate: case MapKind::Rotate: case MapKind::Fold: case MapKind::Revolve: return "a rigid map keeps the slope";
+        case MapKind::Translate:
+        case MapKind::Rotate:
+        case MapKind::Fold:
+        case MapKind::Revolve: return "a rigid map keeps the slope";
         case MapKind::Scale: return "the factor takes back what the map adds";
         case MapKind::Twist:
             return "shear by rate " + span(prover.number(shape.args[2])) + " * lever arm " +
                    number_text(child().lever[shape.axis]);
         case MapKind::Bend:
             return "1 + rate " + span(prover.number(shape.args[2])) + " * lever arm " +
-                   number_text(child().lever[static_cast<std::size_t>(3 - shape.axis - shape.towards)]);
-        case MapKind::Taper: return "the cross-section's factor changes from 1 to " + span(prover.number(shape.args[2]));
+                   number_text(
+                       child().lever[static_cast<std::size_t>(3 - shape.axis - shape.towards)]);
+        case MapKind::Taper:
+            return "the cross-section's factor changes from 1 to " +
+                   span(prover.number(shape.args[2]));
         case MapKind::Distort: return "the largest stretch of the map, over its region";
         }
         break;
@@ -119,20 +127,36 @@ std::string rule_text(const ir::Scene &scene, ShapeId id, Prover &prover) {
         if (shape.estimate > 0) return "estimated";
         return "the steepest slope of the field over its region";
     case ShapeKind::Displace: return "the displacement's slope is added";
-    case ShapeKind::Lerp: return "the steeper field, and the weight's slope times how far the two differ";
-    case ShapeKind::Seam: case ShapeKind::Blend: case ShapeKind::PseudoNorm:
-        return own_factor(scene, id) > 1.0001 ? "both fields' slopes, weighed by this profile" : "a mean of the fields' slopes";
-    case ShapeKind::Library: return opaque(scene, id) ? "stated in the library, beside its proof" : "its body's";
+    case ShapeKind::Lerp:
+        return "the steeper field, and the weight's slope times how far the two differ";
+    case ShapeKind::Seam:
+    case ShapeKind::Blend:
+    case ShapeKind::PseudoNorm:
+        return own_factor(scene, id) > 1.0001 ? "both fields' slopes, weighed by this profile"
+                                              : "a mean of the fields' slopes";
+    case ShapeKind::Library:
+        return opaque(scene, id) ? "stated in the library, beside its proof" : "its body's";
     case ShapeKind::Within: return "the field inside, the distance to the region outside";
     case ShapeKind::Repeat: {
         std::string copies;
         for (int n : fact.repeat.neighbors)
             if (n > 0) copies += (copies.empty() ? "" : " * ") + std::to_string(n);
-        return copies + (copies == "1" ? " copy" : " copies") + " evaluated" + (fact.repeat.guard ? ", and the distance to the rest" : "");
+        return copies + (copies == "1" ? " copy" : " copies") + " evaluated" +
+               (fact.repeat.guard ? ", and the distance to the rest" : "");
     }
-    case ShapeKind::Empty: case ShapeKind::Union: case ShapeKind::Intersection: case ShapeKind::Complement: case ShapeKind::Xor:
-    case ShapeKind::Offset: case ShapeKind::Shell: case ShapeKind::Extrude: case ShapeKind::Paint: case ShapeKind::Repaint:
-    case ShapeKind::Mixed: case ShapeKind::Many: case ShapeKind::Contract: break;
+    case ShapeKind::Empty:
+    case ShapeKind::Union:
+    case ShapeKind::Intersection:
+    case ShapeKind::Complement:
+    case ShapeKind::Xor:
+    case ShapeKind::Offset:
+    case ShapeKind::Shell:
+    case ShapeKind::Extrude:
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint:
+    case ShapeKind::Mixed:
+    case ShapeKind::Many:
+    case ShapeKind::Contract: break;
     }
     return "the steepest part's slope";
 }
@@ -142,21 +166,27 @@ std::string region_text(const ir::Scene &scene, ShapeId id, Prover &prover) {
     const Place &place = prover.place(id);
     const Zone *zone = place.zone;
     if (shape.kind == ShapeKind::Within) return "everywhere";
-    auto three = [](const Vec &v) { return point_text({v[0].middle(), v[1].middle(), v[2].middle()}); };
-    if (zone)
-        switch (zone->kind) {
+    auto three = [](const Vec &v) {
+        return point_text({v[0].middle(), v[1].middle(), v[2].middle()});
+    };
+    if (zone) switch (zone->kind) {
         case ir::RegionKind::Everywhere: return "everywhere";
         case ir::RegionKind::Ball:
-            return "ball(" + number_text(zone->half[0].hi) + (three(zone->center) == "[0, 0, 0]" ? ")" : ", at: " + three(zone->center) + ")") +
+            return "ball(" + number_text(zone->half[0].hi) +
+                   (three(zone->center) == "[0, 0, 0]" ? ")"
+                                                       : ", at: " + three(zone->center) + ")") +
                    (zone->less.empty() ? "" : " less others");
-        case ir::RegionKind::Tube: return std::string("tube(") + "XYZ"[zone->axis] + ", " + number_text(zone->half[0].hi) + ")";
+        case ir::RegionKind::Tube:
+            return std::string("tube(") + "XYZ"[zone->axis] + ", " + number_text(zone->half[0].hi) +
+                   ")";
         case ir::RegionKind::Box: break;
         }
     if (everywhere(place.box)) return "everywhere";
     return "aabb(" + point_text(place.box.lo) + ", " + point_text(place.box.hi) + ")";
 }
 
-Explanation explained(const ir::Scene &scene, ShapeId id, Prover &prover, double total, bool worst, int depth) {
+Explanation explained(const ir::Scene &scene, ShapeId id, Prover &prover, double total, bool worst,
+                      int depth) {
     const Shape &shape = scene.shapes[id];
     Explanation out;
     out.shape = id;
@@ -167,7 +197,8 @@ Explanation explained(const ir::Scene &scene, ShapeId id, Prover &prover, double
     out.region = region_text(scene, id, prover);
     out.place = shape.origin;
     out.worst = worst;
-    if (worst && total > 1 && std::isfinite(total) && out.factor > 1) out.share = std::log(out.factor) / std::log(total);
+    if (worst && total > 1 && std::isfinite(total) && out.factor > 1)
+        out.share = std::log(out.factor) / std::log(total);
     ShapeId below = steepest(scene, id);
     if (below && depth < 200)
         for (ShapeId c : shape.children) {
@@ -184,7 +215,8 @@ std::vector<std::string> Prover::chain(ShapeId id) {
     for (ShapeId at = id; at; at = steepest(scene, at)) {
         double factor = own_factor(scene, at);
         if (factor > 1 + 1e-6 || factor < 1 - 1e-6)
-            out.push_back(operation_name(scene, at) + " makes it " + number_text(factor) + " times as steep: " + number_text(steepness(scene, at)));
+            out.push_back(operation_name(scene, at) + " makes it " + number_text(factor) +
+                          " times as steep: " + number_text(steepness(scene, at)));
     }
     return out;
 }

@@ -1,4 +1,5 @@
-// Branch and bound: the cell with the greatest bound is cut in two until the bound is near the largest slope seen.
+// Branch and bound: the cell with the greatest bound is cut in two until the bound is near the
+// largest slope seen.
 #include "typecheck/proof/field.h"
 
 #include <algorithm>
@@ -22,10 +23,12 @@ Cell outer_box(const Zone &zone) {
     switch (zone.kind) {
     case ir::RegionKind::Everywhere: break;
     case ir::RegionKind::Ball:
-        for (std::size_t i = 0; i < 3; ++i) cell.p[i] = zone.center[i] + Interval(-zone.half[0].hi, zone.half[0].hi);
+        for (std::size_t i = 0; i < 3; ++i)
+            cell.p[i] = zone.center[i] + Interval(-zone.half[0].hi, zone.half[0].hi);
         break;
     case ir::RegionKind::Box:
-        for (std::size_t i = 0; i < 3; ++i) cell.p[i] = zone.center[i] + Interval(-zone.half[i].hi, zone.half[i].hi);
+        for (std::size_t i = 0; i < 3; ++i)
+            cell.p[i] = zone.center[i] + Interval(-zone.half[i].hi, zone.half[i].hi);
         break;
     case ir::RegionKind::Tube:
         for (std::size_t i = 0; i < 3; ++i)
@@ -41,14 +44,16 @@ Interval distance_squared(const Zone &zone, const Cell &cell) {
     Interval sum;
     for (std::size_t i = 0; i < 3; ++i)
         if (zone.kind != ir::RegionKind::Tube || int(i) != zone.axis)
-            sum += square(zone.kind == ir::RegionKind::Tube ? cell.p[i] : cell.p[i] - zone.center[i]);
+            sum +=
+                square(zone.kind == ir::RegionKind::Tube ? cell.p[i] : cell.p[i] - zone.center[i]);
     return sum;
 }
 bool inside(const Zone &zone, const Cell &cell) { // certainly all of the cell
     switch (zone.kind) {
     case ir::RegionKind::Everywhere: return true;
     case ir::RegionKind::Ball:
-    case ir::RegionKind::Tube: return distance_squared(zone, cell).hi < zone.half[0].lo * zone.half[0].lo * (1 - 1e-12);
+    case ir::RegionKind::Tube:
+        return distance_squared(zone, cell).hi < zone.half[0].lo * zone.half[0].lo * (1 - 1e-12);
     case ir::RegionKind::Box:
         for (std::size_t i = 0; i < 3; ++i)
             if ((cell.p[i] - zone.center[i]).magnitude() >= zone.half[i].lo) return false;
@@ -63,7 +68,8 @@ struct Candidate {
     Cell cell;
     Interval value;
 };
-struct Worse { // finite bounds: the greatest first; infinite ones: the deepest, so that trouble is found soon
+struct Worse { // finite bounds: the greatest first; infinite ones: the deepest, so that trouble is
+               // found soon
     bool operator()(const Candidate &a, const Candidate &b) const {
         if (a.bound != b.bound) return a.bound < b.bound;
         return a.depth < b.depth;
@@ -73,7 +79,9 @@ struct Worse { // finite bounds: the greatest first; infinite ones: the deepest,
 std::array<double, 3> middle(const Cell &cell) {
     return {cell.p[0].middle(), cell.p[1].middle(), cell.p[2].middle()};
 }
-Cell at_point(const std::array<double, 3> &p) { return {{Interval(p[0]), Interval(p[1]), Interval(p[2])}}; }
+Cell at_point(const std::array<double, 3> &p) {
+    return {{Interval(p[0]), Interval(p[1]), Interval(p[2])}};
+}
 
 double widest(const Cell &cell, const std::array<bool, 3> &reads, int *axis) {
     double most = -1;
@@ -113,17 +121,20 @@ bool misses(const Zone &zone, const Cell &cell) {
     case ir::RegionKind::Everywhere: break;
     case ir::RegionKind::Ball:
     case ir::RegionKind::Tube:
-        if (distance_squared(zone, cell).lo > zone.half[0].hi * zone.half[0].hi * (1 + 1e-12)) return true;
+        if (distance_squared(zone, cell).lo > zone.half[0].hi * zone.half[0].hi * (1 + 1e-12))
+            return true;
         break;
     case ir::RegionKind::Box:
         for (std::size_t i = 0; i < 3; ++i)
             if ((cell.p[i] - zone.center[i]).mignitude() > zone.half[i].hi) return true;
         break;
     }
-    return std::any_of(zone.less.begin(), zone.less.end(), [&](const Zone &z) { return inside(z, cell); });
+    return std::any_of(zone.less.begin(), zone.less.end(),
+                       [&](const Zone &z) { return inside(z, cell); });
 }
 
-FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field, const Domain &domain, const Budget &budget) {
+FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
+                       const Domain &domain, const Budget &budget) {
     FieldBound out;
     Tape tape = flatten(context, field);
     if (tape.too_large) {
@@ -151,7 +162,8 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field, 
         if (outside(at_point(p))) return;
         machine.run(at_point(p));
         ++out.evaluations;
-        if (machine.norm() != infinity) out.sampled = std::max(out.sampled, machine.norm() * (1 - 1e-9));
+        if (machine.norm() != infinity)
+            out.sampled = std::max(out.sampled, machine.norm() * (1 - 1e-9));
     };
     Dice dice{0x5eed};
     for (int k = 0; k < 24; ++k) {
@@ -184,9 +196,11 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field, 
         double width = widest(top.cell, periods.reads, &axis);
         auto k = static_cast<std::size_t>(axis);
         std::array<double, 3> centre = middle(top.cell);
-        double size = std::max({std::fabs(centre[0]), std::fabs(centre[1]), std::fabs(centre[2]), 1.0});
+        double size =
+            std::max({std::fabs(centre[0]), std::fabs(centre[1]), std::fabs(centre[2]), 1.0});
         bool endless = !std::isfinite(width);
-        if (top.bound == infinity && (width <= 1e-7 * size || (endless && top.depth > 60) || machine.work() > 4 * limit)) {
+        if (top.bound == infinity &&
+            (width <= 1e-7 * size || (endless && top.depth > 60) || machine.work() > 4 * limit)) {
             machine.run(top.cell);
             out.lipschitz = infinity;
             out.value = hull(settled_value, top.value);
@@ -222,7 +236,8 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field, 
     return out;
 }
 
-double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar, const Domain &domain, const Budget &budget) {
+double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
+                       const Domain &domain, const Budget &budget) {
     Tape tape = flatten(context, scalar);
     if (tape.too_large) return infinity;
     Machine machine(tape, ranges);
@@ -233,9 +248,11 @@ double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
         if (domain.zone && misses(*domain.zone, cell)) return;
         machine.run(cell);
         Interval value = machine.value(0);
-        double reach = 0; // by the mean value theorem no value is further from the middle's than that
+        double reach =
+            0; // by the mean value theorem no value is further from the middle's than that
         for (std::size_t i = 0; i < 3; ++i)
-            reach += ir::rounding::times(machine.row(0)[i].magnitude(), (cell.p[i] - Interval(cell.p[i].middle())).magnitude());
+            reach += ir::rounding::times(machine.row(0)[i].magnitude(),
+                                         (cell.p[i] - Interval(cell.p[i].middle())).magnitude());
         if (machine.norm() != infinity && std::isfinite(reach)) {
             machine.run(at_point(middle(cell)));
             seen = std::max(seen, machine.value(0).mignitude());
@@ -246,7 +263,8 @@ double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
     push(domain.box, 0);
     while (!queue.empty()) {
         Candidate top = queue.top();
-        if (top.bound <= seen * budget.tolerance || machine.work() > budget.instructions) return top.bound;
+        if (top.bound <= seen * budget.tolerance || machine.work() > budget.instructions)
+            return top.bound;
         queue.pop();
         int axis = 0;
         if (widest(top.cell, all, &axis) <= 1e-9) return top.bound;
@@ -259,7 +277,8 @@ double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
     return 0;
 }
 
-std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, NodeId expression, const Cell &cell) {
+std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, NodeId expression,
+                                  const Cell &cell) {
     std::array<Interval, 16> out{};
     Tape tape = flatten(context, expression);
     if (tape.too_large) {
@@ -268,7 +287,8 @@ std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, Nod
     }
     Machine machine(tape, ranges);
     machine.run(cell);
-    for (int i = 0; i < machine.size() && i < 16; ++i) out[static_cast<std::size_t>(i)] = machine.value(i);
+    for (int i = 0; i < machine.size() && i < 16; ++i)
+        out[static_cast<std::size_t>(i)] = machine.value(i);
     return out;
 }
 

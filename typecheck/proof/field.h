@@ -1,5 +1,5 @@
-// The bound of a field over a region: branch and bound on the machine's norms, best first, by a counted budget.
-// Knows nothing of shapes.
+// The bound of a field over a region: branch and bound on the machine's norms, best first, by a
+// counted budget. Knows nothing of shapes.
 #pragma once
 
 #include "typecheck/proof/machine.h"
@@ -23,14 +23,14 @@ struct Domain {
 };
 
 struct Budget {
-    std::size_t instructions = 400'000;
+    std::size_t instructions = 250'000;
     double tolerance = 1.05; // the bound over the largest slope seen, at which to stop
 };
 
 struct FieldBound {
-    double lipschitz = 0;  // >= the true constant; infinity where none was proved
-    double sampled = 0;    // <= the true constant: the largest slope seen
-    Interval value;        // holds every value
+    double lipschitz = 0; // >= the true constant; infinity where none was proved
+    double sampled = 0;   // <= the true constant: the largest slope seen
+    Interval value;       // holds every value
     Trouble trouble = Trouble::None;
     bool at_infinity = false; // the slope grows without bound on an unbounded region
     bool too_large = false;   // the field was cut off while flattening
@@ -41,16 +41,19 @@ struct FieldBound {
     std::size_t evaluations = 0;
 };
 
-FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field, const Domain &domain, const Budget &budget);
+FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
+                       const Domain &domain, const Budget &budget);
 
 // An upper bound of |value| over the domain.
-double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar, const Domain &domain, const Budget &budget);
+double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
+                       const Domain &domain, const Budget &budget);
 
 // All components of an expression that reads no point (or reads it over `cell`).
-std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, NodeId expression, const Cell &cell = {});
+std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, NodeId expression,
+                                  const Cell &cell = {});
 
-// The axis' smallest known period of a field, 0 where it is not known to have one; `reads` is false where the field does not
-// depend on that coordinate at all.
+// The axis' smallest known period of a field, 0 where it is not known to have one; `reads` is false
+// where the field does not depend on that coordinate at all.
 struct Periods {
     std::array<double, 3> period{};
     std::array<bool, 3> reads{true, true, true};

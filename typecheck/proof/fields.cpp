@@ -1,5 +1,5 @@
-// Fields of the user's own: their bounds over the region where they are asked, what is assumed of them, and the
-// reports that say where and why there is none.
+// Fields of the user's own: their bounds over the region where they are asked, what is assumed of
+// them, and the reports that say where and why there is none.
 #include "typecheck/proof/prover.h"
 
 #include <fmt/format.h>
@@ -75,16 +75,25 @@ std::optional<NodeId> Prover::expression(ShapeId id, int depth) {
     case ShapeKind::Map: {
         auto f = inner(0);
         if (!f) return {};
-        NodeId point = graph.point(scene.shapes[shape.children[0]].dims == 2 ? ir::Type::Vec2 : ir::Type::Vec3);
+        NodeId point = graph.point(scene.shapes[shape.children[0]].dims == 2 ? ir::Type::Vec2
+                                                                             : ir::Type::Vec3);
         return graph.mul(ir::substitute(graph, *f, {{point, shape.args[0]}}), shape.args[1]);
     }
     case ShapeKind::Offset:
     case ShapeKind::Displace:
         if (auto f = inner(0)) return graph.sub(*f, shape.args[0]);
         return {};
-    case ShapeKind::Empty: case ShapeKind::Xor: case ShapeKind::Blend: case ShapeKind::Seam: case ShapeKind::Lerp:
-    case ShapeKind::PseudoNorm: case ShapeKind::Shell: case ShapeKind::Extrude: case ShapeKind::Repeat:
-    case ShapeKind::Within: case ShapeKind::Many: break;
+    case ShapeKind::Empty:
+    case ShapeKind::Xor:
+    case ShapeKind::Blend:
+    case ShapeKind::Seam:
+    case ShapeKind::Lerp:
+    case ShapeKind::PseudoNorm:
+    case ShapeKind::Shell:
+    case ShapeKind::Extrude:
+    case ShapeKind::Repeat:
+    case ShapeKind::Within:
+    case ShapeKind::Many: break;
     }
     return {};
 }
@@ -98,7 +107,8 @@ std::string cause_text(const ir::Graph &graph, NodeId cause) {
     case Op::Sqrt: return "a square root at 0";
     case Op::InverseSqrt: return "`inversesqrt` at 0";
     case Op::Pow: return "a power at 0";
-    case Op::Log: case Op::Log2: return "a logarithm at 0";
+    case Op::Log:
+    case Op::Log2: return "a logarithm at 0";
     case Op::Tan: return "`tan` at its pole";
     case Op::Asin: return "`asin` at -1 or 1";
     case Op::Acos: return "`acos` at -1 or 1";
@@ -108,7 +118,8 @@ std::string cause_text(const ir::Graph &graph, NodeId cause) {
     case Op::Floor: return "`floor`";
     case Op::Ceil: return "`ceil`";
     case Op::Round: return "`round`";
-    case Op::Trunc: case Op::ToInt: return "`int` or `trunc`";
+    case Op::Trunc:
+    case Op::ToInt: return "`int` or `trunc`";
     case Op::Fract: return "`fract`";
     case Op::Step: return "`step`";
     case Op::Sign: return "`sign`";
@@ -117,7 +128,8 @@ std::string cause_text(const ir::Graph &graph, NodeId cause) {
     case Op::Fold: return "a loop that ends early";
     case Op::TableRead: return "an index that depends on the point";
     case Op::Smoothstep: return "`smoothstep` with equal edges";
-    case Op::Sub: case Op::Add: return "a wave made with `%`";
+    case Op::Sub:
+    case Op::Add: return "a wave made with `%`";
     default: return "`" + std::string(ir::info(graph[cause].op).name) + "`";
     }
 }
@@ -126,39 +138,57 @@ std::string cause_text(const ir::Graph &graph, NodeId cause) {
 
 void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &what) {
     int dims = scene.shapes[id].dims;
-    const std::string assume = scene.shapes[id].kind == ShapeKind::Leaf
-                                   ? "or state a bound that you know with `lipschitz:`, which is then tested"
-                                   : "or limit it";
+    const std::string assume =
+        scene.shapes[id].kind == ShapeKind::Leaf
+            ? "or state a bound that you know with `lipschitz:`, which is then tested"
+            : "or limit it";
     if (b.too_large) {
-        if (Diagnostic *d = report(id, Code::LipschitzUnbounded, what + " is too large to be analysed"))
+        if (Diagnostic *d =
+                report(id, Code::LipschitzUnbounded, what + " is too large to be analysed"))
             d->help("make its loops shorter, " + assume);
         return;
     }
     std::string cause = cause_text(graph, b.cause);
     if (b.at_infinity) {
-        if (Diagnostic *d = report(id, Code::LipschitzUnbounded, what + " grows steeper without limit, as it is asked everywhere"))
-            d->note("no bound on its slope holds for all points; far from the origin " + cause + " has none")
+        if (Diagnostic *d =
+                report(id, Code::LipschitzUnbounded,
+                       what + " grows steeper without limit, as it is asked everywhere"))
+            d->note("no bound on its slope holds for all points; far from the origin " + cause +
+                    " has none")
                 .help("give it a region, as in `within: ball(3)`, " + assume);
         return;
     }
     switch (b.trouble) {
     case Trouble::Jump: {
-        bool seen = std::fabs(b.value_a - b.value_b) > 1e-4 * std::max({1.0, std::fabs(b.value_a), std::fabs(b.value_b)});
+        bool seen = std::fabs(b.value_a - b.value_b) >
+                    1e-4 * std::max({1.0, std::fabs(b.value_a), std::fabs(b.value_b)});
         if (seen) {
-            if (Diagnostic *d = report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))
-                d->note("it is " + number_text(b.value_a) + " at " + point_text(b.side_a, dims) + " and " + number_text(b.value_b) +
-                        " at " + point_text(b.side_b, dims) + ": " + cause)
-                    .help("make both sides agree there, keep the jump out of the region with `within:`, " + assume);
-        } else if (Diagnostic *d = report(id, Code::LipschitzUnbounded, "it cannot be proved that " + what + " does not jump near " + point_text(b.where, dims)))
-            d->note(cause + " chooses there; the values on both sides are " + number_text(b.value_a) + " and " + number_text(b.value_b))
-                .help("write it with `min`, `max`, `clamp` or `abs`, whose continuity is known, " + assume);
+            if (Diagnostic *d =
+                    report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))
+                d->note("it is " + number_text(b.value_a) + " at " + point_text(b.side_a, dims) +
+                        " and " + number_text(b.value_b) + " at " + point_text(b.side_b, dims) +
+                        ": " + cause)
+                    .help("make both sides agree there, keep the jump out of the region with "
+                          "`within:`, " +
+                          assume);
+        } else if (Diagnostic *d = report(id, Code::LipschitzUnbounded,
+                                          "it cannot be proved that " + what +
+                                              " does not jump near " + point_text(b.where, dims)))
+            d->note(cause + " chooses there; the values on both sides are " +
+                    number_text(b.value_a) + " and " + number_text(b.value_b))
+                .help("write it with `min`, `max`, `clamp` or `abs`, whose continuity is known, " +
+                      assume);
         return;
     }
     case Trouble::Singular:
     case Trouble::None:
-        if (Diagnostic *d = report(id, Code::FieldSingular, what + " is undefined or infinitely steep near " + point_text(b.where, dims)))
+        if (Diagnostic *d = report(id, Code::FieldSingular,
+                                   what + " is undefined or infinitely steep near " +
+                                       point_text(b.where, dims)))
             d->note(cause + " happens there, and the field is asked in all of its region")
-                .help("choose a region that avoids it, as in `within: ball(2) - tube(Y, 0.1)`, keep it off with `max(…, 0.001)`, " + assume);
+                .help("choose a region that avoids it, as in `within: ball(2) - tube(Y, 0.1)`, "
+                      "keep it off with `max(…, 0.001)`, " +
+                      assume);
         return;
     }
 }
@@ -187,7 +217,8 @@ Known Prover::know_leaf(ShapeId id) {
     return k;
 }
 
-// Pairs of points at all distances, and gradient ascent from the steepest: two points that refute the limit, if any are found.
+// Pairs of points at all distances, and gradient ascent from the steepest: two points that refute
+// the limit, if any are found.
 void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate) {
     const Place &here = place(id);
     if (!here.audible || !options.test_assumptions) return;
@@ -201,10 +232,13 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
         for (int tries = 0; tries < 64; ++tries) {
             for (std::size_t i = 0; i < 3; ++i) {
                 double lo = std::max(here.box.lo[i], -4.0), hi = std::min(here.box.hi[i], 4.0);
-                if (lo > hi) lo = hi = std::isfinite(here.box.lo[i]) ? here.box.lo[i] : here.box.hi[i];
+                if (lo > hi)
+                    lo = hi = std::isfinite(here.box.lo[i]) ? here.box.lo[i] : here.box.hi[i];
                 p[i] = dims == 2 && i == 2 ? 0 : lo + (hi - lo) * dice.next();
             }
-            if (!here.zone || !misses(*here.zone, {{Interval(p[0]), Interval(p[1]), Interval(p[2])}})) break;
+            if (!here.zone ||
+                !misses(*here.zone, {{Interval(p[0]), Interval(p[1]), Interval(p[2])}}))
+                break;
         }
         return p;
     };
@@ -212,7 +246,9 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
     auto ask = [&](const std::array<double, 3> &p) {
         machine.run({{Interval(p[0]), Interval(p[1]), Interval(p[2])}});
         Values v{};
-        for (int i = 0; i < std::min(machine.size(), 4); ++i) v[static_cast<std::size_t>(i)] = machine.value(i).finite() ? machine.value(i).middle() : NAN;
+        for (int i = 0; i < std::min(machine.size(), 4); ++i)
+            v[static_cast<std::size_t>(i)] =
+                machine.value(i).finite() ? machine.value(i).middle() : NAN;
         return v;
     };
     auto slope = [&](const std::array<double, 3> &p, const std::array<double, 3> &q) {
@@ -231,7 +267,8 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
     };
     for (int n = 0; n < pairs; ++n) {
         auto a = random_point(), b = random_point();
-        double reach = std::pow(10.0, -4 * dice.next()); // from the whole region down to a ten-thousandth of it
+        double reach = std::pow(
+            10.0, -4 * dice.next()); // from the whole region down to a ten-thousandth of it
         for (std::size_t i = 0; i < 3; ++i) b[i] = a[i] + (b[i] - a[i]) * reach;
         double s = slope(a, b);
         violations += s > limit * (1 + 1e-6);
@@ -261,13 +298,21 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
             step = std::max(step * 0.98, 1e-4);
         }
     }
-    std::string witness = "between " + point_text(worst_a, dims) + " and " + point_text(worst_b, dims) + " its slope is " + number_text(worst);
+    std::string witness = "between " + point_text(worst_a, dims) + " and " +
+                          point_text(worst_b, dims) + " its slope is " + number_text(worst);
     if (estimate) {
-        if (Diagnostic *d = report(id, Code::EstimatedField, "this field is marched by an estimate, which is not a proof: thin parts may be missed"))
-            d->note(fmt::format("{:.2g} % of {} pairs of points are steeper than {}; ", 100.0 * violations / pairs, pairs, number_text(limit)) + witness);
+        if (Diagnostic *d = report(id, Code::EstimatedField,
+                                   "this field is marched by an estimate, which is not a proof: "
+                                   "thin parts may be missed"))
+            d->note(fmt::format("{:.2g} % of {} pairs of points are steeper than {}; ",
+                                100.0 * violations / pairs, pairs, number_text(limit)) +
+                    witness);
     } else if (worst > limit * (1 + 1e-6)) {
-        if (Diagnostic *d = report(id, Code::LipschitzViolated, "the field is steeper than `lipschitz: " + number_text(limit) + "` says"))
-            d->note(witness).help("state at least " + number_text(std::ceil(worst * 100) / 100) + ", or leave `lipschitz:` out to have it proved");
+        if (Diagnostic *d =
+                report(id, Code::LipschitzViolated,
+                       "the field is steeper than `lipschitz: " + number_text(limit) + "` says"))
+            d->note(witness).help("state at least " + number_text(std::ceil(worst * 100) / 100) +
+                                  ", or leave `lipschitz:` out to have it proved");
         // The picture is refused; what depends on it is not reported again.
     }
 }

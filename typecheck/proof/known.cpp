@@ -16,7 +16,8 @@ void set(Box &box, std::size_t i, Interval x) { box.lo[i] = x.lo, box.hi[i] = x.
 Cell to_cell(const Box &box) { return {{side(box, 0), side(box, 1), side(box, 2)}}; }
 Box from_cell(const Cell &cell, int dims) {
     Box box;
-    for (std::size_t i = 0; i < 3; ++i) set(box, i, dims == 2 && i == 2 ? Interval(0.0) : cell.p[i]);
+    for (std::size_t i = 0; i < 3; ++i)
+        set(box, i, dims == 2 && i == 2 ? Interval(0.0) : cell.p[i]);
     return box;
 }
 
@@ -49,7 +50,8 @@ Box turned(const Box &box, const std::array<Interval, 16> &matrix, int side_leng
     double r = norm_of(box);
     for (std::size_t i = 0; i < n; ++i) {
         Interval sum;
-        for (std::size_t j = 0; j < n; ++j) sum += meet(Interval(-1, 1), matrix[j * n + i]) * side(box, j);
+        for (std::size_t j = 0; j < n; ++j)
+            sum += meet(Interval(-1, 1), matrix[j * n + i]) * side(box, j);
         set(out, i, std::isfinite(r) ? meet(Interval(-r, r), sum) : sum);
     }
     return out;
@@ -89,7 +91,8 @@ Box padded(const Box &box) {
     if (box.empty()) return box;
     Box out = box;
     for (std::size_t i = 0; i < 3; ++i) {
-        double by = slack * std::max({std::fabs(box.lo[i]), std::fabs(box.hi[i]), box.hi[i] - box.lo[i]});
+        double by =
+            slack * std::max({std::fabs(box.lo[i]), std::fabs(box.hi[i]), box.hi[i] - box.lo[i]});
         if (std::isfinite(by)) out.lo[i] -= by, out.hi[i] += by;
     }
     return out;

@@ -1,5 +1,5 @@
-// What is known of a shape while the proof runs: its fact, and what only the rules for its parents need. And the
-// arithmetic of boxes. Every statement is for all params and times.
+// What is known of a shape while the proof runs: its fact, and what only the rules for its parents
+// need. And the arithmetic of boxes. Every statement is for all params and times.
 #pragma once
 
 #include "ir/scene.h"
@@ -16,8 +16,9 @@ struct Known {
     bool exact_outside = false;
     // A tree of min and max over exact fields, rigidly moved: its value is a part's true distance.
     bool parts_exact = false;
-    // The field's gradient is everywhere a convex mean of vectors L*n, n the unit gradient of an exact part whose nearest
-    // surface point lies in this box (lipschitz.md, lever arms). Everything: unknown.
+    // The field's gradient is everywhere a convex mean of vectors L*n, n the unit gradient of an
+    // exact part whose nearest surface point lies in this box (lipschitz.md, lever arms).
+    // Everything: unknown.
     Box parts = Box::everything();
     // {f < t} lies in fact.bounds grown by swell*t, t >= 0; {f > -t} in outer grown by swell_out*t.
     double swell = 0, swell_out = 0;
@@ -28,7 +29,7 @@ struct Known {
 inline Box empty_box() { return {}; }
 Box from_cell(const Cell &cell, int dims);
 Cell to_cell(const Box &box);
-Box grow(const Box &box, double by);             // outward on all sides; an empty box stays empty
+Box grow(const Box &box, double by); // outward on all sides; an empty box stays empty
 Box grow(const Box &box, const std::array<double, 3> &by);
 Box moved(const Box &box, const Vec &by);
 Box times(const Box &box, const Vec &by);
@@ -36,10 +37,11 @@ Box turned(const Box &box, const std::array<Interval, 16> &matrix, int side); //
 bool disjoint(const Box &a, const Box &b);
 bool holds(const Box &outer, const Box &inner);
 bool everywhere(const Box &box);
-double radius_about(const Box &box, int axis);   // the largest distance of its points from the axis
-double norm_of(const Box &box);                  // the largest distance of its points from the origin
-Box padded(const Box &box);                      // by the float32 slack
+double radius_about(const Box &box, int axis); // the largest distance of its points from the axis
+double norm_of(const Box &box);                // the largest distance of its points from the origin
+Box padded(const Box &box);                    // by the float32 slack
 
-constexpr double slack = 1e-6; // relative: what float32 evaluation of a proved bound may lose (docs/lipschitz.md)
+constexpr double slack =
+    1e-6; // relative: what float32 evaluation of a proved bound may lose (docs/lipschitz.md)
 
 } // namespace fathom::proof

@@ -1,4 +1,5 @@
-// The machine's frame: ranges, norms, loops, what happens to trouble. The rules for the ops: machine_ops.cpp.
+// The machine's frame: ranges, norms, loops, what happens to trouble. The rules for the ops:
+// machine_ops.cpp.
 #include "typecheck/proof/machine.h"
 
 #include <algorithm>
@@ -12,13 +13,15 @@ using ir::rounding::up;
 
 namespace {
 
-// Bilinear (trilinear) interpolation is affine along each axis in a cell, so its partial derivatives are means of the
-// adjacent differences: |grad| <= sqrt(sum of (largest difference / spacing)^2).
+// Bilinear (trilinear) interpolation is affine along each axis in a cell, so its partial
+// derivatives are means of the adjacent differences: |grad| <= sqrt(sum of (largest difference /
+// spacing)^2).
 Ranges::Sampled sampled_image(const ir::ImageData &image) {
     Ranges::Sampled out{{0, 0}, 0};
     if (image.rgba.empty()) return out;
     auto at = [&](int x, int y, int c) {
-        return double(image.rgba[static_cast<std::size_t>(((y % image.height) * image.width + x % image.width) * 4 + c)]);
+        return double(image.rgba[static_cast<std::size_t>(
+            ((y % image.height) * image.width + x % image.width) * 4 + c)]);
     };
     out.values = {infinity, -infinity};
     double dx = 0, dy = 0;
@@ -38,7 +41,8 @@ Ranges::Sampled sampled_grid(const ir::GridData &grid) {
     Ranges::Sampled out{{0, 0}, 0};
     if (grid.values.empty()) return out;
     auto at = [&](int x, int y, int z) {
-        return double(grid.values[static_cast<std::size_t>((z * grid.size[1] + y) * grid.size[0] + x)]);
+        return double(
+            grid.values[static_cast<std::size_t>((z * grid.size[1] + y) * grid.size[0] + x)]);
     };
     out.values = {infinity, -infinity};
     double d[3] = {0, 0, 0};
@@ -69,9 +73,25 @@ Ranges ranges_of(const ir::Scene &scene) {
     return ranges;
 }
 
-// A = M^T M for the middle matrix M; its largest eigenvalue by the closed form for symmetric 3x3 matrices, plus the
-// Frobenius norm of the radii. Where an entry is unbounded the answer is infinity.
+// A = M^T M for the middle matrix M; its largest eigenvalue by the closed form for symmetric 3x3
+// matrices, plus the Frobenius norm of the radii. Where an entry is unbounded the answer is
+// infinity.
 double spectral_norm(const Row *rows, int count) {
+    // Often each row has one entry, in a column of its own: then the largest entry is the norm.
+    int used[3] = {0, 0, 0};
+    double largest_entry = 0;
+    bool apart = true;
+    for (int i = 0; apart && i < count; ++i) {
+        int entries = 0;
+        for (std::size_t j = 0; j < 3; ++j) {
+            const Interval x = rows[i][j];
+            if (x.lo == 0 && x.hi == 0) continue;
+            ++entries, ++used[j];
+            largest_entry = std::max(largest_entry, x.magnitude());
+        }
+        apart = entries <= 1;
+    }
+    if (apart && used[0] <= 1 && used[1] <= 1 && used[2] <= 1) return largest_entry;
     double mid[16][3], radius = 0, frobenius = 0;
     for (int i = 0; i < count; ++i)
         for (int j = 0; j < 3; ++j) {
@@ -96,15 +116,17 @@ double spectral_norm(const Row *rows, int count) {
         double u = a[0][1] / p, v = a[0][2] / p, w = a[1][2] / p;
         double half_det = 0.5 * (x * (y * z - w * w) - u * (u * z - w * v) + v * (u * w - y * v));
         double angle = std::acos(std::clamp(half_det, -1.0, 1.0)) / 3;
-        largest = q + 2 * p * std::cos(angle) + 1e-8 * p; // the closed form is good to half the digits at double roots
+        largest = q + 2 * p * std::cos(angle) +
+                  1e-8 * p; // the closed form is good to half the digits at double roots
     }
     double norm = std::sqrt(std::max(largest, 0.0)) * (1 + 1e-14) + std::sqrt(radius);
     return up(std::min(norm, std::sqrt(frobenius)), 8);
 }
 
 Machine::Machine(const Tape &tape, const Ranges &ranges)
-    : tape_(tape), ranges_(ranges), value_(tape.components), grad_(tape.components), odd_(tape.components),
-      norm_(tape.first.size()), trouble_(tape.first.size(), Trouble::None), cause_(tape.first.size()) {
+    : tape_(tape), ranges_(ranges), value_(tape.components), grad_(tape.components),
+      odd_(tape.components), norm_(tape.first.size()), trouble_(tape.first.size(), Trouble::None),
+      cause_(tape.first.size()) {
     run(tape.once);
 }
 
@@ -123,8 +145,10 @@ void Machine::run(const Cell &cell) {
 void Machine::run(const std::vector<Instruction> &block) {
     for (const Instruction &instruction : block) {
         ++work_;
-        if (instruction.form == Form::Loop) run_loop(instruction);
-        else step(instruction);
+        if (instruction.form == Form::Loop)
+            run_loop(instruction);
+        else
+            step(instruction);
     }
 }
 
@@ -146,7 +170,8 @@ void Machine::join(Slot into, Slot other, bool jump, NodeId cause) {
     for (std::uint32_t i = 0; i < tape_.size[into]; ++i) {
         value_[a + i] = hull(value_[a + i], value_[b + i]);
         odd_[a + i] = odd_[a + i] | odd_[b + i];
-        for (std::size_t j = 0; j < 3; ++j) grad_[a + i][j] = hull(grad_[a + i][j], grad_[b + i][j]);
+        for (std::size_t j = 0; j < 3; ++j)
+            grad_[a + i][j] = hull(grad_[a + i][j], grad_[b + i][j]);
     }
     if (norm_[other] > norm_[into]) {
         norm_[into] = norm_[other];
@@ -171,8 +196,10 @@ void Machine::run_loop(const Instruction &instruction) {
     bool ended = false;
     auto may_end = [&](bool jump) {
         for (std::size_t k = 0; k < loop.vars.size(); ++k)
-            if (ended) join(loop.ends[k], loop.vars[k], jump, instruction.node);
-            else copy(loop.vars[k], loop.ends[k]);
+            if (ended)
+                join(loop.ends[k], loop.vars[k], jump, instruction.node);
+            else
+                copy(loop.vars[k], loop.ends[k]);
         ended = true;
     };
     bool split = false; // some point of the cell may have left earlier
@@ -202,7 +229,8 @@ void Machine::run_loop(const Instruction &instruction) {
 void Machine::fail(const Instruction &instruction, Trouble why) {
     Slot s = instruction.out;
     for (std::uint32_t i = 0; i < tape_.size[s]; ++i) {
-        grad_[tape_.first[s] + i] = {Interval::everything(), Interval::everything(), Interval::everything()};
+        grad_[tape_.first[s] + i] = {Interval::everything(), Interval::everything(),
+                                     Interval::everything()};
         odd_[tape_.first[s] + i] = 0;
     }
     norm_[s] = infinity;

@@ -1,7 +1,8 @@
-// Runs a tape over a box of points: for every value an interval for each component, one for each partial derivative, and
-// beside them a bound on the Jacobian's spectral norm (the hull of two unit gradients has norm sqrt 3; max and min of
-// two fields of norm 1 have norm 1). Derivatives are Clarke's: at a kink the hull of both sides', which bounds the
-// slope of everything continuous. What may jump or be infinitely steep in the box has norm infinity and says why.
+// Runs a tape over a box of points: for every value an interval for each component, one for each
+// partial derivative, and beside them a bound on the Jacobian's spectral norm (the hull of two unit
+// gradients has norm sqrt 3; max and min of two fields of norm 1 have norm 1). Derivatives are
+// Clarke's: at a kink the hull of both sides', which bounds the slope of everything continuous.
+// What may jump or be infinitely steep in the box has norm infinity and says why.
 #pragma once
 
 #include "base/ids.h"
@@ -16,8 +17,10 @@ namespace fathom::proof {
 struct Ranges {
     const ir::Scene *scene = nullptr;
     Interval time;
-    std::unordered_map<std::uint32_t, std::array<Interval, 4>> vars; // by Var payload: ids of cells, rows of families
-    // By image and grid: least and greatest value, and a bound on the slope in the unit square or cube.
+    std::unordered_map<std::uint32_t, std::array<Interval, 4>>
+        vars; // by Var payload: ids of cells, rows of families
+    // By image and grid: least and greatest value, and a bound on the slope in the unit square or
+    // cube.
     struct Sampled {
         Interval values;
         double slope = 0;
@@ -29,7 +32,8 @@ Ranges ranges_of(const ir::Scene &scene);
 enum class Trouble : std::uint8_t { None, Jump, Singular };
 
 struct Cell {
-    std::array<Interval, 3> p{Interval::everything(), Interval::everything(), Interval::everything()};
+    std::array<Interval, 3> p{Interval::everything(), Interval::everything(),
+                              Interval::everything()};
 };
 
 using Row = std::array<Interval, 3>;
@@ -43,9 +47,15 @@ class Machine {
     void run(const Cell &cell);
 
     int size() const { return tape_.size[tape_.result]; }
-    Interval value(int i) const { return value_[tape_.first[tape_.result] + static_cast<std::uint32_t>(i)]; }
-    const Row &row(int i) const { return grad_[tape_.first[tape_.result] + static_cast<std::uint32_t>(i)]; }
-    double norm() const { return result_norm_; } // infinity where the field may jump or be infinitely steep here
+    Interval value(int i) const {
+        return value_[tape_.first[tape_.result] + static_cast<std::uint32_t>(i)];
+    }
+    const Row &row(int i) const {
+        return grad_[tape_.first[tape_.result] + static_cast<std::uint32_t>(i)];
+    }
+    double norm() const {
+        return result_norm_;
+    } // infinity where the field may jump or be infinitely steep here
     Trouble trouble() const { return trouble_[tape_.result]; }
     NodeId cause() const { return cause_[tape_.result]; } // the first node that is in trouble
     std::size_t work() const { return work_; }            // instructions run so far
@@ -66,8 +76,8 @@ class Machine {
     Cell cell_;
     std::vector<Interval> value_;
     std::vector<Row> grad_;
-    std::vector<std::uint8_t> odd_;  // by component: may jump, but only from x to -x
-    std::vector<double> norm_;       // by slot
+    std::vector<std::uint8_t> odd_; // by component: may jump, but only from x to -x
+    std::vector<double> norm_;      // by slot
     std::vector<Trouble> trouble_;
     std::vector<NodeId> cause_;
     double result_norm_ = 0;

@@ -1,4 +1,5 @@
-// One rule an op: the value's interval, the partial derivatives' intervals, the norm. Proofs: docs/lipschitz.md.
+// One rule an op: the value's interval, the partial derivatives' intervals, the norm. Proofs:
+// docs/lipschitz.md.
 #include "ir/noise.h"
 #include "typecheck/proof/machine.h"
 
@@ -14,13 +15,19 @@ using ir::rounding::up;
 
 namespace {
 
-Row scaled(Interval factor, const Row &row) { return {factor * row[0], factor * row[1], factor * row[2]}; }
+Row scaled(Interval factor, const Row &row) {
+    return {factor * row[0], factor * row[1], factor * row[2]};
+}
 Row sum(const Row &a, const Row &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Row joined(const Row &a, const Row &b) { return {hull(a[0], b[0]), hull(a[1], b[1]), hull(a[2], b[2])}; }
+Row joined(const Row &a, const Row &b) {
+    return {hull(a[0], b[0]), hull(a[1], b[1]), hull(a[2], b[2])};
+}
 bool zero(const Row &row) {
     return row[0] == Interval(0.0) && row[1] == Interval(0.0) && row[2] == Interval(0.0);
 }
-Interval truth(bool may_be_false, bool may_be_true) { return {may_be_false ? 0.0 : 1.0, may_be_true ? 1.0 : 0.0}; }
+Interval truth(bool may_be_false, bool may_be_true) {
+    return {may_be_false ? 0.0 : 1.0, may_be_true ? 1.0 : 0.0};
+}
 
 // max(a, b) as value, row and whether a, b or both may be the greater.
 struct Choice {
@@ -31,8 +38,18 @@ Choice greater(Interval a, Interval b) { return {a.hi >= b.lo, b.hi >= a.lo}; }
 bool even_aware(const Instruction &i) {
     if (i.form == Form::Norm || i.form == Form::Square || i.form == Form::Joined) return true;
     switch (i.op) {
-    case Op::Neg: case Op::Abs: case Op::Mul: case Op::Div: case Op::Make: case Op::Swizzle: case Op::Splat:
-    case Op::Cos: case Op::Cosh: case Op::Pow: case Op::Column: case Op::Transpose: return true;
+    case Op::Neg:
+    case Op::Abs:
+    case Op::Mul:
+    case Op::Div:
+    case Op::Make:
+    case Op::Swizzle:
+    case Op::Splat:
+    case Op::Cos:
+    case Op::Cosh:
+    case Op::Pow:
+    case Op::Column:
+    case Op::Transpose: return true;
     default: return false; // the list is of the few that keep or remove a change of sign
     }
 }
@@ -50,10 +67,18 @@ void Machine::step(const Instruction &in) {
     const std::uint32_t at = tape_.first[out];
     const int n = tape_.size[out];
     const auto first = [&](int arg) { return tape_.first[in.args[static_cast<std::size_t>(arg)]]; };
-    const auto value = [&](int arg, int c) -> const Interval & { return value_[first(arg) + static_cast<std::uint32_t>(c)]; };
-    const auto grad = [&](int arg, int c) -> const Row & { return grad_[first(arg) + static_cast<std::uint32_t>(c)]; };
-    const auto odd = [&](int arg, int c) { return odd_[first(arg) + static_cast<std::uint32_t>(c)] != 0; };
-    const auto size = [&](int arg) { return int(tape_.size[in.args[static_cast<std::size_t>(arg)]]); };
+    const auto value = [&](int arg, int c) -> const Interval & {
+        return value_[first(arg) + static_cast<std::uint32_t>(c)];
+    };
+    const auto grad = [&](int arg, int c) -> const Row & {
+        return grad_[first(arg) + static_cast<std::uint32_t>(c)];
+    };
+    const auto odd = [&](int arg, int c) {
+        return odd_[first(arg) + static_cast<std::uint32_t>(c)] != 0;
+    };
+    const auto size = [&](int arg) {
+        return int(tape_.size[in.args[static_cast<std::size_t>(arg)]]);
+    };
     const auto norm = [&](int arg) { return norm_[in.args[static_cast<std::size_t>(arg)]]; };
     const auto set = [&](int c, Interval v, const Row &g, bool is_odd = false) {
         value_[at + static_cast<std::uint32_t>(c)] = v;
@@ -85,20 +110,25 @@ void Machine::step(const Instruction &in) {
             jumps = jumps || (!v.is_point() && !zero(grad(0, c)));
             set(c, v, none);
         }
-        if (jumps) fail(in, Trouble::Jump);
-        else finish(in, 0, any_odd && !jumps);
+        if (jumps)
+            fail(in, Trouble::Jump);
+        else
+            finish(in, 0, any_odd && !jumps);
     };
-    const auto extremum = [&](int sign, auto &&a_value, auto &&a_grad, auto &&b_value, auto &&b_grad, double a_norm,
-                              double b_norm) {
+    const auto extremum = [&](int sign, auto &&a_value, auto &&a_grad, auto &&b_value,
+                              auto &&b_grad, double a_norm, double b_norm) {
         bool some_a = false, some_b = false;
         for (int c = 0; c < n; ++c) {
             Interval a = a_value(c), b = b_value(c);
             Choice which = sign > 0 ? greater(a, b) : greater(-a, -b);
             some_a = some_a || which.first, some_b = some_b || which.second;
             Interval v = sign > 0 ? max(a, b) : min(a, b);
-            if (!which.second) set(c, v, a_grad(c));
-            else if (!which.first) set(c, v, b_grad(c));
-            else set(c, v, joined(a_grad(c), b_grad(c)));
+            if (!which.second)
+                set(c, v, a_grad(c));
+            else if (!which.first)
+                set(c, v, b_grad(c));
+            else
+                set(c, v, joined(a_grad(c), b_grad(c)));
         }
         if (!some_b) return a_norm;
         if (!some_a) return b_norm;
@@ -120,8 +150,10 @@ void Machine::step(const Instruction &in) {
     const auto settle_int = [&] { // ints have no slope; where one varies with the point, it jumps
         bool jumps = false;
         for (int a = 0; a < int(in.args.size()); ++a) jumps = jumps || norm(a) > 0;
-        if (jumps) fail(in, Trouble::Jump);
-        else finish(in, 0, any_odd);
+        if (jumps)
+            fail(in, Trouble::Jump);
+        else
+            finish(in, 0, any_odd);
     };
 
     if (in.form == Form::Wave) {
@@ -134,8 +166,10 @@ void Machine::step(const Instruction &in) {
                 continue;
             }
             Interval turns = floor(x / m + Interval(0.5));
-            if (turns.is_point() && turns.finite()) set(c, x - m * turns, grad(0, c), odd(0, c));
-            else set(c, {-m.hi / 2, m.hi / 2}, grad(0, c), !zero(grad(0, c)));
+            if (turns.is_point() && turns.finite())
+                set(c, x - m * turns, grad(0, c), odd(0, c));
+            else
+                set(c, {-m.hi / 2, m.hi / 2}, grad(0, c), !zero(grad(0, c)));
         }
         if (bad) return fail(in, Trouble::Jump);
         finish(in, norm(0), any_odd);
@@ -159,11 +193,13 @@ void Machine::step(const Instruction &in) {
         for (int c = 0; c < n; ++c) {
             Interval x = value(0, c);
             most = std::max(most, x.magnitude());
-            set(c, square(x), scaled(Interval(2.0) * x, grad(0, c))); // even: an odd wave becomes continuous
+            set(c, square(x),
+                scaled(Interval(2.0) * x, grad(0, c))); // even: an odd wave becomes continuous
         }
         return finish(in, times(2 * most, norm(0)), false);
     }
-    if (in.form == Form::Norm) { // |q|: gradient J^T q/|q|, at most |J|; at q = 0 any of slope <= |J|
+    if (in.form ==
+        Form::Norm) { // |q|: gradient J^T q/|q|, at most |J|; at q = 0 any of slope <= |J|
         Interval length;
         Row columns[16];
         int rows = 0;
@@ -172,13 +208,17 @@ void Machine::step(const Instruction &in) {
             norms = up(std::hypot(norms, norm(a)), 4);
             for (int c = 0; c < size(a); ++c) {
                 length += square(value(a, c));
-                if (rows < 16) columns[rows++] = grad(a, c);
-                else rows = 17;
+                if (rows < 16)
+                    columns[rows++] = grad(a, c);
+                else
+                    rows = 17;
             }
         }
         length = sqrt(length);
-        if (in.args.size() == 1) norms = norm(0);
-        else if (rows <= 16) norms = std::min(norms, spectral_norm(columns, rows));
+        if (in.args.size() == 1)
+            norms = norm(0);
+        else if (rows <= 16)
+            norms = std::min(norms, spectral_norm(columns, rows));
         Row g;
         for (std::size_t j = 0; j < 3; ++j) {
             double column = 0;
@@ -218,10 +258,10 @@ void Machine::step(const Instruction &in) {
         const ir::Param &param = ranges_.scene->params[in.payload];
         for (int c = 0; c < n; ++c) {
             auto i = static_cast<std::size_t>(c);
-            Interval v = param.has_range                       ? Interval(param.lo[i], param.hi[i])
-                         : in.type == ir::Type::Bool           ? Interval(0, 1)
-                         : param.is_color                      ? Interval(0, 1)
-                                                               : Interval::everything();
+            Interval v = param.has_range             ? Interval(param.lo[i], param.hi[i])
+                         : in.type == ir::Type::Bool ? Interval(0, 1)
+                         : param.is_color            ? Interval(0, 1)
+                                                     : Interval::everything();
             set(c, v, none);
         }
         return finish(in, 0, false);
@@ -229,7 +269,10 @@ void Machine::step(const Instruction &in) {
     case Op::Var: {
         auto found = ranges_.vars.find(in.payload);
         for (int c = 0; c < n; ++c)
-            set(c, found == ranges_.vars.end() ? Interval::everything() : found->second[static_cast<std::size_t>(c)], none);
+            set(c,
+                found == ranges_.vars.end() ? Interval::everything()
+                                            : found->second[static_cast<std::size_t>(c)],
+                none);
         return finish(in, 0, false);
     }
     case Op::Neg:
@@ -242,23 +285,32 @@ void Machine::step(const Instruction &in) {
         Interval sign = in.op == Op::Add ? 1.0 : -1.0;
         for (int c = 0; c < n; ++c)
             set(c, value(0, c) + sign * value(1, c), sum(grad(0, c), scaled(sign, grad(1, c))));
-        return finish(in, norm(0) == 0 ? norm(1) : norm(1) == 0 ? norm(0) : up(norm(0) + norm(1)), any_odd);
+        return finish(in,
+                      norm(0) == 0   ? norm(1)
+                      : norm(1) == 0 ? norm(0)
+                                     : up(norm(0) + norm(1)),
+                      any_odd);
     }
     case Op::Mul: {
         double a = 0, b = 0;
         for (int c = 0; c < n; ++c) {
             Interval x = value(0, c), y = value(1, c);
             a = std::max(a, x.magnitude()), b = std::max(b, y.magnitude());
-            set(c, x * y, sum(scaled(y, grad(0, c)), scaled(x, grad(1, c))), odd(0, c) || odd(1, c));
+            set(c, x * y, sum(scaled(y, grad(0, c)), scaled(x, grad(1, c))),
+                odd(0, c) || odd(1, c));
         }
         finish(in, up(times(b, norm(0)) + times(a, norm(1))), false);
-        if (norm_[out] != infinity) cause_[out] = cause_[in.args[0]] ? cause_[in.args[0]] : cause_[in.args[1]];
+        if (norm_[out] != infinity)
+            cause_[out] = cause_[in.args[0]] ? cause_[in.args[0]] : cause_[in.args[1]];
         return;
     }
     case Op::Div: {
         if (is_int) {
-            set(0, value(1, 0).contains(0) ? hull(0.0, Interval(-value(0, 0).magnitude(), value(0, 0).magnitude()))
-                                           : trunc(value(0, 0) / value(1, 0)), none);
+            set(0,
+                value(1, 0).contains(0)
+                    ? hull(0.0, Interval(-value(0, 0).magnitude(), value(0, 0).magnitude()))
+                    : trunc(value(0, 0) / value(1, 0)),
+                none);
             return settle_int();
         }
         double most = 0, ratio = 0;
@@ -311,7 +363,8 @@ void Machine::step(const Instruction &in) {
         bool singular = false, odd_left = false;
         for (int c = 0; c < n; ++c) {
             Interval x = value(0, c), y = value(1, c);
-            double whole = y.is_point() && std::floor(y.lo) == y.lo && std::fabs(y.lo) <= 64 ? y.lo : NAN;
+            double whole =
+                y.is_point() && std::floor(y.lo) == y.lo && std::fabs(y.lo) <= 64 ? y.lo : NAN;
             odd_left = odd_left || odd(1, c) || (odd(0, c) && !(std::fmod(whole, 2) == 0));
             if (whole >= 0) {
                 int k = int(whole);
@@ -332,7 +385,8 @@ void Machine::step(const Instruction &in) {
                 set(c, Interval(1.0) / whole_power(x, k), scaled(d, grad(0, c)));
                 continue;
             }
-            // x^y for x > 0; 0 for x < 0 (other whole y below 0 aside), so continuous at 0 where y > 0.
+            // x^y for x > 0; 0 for x < 0 (other whole y below 0 aside), so continuous at 0 where y
+            // > 0.
             Interval v = x.hi < 0 ? Interval(0.0) : positive_power(x, y);
             if (x.lo < 0 && !y.is_point()) { // y may be whole: +-|x|^y
                 Interval m = positive_power(abs(x), y);
@@ -343,14 +397,19 @@ void Machine::step(const Instruction &in) {
             }
             Interval dx, dy;
             if (!zero(grad(0, c)) && x.hi >= 0) {
-                if (y.lo >= 1) dx = y * positive_power(x, y - Interval(1.0));
-                else if (x.lo > 0) dx = y * positive_power(x, y) / x;
-                else singular = true;
+                if (y.lo >= 1)
+                    dx = y * positive_power(x, y - Interval(1.0));
+                else if (x.lo > 0)
+                    dx = y * positive_power(x, y) / x;
+                else
+                    singular = true;
                 if (x.lo <= 0) dx = hull(dx, 0.0);
             }
             if (!zero(grad(1, c))) {
-                if (x.lo > 0) dy = positive_power(x, y) * log(x);
-                else singular = true;
+                if (x.lo > 0)
+                    dy = positive_power(x, y) * log(x);
+                else
+                    singular = true;
             }
             a = std::max(a, dx.magnitude()), b = std::max(b, dy.magnitude());
             set(c, v, sum(scaled(dx, grad(0, c)), scaled(dy, grad(1, c))));
@@ -360,9 +419,10 @@ void Machine::step(const Instruction &in) {
     }
     case Op::Min:
     case Op::Max: {
-        double m = extremum(in.op == Op::Max ? 1 : -1, [&](int c) { return value(0, c); },
-                            [&](int c) { return grad(0, c); }, [&](int c) { return value(1, c); },
-                            [&](int c) { return grad(1, c); }, norm(0), norm(1));
+        double m = extremum(
+            in.op == Op::Max ? 1 : -1, [&](int c) { return value(0, c); },
+            [&](int c) { return grad(0, c); }, [&](int c) { return value(1, c); },
+            [&](int c) { return grad(1, c); }, norm(0), norm(1));
         return finish(in, m, any_odd);
     }
     case Op::Union:
@@ -372,17 +432,21 @@ void Machine::step(const Instruction &in) {
         Row g = grad(0, 0);
         double m = norm(0);
         for (int a = 1; a < int(in.args.size()); ++a) {
-            m = extremum(sign, [&](int) { return v; }, [&](int) { return g; }, [&](int) { return value(a, 0); },
-                         [&](int) { return grad(a, 0); }, m, norm(a));
+            m = extremum(
+                sign, [&](int) { return v; }, [&](int) { return g; },
+                [&](int) { return value(a, 0); }, [&](int) { return grad(a, 0); }, m, norm(a));
             v = value_[at], g = grad_[at];
         }
         set(0, v, g);
         return finish(in, m, any_odd);
     }
-    case Op::Blend: { // (r, n, a, b, …); every profile lies in [min - r, min] and weighs gradients with norm <= 1 or sqrt 2
+    case Op::Blend: { // (r, n, a, b, …); every profile lies in [min - r, min] and weighs gradients
+                      // with norm <= 1 or sqrt 2
         Interval v = value(2, 0);
         Row g = grad(2, 0);
-        double m = norm(2), factor = static_cast<Profile>(in.payload) == Profile::Columns ? 1.4142135623730952 : 1.0;
+        double m = norm(2), factor = static_cast<Profile>(in.payload) == Profile::Columns
+                                         ? 1.4142135623730952
+                                         : 1.0;
         bool radius_varies = norm(0) > 0 || norm(1) > 0;
         for (int a = 3; a < int(in.args.size()); ++a) {
             v = min(v, value(a, 0));
@@ -400,7 +464,8 @@ void Machine::step(const Instruction &in) {
             return truth(x.lo < edge.hi, x.hi >= edge.lo);
         });
         for (int c = 0; c < n; ++c)
-            if (!value_[at + static_cast<std::uint32_t>(c)].is_point() && (norm(0) > 0 || norm(1) > 0))
+            if (!value_[at + static_cast<std::uint32_t>(c)].is_point() &&
+                (norm(0) > 0 || norm(1) > 0))
                 return fail(in, Trouble::Jump);
         return;
     case Op::Sign:
@@ -418,7 +483,8 @@ void Machine::step(const Instruction &in) {
         bool jumps = false;
         for (int c = 0; c < n; ++c) {
             Interval x = value(0, c), whole = floor(x);
-            if (whole.is_point() && whole.finite()) set(c, x - whole, grad(0, c));
+            if (whole.is_point() && whole.finite())
+                set(c, x - whole, grad(0, c));
             else {
                 jumps = jumps || !zero(grad(0, c));
                 set(c, {0, 1}, none);
@@ -427,14 +493,17 @@ void Machine::step(const Instruction &in) {
         if (jumps) return fail(in, Trouble::Jump);
         return finish(in, norm(0), any_odd);
     }
-    case Op::Atan2: { // the angle turns by at most |grad (x, y)| / r; it jumps across the negative x axis
+    case Op::Atan2: { // the angle turns by at most |grad (x, y)| / r; it jumps across the negative
+                      // x axis
         Interval y = value(0, 0), x = value(1, 0), pi(-3.1415926535897936, 3.1415926535897936);
         bool varies = norm(0) > 0 || norm(1) > 0;
         bool cut = x.lo <= 0 && y.contains(0);
         Interval v = pi;
         if (!cut) {
-            double a = std::atan2(y.lo, x.lo), b = std::atan2(y.lo, x.hi), c = std::atan2(y.hi, x.lo), d = std::atan2(y.hi, x.hi);
-            v = meet(pi, ir::outward(std::min({a, b, c, d}), std::max({a, b, c, d}), ir::rounding::library));
+            double a = std::atan2(y.lo, x.lo), b = std::atan2(y.lo, x.hi),
+                   c = std::atan2(y.hi, x.lo), d = std::atan2(y.hi, x.hi);
+            v = meet(pi, ir::outward(std::min({a, b, c, d}), std::max({a, b, c, d}),
+                                     ir::rounding::library));
         }
         if (!varies || cut) {
             set(0, v, none);
@@ -449,7 +518,9 @@ void Machine::step(const Instruction &in) {
     case Op::Abs: { // even: an odd wave becomes continuous
         for (int c = 0; c < n; ++c) {
             Interval x = value(0, c);
-            Interval d = x.lo >= 0 && !odd(0, c) ? Interval(1.0) : x.hi <= 0 && !odd(0, c) ? Interval(-1.0) : Interval(-1, 1);
+            Interval d = x.lo >= 0 && !odd(0, c)   ? Interval(1.0)
+                         : x.hi <= 0 && !odd(0, c) ? Interval(-1.0)
+                                                   : Interval(-1, 1);
             set(c, abs(x), scaled(d, grad(0, c)));
         }
         if (is_int) return settle_int();
@@ -464,24 +535,32 @@ void Machine::step(const Instruction &in) {
                      });
     }
     case Op::InverseSqrt: {
-        return unary([](Interval x) { return x.lo <= 0 ? Interval(0, infinity) : Interval(1.0) / sqrt(x); },
-                     [](Interval x) {
-                         if (x.lo <= 0) return Interval::everything();
-                         return Interval(-0.5) / (x * sqrt(x));
-                     });
+        return unary(
+            [](Interval x) { return x.lo <= 0 ? Interval(0, infinity) : Interval(1.0) / sqrt(x); },
+            [](Interval x) {
+                if (x.lo <= 0) return Interval::everything();
+                return Interval(-0.5) / (x * sqrt(x));
+            });
     }
-    case Op::Exp: return unary([](Interval x) { return exp(x); }, [](Interval x) { return exp(x); });
+    case Op::Exp:
+        return unary([](Interval x) { return exp(x); }, [](Interval x) { return exp(x); });
     case Op::Exp2:
         return unary([](Interval x) { return exp2(x); },
-                     [](Interval x) { return exp2(x) * Interval(0.69314718055994528, 0.69314718055994534); });
+                     [](Interval x) {
+                         return exp2(x) * Interval(0.69314718055994528, 0.69314718055994534);
+                     });
     case Op::Log:
-        return unary([](Interval x) { return log(x); },
-                     [](Interval x) { return x.lo <= 0 ? Interval::everything() : Interval(1.0) / x; });
+        return unary(
+            [](Interval x) { return log(x); },
+            [](Interval x) { return x.lo <= 0 ? Interval::everything() : Interval(1.0) / x; });
     case Op::Log2:
-        return unary([](Interval x) { return log2(x); }, [](Interval x) {
-            return x.lo <= 0 ? Interval::everything() : Interval(1.4426950408889632, 1.4426950408889636) / x;
-        });
-    case Op::Sin: return unary([](Interval x) { return sin(x); }, [](Interval x) { return cos(x); });
+        return unary([](Interval x) { return log2(x); },
+                     [](Interval x) {
+                         return x.lo <= 0 ? Interval::everything()
+                                          : Interval(1.4426950408889632, 1.4426950408889636) / x;
+                     });
+    case Op::Sin:
+        return unary([](Interval x) { return sin(x); }, [](Interval x) { return cos(x); });
     case Op::Cos: // even
         return unary([](Interval x) { return cos(x); }, [](Interval x) { return -sin(x); });
     case Op::Tan:
@@ -503,36 +582,45 @@ void Machine::step(const Instruction &in) {
     case Op::Atan:
         return unary([](Interval x) { return atan(x); },
                      [](Interval x) { return Interval(1.0) / (Interval(1.0) + square(x)); });
-    case Op::Sinh: return unary([](Interval x) { return sinh(x); }, [](Interval x) { return cosh(x); });
-    case Op::Cosh: return unary([](Interval x) { return cosh(x); }, [](Interval x) { return sinh(x); });
+    case Op::Sinh:
+        return unary([](Interval x) { return sinh(x); }, [](Interval x) { return cosh(x); });
+    case Op::Cosh:
+        return unary([](Interval x) { return cosh(x); }, [](Interval x) { return sinh(x); });
     case Op::Tanh:
-        return unary([](Interval x) { return tanh(x); },
-                     [](Interval x) { return meet(Interval(0, 1), Interval(1.0) - square(tanh(x))); });
+        return unary(
+            [](Interval x) { return tanh(x); },
+            [](Interval x) { return meet(Interval(0, 1), Interval(1.0) - square(tanh(x))); });
     case Op::Clamp: {
-        double m = extremum(1, [&](int c) { return value(0, c); }, [&](int c) { return grad(0, c); },
-                            [&](int c) { return value(1, c); }, [&](int c) { return grad(1, c); }, norm(0), norm(1));
-        m = extremum(-1, [&](int c) { return value_[at + static_cast<std::uint32_t>(c)]; },
-                     [&](int c) { return grad_[at + static_cast<std::uint32_t>(c)]; }, [&](int c) { return value(2, c); },
-                     [&](int c) { return grad(2, c); }, m, norm(2));
+        double m = extremum(
+            1, [&](int c) { return value(0, c); }, [&](int c) { return grad(0, c); },
+            [&](int c) { return value(1, c); }, [&](int c) { return grad(1, c); }, norm(0),
+            norm(1));
+        m = extremum(
+            -1, [&](int c) { return value_[at + static_cast<std::uint32_t>(c)]; },
+            [&](int c) { return grad_[at + static_cast<std::uint32_t>(c)]; },
+            [&](int c) { return value(2, c); }, [&](int c) { return grad(2, c); }, m, norm(2));
         return finish(in, m, any_odd);
     }
     case Op::Mix: { // a + t (b - a)
         double gap = 0;
+        constexpr double rounded = 1e-12; // what rounding outward may add to a weight in 0..1
         bool convex = true, same = true;
         double t_most = 0, s_most = 0;
         for (int c = 0; c < n; ++c) {
             Interval a = value(0, c), b = value(1, c), t = value(2, c), s = Interval(1.0) - t;
-            convex = convex && t.lo >= 0 && t.hi <= 1;
+            convex = convex && t.lo >= -rounded && t.hi <= 1 + rounded;
             same = same && t == value(2, 0);
             gap = std::max(gap, (b - a).magnitude());
             t_most = std::max(t_most, t.magnitude()), s_most = std::max(s_most, s.magnitude());
             Interval v = a * s + b * t;
             if (t.lo >= 0 && t.hi <= 1) v = meet(hull(a, b), v);
-            set(c, v, sum(sum(scaled(s, grad(0, c)), scaled(t, grad(1, c))), scaled(b - a, grad(2, c))));
+            set(c, v,
+                sum(sum(scaled(s, grad(0, c)), scaled(t, grad(1, c))), scaled(b - a, grad(2, c))));
         }
-        double m = convex && n == 1 ? std::max(norm(0), norm(1)) : up(times(s_most, norm(0)) + times(t_most, norm(1)));
+        double m = convex && n == 1 ? std::max(norm(0), norm(1))
+                                    : up(times(s_most, norm(0)) + times(t_most, norm(1)));
         if (convex && n > 1 && same && value(2, 0).is_point()) m = std::max(norm(0), norm(1));
-        return finish(in, up(m + times(gap, norm(2))), any_odd);
+        return finish(in, up(m * (1 + 4 * rounded) + times(gap, norm(2))), any_odd);
     }
     case Op::Smoothstep: {
         bool bad = false;
@@ -550,11 +638,13 @@ void Machine::step(const Instruction &in) {
             Interval v = meet(Interval(0, 1), ir::outward(curve(t.lo), curve(t.hi), 4));
             // 6t(1-t): least at the end further from 1/2, 3/2 at 1/2
             auto slope = [](double u) { return 6 * u * (1 - u); };
-            Interval d = ir::outward(std::min(slope(t.lo), slope(t.hi)), t.contains(0.5) ? 1.5 : std::max(slope(t.lo), slope(t.hi)), 4);
+            Interval d = ir::outward(std::min(slope(t.lo), slope(t.hi)),
+                                     t.contains(0.5) ? 1.5 : std::max(slope(t.lo), slope(t.hi)), 4);
             if (whole.hi < 0 || whole.lo > 1) d = 0.0;
             d = Interval(std::max(d.lo, 0.0), d.hi);
             Interval k = d / width;
-            Row inner = sum(grad(2, c), sum(scaled(t - Interval(1.0), grad(0, c)), scaled(-t, grad(1, c))));
+            Row inner =
+                sum(grad(2, c), sum(scaled(t - Interval(1.0), grad(0, c)), scaled(-t, grad(1, c))));
             most = std::max(most, k.magnitude());
             set(c, v, scaled(k, inner));
         }
@@ -583,7 +673,8 @@ void Machine::step(const Instruction &in) {
         for (int c = 0; c < 3; ++c) {
             int i = (c + 1) % 3, j = (c + 2) % 3;
             Row g = sum(sum(scaled(value(1, j), grad(0, i)), scaled(value(0, i), grad(1, j))),
-                        scaled(-1.0, sum(scaled(value(1, i), grad(0, j)), scaled(value(0, j), grad(1, i)))));
+                        scaled(-1.0, sum(scaled(value(1, i), grad(0, j)),
+                                         scaled(value(0, j), grad(1, i)))));
             set(c, value(0, i) * value(1, j) - value(0, j) * value(1, i), g);
         }
         double a = box_length(in.args[0]).hi, b = box_length(in.args[1]).hi;
@@ -615,8 +706,10 @@ void Machine::step(const Instruction &in) {
     case Op::NotEqual: {
         Interval a = value(0, 0), b = value(1, 0);
         Interval v;
-        if (in.op == Op::Less) v = truth(a.hi >= b.lo, a.lo < b.hi);
-        else if (in.op == Op::LessEqual) v = truth(a.hi > b.lo, a.lo <= b.hi);
+        if (in.op == Op::Less)
+            v = truth(a.hi >= b.lo, a.lo < b.hi);
+        else if (in.op == Op::LessEqual)
+            v = truth(a.hi > b.lo, a.lo <= b.hi);
         else {
             bool can_equal = a.hi >= b.lo && b.hi >= a.lo, can_differ = !(a.is_point() && a == b);
             v = in.op == Op::Equal ? truth(can_differ, can_equal) : truth(can_equal, can_differ);
@@ -628,9 +721,11 @@ void Machine::step(const Instruction &in) {
     }
     case Op::And:
     case Op::Or: {
-        Interval v = in.op == Op::And ? min(value(0, 0), value(1, 0)) : max(value(0, 0), value(1, 0));
+        Interval v =
+            in.op == Op::And ? min(value(0, 0), value(1, 0)) : max(value(0, 0), value(1, 0));
         set(0, v, none);
-        if (!v.is_point() && (norm(0) == infinity || norm(1) == infinity)) return fail(in, Trouble::Jump);
+        if (!v.is_point() && (norm(0) == infinity || norm(1) == infinity))
+            return fail(in, Trouble::Jump);
         return finish(in, 0, false);
     }
     case Op::Not:
@@ -679,7 +774,8 @@ void Machine::step(const Instruction &in) {
             set(c, value(0, k), grad(0, k), odd(0, k));
         }
         int repeats = std::max({used[0], used[1], used[2], used[3]});
-        finish(in, repeats == 1 ? norm(0) : up(times(std::sqrt(double(repeats)), norm(0)), 4), false);
+        finish(in, repeats == 1 ? norm(0) : up(times(std::sqrt(double(repeats)), norm(0)), 4),
+               false);
         if (norm_[out] != infinity) cause_[out] = cause_[in.args[0]];
         return;
     }
@@ -692,7 +788,9 @@ void Machine::step(const Instruction &in) {
     case Op::Transpose: {
         int side = ir::side(in.type);
         for (int i = 0; i < side; ++i)
-            for (int j = 0; j < side; ++j) set(i * side + j, value(0, j * side + i), grad(0, j * side + i), odd(0, j * side + i));
+            for (int j = 0; j < side; ++j)
+                set(i * side + j, value(0, j * side + i), grad(0, j * side + i),
+                    odd(0, j * side + i));
         return finish(in, norm(0), false);
     }
     case Op::MatMul: return multiply(in, any_odd);
@@ -701,11 +799,14 @@ void Machine::step(const Instruction &in) {
         int column = ir::column_of(in.payload);
         Interval row = value(0, 0);
         int last = std::max(table.rows - 1, 0);
-        int from = int(std::clamp(row.lo, 0.0, double(last))), to = int(std::clamp(row.hi, 0.0, double(last)));
+        int from = int(std::clamp(row.lo, 0.0, double(last))),
+            to = int(std::clamp(row.hi, 0.0, double(last)));
         for (int c = 0; c < n; ++c) {
             Interval v{infinity, -infinity};
             for (int r = from; r <= to; ++r)
-                v = hull(v, Interval(double(table.data[static_cast<std::size_t>(r * table.stride + column + c)])));
+                v = hull(v,
+                         Interval(double(
+                             table.data[static_cast<std::size_t>(r * table.stride + column + c)])));
             set(c, v, none);
         }
         if (norm(0) > 0 && from != to) return fail(in, Trouble::Jump);
@@ -722,7 +823,8 @@ void Machine::step(const Instruction &in) {
         set(0, {-ir::sem::perlin_range, ir::sem::perlin_range}, through(ir::sem::perlin_slope, 0));
         return finish(in, times(ir::sem::perlin_slope, norm(0)), any_odd);
     case Op::Simplex:
-        set(0, {-ir::sem::simplex_range, ir::sem::simplex_range}, through(ir::sem::simplex_slope, 0));
+        set(0, {-ir::sem::simplex_range, ir::sem::simplex_range},
+            through(ir::sem::simplex_slope, 0));
         return finish(in, times(ir::sem::simplex_slope, norm(0)), any_odd);
     case Op::ValueNoise:
         set(0, {0, 1}, through(ir::sem::value_noise_slope, 0));
@@ -731,9 +833,12 @@ void Machine::step(const Instruction &in) {
         set(0, {0, 1}, through(ir::sem::worley_slope, 0));
         return finish(in, times(ir::sem::worley_slope, norm(0)), any_odd);
     case Op::SpotNoise: {
-        double radius = std::max(value(1, 0).lo, 1e-6), density = std::clamp(value(2, 0).hi, 0.0, double(ir::sem::spot_most));
-        double spots = std::ceil(density), scale = std::sqrt(std::max(std::clamp(value(2, 0).lo, 0.0, 8.0), 1.0));
-        double slope = up(ir::sem::spot_slope * spots / (radius * scale), 8), range = up(ir::sem::spot_range * spots / scale, 8);
+        double radius = std::max(value(1, 0).lo, 1e-6),
+               density = std::clamp(value(2, 0).hi, 0.0, double(ir::sem::spot_most));
+        double spots = std::ceil(density),
+               scale = std::sqrt(std::max(std::clamp(value(2, 0).lo, 0.0, 8.0), 1.0));
+        double slope = up(ir::sem::spot_slope * spots / (radius * scale), 8),
+               range = up(ir::sem::spot_range * spots / scale, 8);
         set(0, {-range, range}, through(slope, 0));
         if (norm(1) > 0 || norm(2) > 0) return fail(in, Trouble::Jump);
         return finish(in, times(slope, norm(0)), any_odd);
@@ -741,12 +846,24 @@ void Machine::step(const Instruction &in) {
     case Op::Image:
     case Op::Grid: {
         const auto &all = in.op == Op::Image ? ranges_.images : ranges_.grids;
-        Ranges::Sampled data = in.payload < all.size() ? all[in.payload] : Ranges::Sampled{Interval::everything(), infinity};
+        Ranges::Sampled data = in.payload < all.size()
+                                   ? all[in.payload]
+                                   : Ranges::Sampled{Interval::everything(), infinity};
         for (int c = 0; c < n; ++c) set(c, data.values, through(data.slope, 0));
         return finish(in, up(times(data.slope * std::sqrt(double(n)), norm(0)), 4), any_odd);
     }
-    case Op::Call: case Op::Cached: case Op::Fold: case Op::FoldResult: break; // flattened away
-    case Op::MakeHit: case Op::HitDistance: case Op::HitPaint: case Op::HitPoint: case Op::HitExtra: case Op::NearestHit: case Op::FarthestHit: case Op::HitWith:
+    case Op::Call:
+    case Op::Cached:
+    case Op::Fold:
+    case Op::FoldResult: break; // flattened away
+    case Op::MakeHit:
+    case Op::HitDistance:
+    case Op::HitPaint:
+    case Op::HitPoint:
+    case Op::HitExtra:
+    case Op::NearestHit:
+    case Op::FarthestHit:
+    case Op::HitWith:
     case Op::FillPaint: break; // colours, never geometry
     }
     for (int c = 0; c < n; ++c) set(c, Interval::everything(), none);
@@ -758,18 +875,24 @@ void Machine::multiply(const Instruction &in, bool odd_used) {
     const std::uint32_t at = tape_.first[in.out];
     Slot a = in.args[0], b = in.args[1];
     int na = tape_.size[a], nb = tape_.size[b], n = tape_.size[in.out];
-    bool left = na > nb || (na == nb && n == na), right = nb > na; // which is a matrix; both where sizes are equal
+    bool left = na > nb || (na == nb && n == na),
+         right = nb > na; // which is a matrix; both where sizes are equal
     bool both = na == nb;
     int side = both ? (na == 4 ? 2 : na == 9 ? 3 : 4) : left ? nb : na;
     int columns = both ? side : 1;
-    auto entry = [&](Slot m, int row, int column) { return tape_.first[m] + static_cast<std::uint32_t>(column * side + row); };
+    auto entry = [&](Slot m, int row, int column) {
+        return tape_.first[m] + static_cast<std::uint32_t>(column * side + row);
+    };
     for (int j = 0; j < columns; ++j)
         for (int i = 0; i < side; ++i) {
             Interval v;
             Row g{};
             for (int k = 0; k < side; ++k) {
-                std::uint32_t x = right ? tape_.first[a] + static_cast<std::uint32_t>(k) : entry(a, i, k);
-                std::uint32_t y = right ? entry(b, k, i) : both ? entry(b, k, j) : tape_.first[b] + static_cast<std::uint32_t>(k);
+                std::uint32_t x =
+                    right ? tape_.first[a] + static_cast<std::uint32_t>(k) : entry(a, i, k);
+                std::uint32_t y = right  ? entry(b, k, i)
+                                  : both ? entry(b, k, j)
+                                         : tape_.first[b] + static_cast<std::uint32_t>(k);
                 v += value_[x] * value_[y];
                 g = sum(g, sum(scaled(value_[y], grad_[x]), scaled(value_[x], grad_[y])));
             }
@@ -794,11 +917,15 @@ void Machine::multiply(const Instruction &in, bool odd_used) {
         if (side > 3) return up(std::sqrt(frobenius), 8);
         Row as_rows[3];
         for (int i = 0; i < side; ++i)
-            for (int j = 0; j < 3; ++j) as_rows[i][static_cast<std::size_t>(j)] = j < side ? Interval(middle[i][j]) : Interval(0.0);
-        return up(std::min(spectral_norm(as_rows, side) + std::sqrt(radius), std::sqrt(frobenius)), 8);
+            for (int j = 0; j < 3; ++j)
+                as_rows[i][static_cast<std::size_t>(j)] =
+                    j < side ? Interval(middle[i][j]) : Interval(0.0);
+        return up(std::min(spectral_norm(as_rows, side) + std::sqrt(radius), std::sqrt(frobenius)),
+                  8);
     };
     double rule;
-    if (both) rule = up(times(matrix_norm(b), norm_[a]) + times(matrix_norm(a), norm_[b]));
+    if (both)
+        rule = up(times(matrix_norm(b), norm_[a]) + times(matrix_norm(a), norm_[b]));
     else {
         Slot m = left ? a : b, v = left ? b : a;
         rule = up(times(matrix_norm(m), norm_[v]) + times(box_length(v).hi, norm_[m]));

@@ -1,4 +1,5 @@
-// The rules for maps: rigid motions, scales, folds, and the deformations with their lever arms. Proofs: docs/lipschitz.md.
+// The rules for maps: rigid motions, scales, folds, and the deformations with their lever arms.
+// Proofs: docs/lipschitz.md.
 #include "typecheck/proof/prover.h"
 
 #include "typecheck/proof/continuity.h"
@@ -49,7 +50,8 @@ Known Prover::know_map(ShapeId id) {
             auto i = static_cast<std::size_t>(a);
             double across = 0;
             for (int b = 0; b < 3; ++b)
-                if (b != a) across = std::hypot(across, by[static_cast<std::size_t>(b)].magnitude());
+                if (b != a)
+                    across = std::hypot(across, by[static_cast<std::size_t>(b)].magnitude());
             k.fact.lever[i] = up(k.fact.lever[i] + across, 4); // p x g = q x g + v x g
             k.fact.symmetric[i] = k.fact.symmetric[i] && by[i] == Interval(0.0);
         }
@@ -71,8 +73,8 @@ Known Prover::know_map(ShapeId id) {
         }
         for (std::size_t to = 0; to < n; ++to)
             for (std::size_t from = 0; from < n; ++from) {
-                // Column `from` is +-e_to: that axis is only renamed, for all params. Trigonometry leaves 1e-16; a lever
-                // changes by less than its rounding.
+                // Column `from` is +-e_to: that axis is only renamed, for all params. Trigonometry
+                // leaves 1e-16; a lever changes by less than its rounding.
                 bool axis = matrix[from * n + to].mignitude() > 1 - 1e-12;
                 if (!axis) continue;
                 if (side == 3) lever[to] = up(k.fact.lever[from], 4);
@@ -104,8 +106,8 @@ Known Prover::know_map(ShapeId id) {
             k.parts = everywhere(k.parts) ? k.parts : times(k.parts, by);
             for (double &lever : k.fact.lever) lever = up(lever * most);
         } else {
-            // min|s| * |J^T g| <= min|s| / min|s| * L: the factor takes back what the map adds. Not exact any more, and
-            // gradients no longer point from nearest points.
+            // min|s| * |J^T g| <= min|s| / min|s| * L: the factor takes back what the map adds. Not
+            // exact any more, and gradients no longer point from nearest points.
             if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
             k.exact_outside = k.parts_exact = false;
             forget_levers(k);
@@ -121,8 +123,8 @@ Known Prover::know_map(ShapeId id) {
         k.parts = fold_preimage(shape.args[0], k.parts);
         k.outer = everywhere(k.outer) ? k.outer : Box::everything();
         if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
-        // A fold that adds nothing behind its mirrors leaves the distance outside exact; whether the shape lies on one side is
-        // known where its box does.
+        // A fold that adds nothing behind its mirrors leaves the distance outside exact; whether
+        // the shape lies on one side is known where its box does.
         k.parts_exact = false;
         k.exact_outside = k.exact_outside && fold_is_clean(shape.args[0], child(shape).fact.bounds);
         k.fact.symmetric = fold_symmetry(shape.args[0], k.fact.symmetric);
@@ -146,7 +148,8 @@ Known Prover::know_map(ShapeId id) {
         k.outer = Box::everything(), k.swell_out = 0;
         bool clear = !flat_box.empty() && (Interval(flat_box.lo[0]) + offset).lo >= 0;
         bool mirrored = k.fact.symmetric[0] && offset == Interval(0.0);
-        if (!clear && !mirrored) { // parts beyond the axis pull the field down: a bound, not the distance
+        if (!clear &&
+            !mirrored) { // parts beyond the axis pull the field down: a bound, not the distance
             if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
             k.exact_outside = k.parts_exact = false;
             forget_levers(k);
@@ -186,7 +189,8 @@ Box Prover::fold_preimage(NodeId q, const Box &box) {
         if (auto e = shift_of(q, i)) { // p = q + e
             Interval by = number_anywhere(*e);
             if (by.finite()) {
-                out.lo[k] = (Interval(box.lo[k]) + by).lo, out.hi[k] = (Interval(box.hi[k]) + by).hi;
+                out.lo[k] = (Interval(box.lo[k]) + by).lo,
+                out.hi[k] = (Interval(box.hi[k]) + by).hi;
                 continue;
             }
         }
@@ -194,7 +198,8 @@ Box Prover::fold_preimage(NodeId q, const Box &box) {
         if (auto whole = whole_shift(q)) return moved(box, *whole);
         if (!keeps_length(graph, q)) return Box::everything();
         double r = norm_of(box);
-        for (int j = 0; j < n; ++j) out.lo[static_cast<std::size_t>(j)] = -r, out.hi[static_cast<std::size_t>(j)] = r;
+        for (int j = 0; j < n; ++j)
+            out.lo[static_cast<std::size_t>(j)] = -r, out.hi[static_cast<std::size_t>(j)] = r;
         return out;
     }
     return out;
@@ -227,7 +232,9 @@ bool Prover::fold_is_clean(NodeId q, const Box &box) {
         NodeId c = in_one_form(graph, component_of(graph, q, i)), own = graph.component(p, i);
         if (c == own) continue;
         bool mirror = graph[c].op == Op::Abs && graph.arg(c, 0) == own;
-        if (mirror ? box.lo[static_cast<std::size_t>(i)] < 0 : !number_anywhere(shift_of(q, i).value_or(own)).finite()) return false;
+        if (mirror ? box.lo[static_cast<std::size_t>(i)] < 0
+                   : !number_anywhere(shift_of(q, i).value_or(own)).finite())
+            return false;
     }
     return true;
 }
@@ -238,8 +245,10 @@ std::array<bool, 3> Prover::fold_symmetry(NodeId q, std::array<bool, 3> child) {
     for (int i = 0; i < ir::components(graph[q].type); ++i) {
         auto k = static_cast<std::size_t>(i);
         NodeId c = in_one_form(graph, component_of(graph, q, i)), own = graph.component(p, i);
-        if (c == own) out[k] = child[k];
-        else if (graph[c].op == Op::Abs && graph.arg(c, 0) == own) out[k] = true;
+        if (c == own)
+            out[k] = child[k];
+        else if (graph[c].op == Op::Abs && graph.arg(c, 0) == own)
+            out[k] = true;
     }
     return out;
 }
@@ -251,7 +260,8 @@ double Prover::region_radius(ShapeId id, int axis) const {
     if (here.zone && here.zone->kind == ir::RegionKind::Ball) {
         double off = 0;
         for (int a = 0; a < 3; ++a)
-            if (a != axis) off = std::hypot(off, here.zone->center[static_cast<std::size_t>(a)].magnitude());
+            if (a != axis)
+                off = std::hypot(off, here.zone->center[static_cast<std::size_t>(a)].magnitude());
         radius = std::min(radius, up(off + here.zone->half[0].hi, 4));
     }
     if (here.zone && here.zone->kind == ir::RegionKind::Tube && here.zone->axis == axis)
@@ -273,12 +283,16 @@ Known Prover::know_deformed(ShapeId id) {
     auto needs_region = [&](const std::string &what) {
         if (!k.failed)
             if (Diagnostic *d = report(id, Code::NeedsRegion, what))
-                d->help("write `.within(…)` after it, with a region that holds what you want to see, as in `.within(ball(3))`");
+                d->help("write `.within(…)` after it, with a region that holds what you want to "
+                        "see, as in `.within(ball(3))`");
         k.failed = true;
     };
     const std::string child_name = operation_name(scene, shape.children[0]);
-    // Without a lever arm or a region, a shape that has bounds is proved within them, and joined with the way to them.
-    auto own_box = [&] { return shape.dims == 3 && k.fact.bounds.finite() && !k.fact.bounds.empty(); };
+    // Without a lever arm or a region, a shape that has bounds is proved within them, and joined
+    // with the way to them.
+    auto own_box = [&] {
+        return shape.dims == 3 && k.fact.bounds.finite() && !k.fact.bounds.empty();
+    };
     bool alone = false;
 
     switch (shape.map) {
@@ -302,17 +316,22 @@ Known Prover::know_deformed(ShapeId id) {
             alone = true;
         }
         if (!std::isfinite(arm) && !still) {
-            needs_region("a twist of " + child_name + ", whose surface is not all near the axis, has no bound");
+            needs_region("a twist of " + child_name +
+                         ", whose surface is not all near the axis, has no bound");
             break;
         }
         arm *= options.rules[Rule::Twist];
         double sup = up(l * sigma(rate.magnitude() * (still ? 0 : arm)));
-        // sigma(s) = (s + sqrt(s^2 + 4))/2, s = |rate| * arm: grows with |rate|, so a slider at 0 pays nothing.
+        // sigma(s) = (s + sqrt(s^2 + 4))/2, s = |rate| * arm: grows with |rate|, so a slider at 0
+        // pays nothing.
         NodeId s = graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(still ? 0 : arm));
         NodeId root = graph.make(Op::Sqrt, {graph.add(graph.mul(s, s), graph.number(4))});
-        NodeId formula = graph.mul(graph.mul(graph.add(s, root), graph.number(0.5 * (1 + slack))), inner.fact.lipschitz);
-        if (alone && !k.failed) keep_local(k, sup, formula);
-        else if (!k.failed) set_lipschitz(k, formula, sup);
+        NodeId formula = graph.mul(graph.mul(graph.add(s, root), graph.number(0.5 * (1 + slack))),
+                                   inner.fact.lipschitz);
+        if (alone && !k.failed)
+            keep_local(k, sup, formula);
+        else if (!k.failed)
+            set_lipschitz(k, formula, sup);
         break;
     }
     case MapKind::Bend: {
@@ -334,22 +353,29 @@ Known Prover::know_deformed(ShapeId id) {
             alone = true;
         }
         if (!std::isfinite(arm) && !still) {
-            needs_region("a bend of " + child_name + ", whose surface is not all near the axis, has no bound");
+            needs_region("a bend of " + child_name +
+                         ", whose surface is not all near the axis, has no bound");
             break;
         }
         arm *= options.rules[Rule::Bend];
         double add = still ? 0 : up(rate.magnitude() * arm);
-        NodeId excess = graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(still ? 0 : arm * (1 + slack)));
+        NodeId excess = graph.mul(graph.make(Op::Abs, {shape.args[2]}),
+                                  graph.number(still ? 0 : arm * (1 + slack)));
         NodeId formula = graph.mul(graph.add(graph.number(1), excess), inner.fact.lipschitz);
-        if (alone && !k.failed) keep_local(k, up(l * up(1 + add)), formula);
-        else if (!k.failed) set_lipschitz(k, formula, up(l * up(1 + add)));
+        if (alone && !k.failed)
+            keep_local(k, up(l * up(1 + add)), formula);
+        else if (!k.failed)
+            set_lipschitz(k, formula, up(l * up(1 + add)));
         break;
     }
     case MapKind::Taper: {
-        Interval ratio = number(shape.args[2]), from = number(shape.args[3]), to = number(shape.args[4]);
+        Interval ratio = number(shape.args[2]), from = number(shape.args[3]),
+                 to = number(shape.args[4]);
         auto a = static_cast<std::size_t>(shape.axis);
         double length = (to - from).lo;
-        double steepness = length > 0 ? up(std::max(std::fabs(ratio.lo - 1), std::fabs(ratio.hi - 1)) / length) : infinity;
+        double steepness =
+            length > 0 ? up(std::max(std::fabs(ratio.lo - 1), std::fabs(ratio.hi - 1)) / length)
+                       : infinity;
         double most = std::max(1.0, ratio.hi);
         bool still = ratio == Interval(1.0);
         if (still) steepness = 0;
@@ -359,8 +385,9 @@ Known Prover::know_deformed(ShapeId id) {
         double v = std::max((Interval(parts.hi[a]) - from).hi, (to - Interval(parts.lo[a])).hi);
         if (!k.fact.bounds.empty())
             for (std::size_t i = 0; i < 3; ++i)
-                if (i != a) k.fact.bounds.lo[i] = std::min(k.fact.bounds.lo[i] * most, k.fact.bounds.lo[i]),
-                            k.fact.bounds.hi[i] = std::max(k.fact.bounds.hi[i] * most, k.fact.bounds.hi[i]);
+                if (i != a)
+                    k.fact.bounds.lo[i] = std::min(k.fact.bounds.lo[i] * most, k.fact.bounds.lo[i]),
+                    k.fact.bounds.hi[i] = std::max(k.fact.bounds.hi[i] * most, k.fact.bounds.hi[i]);
         k.fact.symmetric[a] = k.fact.symmetric[a] && still;
         // {c f(x/c) < t} needs f < t/c.
         k.swell = ratio.lo > 0 ? up(k.swell * most / std::min(1.0, ratio.lo)) : infinity;
@@ -375,25 +402,33 @@ Known Prover::know_deformed(ShapeId id) {
         }
         double norm = infinity;
         if (inner.parts_exact && std::isfinite(r) && std::isfinite(v))
-            norm = lower_triangle_norm(up(most + steepness * v * options.rules[Rule::Taper]), up(steepness * r * options.rules[Rule::Taper]));
+            norm = lower_triangle_norm(up(most + steepness * v * options.rules[Rule::Taper]),
+                                       up(steepness * r * options.rules[Rule::Taper]));
         Box inside = here;
         if (!std::isfinite(norm) && !here.finite() && own_box()) {
             inside = padded(k.fact.bounds);
             alone = true;
         }
-        if (inside.finite() && !inside.empty() && inner.fact.bounds.finite() && !inner.fact.bounds.empty()) {
-            // In a region: |grad| <= L [[1,0],[|c'| r/c, c]] + |c'| |f|, |f| <= L * the distance across.
+        if (inside.finite() && !inside.empty() && inner.fact.bounds.finite() &&
+            !inner.fact.bounds.empty()) {
+            // In a region: |grad| <= L [[1,0],[|c'| r/c, c]] + |c'| |f|, |f| <= L * the distance
+            // across.
             double least = std::max(std::min(1.0, ratio.lo), 1e-4);
-            double across = (alone ? radius_about(inside, shape.axis) : region_radius(id, shape.axis)) / least;
+            double across =
+                (alone ? radius_about(inside, shape.axis) : region_radius(id, shape.axis)) / least;
             double size = up(norm_of(inside) / least + norm_of(inner.fact.bounds));
-            norm = std::min(norm, up(lower_triangle_norm(most, up(steepness * across)) + steepness * size));
+            norm = std::min(
+                norm, up(lower_triangle_norm(most, up(steepness * across)) + steepness * size));
         }
         if (!std::isfinite(norm)) {
-            needs_region("a taper of " + child_name + ", which is not made of exact parts of limited size, has no bound");
+            needs_region("a taper of " + child_name +
+                         ", which is not made of exact parts of limited size, has no bound");
             break;
         }
-        if (alone && !k.failed) keep_local(k, up(l * norm), graph.number(up(l * norm)));
-        else if (!k.failed) set_lipschitz(k, up(l * norm));
+        if (alone && !k.failed)
+            keep_local(k, up(l * norm), graph.number(up(l * norm)));
+        else if (!k.failed)
+            set_lipschitz(k, up(l * norm));
         break;
     }
     case MapKind::Distort: {
@@ -411,16 +446,19 @@ Known Prover::know_deformed(ShapeId id) {
         if (shape.assumed > 0 || shape.estimate > 0) {
             factor = shape.assumed > 0 ? shape.assumed : shape.estimate;
             test_assumed(id, shape.args[0], factor, shape.assumed <= 0);
-            k.fact.status = std::max(k.fact.status, shape.assumed > 0 ? ir::ProofStatus::Assumed : ir::ProofStatus::Estimated);
+            k.fact.status = std::max(k.fact.status, shape.assumed > 0 ? ir::ProofStatus::Assumed
+                                                                      : ir::ProofStatus::Estimated);
             if (shape.assumed <= 0) k.fact.kind = FieldKind::Estimate;
         } else {
             FieldBound b;
             if (everywhere(here) && own_box() && place(id).audible) {
                 b = bound(id, shape.args[0], "the map", false);
-                if (!std::isfinite(b.lipschitz)) { // steeper without limit far away, perhaps; but not in the shape's own box
+                if (!std::isfinite(b.lipschitz)) { // steeper without limit far away, perhaps; but
+                                                   // not in the shape's own box
                     Budget budget;
                     budget.instructions = options.field_instructions;
-                    b = bound_field(flattening, ranges, shape.args[0], {to_cell(padded(k.fact.bounds)), nullptr}, budget);
+                    b = bound_field(flattening, ranges, shape.args[0],
+                                    {to_cell(padded(k.fact.bounds)), nullptr}, budget);
                     alone = true;
                     if (!std::isfinite(b.lipschitz)) report_field(id, b, "the map");
                 }
@@ -432,12 +470,18 @@ Known Prover::know_deformed(ShapeId id) {
         }
         if (!k.failed) {
             NodeId formula = graph.mul(inner.fact.lipschitz, graph.number(factor));
-            if (alone) keep_local(k, up(l * factor), formula);
-            else set_lipschitz(k, formula, up(l * factor));
+            if (alone)
+                keep_local(k, up(l * factor), formula);
+            else
+                set_lipschitz(k, formula, up(l * factor));
         }
         break;
     }
-    case MapKind::Translate: case MapKind::Rotate: case MapKind::Scale: case MapKind::Fold: case MapKind::Revolve: break;
+    case MapKind::Translate:
+    case MapKind::Rotate:
+    case MapKind::Scale:
+    case MapKind::Fold:
+    case MapKind::Revolve: break;
     }
     if (k.failed) fail(k);
     return k;

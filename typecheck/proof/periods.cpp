@@ -1,5 +1,6 @@
-// Which coordinates a field repeats in, by following how each value depends on each coordinate: not at all, linearly,
-// periodically, or otherwise. A period is only claimed where it is exact in the numbers of the program.
+// Which coordinates a field repeats in, by following how each value depends on each coordinate: not
+// at all, linearly, periodically, or otherwise. A period is only claimed where it is exact in the
+// numbers of the program.
 #include "typecheck/proof/field.h"
 
 #include <algorithm>
@@ -71,7 +72,8 @@ Periods periods_of(const Tape &tape, const ir::Graph &graph) {
             auto all = [&] { // any function of all components of all arguments
                 Way w;
                 for (Slot s : in.args)
-                    for (std::uint32_t c = 0; c < tape.size[s]; ++c) w = meet_periods(w, blur(ways[tape.first[s] + c]));
+                    for (std::uint32_t c = 0; c < tape.size[s]; ++c)
+                        w = meet_periods(w, blur(ways[tape.first[s] + c]));
                 return w;
             };
             if (in.form == Form::Loop) {
@@ -84,8 +86,10 @@ Periods periods_of(const Tape &tape, const ir::Graph &graph) {
                 w = everything;
                 if (in.form == Form::Wave) {
                     double m = constant(in, 1, c);
-                    if (m > 0) w = repeats_after(way(in, 0, c), m);
-                    else w = blur(way(in, 0, c));
+                    if (m > 0)
+                        w = repeats_after(way(in, 0, c), m);
+                    else
+                        w = blur(way(in, 0, c));
                     continue;
                 }
                 if (in.form == Form::Square) {
@@ -93,17 +97,28 @@ Periods periods_of(const Tape &tape, const ir::Graph &graph) {
                     continue;
                 }
                 if (in.form != Form::Plain) continue;
-                if (in.op == Op::Point) w = c == axis ? Way{Way::Linear, 1} : Way{};
-                else if (in.op == Op::Add) w = add(way(in, 0, c), way(in, 1, c), 1);
-                else if (in.op == Op::Sub) w = add(way(in, 0, c), way(in, 1, c), -1);
-                else if (in.op == Op::Neg) w = times(way(in, 0, c), -1);
-                else if (in.op == Op::Sin || in.op == Op::Cos) w = repeats_after(way(in, 0, c), 6.283185307179586476925);
-                else if (in.op == Op::Tan) w = repeats_after(way(in, 0, c), 3.141592653589793238463);
-                else if (in.op == Op::Swizzle) w = way(in, 0, static_cast<std::uint32_t>(ir::swizzle_component(in.payload, int(c))));
-                else if (in.op == Op::Splat) w = way(in, 0, 0);
-                else if (in.op == Op::Abs || in.op == Op::Min || in.op == Op::Max || in.op == Op::Clamp || in.op == Op::Mix) {
+                if (in.op == Op::Point)
+                    w = c == axis ? Way{Way::Linear, 1} : Way{};
+                else if (in.op == Op::Add)
+                    w = add(way(in, 0, c), way(in, 1, c), 1);
+                else if (in.op == Op::Sub)
+                    w = add(way(in, 0, c), way(in, 1, c), -1);
+                else if (in.op == Op::Neg)
+                    w = times(way(in, 0, c), -1);
+                else if (in.op == Op::Sin || in.op == Op::Cos)
+                    w = repeats_after(way(in, 0, c), 6.283185307179586476925);
+                else if (in.op == Op::Tan)
+                    w = repeats_after(way(in, 0, c), 3.141592653589793238463);
+                else if (in.op == Op::Swizzle)
+                    w = way(in, 0,
+                            static_cast<std::uint32_t>(ir::swizzle_component(in.payload, int(c))));
+                else if (in.op == Op::Splat)
+                    w = way(in, 0, 0);
+                else if (in.op == Op::Abs || in.op == Op::Min || in.op == Op::Max ||
+                         in.op == Op::Clamp || in.op == Op::Mix) {
                     w = Way{};
-                    for (std::size_t a = 0; a < in.args.size(); ++a) w = meet_periods(w, blur(way(in, a, c)));
+                    for (std::size_t a = 0; a < in.args.size(); ++a)
+                        w = meet_periods(w, blur(way(in, a, c)));
                 } else if (in.op == Op::Make) {
                     std::uint32_t k = c;
                     for (std::size_t a = 0; a < in.args.size(); ++a) {
@@ -116,17 +131,23 @@ Periods periods_of(const Tape &tape, const ir::Graph &graph) {
                     }
                 } else if (in.op == Op::Mul) {
                     double x = constant(in, 0, c), y = constant(in, 1, c);
-                    if (!std::isnan(x)) w = times(way(in, 1, c), x);
-                    else if (!std::isnan(y)) w = times(way(in, 0, c), y);
-                    else w = meet_periods(blur(way(in, 0, c)), blur(way(in, 1, c)));
+                    if (!std::isnan(x))
+                        w = times(way(in, 1, c), x);
+                    else if (!std::isnan(y))
+                        w = times(way(in, 0, c), y);
+                    else
+                        w = meet_periods(blur(way(in, 0, c)), blur(way(in, 1, c)));
                 } else if (in.op == Op::Div) {
                     double y = constant(in, 1, c);
-                    if (!std::isnan(y) && y != 0) w = times(way(in, 0, c), 1 / y);
-                    else w = meet_periods(blur(way(in, 0, c)), blur(way(in, 1, c)));
+                    if (!std::isnan(y) && y != 0)
+                        w = times(way(in, 0, c), 1 / y);
+                    else
+                        w = meet_periods(blur(way(in, 0, c)), blur(way(in, 1, c)));
                 } else if (in.op == Op::Mod) {
                     double m = constant(in, 1, c);
                     w = m > 0 ? repeats_after(way(in, 0, c), m) : blur(way(in, 0, c));
-                } else if (in.op == Op::Fract) w = repeats_after(way(in, 0, c), 1);
+                } else if (in.op == Op::Fract)
+                    w = repeats_after(way(in, 0, c), 1);
             }
         }
         if (!simple) continue;

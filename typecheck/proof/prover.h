@@ -1,4 +1,5 @@
-// The working state of one proof, and the rules by group (shapes.cpp, maps.cpp, repeat.cpp, fields.cpp).
+// The working state of one proof, and the rules by group (shapes.cpp, maps.cpp, repeat.cpp,
+// fields.cpp).
 #pragma once
 
 #include "typecheck/proof/known.h"
@@ -12,8 +13,9 @@ namespace fathom::proof {
 // Where a shape is asked at all, in its own space.
 struct Place {
     bool reached = false, audible = false; // audible: not only inside a body whose claims are taken
-    Box box;                    // the hull over all uses
-    const Zone *zone = nullptr; // the region, where there is one use and it is the shape's own space
+    Box box;                               // the hull over all uses
+    const Zone *zone =
+        nullptr; // the region, where there is one use and it is the shape's own space
     bool shared = false;
 };
 
@@ -31,17 +33,20 @@ struct Prover {
     bool local = false;     // the shape at hand is proved in its own box alone (ShapeFact::local)
 
     Prover(ir::Scene &s, Diagnostics &d, const Options &o)
-        : scene(s), diagnostics(d), options(o), graph(s.graph), flattening{s.graph, {}}, ranges(ranges_of(s)) {}
+        : scene(s), diagnostics(d), options(o), graph(s.graph), flattening{s.graph, {}},
+          ranges(ranges_of(s)) {}
 
     void run();
 
     // -- numbers
-    Interval number(ir::NodeId id);                          // of a closed scalar
-    Vec vector(ir::NodeId id);                               // of a closed vector (a flat one's z is 0)
+    Interval number(ir::NodeId id); // of a closed scalar
+    Vec vector(ir::NodeId id);      // of a closed vector (a flat one's z is 0)
     std::array<Interval, 16> numbers(ir::NodeId id);
     bool reads_point(ir::NodeId id) const { return graph.reads(id).point; }
     const Known &of(ir::ShapeId id) const { return known[id.index]; }
-    const Known &child(const ir::Shape &shape, std::size_t i = 0) const { return of(shape.children[i]); }
+    const Known &child(const ir::Shape &shape, std::size_t i = 0) const {
+        return of(shape.children[i]);
+    }
     const Place &place(ir::ShapeId id) const { return places[id.index]; }
     Zone zone_of(const ir::Region &region);
 
@@ -52,12 +57,12 @@ struct Prover {
     // -- rules, from the leaves up
     Known know(ir::ShapeId id);
     Known know_leaf(ir::ShapeId id);
-    Known know_set(ir::ShapeId id);          // union, intersection, xor, blend, seam, pseudo-norm
+    Known know_set(ir::ShapeId id); // union, intersection, xor, blend, seam, pseudo-norm
     Known know_lerp(ir::ShapeId id);
-    Known know_displaced(ir::ShapeId id);    // displace, offset, shell
+    Known know_displaced(ir::ShapeId id); // displace, offset, shell
     Known know_extrude(ir::ShapeId id);
     Known know_map(ir::ShapeId id);
-    Known know_deformed(ir::ShapeId id);     // twist, bend, taper, distort
+    Known know_deformed(ir::ShapeId id); // twist, bend, taper, distort
     Known know_repeat(ir::ShapeId id);
     Known know_within(ir::ShapeId id);
     Known know_many(ir::ShapeId id);
@@ -68,32 +73,37 @@ struct Prover {
 
     // -- folds: q is p by component, |p_i|, or p less something limited
     Box fold_preimage(ir::NodeId q, const Box &box);
-    bool fold_is_clean(ir::NodeId q, const Box &box); // the box lies on the near side of every mirror
+    bool fold_is_clean(ir::NodeId q,
+                       const Box &box); // the box lies on the near side of every mirror
     std::array<bool, 3> fold_symmetry(ir::NodeId q, std::array<bool, 3> child);
     std::optional<ir::NodeId> shift_of(ir::NodeId q, int i);
-    std::optional<Vec> whole_shift(ir::NodeId q);     // the interval of p - q, where limited
+    std::optional<Vec> whole_shift(ir::NodeId q); // the interval of p - q, where limited
     Interval number_anywhere(ir::NodeId id);
 
-    // The raw field as one expression in Point, where the shape is made of leaves, maps, min and max; else nothing.
+    // The raw field as one expression in Point, where the shape is made of leaves, maps, min and
+    // max; else nothing.
     std::optional<ir::NodeId> expression(ir::ShapeId id, int depth = 0);
 
     // The bound of an expression of the point over where the shape is asked. Reports failures.
     FieldBound bound(ir::ShapeId id, ir::NodeId field, const std::string &what, bool report = true);
 
-    void keep_local(Known &k, double sup, ir::NodeId formula);   // the bound of a field that is joined with its box
-    void set_lipschitz(Known &k, double value);                 // a constant
-    void set_lipschitz(Known &k, ir::NodeId formula, double sup); // an expression in params; constant where it reads none
-    void fail(Known &k);                                        // no proof: infinity, facts usable
-    void finish(ir::ShapeId id, Known &k);                      // guards, notes
+    void keep_local(Known &k, double sup,
+                    ir::NodeId formula);        // the bound of a field that is joined with its box
+    void set_lipschitz(Known &k, double value); // a constant
+    void set_lipschitz(Known &k, ir::NodeId formula,
+                       double sup);        // an expression in params; constant where it reads none
+    void fail(Known &k);                   // no proof: infinity, facts usable
+    void finish(ir::ShapeId id, Known &k); // guards, notes
 
     // -- reports; silent where the shape is not audible
     Diagnostic *report(ir::ShapeId id, Code code, std::string message);
     void report_field(ir::ShapeId id, const FieldBound &bound, const std::string &what);
     void test_assumed(ir::ShapeId id, ir::NodeId field, double limit, bool estimate);
-    std::vector<std::string> chain(ir::ShapeId id); // the operations that make a bound, steepest child first
+    std::vector<std::string>
+    chain(ir::ShapeId id); // the operations that make a bound, steepest child first
 };
 
-std::string number_text(double x);       // three significant digits: "2.37", "1.2e+03"
+std::string number_text(double x); // three significant digits: "2.37", "1.2e+03"
 std::string point_text(const std::array<double, 3> &p, int dims = 3);
 std::string operation_name(const ir::Scene &scene, ir::ShapeId id); // "twist", "sphere", …
 

@@ -1,5 +1,5 @@
-// Repetition: how many copies have to be evaluated so that the least of them bounds the distance to all, continuously.
-// Proofs: docs/lipschitz.md, repetition.
+// Repetition: how many copies have to be evaluated so that the least of them bounds the distance to
+// all, continuously. Proofs: docs/lipschitz.md, repetition.
 #include "typecheck/proof/prover.h"
 
 #include <algorithm>
@@ -17,8 +17,9 @@ namespace {
 
 constexpr int most_per_axis = 9, most_copies = 128;
 
-// Of like copies at j*cell, those that can hold the nearest point when the asker is at x (own cell: |x| <= cell/2): a point s
-// of the motif, lo <= s <= hi, is nearest in the copy with |x - s - j*cell| <= cell/2. For x in [0, cell/2].
+// Of like copies at j*cell, those that can hold the nearest point when the asker is at x (own cell:
+// |x| <= cell/2): a point s of the motif, lo <= s <= hi, is nearest in the copy with |x - s -
+// j*cell| <= cell/2. For x in [0, cell/2].
 void copies_that_matter(double lo, double hi, double cell, double &least, double &most) {
     least = std::ceil((0 - hi) / cell - 0.5 + 1e-9);
     most = std::floor((cell / 2 - lo) / cell + 0.5 - 1e-9);
@@ -45,16 +46,20 @@ Known Prover::know_repeat(ShapeId id) {
 
     auto no_bounds = [&] {
         if (!k.failed)
-            if (Diagnostic *d = report(id, Code::NeedsRegion, "a repetition of " + operation_name(scene, shape.children[0]) +
-                                                                  ", which has no bounds along the repeated axis"))
-                d->help("cut it with `& box(…)` or `.within(…)` first, so that each copy has an end");
+            if (Diagnostic *d =
+                    report(id, Code::NeedsRegion,
+                           "a repetition of " + operation_name(scene, shape.children[0]) +
+                               ", which has no bounds along the repeated axis"))
+                d->help(
+                    "cut it with `& box(…)` or `.within(…)` first, so that each copy has an end");
         k.failed = true;
     };
 
     if (repetition.polar) {
         int n = int(std::max(number(shape.args[0]).hi, 1.0));
         auto a = static_cast<std::size_t>(repetition.axis);
-        // The first copy's direction, and what lies across: of y they are x and z; of x, y and z; of z, x and y.
+        // The first copy's direction, and what lies across: of y they are x and z; of x, y and z;
+        // of z, x and y.
         std::size_t u = repetition.axis == 0 ? 1 : 0, v = repetition.axis == 2 ? 1 : 2;
         double half = 3.141592653589793 / n;
         bool fits = box.empty() || n == 1;
@@ -66,12 +71,15 @@ Known Prover::know_repeat(ShapeId id) {
         }
         bool mirrored = motif.fact.symmetric[v];
         int need;
-        if (n == 1) need = 1;
-        else if (fits && mirrored && !differ) need = 1;
-        else if (fits && !differ && exact) need = 2;
+        if (n == 1)
+            need = 1;
+        else if (fits && mirrored && !differ)
+            need = 1;
+        else if (fits && !differ && exact)
+            need = 2;
         else {
-            // The copies within half a turn's share of any point of the motif; copies that differ, or whose fields are only
-            // bounds, take one more on each side and the guard.
+            // The copies within half a turn's share of any point of the motif; copies that differ,
+            // or whose fields are only bounds, take one more on each side and the guard.
             int more = int(std::ceil((reach + half) / (2 * half) - 0.5 - 1e-9));
             need = 2 * std::max(more, 1) + 1;
             plan.guard = differ || !exact;
@@ -86,18 +94,22 @@ Known Prover::know_repeat(ShapeId id) {
         double r = radius_about(box, repetition.axis);
         if (!box.empty())
             for (std::size_t i = 0; i < 3; ++i)
-                if (i != a && !(shape.dims == 2 && i == 2)) k.fact.bounds.lo[i] = -r, k.fact.bounds.hi[i] = r;
+                if (i != a && !(shape.dims == 2 && i == 2))
+                    k.fact.bounds.lo[i] = -r, k.fact.bounds.hi[i] = r;
         k.swell *= std::sqrt(2.0);
         for (std::size_t i = 0; i < 3; ++i)
             if (i != a) k.fact.symmetric[i] = false;
-        // Even counts of mirror images: a motif symmetric across its own plane makes a whole that is, too.
+        // Even counts of mirror images: a motif symmetric across its own plane makes a whole that
+        // is, too.
         if (mirrored && !differ) k.fact.symmetric[v] = true;
         if (n % 2 == 0 && mirrored && !differ) k.fact.symmetric[u] = true;
         k.parts_exact = motif.parts_exact;
         if (exact && motif.parts_exact && !box.empty()) {
             k.parts = k.fact.bounds;
-            for (int i = 0; i < 3; ++i) k.fact.lever[static_cast<std::size_t>(i)] = radius_about(k.parts, i);
-            k.fact.lever[a] = std::min(k.fact.lever[a], motif.fact.lever[a]); // each copy is turned about that axis
+            for (int i = 0; i < 3; ++i)
+                k.fact.lever[static_cast<std::size_t>(i)] = radius_about(k.parts, i);
+            k.fact.lever[a] = std::min(k.fact.lever[a],
+                                       motif.fact.lever[a]); // each copy is turned about that axis
         }
     } else {
         Vec cells = vector(shape.args[0]), counts = vector(shape.args[1]);
@@ -116,7 +128,8 @@ Known Prover::know_repeat(ShapeId id) {
                 too_many = true;
                 continue;
             }
-            bool fits = lo >= -cell / 2 * (1 + 1e-5) && hi <= cell / 2 * (1 + 1e-5); // the boxes are padded
+            bool fits =
+                lo >= -cell / 2 * (1 + 1e-5) && hi <= cell / 2 * (1 + 1e-5); // the boxes are padded
             double least, most;
             if (repetition.mirrored) {
                 double reach = std::max(-lo, hi);
@@ -125,28 +138,32 @@ Known Prover::know_repeat(ShapeId id) {
                 copies_that_matter(lo, hi, cell, least, most);
             }
             int need;
-            if (fits && !differ && (repetition.mirrored || motif.fact.symmetric[a])) need = 1;
-            else if (fits && !differ && exact) need = 2;
+            if (fits && !differ && (repetition.mirrored || motif.fact.symmetric[a]))
+                need = 1;
+            else if (fits && !differ && exact)
+                need = 2;
             else if (fits) {
                 need = 2;
                 plan.guard = true;
             } else {
                 double away = std::max(-least, most);
                 if (differ || !exact || repetition.mirrored) {
-                    // The guard must not press on the own cell: what is left out keeps half a cell away.
+                    // The guard must not press on the own cell: what is left out keeps half a cell
+                    // away.
                     away = std::max(away, std::ceil(std::max(-lo, hi) / cell));
                     plan.guard = true;
                 }
                 if (away > 64) away = 64;
                 need = 2 * int(std::max(away, 1.0)) + 1;
             }
-            need = std::max(1, int(std::lround(need * (need > 1 ? options.rules[Rule::RepeatNeighbors] : 1))));
+            need = std::max(
+                1, int(std::lround(need * (need > 1 ? options.rules[Rule::RepeatNeighbors] : 1))));
             if (counts[a].hi < 1e8) need = std::min(need, int(std::max(2 * counts[a].hi - 1, 1.0)));
             if (need > most_per_axis) too_many = true;
             plan.neighbors[a] = need;
             product *= need;
-            // Which copies are asked changes in the middle between two; the guard is continuous there if the boxes lie
-            // evenly about their cells' middles.
+            // Which copies are asked changes in the middle between two; the guard is continuous
+            // there if the boxes lie evenly about their cells' middles.
             plan.copy.hi[a] = std::max(-lo, hi);
             plan.copy.lo[a] = -plan.copy.hi[a];
             bool endless = counts[a].hi >= 1e8;
@@ -159,13 +176,17 @@ Known Prover::know_repeat(ShapeId id) {
             }
         }
         if (exact && motif.parts_exact) k.parts = k.fact.bounds;
-        for (int i = 0; i < 3; ++i) k.fact.lever[static_cast<std::size_t>(i)] = radius_about(k.parts, i);
-        for (std::size_t a = 0; a < 3; ++a) k.fact.symmetric[a] = motif.fact.symmetric[a] && !differ;
+        for (int i = 0; i < 3; ++i)
+            k.fact.lever[static_cast<std::size_t>(i)] = radius_about(k.parts, i);
+        for (std::size_t a = 0; a < 3; ++a)
+            k.fact.symmetric[a] = motif.fact.symmetric[a] && !differ;
     }
     if (product > most_copies) too_many = true;
     if (too_many && !k.failed) {
-        if (Diagnostic *d = report(id, Code::RepeatLimit, "the repeated shape reaches over too many cells: " + number_text(product) +
-                                                              " copies would have to be evaluated at every point"))
+        if (Diagnostic *d =
+                report(id, Code::RepeatLimit,
+                       "the repeated shape reaches over too many cells: " + number_text(product) +
+                           " copies would have to be evaluated at every point"))
             d->help("make the cell larger or the shape smaller");
         k.failed = true;
         for (int &n : plan.neighbors) n = std::min(n, 3);
@@ -183,9 +204,11 @@ Known Prover::know_repeat(ShapeId id) {
         k.swell = infinity; // the guard may be less than the field
     }
     k.fact.repeat = plan;
-    if (k.failed) fail(k);
+    if (k.failed)
+        fail(k);
     else if (plan.guard) // the guard is a distance
-        set_lipschitz(k, graph.make(ir::Op::Max, {k.fact.lipschitz, graph.number(1)}), std::max(k.fact.lipschitz_sup, 1.0));
+        set_lipschitz(k, graph.make(ir::Op::Max, {k.fact.lipschitz, graph.number(1)}),
+                      std::max(k.fact.lipschitz_sup, 1.0));
     return k;
 }
 

@@ -1,4 +1,5 @@
-// The walk: places from the root down, facts from the leaves up; and the rules of the kinds that combine.
+// The walk: places from the root down, facts from the leaves up; and the rules of the kinds that
+// combine.
 #include "typecheck/proof/prover.h"
 
 #include "ir/view.h"
@@ -45,7 +46,8 @@ void Prover::run() {
                 Vec counts = vector(shape.args[1]);
                 for (std::size_t a = 0; a < 3; ++a) {
                     if (!repetition.along[a]) continue;
-                    id[a] = counts[a].hi >= 1e8 ? Interval::everything() : Interval(0, std::max(counts[a].hi - 1, 0.0));
+                    id[a] = counts[a].hi >= 1e8 ? Interval::everything()
+                                                : Interval(0, std::max(counts[a].hi - 1, 0.0));
                 }
             }
             ranges.vars[graph[repetition.id].payload] = id;
@@ -87,7 +89,8 @@ void Prover::run() {
     double distance = radius / 0.3826834323650898;
     if (scene.camera.given) {
         auto at = ir::value_of(scene, scene.camera.at, 0);
-        distance = std::sqrt(std::pow(at[0] - centre[0], 2) + std::pow(at[1] - centre[1], 2) + std::pow(at[2] - centre[2], 2));
+        distance = std::sqrt(std::pow(at[0] - centre[0], 2) + std::pow(at[1] - centre[1], 2) +
+                             std::pow(at[2] - centre[2], 2));
     }
     scene.far = scene.render.far > 0 ? scene.render.far : 100 * std::max({radius, distance, 1e-6});
     if (scene.bounds.empty() && scene.render.far <= 0) scene.far = std::max(scene.far, 100.0);
@@ -113,7 +116,8 @@ Vec Prover::vector(NodeId id) {
 }
 
 void Prover::set_lipschitz(Known &k, double value) {
-    // Rounding outward leaves 1 + a few units in the last place where the truth is 1; the float32 slack covers them.
+    // Rounding outward leaves 1 + a few units in the last place where the truth is 1; the float32
+    // slack covers them.
     if (value > 1 && value <= 1 + slack) value = 1;
     k.fact.lipschitz_sup = value;
     k.fact.lipschitz = graph.number(value);
@@ -124,12 +128,14 @@ void Prover::set_lipschitz(Known &k, NodeId formula, double sup) {
     set_lipschitz(k, sup);
     if (in_params && std::isfinite(sup)) k.fact.lipschitz = formula;
 }
-// Within the box the field; outside sqrt(|p-q|^2 + max(f(q), 0)^2), whose two gradients are perpendicular: max(L, 1).
+// Within the box the field; outside sqrt(|p-q|^2 + max(f(q), 0)^2), whose two gradients are
+// perpendicular: max(L, 1).
 void Prover::keep_local(Known &k, double sup, NodeId formula) {
     local = true;
     k.swell = 1;
     k.fact.lever = {infinity, infinity, infinity};
-    for (std::size_t a = 0; a < 3; ++a) k.fact.symmetric[a] = k.fact.symmetric[a] && k.fact.bounds.lo[a] == -k.fact.bounds.hi[a];
+    for (std::size_t a = 0; a < 3; ++a)
+        k.fact.symmetric[a] = k.fact.symmetric[a] && k.fact.bounds.lo[a] == -k.fact.bounds.hi[a];
     set_lipschitz(k, graph.make(Op::Max, {formula, graph.number(1)}), std::max(sup, 1.0));
 }
 void Prover::fail(Known &k) {
@@ -170,7 +176,8 @@ void Prover::visit(ShapeId id, const Box &box, const Zone *zone, bool audible) {
 }
 
 void Prover::find_places() {
-    for (const ir::TopLevel &top : scene.top_level) visit(top.shape, Box::everything(), nullptr, true);
+    for (const ir::TopLevel &top : scene.top_level)
+        visit(top.shape, Box::everything(), nullptr, true);
     if (scene.root) visit(scene.root, Box::everything(), nullptr, true);
     for (std::size_t i = scene.shapes.size(); i-- > 0;) {
         ShapeId id{i};
@@ -190,11 +197,15 @@ void Prover::find_places() {
                 if (!everywhere(here.box)) {
                     auto q = range_of(flattening, ranges, shape.args[0], to_cell(here.box));
                     box = from_cell({{q[0], q[1], q[2]}}, scene.shapes[child].dims);
-                    if (shape.map == MapKind::Twist || shape.map == MapKind::Bend) { // turns about an axis keep the radius
-                        int axis = shape.map == MapKind::Twist ? shape.axis : 3 - shape.axis - shape.towards;
+                    if (shape.map == MapKind::Twist ||
+                        shape.map == MapKind::Bend) { // turns about an axis keep the radius
+                        int axis = shape.map == MapKind::Twist ? shape.axis
+                                                               : 3 - shape.axis - shape.towards;
                         double r = radius_about(here.box, axis);
                         for (std::size_t a = 0; a < 3; ++a)
-                            if (int(a) != axis) box.lo[a] = std::max(box.lo[a], -r), box.hi[a] = std::min(box.hi[a], r);
+                            if (int(a) != axis)
+                                box.lo[a] = std::max(box.lo[a], -r),
+                                box.hi[a] = std::min(box.hi[a], r);
                     }
                 }
                 visit(child, box, nullptr, here.audible);
@@ -208,11 +219,24 @@ void Prover::find_places() {
                 visit(child, here.box, here.zone, here.audible && !taken);
                 break;
             }
-            case ShapeKind::Empty: case ShapeKind::Leaf: case ShapeKind::Union: case ShapeKind::Intersection:
-            case ShapeKind::Complement: case ShapeKind::Xor: case ShapeKind::Blend: case ShapeKind::Seam:
-            case ShapeKind::Lerp: case ShapeKind::PseudoNorm: case ShapeKind::Offset: case ShapeKind::Shell:
-            case ShapeKind::Displace: case ShapeKind::Paint: case ShapeKind::Repaint: case ShapeKind::Mixed:
-            case ShapeKind::Many: case ShapeKind::Contract: visit(child, here.box, here.zone, here.audible); break;
+            case ShapeKind::Empty:
+            case ShapeKind::Leaf:
+            case ShapeKind::Union:
+            case ShapeKind::Intersection:
+            case ShapeKind::Complement:
+            case ShapeKind::Xor:
+            case ShapeKind::Blend:
+            case ShapeKind::Seam:
+            case ShapeKind::Lerp:
+            case ShapeKind::PseudoNorm:
+            case ShapeKind::Offset:
+            case ShapeKind::Shell:
+            case ShapeKind::Displace:
+            case ShapeKind::Paint:
+            case ShapeKind::Repaint:
+            case ShapeKind::Mixed:
+            case ShapeKind::Many:
+            case ShapeKind::Contract: visit(child, here.box, here.zone, here.audible); break;
             }
         }
     }
@@ -273,8 +297,8 @@ namespace {
 
 ProofStatus worse(ProofStatus a, ProofStatus b) { return std::max(a, b); }
 
-// Of a min of fields: {min < t} is in the hull of the children's; {min > -t} in the meet of theirs. A meet of grown
-// boxes is the grown meet where that is not empty.
+// Of a min of fields: {min < t} is in the hull of the children's; {min > -t} in the meet of theirs.
+// A meet of grown boxes is the grown meet where that is not empty.
 void unite(Known &k, const Known &c) {
     k.fact.bounds = ir::hull(k.fact.bounds, c.fact.bounds);
     k.swell = std::max(k.swell, c.swell);
@@ -314,15 +338,18 @@ Known Prover::know_set(ShapeId id) {
     auto seam = static_cast<ir::SeamKind>(shape.payload);
     Interval radius = shape.args.empty() ? Interval(0.0) : number(shape.args[0]);
     double r = std::max(radius.hi, 0.0);
-    if (!std::isfinite(r) && (shape.kind == ShapeKind::Blend || shape.kind == ShapeKind::Seam)) r = 0;
+    if (!std::isfinite(r) && (shape.kind == ShapeKind::Blend || shape.kind == ShapeKind::Seam))
+        r = 0;
 
     NodeId formula = k.fact.lipschitz;
     double sup = k.fact.lipschitz_sup;
-    bool pairwise_disjoint = shape.children.size() <= 64, all_exact = k.fact.kind == FieldKind::Exact;
+    bool pairwise_disjoint = shape.children.size() <= 64,
+         all_exact = k.fact.kind == FieldKind::Exact;
     const Known first = k;
     for (std::size_t i = 1; i < shape.children.size(); ++i) {
         const Known &c = child(shape, i);
-        bool exact_outside = k.exact_outside && c.exact_outside, parts_exact = k.parts_exact && c.parts_exact;
+        bool exact_outside = k.exact_outside && c.exact_outside,
+             parts_exact = k.parts_exact && c.parts_exact;
         all_exact = all_exact && c.fact.kind == FieldKind::Exact;
         for (std::size_t j = 0; pairwise_disjoint && j < i; ++j)
             pairwise_disjoint = disjoint(child(shape, j).fact.bounds, c.fact.bounds);
@@ -360,7 +387,8 @@ Known Prover::know_set(ShapeId id) {
         case ShapeKind::Seam: {
             k.outer = Box::everything(), k.swell_out = 0;
             if (seam == ir::SeamKind::Pipe) {
-                k.fact.bounds = ir::intersect(grow(first.fact.bounds, w * r), grow(c.fact.bounds, w * r));
+                k.fact.bounds =
+                    ir::intersect(grow(first.fact.bounds, w * r), grow(c.fact.bounds, w * r));
                 k.swell = w;
             } else if (seam == ir::SeamKind::Tongue) {
                 double depth = std::max(number(shape.args[1]).hi, 0.0);
@@ -372,7 +400,8 @@ Known Prover::know_set(ShapeId id) {
             }
             break;
         }
-        case ShapeKind::PseudoNorm: // 1 - |((1-a)+, (1-b)+)|_p < 0 needs a or b below 1 - 2^(-1/p) <= 1/2
+        case ShapeKind::PseudoNorm: // 1 - |((1-a)+, (1-b)+)|_p < 0 needs a or b below 1 - 2^(-1/p)
+                                    // <= 1/2
             unite(k, c);
             k.fact.bounds = grow(k.fact.bounds, w * 0.5);
             k.swell = infinity;
@@ -383,13 +412,18 @@ Known Prover::know_set(ShapeId id) {
         bool quadratic = (shape.kind == ShapeKind::Blend && profile == ir::Profile::Columns) ||
                          (shape.kind == ShapeKind::Seam && seam == ir::SeamKind::Pipe);
         if (quadratic) { // weights on a unit circle: sqrt(La^2 + Lb^2)
-            double excess = std::hypot(sup, c.fact.lipschitz_sup) - std::max(sup, c.fact.lipschitz_sup);
-            sup = up(std::max(sup, c.fact.lipschitz_sup) +
-                         excess * options.rules[shape.kind == ShapeKind::Seam ? Rule::Pipe : Rule::Columns], 4);
+            double excess =
+                std::hypot(sup, c.fact.lipschitz_sup) - std::max(sup, c.fact.lipschitz_sup);
+            sup = up(
+                std::max(sup, c.fact.lipschitz_sup) +
+                    excess *
+                        options.rules[shape.kind == ShapeKind::Seam ? Rule::Pipe : Rule::Columns],
+                4);
             formula = graph.number(sup);
         } else if (shape.kind == ShapeKind::PseudoNorm) { // Hoelder: (La^p + Lb^p)^(1/p)
             double p = std::max(number(shape.args[0]).lo, 1.0), a = sup, b = c.fact.lipschitz_sup;
-            double most = std::max(a, b), both = most * std::pow(std::pow(a / most, p) + std::pow(b / most, p), 1 / p);
+            double most = std::max(a, b),
+                   both = most * std::pow(std::pow(a / most, p) + std::pow(b / most, p), 1 / p);
             sup = up(most + (both - most) * options.rules[Rule::PseudoNorm], 16);
             formula = graph.number(sup);
         } else {
@@ -398,22 +432,29 @@ Known Prover::know_set(ShapeId id) {
         }
     }
     k.fact.kind = FieldKind::Bound;
-    if (shape.children.size() == 1) k.fact.kind = first.fact.kind;
-    else if (shape.kind == ShapeKind::Union && all_exact && pairwise_disjoint) k.fact.kind = FieldKind::Exact;
+    if (shape.children.size() == 1)
+        k.fact.kind = first.fact.kind;
+    else if (shape.kind == ShapeKind::Union && all_exact && pairwise_disjoint)
+        k.fact.kind = FieldKind::Exact;
     for (ShapeId c : shape.children)
         if (of(c).fact.kind == FieldKind::Estimate) k.fact.kind = FieldKind::Estimate;
-    if ((shape.kind == ShapeKind::Blend || shape.kind == ShapeKind::Seam) && reads_point(shape.args[0])) {
-        // The profile's derivative in r lies in [-1/2, 0] for every profile but Columns (1/4 of the quadratic).
+    if ((shape.kind == ShapeKind::Blend || shape.kind == ShapeKind::Seam) &&
+        reads_point(shape.args[0])) {
+        // The profile's derivative in r lies in [-1/2, 0] for every profile but Columns (1/4 of the
+        // quadratic).
         FieldBound b = bound(id, shape.args[0], "the blend's radius");
         k.failed = k.failed || !std::isfinite(b.lipschitz) || profile == ir::Profile::Columns;
         sup = up(sup + 0.5 * b.lipschitz);
         formula = graph.number(sup);
         k.fact.lever = {infinity, infinity, infinity};
         k.parts = Box::everything();
-        if (shape.kind == ShapeKind::Blend) k.fact.bounds = grow(k.fact.bounds, std::max(b.value.hi, 0.0) * k.swell);
+        if (shape.kind == ShapeKind::Blend)
+            k.fact.bounds = grow(k.fact.bounds, std::max(b.value.hi, 0.0) * k.swell);
     }
-    if (k.failed) fail(k);
-    else set_lipschitz(k, formula, sup);
+    if (k.failed)
+        fail(k);
+    else
+        set_lipschitz(k, formula, sup);
     return k;
 }
 
@@ -431,10 +472,12 @@ Known Prover::know_lerp(ShapeId id) {
     FieldBound weight;
     if (varies) weight = bound(id, t, "the blend's weight");
     Interval range = varies ? weight.value : number(t), rest = Interval(1.0) - range;
-    bool convex = range.lo >= 0 && range.hi <= 1;
+    // Rounding outward may reach a little beyond 0..1; the slack covers it.
+    bool convex = range.lo >= -1e-9 && range.hi <= 1 + 1e-9;
     double la = a.fact.lipschitz_sup, lb = b.fact.lipschitz_sup;
-    double sup = convex ? (varies || !range.is_point() ? std::max(la, lb) : up(range.hi * la + rest.hi * lb))
-                        : up(range.magnitude() * la + rest.magnitude() * lb);
+    double sup =
+        convex ? (varies || !range.is_point() ? std::max(la, lb) : up(range.hi * la + rest.hi * lb))
+               : up(range.magnitude() * la + rest.magnitude() * lb);
     // t*a + (1-t)*b < 0 needs a < 0 or b < 0 while both weights are at least 0.
     unite(k, b);
     if (!convex) {
@@ -443,24 +486,29 @@ Known Prover::know_lerp(ShapeId id) {
         k.fact.lever = {infinity, infinity, infinity};
     }
     if (varies && std::isfinite(weight.lipschitz) && weight.lipschitz > 0) {
-        // |grad| <= the mean's + |grad t| * |a - b|. For exact a and b of solids A and B the difference is greatest inside
-        // one of them: outside both, |a - b| is at most their Hausdorff distance, which is a difference at a point of A or B.
+        // |grad| <= the mean's + |grad t| * |a - b|. For exact a and b of solids A and B the
+        // difference is greatest inside one of them: outside both, |a - b| is at most their
+        // Hausdorff distance, which is a difference at a point of A or B.
         double gap = infinity;
         Box common = ir::hull(a.fact.bounds, b.fact.bounds);
         if (a.exact_outside && b.exact_outside && common.finite() && !common.empty()) {
-            double diagonal = 0; // of the box that holds both: outside both fields lie in [d, d + D], inside above -D/2
-            for (std::size_t i = 0; i < 3; ++i) diagonal += std::pow(common.hi[i] - common.lo[i], 2);
+            double diagonal = 0; // of the box that holds both: outside both fields lie in [d, d +
+                                 // D], inside above -D/2
+            for (std::size_t i = 0; i < 3; ++i)
+                diagonal += std::pow(common.hi[i] - common.lo[i], 2);
             gap = 1.5 * std::sqrt(diagonal);
             auto f = expression(shape.children[0]), g = expression(shape.children[1]);
             if (f && g) {
                 Budget budget;
                 budget.instructions = options.field_instructions / 4;
-                gap = std::min(gap, bound_magnitude(flattening, ranges, graph.sub(*f, *g), {to_cell(common), nullptr}, budget));
+                gap = std::min(gap, bound_magnitude(flattening, ranges, graph.sub(*f, *g),
+                                                    {to_cell(common), nullptr}, budget));
             }
         }
         Box box = place(id).box;
         if (box.finite() && !box.empty() && a.fact.bounds.finite() && b.fact.bounds.finite()) {
-            // Lipschitz fields that vanish (or begin) in their bounds: |f| <= L * the distance across.
+            // Lipschitz fields that vanish (or begin) in their bounds: |f| <= L * the distance
+            // across.
             double size = norm_of(box) + std::max(norm_of(a.fact.bounds), norm_of(b.fact.bounds));
             gap = std::min(gap, size * (la + lb));
         }
@@ -468,15 +516,20 @@ Known Prover::know_lerp(ShapeId id) {
         k.parts = Box::everything();
         k.fact.symmetric = {false, false, false};
         if (!std::isfinite(gap) && !k.failed) {
-            if (Diagnostic *d = report(id, Code::NeedsRegion, "a blend with a varying weight needs a region: its two fields may differ without limit"))
-                d->help("write `.within(…)` after it, with a region that holds what you want to see, as in `.within(ball(3))`");
+            if (Diagnostic *d = report(id, Code::NeedsRegion,
+                                       "a blend with a varying weight needs a region: its two "
+                                       "fields may differ without limit"))
+                d->help("write `.within(…)` after it, with a region that holds what you want to "
+                        "see, as in `.within(ball(3))`");
             k.failed = true;
         }
         sup = up(sup + weight.lipschitz * gap * options.rules[Rule::LerpVarying]);
     }
     if (varies && !std::isfinite(weight.lipschitz)) k.failed = true;
-    if (k.failed) fail(k);
-    else set_lipschitz(k, sup);
+    if (k.failed)
+        fail(k);
+    else
+        set_lipschitz(k, sup);
     return k;
 }
 
@@ -485,29 +538,35 @@ Known Prover::know_displaced(ShapeId id) {
     Known k = child(shape);
     k.fact.repeat = {};
     k.fact.guard = false;
-    if (shape.kind != ShapeKind::Displace && !k.exact_outside && !k.failed && k.fact.kind != FieldKind::Estimate) {
+    if (shape.kind != ShapeKind::Displace && !k.exact_outside && !k.failed &&
+        k.fact.kind != FieldKind::Estimate) {
         bool grows = shape.kind == ShapeKind::Shell || number(shape.args[0]).hi > 0;
         if (grows)
-            if (Diagnostic *d = report(id, Code::LowerBound,
-                                       std::string(shape.kind == ShapeKind::Shell ? "a shell" : "an offset") +
-                                           " of a field that is only a lower bound of the distance"))
+            if (Diagnostic *d =
+                    report(id, Code::LowerBound,
+                           std::string(shape.kind == ShapeKind::Shell ? "a shell" : "an offset") +
+                               " of a field that is only a lower bound of the distance"))
                 d->note("the field of " + operation_name(scene, shape.children[0]) +
-                        " is not the exact distance near edges; the result there is thinner or less round than the number says")
+                        " is not the exact distance near edges; the result there is thinner or "
+                        "less round than the number says")
                     .help("apply it to the exact parts first, then combine them");
     }
     bool varies = reads_point(shape.args[0]);
     Interval amount;
     double slope = 0;
     if (varies) {
-        FieldBound b = bound(id, shape.args[0], shape.kind == ShapeKind::Displace ? "the displacement" : "the amount");
+        FieldBound b = bound(id, shape.args[0],
+                             shape.kind == ShapeKind::Displace ? "the displacement" : "the amount");
         amount = b.value;
         slope = b.lipschitz;
         k.parts = Box::everything();
         k.fact.lever = {infinity, infinity, infinity};
         k.fact.symmetric = {false, false, false};
-        if (!std::isfinite(slope)) k.failed = true;
+        if (!std::isfinite(slope))
+            k.failed = true;
         else if (!amount.finite() && !k.failed) {
-            if (Diagnostic *d = report(id, Code::NeedsRegion, "the displacement grows without bound"))
+            if (Diagnostic *d =
+                    report(id, Code::NeedsRegion, "the displacement grows without bound"))
                 d->help("write `.within(…)` after it, or limit it, as in `clamp(…, -1, 1)`");
             k.failed = true;
         }
@@ -526,8 +585,10 @@ Known Prover::know_displaced(ShapeId id) {
         k.fact.bounds = grow(k.fact.bounds, k.swell * std::max(amount.hi, 0.0));
         k.outer = grow(k.outer, k.swell_out * std::max(-amount.lo, 0.0));
         k.exact_outside = k.exact_outside && !varies;
-        // What moves inward only is still below the child's field: the shell begins at the surface itself.
-        if (shape.kind == ShapeKind::Displace && !k.failed) outward = std::max(amount.hi, 0.0) * (1 + slack);
+        // What moves inward only is still below the child's field: the shell begins at the surface
+        // itself.
+        if (shape.kind == ShapeKind::Displace && !k.failed)
+            outward = std::max(amount.hi, 0.0) * (1 + slack);
     }
     k.parts_exact = false;
     if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
@@ -535,11 +596,14 @@ Known Prover::know_displaced(ShapeId id) {
         fail(k);
         return k;
     }
-    // Beyond this the marched field is the smooth one (the range shell); float32's noise may pass the range by a little.
-    k.fact.outward = shape.kind == ShapeKind::Displace ? up(amount.hi + 1e-5 * amount.magnitude()) : infinity;
+    // Beyond this the marched field is the smooth one (the range shell); float32's noise may pass
+    // the range by a little.
+    k.fact.outward =
+        shape.kind == ShapeKind::Displace ? up(amount.hi + 1e-5 * amount.magnitude()) : infinity;
     slope *= options.rules[Rule::Displace];
     double sup = up(k.fact.lipschitz_sup + slope);
-    set_lipschitz(k, slope == 0 ? k.fact.lipschitz : graph.add(k.fact.lipschitz, graph.number(slope)), sup);
+    set_lipschitz(
+        k, slope == 0 ? k.fact.lipschitz : graph.add(k.fact.lipschitz, graph.number(slope)), sup);
     return k;
 }
 
@@ -552,13 +616,14 @@ Known Prover::know_extrude(ShapeId id) {
     auto stand = [&](Box &box) {
         if (!box.empty()) box.lo[2] = -half, box.hi[2] = half;
     };
-    // length((f)+, (|z| - h)+) + min(max(f, |z| - h), 0): the weights of the two gradients, which are at right angles, lie on a
-    // unit circle: max(L, 1).
+    // length((f)+, (|z| - h)+) + min(max(f, |z| - h), 0): the weights of the two gradients, which
+    // are at right angles, lie on a unit circle: max(L, 1).
     double lever = k.fact.lever[2];
     stand(k.fact.bounds);
     stand(k.parts);
     k.fact.symmetric[2] = true;
-    for (int a = 0; a < 2; ++a) k.fact.lever[static_cast<std::size_t>(a)] = radius_about(k.parts, a);
+    for (int a = 0; a < 2; ++a)
+        k.fact.lever[static_cast<std::size_t>(a)] = radius_about(k.parts, a);
     k.fact.lever[2] = std::min(lever, radius_about(k.parts, 2));
     k.outer = Box::everything();
     k.swell_out = 0;
@@ -573,8 +638,9 @@ Known Prover::know_extrude(ShapeId id) {
 
 namespace {
 
-// The longest way round the holes over the straight line through them (lipschitz.md, regions): pi/2 for a ball or a tube,
-// 1 + the second smallest side over the smallest for a box. Infinity where the way round may leave the region.
+// The longest way round the holes over the straight line through them (lipschitz.md, regions): pi/2
+// for a ball or a tube, 1 + the second smallest side over the smallest for a box. Infinity where
+// the way round may leave the region.
 double detour_of(const Zone &zone) {
     double worst = 1;
     const bool bounded = zone.kind != ir::RegionKind::Everywhere;
@@ -583,20 +649,26 @@ double detour_of(const Zone &zone) {
         const Zone &hole = zone.less[i];
         const Box box = from_cell(outer_box(hole), 3);
         bool fits = !bounded;
-        if (hole.kind == ir::RegionKind::Tube) { // the region looks the same all round the tube's axis, and is wider
-            fits = fits || (zone.kind == ir::RegionKind::Tube && zone.axis == hole.axis && zone.half[0].lo > hole.half[0].hi);
+        if (hole.kind == ir::RegionKind::Tube) { // the region looks the same all round the tube's
+                                                 // axis, and is wider
+            fits = fits || (zone.kind == ir::RegionKind::Tube && zone.axis == hole.axis &&
+                            zone.half[0].lo > hole.half[0].hi);
             bool centred = true, wider = true;
             for (std::size_t a = 0; a < 3; ++a) {
                 if (int(a) == hole.axis) continue;
                 centred = centred && zone.center[a] == Interval(0.0);
-                wider = wider && zone.half[zone.kind == ir::RegionKind::Box ? a : 0].lo > hole.half[0].hi;
+                wider = wider &&
+                        zone.half[zone.kind == ir::RegionKind::Box ? a : 0].lo > hole.half[0].hi;
             }
-            fits = fits || ((zone.kind == ir::RegionKind::Ball || zone.kind == ir::RegionKind::Box) && centred && wider);
+            fits =
+                fits || ((zone.kind == ir::RegionKind::Ball || zone.kind == ir::RegionKind::Box) &&
+                         centred && wider);
         } else if (zone.kind == ir::RegionKind::Ball) {
             double far = 0;
             for (std::size_t a = 0; a < 3; ++a) {
                 Interval off = hole.center[a] - zone.center[a];
-                double reach = off.magnitude() + hole.half[hole.kind == ir::RegionKind::Box ? a : 0].hi;
+                double reach =
+                    off.magnitude() + hole.half[hole.kind == ir::RegionKind::Box ? a : 0].hi;
                 if (hole.kind == ir::RegionKind::Ball) reach = off.magnitude();
                 far += reach * reach;
             }
@@ -605,14 +677,17 @@ double detour_of(const Zone &zone) {
         } else {
             fits = fits || holds(whole, box);
         }
-        for (std::size_t j = 0; j < i; ++j) fits = fits && disjoint(box, from_cell(outer_box(zone.less[j]), 3));
+        for (std::size_t j = 0; j < i; ++j)
+            fits = fits && disjoint(box, from_cell(outer_box(zone.less[j]), 3));
         if (!fits || hole.kind == ir::RegionKind::Everywhere) return infinity;
         double round = 1.5707963267948968;
         if (hole.kind == ir::RegionKind::Box) {
-            std::array<double, 3> sides{hole.half[0].lo, hole.half[1].lo, hole.half[2].lo}, most{hole.half[0].hi, hole.half[1].hi, hole.half[2].hi};
+            std::array<double, 3> sides{hole.half[0].lo, hole.half[1].lo, hole.half[2].lo},
+                most{hole.half[0].hi, hole.half[1].hi, hole.half[2].hi};
             std::sort(sides.begin(), sides.end());
             std::sort(most.begin(), most.end());
-            round = sides[0] > 0 ? std::max(1.4142135623730952, up(1 + most[1] / sides[0], 4)) : infinity;
+            round = sides[0] > 0 ? std::max(1.4142135623730952, up(1 + most[1] / sides[0], 4))
+                                 : infinity;
         }
         worst = std::max(worst, round);
     }
@@ -629,8 +704,8 @@ Known Prover::know_within(ShapeId id) {
     Zone zone = zone_of(scene.shapes.regions[shape.payload]);
     if (zone.kind == ir::RegionKind::Everywhere && zone.less.empty()) return k;
     Box region = from_cell(outer_box(zone), shape.dims);
-    // Outside the region the value is at least the distance to it: {d < t} lies in the region grown by t. What is inside may
-    // be smaller than the region.
+    // Outside the region the value is at least the distance to it: {d < t} lies in the region grown
+    // by t. What is inside may be smaller than the region.
     Box solid = ir::intersect(region, k.fact.bounds);
     k.swell = holds(k.fact.bounds, region) ? 1 : infinity;
     k.fact.bounds = solid.empty() ? empty_box() : solid;
@@ -641,7 +716,8 @@ Known Prover::know_within(ShapeId id) {
     if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
     k.exact_outside = k.parts_exact = false;
     for (std::size_t a = 0; a < 3; ++a) {
-        bool centred = zone.kind == ir::RegionKind::Tube || zone.kind == ir::RegionKind::Everywhere || zone.center[a] == Interval(0.0);
+        bool centred = zone.kind == ir::RegionKind::Tube ||
+                       zone.kind == ir::RegionKind::Everywhere || zone.center[a] == Interval(0.0);
         k.fact.symmetric[a] = k.fact.symmetric[a] && centred && zone.less.empty();
     }
     if (k.failed) {
@@ -650,12 +726,16 @@ Known Prover::know_within(ShapeId id) {
     }
     double detour = detour_of(zone);
     if (!std::isfinite(detour)) {
-        if (Diagnostic *d = report(id, Code::NeedsRegion, "a region's hole that reaches over its border, or into another hole, cannot be used for a proof"))
-            d->help("keep the holes apart and inside the region, or centre the region on the tube's axis");
+        if (Diagnostic *d = report(id, Code::NeedsRegion,
+                                   "a region's hole that reaches over its border, or into another "
+                                   "hole, cannot be used for a proof"))
+            d->help("keep the holes apart and inside the region, or centre the region on the "
+                    "tube's axis");
         fail(k);
         return k;
     }
-    NodeId formula = graph.make(Op::Max, {graph.mul(k.fact.lipschitz, graph.number(detour)), graph.number(1)});
+    NodeId formula =
+        graph.make(Op::Max, {graph.mul(k.fact.lipschitz, graph.number(detour)), graph.number(1)});
     set_lipschitz(k, formula, std::max(up(k.fact.lipschitz_sup * detour), 1.0));
     return k;
 }
@@ -671,12 +751,15 @@ Known Prover::know_many(ShapeId id) {
         k.exact_outside = k.exact_outside && plain;
         k.parts_exact = k.parts_exact && plain;
         // By induction over the fold: {acc < t} lies in the copies' box grown by swell*(t + k).
-        if (family.smooth) k.fact.bounds = grow(k.fact.bounds, k.swell * std::max(number(shape.args[0]).hi, 0.0));
+        if (family.smooth)
+            k.fact.bounds = grow(k.fact.bounds, k.swell * std::max(number(shape.args[0]).hi, 0.0));
     }
     // Symmetric copies need not be a symmetric whole.
     k.fact.symmetric = {false, false, false};
-    if (k.failed) fail(k);
-    else set_lipschitz(k, k.fact.lipschitz, k.fact.lipschitz_sup);
+    if (k.failed)
+        fail(k);
+    else
+        set_lipschitz(k, k.fact.lipschitz, k.fact.lipschitz_sup);
     return k;
 }
 
@@ -701,15 +784,20 @@ Known Prover::know_library(ShapeId id) {
         k.outer = Box::everything();
         k.swell_out = 0;
     }
-    if (claims.kind == FieldKind::Estimate) k.fact.kind = FieldKind::Estimate;
-    else if (exact) k.fact.kind = FieldKind::Exact;
-    else if (k.fact.kind != FieldKind::Exact || claims.lipschitz) k.fact.kind = FieldKind::Bound;
-    for (std::size_t a = 0; a < 3; ++a) k.fact.symmetric[a] = k.fact.symmetric[a] || claims.symmetric[a];
+    if (claims.kind == FieldKind::Estimate)
+        k.fact.kind = FieldKind::Estimate;
+    else if (exact)
+        k.fact.kind = FieldKind::Exact;
+    else if (k.fact.kind != FieldKind::Exact || claims.lipschitz)
+        k.fact.kind = FieldKind::Bound;
+    for (std::size_t a = 0; a < 3; ++a)
+        k.fact.symmetric[a] = k.fact.symmetric[a] || claims.symmetric[a];
     if (exact) {
         k.exact_outside = k.parts_exact = true;
         k.parts = k.fact.bounds;
         if (claims.lo && claims.hi) k.swell = 1;
-        for (int a = 0; a < 3; ++a) k.fact.lever[static_cast<std::size_t>(a)] = radius_about(k.parts, a);
+        for (int a = 0; a < 3; ++a)
+            k.fact.lever[static_cast<std::size_t>(a)] = radius_about(k.parts, a);
     } else if (claims.lipschitz) {
         k.exact_outside = k.parts_exact = false;
         k.parts = Box::everything();
@@ -722,9 +810,12 @@ Known Prover::know_library(ShapeId id) {
         }
     if (claims.lipschitz || exact) {
         k.failed = false;
-        k.fact.status = claims.kind == FieldKind::Estimate ? ProofStatus::Estimated : ProofStatus::Proved;
-        if (exact) set_lipschitz(k, 1);
-        else set_lipschitz(k, claims.lipschitz, number(claims.lipschitz).magnitude());
+        k.fact.status =
+            claims.kind == FieldKind::Estimate ? ProofStatus::Estimated : ProofStatus::Proved;
+        if (exact)
+            set_lipschitz(k, 1);
+        else
+            set_lipschitz(k, claims.lipschitz, number(claims.lipschitz).magnitude());
     }
     if (claims.kind == FieldKind::Estimate) {
         k.fact.status = ProofStatus::Estimated;
@@ -738,9 +829,10 @@ Known Prover::know_contract(ShapeId id) {
     Known k = child(shape);
     k.fact.repeat = {};
     if (!k.failed && k.fact.lipschitz_sup > contract.lipschitz * (1 + slack)) {
-        if (Diagnostic *d = report(id, Code::LipschitzContract,
-                                   "this shape's bound is " + number_text(k.fact.lipschitz_sup) + ", and `shape<" +
-                                       number_text(contract.lipschitz) + ">` is wanted")) {
+        if (Diagnostic *d =
+                report(id, Code::LipschitzContract,
+                       "this shape's bound is " + number_text(k.fact.lipschitz_sup) +
+                           ", and `shape<" + number_text(contract.lipschitz) + ">` is wanted")) {
             if (contract.demanded.source) d->label(contract.demanded, "demanded here");
             for (const std::string &line : chain(shape.children[0])) d->note(line);
         }
@@ -754,17 +846,23 @@ void Prover::finish(ShapeId id, Known &k) {
     const Shape &shape = scene.shapes[id];
     bool everywhere_valid = everywhere(place(id).box);
     bool deformed = shape.kind == ShapeKind::Displace || shape.kind == ShapeKind::Many ||
-                    (shape.kind == ShapeKind::Map && (shape.map == MapKind::Twist || shape.map == MapKind::Bend ||
-                                                      shape.map == MapKind::Taper || shape.map == MapKind::Distort));
-    k.fact.guard = !k.failed && everywhere_valid && k.fact.bounds.finite() && !k.fact.bounds.empty() && shape.dims == 3 &&
+                    (shape.kind == ShapeKind::Map &&
+                     (shape.map == MapKind::Twist || shape.map == MapKind::Bend ||
+                      shape.map == MapKind::Taper || shape.map == MapKind::Distort));
+    k.fact.guard = !k.failed && everywhere_valid && k.fact.bounds.finite() &&
+                   !k.fact.bounds.empty() && shape.dims == 3 &&
                    (k.fact.lipschitz_sup > 1.3 || deformed) && shape.kind != ShapeKind::Within;
     if (k.failed || !std::isfinite(k.fact.lipschitz_sup)) return;
     double below = 1;
     for (ShapeId c : shape.children) below = std::max(below, of(c).fact.lipschitz_sup);
-    if (!shape.children.empty() && std::isfinite(below) && k.fact.lipschitz_sup > 4 * below && shape.kind != ShapeKind::Library)
-        if (Diagnostic *d = report(id, Code::Costly, operation_name(scene, id) + " makes this shape cost up to " +
-                                                         number_text(k.fact.lipschitz_sup / below) + " times the steps"))
-            d->note("its field is at most " + number_text(k.fact.lipschitz_sup) + " times as steep as a distance, and every step is divided by that");
+    if (!shape.children.empty() && std::isfinite(below) && k.fact.lipschitz_sup > 4 * below &&
+        shape.kind != ShapeKind::Library)
+        if (Diagnostic *d =
+                report(id, Code::Costly,
+                       operation_name(scene, id) + " makes this shape cost up to " +
+                           number_text(k.fact.lipschitz_sup / below) + " times the steps"))
+            d->note("its field is at most " + number_text(k.fact.lipschitz_sup) +
+                    " times as steep as a distance, and every step is divided by that");
 }
 
 } // namespace fathom::proof

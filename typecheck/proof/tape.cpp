@@ -12,10 +12,10 @@ namespace {
 constexpr std::size_t most_instructions = 100'000;
 
 struct Scope {
-    Scope *outer = nullptr;                      // a loop's surroundings; none for a function's body
-    std::vector<Instruction> *block = nullptr;   // where what depends on this scope's variables goes
+    Scope *outer = nullptr;                    // a loop's surroundings; none for a function's body
+    std::vector<Instruction> *block = nullptr; // where what depends on this scope's variables goes
     std::unordered_map<NodeId, Slot> slots;
-    std::unordered_map<NodeId, bool> depends;    // on the loop's variables
+    std::unordered_map<NodeId, bool> depends; // on the loop's variables
     bool loop = false;
 };
 
@@ -114,13 +114,18 @@ struct Flattener {
         if (graph[half].op == Op::Const && graph[whole].op == Op::Const) {
             const auto &x = graph.constant_of(half), &y = graph.constant_of(whole);
             for (int i = 0; i < ir::components(x.type); ++i)
-                if (x.value[static_cast<std::size_t>(i)] != y.value[static_cast<std::size_t>(i)] / 2) return false;
+                if (x.value[static_cast<std::size_t>(i)] !=
+                    y.value[static_cast<std::size_t>(i)] / 2)
+                    return false;
             return x.type == y.type;
         }
-        if (graph[half].op == Op::Div && graph.arg(half, 0) == whole && number(graph.arg(half, 1)) == 2.0) return true;
+        if (graph[half].op == Op::Div && graph.arg(half, 0) == whole &&
+            number(graph.arg(half, 1)) == 2.0)
+            return true;
         if (graph[half].op == Op::Mul)
             for (int i = 0; i < 2; ++i)
-                if (graph.arg(half, i) == whole && number(graph.arg(half, 1 - i)) == 0.5) return true;
+                if (graph.arg(half, i) == whole && number(graph.arg(half, 1 - i)) == 0.5)
+                    return true;
         return false;
     }
 
@@ -142,14 +147,16 @@ struct Flattener {
             if (graph[a].op == Op::Mod && less_half(b, graph.arg(a, 1))) {
                 NodeId m = graph.arg(a, 1);
                 // x % m - m/2 = w(x - m/2), w the wave that passes through 0 at 0.
-                return WaveParts{graph.sub(graph.arg(a, 0), node.op == Op::Sub ? b : graph.neg(b)), m};
+                return WaveParts{graph.sub(graph.arg(a, 0), node.op == Op::Sub ? b : graph.neg(b)),
+                                 m};
             }
             if (graph[a].op == Op::Fract) {
                 auto half = number(b);
                 if (half && *half == (node.op == Op::Sub ? 0.5 : -0.5)) {
                     NodeId one = graph.number(1);
                     if (ir::components(node.type) > 1) one = graph.splat(one, node.type);
-                    return WaveParts{graph.sub(graph.arg(a, 0), graph.splat(graph.number(0.5), node.type)), one};
+                    return WaveParts{
+                        graph.sub(graph.arg(a, 0), graph.splat(graph.number(0.5), node.type)), one};
                 }
             }
         }
@@ -160,12 +167,14 @@ struct Flattener {
                 NodeId m = graph.arg(b, i), r = graph.arg(b, 1 - i);
                 if (graph[r].op != Op::Round) continue;
                 NodeId q = graph.arg(r, 0);
-                if (graph[q].op == Op::Div && graph.arg(q, 0) == a && graph.arg(q, 1) == m) return WaveParts{a, m};
+                if (graph[q].op == Op::Div && graph.arg(q, 0) == a && graph.arg(q, 1) == m)
+                    return WaveParts{a, m};
                 auto step = number(m); // x/m may have become x*(1/m)
                 if (step && graph[q].op == Op::Mul)
                     for (int k = 0; k < 2; ++k) {
                         auto inverse = number(graph.arg(q, 1 - k));
-                        if (graph.arg(q, k) == a && inverse && *inverse * *step == 1) return WaveParts{a, m};
+                        if (graph.arg(q, k) == a && inverse && *inverse * *step == 1)
+                            return WaveParts{a, m};
                     }
             }
         return {};
@@ -174,7 +183,8 @@ struct Flattener {
     // The parts whose squares the sum is made of; a constant c >= 0 is the square of its root.
     bool squares(NodeId sum, std::vector<NodeId> &parts) {
         const ir::Node node = graph[sum];
-        if (node.op == Op::Add) return squares(graph.arg(sum, 0), parts) && squares(graph.arg(sum, 1), parts);
+        if (node.op == Op::Add)
+            return squares(graph.arg(sum, 0), parts) && squares(graph.arg(sum, 1), parts);
         if ((node.op == Op::Mul || node.op == Op::Dot) && graph.arg(sum, 0) == graph.arg(sum, 1)) {
             parts.push_back(graph.arg(sum, 0));
             return true;
@@ -272,18 +282,81 @@ struct Flattener {
             }
             return emit(scope, out);
         }
-        case Op::Const: case Op::Normal: case Op::Direction: case Op::Time: case Op::Param: case Op::Var:
-        case Op::Neg: case Op::Mod: case Op::Min: case Op::Max: case Op::Step: case Op::Atan2: case Op::Abs:
-        case Op::Sign: case Op::Floor: case Op::Ceil: case Op::Round: case Op::Trunc: case Op::Fract:
-        case Op::InverseSqrt: case Op::Exp: case Op::Exp2: case Op::Log: case Op::Log2: case Op::Sin: case Op::Cos:
-        case Op::Tan: case Op::Asin: case Op::Acos: case Op::Atan: case Op::Sinh: case Op::Cosh: case Op::Tanh:
-        case Op::Clamp: case Op::Mix: case Op::Smoothstep: case Op::Dot: case Op::Cross: case Op::Normalize:
-        case Op::Less: case Op::LessEqual: case Op::Equal: case Op::NotEqual: case Op::And: case Op::Or: case Op::Not:
-        case Op::ToFloat: case Op::ToInt: case Op::Splat: case Op::Make: case Op::Swizzle: case Op::Column:
-        case Op::MatMul: case Op::Transpose: case Op::TableRead: case Op::Hash: case Op::Perlin: case Op::Simplex:
-        case Op::ValueNoise: case Op::Worley: case Op::SpotNoise: case Op::Image: case Op::Grid: case Op::Union:
-        case Op::Intersection: case Op::Blend: case Op::MakeHit: case Op::HitDistance: case Op::HitPaint: case Op::HitPoint: case Op::HitExtra: case Op::NearestHit:
-        case Op::FarthestHit: case Op::HitWith: case Op::FillPaint: break;
+        case Op::Const:
+        case Op::Normal:
+        case Op::Direction:
+        case Op::Time:
+        case Op::Param:
+        case Op::Var:
+        case Op::Neg:
+        case Op::Mod:
+        case Op::Min:
+        case Op::Max:
+        case Op::Step:
+        case Op::Atan2:
+        case Op::Abs:
+        case Op::Sign:
+        case Op::Floor:
+        case Op::Ceil:
+        case Op::Round:
+        case Op::Trunc:
+        case Op::Fract:
+        case Op::InverseSqrt:
+        case Op::Exp:
+        case Op::Exp2:
+        case Op::Log:
+        case Op::Log2:
+        case Op::Sin:
+        case Op::Cos:
+        case Op::Tan:
+        case Op::Asin:
+        case Op::Acos:
+        case Op::Atan:
+        case Op::Sinh:
+        case Op::Cosh:
+        case Op::Tanh:
+        case Op::Clamp:
+        case Op::Mix:
+        case Op::Smoothstep:
+        case Op::Dot:
+        case Op::Cross:
+        case Op::Normalize:
+        case Op::Less:
+        case Op::LessEqual:
+        case Op::Equal:
+        case Op::NotEqual:
+        case Op::And:
+        case Op::Or:
+        case Op::Not:
+        case Op::ToFloat:
+        case Op::ToInt:
+        case Op::Splat:
+        case Op::Make:
+        case Op::Swizzle:
+        case Op::Column:
+        case Op::MatMul:
+        case Op::Transpose:
+        case Op::TableRead:
+        case Op::Hash:
+        case Op::Perlin:
+        case Op::Simplex:
+        case Op::ValueNoise:
+        case Op::Worley:
+        case Op::SpotNoise:
+        case Op::Image:
+        case Op::Grid:
+        case Op::Union:
+        case Op::Intersection:
+        case Op::Blend:
+        case Op::MakeHit:
+        case Op::HitDistance:
+        case Op::HitPaint:
+        case Op::HitPoint:
+        case Op::HitExtra:
+        case Op::NearestHit:
+        case Op::FarthestHit:
+        case Op::HitWith:
+        case Op::FillPaint: break;
         }
         for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
             out.args.push_back(slot(scope, a));
@@ -296,7 +369,8 @@ struct Flattener {
         inner.block = scope.block;
         inner.loop = scope.loop; // so that nothing of a loop's body is hoisted
         const std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
-        for (std::size_t i = 0; i < function.params.size(); ++i) inner.slots[function.params[i]] = slot(scope, args[i]);
+        for (std::size_t i = 0; i < function.params.size(); ++i)
+            inner.slots[function.params[i]] = slot(scope, args[i]);
         return slot(inner, function.result);
     }
 
@@ -357,7 +431,8 @@ struct Flattener {
 
 std::size_t Tape::length() const {
     std::size_t n = each.size();
-    for (const Loop &loop : loops) n += loop.body.size() * static_cast<std::size_t>(std::max(loop.most, 1));
+    for (const Loop &loop : loops)
+        n += loop.body.size() * static_cast<std::size_t>(std::max(loop.most, 1));
     return n;
 }
 

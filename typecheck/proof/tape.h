@@ -1,6 +1,6 @@
-// A field expression, flattened for repeated interval evaluation: calls entered, loops kept as blocks, forms whose
-// smoothness only shows in combination (a square root of squares, a centred wave, sin(x)/x) made one instruction.
-// Knows nothing of regions or shapes.
+// A field expression, flattened for repeated interval evaluation: calls entered, loops kept as
+// blocks, forms whose smoothness only shows in combination (a square root of squares, a centred
+// wave, sin(x)/x) made one instruction. Knows nothing of regions or shapes.
 #pragma once
 
 #include "ir/graph.h"
@@ -18,9 +18,9 @@ using ir::Op;
 // What an instruction computes where it is not its op's plain meaning.
 enum class Form : std::uint8_t {
     Plain,
-    Wave,   // x - m*round(x/m): jumps, but only from m/2 to -m/2, which an even function does not see
-    Sinc,   // sin(x)/x, 1 at 0
-    Norm,   // the length of all arguments' components together
+    Wave, // x - m*round(x/m): jumps, but only from m/2 to -m/2, which an even function does not see
+    Sinc, // sin(x)/x, 1 at 0
+    Norm, // the length of all arguments' components together
     Square, // x*x, never negative
     Joined, // a Select whose arms were proved to agree on the border
     Loop,

@@ -33,7 +33,8 @@ struct Scenery {
         return scene.shapes.add(shape);
     }
     // A library shape with claims, as the checker makes one.
-    ShapeId claimed(std::string name, NodeId field, NodeId lo, NodeId hi, std::array<NodeId, 3> lever = {}, int dims = 3) {
+    ShapeId claimed(std::string name, NodeId field, NodeId lo, NodeId hi,
+                    std::array<NodeId, 3> lever = {}, int dims = 3) {
         Library library;
         library.name = std::move(name);
         library.has_claims = true;
@@ -51,13 +52,15 @@ struct Scenery {
         return scene.shapes.add(shape);
     }
     ShapeId sphere(double r) {
-        return claimed("sphere", g.sub(length(p), n(r)), g.vec3(-r, -r, -r), g.vec3(r, r, r), {n(0), n(0), n(0)});
+        return claimed("sphere", g.sub(length(p), n(r)), g.vec3(-r, -r, -r), g.vec3(r, r, r),
+                       {n(0), n(0), n(0)});
     }
     ShapeId box(double sx, double sy, double sz) { // full sizes
         double a = sx / 2, b = sy / 2, c = sz / 2;
         NodeId q = g.sub(call(Op::Abs, p), g.vec3(a, b, c));
         NodeId outside = length(g.make(Op::Max, {q, g.vec3(0, 0, 0)}));
-        NodeId most = g.make(Op::Max, {g.component(q, 0), g.make(Op::Max, {g.component(q, 1), g.component(q, 2)})});
+        NodeId most = g.make(
+            Op::Max, {g.component(q, 0), g.make(Op::Max, {g.component(q, 1), g.component(q, 2)})});
         NodeId field = g.add(outside, g.make(Op::Min, {most, n(0)}));
         return claimed("box", field, g.vec3(-a, -b, -c), g.vec3(a, b, c),
                        {n(std::max(b, c)), n(std::max(a, c)), n(std::max(a, b))});
@@ -74,7 +77,8 @@ struct Scenery {
         shape.payload = static_cast<std::uint32_t>(scene.shapes.libraries.size() - 1);
         return scene.shapes.add(shape);
     }
-    ShapeId add(ShapeKind kind, std::vector<ShapeId> children, std::vector<NodeId> args = {}, std::uint32_t payload = 0) {
+    ShapeId add(ShapeKind kind, std::vector<ShapeId> children, std::vector<NodeId> args = {},
+                std::uint32_t payload = 0) {
         Shape shape;
         shape.kind = kind;
         shape.dims = scene.shapes[children[0]].dims;
@@ -86,7 +90,8 @@ struct Scenery {
     ShapeId add(Shape shape) { return scene.shapes.add(std::move(shape)); }
     ShapeId within(ShapeId child, Region region) {
         scene.shapes.regions.push_back(std::move(region));
-        return add(ShapeKind::Within, {child}, {}, static_cast<std::uint32_t>(scene.shapes.regions.size() - 1));
+        return add(ShapeKind::Within, {child}, {},
+                   static_cast<std::uint32_t>(scene.shapes.regions.size() - 1));
     }
     Region ball(double r) {
         Region region;
@@ -102,7 +107,8 @@ struct Scenery {
         scene.params.push_back(param);
         return g.param(static_cast<std::uint32_t>(scene.params.size() - 1), Type::Float);
     }
-    const ShapeFact &prove(ShapeId id, Diagnostics &diagnostics, const proof::Options &options = {}) {
+    const ShapeFact &prove(ShapeId id, Diagnostics &diagnostics,
+                           const proof::Options &options = {}) {
         scene.top_level = {{id, {}}};
         scene.root = id;
         proof::prove(scene, diagnostics, options);

@@ -52,7 +52,8 @@ TEST_CASE("waves of % are continuous behind an even function, and jump otherwise
     CHECK(std::isinf(jump.lipschitz));
     CHECK(jump.trouble == proof::Trouble::Jump);
     CHECK(std::fabs(jump.value_a - jump.value_b) == Approx(2).epsilon(1e-3));
-    auto off = s.bound(s.length(s.g.sub(s.g.make(Op::Mod, {s.p, m}), s.g.splat(s.n(0.9), Type::Vec3))));
+    auto off =
+        s.bound(s.length(s.g.sub(s.g.make(Op::Mod, {s.p, m}), s.g.splat(s.n(0.9), Type::Vec3))));
     CHECK(std::isinf(off.lipschitz));
 }
 
@@ -60,16 +61,19 @@ TEST_CASE("the Menger field, a loop whose scale changes by turn, has slope 1") {
     Scenery s;
     Graph &g = s.g;
     NodeId a = s.call(Op::Abs, s.p);
-    NodeId most = g.make(Op::Max, {g.component(a, 0), g.make(Op::Max, {g.component(a, 1), g.component(a, 2)})});
+    NodeId most = g.make(
+        Op::Max, {g.component(a, 0), g.make(Op::Max, {g.component(a, 1), g.component(a, 2)})});
     Fold fold;
     fold.count = g.integer(4);
     fold.max_count = 4;
     fold.index = g.fresh_var(Type::Int);
     NodeId d = g.fresh_var(Type::Float), scale = g.fresh_var(Type::Float);
     fold.vars = {d, scale};
-    NodeId cell = g.sub(g.make(Op::Mod, {g.mul(s.p, scale), g.splat(s.n(2), Type::Vec3)}), g.splat(s.n(1), Type::Vec3));
+    NodeId cell = g.sub(g.make(Op::Mod, {g.mul(s.p, scale), g.splat(s.n(2), Type::Vec3)}),
+                        g.splat(s.n(1), Type::Vec3));
     NodeId next = g.mul(scale, s.n(3));
-    NodeId r = s.call(Op::Abs, g.sub(g.splat(s.n(1), Type::Vec3), g.mul(s.call(Op::Abs, cell), s.n(3))));
+    NodeId r =
+        s.call(Op::Abs, g.sub(g.splat(s.n(1), Type::Vec3), g.mul(s.call(Op::Abs, cell), s.n(3))));
     NodeId rx = g.component(r, 0), ry = g.component(r, 1), rz = g.component(r, 2);
     auto max = [&](NodeId u, NodeId v) { return g.make(Op::Max, {u, v}); };
     auto min = [&](NodeId u, NodeId v) { return g.make(Op::Min, {u, v}); };
@@ -119,11 +123,13 @@ TEST_CASE("an if whose arms agree on the border is continuous") {
     NodeId fold = g.make(Op::Select, {g.make(Op::Less, {s.x, zero}), g.neg(s.x), s.x});
     CHECK(s.bound(fold).lipschitz == Approx(1));
     NodeId l = s.length(s.p), one = s.n(1);
-    NodeId smooth = g.make(Op::Select, {g.make(Op::Less, {l, one}), g.mul(l, l), g.sub(g.mul(s.n(2), l), one)});
+    NodeId smooth =
+        g.make(Op::Select, {g.make(Op::Less, {l, one}), g.mul(l, l), g.sub(g.mul(s.n(2), l), one)});
     auto b = s.bound(smooth, cube(2));
     CHECK(b.lipschitz >= 2);
     CHECK(b.lipschitz < 2.2);
-    NodeId linear = g.make(Op::Select, {g.make(Op::Less, {g.mul(s.n(2), s.x), one}), s.x, g.sub(one, s.x)});
+    NodeId linear =
+        g.make(Op::Select, {g.make(Op::Less, {g.mul(s.n(2), s.x), one}), s.x, g.sub(one, s.x)});
     CHECK(s.bound(linear).lipschitz == Approx(1));
     NodeId jump = g.make(Op::Select, {g.make(Op::Less, {s.x, zero}), s.n(1), s.x});
     auto bad = s.bound(jump);

@@ -66,7 +66,8 @@ TEST_CASE("a twist of what is not near the axis wants a region") {
 TEST_CASE("a displacement adds its slope") {
     Scenery s;
     NodeId k = s.n(9);
-    NodeId f = s.g.mul(s.n(0.12), s.g.mul(s.sin(s.g.mul(s.x, k)), s.g.mul(s.sin(s.g.mul(s.y, k)), s.sin(s.g.mul(s.z, k)))));
+    NodeId f = s.g.mul(s.n(0.12), s.g.mul(s.sin(s.g.mul(s.x, k)),
+                                          s.g.mul(s.sin(s.g.mul(s.y, k)), s.sin(s.g.mul(s.z, k)))));
     ShapeId rough = s.add(ShapeKind::Displace, {s.sphere(0.6)}, {f});
     Diagnostics d;
     const ShapeFact &fact = s.prove(rough, d);
@@ -81,19 +82,24 @@ TEST_CASE("blends by profile") {
     Scenery s;
     ShapeId a = s.sphere(1), b = s.add(translated(s.g, s.sphere(1), s.g.vec3(1.5, 0, 0)));
     for (Profile profile : {Profile::Smooth, Profile::Round, Profile::Chamfer, Profile::Stairs}) {
-        ShapeId blend = s.add(ShapeKind::Blend, {a, b}, {s.n(0.4), s.n(3)}, static_cast<std::uint32_t>(profile));
+        ShapeId blend = s.add(ShapeKind::Blend, {a, b}, {s.n(0.4), s.n(3)},
+                              static_cast<std::uint32_t>(profile));
         const ShapeFact &f = s.prove(blend);
         CHECK(f.lipschitz_sup == 1);
         CHECK(f.bounds.lo[0] == Approx(-1).epsilon(1e-4));
         CHECK(f.bounds.hi[0] == Approx(2.5).epsilon(1e-4));
     }
-    ShapeId columns = s.add(ShapeKind::Blend, {a, b}, {s.n(0.4), s.n(3)}, static_cast<std::uint32_t>(Profile::Columns));
+    ShapeId columns = s.add(ShapeKind::Blend, {a, b}, {s.n(0.4), s.n(3)},
+                            static_cast<std::uint32_t>(Profile::Columns));
     CHECK(s.prove(columns).lipschitz_sup == Approx(std::sqrt(2.0)).epsilon(1e-6));
     ShapeId norm = s.add(ShapeKind::PseudoNorm, {a, b}, {s.n(4)});
     CHECK(s.prove(norm).lipschitz_sup == Approx(std::pow(2.0, 0.25)).epsilon(1e-6));
     // An intersection is a blend of complements and keeps its bounds.
-    ShapeId both = s.add(ShapeKind::Complement, {s.add(ShapeKind::Blend, {s.add(ShapeKind::Complement, {a}), s.add(ShapeKind::Complement, {b})},
-                                                       {s.n(0.2), s.n(0)}, static_cast<std::uint32_t>(Profile::Smooth))});
+    ShapeId both =
+        s.add(ShapeKind::Complement,
+              {s.add(ShapeKind::Blend,
+                     {s.add(ShapeKind::Complement, {a}), s.add(ShapeKind::Complement, {b})},
+                     {s.n(0.2), s.n(0)}, static_cast<std::uint32_t>(Profile::Smooth))});
     const ShapeFact &f = s.prove(both);
     CHECK(f.bounds.lo[0] == Approx(0.5).epsilon(1e-4));
     CHECK(f.bounds.hi[0] == Approx(1).epsilon(1e-4));
@@ -205,7 +211,8 @@ TEST_CASE("contracts, lower bounds, cost") {
 TEST_CASE("the explanation names the operation that costs") {
     Scenery s;
     ShapeId twist = s.add(twisted(s.g, s.box(1, 1, 1), s.n(3), 1));
-    ShapeId all = s.add(ShapeKind::Union, {s.sphere(1), s.add(translated(s.g, twist, s.g.vec3(3, 0, 0)))});
+    ShapeId all =
+        s.add(ShapeKind::Union, {s.sphere(1), s.add(translated(s.g, twist, s.g.vec3(3, 0, 0)))});
     s.prove(all);
     proof::Explanation e = proof::explain(s.scene);
     CHECK(e.operation == "union");
