@@ -1,5 +1,5 @@
 // Materials, camera, lights and the other settings of a scene.
-#include "typecheck/evaluator.h"
+#include "typecheck/builtins.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,6 @@
 namespace fathom::typecheck {
 
 using ir::Type;
-
-static bool given(const Value &v) { return v.kind != ValueKind::None; }
 
 static Value setting_value(Evaluator &ev, Setting s) {
     ev.settings.push_back(std::move(s));

@@ -334,6 +334,7 @@ const std::vector<Builtin> &builtins();
 void add_numeric_builtins(std::vector<Builtin> &table);
 void add_list_builtins(std::vector<Builtin> &table);
 void add_shape_builtins(std::vector<Builtin> &table);
+void add_transform_builtins(std::vector<Builtin> &table);
 void add_scene_builtins(std::vector<Builtin> &table);
 
 // -- families.cpp

@@ -197,6 +197,7 @@ const std::vector<Builtin> &builtins() {
         add_numeric_builtins(t);
         add_list_builtins(t);
         add_shape_builtins(t);
+        add_transform_builtins(t);
         add_scene_builtins(t);
         return t;
     }();
