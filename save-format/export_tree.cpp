@@ -254,8 +254,10 @@ void TreeWriter::painted(ShapeId id, Paint paint, std::vector<TreeNode> &out) {
         if (!flow.empty()) looks.entries.emplace_back(key, parse_text(flow).value);
         return !flow.empty();
     };
-    const bool whole = part("Diffuse", m.diffuse) & part("Specular", m.specular) &
-                       part("Exponent", m.exponent) & part("Emission", m.emission);
+    bool whole = part("Diffuse", m.diffuse);
+    whole = part("Specular", m.specular) && whole;
+    whole = part("Exponent", m.exponent) && whole;
+    whole = part("Emission", m.emission) && whole;
     if (!whole) left_out(id, "a part of this material: a function with loops, tables or images");
     looks.entries.emplace_back("Repaint", yaml_switch(s.kind == ShapeKind::Repaint));
     add(group, "Paint", std::move(looks));

@@ -316,6 +316,7 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
         target[begin] = {Piece::Kind::Open, "difference {", {}};
         target.push_back({Piece::Kind::Line, "empty", {}});
         target.push_back({Piece::Kind::Close, "}", {}});
+        keep_given();
         if (base_type != "Difference")
             in_.kept[slot] = {"type", path_text(), flow_scalar(type, true), {}, true};
         based = true;

@@ -43,7 +43,8 @@ struct Properties {
 
 struct MaterialInfo {
     std::string identifier;
-    bool twin = false;        // another one before it looks the same, and the scene does not tell them apart
+    bool twin =
+        false; // another one before it looks the same, and the scene does not tell them apart
     std::string displacement; // a call `displace_map(…)`, empty for none
 };
 
@@ -61,7 +62,8 @@ struct Importer {
     std::vector<KeptRecord> kept;
     std::unordered_map<std::string, std::string> textures; // name -> identifier
     std::unordered_map<std::string, MaterialInfo> materials;
-    std::unordered_map<std::string, std::string> looks; // a material as it is written -> the first of that look
+    std::unordered_map<std::string, std::string>
+        looks;                         // a material as it is written -> the first of that look
     std::vector<std::string> scene;    // what the root's children are called, or say
     std::vector<std::string> settings; // camera, lights, lighting, render
     bool lighting_seen = false;

@@ -34,10 +34,10 @@ TreeNode *node_at(TreeNode &root, const std::vector<std::size_t> &path, std::siz
 void set_properties(TreeNode &node, const Value &properties) {
     const NodeTypeRow *row = find_node_type(node.type);
     for (const auto &[key, value] : properties.entries) {
+        const std::string wanted = spelling_key(key);
         const auto present =
-            std::find_if(node.properties.begin(), node.properties.end(), [&](const auto &entry) {
-                return spelling_key(entry.first) == spelling_key(key);
-            });
+            std::find_if(node.properties.begin(), node.properties.end(),
+                         [&](const auto &entry) { return spelling_key(entry.first) == wanted; });
         if (present == node.properties.end()) {
             node.properties.emplace_back(key, value);
             continue;

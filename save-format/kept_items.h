@@ -37,7 +37,7 @@ struct TreeNode {
     std::string type, name;
     bool named = false;
     bool head = false; // of a group that a record brought back: it counts in no ordinal
-    std::vector<std::pair<std::string, Value>> properties;
+    std::vector<Entry> properties;
     std::vector<TreeNode> children;
     std::optional<Value> verbatim; // instead of all that
     std::vector<Value> extra;

@@ -72,6 +72,8 @@ class YamlReader {
     bool ended_ = false;
 };
 
+struct Entry; // of a mapping
+
 // One value, whole. `flow` is the same in YAML's flow form on one line, so that it can be written
 // anywhere.
 struct Value {
@@ -79,12 +81,17 @@ struct Value {
     Kind kind = Kind::Scalar;
     std::string text;
     bool plain = false;
-    std::vector<Value> items; // Sequence
-    std::vector<std::pair<std::string, Value>>
-        entries; // Mapping; keys that are no scalars stand as their flow form
+    std::vector<Value> items;   // Sequence
+    std::vector<Entry> entries; // Mapping; keys that are no scalars stand as their flow form
     Span span;
 
     const Value *find(std::string_view key) const; // without regard to case, spaces, `-` and `_`
+};
+
+struct Entry {
+    std::string first; // the key
+    Value second;
+    Entry(std::string key, Value value) : first(std::move(key)), second(std::move(value)) {}
 };
 
 struct TakenValue {

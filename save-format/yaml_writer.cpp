@@ -54,7 +54,7 @@ Value yaml_switch(bool on) {
     return value;
 }
 
-Value yaml_mapping(std::initializer_list<std::pair<std::string, Value>> entries) {
+Value yaml_mapping(std::initializer_list<Entry> entries) {
     Value value;
     value.kind = Value::Kind::Mapping;
     value.entries = entries;

@@ -13,7 +13,7 @@ namespace fathom::save {
 Value yaml_scalar(double number);
 Value yaml_word(std::string_view text); // plain where it reads back as text
 Value yaml_switch(bool on);             // True, False
-Value yaml_mapping(std::initializer_list<std::pair<std::string, Value>> entries);
+Value yaml_mapping(std::initializer_list<Entry> entries);
 Value yaml_xyz(double x, double y, double z);
 Value yaml_list(std::vector<Value> items);
 
