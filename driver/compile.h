@@ -13,11 +13,13 @@
 
 namespace fathom::driver {
 
+using typecheck::Override;
+
 enum class Phase { Read, Check, Prove, Lower, Done };
 
 struct CompileOptions {
     std::vector<std::filesystem::path> include_folders; // -I
-    std::vector<typecheck::Override> overrides;         // -D
+    std::vector<Override> overrides;                    // -D
     std::function<void(Phase)> entered;                 // may be empty
 };
 

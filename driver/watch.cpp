@@ -113,7 +113,9 @@ Watcher::Batch Watcher::read_events() {
             auto folder = folders_.find(event->wd);
             if (folder == folders_.end()) continue;
             if (event->mask & (IN_DELETE_SELF | IN_MOVE_SELF | IN_IGNORED)) {
-                if (event->mask & IN_IGNORED) folders_.erase(folder);
+                // A moved folder is still watched, under its new name: what stands at the old one now is news.
+                if (event->mask & IN_MOVE_SELF) ::inotify_rm_watch(inotify_, event->wd);
+                folders_.erase(folder);
                 batch.relevant = batch.folders_changed = true;
                 batch.complete = false;
                 continue;

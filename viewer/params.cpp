@@ -33,8 +33,8 @@ void carry_over(const std::vector<ir::Param> &before, std::vector<ir::Param> &fr
 }
 
 bool drop_outdated(const std::vector<ir::Param> &before, const std::vector<ir::Param> &fresh,
-                   std::vector<typecheck::Override> &values) {
-    return std::erase_if(values, [&](const typecheck::Override &value) {
+                   std::vector<driver::Override> &values) {
+    return std::erase_if(values, [&](const driver::Override &value) {
         auto named = [&](const ir::Param &param) { return param.name == value.name; };
         auto old = std::find_if(before.begin(), before.end(), named);
         auto now = std::find_if(fresh.begin(), fresh.end(), named);
@@ -42,8 +42,8 @@ bool drop_outdated(const std::vector<ir::Param> &before, const std::vector<ir::P
     }) > 0;
 }
 
-std::vector<typecheck::Override> structural_values(const std::vector<ir::Param> &params) {
-    std::vector<typecheck::Override> values;
+std::vector<driver::Override> structural_values(const std::vector<ir::Param> &params) {
+    std::vector<driver::Override> values;
     for (const ir::Param &param : params)
         if (param.structural && changed(param)) values.push_back({param.name, value_text(param)});
     return values;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ir/scene.h"
-#include "typecheck/check.h"
+#include "driver/compile.h"
 
 #include <string>
 #include <vector>
@@ -14,11 +14,11 @@ namespace fathom::viewer {
 void carry_over(const std::vector<ir::Param> &before, std::vector<ir::Param> &fresh);
 
 // The structural params that stand on another value than the text's: the scene is built with these.
-std::vector<typecheck::Override> structural_values(const std::vector<ir::Param> &params);
+std::vector<driver::Override> structural_values(const std::vector<ir::Param> &params);
 
 // Takes out of `values` what was set while the text had another value; true where something was taken out.
 bool drop_outdated(const std::vector<ir::Param> &before, const std::vector<ir::Param> &fresh,
-                   std::vector<typecheck::Override> &values);
+                   std::vector<driver::Override> &values);
 
 bool changed(const ir::Param &param);          // stands on another value than the text's
 std::string value_text(const ir::Param &param); // as one would write it: `1.5`, `[1, 2, 3]`, `rgb(1, 0.5, 0)`

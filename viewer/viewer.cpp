@@ -52,7 +52,7 @@ struct Viewer {
     bool stale = true; // the program or a value changed since `drawn`
 
     std::vector<std::string> errors, remarks; // of the newest build, good or not
-    std::vector<typecheck::Override> structural; // what the worker builds with
+    std::vector<driver::Override> structural; // what the worker builds with
     Camera camera, scene_camera;
     bool has_camera = false;
     gl::Mode mode = gl::Mode::Picture;
@@ -73,7 +73,7 @@ struct Viewer {
     double aspect() const;
     void take(std::unique_ptr<Build> build);
     bool link(Build &build);
-    void rebuild(std::vector<typecheck::Override> values);
+    void rebuild(std::vector<driver::Override> values);
     void key(int key, int mods);
     void character(unsigned code);
     void drag(double x, double y);
@@ -116,7 +116,7 @@ bool Viewer::link(Build &build) {
     return true;
 }
 
-void Viewer::rebuild(std::vector<typecheck::Override> values) {
+void Viewer::rebuild(std::vector<driver::Override> values) {
     structural = values;
     worker->rebuild(std::move(values));
 }

@@ -28,7 +28,7 @@ std::unique_ptr<Build> Worker::take() {
     return std::move(finished_);
 }
 
-void Worker::rebuild(std::vector<typecheck::Override> overrides) {
+void Worker::rebuild(std::vector<driver::Override> overrides) {
     {
         std::lock_guard lock(mutex_);
         overrides_ = std::move(overrides);
@@ -43,7 +43,7 @@ std::unique_ptr<Build> Worker::build() {
     driver::CompileOptions options = options_;
     {
         std::lock_guard lock(mutex_);
-        for (const typecheck::Override &value : overrides_) {
+        for (const driver::Override &value : overrides_) {
             std::erase_if(options.overrides, [&](const auto &given) { return given.name == value.name; });
             options.overrides.push_back(value);
         }

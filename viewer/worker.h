@@ -35,7 +35,7 @@ class Worker {
     std::unique_ptr<Build> take();
 
     // Builds again with these values of structural params, over those of the command line.
-    void rebuild(std::vector<typecheck::Override> overrides);
+    void rebuild(std::vector<driver::Override> overrides);
 
   private:
     void run();
@@ -47,7 +47,7 @@ class Worker {
     driver::Watcher watcher_;
     std::mutex mutex_; // over the two below
     std::unique_ptr<Build> finished_;
-    std::vector<typecheck::Override> overrides_;
+    std::vector<driver::Override> overrides_;
     std::atomic<bool> asked_ = false, ending_ = false;
     std::thread thread_; // last: starts when all else is there
 };

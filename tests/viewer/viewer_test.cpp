@@ -197,7 +197,7 @@ TEST_CASE("a slider's value outlives a reload, unless the text's own value chang
     before[0].structural = true;
     REQUIRE(viewer::structural_values(before).size() == 1);
     CHECK(viewer::structural_values(before)[0].text == "1.5");
-    std::vector<typecheck::Override> values = viewer::structural_values(before);
+    std::vector<driver::Override> values = viewer::structural_values(before);
     CHECK_FALSE(viewer::drop_outdated(before, {param}, values));
     param.initial[0] = 0.5;
     CHECK(viewer::drop_outdated(before, {param}, values));
