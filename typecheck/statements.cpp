@@ -348,6 +348,11 @@ static Exit run_one(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt,
             exit = out.exit;
         } else
             last = eval(ev, ast, e->value, frame);
+        // where the library refuses an argument, the call is over: one cause, one report
+        if (!is_last && is_poison(last) && ev.modules[ev.current_module].library) {
+            exit.returned = boolean(true);
+            exit.value = poison();
+        }
         if (!is_last) dropped(ev, last, stmt.span), last = unit();
     } else if (auto *f = std::get_if<lang::For>(&stmt.kind)) {
         exit = run_for(ev, ast, *f, frame, stmt.span).exit;
