@@ -11,6 +11,7 @@ struct Solid {
     Inside inside;
     double reach = 1.5; // all of the solid lies within this cube's half side, with room
     bool exact = false; // the field claims to be the distance
+    bool endless = false; // the surface goes on beyond `reach`
 };
 
 std::vector<Solid> round_solids();

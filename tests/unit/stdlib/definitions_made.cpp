@@ -35,11 +35,11 @@ Point turned(Point p, double angle, int axis) {
 // Two walls that meet at a right angle, x < 0 and y < 0, and what a profile of radius 0.5 adds to them.
 using Profile = std::function<bool(double, double)>;
 Solid corner(const std::string &call, const Profile &added) {
-    return {call + "(plane(X), plane(Y))", [=](Point p) { return p[0] < 0 || p[1] < 0 || added(p[0], p[1]); }, 1, false};
+    return {call + "plane(X), plane(Y))", [=](Point p) { return p[0] < 0 || p[1] < 0 || added(p[0], p[1]); }, 1, false};
 }
 // The same for what is left of their intersection, x < 0 and y < 0: a profile takes away what it adds, seen from within.
 Solid edge(const std::string &call, const Profile &added) {
-    return {call + "(plane(X), plane(Y))", [=](Point p) { return p[0] < 0 && p[1] < 0 && !added(-p[0], -p[1]); }, 1, false};
+    return {call + "plane(X), plane(Y))", [=](Point p) { return p[0] < 0 && p[1] < 0 && !added(-p[0], -p[1]); }, 1, false};
 }
 
 const Point origin{0, 0, 0};
@@ -68,21 +68,21 @@ std::vector<Solid> combined_solids() {
         {"box(1.6) - sphere(1)", [](Point p) { return in_box(p, 1.6, 1.6, 1.6) && !in_ball(p, origin, 1); }, 1.2, false},
         {"xor { sphere(0.8); sphere(0.8).translate(x: 0.8) }", [=](Point p) { return in_ball(p, origin, 0.8) != in_ball(p, right, 0.8); }, 1.8, false},
         {"complement(sphere(1)) & box(2)", [](Point p) { return !in_ball(p, origin, 1) && in_box(p, 2, 2, 2); }, 1.2, false},
-        {"empty | sphere(1)", [](Point p) { return in_ball(p, origin, 1); }, 1.2, false},
+        {"empty | sphere(1)", [](Point p) { return in_ball(p, origin, 1); }, 1.2, true},
         {"smooth_union(0.4) { sphere(0.7); sphere(0.5).translate(x: 0.8) }", blob, 1.5, false},
         {"smooth_union(0.4, mix: true) { sphere(0.7); sphere(0.5).translate(x: 0.8) }", blob, 1.5, false},
-        corner("smooth_union(0.5)", smooth),
-        edge("smooth_intersection(0.5)", smooth),
+        corner("smooth_union(0.5, ", smooth),
+        edge("smooth_intersection(0.5, ", smooth),
         {"smooth_difference(0.5) { plane(X); plane(-Y) }",
          [=](Point p) { return p[0] < 0 && p[1] < 0 && !smooth(-p[0], -p[1]); }, 1, false},
-        corner("round_union(0.5)", fillet),
-        edge("round_intersection(0.5)", fillet),
+        corner("round_union(0.5, ", fillet),
+        edge("round_intersection(0.5, ", fillet),
         {"round_difference(0.5) { plane(X); plane(-Y) }", [=](Point p) { return p[0] < 0 && p[1] < 0 && !fillet(-p[0], -p[1]); }, 1, false},
-        corner("chamfer_union(0.5)", bevel),
-        edge("chamfer_intersection(0.5)", bevel),
+        corner("chamfer_union(0.5, ", bevel),
+        edge("chamfer_intersection(0.5, ", bevel),
         {"chamfer_difference(0.5) { plane(X); plane(-Y) }", [=](Point p) { return p[0] < 0 && p[1] < 0 && !bevel(-p[0], -p[1]); }, 1, false},
-        corner("stairs_union(0.6, 2)", stairs),
-        edge("stairs_intersection(0.6, 2)", stairs),
+        corner("stairs_union(0.6, 2, ", stairs),
+        edge("stairs_intersection(0.6, 2, ", stairs),
         {"pipe(sphere(1), plane(Y, 0.3), 0.1)",
          [](Point p) { return std::hypot(norm(p) - 1, p[1] - 0.3) < 0.1; }, 1.3, false},
         {"engrave(plane(X), plane(Y), 0.3)", [](Point p) { return p[0] < 0 && !(-p[0] < 0.3 - std::abs(p[1])); }, 1, false},
@@ -120,7 +120,7 @@ std::vector<Solid> transformed_solids() {
          [](Point p) { return std::abs(p[1]) < 1 && std::hypot(p[0], p[2]) < 0.8 * (1 - 0.6 * (p[1] + 1) / 2); }, 1.3, false},
         {"sphere(0.5).elongate([1, 0, 0.4])",
          [](Point p) { return norm({std::max(std::abs(p[0]) - 0.5, 0.0), p[1], std::max(std::abs(p[2]) - 0.2, 0.0)}) < 0.5; }, 1.2, false},
-        {"sphere(1).hyperize(2, ball(1.5))", [](Point p) { return norm({p[0] * p[0], p[1] * p[1], p[2] * p[2]}) < 1; }, 1.3, false},
+        {"sphere(1).hyperize(2)", [](Point p) { return norm({p[0] * p[0], p[1] * p[1], p[2] * p[2]}) < 1; }, 1.3, false},
         {"box([1.4, 0.8, 0.6]).offset(0.2)",
          [](Point p) {
              Point q{std::clamp(p[0], -0.7, 0.7), std::clamp(p[1], -0.4, 0.4), std::clamp(p[2], -0.3, 0.3)};

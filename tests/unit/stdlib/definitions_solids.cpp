@@ -38,8 +38,8 @@ bool in_helix(Point p, double radius, double pitch, double turns, double thickne
 }
 
 bool in_round_cone(Point p, double bottom, double top, double height) {
-    for (int i = 0; i <= 1000; ++i) {
-        double t = i / 1000.0;
+    for (int i = 0; i <= 300; ++i) {
+        double t = i / 300.0;
         if (norm(p - Point{0, -height / 2 + t * height, 0}) < bottom + t * (top - bottom)) return true;
     }
     return false;
@@ -142,8 +142,8 @@ std::vector<Solid> round_solids() {
              double straight = 1.2 - 0.65;
              double least = std::min(to_segment(p, {-straight, 0, 0.5}, {straight, 0, 0.5}), to_segment(p, {-straight, 0, -0.5}, {straight, 0, -0.5}));
              for (double side : {-1.0, 1.0})
-                 for (int i = 0; i <= 200; ++i) {
-                     double a = -pi / 2 + pi * i / 200;
+                 for (int i = 0; i <= 100; ++i) {
+                     double a = -pi / 2 + pi * i / 100;
                      Point q{side * (straight + 0.5 * std::cos(a)), 0, 0.5 * std::sin(a)};
                      least = std::min(least, norm(p - q));
                  }
@@ -253,8 +253,8 @@ std::vector<Solid> straight_solids() {
         polyhedron("octahedron(1.2)", octahedron_corners, cube_corners, 1.2),
         polyhedron("dodecahedron(1.2)", dodecahedron_corners, icosahedron_corners, 1.2),
         polyhedron("icosahedron(1.2)", icosahedron_corners, dodecahedron_corners, 1.2),
-        {"plane([1, 2, 0], 1)", [](Point p) { return p[0] + 2 * p[1] < 1; }, 1.5, false},
-        {"slab(0.4, axis: [1, 1, 0])", [](Point p) { return std::abs(p[0] + p[1]) / std::sqrt(2.0) < 0.2; }, 1.5, false},
+        {"plane([1, 2, 0], 1)", [](Point p) { return p[0] + 2 * p[1] < 1; }, 1.5, true, true},
+        {"slab(0.4, axis: [1, 1, 0])", [](Point p) { return std::abs(p[0] + p[1]) / std::sqrt(2.0) < 0.2; }, 1.5, true, true},
         gdf_solid("gdf([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], 0.8, 12)", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}, 0.8, 12),
         gdf_solid("gdf_cube(0.8, 3)", cube, 0.8, 3),
         gdf_solid("gdf_cube(0.8, 1)", cube, 0.8, 1),
