@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -46,7 +45,7 @@ Exit Terminal::flush() {
             gone_ = true;
         else if (error) {
             failure_ = error;
-            say(fmt::format("fathom: cannot write to standard output: {}", strerrordesc_np(error)));
+            say(fmt::format("fathom: cannot write to standard output: {}", driver::error_words(error)));
         }
     }
     buffer_.clear();

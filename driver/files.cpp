@@ -11,15 +11,6 @@
 namespace fathom::driver {
 namespace {
 
-// errno in words, without the C library's locale.
-std::string reason(int error) {
-    const char *words = strerrordesc_np(error);
-    std::string text = words ? words : "unknown error";
-    if (text.size() > 1 && text[0] >= 'A' && text[0] <= 'Z' && text[1] >= 'a')
-        text[0] = static_cast<char>(text[0] - 'A' + 'a');
-    return text;
-}
-
 class Descriptor {
   public:
     explicit Descriptor(int fd) : fd_(fd) {}
@@ -67,7 +58,7 @@ std::optional<std::string> read_descriptor(int fd, std::size_t expected, std::si
         ssize_t count = ::read(fd, bytes.data() + used, bytes.size() - used);
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) {
-            error = reason(errno);
+            error = error_words(errno);
             return std::nullopt;
         }
         if (count == 0) break;
@@ -82,6 +73,14 @@ std::optional<std::string> read_descriptor(int fd, std::size_t expected, std::si
 }
 
 } // namespace
+
+std::string error_words(int error) {
+    const char *words = strerrordesc_np(error);
+    std::string text = words ? words : "unknown error";
+    if (text.size() > 1 && text[0] >= 'A' && text[0] <= 'Z' && text[1] >= 'a')
+        text[0] = static_cast<char>(text[0] - 'A' + 'a');
+    return text;
+}
 
 FileStamp stamp_of(const std::filesystem::path &file) {
     struct stat status{};
@@ -99,12 +98,12 @@ std::optional<std::string> read_file(const std::filesystem::path &path, std::siz
     // Without O_NONBLOCK the open of a pipe that no one writes to would wait for ever.
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (file.get() < 0) {
-        error = errno == ENOENT ? "no such file" : reason(errno);
+        error = errno == ENOENT ? "no such file" : error_words(errno);
         return std::nullopt;
     }
     struct stat status{};
     if (::fstat(file.get(), &status) != 0) {
-        error = reason(errno);
+        error = error_words(errno);
         return std::nullopt;
     }
     if (!S_ISREG(status.st_mode)) {
@@ -141,18 +140,18 @@ std::string write_file(const std::filesystem::path &named, std::string_view byte
     if (exists && S_ISDIR(old.st_mode)) return "is a directory";
     if (exists && !S_ISREG(old.st_mode)) {
         Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-        if (file.get() < 0) return reason(errno);
+        if (file.get() < 0) return error_words(errno);
         int error = write_all(file.get(), bytes);
-        return error ? reason(error) : "";
+        return error ? error_words(error) : "";
     }
-    if (exists && ::access(target.c_str(), W_OK) != 0) return reason(errno);
+    if (exists && ::access(target.c_str(), W_OK) != 0) return error_words(errno);
 
     std::filesystem::path folder = target.parent_path().empty() ? "." : target.parent_path();
     std::string temporary =
         (folder / ("." + target.filename().string() + ".fathom-tmpXXXXXX")).string();
     HoldInterrupts hold;
     Descriptor file(::mkostemp(temporary.data(), O_CLOEXEC));
-    if (file.get() < 0) return reason(errno);
+    if (file.get() < 0) return error_words(errno);
     mode_t mask = ::umask(0);
     ::umask(mask);
     mode_t mode = exists ? (old.st_mode & 07777) : (0666 & ~mask);
@@ -163,7 +162,7 @@ std::string write_file(const std::filesystem::path &named, std::string_view byte
     if (!error) error = close_error;
     if (!error && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
     if (error) ::unlink(temporary.c_str());
-    return error ? reason(error) : "";
+    return error ? error_words(error) : "";
 }
 
 } // namespace fathom::driver

@@ -37,4 +37,6 @@ std::string write_file(const std::filesystem::path &target, std::string_view byt
 // Writes all of `bytes` to a descriptor; 0, or the errno of the failure.
 int write_all(int descriptor, std::string_view bytes);
 
+std::string error_words(int error); // an errno in words, in lower case, without the C library's locale
+
 } // namespace fathom::driver

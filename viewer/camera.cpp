@@ -87,7 +87,12 @@ void frame(Camera &camera, const Triple &center, double radius, double aspect) {
 std::string camera_line(const Camera &camera) {
     Triple eye = camera.target;
     move(eye, from_target(camera), camera.distance);
-    auto triple = [](const Triple &t) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", t[0], t[1], t[2]); };
+    // To a thousandth of the distance: finer than the eye tells, and no digits that only rounding made.
+    double unit = std::pow(10, std::floor(std::log10(camera.distance)) - 3);
+    auto number = [&](double x) { return std::round(x / unit) * unit + 0.0; };
+    auto triple = [&](const Triple &t) {
+        return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", number(t[0]), number(t[1]), number(t[2]));
+    };
     return fmt::format("camera(at: {}, look_at: {}, fov: {:.4g}deg{})", triple(eye), triple(camera.target),
                        2 * std::atan(camera.slope) * 180 / pi, camera.orthographic ? ", orthographic: true" : "");
 }

@@ -29,7 +29,7 @@ void fly(Camera &camera, const ir::Triple &by); // right, up, forward, in units 
 void look_from(Camera &camera, Side side);
 void frame(Camera &camera, const ir::Triple &center, double radius, double aspect);
 
-// `camera(at: […], look_at: […], fov: …deg)`, four digits each: a line to paste into the scene.
+// `camera(at: […], look_at: […], fov: …deg)`: a line to paste into the scene.
 std::string camera_line(const Camera &camera);
 
 } // namespace fathom::viewer
