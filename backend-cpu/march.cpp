@@ -97,11 +97,13 @@ void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
     if (!brute && walk.stride > 0)
         next += look::relaxation * d * std::max(walk.stride + d - walk.before, 0.0f) /
                 std::max(walk.stride - d + walk.before, look::flattest * walk.stride);
-    next = std::min(next, std::max(d, end - walk.t));
+    // what is not proved yet ends at the end exactly, rounding or not, so that it is still checked
+    const float proved = std::max(end, walk.t + d);
+    next = std::min(next, proved - walk.t);
     walk.d = d;
     walk.before = d;
     walk.stride = next;
-    walk.t += next;
+    walk.t = std::min(walk.t + next, proved);
 }
 
 } // namespace

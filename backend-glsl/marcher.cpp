@@ -91,10 +91,11 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
         float next = d;
         if (stride > 0.0)
             next += $RELAXATION * d * max(stride + d - before, 0.0) / max(stride - d + before, $FLATTEST * stride);
-        next = min(next, max(d, end - t));
+        float proved = max(end, t + d);
+        next = min(next, proved - t);
         before = d;
         stride = next;
-        t += next;
+        t = min(t + next, proved);
     }
     fathom_steps = steps;
     float pixel = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;

@@ -36,8 +36,8 @@
 //     stride; the sphere that
 //       would touch this one has the radius d*(stride + d - before)/(stride - d + before): add
 //       relaxation times that (numerator at least 0, denominator at least flattest*stride)
-//     never past the end unproved: next = min(next, max(d, end - t)); never less than float32 can
-//     move: max(next, slack/4) before = d, stride = next, t += next
+//     never past the end unproved, rounding or not: proved = max(end, t + d),
+//     next = min(next, proved - t), before = d, stride = next, t = min(t + next, proved)
 //   Out of steps: a hit at t if the last d is at most the pixel's width there (pixel*t, or pixel),
 //   else a miss. `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to
 //   0..far; else 0..far.
