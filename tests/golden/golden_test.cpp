@@ -136,3 +136,14 @@ TEST_CASE("no page is of a code that does not exist") {
         CHECK(code_by_name(entry.path().stem().string()).has_value());
     }
 }
+
+TEST_CASE("the program in the README is right as it stands there") {
+    std::string page = read(root / "README.md");
+    std::size_t begin = page.find("```\nlet "), end = page.find("\n```", begin + 4);
+    REQUIRE(begin != page.npos);
+    REQUIRE(end != page.npos);
+    std::string program = page.substr(begin + 4, end - begin - 3);
+    INFO(program);
+    CHECK(codes_of(program).empty());
+    CHECK(std::count(program.begin(), program.end(), '\n') <= 12);
+}
