@@ -9,15 +9,17 @@
 
 namespace fathom::bench {
 
-namespace {
-
 double seconds(const std::function<void()> &run) {
     const auto begin = std::chrono::steady_clock::now();
     run();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-} // namespace
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 Rates rates(double amount, const std::function<void()> &run, double other_amount, const std::function<void()> &other) {
     double best = 1e30, best_other = 1e30, spent = 0;
@@ -55,21 +57,72 @@ std::string machine() {
 }
 
 void print(const Table &table) {
-    std::printf("%-34s %12s %-14s %8s %7s  %s\n", "what", "rate", "unit", "ratio", "least", "to");
+    std::printf("%-46s %10s %-15s %7s %9s  %s\n", "what", "value", "unit", "ratio", "goal", "to");
     for (const Row &row : table) {
-        std::printf("%-34s %12.4g %-14s ", row.what.c_str(), row.rate, row.unit.c_str());
-        if (row.baseline.empty()) {
-            std::printf("\n");
+        if (!row.missing.empty()) {
+            std::printf("%-46s %10s %s\n", row.what.c_str(), "-", row.missing.c_str());
             continue;
         }
-        const double ratio = row.rate / row.baseline_rate;
-        std::printf("%8.2f ", ratio);
-        if (row.least > 0)
-            std::printf("%7.2f%s", row.least, ratio >= row.least ? "  " : "! ");
+        const bool compared = !row.baseline.empty();
+        const double judged = compared ? row.value / row.baseline_value : row.value;
+        std::printf("%-46s %10.4g %-15s ", row.what.c_str(), row.value, row.unit.c_str());
+        if (compared)
+            std::printf("%7.3f ", judged);
         else
-            std::printf("%7s  ", "");
-        std::printf("%s (%.4g)\n", row.baseline.c_str(), row.baseline_rate);
+            std::printf("%7s ", "");
+        const double goal = row.least > 0 ? row.least : row.most;
+        const bool reached = row.least > 0 ? judged >= row.least : judged <= row.most;
+        if (goal > 0)
+            std::printf("%s %6.4g%s", row.least > 0 ? ">=" : "<=", goal, reached ? " " : "!");
+        else
+            std::printf("%9s ", "");
+        if (compared) std::printf(" %s (%.4g)", row.baseline.c_str(), row.baseline_value);
+        std::printf("\n");
     }
+}
+
+namespace {
+
+driver::Compilation timed(PhaseTimes *times, const std::function<driver::Compilation(const driver::CompileOptions &)> &compile) {
+    using Clock = std::chrono::steady_clock;
+    driver::CompileOptions options;
+    double *current = nullptr;
+    Clock::time_point entered;
+    if (times)
+        options.entered = [&](driver::Phase phase) {
+            const Clock::time_point now = Clock::now();
+            if (current) *current += std::chrono::duration<double, std::milli>(now - entered).count();
+            entered = now;
+            switch (phase) {
+            case driver::Phase::Check: current = &times->check; break;
+            case driver::Phase::Prove: current = &times->prove; break;
+            case driver::Phase::Lower: current = &times->lower; break;
+            case driver::Phase::Read:
+            case driver::Phase::Done: current = nullptr; break;
+            }
+        };
+    return compile(options);
+}
+
+} // namespace
+
+std::string scene_path(const std::string &name) { return FATHOM_SOURCE_DIR "/bench/scenes/" + name; }
+
+driver::Compilation compiled(const std::string &name, PhaseTimes *times) {
+    return timed(times, [&](const auto &options) { return driver::compile_file(scene_path(name), options); });
+}
+
+driver::Compilation compiled_text(const std::string &name, std::string text, PhaseTimes *times) {
+    return timed(times, [&](const auto &options) {
+        return driver::compile_text(name, std::move(text), FATHOM_SOURCE_DIR "/bench/scenes", options);
+    });
+}
+
+std::string complaint(const driver::Compilation &compilation) {
+    if (!compilation.unreadable.empty()) return compilation.unreadable;
+    for (const Diagnostic &diagnostic : compilation.diagnostics.items())
+        if (diagnostic.severity == Severity::Error) return diagnostic.message;
+    return "";
 }
 
 } // namespace fathom::bench

@@ -1,7 +1,9 @@
 // How fathom-bench measures, and what a row of its table is. A file of rows defines `void measure_…(Table &)` and main
-// calls it. Everything is a ratio of two things timed in the same run, as near to each other as can be; the absolute
-// numbers are for the eye.
+// calls it. Rates are ratios of two things timed in the same run, as near to each other as can be; what has a goal of its
+// own (a time, a size) is held against that. Numbers without a goal are for the eye.
 #pragma once
+
+#include "driver/compile.h"
 
 #include <functional>
 #include <string>
@@ -10,12 +12,14 @@
 namespace fathom::bench {
 
 struct Row {
-    std::string what;     // "100-sphere smooth union"
-    double rate = 0;      // of us, in `unit`
-    std::string unit;     // "M points/s"
-    std::string baseline; // what it is compared with; empty: nothing
-    double baseline_rate = 0;
-    double least = 0;     // the ratio to reach; 0: none
+    std::string what{};     // "100-sphere smooth union"
+    double value = 0;       // of us, in `unit`
+    std::string unit{};     // "M points/s"
+    std::string baseline{}; // what it is compared with; empty: nothing
+    double baseline_value = 0;
+    double least = 0; // of the ratio, or of the value where there is no baseline: the least that will do; 0: none
+    double most = 0;  // or the most
+    std::string missing{}; // why there is no value
 };
 using Table = std::vector<Row>;
 
@@ -26,9 +30,26 @@ struct Rates {
 Rates rates(double amount, const std::function<void()> &run, double other_amount, const std::function<void()> &other);
 double rate(double amount, const std::function<void()> &run);
 
+double seconds(const std::function<void()> &run); // once
+double median(std::vector<double> values);
+
 void print(const Table &table);
 std::string machine(); // processor, cores, compiler
 
-void measure_interpreter(Table &table);
+// bench/scenes/NAME, compiled; where that fails, nothing, and a row that says so.
+struct PhaseTimes {
+    double check = 0, prove = 0, lower = 0; // milliseconds
+    double all() const { return check + prove + lower; }
+};
+std::string scene_path(const std::string &name);
+driver::Compilation compiled(const std::string &name, PhaseTimes *times = nullptr);
+driver::Compilation compiled_text(const std::string &name, std::string text, PhaseTimes *times = nullptr);
+std::string complaint(const driver::Compilation &compilation); // its first error in words, or an empty text
+
+void measure_interpreter(Table &table); // interpreter.cpp
+void measure_process(Table &table);     // process.cpp
+void measure_front_end(Table &table);   // front_end.cpp
+void measure_shader(Table &table);      // shader.cpp
+void measure_steps(Table &table);       // steps.cpp
 
 } // namespace fathom::bench
