@@ -8,7 +8,8 @@ namespace fathom::bench {
 Spheres hundred_spheres() {
     Spheres spheres; // a Fibonacci lattice on the sphere
     for (int i = 0; i < 100; ++i) {
-        const float z = 1 - (2 * float(i) + 1) / 100, ring = std::sqrt(1 - z * z), turn = 2.39996323f * float(i);
+        const float z = 1 - (2 * float(i) + 1) / 100, ring = std::sqrt(1 - z * z),
+                    turn = 2.39996323f * float(i);
         spheres.x.push_back(ring * std::cos(turn));
         spheres.y.push_back(ring * std::sin(turn));
         spheres.z.push_back(z);
@@ -21,8 +22,7 @@ namespace {
 
 constexpr std::size_t block = 64; // points kept in registers while the spheres go by
 
-void fused(const Spheres &s, float k, const float *x, const float *y, const float *z,
-                                         float *out) {
+void fused(const Spheres &s, float k, const float *x, const float *y, const float *z, float *out) {
     float acc[block];
     for (std::size_t i = 0; i < block; ++i) acc[i] = 1e9f;
     const float quarter = 1 / (4 * k);
@@ -40,8 +40,8 @@ void fused(const Spheres &s, float k, const float *x, const float *y, const floa
 
 } // namespace
 
-void smooth_spheres_by_hand(const Spheres &s, float k, const float *x, const float *y, const float *z, float *out,
-                            std::size_t n) {
+void smooth_spheres_by_hand(const Spheres &s, float k, const float *x, const float *y,
+                            const float *z, float *out, std::size_t n) {
     for (std::size_t i = 0; i + block <= n; i += block) fused(s, k, x + i, y + i, z + i, out + i);
 }
 

@@ -1,4 +1,5 @@
-// Point rates of the CPU tape on one thread, each against the same field written by hand where there is one.
+// Point rates of the CPU tape on one thread, each against the same field written by hand where
+// there is one.
 #include "bench/by_hand.h"
 #include "bench/measure.h"
 
@@ -58,7 +59,8 @@ FunctionId blended(Scene &scene, const Spheres &s, double k) {
     std::vector<NodeId> args{g.number(k), g.number(0)};
     for (std::size_t i = 0; i < s.x.size(); ++i)
         args.push_back(ball(g, p, g.vec3(s.x[i], s.y[i], s.z[i]), g.number(s.r[i])));
-    return g.add_function({"blended", {}, {p}, g.make(Op::Blend, Type::Float, args, std::uint32_t(Profile::Smooth))});
+    return g.add_function(
+        {"blended", {}, {p}, g.make(Op::Blend, Type::Float, args, std::uint32_t(Profile::Smooth))});
 }
 
 // As a loop over a table.
@@ -66,7 +68,8 @@ FunctionId looped(Scene &scene, const Spheres &s, double k) {
     Graph &g = scene.graph;
     NodeId p = g.fresh_var(Type::Vec3), acc = g.fresh_var(Type::Float);
     ir::Table table{static_cast<int>(s.x.size()), 4, {}};
-    for (std::size_t i = 0; i < s.x.size(); ++i) table.data.insert(table.data.end(), {s.x[i], s.y[i], s.z[i], s.r[i]});
+    for (std::size_t i = 0; i < s.x.size(); ++i)
+        table.data.insert(table.data.end(), {s.x[i], s.y[i], s.z[i], s.r[i]});
     TableId id = g.add_table(table);
     Fold fold;
     fold.count = g.integer(table.rows);
@@ -77,11 +80,14 @@ FunctionId looped(Scene &scene, const Spheres &s, double k) {
     NodeId args[] = {g.number(k), g.number(0), acc, ball(g, p, c, r)};
     fold.vars = {acc};
     fold.next = {g.make(Op::Blend, Type::Float, args, std::uint32_t(Profile::Smooth))};
-    return g.add_function({"looped", {}, {p}, g.make(Op::Fold, Type::Float, {g.number(1e9)}, g.add_fold(fold).index)});
+    return g.add_function({"looped",
+                           {},
+                           {p},
+                           g.make(Op::Fold, Type::Float, {g.number(1e9)}, g.add_fold(fold).index)});
 }
 
-// A Menger sponge as the difference of a cube and all its square holes, each written out: about a thousand operations at
-// level 3, as libfive has them. (Folding space would need some sixty.)
+// A Menger sponge as the difference of a cube and all its square holes, each written out: about a
+// thousand operations at level 3, as libfive has them. (Folding space would need some sixty.)
 struct Holes {
     Graph &g;
     NodeId u, v;
@@ -93,7 +99,8 @@ struct Holes {
     void add(double x, double y, double size, int levels) {
         if (levels == 0) return;
         const double third = size / 3;
-        all.push_back(g.make(Op::Max, {between(u, x + third, x + 2 * third), between(v, y + third, y + 2 * third)}));
+        all.push_back(g.make(
+            Op::Max, {between(u, x + third, x + 2 * third), between(v, y + third, y + 2 * third)}));
         for (int i = 0; i < 9; ++i)
             if (i != 4) add(x + (i % 3) * third, y + (i / 3) * third, third, levels - 1);
     }
@@ -117,7 +124,8 @@ FunctionId noise(Scene &scene, int octaves) {
     Graph &g = scene.graph;
     NodeId p = g.fresh_var(Type::Vec3), sum = g.number(0);
     for (int i = 0; i < octaves; ++i)
-        sum = g.add(sum, g.mul(g.make(Op::Perlin, {g.mul(p, g.number(1 << i))}), g.number(std::ldexp(1.0, -i))));
+        sum = g.add(sum, g.mul(g.make(Op::Perlin, {g.mul(p, g.number(1 << i))}),
+                               g.number(std::ldexp(1.0, -i))));
     return g.add_function({"noise", {}, {p}, sum});
 }
 
@@ -128,12 +136,15 @@ void measure_interpreter(Table &table) {
     const Spheres spheres = hundred_spheres();
     constexpr float k = 0.1f;
     auto by_hand = [&] {
-        smooth_spheres_by_hand(spheres, k, cloud.x.data(), cloud.y.data(), cloud.z.data(), cloud.out.data(), points);
+        smooth_spheres_by_hand(spheres, k, cloud.x.data(), cloud.y.data(), cloud.z.data(),
+                               cloud.out.data(), points);
     };
-    auto against_hand = [&](const char *what, FunctionId (*make)(Scene &, const Spheres &, double)) {
+    auto against_hand = [&](const char *what,
+                            FunctionId (*make)(Scene &, const Spheres &, double)) {
         Scene scene;
         Run run(scene, make(scene, spheres, k));
-        const Rates both = rates(points * million, [&] { run(cloud); }, points * million, by_hand);
+        const Rates both = rates(
+            points * million, [&] { run(cloud); }, points * million, by_hand);
         table.push_back({what, both.first, "M points/s", "hand-fused loop", both.second, 0.7});
     };
     against_hand("100-sphere smooth union", blended);
@@ -141,7 +152,8 @@ void measure_interpreter(Table &table) {
     // 17 M points/s is libfive's batch evaluation of its own Menger 3 on a processor of this kind.
     Scene scene;
     Run sponge(scene, menger(scene, 3));
-    table.push_back({"Menger sponge, level 3, 219 holes", rate(points * million, [&] { sponge(cloud); }), "M points/s",
+    table.push_back({"Menger sponge, level 3, 219 holes",
+                     rate(points * million, [&] { sponge(cloud); }), "M points/s",
                      "libfive as recorded", 17, 3});
     for (int octaves : {1, 4}) {
         Run run(scene, noise(scene, octaves));
@@ -155,9 +167,10 @@ void measure_interpreter(Table &table) {
                 cloud.out[i] = sum;
             }
         };
-        const Rates both = rates(points * million, [&] { run(cloud); }, points * million, scalar);
-        table.push_back({"Perlin noise, octaves: " + std::to_string(octaves), both.first, "M points/s",
-                         "point by point", both.second, 0});
+        const Rates both = rates(
+            points * million, [&] { run(cloud); }, points * million, scalar);
+        table.push_back({"Perlin noise, octaves: " + std::to_string(octaves), both.first,
+                         "M points/s", "point by point", both.second, 0});
     }
 }
 

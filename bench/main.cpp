@@ -1,5 +1,5 @@
-// fathom-bench: prints the table of measures. What falls short of what the project aims at is marked "!".
-// With names of groups as arguments, only those.
+// fathom-bench: prints the table of measures. What falls short of what the project aims at is
+// marked "!". With names of groups as arguments, only those.
 #include "bench/measure.h"
 
 #include <algorithm>
@@ -18,15 +18,19 @@ int main(int argc, char **argv) {
                                 {"interpreter", measure_interpreter}};
     const std::vector<std::string> wanted(argv + 1, argv + argc);
     for (const std::string &name : wanted)
-        if (std::none_of(std::begin(groups), std::end(groups), [&](const Group &group) { return group.name == name; })) {
-            std::fprintf(stderr, "fathom-bench: no group `%s`; there are process, front-end, shader, steps, interpreter\n",
+        if (std::none_of(std::begin(groups), std::end(groups),
+                         [&](const Group &group) { return group.name == name; })) {
+            std::fprintf(stderr,
+                         "fathom-bench: no group `%s`; there are process, front-end, shader, "
+                         "steps, interpreter\n",
                          name.c_str());
             return 2;
         }
     std::printf("%s\n\n", machine().c_str());
     Table table;
     for (const Group &group : groups)
-        if (wanted.empty() || std::find(wanted.begin(), wanted.end(), group.name) != wanted.end()) group.measure(table);
+        if (wanted.empty() || std::find(wanted.begin(), wanted.end(), group.name) != wanted.end())
+            group.measure(table);
     print(table);
     return 0;
 }

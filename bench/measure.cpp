@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <thread>
 
@@ -15,13 +16,20 @@ double seconds(const std::function<void()> &run) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+double processor_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+}
+
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
 }
 
-Rates rates(double amount, const std::function<void()> &run, double other_amount, const std::function<void()> &other) {
+Rates rates(double amount, const std::function<void()> &run, double other_amount,
+            const std::function<void()> &other) {
     double best = 1e30, best_other = 1e30, spent = 0;
     run();
     other();
@@ -53,7 +61,8 @@ std::string machine() {
             name = line.substr(line.find(':') + 2);
             break;
         }
-    return name + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads, " + __VERSION__;
+    return name + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads, " +
+           __VERSION__;
 }
 
 void print(const Table &table) {
@@ -83,15 +92,15 @@ void print(const Table &table) {
 
 namespace {
 
-driver::Compilation timed(PhaseTimes *times, const std::function<driver::Compilation(const driver::CompileOptions &)> &compile) {
-    using Clock = std::chrono::steady_clock;
+driver::Compilation
+timed(PhaseTimes *times,
+      const std::function<driver::Compilation(const driver::CompileOptions &)> &compile) {
     driver::CompileOptions options;
-    double *current = nullptr;
-    Clock::time_point entered;
+    double *current = nullptr, entered = 0;
     if (times)
         options.entered = [&](driver::Phase phase) {
-            const Clock::time_point now = Clock::now();
-            if (current) *current += std::chrono::duration<double, std::milli>(now - entered).count();
+            const double now = processor_seconds();
+            if (current) *current += (now - entered) * 1e3;
             entered = now;
             switch (phase) {
             case driver::Phase::Check: current = &times->check; break;
@@ -106,15 +115,20 @@ driver::Compilation timed(PhaseTimes *times, const std::function<driver::Compila
 
 } // namespace
 
-std::string scene_path(const std::string &name) { return FATHOM_SOURCE_DIR "/bench/scenes/" + name; }
+std::string scene_path(const std::string &name) {
+    return FATHOM_SOURCE_DIR "/bench/scenes/" + name;
+}
 
 driver::Compilation compiled(const std::string &name, PhaseTimes *times) {
-    return timed(times, [&](const auto &options) { return driver::compile_file(scene_path(name), options); });
+    return timed(times, [&](const auto &options) {
+        return driver::compile_file(scene_path(name), options);
+    });
 }
 
 driver::Compilation compiled_text(const std::string &name, std::string text, PhaseTimes *times) {
     return timed(times, [&](const auto &options) {
-        return driver::compile_text(name, std::move(text), FATHOM_SOURCE_DIR "/bench/scenes", options);
+        return driver::compile_text(name, std::move(text), FATHOM_SOURCE_DIR "/bench/scenes",
+                                    options);
     });
 }
 

@@ -1,6 +1,7 @@
-// How fathom-bench measures, and what a row of its table is. A file of rows defines `void measure_…(Table &)` and main
-// calls it. Rates are ratios of two things timed in the same run, as near to each other as can be; what has a goal of its
-// own (a time, a size) is held against that. Numbers without a goal are for the eye.
+// How fathom-bench measures, and what a row of its table is. A file of rows defines `void
+// measure_…(Table &)` and main calls it. Rates are ratios of two things timed in the same run, as
+// near to each other as can be; what has a goal of its own (a time, a size) is held against that.
+// Numbers without a goal are for the eye.
 #pragma once
 
 #include "driver/compile.h"
@@ -17,20 +18,24 @@ struct Row {
     std::string unit{};     // "M points/s"
     std::string baseline{}; // what it is compared with; empty: nothing
     double baseline_value = 0;
-    double least = 0; // of the ratio, or of the value where there is no baseline: the least that will do; 0: none
+    double least = 0; // of the ratio, or of the value where there is no baseline: the least that
+                      // will do; 0: none
     double most = 0;  // or the most
     std::string missing{}; // why there is no value
 };
 using Table = std::vector<Row>;
 
-// Times `run`, which does `amount` of work, and `other` in turn for about half a second; the best rates of both.
+// Times `run`, which does `amount` of work, and `other` in turn for about half a second; the best
+// rates of both.
 struct Rates {
     double first = 0, second = 0;
 };
-Rates rates(double amount, const std::function<void()> &run, double other_amount, const std::function<void()> &other);
+Rates rates(double amount, const std::function<void()> &run, double other_amount,
+            const std::function<void()> &other);
 double rate(double amount, const std::function<void()> &run);
 
 double seconds(const std::function<void()> &run); // once
+double processor_seconds(); // of this process so far: what others take meanwhile does not count
 double median(std::vector<double> values);
 
 void print(const Table &table);
@@ -38,13 +43,15 @@ std::string machine(); // processor, cores, compiler
 
 // bench/scenes/NAME, compiled; where that fails, nothing, and a row that says so.
 struct PhaseTimes {
-    double check = 0, prove = 0, lower = 0; // milliseconds
+    double check = 0, prove = 0, lower = 0; // milliseconds of processor
     double all() const { return check + prove + lower; }
 };
 std::string scene_path(const std::string &name);
 driver::Compilation compiled(const std::string &name, PhaseTimes *times = nullptr);
-driver::Compilation compiled_text(const std::string &name, std::string text, PhaseTimes *times = nullptr);
-std::string complaint(const driver::Compilation &compilation); // its first error in words, or an empty text
+driver::Compilation compiled_text(const std::string &name, std::string text,
+                                  PhaseTimes *times = nullptr);
+std::string
+complaint(const driver::Compilation &compilation); // its first error in words, or an empty text
 
 void measure_interpreter(Table &table); // interpreter.cpp
 void measure_process(Table &table);     // process.cpp

@@ -38,7 +38,8 @@ std::optional<Cost> cost(const std::string &program, std::vector<std::string> ar
         pid_t child = 0;
         int status = 0;
         done = posix_spawn(&child, program.c_str(), &quiet, nullptr, argv.data(), environ) == 0 &&
-               wait4(child, &status, 0, &used) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+               wait4(child, &status, 0, &used) == child && WIFEXITED(status) &&
+               WEXITSTATUS(status) == 0;
     });
     posix_spawn_file_actions_destroy(&quiet);
     if (!done) return std::nullopt;
@@ -49,21 +50,29 @@ std::optional<Cost> cost(const std::string &program, std::vector<std::string> ar
 
 void measure_process(Table &table) {
     std::error_code failed;
-    const std::string program = std::filesystem::read_symlink("/proc/self/exe", failed).replace_filename("fathom");
+    const std::string program =
+        std::filesystem::read_symlink("/proc/self/exe", failed).replace_filename("fathom");
     std::vector<double> wall, processor;
     for (int i = 0; i < runs; ++i) {
-        const auto each = cost(program, {"fathom", "check", FATHOM_SOURCE_DIR "/examples/03_colonnade.sdf"});
+        const auto each =
+            cost(program, {"fathom", "check", FATHOM_SOURCE_DIR "/examples/03_colonnade.sdf"});
         if (!each) {
-            table.push_back({.what = "fathom check 03_colonnade", .missing = program + " could not be run, or failed"});
+            table.push_back({.what = "fathom check 03_colonnade",
+                             .missing = program + " could not be run, or failed"});
             return;
         }
         wall.push_back(each->wall);
         processor.push_back(each->processor);
     }
     // The strongest peer takes 64 to 76 ms for a scene of this size.
-    table.push_back({.what = "fathom check 03_colonnade, process, wall", .value = median(wall), .unit = "ms", .most = 30});
-    table.push_back(
-        {.what = "fathom check 03_colonnade, user + system", .value = median(processor), .unit = "ms", .most = 30});
+    table.push_back({.what = "fathom check 03_colonnade, process, wall",
+                     .value = median(wall),
+                     .unit = "ms",
+                     .most = 30});
+    table.push_back({.what = "fathom check 03_colonnade, user + system",
+                     .value = median(processor),
+                     .unit = "ms",
+                     .most = 30});
 }
 
 } // namespace fathom::bench

@@ -1,4 +1,5 @@
-// How large the shader of a union of many coloured shapes is, and how long the GL at hand takes to link it.
+// How large the shader of a union of many coloured shapes is, and how long the GL at hand takes to
+// link it.
 #include "bench/measure.h"
 
 #include "backend-glsl/emit.h"
@@ -11,13 +12,15 @@ namespace fathom::bench {
 
 void measure_shader(Table &table) {
     const driver::Compilation spheres = compiled("colored_spheres_256.sdf");
-    const std::string size = "256 coloured spheres, GLSL", link = "256 coloured spheres, GL compiles and links";
+    const std::string size = "256 coloured spheres, GLSL",
+                      link = "256 coloured spheres, GL compiles and links";
     if (!spheres.good()) {
         table.push_back({.what = size, .missing = complaint(spheres)});
         return;
     }
     Diagnostics diagnostics;
-    const glsl::Output text = glsl::emit(spheres.scene, {}, diagnostics); // as `fathom compile` writes it
+    const glsl::Output text =
+        glsl::emit(spheres.scene, {}, diagnostics); // as `fathom compile` writes it
     glsl::Options options;
     options.target = glsl::Target::Glsl330; // as `fathom render` and the viewer draw it
     options.buffers = true;
@@ -26,7 +29,10 @@ void measure_shader(Table &table) {
         table.push_back({.what = size, .missing = "it cannot be emitted"});
         return;
     }
-    table.push_back({.what = size, .value = static_cast<double>(text.text.size()) / 1024, .unit = "KB", .most = 64});
+    table.push_back({.what = size,
+                     .value = static_cast<double>(text.text.size()) / 1024,
+                     .unit = "KB",
+                     .most = 64});
 
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 1); // else the second run would measure the disk
     auto context = gl::Context::make();
@@ -37,7 +43,8 @@ void measure_shader(Table &table) {
     std::string wrong;
     const double time = seconds([&] {
         const auto program = gl::Program::build(drawn, spheres.scene);
-        if (const gl::ProgramError *error = std::get_if<gl::ProgramError>(&program)) wrong = error->message;
+        if (const gl::ProgramError *error = std::get_if<gl::ProgramError>(&program))
+            wrong = error->message;
     });
     if (wrong.empty())
         table.push_back({.what = link, .value = time, .unit = "s", .most = 1});

@@ -1,10 +1,11 @@
-// How many steps a ray takes, against plain sphere tracing of the same scene, from the same eye, with one bound for all
-// of it. Counted, not timed: the same on every machine.
+// How many steps a ray takes, against plain sphere tracing of the same scene, from the same eye,
+// with one bound for all of it. Counted, not timed: the same on every machine.
 //
-// Plain: f the whole scene's raw field, L the largest bound that any part of it needs where rays go; a step is f/L, from
-// the eye to the far side of the scene's bounding sphere; a hit where f/L is within the tolerance that our rays have too.
-// (Where L is large it thus hits early, at silhouettes too: in its favour.) Our rays begin and end at the scene's box;
-// what remains of the gain when plain tracing is given that box has rows of its own.
+// Plain: f the whole scene's raw field, L the largest bound that any part of it needs where rays
+// go; a step is f/L, from the eye to the far side of the scene's bounding sphere; a hit where f/L
+// is within the tolerance that our rays have too. (Where L is large it thus hits early, at
+// silhouettes too: in its favour.) Our rays begin and end at the scene's box; what remains of the
+// gain when plain tracing is given that box has rows of its own.
 #include "bench/measure.h"
 
 #include "backend-cpu/march.h"
@@ -12,8 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <cstdio>
+#include <limits>
 
 namespace fathom::bench {
 
@@ -23,27 +24,31 @@ constexpr int side = 256;
 
 double length(const ir::Triple &v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-// The largest singular value of the shear that a twist by `rate` is at `radius` from its axis: of [[1, s], [0, 1]].
+// The largest singular value of the shear that a twist by `rate` is at `radius` from its axis: of
+// [[1, s], [0, 1]].
 double twist_bound(double rate, double radius) {
     const double s = std::fabs(rate) * radius;
     return (s + std::sqrt(s * s + 4)) / 2;
 }
 
-// The largest bound of any part. A twist's is taken by its Jacobian out to `radius`, as far from the axis as rays start:
-// that it can be less, by what the twisted shape is, is what this project proves.
+// The largest bound of any part. A twist's is taken by its Jacobian out to `radius`, as far from
+// the axis as rays start: that it can be less, by what the twisted shape is, is what this project
+// proves.
 double global_bound(const ir::Scene &scene, double radius) {
     double largest = 0;
     for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
         const ir::Shape &shape = scene.shapes[ir::ShapeId{i}];
         largest = std::max(largest, scene.facts[i].lipschitz_sup);
         if (shape.kind == ir::ShapeKind::Map && shape.map == ir::MapKind::Twist)
-            largest = std::max(largest, twist_bound(ir::value_of(scene, shape.args[2], 0)[0], radius) *
-                                            scene.facts[shape.children[0].index].lipschitz_sup);
+            largest =
+                std::max(largest, twist_bound(ir::value_of(scene, shape.args[2], 0)[0], radius) *
+                                      scene.facts[shape.children[0].index].lipschitz_sup);
     }
     return largest;
 }
 
-// The same scene with every part divided by `bound`, and without what else the proof gives: no range shells, no boxes.
+// The same scene with every part divided by `bound`, and without what else the proof gives: no
+// range shells, no boxes.
 ir::Scene plainly_lowered(ir::Scene scene, double bound) {
     const ir::NodeId number = scene.graph.number(bound);
     for (ir::ShapeFact &fact : scene.facts) {
@@ -68,7 +73,8 @@ struct Way {
 Way inside(const ir::Frame &frame, const cpu::Ray &ray, Way way) {
     for (std::size_t c = 0; c < 3; ++c) {
         const float by = std::fabs(ray.direction[c]) < 1e-20f ? 1e-20f : ray.direction[c];
-        const float a = (float(frame.lo[c]) - ray.origin[c]) / by, b = (float(frame.hi[c]) - ray.origin[c]) / by;
+        const float a = (float(frame.lo[c]) - ray.origin[c]) / by,
+                    b = (float(frame.hi[c]) - ray.origin[c]) / by;
         way = {std::max(way.begin, std::min(a, b)), std::min(way.end, std::max(a, b))};
     }
     return way;
@@ -76,14 +82,16 @@ Way inside(const ir::Frame &frame, const cpu::Ray &ray, Way way) {
 
 Count trace_plainly(const ir::Scene &scene, const cpu::Stage &from, bool boxed) {
     const ir::Frame &frame = from.frame;
-    const ir::Triple away{frame.center[0] - from.view.origin[0], frame.center[1] - from.view.origin[1],
+    const ir::Triple away{frame.center[0] - from.view.origin[0],
+                          frame.center[1] - from.view.origin[1],
                           frame.center[2] - from.view.origin[2]};
     const auto far = static_cast<float>(length(away) + frame.radius);
     const cpu::Program distance = cpu::compile(scene, scene.distance);
     cpu::Scratch scratch = cpu::make_scratch(distance, from.inputs);
     std::vector<cpu::Ray> rays;
     for (int y = 0; y < side; ++y)
-        for (int x = 0; x < side; ++x) rays.push_back(cpu::eye_ray(from, float(x) + 0.5f, float(y) + 0.5f));
+        for (int x = 0; x < side; ++x)
+            rays.push_back(cpu::eye_ray(from, float(x) + 0.5f, float(y) + 0.5f));
     std::vector<float> t, ends, points[3], d(rays.size());
     for (auto &coordinate : points) coordinate.resize(rays.size());
     std::vector<std::size_t> active;
@@ -97,7 +105,8 @@ Count trace_plainly(const ir::Scene &scene, const cpu::Stage &from, bool boxed) 
     for (int step = 0; step < scene.render.max_steps && !active.empty(); ++step) {
         for (std::size_t k = 0; k < active.size(); ++k)
             for (std::size_t c = 0; c < 3; ++c)
-                points[c][k] = rays[active[k]].origin[c] + t[active[k]] * rays[active[k]].direction[c];
+                points[c][k] =
+                    rays[active[k]].origin[c] + t[active[k]] * rays[active[k]].direction[c];
         const float *in[] = {points[0].data(), points[1].data(), points[2].data()};
         float *out[] = {d.data()};
         cpu::evaluate(distance, scratch, in, out, active.size());
@@ -105,7 +114,8 @@ Count trace_plainly(const ir::Scene &scene, const cpu::Stage &from, bool boxed) 
         std::size_t kept = 0;
         for (std::size_t k = 0; k < active.size(); ++k) {
             const std::size_t ray = active[k];
-            if (d[k] <= static_cast<float>(frame.tolerance_base + frame.tolerance_slope * double(t[ray]))) {
+            if (d[k] <=
+                static_cast<float>(frame.tolerance_base + frame.tolerance_slope * double(t[ray]))) {
                 ++count.hits;
                 continue;
             }
@@ -131,10 +141,12 @@ void compare(Table &table, const std::string &what, const std::string &file, dou
 
     const double bound = global_bound(scene, length(stage.view.origin));
     const ir::Scene divided = plainly_lowered(scene, bound);
-    const Count plain = trace_plainly(divided, stage, false), boxed = trace_plainly(divided, stage, true);
+    const Count plain = trace_plainly(divided, stage, false),
+                boxed = trace_plainly(divided, stage, true);
     char global[64];
     std::snprintf(global, sizeof global, "plain tracing, L = %.3g", bound);
-    auto row = [&](const std::string &of, double ours, const char *unit, const std::string &to, double theirs, double goal) {
+    auto row = [&](const std::string &of, double ours, const char *unit, const std::string &to,
+                   double theirs, double goal) {
         constexpr double rays = double(side) * side;
         table.push_back({.what = of,
                          .value = ours / rays,
@@ -147,7 +159,8 @@ void compare(Table &table, const std::string &what, const std::string &file, dou
     row("steps a ray: " + what, double(work.steps), "steps", global, double(plain.steps), most);
     row("  which has the box too", double(work.steps), "steps", in_the_box, double(boxed.steps), 0);
     // Where a field was divided by a bound, what is near the surface is asked for its gradient too.
-    row("  every evaluation counted", double(work.evaluations), "evaluations", in_the_box, double(boxed.steps), 0);
+    row("  every evaluation counted", double(work.evaluations), "evaluations", in_the_box,
+        double(boxed.steps), 0);
     row("  rays that hit", 100 * double(work.hits), "%", global, 100 * double(plain.hits), 0);
 }
 
