@@ -10,7 +10,48 @@
 
 namespace fathom::bench {
 
+namespace {
+
+// A loop over very many shapes whose body computes from the turn's number: its shader has the loop,
+// so that its text is as long for 10,000 turns as for 100.
+void measure_long_loop(Table &table) {
+    std::string wrong;
+    double bytes = 0;
+    auto emit = [&](const char *count) {
+        driver::CompileOptions options;
+        options.overrides = {{"count", count}};
+        const driver::Compilation spheres =
+            driver::compile_file(scene_path("spheres_10000.sdf"), options);
+        if (!spheres.good()) {
+            wrong = "it does not compile: " + complaint(spheres);
+            return;
+        }
+        Diagnostics diagnostics;
+        bytes = static_cast<double>(glsl::emit(spheres.scene, {}, diagnostics).text.size());
+        if (diagnostics.has_errors()) wrong = "it cannot be emitted";
+    };
+    emit("100");
+    const double few = bytes, begin = processor_seconds();
+    emit("10000");
+    const double took = processor_seconds() - begin;
+    const std::string what = "loop over 10,000 spheres, text to GLSL";
+    if (!wrong.empty()) {
+        table.push_back({.what = what, .missing = wrong});
+        return;
+    }
+    table.push_back({.what = what, .value = took, .unit = "s", .most = 1});
+    table.push_back({.what = "loop over 10,000 spheres, GLSL",
+                     .value = bytes / 1024,
+                     .unit = "KB",
+                     .baseline = "for 100 spheres",
+                     .baseline_value = few / 1024,
+                     .most = 1.01}); // the count has more digits
+}
+
+} // namespace
+
 void measure_shader(Table &table) {
+    measure_long_loop(table);
     const driver::Compilation spheres = compiled("colored_spheres_256.sdf");
     const std::string size = "256 coloured spheres, GLSL",
                       link = "256 coloured spheres, GL compiles and links";
