@@ -157,6 +157,14 @@ void compare(Table &table, const std::string &what, const std::string &file, dou
     };
     const std::string in_the_box = std::string(global) + ", in the box";
     row("steps a ray: " + what, double(work.steps), "steps", global, double(plain.steps), most);
+    double proved = 0;
+    for (const ir::ShapeFact &fact : scene.facts) proved = std::max(proved, fact.lipschitz_sup);
+    if (proved < bound) {
+        char moment[64];
+        std::snprintf(moment, sizeof moment, "plain tracing, L = %.3g", proved);
+        row("  which has the largest proved bound", double(work.steps), "steps", moment,
+            double(trace_plainly(plainly_lowered(scene, proved), stage, false).steps), 0);
+    }
     row("  which has the box too", double(work.steps), "steps", in_the_box, double(boxed.steps), 0);
     // Where a field was divided by a bound, what is near the surface is asked for its gradient too.
     row("  every evaluation counted", double(work.evaluations), "evaluations", in_the_box,
