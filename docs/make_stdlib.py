@@ -16,6 +16,7 @@ files = [
     ("flat", "Flat shapes"), ("combining", "Combining"), ("transforms", "Transforms"), ("fields", "Fields and numbers"),
     ("looks", "Looks"), ("dfmodel", "The thesis's own forms: module `dfmodel`"),
 ]
+no_shape = {"dfmodel_keep"}  # its example makes none
 introduction = """# The standard library
 
 Made by `docs/make_stdlib.py` from the comments in `stdlib/*.sdf`; `fathom doc NAME` prints an entry. *Exact* fields are the
@@ -37,8 +38,7 @@ def entries(path):
             continue
         found = re.match(r"(?:fn|let) ([a-z][A-Za-z0-9_]*)", line)
         if found:
-            head = re.sub(r"\s*(\{.*|= .*)$", "", line) if line.startswith("let") else re.sub(r"^fn ", "", head_of(line))
-            yield found.group(1), head if not line.startswith("let") else found.group(1), doc
+            yield found.group(1), head_of(line)[3:] if line.startswith("fn") else found.group(1), doc
         if line.strip():
             doc = []
 
@@ -49,7 +49,7 @@ def head_of(line):
     for i, c in enumerate(line):
         depth += c in "([" and 1 or 0
         depth -= c in ")]" and 1 or 0
-        if depth == 0 and i > 3 and (c == "{" or (c == "=" and line[i + 1] == " " and ")" in line[:i])):
+        if depth == 0 and i > 3 and (c == "{" or (c == "=" and line[i + 1 : i + 2] in ("", " ") and ")" in line[:i])):
             return line[:i].strip()
     return line.strip()
 
@@ -80,7 +80,7 @@ def main():
         for name, (signatures, doc) in shown.items():
             key = ("dfmodel_" if module else "") + name
             example = next((m.group(1) for m in (re.match(r"Example: `(.*)`", d) for d in doc) if m), None)
-            if with_pictures and example:
+            if with_pictures and example and key not in no_shape:
                 picture(program, key, example, module)
             page.append(f"### `{name}`\n")
             page.append("```\n" + "\n".join(signatures) + "\n```\n")

@@ -75,14 +75,29 @@ std::vector<Point> border(const Inside &inside, double reach, int n) {
     return found;
 }
 
-double nearest(const std::vector<Point> &points, Point p) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Point &q : points) {
+double way_to_border(const Inside &inside, const std::vector<Point> &border, Point p, Numbers &numbers) {
+    double best = std::numeric_limits<double>::infinity();
+    Point towards{};
+    for (const Point &q : border) {
         Point d = q - p;
-        double square = dot(d, d);
-        if (square < least) least = square;
+        if (double square = dot(d, d); square < best) best = square, towards = d;
     }
-    return std::sqrt(least);
+    best = std::sqrt(best);
+    const bool here = inside(p);
+    double spread = 0.1 / (best + 0.05);
+    for (int turn = 0; turn < 300; ++turn, spread *= 0.975) {
+        Point way = towards + spread * norm(towards) * numbers.in(-1, 1);
+        way = 1 / norm(way) * way;
+        if (inside(p + best * (1 - 1e-5) * way) == here) continue;
+        double same = 0, other = best;
+        for (int i = 0; i < 30; ++i) {
+            double middle = (same + other) / 2;
+            (inside(p + middle * way) == here ? same : other) = middle;
+        }
+        best = other;
+        towards = best * way;
+    }
+    return best;
 }
 
 } // namespace fathom::test

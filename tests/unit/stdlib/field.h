@@ -51,6 +51,7 @@ class Field {
 
 // Points on the border of a solid, found by bisection between the corners of a grid of n^3 cells over -reach..reach.
 std::vector<Point> border(const Inside &inside, double reach, int n);
-double nearest(const std::vector<Point> &points, Point p);
+// The way from p to the border: to the nearest of its points, then nearer ones that are found by trying.
+double way_to_border(const Inside &inside, const std::vector<Point> &border, Point p, Numbers &numbers);
 
 } // namespace fathom::test
