@@ -4,7 +4,6 @@
 #include "ir/look.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace fathom::glsl {
 

@@ -184,8 +184,18 @@ class Writer {
             name_[fold.vars[k]] = name;
         }
         const std::string i = names_.numbered('i');
-        line(indent, "for (int " + i + " = 0; " + i + " < " +
-                         at_least(expression(fold.count), Sum) + "; ++" + i + ") {");
+        const int stride = turns_together(fold);
+        if (stride > 1) {
+            const std::string group = names_.numbered('i'), turn = names_.numbered('i');
+            line(indent, "for (int " + group + " = 0; " + group + " < " +
+                             expression(fold.count).text + "; " + group +
+                             " += " + std::to_string(stride) + ") for (int " + turn + " = 0; " +
+                             turn + " < " + std::to_string(stride) + "; ++" + turn + ") {");
+            line(indent + 1, "int " + i + " = " + group + " + " + turn + ";");
+        } else {
+            line(indent, "for (int " + i + " = 0; " + i + " < " +
+                             at_least(expression(fold.count), Sum) + "; ++" + i + ") {");
+        }
         name_[fold.index] = i;
 
         // What the condition needs comes first, then the way out, then the rest.
@@ -221,6 +231,17 @@ class Writer {
         for (const auto &[target, name] : moves) line(indent + 1, target + " = " + name + ";");
         line(indent, "}");
         name_[id] = name_[fold.vars[0]];
+    }
+
+    // A long loop runs in groups of a few turns. Drivers write such a short inner loop out, which
+    // is faster, and keeps within the 65,536 turns, of all loops together, after which Mesa's
+    // llvmpipe ends a shader. 1: no groups.
+    int turns_together(const ir::Fold &fold) const {
+        const auto count = graph_.as_number(fold.count);
+        if (!count || fold.condition || *count < 32) return 1;
+        for (int stride = 8; stride > 1; --stride)
+            if (static_cast<int>(*count) % stride == 0) return stride;
+        return 1;
     }
 
     // Whether `root` reads statement `s` (itself, or through other nodes of the same loop).
