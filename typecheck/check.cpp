@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <pthread.h>
+#include <set>
 
 namespace fathom::typecheck {
 
@@ -94,6 +95,68 @@ void add_top_level(Evaluator &ev, const Value &v, Span span, std::vector<ir::Sha
         d.help("name it with `let`, or look at it with `print(…)`");
 }
 
+// A number that reaches a shape's form needs a range, since the proof holds for all its values
+// (semantics.md, 18); what only paints does not.
+class GeometryParams {
+  public:
+    explicit GeometryParams(const ir::Scene &scene)
+        : scene_(scene), used_(scene.params.size(), false) {
+        shape(scene.root);
+    }
+    bool used(std::size_t param) const { return used_[param]; }
+
+  private:
+    void shape(ir::ShapeId id) {
+        if (!id || !shapes_.insert(id.index).second) return;
+        const ir::Shape &s = scene_.shapes[id];
+        for (ir::NodeId arg : s.args) node(arg);
+        if (s.kind == ir::ShapeKind::Within) region(scene_.shapes.regions[s.payload]);
+        for (ir::ShapeId child : s.children) shape(child);
+    }
+    void region(const ir::Region &r) {
+        node(r.center), node(r.size);
+        for (const ir::Region &less : r.less) region(less);
+    }
+    void node(ir::NodeId root) {
+        std::vector<ir::NodeId> todo{root};
+        while (!todo.empty()) {
+            ir::NodeId id = todo.back();
+            todo.pop_back();
+            if (!id || !nodes_.insert(id.index).second || !scene_.graph.reads(id).params) continue;
+            const ir::Node &n = scene_.graph[id];
+            if (n.op == ir::Op::Param) used_[n.payload] = true;
+            if (n.op == ir::Op::Call)
+                todo.push_back(scene_.graph.function(ir::FunctionId{n.payload}).result);
+            if (n.op == ir::Op::Cached)
+                todo.push_back(
+                    scene_.graph.function(scene_.graph.cache(ir::CacheId{n.payload}).field).result);
+            if (n.op == ir::Op::Fold) {
+                const ir::Fold &fold = scene_.graph.fold(ir::FoldId{n.payload});
+                todo.insert(todo.end(), fold.next.begin(), fold.next.end());
+                todo.push_back(fold.condition);
+                todo.push_back(fold.count);
+            }
+            for (ir::NodeId arg : scene_.graph.args(id)) todo.push_back(arg);
+        }
+    }
+    const ir::Scene &scene_;
+    std::vector<bool> used_;
+    std::set<std::uint32_t> shapes_, nodes_;
+};
+
+void demand_ranges(Evaluator &ev) {
+    GeometryParams geometry(ev.scene);
+    for (std::size_t i = 0; i < ev.scene.params.size(); ++i) {
+        const ir::Param p = ev.scene.params[i];
+        if (p.has_range || p.is_color || p.type == ir::Type::Bool || !geometry.used(i)) continue;
+        report(ev, Code::ParamRange, p.origin,
+               fmt::format(
+                   "`{}` shapes the scene, so it needs a range: the proof holds for all its values",
+                   p.name))
+            .help(fmt::format("write `param {} = … in 0.5..2.0`", p.name));
+    }
+}
+
 void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions,
                  const lang::Ast &ast) {
     ir::Scene &scene = ev.scene;
@@ -126,12 +189,8 @@ void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions,
                "this file makes no shape, and declares nothing that another could import")
             .help("the smallest scene is `sphere(1)`");
     }
-    if (scene.lights.empty()) {
-        // semantics.md, 23: one sun from the upper left behind the camera; view.h turns it with the
-        // camera where none is given
-        scene.lights.clear();
-    }
     scene.root = unite(ev, std::move(shapes), 3, ast.blocks[ast.root].span);
+    demand_ranges(ev);
 }
 
 } // namespace
