@@ -141,9 +141,8 @@ NodeId elongate_point(Graph &graph, NodeId p, NodeId by) {
 }
 
 NodeId hyperize_point(Graph &graph, NodeId p, NodeId v) {
-    const NodeId power =
-        graph.make(Op::Pow, {graph.make(Op::Abs, {p}), graph.splat(v, graph.type(p))});
-    return graph.mul(graph.make(Op::Sign, {p}), power);
+    const NodeId power = graph.splat(graph.sub(v, graph.number(1)), graph.type(p));
+    return graph.mul(p, graph.make(Op::Pow, {graph.make(Op::Abs, {p}), power}));
 }
 
 // Rodrigues: R = cos I + (1 - cos) a a^T + sin [a]x, for the unit axis a.

@@ -45,7 +45,7 @@ Shape distorted(Graph &graph, ShapeId child, NodeId q);
 // longer.
 NodeId mirror_point(Graph &graph, NodeId p, int axis);
 NodeId elongate_point(Graph &graph, NodeId p, NodeId by);
-// sign(x)*|x|^v by component (thesis 6.3), for `distorted`.
+// sign(x)*|x|^v by component (thesis 6.3), as x*|x|^(v - 1), for `distorted`.
 NodeId hyperize_point(Graph &graph, NodeId p, NodeId v);
 
 // Matrices. Angles in radians; axes of any length but 0 (a zero axis gives the identity).

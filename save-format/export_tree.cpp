@@ -292,6 +292,21 @@ void TreeWriter::rotation(const ir::Constant &matrix, TreeNode child, std::vecto
     out.push_back(std::move(result));
 }
 
+// The v with which the library raises space to a power (thesis 6.3), where q is such a map. It
+// writes x |x|^(v - 1), whose power the graph multiplies out where it is small and whole.
+std::optional<double> hyperized_by(ir::Graph &graph, NodeId q, NodeId p) {
+    if (graph[q].op != ir::Op::Mul) return std::nullopt;
+    std::vector<double> exponents = {2, 3, 4};
+    for (const NodeId part : graph.args(q)) {
+        if (graph[part].op != ir::Op::Pow || !graph.is_constant(graph.arg(part, 1))) continue;
+        const double power = graph.constant_of(graph.arg(part, 1)).value[0];
+        exponents = {shortest_near(power + 1), power + 1};
+    }
+    for (const double v : exponents)
+        if (ir::hyperize_point(graph, p, graph.number(v)) == q) return v;
+    return std::nullopt;
+}
+
 void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out) {
     const Shape &s = shape(id);
     ir::Graph &graph = numbers_.graph();
@@ -410,23 +425,10 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
     case ir::MapKind::Distort: {
         const NodeId q = numbers_.reduced(s.args[0]), p = graph.point();
         if (s.map == ir::MapKind::Distort) {
-            // 6.3: sign(p) |p|^v, one v for all
-            if (graph[q].op == ir::Op::Mul) {
-                for (const NodeId part :
-                     std::vector<NodeId>(graph.args(q).begin(), graph.args(q).end())) {
-                    if (graph[part].op != ir::Op::Pow) continue;
-                    const NodeId power = graph.arg(part, 1);
-                    const auto v = numbers_.vector(power);
-                    if (!v || (*v)[0] != (*v)[1] || (*v)[1] != (*v)[2]) continue;
-                    const NodeId sign = graph.make(ir::Op::Sign, {p});
-                    const NodeId written = graph.make(
-                        ir::Op::Mul,
-                        {sign, graph.make(ir::Op::Pow, {graph.make(ir::Op::Abs, {p}), power})});
-                    if (written != q) continue;
-                    auto result = one_child(NodeType::Hyperize, s.children[0], paint);
-                    if (result) add(*result, "Exponent", yaml_scalar((*v)[0]));
-                    return push(std::move(result));
-                }
+            if (const auto exponent = hyperized_by(graph, q, p)) {
+                auto result = one_child(NodeType::Hyperize, s.children[0], paint);
+                if (result) add(*result, "Exponent", yaml_scalar(*exponent));
+                return push(std::move(result));
             }
         }
         auto map_steps = steps(q, id, "a map of space");

@@ -123,6 +123,13 @@ TEST_CASE("long lists of like shapes keep their order, doubles and digits", "[sa
     CHECK(lost(file_of(nodes + "]}]")) == "");
 }
 
+TEST_CASE("powers of space come back as powers, to the last digit", "[save]") {
+    std::string nodes;
+    for (const char *exponent : {"0.1", "0.5", "1.3", "2", "2.3", "2.3000000000000003", "3", "4", "5", "17.25"})
+        nodes += std::string(nodes.empty() ? "" : ", ") + "[Hyperize, h, {Exponent: " + exponent + ", Children: [[Box, b, {}]]}]";
+    CHECK(lost(file_of(nodes)) == "");
+}
+
 TEST_CASE("the version and a lighting node among the shapes come back", "[save]") {
     CHECK(lost("- 0.9\n- {}\n- []\n- [Generic, Distance field, {Children: [[Sphere, Sphere 1, {Radius: 1}], "
                "[LightingNode, Lighting, {Ambient R: 0.5, Children: []}]]}]\n- 100\n") == "");
