@@ -61,10 +61,10 @@ class Machine {
     std::size_t work() const { return work_; }            // instructions run so far
 
   private:
+    friend struct Step; // the rules of one instruction (machine_step.h)
     void run(const std::vector<Instruction> &block);
     void run_loop(const Instruction &instruction);
     void step(const Instruction &instruction);
-    void multiply(const Instruction &instruction, bool odd_used);
     void finish(const Instruction &instruction, double norm, bool odd_used);
     void fail(const Instruction &instruction, Trouble why);
     void copy(Slot from, Slot to);

@@ -1,7 +1,7 @@
-// One rule an op: the value's interval, the partial derivatives' intervals, the norm. Proofs:
-// docs/lipschitz.md.
+// One rule an op: the value's interval, the partial derivatives' intervals, the norm; what mixes
+// components stands in machine_vectors.cpp. Proofs: docs/lipschitz.md.
 #include "ir/noise.h"
-#include "typecheck/proof/machine.h"
+#include "typecheck/proof/machine_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,25 +15,9 @@ using ir::rounding::up;
 
 namespace {
 
-Row scaled(Interval factor, const Row &row) {
-    return {factor * row[0], factor * row[1], factor * row[2]};
-}
-Row sum(const Row &a, const Row &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Row joined(const Row &a, const Row &b) {
-    return {hull(a[0], b[0]), hull(a[1], b[1]), hull(a[2], b[2])};
-}
-bool zero(const Row &row) {
-    return row[0] == Interval(0.0) && row[1] == Interval(0.0) && row[2] == Interval(0.0);
-}
 Interval truth(bool may_be_false, bool may_be_true) {
     return {may_be_false ? 0.0 : 1.0, may_be_true ? 1.0 : 0.0};
 }
-
-// max(a, b) as value, row and whether a, b or both may be the greater.
-struct Choice {
-    bool first, second;
-};
-Choice greater(Interval a, Interval b) { return {a.hi >= b.lo, b.hi >= a.lo}; }
 
 bool even_aware(const Instruction &i) {
     if (i.form == Form::Norm || i.form == Form::Square || i.form == Form::Joined) return true;
@@ -62,100 +46,16 @@ Interval tan_value(Interval x) {
 
 } // namespace
 
-void Machine::step(const Instruction &in) {
-    const Slot out = in.out;
-    const std::uint32_t at = tape_.first[out];
-    const int n = tape_.size[out];
-    const auto first = [&](int arg) { return tape_.first[in.args[static_cast<std::size_t>(arg)]]; };
-    const auto value = [&](int arg, int c) -> const Interval & {
-        return value_[first(arg) + static_cast<std::uint32_t>(c)];
-    };
-    const auto grad = [&](int arg, int c) -> const Row & {
-        return grad_[first(arg) + static_cast<std::uint32_t>(c)];
-    };
-    const auto odd = [&](int arg, int c) {
-        return odd_[first(arg) + static_cast<std::uint32_t>(c)] != 0;
-    };
-    const auto size = [&](int arg) {
-        return int(tape_.size[in.args[static_cast<std::size_t>(arg)]]);
-    };
-    const auto norm = [&](int arg) { return norm_[in.args[static_cast<std::size_t>(arg)]]; };
-    const auto set = [&](int c, Interval v, const Row &g, bool is_odd = false) {
-        value_[at + static_cast<std::uint32_t>(c)] = v;
-        grad_[at + static_cast<std::uint32_t>(c)] = g;
-        odd_[at + static_cast<std::uint32_t>(c)] = is_odd;
-    };
-    const Row none{};
-    bool any_odd = false;
+Step::Step(Machine &of, const Instruction &instruction)
+    : machine(of), in(instruction), out(in.out), at(of.tape_.first[out]), n(of.tape_.size[out]) {
     if (!even_aware(in))
         for (int a = 0; a < int(in.args.size()); ++a)
             for (int c = 0; c < size(a); ++c) any_odd = any_odd || odd(a, c);
+}
 
-    // f by component with the derivative's interval; norm(diag(D) J) <= max |D| * norm(J).
-    const auto unary = [&](auto f, auto derivative) {
-        double most = 0;
-        for (int c = 0; c < n; ++c) {
-            Interval x = value(0, c);
-            Interval d = zero(grad(0, c)) ? Interval(0.0) : derivative(x);
-            most = std::max(most, d.magnitude());
-            set(c, f(x), scaled(d, grad(0, c)));
-        }
-        finish(in, times(most, norm(0)), any_odd);
-    };
-    // Constant by pieces: fine where one piece holds the cell.
-    const auto stepped = [&](auto f) {
-        bool jumps = false;
-        for (int c = 0; c < n; ++c) {
-            Interval v = f(c);
-            jumps = jumps || (!v.is_point() && !zero(grad(0, c)));
-            set(c, v, none);
-        }
-        if (jumps)
-            fail(in, Trouble::Jump);
-        else
-            finish(in, 0, any_odd && !jumps);
-    };
-    const auto extremum = [&](int sign, auto &&a_value, auto &&a_grad, auto &&b_value,
-                              auto &&b_grad, double a_norm, double b_norm) {
-        bool some_a = false, some_b = false;
-        for (int c = 0; c < n; ++c) {
-            Interval a = a_value(c), b = b_value(c);
-            Choice which = sign > 0 ? greater(a, b) : greater(-a, -b);
-            some_a = some_a || which.first, some_b = some_b || which.second;
-            Interval v = sign > 0 ? max(a, b) : min(a, b);
-            if (!which.second)
-                set(c, v, a_grad(c));
-            else if (!which.first)
-                set(c, v, b_grad(c));
-            else
-                set(c, v, joined(a_grad(c), b_grad(c)));
-        }
-        if (!some_b) return a_norm;
-        if (!some_a) return b_norm;
-        if (n == 1 || a_norm == 0 || b_norm == 0) return std::max(a_norm, b_norm);
-        return up(std::hypot(a_norm, b_norm), 4);
-    };
-    // The slope of a function of a vector that is `slope`-Lipschitz in it, for output component c.
-    const auto through = [&](double slope, int arg) {
-        Row g;
-        for (std::size_t j = 0; j < 3; ++j) {
-            double column = 0;
-            for (int c = 0; c < size(arg); ++c) column += std::pow(grad(arg, c)[j].magnitude(), 2);
-            double m = times(slope, up(std::sqrt(column), 4));
-            g[j] = {-m, m};
-        }
-        return g;
-    };
-    const auto is_int = in.type == ir::Type::Int;
-    const auto settle_int = [&] { // ints have no slope; where one varies with the point, it jumps
-        bool jumps = false;
-        for (int a = 0; a < int(in.args.size()); ++a) jumps = jumps || norm(a) > 0;
-        if (jumps)
-            fail(in, Trouble::Jump);
-        else
-            finish(in, 0, any_odd);
-    };
+void Machine::step(const Instruction &instruction) { Step(*this, instruction).run(); }
 
+void Step::run() {
     if (in.form == Form::Wave) {
         bool bad = norm(1) > 0;
         for (int c = 0; c < n; ++c) {
@@ -171,9 +71,9 @@ void Machine::step(const Instruction &in) {
             else
                 set(c, {-m.hi / 2, m.hi / 2}, grad(0, c), !zero(grad(0, c)));
         }
-        if (bad) return fail(in, Trouble::Jump);
-        finish(in, norm(0), any_odd);
-        cause_[out] = in.node;
+        if (bad) return fail(Trouble::Jump);
+        finish(norm(0), any_odd);
+        machine.cause_[out] = in.node;
         return;
     }
     if (in.form == Form::Sinc) { // |(sin x / x)'| <= 0.4362, values in [-0.2173, 1]
@@ -196,66 +96,30 @@ void Machine::step(const Instruction &in) {
             set(c, square(x),
                 scaled(Interval(2.0) * x, grad(0, c))); // even: an odd wave becomes continuous
         }
-        return finish(in, times(2 * most, norm(0)), false);
+        return finish(times(2 * most, norm(0)), false);
     }
-    if (in.form ==
-        Form::Norm) { // |q|: gradient J^T q/|q|, at most |J|; at q = 0 any of slope <= |J|
-        Interval length;
-        Row columns[16];
-        int rows = 0;
-        double norms = 0;
-        for (int a = 0; a < int(in.args.size()); ++a) {
-            norms = up(std::hypot(norms, norm(a)), 4);
-            for (int c = 0; c < size(a); ++c) {
-                length += square(value(a, c));
-                if (rows < 16)
-                    columns[rows++] = grad(a, c);
-                else
-                    rows = 17;
-            }
-        }
-        length = sqrt(length);
-        if (in.args.size() == 1)
-            norms = norm(0);
-        else if (rows <= 16)
-            norms = std::min(norms, spectral_norm(columns, rows));
-        Row g;
-        for (std::size_t j = 0; j < 3; ++j) {
-            double column = 0;
-            Interval along;
-            for (int a = 0; a < int(in.args.size()); ++a)
-                for (int c = 0; c < size(a); ++c) {
-                    column += std::pow(grad(a, c)[j].magnitude(), 2);
-                    along += value(a, c) * grad(a, c)[j];
-                }
-            double m = std::min(up(std::sqrt(column), 4), norms);
-            g[j] = {-m, m};
-            if (length.lo > 0) g[j] = meet(g[j], along / length);
-        }
-        set(0, length, g);
-        return finish(in, norms, false);
-    }
+    if (in.form == Form::Norm) return length();
 
     switch (in.op) {
     case Op::Const: {
-        const ir::Constant &k = ranges_.scene->graph.constant_of(in.node);
+        const ir::Constant &k = machine.ranges_.scene->graph.constant_of(in.node);
         for (int c = 0; c < n; ++c) set(c, k.value[static_cast<std::size_t>(c)], none);
-        return finish(in, 0, false);
+        return finish(0, false);
     }
     case Op::Point:
         for (int c = 0; c < n; ++c) {
             Row g{};
             g[static_cast<std::size_t>(c)] = 1.0;
-            set(c, cell_.p[static_cast<std::size_t>(c)], g);
+            set(c, machine.cell_.p[static_cast<std::size_t>(c)], g);
         }
-        return finish(in, 1, false);
+        return finish(1, false);
     case Op::Normal:
     case Op::Direction:
         for (int c = 0; c < n; ++c) set(c, {-1, 1}, none);
-        return finish(in, 0, false);
-    case Op::Time: set(0, ranges_.time, none); return finish(in, 0, false);
+        return finish(0, false);
+    case Op::Time: set(0, machine.ranges_.time, none); return finish(0, false);
     case Op::Param: {
-        const ir::Param &param = ranges_.scene->params[in.payload];
+        const ir::Param &param = machine.ranges_.scene->params[in.payload];
         for (int c = 0; c < n; ++c) {
             auto i = static_cast<std::size_t>(c);
             Interval v = param.has_range             ? Interval(param.lo[i], param.hi[i])
@@ -264,29 +128,28 @@ void Machine::step(const Instruction &in) {
                                                      : Interval::everything();
             set(c, v, none);
         }
-        return finish(in, 0, false);
+        return finish(0, false);
     }
     case Op::Var: {
-        auto found = ranges_.vars.find(in.payload);
+        auto found = machine.ranges_.vars.find(in.payload);
         for (int c = 0; c < n; ++c)
             set(c,
-                found == ranges_.vars.end() ? Interval::everything()
-                                            : found->second[static_cast<std::size_t>(c)],
+                found == machine.ranges_.vars.end() ? Interval::everything()
+                                                    : found->second[static_cast<std::size_t>(c)],
                 none);
-        return finish(in, 0, false);
+        return finish(0, false);
     }
     case Op::Neg:
         for (int c = 0; c < n; ++c) set(c, -value(0, c), scaled(-1.0, grad(0, c)), odd(0, c));
-        finish(in, norm(0), false);
-        if (norm_[out] != infinity) cause_[out] = cause_[in.args[0]];
+        finish(norm(0), false);
+        if (machine.norm_[out] != infinity) machine.cause_[out] = machine.cause_[in.args[0]];
         return;
     case Op::Add:
     case Op::Sub: {
         Interval sign = in.op == Op::Add ? 1.0 : -1.0;
         for (int c = 0; c < n; ++c)
             set(c, value(0, c) + sign * value(1, c), sum(grad(0, c), scaled(sign, grad(1, c))));
-        return finish(in,
-                      norm(0) == 0   ? norm(1)
+        return finish(norm(0) == 0   ? norm(1)
                       : norm(1) == 0 ? norm(0)
                                      : up(norm(0) + norm(1)),
                       any_odd);
@@ -299,13 +162,14 @@ void Machine::step(const Instruction &in) {
             set(c, x * y, sum(scaled(y, grad(0, c)), scaled(x, grad(1, c))),
                 odd(0, c) || odd(1, c));
         }
-        finish(in, up(times(b, norm(0)) + times(a, norm(1))), false);
-        if (norm_[out] != infinity)
-            cause_[out] = cause_[in.args[0]] ? cause_[in.args[0]] : cause_[in.args[1]];
+        finish(up(times(b, norm(0)) + times(a, norm(1))), false);
+        if (machine.norm_[out] != infinity)
+            machine.cause_[out] = machine.cause_[in.args[0]] ? machine.cause_[in.args[0]]
+                                                             : machine.cause_[in.args[1]];
         return;
     }
     case Op::Div: {
-        if (is_int) {
+        if (is_int()) {
             set(0,
                 value(1, 0).contains(0)
                     ? hull(0.0, Interval(-value(0, 0).magnitude(), value(0, 0).magnitude()))
@@ -331,9 +195,9 @@ void Machine::step(const Instruction &in) {
             most = std::max(most, inverse.magnitude()), ratio = std::max(ratio, q.magnitude());
             set(c, q, scaled(inverse, sum(grad(0, c), scaled(-q, grad(1, c)))), odd(0, c));
         }
-        if (singular) return fail(in, Trouble::Singular);
-        finish(in, up(times(most, norm(0)) + times(times(ratio, most), norm(1)), 4), odd_divisor);
-        if (norm_[out] != infinity) cause_[out] = cause_[in.args[0]];
+        if (singular) return fail(Trouble::Singular);
+        finish(up(times(most, norm(0)) + times(times(ratio, most), norm(1)), 4), odd_divisor);
+        if (machine.norm_[out] != infinity) machine.cause_[out] = machine.cause_[in.args[0]];
         return;
     }
     case Op::Mod: {
@@ -354,9 +218,9 @@ void Machine::step(const Instruction &in) {
             jumps = jumps || !zero(grad(0, c)) || !zero(grad(1, c));
             set(c, {std::min(m.lo, 0.0), std::max(m.hi, 0.0)}, none);
         }
-        if (is_int) return settle_int();
-        if (jumps) return fail(in, Trouble::Jump);
-        return finish(in, norm(1) == 0 ? norm(0) : infinity, any_odd);
+        if (is_int()) return settle_int();
+        if (jumps) return fail(Trouble::Jump);
+        return finish(norm(1) == 0 ? norm(0) : infinity, any_odd);
     }
     case Op::Pow: {
         double a = 0, b = 0;
@@ -414,8 +278,8 @@ void Machine::step(const Instruction &in) {
             a = std::max(a, dx.magnitude()), b = std::max(b, dy.magnitude());
             set(c, v, sum(scaled(dx, grad(0, c)), scaled(dy, grad(1, c))));
         }
-        if (singular) return fail(in, Trouble::Singular);
-        return finish(in, up(times(a, norm(0)) + times(b, norm(1))), odd_left);
+        if (singular) return fail(Trouble::Singular);
+        return finish(up(times(a, norm(0)) + times(b, norm(1))), odd_left);
     }
     case Op::Min:
     case Op::Max: {
@@ -423,7 +287,7 @@ void Machine::step(const Instruction &in) {
             in.op == Op::Max ? 1 : -1, [&](int c) { return value(0, c); },
             [&](int c) { return grad(0, c); }, [&](int c) { return value(1, c); },
             [&](int c) { return grad(1, c); }, norm(0), norm(1));
-        return finish(in, m, any_odd);
+        return finish(m, any_odd);
     }
     case Op::Union:
     case Op::Intersection: {
@@ -435,10 +299,10 @@ void Machine::step(const Instruction &in) {
             m = extremum(
                 sign, [&](int) { return v; }, [&](int) { return g; },
                 [&](int) { return value(a, 0); }, [&](int) { return grad(a, 0); }, m, norm(a));
-            v = value_[at], g = grad_[at];
+            v = machine.value_[at], g = machine.grad_[at];
         }
         set(0, v, g);
-        return finish(in, m, any_odd);
+        return finish(m, any_odd);
     }
     case Op::Blend: { // (r, n, a, b, …); every profile lies in [min - r, min] and weighs gradients
                       // with norm <= 1 or sqrt 2
@@ -455,8 +319,8 @@ void Machine::step(const Instruction &in) {
             for (std::size_t j = 0; j < 3; ++j) g[j] = {-m, m};
         }
         set(0, v, g);
-        if (radius_varies) return fail(in, Trouble::Singular);
-        return finish(in, m, any_odd);
+        if (radius_varies) return fail(Trouble::Singular);
+        return finish(m, any_odd);
     }
     case Op::Step:
         stepped([&](int c) {
@@ -464,9 +328,9 @@ void Machine::step(const Instruction &in) {
             return truth(x.lo < edge.hi, x.hi >= edge.lo);
         });
         for (int c = 0; c < n; ++c)
-            if (!value_[at + static_cast<std::uint32_t>(c)].is_point() &&
+            if (!machine.value_[at + static_cast<std::uint32_t>(c)].is_point() &&
                 (norm(0) > 0 || norm(1) > 0))
-                return fail(in, Trouble::Jump);
+                return fail(Trouble::Jump);
         return;
     case Op::Sign:
         return stepped([&](int c) {
@@ -490,8 +354,8 @@ void Machine::step(const Instruction &in) {
                 set(c, {0, 1}, none);
             }
         }
-        if (jumps) return fail(in, Trouble::Jump);
-        return finish(in, norm(0), any_odd);
+        if (jumps) return fail(Trouble::Jump);
+        return finish(norm(0), any_odd);
     }
     case Op::Atan2: { // the angle turns by at most |grad (x, y)| / r; it jumps across the negative
                       // x axis
@@ -507,13 +371,13 @@ void Machine::step(const Instruction &in) {
         }
         if (!varies || cut) {
             set(0, v, none);
-            if (varies) return fail(in, x.contains(0) ? Trouble::Singular : Trouble::Jump);
-            return finish(in, 0, any_odd);
+            if (varies) return fail(x.contains(0) ? Trouble::Singular : Trouble::Jump);
+            return finish(0, any_odd);
         }
         Interval r2 = square(x) + square(y);
         if (r2.lo <= 0) r2.lo = std::numeric_limits<double>::min();
         set(0, v, sum(scaled(x / r2, grad(0, 0)), scaled(-(y / r2), grad(1, 0))));
-        return finish(in, up(std::hypot(norm(0), norm(1)) / std::sqrt(r2.lo), 8), any_odd);
+        return finish(up(std::hypot(norm(0), norm(1)) / std::sqrt(r2.lo), 8), any_odd);
     }
     case Op::Abs: { // even: an odd wave becomes continuous
         for (int c = 0; c < n; ++c) {
@@ -523,8 +387,8 @@ void Machine::step(const Instruction &in) {
                                                    : Interval(-1, 1);
             set(c, abs(x), scaled(d, grad(0, c)));
         }
-        if (is_int) return settle_int();
-        return finish(in, norm(0), false);
+        if (is_int()) return settle_int();
+        return finish(norm(0), false);
     }
     case Op::Sqrt: {
         return unary([](Interval x) { return sqrt(x); },
@@ -596,10 +460,10 @@ void Machine::step(const Instruction &in) {
             [&](int c) { return value(1, c); }, [&](int c) { return grad(1, c); }, norm(0),
             norm(1));
         m = extremum(
-            -1, [&](int c) { return value_[at + static_cast<std::uint32_t>(c)]; },
-            [&](int c) { return grad_[at + static_cast<std::uint32_t>(c)]; },
+            -1, [&](int c) { return machine.value_[at + static_cast<std::uint32_t>(c)]; },
+            [&](int c) { return machine.grad_[at + static_cast<std::uint32_t>(c)]; },
             [&](int c) { return value(2, c); }, [&](int c) { return grad(2, c); }, m, norm(2));
-        return finish(in, m, any_odd);
+        return finish(m, any_odd);
     }
     case Op::Mix: { // a + t (b - a)
         double gap = 0;
@@ -620,7 +484,7 @@ void Machine::step(const Instruction &in) {
         double m = convex && n == 1 ? std::max(norm(0), norm(1))
                                     : up(times(s_most, norm(0)) + times(t_most, norm(1)));
         if (convex && n > 1 && same && value(2, 0).is_point()) m = std::max(norm(0), norm(1));
-        return finish(in, up(m * (1 + 4 * rounded) + times(gap, norm(2))), any_odd);
+        return finish(up(m * (1 + 4 * rounded) + times(gap, norm(2))), any_odd);
     }
     case Op::Smoothstep: {
         bool bad = false;
@@ -648,57 +512,12 @@ void Machine::step(const Instruction &in) {
             most = std::max(most, k.magnitude());
             set(c, v, scaled(k, inner));
         }
-        if (bad) return fail(in, Trouble::Singular);
-        return finish(in, times(most, up(norm(2) + norm(0) + norm(1))), any_odd);
+        if (bad) return fail(Trouble::Singular);
+        return finish(times(most, up(norm(2) + norm(0) + norm(1))), any_odd);
     }
-    case Op::Dot: {
-        Interval v;
-        Row g{};
-        bool same = in.args[0] == in.args[1], odd_used = any_odd;
-        if (same) odd_used = false;
-        for (int c = 0; c < size(0); ++c) {
-            if (same) {
-                v += square(value(0, c));
-                g = sum(g, scaled(Interval(2.0) * value(0, c), grad(0, c)));
-            } else {
-                v += value(0, c) * value(1, c);
-                g = sum(g, sum(scaled(value(1, c), grad(0, c)), scaled(value(0, c), grad(1, c))));
-            }
-        }
-        double a = box_length(in.args[0]).hi, b = box_length(in.args[1]).hi;
-        set(0, v, g);
-        return finish(in, up(times(b, norm(0)) + times(a, norm(1))), odd_used);
-    }
-    case Op::Cross: {
-        for (int c = 0; c < 3; ++c) {
-            int i = (c + 1) % 3, j = (c + 2) % 3;
-            Row g = sum(sum(scaled(value(1, j), grad(0, i)), scaled(value(0, i), grad(1, j))),
-                        scaled(-1.0, sum(scaled(value(1, i), grad(0, j)),
-                                         scaled(value(0, j), grad(1, i)))));
-            set(c, value(0, i) * value(1, j) - value(0, j) * value(1, i), g);
-        }
-        double a = box_length(in.args[0]).hi, b = box_length(in.args[1]).hi;
-        return finish(in, up(times(b, norm(0)) + times(a, norm(1))), any_odd);
-    }
-    case Op::Normalize: { // J = (I - n n^T) J_q / |q|
-        Interval length = box_length(in.args[0]);
-        bool singular = length.lo <= 0 && norm(0) > 0;
-        Interval unit[4];
-        for (int c = 0; c < n; ++c)
-            unit[c] = length.lo > 0 ? meet(Interval(-1, 1), value(0, c) / length) : Interval(-1, 1);
-        for (int c = 0; c < n; ++c) {
-            Row g{};
-            if (!singular && norm(0) > 0)
-                for (std::size_t j = 0; j < 3; ++j) {
-                    Interval along;
-                    for (int k = 0; k < n; ++k) along += unit[k] * grad(0, k)[j];
-                    g[j] = (grad(0, c)[j] - unit[c] * along) / length;
-                }
-            set(c, unit[c], g);
-        }
-        if (singular) return fail(in, Trouble::Singular);
-        return finish(in, norm(0) == 0 ? 0 : up(norm(0) / length.lo, 4), any_odd);
-    }
+    case Op::Dot: return dot();
+    case Op::Cross: return cross();
+    case Op::Normalize: return normalize();
     case Op::Length: break; // always a Norm
     case Op::Less:
     case Op::LessEqual:
@@ -716,8 +535,8 @@ void Machine::step(const Instruction &in) {
         }
         set(0, v, none);
         bool jumps = norm(0) == infinity || norm(1) == infinity || any_odd;
-        if (jumps && !v.is_point()) return fail(in, Trouble::Jump);
-        return finish(in, 0, false);
+        if (jumps && !v.is_point()) return fail(Trouble::Jump);
+        return finish(0, false);
     }
     case Op::And:
     case Op::Or: {
@@ -725,77 +544,35 @@ void Machine::step(const Instruction &in) {
             in.op == Op::And ? min(value(0, 0), value(1, 0)) : max(value(0, 0), value(1, 0));
         set(0, v, none);
         if (!v.is_point() && (norm(0) == infinity || norm(1) == infinity))
-            return fail(in, Trouble::Jump);
-        return finish(in, 0, false);
+            return fail(Trouble::Jump);
+        return finish(0, false);
     }
     case Op::Not:
         set(0, Interval(1.0) - value(0, 0), none);
-        value_[at] = {1 - value(0, 0).hi, 1 - value(0, 0).lo};
-        if (norm(0) == infinity) return fail(in, Trouble::Jump);
-        return finish(in, 0, false);
+        machine.value_[at] = {1 - value(0, 0).hi, 1 - value(0, 0).lo};
+        if (norm(0) == infinity) return fail(Trouble::Jump);
+        return finish(0, false);
     case Op::Select: {
         Interval c = value(0, 0);
-        if (c.lo > 0.5) return copy(in.args[1], out);
-        if (c.hi < 0.5) return copy(in.args[2], out);
-        copy(in.args[1], out);
+        if (c.lo > 0.5) return machine.copy(in.args[1], out);
+        if (c.hi < 0.5) return machine.copy(in.args[2], out);
+        machine.copy(in.args[1], out);
         bool agree = in.form == Form::Joined && norm(0) != infinity;
-        join(out, in.args[2], !agree, in.node);
+        machine.join(out, in.args[2], !agree, in.node);
         return;
     }
     case Op::ToFloat:
         set(0, value(0, 0), none);
-        if (!value(0, 0).is_point() && norm(0) > 0) return fail(in, Trouble::Jump);
-        return finish(in, 0, any_odd);
-    case Op::Splat:
-        for (int c = 0; c < n; ++c) set(c, value(0, 0), grad(0, 0), odd(0, 0));
-        finish(in, up(times(std::sqrt(double(n)), norm(0)), 4), false);
-        if (norm_[out] != infinity) cause_[out] = cause_[in.args[0]];
-        return;
-    case Op::Make: {
-        int c = 0;
-        double most = 0;
-        NodeId wave;
-        for (int a = 0; a < int(in.args.size()); ++a) {
-            most = up(std::hypot(most, norm(a)), 4);
-            for (int k = 0; k < size(a) && c < n; ++k, ++c) {
-                set(c, value(a, k), grad(a, k), odd(a, k));
-                if (odd(a, k)) wave = cause_[in.args[static_cast<std::size_t>(a)]];
-            }
-        }
-        finish(in, most, false);
-        if (norm_[out] != infinity) cause_[out] = wave;
-        return;
-    }
-    case Op::Swizzle: {
-        int used[4] = {0, 0, 0, 0};
-        for (int c = 0; c < n; ++c) {
-            int k = ir::swizzle_component(in.payload, c);
-            ++used[k];
-            set(c, value(0, k), grad(0, k), odd(0, k));
-        }
-        int repeats = std::max({used[0], used[1], used[2], used[3]});
-        finish(in, repeats == 1 ? norm(0) : up(times(std::sqrt(double(repeats)), norm(0)), 4),
-               false);
-        if (norm_[out] != infinity) cause_[out] = cause_[in.args[0]];
-        return;
-    }
-    case Op::Column:
-        for (int c = 0; c < n; ++c) {
-            int k = int(in.payload) * n + c;
-            set(c, value(0, k), grad(0, k), odd(0, k));
-        }
-        return finish(in, norm(0), false);
-    case Op::Transpose: {
-        int side = ir::side(in.type);
-        for (int i = 0; i < side; ++i)
-            for (int j = 0; j < side; ++j)
-                set(i * side + j, value(0, j * side + i), grad(0, j * side + i),
-                    odd(0, j * side + i));
-        return finish(in, norm(0), false);
-    }
-    case Op::MatMul: return multiply(in, any_odd);
+        if (!value(0, 0).is_point() && norm(0) > 0) return fail(Trouble::Jump);
+        return finish(0, any_odd);
+    case Op::Splat: return splat();
+    case Op::Make: return make();
+    case Op::Swizzle: return swizzle();
+    case Op::Column: return column();
+    case Op::Transpose: return transpose();
+    case Op::MatMul: return multiply();
     case Op::TableRead: {
-        const ir::Table &table = ranges_.scene->graph.table(ir::table_of(in.payload));
+        const ir::Table &table = machine.ranges_.scene->graph.table(ir::table_of(in.payload));
         int column = ir::column_of(in.payload);
         Interval row = value(0, 0);
         int last = std::max(table.rows - 1, 0);
@@ -809,29 +586,29 @@ void Machine::step(const Instruction &in) {
                              table.data[static_cast<std::size_t>(r * table.stride + column + c)])));
             set(c, v, none);
         }
-        if (norm(0) > 0 && from != to) return fail(in, Trouble::Jump);
-        return finish(in, 0, any_odd);
+        if (norm(0) > 0 && from != to) return fail(Trouble::Jump);
+        return finish(0, any_odd);
     }
     case Op::Hash: {
         bool fixed = true;
         for (int c = 0; c < size(0); ++c) fixed = fixed && zero(grad(0, c));
         set(0, {0, 1}, none);
-        if (!fixed || norm(0) > 0) return fail(in, Trouble::Jump);
-        return finish(in, 0, any_odd);
+        if (!fixed || norm(0) > 0) return fail(Trouble::Jump);
+        return finish(0, any_odd);
     }
     case Op::Perlin:
         set(0, {-ir::sem::perlin_range, ir::sem::perlin_range}, through(ir::sem::perlin_slope, 0));
-        return finish(in, times(ir::sem::perlin_slope, norm(0)), any_odd);
+        return finish(times(ir::sem::perlin_slope, norm(0)), any_odd);
     case Op::Simplex:
         set(0, {-ir::sem::simplex_range, ir::sem::simplex_range},
             through(ir::sem::simplex_slope, 0));
-        return finish(in, times(ir::sem::simplex_slope, norm(0)), any_odd);
+        return finish(times(ir::sem::simplex_slope, norm(0)), any_odd);
     case Op::ValueNoise:
         set(0, {0, 1}, through(ir::sem::value_noise_slope, 0));
-        return finish(in, times(ir::sem::value_noise_slope, norm(0)), any_odd);
+        return finish(times(ir::sem::value_noise_slope, norm(0)), any_odd);
     case Op::Worley:
         set(0, {0, 1}, through(ir::sem::worley_slope, 0));
-        return finish(in, times(ir::sem::worley_slope, norm(0)), any_odd);
+        return finish(times(ir::sem::worley_slope, norm(0)), any_odd);
     case Op::SpotNoise: {
         double radius = std::max(value(1, 0).lo, 1e-6),
                density = std::clamp(value(2, 0).hi, 0.0, double(ir::sem::spot_most));
@@ -840,17 +617,17 @@ void Machine::step(const Instruction &in) {
         double slope = up(ir::sem::spot_slope * spots / (radius * scale), 8),
                range = up(ir::sem::spot_range * spots / scale, 8);
         set(0, {-range, range}, through(slope, 0));
-        if (norm(1) > 0 || norm(2) > 0) return fail(in, Trouble::Jump);
-        return finish(in, times(slope, norm(0)), any_odd);
+        if (norm(1) > 0 || norm(2) > 0) return fail(Trouble::Jump);
+        return finish(times(slope, norm(0)), any_odd);
     }
     case Op::Image:
     case Op::Grid: {
-        const auto &all = in.op == Op::Image ? ranges_.images : ranges_.grids;
+        const auto &all = in.op == Op::Image ? machine.ranges_.images : machine.ranges_.grids;
         Ranges::Sampled data = in.payload < all.size()
                                    ? all[in.payload]
                                    : Ranges::Sampled{Interval::everything(), infinity};
         for (int c = 0; c < n; ++c) set(c, data.values, through(data.slope, 0));
-        return finish(in, up(times(data.slope * std::sqrt(double(n)), norm(0)), 4), any_odd);
+        return finish(up(times(data.slope * std::sqrt(double(n)), norm(0)), 4), any_odd);
     }
     case Op::Call:
     case Op::Cached:
@@ -867,70 +644,7 @@ void Machine::step(const Instruction &in) {
     case Op::FillPaint: break; // colours, never geometry
     }
     for (int c = 0; c < n; ++c) set(c, Interval::everything(), none);
-    fail(in, Trouble::Singular);
-}
-
-// matrix*vector, vector*matrix, matrix*matrix, column-major. d(Mv) = M dv + (dM) v.
-void Machine::multiply(const Instruction &in, bool odd_used) {
-    const std::uint32_t at = tape_.first[in.out];
-    Slot a = in.args[0], b = in.args[1];
-    int na = tape_.size[a], nb = tape_.size[b], n = tape_.size[in.out];
-    bool left = na > nb || (na == nb && n == na),
-         right = nb > na; // which is a matrix; both where sizes are equal
-    bool both = na == nb;
-    int side = both ? (na == 4 ? 2 : na == 9 ? 3 : 4) : left ? nb : na;
-    int columns = both ? side : 1;
-    auto entry = [&](Slot m, int row, int column) {
-        return tape_.first[m] + static_cast<std::uint32_t>(column * side + row);
-    };
-    for (int j = 0; j < columns; ++j)
-        for (int i = 0; i < side; ++i) {
-            Interval v;
-            Row g{};
-            for (int k = 0; k < side; ++k) {
-                std::uint32_t x =
-                    right ? tape_.first[a] + static_cast<std::uint32_t>(k) : entry(a, i, k);
-                std::uint32_t y = right  ? entry(b, k, i)
-                                  : both ? entry(b, k, j)
-                                         : tape_.first[b] + static_cast<std::uint32_t>(k);
-                v += value_[x] * value_[y];
-                g = sum(g, sum(scaled(value_[y], grad_[x]), scaled(value_[x], grad_[y])));
-            }
-            std::uint32_t o = at + static_cast<std::uint32_t>(j * side + i);
-            value_[o] = v;
-            grad_[o] = g;
-            odd_[o] = 0;
-        }
-    // |M dv| <= |M| |dv|, |(dM) v| <= |dM|_F |v|
-    auto matrix_norm = [&](Slot m) {
-        Row rows[4][2];
-        double middle[4][4], radius = 0, frobenius = 0;
-        (void)rows;
-        for (int i = 0; i < side; ++i)
-            for (int j = 0; j < side; ++j) {
-                Interval x = value_[entry(m, i, j)];
-                if (!x.finite()) return infinity;
-                middle[i][j] = x.middle();
-                radius += std::pow(std::max(x.hi - middle[i][j], middle[i][j] - x.lo), 2);
-                frobenius += std::pow(x.magnitude(), 2);
-            }
-        if (side > 3) return up(std::sqrt(frobenius), 8);
-        Row as_rows[3];
-        for (int i = 0; i < side; ++i)
-            for (int j = 0; j < 3; ++j)
-                as_rows[i][static_cast<std::size_t>(j)] =
-                    j < side ? Interval(middle[i][j]) : Interval(0.0);
-        return up(std::min(spectral_norm(as_rows, side) + std::sqrt(radius), std::sqrt(frobenius)),
-                  8);
-    };
-    double rule;
-    if (both)
-        rule = up(times(matrix_norm(b), norm_[a]) + times(matrix_norm(a), norm_[b]));
-    else {
-        Slot m = left ? a : b, v = left ? b : a;
-        rule = up(times(matrix_norm(m), norm_[v]) + times(box_length(v).hi, norm_[m]));
-    }
-    finish(in, rule, odd_used);
+    fail(Trouble::Singular);
 }
 
 } // namespace fathom::proof

@@ -1,5 +1,5 @@
-// The working state of one proof, and the rules by group (shapes.cpp, maps.cpp, repeat.cpp,
-// fields.cpp).
+// The working state of one proof, and the rules by group (walk.cpp calls those in
+// shapes.cpp, maps.cpp, repeat.cpp, fields.cpp).
 #pragma once
 
 #include "typecheck/proof/known.h"

@@ -1,0 +1,216 @@
+// The rules of what mixes components: moves between vectors, lengths and products. Proofs:
+// docs/lipschitz.md.
+#include "typecheck/proof/machine_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::proof {
+
+using ir::rounding::infinity;
+using ir::rounding::times;
+using ir::rounding::up;
+
+void Step::splat() {
+    for (int c = 0; c < n; ++c) set(c, value(0, 0), grad(0, 0), odd(0, 0));
+    finish(up(times(std::sqrt(double(n)), norm(0)), 4), false);
+    if (machine.norm_[out] != infinity) machine.cause_[out] = machine.cause_[in.args[0]];
+}
+
+void Step::make() {
+    int c = 0;
+    double most = 0;
+    NodeId wave;
+    for (int a = 0; a < int(in.args.size()); ++a) {
+        most = up(std::hypot(most, norm(a)), 4);
+        for (int k = 0; k < size(a) && c < n; ++k, ++c) {
+            set(c, value(a, k), grad(a, k), odd(a, k));
+            if (odd(a, k)) wave = machine.cause_[in.args[static_cast<std::size_t>(a)]];
+        }
+    }
+    finish(most, false);
+    if (machine.norm_[out] != infinity) machine.cause_[out] = wave;
+}
+
+void Step::swizzle() {
+    int used[4] = {0, 0, 0, 0};
+    for (int c = 0; c < n; ++c) {
+        int k = ir::swizzle_component(in.payload, c);
+        ++used[k];
+        set(c, value(0, k), grad(0, k), odd(0, k));
+    }
+    int repeats = std::max({used[0], used[1], used[2], used[3]});
+    finish(repeats == 1 ? norm(0) : up(times(std::sqrt(double(repeats)), norm(0)), 4), false);
+    if (machine.norm_[out] != infinity) machine.cause_[out] = machine.cause_[in.args[0]];
+}
+
+void Step::column() {
+    for (int c = 0; c < n; ++c) {
+        int k = int(in.payload) * n + c;
+        set(c, value(0, k), grad(0, k), odd(0, k));
+    }
+    finish(norm(0), false);
+}
+
+void Step::transpose() {
+    int side = ir::side(in.type);
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j)
+            set(i * side + j, value(0, j * side + i), grad(0, j * side + i), odd(0, j * side + i));
+    finish(norm(0), false);
+}
+
+// |q|: gradient J^T q/|q|, at most |J|; at q = 0 any of slope <= |J|
+void Step::length() {
+    Interval length;
+    Row columns[16];
+    int rows = 0;
+    double norms = 0;
+    for (int a = 0; a < int(in.args.size()); ++a) {
+        norms = up(std::hypot(norms, norm(a)), 4);
+        for (int c = 0; c < size(a); ++c) {
+            length += square(value(a, c));
+            if (rows < 16)
+                columns[rows++] = grad(a, c);
+            else
+                rows = 17;
+        }
+    }
+    length = sqrt(length);
+    if (in.args.size() == 1)
+        norms = norm(0);
+    else if (rows <= 16)
+        norms = std::min(norms, spectral_norm(columns, rows));
+    Row g;
+    for (std::size_t j = 0; j < 3; ++j) {
+        double column = 0;
+        Interval along;
+        for (int a = 0; a < int(in.args.size()); ++a)
+            for (int c = 0; c < size(a); ++c) {
+                column += std::pow(grad(a, c)[j].magnitude(), 2);
+                along += value(a, c) * grad(a, c)[j];
+            }
+        double m = std::min(up(std::sqrt(column), 4), norms);
+        g[j] = {-m, m};
+        if (length.lo > 0) g[j] = meet(g[j], along / length);
+    }
+    set(0, length, g);
+    finish(norms, false);
+}
+
+void Step::dot() {
+    Interval v;
+    Row g{};
+    bool same = in.args[0] == in.args[1], odd_used = any_odd;
+    if (same) odd_used = false;
+    for (int c = 0; c < size(0); ++c) {
+        if (same) {
+            v += square(value(0, c));
+            g = sum(g, scaled(Interval(2.0) * value(0, c), grad(0, c)));
+        } else {
+            v += value(0, c) * value(1, c);
+            g = sum(g, sum(scaled(value(1, c), grad(0, c)), scaled(value(0, c), grad(1, c))));
+        }
+    }
+    double a = machine.box_length(in.args[0]).hi, b = machine.box_length(in.args[1]).hi;
+    set(0, v, g);
+    finish(up(times(b, norm(0)) + times(a, norm(1))), odd_used);
+}
+
+void Step::cross() {
+    for (int c = 0; c < 3; ++c) {
+        int i = (c + 1) % 3, j = (c + 2) % 3;
+        Row g = sum(
+            sum(scaled(value(1, j), grad(0, i)), scaled(value(0, i), grad(1, j))),
+            scaled(-1.0, sum(scaled(value(1, i), grad(0, j)), scaled(value(0, j), grad(1, i)))));
+        set(c, value(0, i) * value(1, j) - value(0, j) * value(1, i), g);
+    }
+    double a = machine.box_length(in.args[0]).hi, b = machine.box_length(in.args[1]).hi;
+    finish(up(times(b, norm(0)) + times(a, norm(1))), any_odd);
+}
+
+// J = (I - n n^T) J_q / |q|
+void Step::normalize() {
+    Interval length = machine.box_length(in.args[0]);
+    bool singular = length.lo <= 0 && norm(0) > 0;
+    Interval unit[4];
+    for (int c = 0; c < n; ++c)
+        unit[c] = length.lo > 0 ? meet(Interval(-1, 1), value(0, c) / length) : Interval(-1, 1);
+    for (int c = 0; c < n; ++c) {
+        Row g{};
+        if (!singular && norm(0) > 0)
+            for (std::size_t j = 0; j < 3; ++j) {
+                Interval along;
+                for (int k = 0; k < n; ++k) along += unit[k] * grad(0, k)[j];
+                g[j] = (grad(0, c)[j] - unit[c] * along) / length;
+            }
+        set(c, unit[c], g);
+    }
+    if (singular) return fail(Trouble::Singular);
+    finish(norm(0) == 0 ? 0 : up(norm(0) / length.lo, 4), any_odd);
+}
+
+// matrix*vector, vector*matrix, matrix*matrix, column-major. d(Mv) = M dv + (dM) v.
+void Step::multiply() {
+    Slot a = in.args[0], b = in.args[1];
+    int na = machine.tape_.size[a], nb = machine.tape_.size[b];
+    bool left = na > nb || (na == nb && n == na),
+         right = nb > na; // which is a matrix; both where sizes are equal
+    bool both = na == nb;
+    int side = both ? (na == 4 ? 2 : na == 9 ? 3 : 4) : left ? nb : na;
+    int columns = both ? side : 1;
+    auto entry = [&](Slot m, int row, int column) {
+        return machine.tape_.first[m] + static_cast<std::uint32_t>(column * side + row);
+    };
+    for (int j = 0; j < columns; ++j)
+        for (int i = 0; i < side; ++i) {
+            Interval v;
+            Row g{};
+            for (int k = 0; k < side; ++k) {
+                std::uint32_t x =
+                    right ? machine.tape_.first[a] + static_cast<std::uint32_t>(k) : entry(a, i, k);
+                std::uint32_t y = right  ? entry(b, k, i)
+                                  : both ? entry(b, k, j)
+                                         : machine.tape_.first[b] + static_cast<std::uint32_t>(k);
+                v += machine.value_[x] * machine.value_[y];
+                g = sum(g, sum(scaled(machine.value_[y], machine.grad_[x]),
+                               scaled(machine.value_[x], machine.grad_[y])));
+            }
+            std::uint32_t o = at + static_cast<std::uint32_t>(j * side + i);
+            machine.value_[o] = v;
+            machine.grad_[o] = g;
+            machine.odd_[o] = 0;
+        }
+    // |M dv| <= |M| |dv|, |(dM) v| <= |dM|_F |v|
+    auto matrix_norm = [&](Slot m) {
+        double middle[4][4], radius = 0, frobenius = 0;
+        for (int i = 0; i < side; ++i)
+            for (int j = 0; j < side; ++j) {
+                Interval x = machine.value_[entry(m, i, j)];
+                if (!x.finite()) return infinity;
+                middle[i][j] = x.middle();
+                radius += std::pow(std::max(x.hi - middle[i][j], middle[i][j] - x.lo), 2);
+                frobenius += std::pow(x.magnitude(), 2);
+            }
+        if (side > 3) return up(std::sqrt(frobenius), 8);
+        Row as_rows[3];
+        for (int i = 0; i < side; ++i)
+            for (int j = 0; j < 3; ++j)
+                as_rows[i][static_cast<std::size_t>(j)] =
+                    j < side ? Interval(middle[i][j]) : Interval(0.0);
+        return up(std::min(spectral_norm(as_rows, side) + std::sqrt(radius), std::sqrt(frobenius)),
+                  8);
+    };
+    double rule;
+    if (both)
+        rule =
+            up(times(matrix_norm(b), machine.norm_[a]) + times(matrix_norm(a), machine.norm_[b]));
+    else {
+        Slot m = left ? a : b, v = left ? b : a;
+        rule = up(times(matrix_norm(m), machine.norm_[v]) +
+                  times(machine.box_length(v).hi, machine.norm_[m]));
+    }
+    finish(rule, any_odd);
+}
+
+} // namespace fathom::proof
