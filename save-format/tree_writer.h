@@ -1,0 +1,63 @@
+// The walk from shapes to nodes of a save file, whose parts lie by idea in export_tree.cpp (what
+// unites, groups and looks), export_maps.cpp (movements, deformations, repetitions),
+// export_blends.cpp (intersections and blends) and export_solids.cpp (fields and the library's
+// solids). Private to those four files.
+#pragma once
+
+#include "save-format/export_tree.h"
+#include "save-format/node_types.h"
+
+namespace fathom::save {
+
+using ir::NodeId;
+using ir::Shape;
+using ir::ShapeId;
+using ir::ShapeKind;
+
+struct Paint {
+    std::string fill;    // of what is unpainted
+    bool forced = false; // by a repaint: inner paints do not count
+};
+
+class TreeWriter {
+  public:
+    TreeWriter(const ir::Scene &scene, Numbers &numbers, const MaterialName &name,
+               Diagnostics &diagnostics)
+        : scene_(scene), numbers_(numbers), material_name_(name), diagnostics_(diagnostics) {}
+
+    // Appends the nodes whose union the shape is.
+    void united(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
+
+  private:
+    // One node, or none where nothing is there.
+    std::optional<TreeNode> single(ShapeId id, const Paint &paint);
+    std::optional<TreeNode> node(ShapeId id, const Paint &paint);
+
+    void map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
+    void rotation(const ir::Constant &matrix, TreeNode made, std::vector<TreeNode> &out);
+    void repeat(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
+    void painted(ShapeId id, Paint paint, std::vector<TreeNode> &out);
+    std::optional<TreeNode> intersection(ShapeId id, const Paint &paint);
+    std::optional<TreeNode> profile_blend(ShapeId id, bool complemented, const Paint &paint);
+    std::optional<TreeNode> lerp(ShapeId id, const Paint &paint);
+    std::optional<TreeNode> library(ShapeId id, const Paint &paint);
+    std::optional<TreeNode> field(ShapeId id, const ir::Region *region, const Paint &paint);
+    std::optional<TreeNode> one_child(NodeType type, ShapeId child, const Paint &paint);
+    std::optional<TreeNode> left_out(ShapeId id, std::string what);
+    std::optional<Value> steps(NodeId expression, ShapeId at, const char *what);
+    std::optional<Value> region(const ir::Region &region);
+
+    const Shape &shape(ShapeId id) const { return scene_.shapes[id]; }
+    // Contracts, library wrappers of combinations and such say nothing here.
+    ShapeId bare(ShapeId id) const;
+
+    const ir::Scene &scene_;
+    Numbers &numbers_;
+    const MaterialName &material_name_;
+    Diagnostics &diagnostics_;
+};
+
+TreeNode made(NodeType type);
+void add(TreeNode &node, const char *name, Value value);
+
+} // namespace fathom::save
