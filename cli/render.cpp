@@ -101,7 +101,8 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
     if (command.backend != Backend::Cpu) exit = prepare_gl(painter, compilation, command, terminal);
     if (exit != done) return exit;
 
-    auto [first, last] = command.frames.value_or(std::pair(0, 1));
+    const std::pair<int, int> frames = command.frames.value_or(std::pair(0, 1));
+    const int first = frames.first, last = frames.second;
     for (int frame = first; frame < last; ++frame) {
         std::string out = command.frames ? frame_name(command.out, frame) : command.out;
         double time = command.time + (command.frames ? frame / command.frame_rate : 0);
