@@ -30,13 +30,21 @@ std::vector<std::string> lines_of(std::string_view text) {
     return lines;
 }
 
+// Imported files are named by where they lie: a golden names them from the project's folder on.
+std::string from_the_project(std::string text) {
+    const std::string root = FATHOM_SOURCE_DIR "/";
+    for (std::size_t at = text.find(root); at != text.npos; at = text.find(root, at))
+        text.erase(at, root.size());
+    return text;
+}
+
 std::string diagnostics_text(const Diagnostics &diagnostics, const Sources &sources) {
     std::string text;
     for (const Diagnostic &diagnostic : diagnostics.sorted()) {
         text += to_text(diagnostic, sources, false);
         if (!text.ends_with('\n')) text += '\n';
     }
-    return text;
+    return from_the_project(std::move(text));
 }
 
 std::string number(double value) {
