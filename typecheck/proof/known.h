@@ -10,6 +10,13 @@ namespace fathom::proof {
 using ir::Box;
 using Vec = std::array<Interval, 3>;
 
+// Beside the box: a turn inflates a box and leaves a ball as it is.
+struct Ball {
+    std::array<double, 3> centre{};
+    double radius = ir::rounding::infinity;
+    double swell = 0; // {f < t} lies in it grown by swell*t, t >= 0
+};
+
 struct Known {
     ir::ShapeFact fact;
     // Distance exact outside the solid: an offset or shell of it is what it says.
@@ -23,6 +30,7 @@ struct Known {
     // {f < t} lies in fact.bounds grown by swell*t, t >= 0; {f > -t} in outer grown by swell_out*t.
     double swell = 0, swell_out = 0;
     Box outer = Box::everything();
+    Ball ball;           // set anew after every rule (balls.cpp)
     bool failed = false; // reported, here or below
 };
 

@@ -69,6 +69,9 @@ struct Prover {
     Known know_library(ir::ShapeId id);
     Known know_contract(ir::ShapeId id);
 
+    Ball ball_of(ir::ShapeId id, const Known &k); // from the children's balls, where that says more
+    void keep_in_ball(ir::ShapeId id, Known &k);  // sets the ball, and cuts the box to it
+
     double region_radius(ir::ShapeId id, int axis) const;
 
     // -- folds: q is p by component, |p_i|, or p less something limited

@@ -60,6 +60,7 @@ void Prover::run() {
             local = false;
             outward = infinity;
             k = know(ShapeId{i});
+            keep_in_ball(ShapeId{i}, k);
             k.fact.local = local;
             k.fact.outward = outward;
             finish(ShapeId{i}, k);

@@ -264,3 +264,41 @@ TEST_CASE("a region's holes have to leave a way round them") {
     s.prove(s.within(s.leaf(s.g.sub(s.length(s.p), s.n(1))), region), d);
     CHECK(has(d, Code::NeedsRegion));
 }
+
+TEST_CASE("turns within turns do not inflate the bounds") {
+    Scenery s;
+    const auto turn = [&](ShapeId child, double angle, NodeId axis) {
+        return s.add(rotated(s.g, child, rotation(s.g, axis, s.n(angle))));
+    };
+    const NodeId about_y = s.g.vec3(0, 1, 0), about_z = s.g.vec3(0, 0, 1);
+    ShapeId round = s.add(translated(s.g, s.box(2, 2, 2), s.g.vec3(5, 0, 0)));
+    for (int i = 0; i < 8; ++i) round = turn(round, 3.14159265358979 / 4, about_z);
+    const Box whole = s.prove(round).bounds; // back where it began
+    CHECK(whole.lo[0] <= 4);
+    CHECK(whole.hi[0] >= 6);
+    CHECK(whole.lo[0] >= 5 - std::sqrt(3.0) - 1e-4);
+    CHECK(whole.hi[0] <= 5 + std::sqrt(3.0) + 1e-4);
+    CHECK(whole.hi[1] <= std::sqrt(3.0) + 1e-4);
+
+    // A tree: each limb 1 long with two smaller ones, leaning 0.6 to both sides, at its end.
+    ShapeId tree = s.add(translated(s.g, s.box(0.2, 1, 0.2), s.g.vec3(0, 0.5, 0)));
+    double reach = 1; // no point is further from the root than all the lengths, half a limb's
+                      // diagonal and what the blends add
+    for (int depth = 0; depth < 4; ++depth) {
+        std::vector<ShapeId> parts = {
+            s.add(translated(s.g, s.box(0.2, 1, 0.2), s.g.vec3(0, 0.5, 0)))};
+        for (double lean : {-0.6, 0.6})
+            parts.push_back(s.add(translated(s.g, turn(turn(tree, lean, about_z), depth, about_y),
+                                             s.g.vec3(0, 1, 0))));
+        tree = s.add(ShapeKind::Blend, parts, {s.n(0.05), s.n(3)},
+                     static_cast<std::uint32_t>(Profile::Smooth));
+        reach += 1;
+    }
+    const Box tall = s.prove(tree).bounds;
+    INFO(tall.lo[0] << ".." << tall.hi[0] << ", " << tall.lo[1] << ".." << tall.hi[1] << ", "
+                    << tall.lo[2] << ".." << tall.hi[2]);
+    CHECK(tall.lo[1] <= 0);
+    CHECK(tall.hi[1] >= 1 + std::cos(0.6));
+    CHECK(tall.hi[1] <= reach + 0.5);
+    CHECK(std::max(-tall.lo[0], tall.hi[0]) <= reach);
+}
