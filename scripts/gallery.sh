@@ -7,6 +7,6 @@ mkdir -p docs/gallery
 failed=0
 [ $# -gt 0 ] || set -- $(cd examples && ls *.sdf | sed 's/\.sdf$//')
 for name in "$@"; do
-    ./fathom render "examples/$name.sdf" -o "docs/gallery/$name.png" --size 480x360 --samples 4 || failed=1
+    ./fathom render "examples/$name.sdf" -o "docs/gallery/$name.png" --size 800x600 --samples 4 || failed=1
 done
 exit $failed
