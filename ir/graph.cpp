@@ -8,6 +8,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 namespace fathom::ir {
 
@@ -225,11 +226,9 @@ NodeId Graph::folded(Op op, Type type, std::span<const NodeId> args, std::uint32
     if (args.empty()) return {};
     for (NodeId arg : args)
         if (!is_constant(arg)) return {};
-    std::array<Constant, 8> few;
-    std::vector<Constant> many(args.size() > few.size() ? args.size() : 0);
-    const std::span<Constant> values(many.empty() ? few.data() : many.data(), args.size());
-    for (std::size_t i = 0; i < args.size(); ++i) values[i] = constant_of(args[i]);
-    const std::optional<Constant> result = evaluate(op, type, values, payload);
+    folding_.clear();
+    for (NodeId arg : args) folding_.push_back(constant_of(arg));
+    const std::optional<Constant> result = evaluate(op, type, folding_, payload);
     if (!result) return {};
     for (double value : result->value)
         if (std::isnan(value)) return {}; // stays an operation, so that no text has to spell it
@@ -242,18 +241,16 @@ NodeId Graph::constant(const Constant &wanted) {
     Constant value = wanted;
     const std::size_t count = static_cast<std::size_t>(components(value.type));
     std::uint64_t h = static_cast<std::uint64_t>(value.type);
-    for (std::size_t i = 0; i < value.value.size(); ++i) {
-        if (i >= count || value.value[i] == 0) value.value[i] = 0; // -0 too: it is the same number
+    for (std::size_t i = 0; i < count; ++i) {
+        if (value.value[i] == 0) value.value[i] = 0; // -0 is the same number
         h = stir(h, std::bit_cast<std::uint64_t>(value.value[i]));
     }
+    std::fill(value.value.begin() + static_cast<std::ptrdiff_t>(count), value.value.end(), 0.0);
     const auto [first, last] = interned_constants_.equal_range(h);
     for (auto it = first; it != last; ++it) {
         const Constant &have = constants_[Id<Constant>{std::size_t{it->second}}];
-        if (have.type == value.type && std::equal(have.value.begin(), have.value.end(),
-                                                  value.value.begin(), [](double a, double b) {
-                                                      return std::bit_cast<std::uint64_t>(a) ==
-                                                             std::bit_cast<std::uint64_t>(b);
-                                                  }))
+        if (have.type == value.type &&
+            std::memcmp(have.value.data(), value.value.data(), count * sizeof(double)) == 0)
             return intern(Op::Const, value.type, {}, it->second);
     }
     const Id<Constant> id = constants_.add(value);

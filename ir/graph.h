@@ -197,6 +197,7 @@ class Graph {
     Arena<Table> tables_;
     Arena<Cache> caches_;
     std::uint32_t vars_ = 0;
+    std::vector<Constant> folding_; // the arguments of the fold in hand
     std::vector<NodeId> slots_; // open addressing by content; a power of two, at most half full
     std::unordered_multimap<std::uint64_t, std::uint32_t> interned_constants_;
 };

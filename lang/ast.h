@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -22,16 +23,44 @@ using FunctionId = Id<Function>;
 struct Identifier {
     std::string text;
     Span span;
+    std::uint32_t word = 0; // index into Ast::words
 };
 
 // -- types as written ----------------------------------------------------------------------------
+
+// The types that have a name. The last three are the library's own: `_shape` (solid or flat),
+// `_field` (a field or its constant) and `_any`.
+enum class TypeName : std::uint8_t {
+    Unknown,
+    Float,
+    Int,
+    Bool,
+    String,
+    Vec2,
+    Vec3,
+    Vec4,
+    Mat2,
+    Mat3,
+    Mat4,
+    Color,
+    Shape,
+    Shape2,
+    Material,
+    Light,
+    Region,
+    AnyShape,
+    AnyField,
+    Any
+};
+TypeName type_named(std::string_view text); // builder.cpp
 
 // `float`, `shape<1.5>`, `[vec3]`, `(vec3, int) -> float`.
 struct TypeExpr {
     enum class Kind { Name, List, Function };
     Kind kind = Kind::Name;
     Span span;
-    std::string name;                // Name: "float", "shape", …
+    std::string name; // Name: as written, "float", "shape", …
+    TypeName named = TypeName::Unknown;
     std::optional<double> lipschitz; // Name, `shape<L>` only
     std::vector<TypeExpr> items;     // List: one; Function: the parameters, then the result
 };
@@ -75,6 +104,7 @@ struct Color {
 }; // sRGB, 0..1, as in the text
 struct Name {
     std::string text;
+    std::uint32_t word = 0; // index into Ast::words
 };
 struct List {
     std::vector<ExprId> items;
@@ -231,7 +261,8 @@ struct Ast {
     Arena<Expr> exprs;
     Arena<Block> blocks;
     Arena<Function> functions;
-    BlockId root; // the file
+    BlockId root;                   // the file
+    std::vector<std::string> words; // the file's names, each once
 };
 
 } // namespace fathom::lang

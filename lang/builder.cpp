@@ -104,16 +104,40 @@ Builder::Item Builder::pop_item() { return take_back(items_); }
 std::optional<Builder::Item> Builder::pop_maybe_item() { return take_back(maybe_items_); }
 std::optional<TypeExpr> Builder::pop_maybe_type() { return take_back(maybe_types_); }
 BlockId Builder::pop_block() { return take_back(blocks_); }
+std::uint32_t Builder::word(std::string_view text) {
+    const auto [it, added] =
+        words_.try_emplace(text, static_cast<std::uint32_t>(ast_.words.size()));
+    if (added) ast_.words.emplace_back(text);
+    return it->second;
+}
+
 Identifier Builder::pop_name() { return *take_back(names_); }
 
 void Builder::some_value() { maybe_items_.emplace_back(pop_item()); }
 
 // -- types ---------------------------------------------------------------------------------------
 
+TypeName type_named(std::string_view text) {
+    static const std::unordered_map<std::string_view, TypeName> names = {
+        {"float", TypeName::Float},     {"int", TypeName::Int},
+        {"bool", TypeName::Bool},       {"string", TypeName::String},
+        {"vec2", TypeName::Vec2},       {"vec3", TypeName::Vec3},
+        {"vec4", TypeName::Vec4},       {"mat2", TypeName::Mat2},
+        {"mat3", TypeName::Mat3},       {"mat4", TypeName::Mat4},
+        {"color", TypeName::Color},     {"shape", TypeName::Shape},
+        {"shape2", TypeName::Shape2},   {"material", TypeName::Material},
+        {"light", TypeName::Light},     {"region", TypeName::Region},
+        {"_shape", TypeName::AnyShape}, {"_field", TypeName::AnyField},
+        {"_any", TypeName::Any}};
+    const auto it = names.find(text);
+    return it == names.end() ? TypeName::Unknown : it->second;
+}
+
 void Builder::type_name(Index at) {
     TypeExpr type;
     type.span = span(at);
     type.name = text(at);
+    type.named = type_named(type.name);
     types_.push_back(std::move(type));
 }
 
@@ -165,7 +189,7 @@ void Builder::no(Index at) { push(Bool{false}, span(at), 1); }
 void Builder::poison(Index at) { push(Poison{}, span(at), 1); }
 
 void Builder::name(Index at) {
-    push(Name{std::string(text(at))}, span(at), 1);
+    push(Name{std::string(text(at)), word(text(at))}, span(at), 1);
     if (is_foreign_value(text(at))) foreign_names_.push_back({items_.back().id, span(at)});
 }
 

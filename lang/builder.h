@@ -189,7 +189,9 @@ class Builder {
     Span span(Index first, Index last) const { return {id_, token(first).begin, token(last).end}; }
     Span span(const Item &item) const { return {id_, item.begin, item.end}; }
     Span place(Index at) const; // of a token, or of the end of the text
-    Identifier identifier(Index at) const { return {std::string(text(at)), span(at)}; }
+    Identifier identifier(Index at) { return {std::string(text(at)), span(at), word(text(at))}; }
+    std::uint32_t word(std::string_view text); // of a part of the source
+
     Diagnostic &foreign(Span where, std::string message) {
         return diagnostics_.add(Code::ForeignSyntax, where, std::move(message));
     }
@@ -241,6 +243,7 @@ class Builder {
     const Tokens &tokens_;
     Diagnostics &diagnostics_;
     Ast ast_;
+    std::unordered_map<std::string_view, std::uint32_t> words_; // into ast_.words
 
     std::vector<Item> items_;
     std::vector<Op> ops_;

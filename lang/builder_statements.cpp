@@ -213,7 +213,7 @@ void Builder::assignment() {
         foreign(span(target), "a new name is bound with `let`")
             .help("write `let " + name->text + " = …`",
                   {{{id_, target.begin, target.begin}, "let "}});
-        Identifier bound{name->text, span(target)};
+        Identifier bound{name->text, span(target), name->word};
         declared_.push_back(text(target.begin, target.end));
         add_stmt(Let{std::move(bound), {}, value.id, {}}, whole, tall);
         return;

@@ -56,7 +56,7 @@ void Builder::settle_foreign_names() {
             const Span qualifier{id_, foreign_name.span.begin, member->name.span.begin};
             foreign(foreign_name.span, "the mathematical functions need no module")
                 .help("write " + code(member->name.text), {{qualifier, ""}});
-            expr.kind = Name{member->name.text};
+            expr.kind = Name{member->name.text, member->name.word};
         } else if (name[0] == 'T' || name[0] == 'F') {
             const bool value = name[0] == 'T';
             foreign(foreign_name.span, "truth values are written small")

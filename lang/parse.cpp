@@ -437,11 +437,12 @@ template <> struct action<block> : with_range<&Builder::block_close> {};
 
 } // namespace
 
-Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics) {
+static Words read_words(const Source &source, SourceId id, std::uint32_t begin, std::uint32_t end,
+                        Diagnostics &diagnostics) {
     Lexer lexer(source, id, diagnostics);
     const char *start = source.text.data();
-    pegtl::memory_input<pegtl::tracking_mode::lazy, pegtl::eol::lf> in(
-        start, start + source.text.size(), std::string());
+    pegtl::memory_input<pegtl::tracking_mode::lazy, pegtl::eol::lf> in(start + begin, start + end,
+                                                                       std::string());
     while (!in.empty()) {
         if (in.peek_char() == '#') {
             const char *begin = in.current();
@@ -456,9 +457,20 @@ Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics) {
     return lexer.take();
 }
 
+Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics) {
+    return read_words(source, id, 0, static_cast<std::uint32_t>(source.text.size()), diagnostics);
+}
+
 Ast parse(const Sources &sources, SourceId id, Diagnostics &diagnostics) {
+    return parse_part(sources, id, 0, static_cast<std::uint32_t>(sources[id].text.size()),
+                      diagnostics);
+}
+
+Ast parse_part(const Sources &sources, SourceId id, std::uint32_t begin, std::uint32_t end,
+               Diagnostics &diagnostics) {
     const Source &source = sources[id];
-    const Tokens tokens = lay_out(source, id, read_words(source, id, diagnostics), diagnostics);
+    const Words words = read_words(source, id, begin, end, diagnostics);
+    const Tokens tokens = lay_out(source, id, words, diagnostics);
     Builder builder(source, id, tokens, diagnostics);
     grammar::Input in(tokens.kinds);
     pegtl::parse<grammar::file, grammar::action, grammar::control>(in, builder);

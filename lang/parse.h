@@ -11,6 +11,10 @@ namespace fathom::lang {
 // the next statement. Time and memory are linear in the text.
 Ast parse(const Sources &sources, SourceId source, Diagnostics &diagnostics);
 
+// Some whole statements of the text, as if they were all of it; places are those in the text.
+Ast parse_part(const Sources &sources, SourceId source, std::uint32_t begin, std::uint32_t end,
+               Diagnostics &diagnostics);
+
 // The names that the grammar keeps for itself (`let`, `fn`, `for`, …).
 const std::vector<std::string> &keywords();
 

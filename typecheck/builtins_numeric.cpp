@@ -51,7 +51,7 @@ static Value partial(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
 template <Op op> static Value most(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     std::vector<Value> items{args[0]};
     if (!is(args[1], ValueKind::None)) {
-        auto rest = want_list(ev, args[1], site.arg(1), fmt::format("`{}`", site.name));
+        auto rest = want_list(ev, args[1], site.arg(1), quoted(site.name));
         if (!rest) return poison();
         items.insert(items.end(), rest->begin(), rest->end());
     } else if (auto all = want_list(ev, args[0], site.arg(0),
@@ -164,7 +164,7 @@ static Value vec_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
 // mat3(c0, c1, c2), mat3(9 numbers, by columns), mat3(s): s on the diagonal.
 template <int size>
 static Value mat_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
-    auto list = want_list(ev, args[0], site.arg(0), fmt::format("`{}`", site.name));
+    auto list = want_list(ev, args[0], site.arg(0), quoted(site.name));
     if (!list) return poison();
     std::vector<Value> parts = *list;
     if (parts.size() == 1 && parts[0].kind == ValueKind::List)
@@ -275,7 +275,7 @@ static Value rgb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
 
 template <Op op>
 static Value noise_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
-    auto p = want_vec_node(ev, args[0], 3, site.arg(0), fmt::format("`{}`", site.name));
+    auto p = want_vec_node(ev, args[0], 3, site.arg(0), quoted(site.name));
     if (!p) return poison();
     return from_node(ev, ev.scene.graph.make(op, {*p}));
 }

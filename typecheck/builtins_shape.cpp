@@ -35,8 +35,8 @@ bool is_empty(Evaluator &ev, ir::ShapeId id) {
 
 std::optional<ir::ShapeId> first_shape(Evaluator &ev, const CallSite &site,
                                        const std::vector<Value> &args, int dims) {
-    std::string name = ev.calls.empty() ? site.name : ev.calls.back().name;
-    return want_shape(ev, args[0], site.arg(0), fmt::format("`{}`", name), dims);
+    std::string_view name = ev.calls.empty() ? site.name : ev.calls.back().name;
+    return want_shape(ev, args[0], site.arg(0), quoted(name), dims);
 }
 
 // -- leaves --------------------------------------------------------------------------------------
@@ -277,8 +277,8 @@ struct Pair {
 };
 static std::optional<Pair> pair_argument(Evaluator &ev, const CallSite &site,
                                          const std::vector<Value> &args, std::size_t at) {
-    auto a = want_shape(ev, args[at], site.arg(at), fmt::format("`{}`", site.name));
-    auto b = want_shape(ev, args[at + 1], site.arg(at + 1), fmt::format("`{}`", site.name));
+    auto a = want_shape(ev, args[at], site.arg(at), quoted(site.name));
+    auto b = want_shape(ev, args[at + 1], site.arg(at + 1), quoted(site.name));
     if (!a || !b) return std::nullopt;
     if (args[at].size != args[at + 1].size) {
         report(ev, Code::FlatShape, site.call, "a solid and a flat shape cannot be combined");

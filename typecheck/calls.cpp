@@ -17,38 +17,31 @@ using ir::Type;
 
 namespace {
 
-// What binding needs to know of a parameter, of a closure's and of a builtin's alike.
-struct Formal {
-    std::string name;
-    bool optional = false;
-    bool takes_rest = false; // the last one, of type [shape], or a builtin's of any number
-    bool opens_list = true;  // a single list among the rest is the rest
-    Span declared;
+// What binding found for a parameter.
+struct Given {
+    Value value;
+    Span span; // of the callee where nothing was given
+    bool given = false;
+    bool plain_literal = false;
 };
 
-struct Bound {
-    std::vector<std::optional<Value>> values;
-    std::vector<Span> spans;
-    std::vector<bool> literal;
-};
-
-std::string signature_text(const std::string &name, const std::vector<Formal> &formals) {
-    std::string out = name + "(";
+std::string signature_text(std::string_view name, std::span<const Formal> formals) {
+    std::string out = std::string(name) + "(";
     for (std::size_t i = 0; i < formals.size(); ++i)
-        out += (i ? ", " : "") + formals[i].name + (formals[i].optional ? " = …" : "");
+        out += fmt::format("{}{}{}", i ? ", " : "", formals[i].name,
+                           formals[i].optional ? " = …" : "");
     return out + ")";
 }
 
 } // namespace
 
-static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &name,
-                                           const std::vector<Formal> &formals,
-                                           const std::vector<Argument> &args, Span call,
-                                           Span callee) {
-    Bound bound;
-    bound.values.resize(formals.size());
-    bound.spans.assign(formals.size(), callee);
-    bound.literal.assign(formals.size(), false);
+static std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view name,
+                                                        std::span<const Formal> formals,
+                                                        std::span<const Argument> args, Span call,
+                                                        Span callee) {
+    Given nothing;
+    nothing.span = callee;
+    std::vector<Given> bound(formals.size(), nothing);
     bool ok = true;
     std::optional<Span> first_named;
     std::size_t next = 0;
@@ -56,17 +49,15 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
     Span rest_span = callee;
     bool has_rest = !formals.empty() && formals.back().takes_rest;
     auto give = [&](std::size_t i, const Argument &a) {
-        if (bound.values[i]) {
+        if (bound[i].given) {
             Diagnostic &d = report(
-                ev, Code::DuplicateArgument, a.name ? a.name_span : a.span,
+                ev, Code::DuplicateArgument, a.name ? a.name->span : a.span,
                 fmt::format("`{}` is given twice in this call of `{}`", formals[i].name, name));
-            d.label(bound.spans[i], "given here");
+            d.label(bound[i].span, "given here");
             ok = false;
             return;
         }
-        bound.values[i] = a.value;
-        bound.spans[i] = a.span;
-        bound.literal[i] = a.plain_literal;
+        bound[i] = {a.value, a.span, true, a.plain_literal};
     };
     for (const Argument &a : args) {
         if (a.trailing) {
@@ -76,26 +67,25 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
                 return std::nullopt;
             }
             if (!rest.empty()) { // shapes before the block join it
-                std::vector<Value> all = rest;
-                std::vector<Value> block = ev.lists[a.value.id];
-                all.insert(all.end(), block.begin(), block.end());
-                rest = std::move(all);
+                const std::vector<Value> &block = ev.lists[a.value.id];
+                rest.insert(rest.end(), block.begin(), block.end());
             } else
                 give(formals.size() - 1, a);
             continue;
         }
         if (a.name) {
-            first_named = a.name_span;
+            first_named = a.name->span;
             std::size_t i = 0;
-            while (i < formals.size() && formals[i].name != *a.name) ++i;
-            if (i == formals.size() || (*a.name)[0] == '_') {
+            while (i < formals.size() && formals[i].symbol != a.symbol) ++i;
+            if (i == formals.size() || a.name->text[0] == '_') {
                 std::vector<std::string> names;
-                for (const Formal &f : formals) names.push_back(f.name);
-                Diagnostic &d = report(ev, Code::UnknownArgument, a.name_span,
-                                       fmt::format("`{}` has no argument `{}`", name, *a.name));
-                std::string near = nearest_name(*a.name, names);
+                for (const Formal &f : formals) names.emplace_back(f.name);
+                Diagnostic &d =
+                    report(ev, Code::UnknownArgument, a.name->span,
+                           fmt::format("`{}` has no argument `{}`", name, a.name->text));
+                std::string near = nearest_name(a.name->text, names);
                 if (!near.empty())
-                    d.help(fmt::format("did you mean `{}`?", near), {{a.name_span, near}});
+                    d.help(fmt::format("did you mean `{}`?", near), {{a.name->span, near}});
                 d.note(fmt::format("it is `{}`", signature_text(name, formals)));
                 ok = false;
                 continue;
@@ -116,7 +106,7 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
             rest_span = rest.size() == 1 ? a.span : join(rest_span, a.span);
             continue;
         }
-        while (next < formals.size() && bound.values[next]) ++next;
+        while (next < formals.size() && bound[next].given) ++next;
         if (next >= formals.size()) {
             std::size_t given = 0;
             for (const Argument &b : args) given += b.trailing ? 0 : 1;
@@ -132,12 +122,12 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
         Argument a;
         a.value = rest.size() == 1 && rest[0].kind == ValueKind::List && formals.back().opens_list
                       ? rest[0]
-                      : list_value(ev, rest);
+                      : list_value(ev, std::move(rest));
         a.span = rest_span;
         give(formals.size() - 1, a);
     }
     for (std::size_t i = 0; i < formals.size(); ++i) {
-        if (bound.values[i] || formals[i].optional) continue;
+        if (bound[i].given || formals[i].optional) continue;
         if (!ok) return std::nullopt;
         Diagnostic &d = report(ev, Code::MissingArgument, call,
                                fmt::format("`{}` wants an argument `{}`", name, formals[i].name));
@@ -152,19 +142,61 @@ static std::optional<Bound> bind_arguments(Evaluator &ev, const std::string &nam
 
 static bool is_shape_list(const lang::TypeExpr &type) {
     return type.kind == lang::TypeExpr::Kind::List &&
-           (type.items[0].name == "shape" || type.items[0].name == "_shape" ||
-            type.items[0].name == "shape2");
+           (type.items[0].named == lang::TypeName::Shape ||
+            type.items[0].named == lang::TypeName::Shape2 ||
+            type.items[0].named == lang::TypeName::AnyShape);
 }
 
-static std::vector<Formal> formals_of(const lang::Function &f) {
-    std::vector<Formal> out;
+static bool is_angle(std::string_view name) { return name == "angle" || name == "fov"; }
+
+static std::span<const Formal> formals_of(Evaluator &ev, const Closure &c) {
+    std::optional<std::vector<Formal>> &formals = ev.files[c.ast->place].formals[c.function.index];
+    if (formals) return *formals;
+    formals.emplace();
+    const lang::Function &f = c.ast->functions[c.function];
     for (const lang::Parameter &p : f.parameters) {
-        Formal formal{p.name.text, p.default_value.has_value(), false, true, p.name.span};
-        if (&p == &f.parameters.back() && p.type && is_shape_list(*p.type))
-            formal.takes_rest = true;
-        out.push_back(formal);
+        Formal formal;
+        formal.symbol = symbol_of(*c.ast, p.name);
+        formal.name = p.name.text;
+        formal.optional = p.default_value.has_value();
+        formal.takes_rest = &p == &f.parameters.back() && p.type && is_shape_list(*p.type);
+        formal.is_angle = is_angle(p.name.text);
+        formal.declared = p.name.span;
+        formals->push_back(formal);
     }
-    return out;
+    return *formals;
+}
+
+static std::span<const Formal> formals_of(Evaluator &ev, const Builtin &builtin) {
+    const std::size_t place = static_cast<std::size_t>(&builtin - builtins().data());
+    std::optional<std::vector<Formal>> &formals = ev.builtin_formals[place];
+    if (formals) return *formals;
+    formals.emplace();
+    for (const BuiltinParameter &p : builtin.parameters) {
+        Formal formal;
+        formal.symbol = intern(ev, p.name);
+        formal.name = p.name;
+        formal.optional = p.optional;
+        formal.is_angle = is_angle(p.name);
+        formals->push_back(formal);
+    }
+    if (builtin.variadic) {
+        formals->back().takes_rest = true;
+        formals->back().opens_list = builtin.name != "concat"; // whose rest are lists
+    }
+    return *formals;
+}
+
+// `rotate(90)`: a plain literal of more than a turn.
+static void warn_of_degrees(Evaluator &ev, const Formal &formal, const Given &given,
+                            const Value &v) {
+    if (!given.plain_literal || !formal.is_angle || !is_scalar(ev, v) || std::abs(v.num[0]) <= 6.5)
+        return;
+    report(ev, Code::Units, given.span,
+           fmt::format("`{}` is in radians, and {} of them are {:.0f} turns", formal.name, v.num[0],
+                       std::abs(v.num[0]) / 6.283185307179586))
+        .help(fmt::format("write `{}deg` if degrees are meant", v.num[0]),
+              {{given.span, fmt::format("{}deg", v.num[0])}});
 }
 
 // -- functions of the graph ----------------------------------------------------------------------
@@ -198,7 +230,7 @@ static bool is_closed(Evaluator &ev, const Value &v, int depth = 0) {
 static bool frame_has_vars(Evaluator &ev, std::uint32_t frame) {
     for (;; frame = ev.frames[frame].parent) {
         const Frame &f = ev.frames[frame];
-        if (f.is_module) return false;
+        if (f.index) return false;
         for (const Binding &b : f.bindings)
             if (b.is_var || b.value.kind == ValueKind::Field) return true;
         if (f.parent == frame) return false;
@@ -210,7 +242,9 @@ static void key_of(Evaluator &ev, const Value &v, std::vector<std::uint64_t> &ke
         key.push_back(0x1000 + static_cast<std::uint64_t>(numeric_type(ev, v)) * 2 + v.color);
         return;
     }
-    key.push_back(static_cast<std::uint64_t>(v.kind) << 8 | v.size << 1 | v.color);
+    key.push_back(static_cast<std::uint64_t>(v.kind) << 8 |
+                  static_cast<std::uint64_t>(v.size) << 2 |
+                  static_cast<std::uint64_t>(v.ints) << 1 | static_cast<std::uint64_t>(v.color));
     key.push_back(v.id);
     for (double x : v.num) {
         std::uint64_t bits;
@@ -235,7 +269,7 @@ static Value result_of(Evaluator &ev, const Outcome &out, Span place) {
     return poison();
 }
 
-static Value finish(Evaluator &ev, Value v, const lang::Function &f, const std::string &name) {
+static Value finish(Evaluator &ev, Value v, const lang::Function &f, std::string_view name) {
     Span place = f.span;
     if (v.kind == ValueKind::Unit && f.result) {
         report(ev, Code::MissingValue, f.head.source ? f.head : place,
@@ -249,7 +283,7 @@ static Value finish(Evaluator &ev, Value v, const lang::Function &f, const std::
     return convert(ev, v, *f.result, last, fmt::format("`{}`'s result", name), ok);
 }
 
-static bool enter(Evaluator &ev, const std::string &name, Span call, const Closure &c) {
+static bool enter(Evaluator &ev, std::string_view name, Span call, const Closure &c) {
     if (ev.calls.size() >= static_cast<std::size_t>(max_call_depth)) {
         report(ev, Code::RecursionLimit, call,
                fmt::format("calls nest deeper than {}; is there an end to this recursion?",
@@ -260,15 +294,16 @@ static bool enter(Evaluator &ev, const std::string &name, Span call, const Closu
     return true;
 }
 
-static Value run_closure(Evaluator &ev, const Value &callee, const std::string &name,
-                         std::vector<Value> values, Span call) {
+static Value run_closure(Evaluator &ev, const Value &callee, std::string_view name,
+                         std::span<const Value> values, Span call) {
     Closure c = ev.closures[callee.id];
     const lang::Function &f = c.ast->functions[c.function];
     if (!enter(ev, name, call, c)) return poison();
     std::uint32_t module = std::exchange(ev.current_module, c.module);
     std::uint32_t frame = push_frame(ev, c.frame);
     for (std::size_t i = 0; i < values.size(); ++i)
-        declare(ev, frame, f.parameters[i].name.text, values[i], false, f.parameters[i].name.span);
+        declare(ev, frame, symbol_of(*c.ast, f.parameters[i].name), values[i], false,
+                f.parameters[i].name.span);
     Outcome out = run_body(ev, c, f, frame);
     Value v = finish(ev, result_of(ev, out, f.span), f, name);
     pop_frame(ev, frame);
@@ -279,19 +314,19 @@ static Value run_closure(Evaluator &ev, const Value &callee, const std::string &
 
 // A call with numbers of field time: the body becomes a function of the graph, made once for each
 // set of known arguments.
-static std::optional<Value> specialized(Evaluator &ev, const Value &callee, const std::string &name,
-                                        const std::vector<Value> &values, Span call) {
+static std::optional<Value> specialized(Evaluator &ev, const Value &callee, std::string_view name,
+                                        std::span<const Value> values, Span call) {
+    if (std::none_of(values.begin(), values.end(), [&](const Value &v) { return varies(ev, v); }))
+        return std::nullopt;
     const Closure c = ev.closures[callee.id];
     const lang::Function &f = c.ast->functions[c.function];
     if (!f.name || c.in_field) return std::nullopt;
-    bool any = false;
     for (const Value &v : values) {
         bool field = varies(ev, v);
-        any = any || field;
         if (!field && v.kind != ValueKind::Field && !is_closed(ev, v)) return std::nullopt;
         if (!field && v.kind == ValueKind::Field && !is_numeric(v)) return std::nullopt;
     }
-    if (!any || frame_has_vars(ev, c.frame)) return std::nullopt;
+    if (frame_has_vars(ev, c.frame)) return std::nullopt;
     auto id = std::pair{c.ast, c.function.index};
     if (auto it = ev.never_specialize.find(id); it != ev.never_specialize.end())
         return std::nullopt;
@@ -301,7 +336,7 @@ static std::optional<Value> specialized(Evaluator &ev, const Value &callee, cons
     ir::Graph &g = ev.scene.graph;
     auto it = ev.specializations.find(key);
     if (it == ev.specializations.end()) {
-        std::vector<Value> inner = values;
+        std::vector<Value> inner(values.begin(), values.end());
         ir::Function function;
         function.name = f.name->text;
         function.origin = c.library ? Span{} : f.head;
@@ -414,27 +449,56 @@ static bool holds_shape(Evaluator &ev, const Value &v) {
 
 static bool inside_library(Evaluator &ev) { return ev.modules[ev.current_module].library; }
 
+// A call of a library function with known numbers always gives the same value, so that the bodies
+// of `sphere(0.1)` and `cylinder(1, 2)` run once however often a scene has them.
+static Value remembered(Evaluator &ev, const Value &callee, std::string_view name,
+                        std::span<const Value> values, Span call) {
+    const Closure &c = ev.closures[callee.id];
+    std::vector<std::uint64_t> key{c.ast->place, c.function.index, c.frame};
+    key.reserve(3 + 6 * values.size());
+    for (const Value &v : values) {
+        const bool known = v.kind == ValueKind::None || v.kind == ValueKind::Bool ||
+                           v.kind == ValueKind::Int || v.kind == ValueKind::Float ||
+                           v.kind == ValueKind::Vec;
+        if (!known) return run_closure(ev, callee, name, values, call);
+        key_of(ev, v, key);
+    }
+    if (auto it = ev.remembered.find(key); it != ev.remembered.end()) return it->second;
+    const auto said = [&] { return ev.diagnostics.items().size() + ev.diagnostics.dropped(); };
+    const std::size_t before = said();
+    const Value v = run_closure(ev, callee, name, values, call);
+    // one that has something to say says it each time
+    if (ev.quiet == 0 && said() == before && ev.remembered.size() < max_remembered)
+        ev.remembered.emplace(std::move(key), v);
+    return v;
+}
+
 // -- the calls -----------------------------------------------------------------------------------
 
-static Value call_closure(Evaluator &ev, const Value &callee, const std::string &name,
-                          const std::vector<Argument> &args, Span call, Span callee_span) {
+static Value call_closure(Evaluator &ev, const Value &callee, std::string_view name,
+                          std::span<const Argument> args, Span call, Span callee_span) {
     const Closure c = ev.closures[callee.id];
     const lang::Function &f = c.ast->functions[c.function];
-    auto bound = bind_arguments(ev, name, formals_of(f), args, call, callee_span);
+    const std::span<const Formal> formals = formals_of(ev, c);
+    auto bound = bind_arguments(ev, name, formals, args, call, callee_span);
     if (!bound) return poison();
     // defaults are evaluated where the function stands, and see the parameters before them
-    std::uint32_t frame = push_frame(ev, c.frame);
-    std::uint32_t module = ev.current_module;
+    std::optional<std::uint32_t> frame;
     std::vector<Value> values;
+    values.reserve(formals.size());
     bool ok = true;
-    for (std::size_t i = 0; i < f.parameters.size(); ++i) {
+    for (std::size_t i = 0; i < formals.size(); ++i) {
         const lang::Parameter &p = f.parameters[i];
-        Value v;
-        if (bound->values[i])
-            v = *bound->values[i];
-        else {
-            ev.current_module = c.module;
-            v = eval(ev, *c.ast, *p.default_value, frame);
+        const Given &given = (*bound)[i];
+        Value v = given.value;
+        if (!given.given) {
+            if (!frame) {
+                frame = push_frame(ev, c.frame);
+                for (std::size_t k = 0; k < i; ++k)
+                    declare(ev, *frame, formals[k].symbol, values[k], false, formals[k].declared);
+            }
+            std::uint32_t module = std::exchange(ev.current_module, c.module);
+            v = eval(ev, *c.ast, *p.default_value, *frame);
             ev.current_module = module;
         }
         if (p.type && v.kind != ValueKind::None) {
@@ -443,75 +507,63 @@ static Value call_closure(Evaluator &ev, const Value &callee, const std::string 
                        fmt::format("there is no type `{}`", type_text(*p.type)));
                 ok = false;
             } else
-                v = convert(ev, v, *p.type, bound->spans[i],
-                            fmt::format("`{}` of `{}`", p.name.text, name), ok);
+                v = convert(ev, v, *p.type, given.span, quoted(p.name.text, name), ok);
         }
-        if (bound->literal[i] && (p.name.text == "angle" || p.name.text == "fov") &&
-            is_scalar(ev, v) && std::abs(v.num[0]) > 6.5)
-            report(ev, Code::Units, bound->spans[i],
-                   fmt::format("`{}` is in radians, and {} of them are {:.0f} turns", p.name.text,
-                               v.num[0], std::abs(v.num[0]) / 6.283185307179586))
-                .help(fmt::format("write `{}deg` if degrees are meant", v.num[0]),
-                      {{bound->spans[i], fmt::format("{}deg", v.num[0])}});
+        warn_of_degrees(ev, formals[i], given, v);
         ok = ok && !is_poison(v);
         values.push_back(v);
-        declare(ev, frame, p.name.text, v, false, p.name.span);
+        if (frame) declare(ev, *frame, formals[i].symbol, v, false, formals[i].declared);
     }
-    pop_frame(ev, frame);
+    if (frame) pop_frame(ev, *frame);
     if (!ok) return poison();
     if (auto v = specialized(ev, callee, name, values, call)) return *v;
-    Value v = run_closure(ev, callee, name, values, call);
+    Value v = c.library ? remembered(ev, callee, name, values, call)
+                        : run_closure(ev, callee, name, values, call);
     if (c.library && f.name && v.kind == ValueKind::Shape && !inside_library(ev)) {
+        for (const Value &value : values)
+            if (holds_shape(ev, value)) return v;
         ir::Library library;
         library.name = f.name->text;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            if (holds_shape(ev, values[i])) return v;
+        for (std::size_t i = 0; i < values.size(); ++i)
             if (is_numeric(values[i]))
-                library.arguments.emplace_back(f.parameters[i].name.text, to_node(ev, values[i]));
-        }
+                library.arguments.emplace_back(formals[i].name, to_node(ev, values[i]));
         return library_shape(ev, std::move(library), v, call);
     }
     return v;
 }
 
-static Value call_builtin(Evaluator &ev, const Value &callee, const std::vector<Argument> &args,
+static Value call_builtin(Evaluator &ev, const Value &callee, std::span<const Argument> args,
                           Span call, Span callee_span) {
     const Builtin &b = builtins()[callee.id];
-    std::vector<Formal> formals;
-    for (const BuiltinParameter &p : b.parameters)
-        formals.push_back({p.name, p.optional, false, true, {}});
-    if (b.variadic)
-        formals.back().takes_rest = true,
-        formals.back().opens_list = b.name != "concat"; // whose rest are lists
+    const std::span<const Formal> formals = formals_of(ev, b);
     auto bound = bind_arguments(ev, b.name, formals, args, call, callee_span);
     if (!bound) return poison();
-    CallSite site{b.name, call, callee_span, bound->spans};
+    CallSite site{b.name, call, callee_span, {}};
     std::vector<Value> values;
+    values.reserve(formals.size());
+    site.args.reserve(formals.size());
     for (std::size_t i = 0; i < formals.size(); ++i) {
-        values.push_back(bound->values[i].value_or(none()));
-        if (is_poison(values.back()) && bound->values[i]) return poison();
-        if (bound->literal[i] && formals[i].name == "fov" && std::abs(values[i].num[0]) > 6.5)
-            report(ev, Code::Units, bound->spans[i],
-                   fmt::format("`fov` is in radians, and {} of them are {:.0f} turns",
-                               values[i].num[0], std::abs(values[i].num[0]) / 6.283185307179586))
-                .help(fmt::format("write `{}deg` if degrees are meant", values[i].num[0]),
-                      {{bound->spans[i], fmt::format("{}deg", values[i].num[0])}});
+        const Given &given = (*bound)[i];
+        if (given.given && is_poison(given.value)) return poison();
+        values.push_back(given.given ? given.value : none());
+        site.args.push_back(given.span);
+        warn_of_degrees(ev, formals[i], given, given.value);
     }
     return b.call(ev, site, values);
 }
 
-static Value call_overloads(Evaluator &ev, const Value &callee, const std::string &name,
-                            const std::vector<Argument> &args, Span call, Span callee_span) {
+static Value call_overloads(Evaluator &ev, const Value &callee, std::string_view name,
+                            std::span<const Argument> args, Span call, Span callee_span) {
     const std::vector<Value> candidates = ev.lists[callee.id];
     for (const Value &candidate : candidates) {
         const Closure &c = ev.closures[candidate.id];
         const lang::Function &f = c.ast->functions[c.function];
         ++ev.quiet;
-        auto bound = bind_arguments(ev, name, formals_of(f), args, call, callee_span);
+        auto bound = bind_arguments(ev, name, formals_of(ev, c), args, call, callee_span);
         bool fits = bound.has_value();
         for (std::size_t i = 0; fits && i < f.parameters.size(); ++i)
-            if (bound->values[i] && f.parameters[i].type)
-                fits = accepts(ev, *bound->values[i], *f.parameters[i].type);
+            if ((*bound)[i].given && f.parameters[i].type)
+                fits = accepts(ev, (*bound)[i].value, *f.parameters[i].type);
         --ev.quiet;
         if (fits) return call_closure(ev, candidate, name, args, call, callee_span);
     }
@@ -529,8 +581,8 @@ static Value call_overloads(Evaluator &ev, const Value &callee, const std::strin
     return call_closure(ev, *best, name, args, call, callee_span);
 }
 
-Value call_value(Evaluator &ev, const Value &callee, const std::string &name,
-                 std::vector<Argument> args, Span call, Span callee_span) {
+Value call_value(Evaluator &ev, const Value &callee, std::string_view name,
+                 std::span<const Argument> args, Span call, Span callee_span) {
     if (is_poison(callee)) return poison();
     switch (callee.kind) {
     case ValueKind::Closure: return call_closure(ev, callee, name, args, call, callee_span);
@@ -539,12 +591,14 @@ Value call_value(Evaluator &ev, const Value &callee, const std::string &name,
     case ValueKind::ConstField: return ev.lists[callee.id][0];
     case ValueKind::CachedField:
     case ValueKind::ImageField: {
-        auto bound =
-            bind_arguments(ev, name, {{"p", false, false, true, {}}}, args, call, callee_span);
+        Formal point;
+        point.symbol = intern(ev, "p");
+        point.name = "p";
+        auto bound = bind_arguments(ev, name, {&point, 1}, args, call, callee_span);
         if (!bound) return poison();
         bool image = callee.kind == ValueKind::ImageField;
-        auto p = want_vec_node(ev, *bound->values[0], image ? 2 : 3, bound->spans[0],
-                               fmt::format("`{}`", name));
+        auto p =
+            want_vec_node(ev, (*bound)[0].value, image ? 2 : 3, (*bound)[0].span, quoted(name));
         if (!p) return poison();
         ir::Graph &g = ev.scene.graph;
         if (image)
@@ -584,26 +638,31 @@ Value call_value(Evaluator &ev, const Value &callee, const std::string &name,
 
 Value call_with(Evaluator &ev, const Value &callee, const std::vector<Value> &values, Span place) {
     std::vector<Argument> args;
-    for (const Value &v : values) args.push_back({{}, v, place, {}});
-    std::string name;
+    args.reserve(values.size());
+    for (const Value &v : values) {
+        Argument &arg = args.emplace_back();
+        arg.value = v;
+        arg.span = place;
+    }
+    std::string_view name;
     if (callee.kind == ValueKind::Closure) {
         const Closure &c = ev.closures[callee.id];
         const lang::Function &f = c.ast->functions[c.function];
         if (f.name) name = f.name->text;
     }
-    return call_value(ev, callee, name, std::move(args), place, place);
+    return call_value(ev, callee, name, args, place, place);
 }
 
-static void read_arguments(Evaluator &ev, const lang::Ast &ast, const lang::Call &call,
+static void read_arguments(Evaluator &ev, const File &ast, const lang::Call &call,
                            std::uint32_t frame, std::vector<Argument> &args) {
     for (const lang::Argument &a : call.arguments) {
         Argument arg;
         const lang::Expr &e = ast.exprs[a.value];
-        if (a.name) arg.name = a.name->text, arg.name_span = a.name->span;
+        if (a.name) arg.name = &*a.name, arg.symbol = symbol_of(ast, *a.name);
         arg.span = e.span;
         arg.value = eval(ev, ast, a.value, frame);
         if (auto *n = std::get_if<lang::Number>(&e.kind)) arg.plain_literal = n->unit.empty();
-        args.push_back(std::move(arg));
+        args.push_back(arg);
     }
     if (call.trailing) {
         std::vector<Contribution> items;
@@ -616,22 +675,23 @@ static void read_arguments(Evaluator &ev, const lang::Ast &ast, const lang::Call
         arg.value = list_value(ev, std::move(values));
         arg.span = ast.blocks[*call.trailing].span;
         arg.trailing = true;
-        args.push_back(std::move(arg));
+        args.push_back(arg);
     }
 }
 
-Value eval_call(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, const lang::Call &call,
+Value eval_call(Evaluator &ev, const File &ast, lang::ExprId id, const lang::Call &call,
                 std::uint32_t frame) {
     Span place = ast.exprs[id].span;
     const lang::Expr &callee = ast.exprs[call.callee];
     std::vector<Argument> args;
+    args.reserve(call.arguments.size() + 2); // the object before the dot, and a block
     if (auto *m = std::get_if<lang::Member>(&callee.kind)) {
         Value object = eval(ev, ast, m->object, frame);
         if (object.kind == ValueKind::Module) {
             const Module module = ev.modules[object.id];
             read_arguments(ev, ast, call, frame, args);
-            auto it = ev.frames[module.frame].index.find(intern(ev, m->name.text));
-            if (it == ev.frames[module.frame].index.end() || m->name.text[0] == '_') {
+            auto slot = slot_in_module(ev, module.frame, symbol_of(ast, m->name));
+            if (!slot || m->name.text[0] == '_') {
                 std::vector<std::string> names;
                 for (const Binding &b : ev.frames[module.frame].bindings)
                     names.push_back(ev.symbol_names[b.name]);
@@ -645,10 +705,10 @@ Value eval_call(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, const lang
                     d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
                 return poison();
             }
-            return call_value(ev, ev.frames[module.frame].bindings[it->second].value, m->name.text,
-                              std::move(args), place, m->name.span);
+            return call_value(ev, ev.frames[module.frame].bindings[*slot].value, m->name.text, args,
+                              place, m->name.span);
         }
-        auto f = look_up(ev, frame, m->name.text);
+        auto f = look_up(ev, frame, symbol_of(ast, m->name));
         if (!f || !is_function(*f)) {
             read_arguments(ev, ast, call, frame, args); // their own errors are still worth saying
             if (is_poison(object)) return poison();
@@ -671,13 +731,13 @@ Value eval_call(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, const lang
         args.push_back(self);
         read_arguments(ev, ast, call, frame, args);
         if (is_poison(object)) return poison();
-        return call_value(ev, *f, m->name.text, std::move(args), place, m->name.span);
+        return call_value(ev, *f, m->name.text, args, place, m->name.span);
     }
-    std::string name;
+    std::string_view name;
     if (auto *n = std::get_if<lang::Name>(&callee.kind)) name = n->text;
     Value f = eval(ev, ast, call.callee, frame);
     read_arguments(ev, ast, call, frame, args);
-    return call_value(ev, f, name, std::move(args), place, callee.span);
+    return call_value(ev, f, name, args, place, callee.span);
 }
 
 } // namespace fathom::typecheck

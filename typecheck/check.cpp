@@ -157,8 +157,7 @@ void demand_ranges(Evaluator &ev) {
     }
 }
 
-void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions,
-                 const lang::Ast &ast) {
+void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions, const File &ast) {
     ir::Scene &scene = ev.scene;
     scene.lighting = default_lighting(ev);
     ir::NodeId direction =
@@ -206,12 +205,10 @@ Checked check(Sources &sources, SourceId root, const std::string &root_identity,
         m.identity = root_identity;
         m.name = sources[root].name;
         m.source = root;
-        ev.asts.push_back(lang::parse(sources, root, diagnostics));
-        m.ast = &ev.asts.back();
-        const lang::Ast &ast = *m.ast;
+        m.ast = &parse_file(ev, root, diagnostics);
+        const File &ast = *m.ast;
         m.frame = push_frame(ev, ev.prelude_frame);
-        ev.frames[m.frame].is_module = true;
-        ev.frames[m.frame].captured = true;
+        make_module_frame(ev, m.frame);
         ev.modules.push_back(m);
         auto module = static_cast<std::uint32_t>(ev.modules.size() - 1);
         ev.importing.push_back(module);

@@ -32,11 +32,7 @@ bool known_type(const lang::TypeExpr &type) {
             if (!known_type(item)) return false;
         return true;
     }
-    for (const char *name :
-         {"float", "int", "bool", "string", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "color",
-          "shape", "shape2", "_shape", "material", "light", "region", "_field", "_any"})
-        if (type.name == name) return true;
-    return false;
+    return type.named != lang::TypeName::Unknown;
 }
 
 bool is_function(const Value &v) {
@@ -56,72 +52,108 @@ Value string_value(Evaluator &ev, std::string text) {
     return make_value(ValueKind::String, static_cast<std::uint32_t>(ev.strings.size() - 1));
 }
 
-static int vector_size_of(const std::string &name) {
-    return name == "vec2" ? 2 : name == "vec3" ? 3 : name == "vec4" ? 4 : 0;
-}
-
 // A list of numbers as a vector; everything else as it is.
 static Value vector_of_list(Evaluator &ev, const Value &v) {
     if (v.kind != ValueKind::List) return v;
+    if (ev.lists[v.id].size() < 2 || ev.lists[v.id].size() > 4) return v;
     const std::vector<Value> items = ev.lists[v.id];
-    if (items.size() < 2 || items.size() > 4) return v;
     for (const Value &item : items)
         if (!is_scalar(ev, item)) return v;
     return make_vector(ev, items, static_cast<int>(items.size()), {});
 }
 
+static std::optional<Value> as_shape(Evaluator &ev, const Value &v, const lang::TypeExpr &type) {
+    if (v.kind != ValueKind::Shape) return std::nullopt;
+    if (type.named == lang::TypeName::Shape && v.size != 3) return std::nullopt;
+    if (type.named == lang::TypeName::Shape2 && v.size != 2) return std::nullopt;
+    if (!type.lipschitz) return v;
+    ir::Shape contract;
+    contract.kind = ir::ShapeKind::Contract;
+    contract.dims = v.size;
+    contract.payload = static_cast<std::uint32_t>(ev.scene.shapes.contracts.size());
+    contract.children = {shape_of(v)};
+    contract.origin = ev.scene.shapes[shape_of(v)].origin;
+    ev.scene.shapes.contracts.push_back({*type.lipschitz, type.span});
+    return shape_value(ev.scene.shapes.add(std::move(contract)), v.size);
+}
+
+static std::optional<Value> as_color(Evaluator &ev, Value v, Type t) {
+    if (t == Type::Vec4) v = swizzle(ev, v, "xyz", {}), t = Type::Vec3;
+    if (t == Type::Int || t == Type::Float)
+        v = make_vector(ev, {to_float(ev, v)}, 3, {}), t = Type::Vec3;
+    if (t != Type::Vec3) return std::nullopt;
+    v.color = true;
+    return v;
+}
+
+static std::optional<Value> as_vector(Evaluator &ev, const Value &v, Type t, int size) {
+    if (t == Type::Int || t == Type::Float) return make_vector(ev, {to_float(ev, v)}, size, {});
+    if (v.color && size == 4) return make_vector(ev, {v, number(1)}, 4, {});
+    return t == ir::vector_type(size) ? std::optional(v) : std::nullopt;
+}
+
 static std::optional<Value> as_named(Evaluator &ev, const Value &raw, const lang::TypeExpr &type) {
-    const std::string &name = type.name;
-    if (name == "_any") return raw;
-    if (name == "shape" || name == "shape2" || name == "_shape") {
-        if (raw.kind != ValueKind::Shape) return std::nullopt;
-        if (name == "shape" && raw.size != 3) return std::nullopt;
-        if (name == "shape2" && raw.size != 2) return std::nullopt;
-        if (!type.lipschitz) return raw;
-        ir::Shape contract;
-        contract.kind = ir::ShapeKind::Contract;
-        contract.dims = raw.size;
-        contract.payload = static_cast<std::uint32_t>(ev.scene.shapes.contracts.size());
-        contract.children = {shape_of(raw)};
-        contract.origin = ev.scene.shapes[shape_of(raw)].origin;
-        ev.scene.shapes.contracts.push_back({*type.lipschitz, type.span});
-        return shape_value(ev.scene.shapes.add(std::move(contract)), raw.size);
+    using lang::TypeName;
+    const auto only_if = [](bool fits, const Value &v) {
+        return fits ? std::optional(v) : std::nullopt;
+    };
+    switch (type.named) {
+    case TypeName::Unknown: return std::nullopt;
+    case TypeName::Any: return raw;
+    case TypeName::Shape:
+    case TypeName::Shape2:
+    case TypeName::AnyShape: return as_shape(ev, raw, type);
+    case TypeName::String: return only_if(raw.kind == ValueKind::String, raw);
+    case TypeName::Region: return only_if(raw.kind == ValueKind::Region, raw);
+    case TypeName::Light: return only_if(raw.kind == ValueKind::Setting, raw);
+    case TypeName::Material:
+        return only_if(raw.kind == ValueKind::Material || is_function(raw) ||
+                           (is_numeric(raw) && (raw.color || numeric_type(ev, raw) == Type::Vec3)),
+                       raw);
+    case TypeName::AnyField:
+        if (is_function(raw)) return raw;
+        break;
+    case TypeName::Float:
+    case TypeName::Int:
+    case TypeName::Bool:
+    case TypeName::Vec2:
+    case TypeName::Vec3:
+    case TypeName::Vec4:
+    case TypeName::Mat2:
+    case TypeName::Mat3:
+    case TypeName::Mat4:
+    case TypeName::Color: break;
     }
-    if (name == "string") return raw.kind == ValueKind::String ? std::optional(raw) : std::nullopt;
-    if (name == "region") return raw.kind == ValueKind::Region ? std::optional(raw) : std::nullopt;
-    if (name == "light") return raw.kind == ValueKind::Setting ? std::optional(raw) : std::nullopt;
-    if (name == "_field" && is_function(raw)) return raw;
-    if (name == "material") {
-        if (raw.kind == ValueKind::Material || is_function(raw)) return raw;
-        if (is_numeric(raw) && (raw.color || numeric_type(ev, raw) == Type::Vec3)) return raw;
-        return std::nullopt;
-    }
-    Value v = vector_of_list(ev, raw);
+    const Value v = vector_of_list(ev, raw);
     if (!is_numeric(v)) return std::nullopt;
-    Type t = numeric_type(ev, v);
-    if (name == "_field") return v;
-    if (name == "bool") return t == Type::Bool ? std::optional(v) : std::nullopt;
-    if (t == Type::Bool) return std::nullopt;
-    if (name == "int") return t == Type::Int ? std::optional(v) : std::nullopt;
-    if (name == "float") {
-        if (t == Type::Float) return v;
-        return t == Type::Int ? std::optional(to_float(ev, v)) : std::nullopt;
+    const Type t = numeric_type(ev, v);
+    if (type.named == TypeName::AnyField) return v;
+    if (type.named == TypeName::Bool || t == Type::Bool)
+        return only_if(type.named == TypeName::Bool && t == Type::Bool, v);
+    switch (type.named) {
+    case TypeName::Int: return only_if(t == Type::Int, v);
+    case TypeName::Float:
+        if (t == Type::Int) return to_float(ev, v);
+        return only_if(t == Type::Float, v);
+    case TypeName::Color: return as_color(ev, v, t);
+    case TypeName::Vec2: return as_vector(ev, v, t, 2);
+    case TypeName::Vec3: return as_vector(ev, v, t, 3);
+    case TypeName::Vec4: return as_vector(ev, v, t, 4);
+    case TypeName::Mat2: return only_if(t == Type::Mat2, v);
+    case TypeName::Mat3: return only_if(t == Type::Mat3, v);
+    case TypeName::Mat4: return only_if(t == Type::Mat4, v);
+    case TypeName::Unknown:
+    case TypeName::Bool:
+    case TypeName::String:
+    case TypeName::Shape:
+    case TypeName::Shape2:
+    case TypeName::Material:
+    case TypeName::Light:
+    case TypeName::Region:
+    case TypeName::AnyShape:
+    case TypeName::AnyField:
+    case TypeName::Any: break;
     }
-    if (name == "color") {
-        if (t == Type::Vec4) v = swizzle(ev, v, "xyz", {}), t = Type::Vec3;
-        if (t == Type::Int || t == Type::Float)
-            v = make_vector(ev, {to_float(ev, v)}, 3, {}), t = Type::Vec3;
-        if (t != Type::Vec3) return std::nullopt;
-        v.color = true;
-        return v;
-    }
-    if (int size = vector_size_of(name)) {
-        if (t == Type::Int || t == Type::Float) return make_vector(ev, {to_float(ev, v)}, size, {});
-        if (v.color && size == 4) return make_vector(ev, {v, number(1)}, 4, {});
-        return t == ir::vector_type(size) ? std::optional(v) : std::nullopt;
-    }
-    if (name == "mat2" || name == "mat3" || name == "mat4")
-        return t == ir::matrix_type(name[3] - '0') ? std::optional(v) : std::nullopt;
     return std::nullopt;
 }
 
@@ -170,8 +202,8 @@ bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type) {
     return ok;
 }
 
-Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place,
-              const std::string &what, bool &ok) {
+Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place, What what,
+              bool &ok) {
     if (auto converted = as_type(ev, v, type)) return *converted;
     ok = false;
     Diagnostic &d =
@@ -179,40 +211,38 @@ Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span pl
                fmt::format("{} wants a `{}`, this is {}", what, type_text(type), describe(ev, v)));
     if (!is_library_place(ev, type.span) && !(type.span == place))
         d.label(type.span, "because of this type");
-    if (type.kind == lang::TypeExpr::Kind::Name && type.name == "shape" &&
+    if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Shape &&
         v.kind == ValueKind::Shape && v.size == 2)
         d.help("make it solid with `.extrude(height)` or `.revolve()`");
-    if (type.kind == lang::TypeExpr::Kind::Name && type.name == "int" && is_numeric(v))
+    if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Int &&
+        is_numeric(v))
         d.help("`int(x)` cuts the fraction off");
     return poison();
 }
 
 // -- what builtins ask of their arguments --------------------------------------------------------
 
-static void want(Evaluator &ev, const Value &v, Span place, const std::string &what,
-                 const std::string &wanted) {
+static void want(Evaluator &ev, const Value &v, Span place, What what, const std::string &wanted) {
     if (is_poison(v)) return;
     report(ev, Code::TypeMismatch, place,
            fmt::format("{} wants {}, this is {}", what, wanted, describe(ev, v)));
 }
 
-std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place,
-                                        const std::string &what) {
+std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what) {
     if (!is_scalar(ev, v)) {
         want(ev, v, place, what, "a number");
         return std::nullopt;
     }
-    auto known = element_as_known(ev, v, place, what.c_str());
+    auto known = element_as_known(ev, v, place, what);
     return known ? std::optional(known->num[0]) : std::nullopt;
 }
 
-std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place,
-                                  const std::string &what) {
+std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, What what) {
     if (!is_scalar(ev, v)) {
         want(ev, v, place, what, "a whole number");
         return std::nullopt;
     }
-    auto known = element_as_known(ev, v, place, what.c_str());
+    auto known = element_as_known(ev, v, place, what);
     if (!known) return std::nullopt;
     if (known->num[0] != std::floor(known->num[0]) || std::abs(known->num[0]) > 2147483647.0) {
         report(ev, Code::TypeMismatch, place,
@@ -222,32 +252,29 @@ std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place,
     return static_cast<int>(known->num[0]);
 }
 
-std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place,
-                                    const std::string &what) {
+std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, What what) {
     if (!is_numeric(v) || numeric_type(ev, v) != Type::Bool) {
         want(ev, v, place, what, "a bool (a comparison, `true` or `false`)");
         return std::nullopt;
     }
-    auto known = element_as_known(ev, v, place, what.c_str());
+    auto known = element_as_known(ev, v, place, what);
     return known ? std::optional(known->num[0] != 0) : std::nullopt;
 }
 
-std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place,
-                                       const std::string &what) {
+std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place, What what) {
     if (v.kind == ValueKind::String) return ev.strings[v.id];
     want(ev, v, place, what, "a string");
     return std::nullopt;
 }
 
-std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place,
-                                           const std::string &what) {
+std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what) {
     if (is_scalar(ev, v)) return to_node(ev, to_float(ev, v));
     want(ev, v, place, what, "a number");
     return std::nullopt;
 }
 
 std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int size, Span place,
-                                        const std::string &what) {
+                                        What what) {
     Value v = vector_of_list(ev, raw);
     if (is_numeric(v)) {
         Type t = numeric_type(ev, v);
@@ -259,17 +286,16 @@ std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int siz
     return std::nullopt;
 }
 
-std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place,
-                                          const std::string &what) {
-    lang::TypeExpr type;
-    type.name = "color";
-    if (auto c = as_named(ev, v, type); c && !is_poison(*c)) return to_node(ev, *c);
+std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, What what) {
+    const Value c = vector_of_list(ev, v);
+    if (is_numeric(c) && numeric_type(ev, c) != Type::Bool)
+        if (auto color = as_color(ev, c, numeric_type(ev, c))) return to_node(ev, *color);
     want(ev, v, place, what, "a color");
     return std::nullopt;
 }
 
-std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place,
-                                      const std::string &what, int dims) {
+std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place, What what,
+                                      int dims) {
     if (v.kind == ValueKind::Shape && (dims == 0 || v.size == dims)) return shape_of(v);
     if (v.kind == ValueKind::Shape && dims == 3) {
         report(ev, Code::FlatShape, place,
@@ -281,8 +307,7 @@ std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place,
     return std::nullopt;
 }
 
-std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place,
-                                            const std::string &what) {
+std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place, What what) {
     if (v.kind == ValueKind::List) return ev.lists[v.id];
     if (v.kind == ValueKind::Range || (is_numeric(v) && ir::is_vector(numeric_type(ev, v))))
         return sequence_items(ev, v, place);
@@ -291,7 +316,7 @@ std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span 
 }
 
 std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &v, Span place,
-                                                    const std::string &what, int &dims) {
+                                                    What what, int &dims) {
     if (is_poison(v)) return std::nullopt;
     std::vector<Value> items;
     if (v.kind == ValueKind::Shape)
@@ -326,8 +351,7 @@ std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &
     return shapes;
 }
 
-std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place,
-                                      const std::string &what) {
+std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place, What what) {
     if (v.kind == ValueKind::Region) return ev.regions[v.id];
     want(ev, v, place, what,
          "a region: `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or `everywhere`");

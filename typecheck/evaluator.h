@@ -9,17 +9,52 @@
 #include "typecheck/check.h"
 #include "typecheck/value.h"
 
+#include <fmt/format.h>
+
 #include <deque>
 #include <map>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
 namespace fathom::typecheck {
 
 struct Evaluator;
+
+// A name, as a number: the builtins' first, in the order of their table.
 using Symbol = std::uint32_t;
+
+// What an error calls a value: `text`, or "`name`", or "`name` of `of`". Put into words only when
+// one is reported; views what the caller holds.
+struct What {
+    std::string_view text, name, of;
+    What(const char *words) : text(words) {}
+    What(const std::string &words) : text(words) {}
+    What(std::string_view name, std::string_view of) : name(name), of(of) {}
+};
+inline What quoted(std::string_view name, std::string_view of = {}) { return {name, of}; }
+
+// What a call needs to know of a parameter, of a closure's and of a builtin's alike.
+struct Formal {
+    Symbol symbol = 0;
+    std::string_view name;
+    bool optional = false;
+    bool takes_rest = false; // the last one, of type [shape], or a builtin's of any number
+    bool opens_list = true;  // a single list among the rest is the rest
+    bool is_angle = false;   // in radians, so that a plain literal beyond a turn looks like degrees
+    Span declared;
+};
+
+// A file: its tree, and beside it what the evaluator found out about it once.
+struct File : lang::Ast {
+    std::size_t place = 0;                                   // in Evaluator::files
+    std::vector<Symbol> symbols;                             // by word
+    std::vector<std::optional<std::vector<Formal>>> formals; // by function
+};
 
 struct Binding {
     Symbol name = 0;
@@ -28,17 +63,17 @@ struct Binding {
     Span declared;
 };
 
-// Names of one block, function call or module. Small ones are searched; `index` serves the large.
+// Names of one block, function call or module. Blocks have few, which are searched; modules have an
+// index.
 struct Frame {
     std::uint32_t parent = 0; // itself for the outermost
     std::vector<Binding> bindings;
-    std::unordered_map<Symbol, std::uint32_t> index; // used by modules only
-    bool is_module = false;
-    bool captured = false; // a closure refers to it
+    std::unique_ptr<std::unordered_map<Symbol, std::uint32_t>> index; // of a module
+    bool captured = false;                                            // a closure refers to it
 };
 
 struct Closure {
-    const lang::Ast *ast = nullptr;
+    const File *ast = nullptr;
     lang::FunctionId function;
     std::uint32_t frame = 0; // where it was made
     std::uint32_t module = 0;
@@ -46,10 +81,16 @@ struct Closure {
     bool library = false;
 };
 
+// A declaration of the prelude, whose text is read when its name is first asked for.
+struct LibraryItem {
+    std::uint32_t module = 0;
+    std::uint32_t begin = 0, end = 0; // in the module's text
+};
+
 struct Module {
     std::string identity, name;
     SourceId source;
-    const lang::Ast *ast = nullptr;
+    const File *ast = nullptr;
     std::uint32_t frame = 0;
     bool library = false;
     bool loaded = false;
@@ -68,7 +109,7 @@ struct Setting {
 
 // One call as a builtin sees it: where things stand, for its errors.
 struct CallSite {
-    std::string name;
+    std::string_view name;
     Span call;
     Span callee;
     std::vector<Span> args; // one per parameter; of the call where the argument was left out
@@ -109,10 +150,21 @@ struct JournalEntry {
 // Calls in progress, for errors inside the library (shown at the user's call) and for the notes of
 // others.
 struct ActiveCall {
-    std::string name;
+    std::string_view name;
     Span call;
     bool library = false; // the callee is the library's
     std::uint32_t module = 0;
+};
+
+struct HashOfWords {
+    std::size_t operator()(const std::vector<std::uint64_t> &words) const {
+        std::uint64_t h = words.size();
+        for (std::uint64_t word : words) {
+            h = (h ^ word) * 0x9e3779b97f4a7c15ull;
+            h ^= h >> 29;
+        }
+        return h;
+    }
 };
 
 struct Specialization {
@@ -131,13 +183,15 @@ struct Evaluator {
     // names
     std::unordered_map<std::string, Symbol> symbols{};
     std::vector<std::string> symbol_names{};
-    std::deque<lang::Ast> asts{};
-    std::vector<Frame> frames{};
+    std::deque<File> files{};
+    std::vector<Frame> frames{}; // the first `frame_count`; the rest keep their storage
+    std::uint32_t frame_count = 0;
+    std::vector<std::optional<std::vector<Formal>>> builtin_formals{};
     std::uint32_t prelude_frame = 0;
+    std::unordered_map<Symbol, std::vector<LibraryItem>> prelude_items{}; // not yet read
     std::vector<Module> modules{};
     std::uint32_t current_module = 0;
     std::vector<std::uint32_t> importing{}; // modules being loaded, for cycles
-    std::unordered_map<std::string, std::uint32_t> builtin_index{};
 
     // values
     std::vector<std::string> strings{};
@@ -160,7 +214,8 @@ struct Evaluator {
     std::size_t list_elements = 0;
     bool out_of_budget = false;
     std::map<std::vector<std::uint64_t>, Specialization> specializations{};
-    std::map<std::pair<const lang::Ast *, std::uint32_t>, bool>
+    std::unordered_map<std::vector<std::uint64_t>, Value, HashOfWords> remembered{};
+    std::map<std::pair<const File *, std::uint32_t>, bool>
         never_specialize{}; // functions seen to give no number
     std::map<std::string, std::uint32_t>
         interned_records{};                // libraries, regions, materials by content
@@ -175,22 +230,30 @@ constexpr int max_depth = 40000; // nested evaluations; the stack is sized for i
 constexpr std::size_t max_evaluations = 20'000'000;
 constexpr std::size_t max_list_elements = 10'000'000;
 constexpr int max_unrolled = 4096;
+constexpr std::size_t max_remembered = 100'000; // calls of the library
 constexpr int max_fold_turns = 100'000;
 
 // -- names.cpp
 Symbol intern(Evaluator &ev, const std::string &text);
 std::uint32_t push_frame(Evaluator &ev, std::uint32_t parent);
 void pop_frame(Evaluator &ev, std::uint32_t frame);
-void declare(Evaluator &ev, std::uint32_t frame, const std::string &name, Value value, bool is_var,
-             Span place);
+void declare(Evaluator &ev, std::uint32_t frame, Symbol name, Value value, bool is_var, Span place);
 struct Found {
     std::uint32_t frame = 0, slot = 0;
 };
-std::optional<Found> find_name(Evaluator &ev, std::uint32_t frame, const std::string &name);
-std::optional<Value> look_up(Evaluator &ev, std::uint32_t frame, const std::string &name);
+std::optional<Found> find_name(Evaluator &ev, std::uint32_t frame, Symbol name);
+std::optional<Value> look_up(Evaluator &ev, std::uint32_t frame, Symbol name);
+std::optional<std::uint32_t> slot_in_module(Evaluator &ev, std::uint32_t frame, Symbol name);
+bool is_builtin(Symbol name);
+inline Symbol symbol_of(const File &file, const lang::Identifier &name) {
+    return file.symbols[name.word];
+}
+inline Symbol symbol_of(const File &file, const lang::Name &name) {
+    return file.symbols[name.word];
+}
 std::vector<std::string> visible_names(Evaluator &ev, std::uint32_t frame);
 void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place);
-void check_names(Evaluator &ev, const lang::Ast &ast, std::uint32_t module_frame);
+void check_names(Evaluator &ev, const File &ast, std::uint32_t module_frame);
 
 // -- report.cpp
 Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message);
@@ -208,7 +271,7 @@ ir::NodeId to_node(Evaluator &ev, const Value &v);   // of a numeric value
 Value from_node(Evaluator &ev, ir::NodeId node,
                 bool color = false); // constants come back as known numbers
 Value apply_op(Evaluator &ev, ir::Op op, std::vector<Value> args, Span place,
-               const std::string &name);
+               std::string_view name);
 Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &a, const Value &b, Span place,
                  Span a_place, Span b_place);
 Value negate(Evaluator &ev, const Value &v, Span place);
@@ -221,46 +284,37 @@ Value swizzle(Evaluator &ev, const Value &v, const std::string &letters, Span pl
 std::optional<std::vector<int>> swizzle_indices(const std::string &letters, int size);
 Value make_vector(Evaluator &ev, const std::vector<Value> &parts, int size, Span place);
 std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place,
-                                      const char *what); // scene time demanded
+                                      What what); // scene time demanded
 Value to_float(Evaluator &ev, const Value &v);
 
 // -- convert.cpp: types as written, and conversions
-Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place,
-              const std::string &what, bool &ok);
+Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place, What what,
+              bool &ok);
 bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type);
 std::string type_text(const lang::TypeExpr &type);
 bool known_type(const lang::TypeExpr &type);
-std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place,
-                                        const std::string &what);
-std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place,
-                                  const std::string &what);
-std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place,
-                                    const std::string &what);
-std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place,
-                                       const std::string &what);
-std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place,
-                                           const std::string &what);
+std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what);
+std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, What what);
+std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, What what);
+std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place, What what);
+std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what);
 std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &v, int size, Span place,
-                                        const std::string &what);
-std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place,
-                                          const std::string &what);
-std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place,
-                                      const std::string &what, int dims = 0);
-std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place,
-                                            const std::string &what);
+                                        What what);
+std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, What what);
+std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place, What what,
+                                      int dims = 0);
+std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place, What what);
 std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &v, Span place,
-                                                    const std::string &what, int &dims);
-std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place,
-                                      const std::string &what);
-std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span place,
-                                          const std::string &what);
+                                                    What what, int &dims);
+std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place, What what);
+std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span place, What what);
 Value list_value(Evaluator &ev, std::vector<Value> items);
 Value string_value(Evaluator &ev, std::string text);
 bool is_function(const Value &v);
 
 // -- expressions.cpp, statements.cpp
-Value eval(Evaluator &ev, const lang::Ast &ast, lang::ExprId expr, std::uint32_t frame);
-Outcome run_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block,
+Value eval(Evaluator &ev, const File &ast, lang::ExprId expr, std::uint32_t frame);
+Outcome run_block(Evaluator &ev, const File &ast, lang::BlockId block,
                   std::uint32_t frame); // as an expression
 struct Contribution {
     Value value;
@@ -268,21 +322,21 @@ struct Contribution {
 };
 // Every expression of the block contributes; true where a `break` ended it. The frame is already
 // pushed.
-bool contribute_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame,
+bool contribute_block(Evaluator &ev, const File &ast, lang::BlockId block, std::uint32_t frame,
                       std::vector<Contribution> &out);
 // Statements that declare or act the same wherever they stand: let, var, assignment, fn. False for
 // all others.
-bool run_simple(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt, std::uint32_t frame);
-Outcome run_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::uint32_t frame,
+bool run_simple(Evaluator &ev, const File &ast, const lang::Stmt &stmt, std::uint32_t frame);
+Outcome run_if(Evaluator &ev, const File &ast, const lang::If &node, std::uint32_t frame,
                Span place);
-void hoist_functions(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame);
+void hoist_functions(Evaluator &ev, const File &ast, lang::BlockId block, std::uint32_t frame);
 std::optional<std::vector<Value>> sequence_items(Evaluator &ev, const Value &v, Span place);
 void assign(Evaluator &ev, std::uint32_t frame, std::uint32_t slot, Value value);
 
 // -- loops.cpp: loops over numbers that are not known
-Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std::uint32_t frame,
+Outcome run_for(Evaluator &ev, const File &ast, const lang::For &node, std::uint32_t frame,
                 Span place);
-Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, std::uint32_t frame,
+Outcome run_while(Evaluator &ev, const File &ast, const lang::While &node, std::uint32_t frame,
                   Span place);
 // Runs `rest` and keeps what it assigned only where `skip` is false.
 Exit run_unless(Evaluator &ev, const Value &skip, Span place, const std::function<Exit()> &rest);
@@ -301,17 +355,18 @@ std::vector<Change> journal_take(Evaluator &ev, JournalMark mark);
 
 // -- calls.cpp
 struct Argument {
-    std::optional<std::string> name;
+    const lang::Identifier *name = nullptr; // none: by its place
+    Symbol symbol = 0;                      // of the name
     Value value;
-    Span span, name_span;
+    Span span;
     bool trailing = false;      // the block behind the call: belongs to the last parameter
     bool plain_literal = false; // a number without a unit
 };
-Value call_value(Evaluator &ev, const Value &callee, const std::string &name,
-                 std::vector<Argument> args, Span call, Span callee_span);
+Value call_value(Evaluator &ev, const Value &callee, std::string_view name,
+                 std::span<const Argument> args, Span call, Span callee_span);
 Value call_with(Evaluator &ev, const Value &callee, const std::vector<Value> &args,
                 Span place); // positional
-Value eval_call(Evaluator &ev, const lang::Ast &ast, lang::ExprId expr, const lang::Call &call,
+Value eval_call(Evaluator &ev, const File &ast, lang::ExprId expr, const lang::Call &call,
                 std::uint32_t frame);
 int parameter_count(Evaluator &ev, const Value &function); // -1: any
 
@@ -326,8 +381,7 @@ std::uint32_t intern_material(Evaluator &ev,
 // The field as an expression of `point` (and `normal`), a graph node of one of `types`.
 std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field,
                                       const std::vector<ir::NodeId> &inputs, ir::Type result,
-                                      Span place, const std::string &what,
-                                      bool *is_color = nullptr);
+                                      Span place, What what, bool *is_color = nullptr);
 
 // -- builtins: one table of all that the language itself cannot say
 const std::vector<Builtin> &builtins();
@@ -346,9 +400,20 @@ ir::ShapeId unite(Evaluator &ev, std::vector<ir::ShapeId> shapes, int dims, Span
 // -- modules.cpp
 Value import_module(Evaluator &ev, const lang::Import &import, Span place, std::uint32_t importer);
 void load_prelude(Evaluator &ev);
-void declare_param(Evaluator &ev, const lang::Ast &ast, const lang::Param &param,
-                   std::uint32_t frame);
+void read_prelude_items(Evaluator &ev, Symbol name); // declares what the library has of this name
+void make_module_frame(Evaluator &ev, std::uint32_t frame);
+const File &parse_file(Evaluator &ev, SourceId source, Diagnostics &diagnostics);
+void declare_param(Evaluator &ev, const File &ast, const lang::Param &param, std::uint32_t frame);
 // Every module's file: declares its names, in its frame, and gathers what it contributes.
 void run_module(Evaluator &ev, std::uint32_t module, std::vector<Contribution> &out);
 
 } // namespace fathom::typecheck
+
+template <> struct fmt::formatter<fathom::typecheck::What> : fmt::formatter<std::string_view> {
+    template <typename Context>
+    auto format(const fathom::typecheck::What &what, Context &context) const {
+        if (!what.text.empty()) return fmt::format_to(context.out(), "{}", what.text);
+        if (what.of.empty()) return fmt::format_to(context.out(), "`{}`", what.name);
+        return fmt::format_to(context.out(), "`{}` of `{}`", what.name, what.of);
+    }
+};

@@ -15,13 +15,14 @@ static double linear_of_srgb(double c) {
     return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-static Value eval_name(Evaluator &ev, const lang::Name &name, Span place, std::uint32_t frame) {
-    if (auto v = look_up(ev, frame, name.text)) return *v;
+static Value eval_name(Evaluator &ev, const File &ast, const lang::Name &name, Span place,
+                       std::uint32_t frame) {
+    if (auto v = look_up(ev, frame, symbol_of(ast, name))) return *v;
     report_unknown_name(ev, frame, name.text, place);
     return poison();
 }
 
-static Value eval_list(Evaluator &ev, const lang::Ast &ast, const lang::List &list,
+static Value eval_list(Evaluator &ev, const File &ast, const lang::List &list,
                        std::uint32_t frame) {
     std::vector<Value> items;
     items.reserve(list.items.size());
@@ -37,7 +38,7 @@ static Value eval_list(Evaluator &ev, const lang::Ast &ast, const lang::List &li
     return list_value(ev, std::move(items));
 }
 
-static Value eval_range(Evaluator &ev, const lang::Ast &ast, const lang::Range &range,
+static Value eval_range(Evaluator &ev, const File &ast, const lang::Range &range,
                         std::uint32_t frame) {
     Value first = eval(ev, ast, range.first, frame), last = eval(ev, ast, range.last, frame);
     if (is_poison(first) || is_poison(last)) return poison();
@@ -96,7 +97,7 @@ static Value combine(Evaluator &ev, ir::ShapeKind kind, const std::vector<Value>
     return shape_value(ev.scene.shapes.add(std::move(s)), dims);
 }
 
-static Value eval_logic(Evaluator &ev, const lang::Ast &ast, const lang::Binary &b,
+static Value eval_logic(Evaluator &ev, const File &ast, const lang::Binary &b,
                         std::uint32_t frame) {
     bool is_and = b.ops[0] == lang::BinaryOp::And;
     Value total = boolean(is_and);
@@ -116,7 +117,7 @@ static Value eval_logic(Evaluator &ev, const lang::Ast &ast, const lang::Binary 
     return total;
 }
 
-static Value eval_binary(Evaluator &ev, const lang::Ast &ast, const lang::Binary &b, Span place,
+static Value eval_binary(Evaluator &ev, const File &ast, const lang::Binary &b, Span place,
                          std::uint32_t frame) {
     using lang::BinaryOp;
     if (b.ops[0] == BinaryOp::And || b.ops[0] == BinaryOp::Or) return eval_logic(ev, ast, b, frame);
@@ -165,7 +166,7 @@ static Value eval_binary(Evaluator &ev, const lang::Ast &ast, const lang::Binary
     return total;
 }
 
-static Value eval_index(Evaluator &ev, const lang::Ast &ast, const lang::Index &node, Span place,
+static Value eval_index(Evaluator &ev, const File &ast, const lang::Index &node, Span place,
                         std::uint32_t frame) {
     Value object = eval(ev, ast, node.object, frame), index = eval(ev, ast, node.index, frame);
     if (is_poison(object) || is_poison(index)) return poison();
@@ -274,7 +275,7 @@ static Value eval_index(Evaluator &ev, const lang::Ast &ast, const lang::Index &
     return out;
 }
 
-static Value eval_member(Evaluator &ev, const lang::Ast &ast, const lang::Member &m, Span place,
+static Value eval_member(Evaluator &ev, const File &ast, const lang::Member &m, Span place,
                          std::uint32_t frame) {
     Value object = eval(ev, ast, m.object, frame);
     if (is_poison(object)) return object;
@@ -287,8 +288,8 @@ static Value eval_member(Evaluator &ev, const lang::Ast &ast, const lang::Member
             return poison();
         }
         const Frame &f = ev.frames[module.frame];
-        auto it = f.index.find(intern(ev, m.name.text));
-        if (it != f.index.end()) return ev.frames[module.frame].bindings[it->second].value;
+        if (auto slot = slot_in_module(ev, module.frame, symbol_of(ast, m.name)))
+            return f.bindings[*slot].value;
         report(ev, Code::UnknownMember, m.name.span,
                fmt::format("`{}` declares no `{}`", module.name, m.name.text));
         return poison();
@@ -301,9 +302,11 @@ static Value eval_member(Evaluator &ev, const lang::Ast &ast, const lang::Member
     if (is_numeric(object) && ir::is_vector(numeric_type(ev, object)) &&
         swizzle_indices(m.name.text, ir::components(numeric_type(ev, object))))
         return swizzle(ev, object, m.name.text, m.name.span);
-    if (auto f = look_up(ev, frame, m.name.text); f && is_function(*f)) {
-        Argument self{{}, object, ast.exprs[m.object].span, {}};
-        return call_value(ev, *f, m.name.text, {self}, place, m.name.span);
+    if (auto f = look_up(ev, frame, symbol_of(ast, m.name)); f && is_function(*f)) {
+        Argument self;
+        self.value = object;
+        self.span = ast.exprs[m.object].span;
+        return call_value(ev, *f, m.name.text, {&self, 1}, place, m.name.span);
     }
     if (is_numeric(object)) return swizzle(ev, object, m.name.text, m.name.span);
     report(ev, Code::UnknownMember, m.name.span,
@@ -311,7 +314,7 @@ static Value eval_member(Evaluator &ev, const lang::Ast &ast, const lang::Member
     return poison();
 }
 
-static Value make_closure(Evaluator &ev, const lang::Ast &ast, lang::FunctionId function,
+static Value make_closure(Evaluator &ev, const File &ast, lang::FunctionId function,
                           std::uint32_t frame) {
     Closure c;
     c.ast = &ast;
@@ -329,7 +332,7 @@ static Value make_closure(Evaluator &ev, const lang::Ast &ast, lang::FunctionId 
     return make_value(ValueKind::Closure, static_cast<std::uint32_t>(ev.closures.size() - 1));
 }
 
-static Value eval_unary(Evaluator &ev, const lang::Ast &ast, const lang::Unary &u, Span place,
+static Value eval_unary(Evaluator &ev, const File &ast, const lang::Unary &u, Span place,
                         std::uint32_t frame) {
     Value v = eval(ev, ast, u.operand, frame);
     if (is_poison(v)) return v;
@@ -350,17 +353,17 @@ static Value eval_unary(Evaluator &ev, const lang::Ast &ast, const lang::Unary &
     return negate(ev, v, place);
 }
 
-static Value eval_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node, Span place,
+static Value eval_if(Evaluator &ev, const File &ast, const lang::If &node, Span place,
                      std::uint32_t frame) {
     Outcome out = run_if(ev, ast, node, frame, place);
     return out.value;
 }
 
-static Value eval_kind(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, std::uint32_t frame) {
+static Value eval_kind(Evaluator &ev, const File &ast, lang::ExprId id, std::uint32_t frame) {
     const lang::Expr &e = ast.exprs[id];
     struct Visit {
         Evaluator &ev;
-        const lang::Ast &ast;
+        const File &ast;
         lang::ExprId id;
         std::uint32_t frame;
         Span span;
@@ -380,7 +383,7 @@ static Value eval_kind(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, std
             return color(linear_of_srgb(c.rgba[0]), linear_of_srgb(c.rgba[1]),
                          linear_of_srgb(c.rgba[2]));
         }
-        Value operator()(const lang::Name &n) { return eval_name(ev, n, span, frame); }
+        Value operator()(const lang::Name &n) { return eval_name(ev, ast, n, span, frame); }
         Value operator()(const lang::List &l) { return eval_list(ev, ast, l, frame); }
         Value operator()(const lang::Comprehension &c) {
             std::vector<Contribution> items;
@@ -406,7 +409,7 @@ static Value eval_kind(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, std
     return std::visit(Visit{ev, ast, id, frame, e.span}, e.kind);
 }
 
-Value eval(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, std::uint32_t frame) {
+Value eval(Evaluator &ev, const File &ast, lang::ExprId id, std::uint32_t frame) {
     if (!spend(ev, ast.exprs[id].span)) return poison();
     if (ev.depth >= max_depth) {
         report(ev, Code::RecursionLimit, ast.exprs[id].span, "this nests too deep to be evaluated");
@@ -418,8 +421,7 @@ Value eval(Evaluator &ev, const lang::Ast &ast, lang::ExprId id, std::uint32_t f
     return v;
 }
 
-void hoist_functions(Evaluator &ev, const lang::Ast &ast, lang::BlockId block,
-                     std::uint32_t frame) {
+void hoist_functions(Evaluator &ev, const File &ast, lang::BlockId block, std::uint32_t frame) {
     for (const lang::Stmt &s : ast.blocks[block].stmts)
         if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind)) {
             const lang::Function &fn = ast.functions[f->function];
@@ -427,22 +429,22 @@ void hoist_functions(Evaluator &ev, const lang::Ast &ast, lang::BlockId block,
             Value closure = make_closure(ev, ast, f->function, frame);
             bool library = ev.modules[ev.current_module].library;
             // the library overloads by parameter type
-            if (library && ev.frames[frame].is_module) {
+            const Symbol name = symbol_of(ast, *fn.name);
+            if (library && ev.frames[frame].index) {
                 Frame &fr = ev.frames[frame];
-                auto it = fr.index.find(intern(ev, fn.name->text));
-                if (it != fr.index.end()) {
-                    Value old = fr.bindings[it->second].value;
+                if (auto slot = slot_in_module(ev, frame, name)) {
+                    Value old = fr.bindings[*slot].value;
                     std::vector<Value> all = old.kind == ValueKind::Overloads
                                                  ? ev.lists[old.id]
                                                  : std::vector<Value>{old};
                     all.push_back(closure);
                     Value overloads =
                         make_value(ValueKind::Overloads, list_value(ev, std::move(all)).id);
-                    ev.frames[frame].bindings[it->second].value = overloads;
+                    ev.frames[frame].bindings[*slot].value = overloads;
                     continue;
                 }
             }
-            declare(ev, frame, fn.name->text, closure, false, fn.name->span);
+            declare(ev, frame, name, closure, false, fn.name->span);
         }
 }
 

@@ -16,7 +16,7 @@ int parameter_count(Evaluator &ev, const Value &f) {
 
 std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field,
                                       const std::vector<ir::NodeId> &inputs, Type result,
-                                      Span place, const std::string &what, bool *is_color) {
+                                      Span place, What what, bool *is_color) {
     if (is_poison(field)) return std::nullopt;
     Value value;
     if (is_function(field)) {
@@ -65,8 +65,7 @@ std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field,
     return std::nullopt;
 }
 
-std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span place,
-                                          const std::string &what) {
+std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span place, What what) {
     if (v.kind == ValueKind::Material) return ev.materials[v.id];
     if (is_poison(v)) return std::nullopt;
     ir::Graph &g = ev.scene.graph;

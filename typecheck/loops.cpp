@@ -202,7 +202,7 @@ std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input,
 
 } // namespace
 
-Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std::uint32_t frame,
+Outcome run_for(Evaluator &ev, const File &ast, const lang::For &node, std::uint32_t frame,
                 Span place) {
     Outcome out;
     Value seq = eval(ev, ast, node.sequence, frame);
@@ -221,7 +221,7 @@ Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std:
     }
     auto turn = [&](const Value &item) {
         std::uint32_t inner = push_frame(ev, frame);
-        declare(ev, inner, node.variable.text, item, false, node.variable.span);
+        declare(ev, inner, symbol_of(ast, node.variable), item, false, node.variable.span);
         Outcome o = run_block(ev, ast, node.body, inner);
         pop_frame(ev, inner);
         if (o.value.kind == ValueKind::Shape)
@@ -295,7 +295,7 @@ Outcome run_for(Evaluator &ev, const lang::Ast &ast, const lang::For &node, std:
     return out;
 }
 
-Outcome run_while(Evaluator &ev, const lang::Ast &ast, const lang::While &node, std::uint32_t frame,
+Outcome run_while(Evaluator &ev, const File &ast, const lang::While &node, std::uint32_t frame,
                   Span place) {
     Outcome out;
     int limit = 1'000'000;

@@ -174,7 +174,7 @@ static Value css_color(std::uint32_t rgb) {
 
 static void declare_constants(Evaluator &ev) {
     auto let = [&](const char *name, Value v) {
-        declare(ev, ev.prelude_frame, name, std::move(v), false, {});
+        declare(ev, ev.prelude_frame, intern(ev, name), std::move(v), false, {});
     };
     let("pi", number(std::numbers::pi));
     let("tau", number(2 * std::numbers::pi));
@@ -206,51 +206,101 @@ const std::vector<Builtin> &builtins() {
 
 void run_module(Evaluator &ev, std::uint32_t module, std::vector<Contribution> &out) {
     std::uint32_t before = std::exchange(ev.current_module, module);
-    const lang::Ast &ast = *ev.modules[module].ast;
+    const File &ast = *ev.modules[module].ast;
     contribute_block(ev, ast, ast.root, ev.modules[module].frame, out);
     ev.current_module = before;
 }
 
+void make_module_frame(Evaluator &ev, std::uint32_t frame) {
+    ev.frames[frame].index = std::make_unique<std::unordered_map<Symbol, std::uint32_t>>();
+    ev.frames[frame].captured = true;
+}
+
+static const File &add_file(Evaluator &ev, lang::Ast ast) {
+    File &file = ev.files.emplace_back();
+    file.place = ev.files.size() - 1;
+    static_cast<lang::Ast &>(file) = std::move(ast);
+    for (const std::string &word : file.words) file.symbols.push_back(intern(ev, word));
+    file.formals.resize(file.functions.size());
+    return file;
+}
+
+const File &parse_file(Evaluator &ev, SourceId source, Diagnostics &diagnostics) {
+    return add_file(ev, lang::parse(ev.sources, source, diagnostics));
+}
+
 static std::uint32_t add_module(Evaluator &ev, Module m) {
     m.frame = push_frame(ev, ev.prelude_frame);
-    ev.frames[m.frame].is_module = true;
-    ev.frames[m.frame].captured = true;
+    make_module_frame(ev, m.frame);
     ev.modules.push_back(std::move(m));
     return static_cast<std::uint32_t>(ev.modules.size() - 1);
 }
 
-static std::uint32_t add_library_module(Evaluator &ev, const LibraryFile &file) {
+static Module library_module(Evaluator &ev, const LibraryFile &file) {
     Module m;
     m.identity = fmt::format("library:{}", file.name);
     m.name = std::string(file.name);
     m.source = ev.sources.add(std::string(file.name), std::string(file.text));
-    ev.asts.push_back(lang::parse(ev.sources, m.source, ev.diagnostics));
-    m.ast = &ev.asts.back();
     m.library = true;
-    return add_module(ev, std::move(m));
+    return m;
+}
+
+// Where each declaration of a prelude file stands. The library is written so that this is easy: all
+// of them begin a line with `fn ` or `let `, and nothing else does.
+static void find_items(Evaluator &ev, std::uint32_t module, std::string_view text) {
+    LibraryItem *open = nullptr;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::string_view line = text.substr(at);
+        const std::size_t word = line.starts_with("fn ") ? 3 : line.starts_with("let ") ? 4 : 0;
+        if (word > 0) {
+            const std::string_view rest = line.substr(word);
+            const std::string_view name = rest.substr(0, rest.find_first_of(" :=(\n"));
+            const auto begin = static_cast<std::uint32_t>(at);
+            if (open) open->end = begin;
+            auto &items = ev.prelude_items[intern(ev, std::string(name))];
+            open = &items.emplace_back(LibraryItem{module, begin, 0});
+        }
+        at = std::min(text.find('\n', at), text.size() - 1) + 1;
+    }
+    if (open) open->end = static_cast<std::uint32_t>(text.size());
+}
+
+void read_prelude_items(Evaluator &ev, Symbol name) {
+    const auto node = ev.prelude_items.extract(name);
+    if (node.empty()) return;
+    // what the library declares does not hang on who asks for it first
+    const int in_field = std::exchange(ev.in_field, 0);
+    const std::uint32_t before = ev.current_module;
+    for (const LibraryItem &item : node.mapped()) {
+        ev.current_module = item.module;
+        const File &file = add_file(ev, lang::parse_part(ev.sources, ev.modules[item.module].source,
+                                                         item.begin, item.end, ev.diagnostics));
+        std::vector<Contribution> dropped;
+        contribute_block(ev, file, file.root, ev.prelude_frame, dropped);
+    }
+    ev.current_module = before;
+    ev.in_field = in_field;
 }
 
 // All prelude files share one frame, the outermost, so that they see each other's private names.
 void load_prelude(Evaluator &ev) {
+    for (const Builtin &builtin : builtins()) intern(ev, builtin.name);
+    ev.builtin_formals.resize(builtins().size());
     ev.prelude_frame = push_frame(ev, 0);
-    ev.frames[0].is_module = true;
-    ev.frames[0].captured = true;
+    make_module_frame(ev, ev.prelude_frame);
     Module none;
     none.name = "prelude";
     none.library = true;
     ev.modules.push_back(none);
     declare_constants(ev);
-    for (std::size_t i = 0; i < builtins().size(); ++i)
-        ev.builtin_index[builtins()[i].name] = static_cast<std::uint32_t>(i);
-    std::vector<std::uint32_t> files;
     for (const LibraryFile &file : ev.library) {
         if (!file.prelude) continue;
-        files.push_back(add_library_module(ev, file));
-        ev.modules[files.back()].frame = ev.prelude_frame;
-        ev.modules[files.back()].loaded = true;
+        Module m = library_module(ev, file);
+        m.frame = ev.prelude_frame;
+        m.loaded = true;
+        ev.modules.push_back(std::move(m));
+        find_items(ev, static_cast<std::uint32_t>(ev.modules.size() - 1), file.text);
     }
-    std::vector<Contribution> dropped;
-    for (std::uint32_t file : files) run_module(ev, file, dropped);
 }
 
 // -- imports -------------------------------------------------------------------------------------
@@ -259,8 +309,8 @@ static Value bring(Evaluator &ev, const lang::Import &import, std::uint32_t modu
                    std::uint32_t importer) {
     std::uint32_t frame = ev.modules[importer].frame;
     if (import.as) {
-        declare(ev, frame, import.as->text, make_value(ValueKind::Module, module), false,
-                import.as->span);
+        declare(ev, frame, intern(ev, import.as->text), make_value(ValueKind::Module, module),
+                false, import.as->span);
         return unit();
     }
     std::vector<Binding> all = ev.frames[ev.modules[module].frame].bindings;
@@ -269,7 +319,7 @@ static Value bring(Evaluator &ev, const lang::Import &import, std::uint32_t modu
         if (name[0] == '_') continue;
         Frame &f = ev.frames[frame];
         auto [it, added] =
-            f.index.try_emplace(b.name, static_cast<std::uint32_t>(f.bindings.size()));
+            f.index->try_emplace(b.name, static_cast<std::uint32_t>(f.bindings.size()));
         if (added) {
             f.bindings.push_back({b.name, b.value, false, import.path_span});
             continue;
@@ -286,8 +336,8 @@ static Value bring(Evaluator &ev, const lang::Import &import, std::uint32_t modu
 static Value import_failed(Evaluator &ev, const lang::Import &import) {
     // the names it would have brought are unknown, so those that are asked of it stay quiet
     if (import.as)
-        declare(ev, ev.modules[ev.current_module].frame, import.as->text, poison(), false,
-                import.as->span);
+        declare(ev, ev.modules[ev.current_module].frame, intern(ev, import.as->text), poison(),
+                false, import.as->span);
     return poison();
 }
 
@@ -297,7 +347,9 @@ Value import_module(Evaluator &ev, const lang::Import &import, Span, std::uint32
         std::string identity = fmt::format("library:{}", file.name);
         for (std::uint32_t i = 0; i < ev.modules.size(); ++i)
             if (ev.modules[i].identity == identity) return bring(ev, import, i, importer);
-        std::uint32_t module = add_library_module(ev, file);
+        Module m = library_module(ev, file);
+        m.ast = &parse_file(ev, m.source, ev.diagnostics);
+        std::uint32_t module = add_module(ev, std::move(m));
         std::vector<Contribution> dropped;
         run_module(ev, module, dropped);
         ev.modules[module].loaded = true;
@@ -334,12 +386,11 @@ Value import_module(Evaluator &ev, const lang::Import &import, Span, std::uint32
     m.source = ev.sources.add(text.name, std::move(text.text));
     m.import_place = import.path_span;
     Diagnostics own;
-    ev.asts.push_back(lang::parse(ev.sources, m.source, own));
+    m.ast = &parse_file(ev, m.source, own);
     for (Diagnostic d : own.items()) {
         d.related.push_back({import.path_span, "imported here"});
         ev.diagnostics.add(std::move(d));
     }
-    m.ast = &ev.asts.back();
     std::uint32_t module = add_module(ev, std::move(m));
     ev.importing.push_back(module);
     std::vector<Contribution>
@@ -353,14 +404,15 @@ Value import_module(Evaluator &ev, const lang::Import &import, Span, std::uint32
 
 // -- parameters ----------------------------------------------------------------------------------
 
-static std::optional<Value> param_number(Evaluator &ev, const lang::Ast &ast, lang::ExprId id,
+static std::optional<Value> param_number(Evaluator &ev, const File &ast, lang::ExprId id,
                                          const ir::Param &p, std::uint32_t frame) {
     Value v = eval(ev, ast, id, frame);
     if (is_poison(v)) return std::nullopt;
     lang::TypeExpr type;
     type.name = p.is_color ? "color" : ir::type_name(p.type);
+    type.named = lang::type_named(type.name);
     bool ok = true;
-    Value c = convert(ev, v, type, ast.exprs[id].span, fmt::format("`{}`", p.name), ok);
+    Value c = convert(ev, v, type, ast.exprs[id].span, quoted(p.name), ok);
     if (!ok || is_poison(c)) return std::nullopt;
     if (c.kind == ValueKind::Field) {
         report(ev, Code::StageMismatch, ast.exprs[id].span,
@@ -375,8 +427,7 @@ static std::optional<Value> override_value(Evaluator &ev, const Override &o, con
                                            std::uint32_t frame) {
     Diagnostics own;
     SourceId source = ev.sources.add(fmt::format("-D {}", o.name), o.text);
-    ev.asts.push_back(lang::parse(ev.sources, source, own));
-    const lang::Ast &ast = ev.asts.back();
+    const File &ast = parse_file(ev, source, own);
     const lang::Block &root = ast.blocks[ast.root];
     const lang::ExprStmt *only =
         root.stmts.size() == 1 ? std::get_if<lang::ExprStmt>(&root.stmts[0].kind) : nullptr;
@@ -396,26 +447,25 @@ static std::optional<Value> override_value(Evaluator &ev, const Override &o, con
     return std::nullopt;
 }
 
-void declare_param(Evaluator &ev, const lang::Ast &ast, const lang::Param &param,
-                   std::uint32_t frame) {
+void declare_param(Evaluator &ev, const File &ast, const lang::Param &param, std::uint32_t frame) {
     ir::Param p;
     p.name = param.name.text;
     p.label = param.label.value_or(param.name.text);
     p.origin = param.name.span;
-    auto fail = [&] { declare(ev, frame, param.name.text, poison(), false, param.name.span); };
+    const Symbol name = symbol_of(ast, param.name);
+    auto fail = [&] { declare(ev, frame, name, poison(), false, param.name.span); };
     Value value = eval(ev, ast, param.value, frame);
     if (param.type && !is_poison(value)) {
         bool ok = true;
-        value = convert(ev, value, *param.type, ast.exprs[param.value].span,
-                        fmt::format("`{}`", p.name), ok);
+        value = convert(ev, value, *param.type, ast.exprs[param.value].span, quoted(p.name), ok);
     }
     if (is_poison(value)) return fail();
     if (value.kind == ValueKind::List) {
         bool ok = true;
         lang::TypeExpr type;
         type.name = "vec3";
-        value =
-            convert(ev, value, type, ast.exprs[param.value].span, fmt::format("`{}`", p.name), ok);
+        type.named = lang::TypeName::Vec3;
+        value = convert(ev, value, type, ast.exprs[param.value].span, quoted(p.name), ok);
         if (is_poison(value)) return fail();
     }
     if (!is_numeric(value) || value.kind == ValueKind::Field || value.kind == ValueKind::Mat) {
@@ -491,7 +541,7 @@ void declare_param(Evaluator &ev, const lang::Ast &ast, const lang::Param &param
     ev.scene.params.push_back(std::move(p));
     Value v = make_value(ValueKind::Field, node.index);
     v.color = is_color;
-    declare(ev, frame, param.name.text, v, false, param.name.span);
+    declare(ev, frame, name, v, false, param.name.span);
 }
 
 } // namespace fathom::typecheck

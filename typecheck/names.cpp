@@ -17,71 +17,79 @@ Symbol intern(Evaluator &ev, const std::string &text) {
 }
 
 std::uint32_t push_frame(Evaluator &ev, std::uint32_t parent) {
-    ev.frames.emplace_back();
-    ev.frames.back().parent = parent;
-    return static_cast<std::uint32_t>(ev.frames.size() - 1);
+    if (ev.frame_count == ev.frames.size()) ev.frames.emplace_back();
+    ev.frames[ev.frame_count].parent = parent;
+    return ev.frame_count++;
 }
 
 // A frame that no closure refers to is given back, so that a loop of a million turns needs one.
 void pop_frame(Evaluator &ev, std::uint32_t frame) {
-    if (frame + 1 == ev.frames.size() && !ev.frames[frame].captured) ev.frames.pop_back();
+    if (frame + 1 != ev.frame_count || ev.frames[frame].captured) return;
+    ev.frames[frame].bindings.clear();
+    --ev.frame_count;
 }
 
-void declare(Evaluator &ev, std::uint32_t frame, const std::string &name, Value value, bool is_var,
+bool is_builtin(Symbol name) { return name < builtins().size(); }
+
+void declare(Evaluator &ev, std::uint32_t frame, Symbol name, Value value, bool is_var,
              Span place) {
     Frame &f = ev.frames[frame];
-    Symbol symbol = intern(ev, name);
-    for (const Binding &b : f.bindings) {
-        if (f.is_module || b.name != symbol || !b.declared.source || !place.source) continue;
-        report(ev, Code::DuplicateName, place,
-               fmt::format("`{}` is declared twice in this block", name))
-            .label(b.declared, "first declared here");
-        return;
-    }
-    if (f.is_module) {
+    if (!f.index) {
+        for (const Binding &b : f.bindings) {
+            if (b.name != name || !b.declared.source || !place.source) continue;
+            report(ev, Code::DuplicateName, place,
+                   fmt::format("`{}` is declared twice in this block", ev.symbol_names[name]))
+                .label(b.declared, "first declared here");
+            return;
+        }
+    } else {
         auto [it, added] =
-            f.index.try_emplace(symbol, static_cast<std::uint32_t>(f.bindings.size()));
+            f.index->try_emplace(name, static_cast<std::uint32_t>(f.bindings.size()));
         if (!added) {
-            report(ev, Code::DuplicateName, place, fmt::format("`{}` is declared twice", name))
+            report(ev, Code::DuplicateName, place,
+                   fmt::format("`{}` is declared twice", ev.symbol_names[name]))
                 .label(f.bindings[it->second].declared, "first declared here");
             return;
         }
         if (frame != ev.prelude_frame && !ev.modules[ev.current_module].library && place.source) {
-            const Frame &prelude = ev.frames[ev.prelude_frame];
-            if (prelude.index.count(symbol) || ev.builtin_index.count(name))
+            if (is_builtin(name) || ev.prelude_items.contains(name) ||
+                slot_in_module(ev, ev.prelude_frame, name))
                 report(ev, Code::HidesName, place,
-                       fmt::format("`{}` hides the library's `{}` in this file", name, name));
+                       fmt::format("`{0}` hides the library's `{0}` in this file",
+                                   ev.symbol_names[name]));
         }
     }
-    f.bindings.push_back({symbol, std::move(value), is_var, place});
+    f.bindings.push_back({name, value, is_var, place});
 }
 
-std::optional<Found> find_name(Evaluator &ev, std::uint32_t frame, const std::string &name) {
-    Symbol symbol = intern(ev, name);
+std::optional<std::uint32_t> slot_in_module(Evaluator &ev, std::uint32_t frame, Symbol name) {
+    if (frame == ev.prelude_frame && ev.prelude_items.contains(name)) read_prelude_items(ev, name);
+    const auto &index = *ev.frames[frame].index;
+    auto it = index.find(name);
+    return it == index.end() ? std::nullopt : std::optional(it->second);
+}
+
+std::optional<Found> find_name(Evaluator &ev, std::uint32_t frame, Symbol name) {
     for (;;) {
-        const Frame &f = ev.frames[frame];
-        if (f.is_module) {
-            if (auto it = f.index.find(symbol); it != f.index.end())
-                return Found{frame, it->second};
+        const Frame &f = ev.frames[frame]; // stale once a module was asked
+        if (f.index) {
+            if (auto slot = slot_in_module(ev, frame, name)) return Found{frame, *slot};
         } else {
             for (std::size_t i = f.bindings.size(); i-- > 0;)
-                if (f.bindings[i].name == symbol)
-                    return Found{frame, static_cast<std::uint32_t>(i)};
+                if (f.bindings[i].name == name) return Found{frame, static_cast<std::uint32_t>(i)};
         }
-        if (f.parent == frame) return std::nullopt;
-        frame = f.parent;
+        if (frame == ev.prelude_frame) return std::nullopt;
+        frame = ev.frames[frame].parent;
     }
 }
 
 static bool in_library(const Evaluator &ev) { return ev.modules[ev.current_module].library; }
 
-std::optional<Value> look_up(Evaluator &ev, std::uint32_t frame, const std::string &name) {
+std::optional<Value> look_up(Evaluator &ev, std::uint32_t frame, Symbol name) {
     if (auto found = find_name(ev, frame, name))
         return ev.frames[found->frame].bindings[found->slot].value;
-    if (auto it = ev.builtin_index.find(name); it != ev.builtin_index.end()) {
-        if (!builtins()[it->second].library_only || in_library(ev))
-            return make_value(ValueKind::Builtin, it->second);
-    }
+    if (is_builtin(name) && (!builtins()[name].library_only || in_library(ev)))
+        return make_value(ValueKind::Builtin, name);
     return std::nullopt;
 }
 
@@ -94,6 +102,7 @@ std::vector<std::string> visible_names(Evaluator &ev, std::uint32_t frame) {
         frame = f.parent;
     }
     for (const Builtin &b : builtins()) names.insert(b.name);
+    for (const auto &[name, items] : ev.prelude_items) names.insert(ev.symbol_names[name]);
     std::vector<std::string> result;
     for (const std::string &name : names)
         if (name[0] != '_' || in_library(ev)) result.push_back(name);
@@ -115,14 +124,14 @@ namespace {
 // known when they are used.
 struct NameWalk {
     Evaluator &ev;
-    const lang::Ast &ast;
+    const File &ast;
     std::uint32_t frame;
     std::vector<std::set<std::string>> scopes;
 
     bool known(const std::string &name) {
         for (const auto &scope : scopes)
             if (scope.count(name)) return true;
-        return look_up(ev, frame, name).has_value();
+        return look_up(ev, frame, intern(ev, name)).has_value();
     }
     void parameters(const lang::Function &f) {
         scopes.emplace_back();
@@ -212,7 +221,7 @@ struct NameWalk {
 
 // Called once the module's names all stand, so only function bodies can hold something not yet
 // seen.
-void check_names(Evaluator &ev, const lang::Ast &ast, std::uint32_t module_frame) {
+void check_names(Evaluator &ev, const File &ast, std::uint32_t module_frame) {
     NameWalk walk{ev, ast, module_frame, {}};
     for (const lang::Stmt &s : ast.blocks[ast.root].stmts)
         if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind))

@@ -119,7 +119,7 @@ static bool works_on_ints(Op op) {
 
 // Componentwise ops broadcast a number to the widest argument; a whole number becomes a float
 // beside a float.
-Value apply_op(Evaluator &ev, Op op, std::vector<Value> args, Span place, const std::string &name) {
+Value apply_op(Evaluator &ev, Op op, std::vector<Value> args, Span place, std::string_view name) {
     Type widest = Type::Int;
     for (Value &a : args) {
         if (is_poison(a)) return poison();
@@ -522,7 +522,7 @@ Value make_vector(Evaluator &ev, const std::vector<Value> &parts, int size, Span
 
 // A number that scene time needs. One that hangs on params alone is taken at their present values,
 // and those params become structural: moving them builds the scene anew (semantics.md, 25).
-std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place, const char *what) {
+std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place, What what) {
     if (v.kind != ValueKind::Field) return v;
     ir::Graph &g = ev.scene.graph;
     ir::Graph::Reads reads = g.reads(node_of(v));

@@ -13,7 +13,7 @@ namespace fathom::typecheck {
 
 JournalMark journal_mark(Evaluator &ev) {
     ++ev.journaling;
-    return {ev.journal.size(), ev.frames.size()};
+    return {ev.journal.size(), ev.frame_count};
 }
 
 std::vector<Change> journal_take(Evaluator &ev, JournalMark mark) {
@@ -164,7 +164,7 @@ static bool same_type(Evaluator &ev, Value &old, Value &value) {
     return old.kind == value.kind;
 }
 
-static void run_assign(Evaluator &ev, const lang::Ast &ast, const lang::Assign &node, Span place,
+static void run_assign(Evaluator &ev, const File &ast, const lang::Assign &node, Span place,
                        std::uint32_t frame) {
     std::vector<Accessor> path;
     lang::ExprId target = node.target;
@@ -189,7 +189,7 @@ static void run_assign(Evaluator &ev, const lang::Ast &ast, const lang::Assign &
                    "only a `var`, or a part of one, can be assigned to");
         return;
     }
-    auto found = find_name(ev, frame, name->text);
+    auto found = find_name(ev, frame, symbol_of(ast, *name));
     if (!found) {
         Diagnostic &d = report(ev, Code::UnknownName, base.span,
                                fmt::format("nothing here is called `{}`", name->text));
@@ -247,8 +247,8 @@ static void run_assign(Evaluator &ev, const lang::Ast &ast, const lang::Assign &
 // -- statements that are the same everywhere
 // -------------------------------------------------------
 
-static Value declared_value(Evaluator &ev, const lang::Ast &ast, lang::ExprId value,
-                            const std::optional<lang::TypeExpr> &type, const std::string &name,
+static Value declared_value(Evaluator &ev, const File &ast, lang::ExprId value,
+                            const std::optional<lang::TypeExpr> &type, std::string_view name,
                             std::uint32_t frame) {
     Value v = eval(ev, ast, value, frame);
     if (!type || is_poison(v)) return v;
@@ -258,33 +258,33 @@ static Value declared_value(Evaluator &ev, const lang::Ast &ast, lang::ExprId va
         return v;
     }
     bool ok = true;
-    return convert(ev, v, *type, ast.exprs[value].span, fmt::format("`{}`", name), ok);
+    return convert(ev, v, *type, ast.exprs[value].span, quoted(name), ok);
 }
 
-bool run_simple(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt, std::uint32_t frame) {
+bool run_simple(Evaluator &ev, const File &ast, const lang::Stmt &stmt, std::uint32_t frame) {
     if (auto *l = std::get_if<lang::Let>(&stmt.kind)) {
-        declare(ev, frame, l->name.text,
+        declare(ev, frame, symbol_of(ast, l->name),
                 declared_value(ev, ast, l->value, l->type, l->name.text, frame), false,
                 l->name.span);
     } else if (auto *v = std::get_if<lang::Var>(&stmt.kind)) {
-        if (ev.frames[frame].is_module)
+        if (ev.frames[frame].index)
             report(ev, Code::WrongPlace, stmt.span,
                    "`var` stands inside a function; at the top of a file names do not change")
                 .help("write `let`");
         Value value = declared_value(ev, ast, v->value, v->type, v->name.text, frame);
         value.ints = false;
-        declare(ev, frame, v->name.text, value, true, v->name.span);
+        declare(ev, frame, symbol_of(ast, v->name), value, true, v->name.span);
     } else if (auto *a = std::get_if<lang::Assign>(&stmt.kind)) {
         run_assign(ev, ast, *a, stmt.span, frame);
     } else if (std::holds_alternative<lang::Bad>(stmt.kind) ||
                std::holds_alternative<lang::FunctionDecl>(stmt.kind)) {
     } else if (auto *p = std::get_if<lang::Param>(&stmt.kind)) {
-        if (ev.frames[frame].is_module)
+        if (ev.frames[frame].index)
             declare_param(ev, ast, *p, frame);
         else
             report(ev, Code::WrongPlace, stmt.span, "a `param` stands at the top of a file");
     } else if (auto *i = std::get_if<lang::Import>(&stmt.kind)) {
-        if (ev.frames[frame].is_module)
+        if (ev.frames[frame].index)
             import_module(ev, *i, stmt.span, ev.current_module);
         else
             report(ev, Code::WrongPlace, stmt.span, "an `import` stands at the top of a file");
@@ -295,7 +295,7 @@ bool run_simple(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt, std
 
 // -- bodies --------------------------------------------------------------------------------------
 
-static Exit run_from(Evaluator &ev, const lang::Ast &ast, const lang::Block &block, std::size_t at,
+static Exit run_from(Evaluator &ev, const File &ast, const lang::Block &block, std::size_t at,
                      std::uint32_t frame, Value &last);
 
 static Exit sequence(Evaluator &ev, const Exit &first, Span place,
@@ -336,7 +336,7 @@ static Value dropped(Evaluator &ev, const Value &v, Span place) {
     return v;
 }
 
-static Exit run_one(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt, bool is_last,
+static Exit run_one(Evaluator &ev, const File &ast, const lang::Stmt &stmt, bool is_last,
                     std::uint32_t frame, Value &last) {
     Exit exit;
     last = unit();
@@ -367,7 +367,7 @@ static Exit run_one(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt,
     return exit;
 }
 
-static Exit run_from(Evaluator &ev, const lang::Ast &ast, const lang::Block &block, std::size_t at,
+static Exit run_from(Evaluator &ev, const File &ast, const lang::Block &block, std::size_t at,
                      std::uint32_t frame, Value &last) {
     Exit exit;
     for (std::size_t i = at; i < block.stmts.size(); ++i) {
@@ -380,7 +380,7 @@ static Exit run_from(Evaluator &ev, const lang::Ast &ast, const lang::Block &blo
     return exit;
 }
 
-Outcome run_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId id, std::uint32_t parent) {
+Outcome run_block(Evaluator &ev, const File &ast, lang::BlockId id, std::uint32_t parent) {
     std::uint32_t frame = push_frame(ev, parent);
     hoist_functions(ev, ast, id, frame);
     Outcome out;
@@ -408,7 +408,7 @@ Exit run_unless(Evaluator &ev, const Value &skip, Span place, const std::functio
 // -- choice --------------------------------------------------------------------------------------
 
 // nullopt: not a condition. Params alone decide now where the arms cannot be merged.
-static std::optional<Value> condition_value(Evaluator &ev, const lang::Ast &ast, lang::ExprId id,
+static std::optional<Value> condition_value(Evaluator &ev, const File &ast, lang::ExprId id,
                                             std::uint32_t frame) {
     Value v = eval(ev, ast, id, frame);
     if (is_poison(v)) return std::nullopt;
@@ -424,11 +424,11 @@ static bool params_only(Evaluator &ev, const Value &v) {
     return r.params && !r.point && !r.normal && !r.direction && !r.time && !r.free_vars;
 }
 
-static Outcome run_otherwise(Evaluator &ev, const lang::Ast &ast, const lang::If &node,
+static Outcome run_otherwise(Evaluator &ev, const File &ast, const lang::If &node,
                              std::size_t branch, std::uint32_t frame, Span place);
 
 // Both arms, each on its own, merged by the condition. Fails (nullopt) where they are not numbers.
-static std::optional<Outcome> run_both(Evaluator &ev, const lang::Ast &ast, const lang::If &node,
+static std::optional<Outcome> run_both(Evaluator &ev, const File &ast, const lang::If &node,
                                        std::size_t branch, const Value &condition,
                                        std::uint32_t frame, Span place) {
     JournalMark mark = journal_mark(ev);
@@ -488,7 +488,7 @@ static std::optional<Outcome> run_both(Evaluator &ev, const lang::Ast &ast, cons
     return out;
 }
 
-static Outcome run_branches(Evaluator &ev, const lang::Ast &ast, const lang::If &node,
+static Outcome run_branches(Evaluator &ev, const File &ast, const lang::If &node,
                             std::size_t branch, std::uint32_t frame, Span place) {
     auto condition = condition_value(ev, ast, node.branches[branch].condition, frame);
     if (!condition) {
@@ -527,24 +527,24 @@ static Outcome run_branches(Evaluator &ev, const lang::Ast &ast, const lang::If 
     return out;
 }
 
-static Outcome run_otherwise(Evaluator &ev, const lang::Ast &ast, const lang::If &node,
+static Outcome run_otherwise(Evaluator &ev, const File &ast, const lang::If &node,
                              std::size_t branch, std::uint32_t frame, Span place) {
     if (branch < node.branches.size()) return run_branches(ev, ast, node, branch, frame, place);
     if (node.otherwise) return run_block(ev, ast, *node.otherwise, frame);
     return {};
 }
 
-Outcome run_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node, std::uint32_t frame,
+Outcome run_if(Evaluator &ev, const File &ast, const lang::If &node, std::uint32_t frame,
                Span place) {
     return run_branches(ev, ast, node, 0, frame, place);
 }
 
 // -- contributing blocks -------------------------------------------------------------------------
 
-static bool contribute_stmt(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt,
+static bool contribute_stmt(Evaluator &ev, const File &ast, const lang::Stmt &stmt,
                             std::uint32_t frame, std::vector<Contribution> &out);
 
-bool contribute_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, std::uint32_t frame,
+bool contribute_block(Evaluator &ev, const File &ast, lang::BlockId block, std::uint32_t frame,
                       std::vector<Contribution> &out) {
     hoist_functions(ev, ast, block, frame);
     for (const lang::Stmt &stmt : ast.blocks[block].stmts) {
@@ -554,7 +554,7 @@ bool contribute_block(Evaluator &ev, const lang::Ast &ast, lang::BlockId block, 
     return false;
 }
 
-static bool contribute_inner(Evaluator &ev, const lang::Ast &ast, lang::BlockId block,
+static bool contribute_inner(Evaluator &ev, const File &ast, lang::BlockId block,
                              std::uint32_t parent, std::vector<Contribution> &out) {
     std::uint32_t frame = push_frame(ev, parent);
     bool broke = contribute_block(ev, ast, block, frame, out);
@@ -562,8 +562,8 @@ static bool contribute_inner(Evaluator &ev, const lang::Ast &ast, lang::BlockId 
     return broke;
 }
 
-static bool contribute_if(Evaluator &ev, const lang::Ast &ast, const lang::If &node,
-                          std::uint32_t frame, std::vector<Contribution> &out) {
+static bool contribute_if(Evaluator &ev, const File &ast, const lang::If &node, std::uint32_t frame,
+                          std::vector<Contribution> &out) {
     for (const lang::IfBranch &branch : node.branches) {
         auto condition = condition_value(ev, ast, branch.condition, frame);
         if (!condition) return false;
@@ -575,7 +575,7 @@ static bool contribute_if(Evaluator &ev, const lang::Ast &ast, const lang::If &n
     return node.otherwise ? contribute_inner(ev, ast, *node.otherwise, frame, out) : false;
 }
 
-static bool contribute_stmt(Evaluator &ev, const lang::Ast &ast, const lang::Stmt &stmt,
+static bool contribute_stmt(Evaluator &ev, const File &ast, const lang::Stmt &stmt,
                             std::uint32_t frame, std::vector<Contribution> &out) {
     if (run_simple(ev, ast, stmt, frame)) return false;
     if (auto *e = std::get_if<lang::ExprStmt>(&stmt.kind)) {
@@ -590,7 +590,7 @@ static bool contribute_stmt(Evaluator &ev, const lang::Ast &ast, const lang::Stm
         for (const Value &item : *items) {
             if (!spend(ev, stmt.span)) return true;
             std::uint32_t inner = push_frame(ev, frame);
-            declare(ev, inner, f->variable.text, item, false, f->variable.span);
+            declare(ev, inner, symbol_of(ast, f->variable), item, false, f->variable.span);
             bool broke = contribute_block(ev, ast, f->body, inner, out);
             pop_frame(ev, inner);
             if (broke) break;

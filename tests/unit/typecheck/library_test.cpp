@@ -1,0 +1,63 @@
+// The embedded library as a scene meets it: read where it is asked for, its calls run once, and
+// neither to be noticed but by the work that is saved.
+#include "driver/compile.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace fathom;
+
+namespace {
+
+driver::Compilation compiled(const std::string &text) {
+    return driver::compile_text("scene.sdf", text, ".", {});
+}
+
+std::vector<std::string> codes(const driver::Compilation &c) {
+    std::vector<std::string> out;
+    for (const Diagnostic &d : c.diagnostics.items()) out.emplace_back(code_name(d.code));
+    return out;
+}
+
+} // namespace
+
+TEST_CASE("a scene pays for the part of the library that it uses") {
+    // reading all of the library takes thousands of evaluations more
+    CHECK(compiled("sphere(1)\n").evaluations < 100);
+}
+
+TEST_CASE("a library call with the same numbers runs once") {
+    const std::string one = "cylinder(0.3, 2).translate(x: 1)\n";
+    const std::size_t once = compiled(one).evaluations;
+    const std::size_t again = compiled(one + "cylinder(0.3, 2).translate(x: 3)\n").evaluations;
+    const std::size_t other = compiled(one + "cylinder(0.3, 3).translate(x: 3)\n").evaluations;
+    CHECK(again < other);
+    CHECK(other < 2 * once);
+}
+
+TEST_CASE("whole numbers and floats are not taken for each other") {
+    const auto c = compiled("let a = clamp(7, 0, 5)\nlet b = clamp(7.0, 0.0, 5.0)\n"
+                            "let l = [0, 1, 2, 3, 4, 5]\nprint(l[a])\nsphere(b)\n");
+    CHECK(c.good());
+}
+
+TEST_CASE("a wrong call is reported each time it is made") {
+    CHECK(codes(compiled("sphere(-1)\nsphere(-1)\n")) ==
+          std::vector<std::string>{"bad-argument", "bad-argument"});
+}
+
+TEST_CASE("names of the library that nobody asked for yet are still known") {
+    const auto misspelt = compiled("sphre(1)\n");
+    REQUIRE(misspelt.diagnostics.items().size() == 1);
+    REQUIRE(misspelt.diagnostics.items()[0].fix);
+    CHECK(misspelt.diagnostics.items()[0].fix->message == "did you mean `sphere`?");
+    CHECK(codes(compiled("let torus = sphere(1)\ntorus\n")) ==
+          std::vector<std::string>{"hides-name"});
+}
+
+TEST_CASE("a library function first asked for inside a field is the same as elsewhere") {
+    const std::string inside = "sphere(1).displace(p => 0.1 * noise(p))\n";
+    CHECK(compiled(inside).good());
+    CHECK(compiled("let f = noise\n" + inside + "sphere(1).displace(f).translate(x: 4)\n").good());
+}
