@@ -291,7 +291,7 @@ static Value spot_noise_call(Evaluator &ev, const CallSite &site, std::vector<Va
 static Value hash_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto v = vector_argument(ev, site, args[0], 0);
     if (!v) return poison();
-    if (args[0].kind == ValueKind::Int) v = args[0];
+    if (is_scalar(ev, args[0]) && numeric_type(ev, args[0]) == Type::Int) v = args[0];
     return from_node(ev, ev.scene.graph.make(Op::Hash, {to_node(ev, *v)}));
 }
 

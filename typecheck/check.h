@@ -65,6 +65,8 @@ struct Options {
     std::function<std::optional<double>(ir::Scene &, ir::ShapeId)> lipschitz;
     std::function<std::optional<std::pair<double, double>>(ir::Scene &, ir::ShapeId, int axis)>
         extent;
+    // What scene time may cost before the scene is refused; stated in docs/language.md.
+    std::size_t max_evaluations = 20'000'000, max_list_elements = 10'000'000;
 };
 
 struct Checked {

@@ -224,11 +224,10 @@ struct Evaluator {
     std::vector<std::string> usage_errors{};
 };
 
-// The limits that bound what a scene can make the checker do; stated in docs/language.md.
+// The limits that bound what a scene can make the checker do; stated in docs/language.md. Work and
+// lists have theirs in `Options`.
 constexpr int max_call_depth = 1000;
 constexpr int max_depth = 40000; // nested evaluations; the stack is sized for it (check.cpp)
-constexpr std::size_t max_evaluations = 20'000'000;
-constexpr std::size_t max_list_elements = 10'000'000;
 constexpr int max_unrolled = 4096;
 constexpr std::size_t max_remembered = 100'000; // calls of the library
 constexpr int max_fold_turns = 100'000;

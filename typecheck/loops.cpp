@@ -319,6 +319,7 @@ Outcome run_while(Evaluator &ev, const File &ast, const lang::While &node, std::
         if (!spend(ev, place)) return out;
         auto go = condition();
         if (!go || never(*go)) return out;
+        std::size_t said = ev.diagnostics.items().size() + ev.quiet_errors;
         JournalMark mark = journal_mark(ev);
         Exit exit = turn();
         std::vector<Change> changes = journal_take(ev, mark);
@@ -338,6 +339,7 @@ Outcome run_while(Evaluator &ev, const File &ast, const lang::While &node, std::
                 out.exit = *folded;
                 return out;
             }
+            if (ev.diagnostics.items().size() + ev.quiet_errors > said) return out; // one cause
             report(ev, Code::StageMismatch, place,
                    "this loop's variables have to be numbers of one type, since it hangs on the "
                    "point");

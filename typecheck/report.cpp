@@ -138,12 +138,14 @@ std::string print_value(const Evaluator &ev, const Value &v) {
 bool spend(Evaluator &ev, Span place, std::size_t amount) {
     ev.evaluations += amount;
     if (ev.out_of_budget) return false;
-    if (ev.evaluations <= max_evaluations && ev.list_elements <= max_list_elements) return true;
+    if (ev.evaluations <= ev.options.max_evaluations &&
+        ev.list_elements <= ev.options.max_list_elements)
+        return true;
     ev.out_of_budget = true;
     int quiet = std::exchange(ev.quiet, 0); // the one error that no trial may hide
     report(ev, Code::LoopLimit, place, "this scene takes more work than is allowed")
         .note(fmt::format("scene time may take {} evaluations and {} list elements",
-                          max_evaluations, max_list_elements))
+                          ev.options.max_evaluations, ev.options.max_list_elements))
         .help("look for a loop or a recursion that does not end where it should");
     ev.quiet = quiet;
     return false;

@@ -24,6 +24,7 @@ struct ReferenceHit {
 class Reference {
   public:
     using Value = ir::Constant; // a Hit's nine numbers: distance, paint, point, extra
+    using Scope = std::unordered_map<ir::NodeId, Value>;
 
     explicit Reference(const ir::Scene &scene) : scene_(&scene), graph_(scene.graph) {}
     explicit Reference(const ir::Graph &graph) : graph_(graph) {}
@@ -38,6 +39,10 @@ class Reference {
         return eval(id, scope);
     }
     double number(ir::NodeId id) { return (*this)(id).value[0]; }
+    Value evaluated(ir::NodeId id, const std::vector<std::pair<ir::NodeId, Value>> &variables) {
+        Scope scope(variables.begin(), variables.end());
+        return eval(id, scope);
+    }
 
     Value call(ir::FunctionId id, const std::vector<Value> &args) {
         const ir::Function &function = graph_.function(id);
@@ -69,8 +74,6 @@ class Reference {
     }
 
   private:
-    using Scope = std::unordered_map<ir::NodeId, Value>;
-
     static Value of(ir::Type type, std::initializer_list<double> numbers) {
         Value v{type, {}};
         std::copy(numbers.begin(), numbers.end(), v.value.begin());

@@ -1,0 +1,61 @@
+// The whole compiler on any text, without a file: parse, check, prove, lower, emit. For fuzzers and
+// their like: says what is wrong with the answer, or nothing. Work is limited, so that a hostile
+// text is answered soon.
+#pragma once
+
+#include "backend-glsl/emit.h"
+#include "driver/compile.h"
+#include "ir/lower.h"
+#include "typecheck/check.h"
+#include "typecheck/proof/prove.h"
+
+#include <string>
+
+namespace fathom::test {
+
+struct Answer {
+    std::string fault;   // of the compiler; empty where all is well
+    bool checks = false; // the text is a scene
+};
+
+inline Answer whole_compiler(const std::string &text) {
+    Sources sources;
+    Diagnostics diagnostics;
+    const SourceId root = sources.add("a.sdf", text);
+    const typecheck::LoadError missing{typecheck::LoadError::Reason::NotFound, "no such file"};
+    typecheck::Loader loader;
+    loader.text = [&](const std::string &, const std::string &) { return missing; };
+    loader.image = [&](const std::string &, const std::string &) { return missing; };
+    loader.grid = [&](const std::string &, const std::string &) { return missing; };
+    typecheck::Options options;
+    options.max_evaluations = 200'000;
+    options.max_list_elements = 100'000;
+    typecheck::Checked checked = typecheck::check(
+        sources, root, "a.sdf", driver::standard_library(), loader, options, diagnostics);
+    proof::Options proof_options;
+    proof_options.field_instructions = 5'000;
+    proof::prove(checked.scene, diagnostics, proof_options);
+    for (const Diagnostic &d : diagnostics.items()) {
+        if (d.message.empty()) return {"a report without words"};
+        if (d.code == Code::ShaderInvalid) return {"the shader is not valid: " + d.message};
+        const Span span = d.primary.span;
+        if (span.source && span.end > sources[span.source].text.size())
+            return {"a place outside the text"};
+        to_text(d, sources, true);
+        to_json(d, sources);
+    }
+    if (diagnostics.has_errors()) return {};
+    ir::lower(checked.scene);
+    if (const std::string wrong = ir::verify(checked.scene); !wrong.empty())
+        return {"the lowered scene: " + wrong};
+    glsl::Options glsl_options;
+    glsl_options.target = glsl::Target::Es300;
+    glsl_options.field_only = true;
+    Diagnostics complaints;
+    glsl::emit(checked.scene, glsl_options, complaints);
+    for (const Diagnostic &d : complaints.items())
+        return {"the shader: " + d.message + (d.notes.empty() ? "" : "; " + d.notes[0])};
+    return {"", true};
+}
+
+} // namespace fathom::test
