@@ -63,7 +63,11 @@ build() {
     if [ -t 2 ]; then
         ninja -C "$root/build" "$@" >&2
     else
-        ninja -C "$root/build" "$@" >"$root/build/build.log" 2>&1 || {
+        # no terminal: a line for each tenth that is done, and the rest in a log
+        { ninja -C "$root/build" "$@" 2>&1; echo $? >"$root/build/.status"; } | tee "$root/build/build.log" |
+            awk -F '[][/]' '/^\[[0-9]+\/[0-9]+\]/ { tenth = int(10 * $2 / $3)
+                if (tenth > said) { said = tenth; printf "fathom: built %d of %d\n", $2, $3; fflush() } }' >&2
+        [ "$(cat "$root/build/.status")" = 0 ] || {
             tail -n 60 "$root/build/build.log" >&2
             return 1
         }
