@@ -23,13 +23,14 @@ template <class T> Cell1<T> cell_of(T x) {
 inline int wrap(int i, int n) { return ir::sem::int_mod(i, n); }
 inline int inside(int i, int n) { return i < 0 ? 0 : (i < n ? i : n - 1); }
 
-// Bilinear and repeated; samples stand in the middles of their squares, at (i + 1/2)/size. Nothing where there are none.
+// Bilinear and repeated, v from the image's lower edge up; samples stand in the middles of their squares, at (i + 1/2)/size.
+// Nothing where there are none.
 template <class T> std::array<T, 4> sample_image(const ir::ImageData &image, T u, T v) {
     using ir::sem::plain;
     std::array<T, 4> out{T(0), T(0), T(0), T(0)};
     if (image.width < 1 || image.height < 1) return out;
     auto x = cell_of((u - T(std::floor(plain(u)))) * T(float(image.width)) - T(0.5f));
-    auto y = cell_of((v - T(std::floor(plain(v)))) * T(float(image.height)) - T(0.5f));
+    auto y = cell_of((T(1) - (v - T(std::floor(plain(v))))) * T(float(image.height)) - T(0.5f)); // rows run downward
     auto at = [&](int i, int j, std::size_t c) {
         auto row = static_cast<std::size_t>(wrap(j, image.height)), width = static_cast<std::size_t>(image.width);
         return T(image.rgba[(row * width + static_cast<std::size_t>(wrap(i, image.width))) * 4 + c]);

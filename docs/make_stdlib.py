@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""docs/stdlib.md and its pictures from the library's doc comments: docs/make_stdlib.py FATHOM [--pictures].
+"""docs/stdlib.md and its pictures from the library's doc comments: docs/make_stdlib.py FATHOM [--pictures [NAME…]].
 
-Reads stdlib/*.sdf; renders each entry's example with the program FATHOM where --pictures is given. Knows nothing of how
+Reads stdlib/*.sdf; renders each entry's example with the program FATHOM where --pictures is given (those of
+the names, or all). Knows nothing of how
 entries work: what is printed is what the comments say.
 """
 import pathlib
@@ -62,12 +63,12 @@ def picture(program, name, example, module):
     with tempfile.NamedTemporaryFile("w", suffix=".sdf") as scene:
         scene.write(text)
         scene.flush()
-        subprocess.run([program, "render", scene.name, "-o", str(out), "--size", "240x180", "--samples", "4"], check=True,
+        subprocess.run([program, "render", scene.name, "-I", str(root / "examples" / "parts"), "-o", str(out), "--size", "240x180", "--samples", "4"], check=True,
                        stderr=subprocess.DEVNULL)
 
 
 def main():
-    program, with_pictures = sys.argv[1], "--pictures" in sys.argv
+    program, with_pictures, names = sys.argv[1], "--pictures" in sys.argv, sys.argv[3:]
     page = [introduction]
     for stem, title in files:
         page.append(f"\n## {title}\n")
@@ -80,7 +81,7 @@ def main():
         for name, (signatures, doc) in shown.items():
             key = ("dfmodel_" if module else "") + name
             example = next((m.group(1) for m in (re.match(r"Example: `(.*)`", d) for d in doc) if m), None)
-            if with_pictures and example and key not in no_shape:
+            if with_pictures and example and key not in no_shape and (not names or key in names):
                 picture(program, key, example, module)
             page.append(f"### `{name}`\n")
             page.append("```\n" + "\n".join(signatures) + "\n```\n")

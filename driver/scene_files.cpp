@@ -45,7 +45,8 @@ std::variant<SceneFiles::Found, LoadError> SceneFiles::find(const std::string &p
     for (const fs::path &folder : folders) {
         fs::path printed = (folder / path).lexically_normal();
         std::error_code error;
-        fs::path canonical = fs::weakly_canonical(printed, error);
+        // Of a name without a folder that does not exist, weakly_canonical makes nothing absolute.
+        fs::path canonical = fs::weakly_canonical(fs::absolute(printed, error), error);
         // What lies outside is not even asked for: whether such a file exists is nobody's business.
         if (error || !allowed(canonical)) {
             outside = true;

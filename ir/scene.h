@@ -84,7 +84,13 @@ struct TopLevel {
 };
 
 struct ImageData { std::string name; int width = 0, height = 0; std::vector<float> rgba; }; // linear
-struct GridData { std::string name; std::array<int, 3> size{}; std::vector<float> values; };
+// Distances at the corners of a lattice: the first sample stands at `lo`, the last at `hi`, in the space of the shape.
+struct GridData {
+    std::string name;
+    std::array<int, 3> size{};
+    std::vector<float> values;
+    std::array<double, 3> lo{-0.5, -0.5, -0.5}, hi{0.5, 0.5, 0.5};
+};
 
 struct Scene {
     Graph graph;

@@ -33,7 +33,8 @@ enum class ShapeKind : std::uint8_t {
                   // a[2…]: the numbers that the kind's rule needs, see MapKind
     Offset,       // f - a[0]
     Shell,        // |f| - a[0]/2
-    Displace,     // f - a[0], a[0] a field in Point
+    Displace,     // f - a[0], a[0] a field in Point; a[1..3], where given: its slope, least and most, stated by the library;
+                  // payload then: 1 + index into Shapes::displacement_maps
     Extrude,      // flat child along z: exact combination of f(p.xy) and |p.z| - a[0]/2
     Repeat,       // union of copies of the child: see `Repetition`
     Within,       // payload: Shapes::regions. The part of f inside the region (semantics.md, 11)
@@ -92,12 +93,24 @@ struct Family {
     bool smooth = false; // else a plain union; a[0] = k
 };
 
+// An image as the user gave it to a material or to `displace_map`. What it does stands in the expressions; this is for those
+// who read a scene back.
+struct Texture {
+    std::int32_t image = -1; // index into Scene::images; -1: none
+    std::array<double, 2> scale{1, 1};
+};
+struct DisplacementMap {
+    Texture map;
+    NodeId amount; // as written, in the space where `displace_map` stands
+};
+
 // A colour or number of a material: an expression in Point and Normal of the space where the paint stands.
 struct Material {
     NodeId diffuse;  // vec3, linear
     NodeId specular; // vec3, linear
     NodeId exponent; // float
     NodeId emission; // vec3, linear
+    Texture texture{};  // of `texture:`; it is in `diffuse` already
     std::string name{}; // of the `let` that named it, where one did: the save format's name for it
 };
 
@@ -166,6 +179,7 @@ class Shapes {
     std::vector<Repetition> repetitions;
     std::vector<Family> families;
     std::vector<Material> materials;
+    std::vector<DisplacementMap> displacement_maps;
     std::vector<Library> libraries;
     std::vector<Contract> contracts;
     // Unions as the scene lists them, by the shape that they became where that says less (like copies gathered, doubles

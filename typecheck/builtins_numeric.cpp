@@ -15,12 +15,14 @@ using ir::Type;
 
 template <Op op>
 static Value componentwise(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
-    for (Value &a : args)
+    for (Value &a : args) {
+        if (is_poison(a)) return poison();
         if (a.kind == ValueKind::List) {
             std::vector<Value> items = ev.lists[a.id];
             if (items.size() >= 2 && items.size() <= 4 && is_scalar(ev, items[0]))
                 a = make_vector(ev, items, int(items.size()), site.call);
         }
+    }
     for (std::size_t i = 0; i < args.size(); ++i)
         if (!is_numeric(args[i]) || numeric_type(ev, args[i]) == Type::Bool) {
             report(ev, Code::TypeMismatch, site.arg(i),

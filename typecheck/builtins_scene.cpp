@@ -1,5 +1,6 @@
 // Materials, camera, lights and the other settings of a scene.
 #include "typecheck/builtins.h"
+#include "typecheck/textures.h"
 
 #include <fmt/format.h>
 
@@ -36,9 +37,18 @@ static Value material_call(Evaluator &ev, const CallSite &site, std::vector<Valu
                          g.vec3(0.2158605, 0.2158605, 0.2158605)); // CSS gray, linear
     m.specular = property(1, Type::Vec3, "`specular`", g.vec3(1, 1, 1));
     m.exponent = property(2, Type::Float, "`exponent`", g.number(32));
-    m.emission = property(3, Type::Vec3, "`emission`", g.vec3(0, 0, 0));
-    if (given(args[4])) {
-        auto name = want_string(ev, args[4], site.arg(4), "`name`");
+    m.emission = property(5, Type::Vec3, "`emission`", g.vec3(0, 0, 0));
+    if (given(args[3])) {
+        auto texture = want_texture(ev, args[3], site.arg(3), args[4], site.arg(4), "`texture`",
+                                    "`texture_scale`");
+        ok = ok && texture;
+        if (texture) m.texture = *texture;
+    } else if (given(args[4])) {
+        report(ev, Code::BadArgument, site.arg(4), "`texture_scale` without a `texture`");
+        ok = false;
+    }
+    if (given(args[6])) {
+        auto name = want_string(ev, args[6], site.arg(6), "`name`");
         if (name) m.name = *name;
     }
     if (!ok) return poison();
@@ -167,29 +177,6 @@ static Value render_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     return ok ? setting_value(ev, std::move(s)) : poison();
 }
 
-static Value image_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
-    auto path = want_string(ev, args[0], site.arg(0), "`image`");
-    auto scale = given(args[1]) ? want_known_number(ev, args[1], site.arg(1), "`scale`")
-                                : std::optional(1.0);
-    if (!path || !scale) return poison();
-    if (*scale == 0) {
-        report(ev, Code::BadArgument, site.arg(1), "an image's scale cannot be 0");
-        return poison();
-    }
-    auto loaded = ev.loader.image(*path, ev.modules[ev.current_module].identity);
-    if (auto *error = std::get_if<LoadError>(&loaded)) {
-        Code code =
-            error->reason == LoadError::Reason::Outside ? Code::ImportOutside : Code::FileNotFound;
-        report(ev, code, site.arg(0), fmt::format("the image `{}`: {}", *path, error->why));
-        return poison();
-    }
-    ev.scene.images.push_back(std::move(std::get<ir::ImageData>(loaded)));
-    Value v =
-        make_value(ValueKind::ImageField, static_cast<std::uint32_t>(ev.scene.images.size() - 1));
-    v.num[0] = *scale;
-    return v;
-}
-
 static Value keep_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto text = want_string(ev, args[0], site.arg(0), "`keep`");
     if (!text) return poison();
@@ -206,11 +193,14 @@ void add_scene_builtins(std::vector<Builtin> &table) {
         {{"diffuse", true},
          {"specular", true},
          {"exponent", true},
+         {"texture", true},
+         {"texture_scale", true},
          {"emission", true},
          {"name", true}},
         material_call,
         "how a surface looks; each property a constant or a function of the point, or of the point "
-        "and the normal");
+        "and the normal; `texture` an image that lies on each base shape by its natural parametrisation, in the "
+        "place of `diffuse`");
     add("camera", {{"at"}, {"look_at", true}, {"fov", true}, {"orthographic", true}}, camera_call,
         "where the scene is seen from; `fov` is vertical");
     add("light", {{"at"}, {"color", true}, {"intensity", true}}, light_call, "a light at a place");
@@ -228,8 +218,6 @@ void add_scene_builtins(std::vector<Builtin> &table) {
         "a colour, or a function of the ray's direction");
     add("render", {{"max_steps", true}, {"epsilon", true}, {"far", true}, {"time", true}},
         render_call, "limits of the march; `time`: the seconds that the proof covers");
-    add("image", {{"file"}, {"scale", true}}, image_call,
-        "a picture as a function of a vec2, repeated; 0..1 times `scale` is the whole of it");
     add("_keep", {{"text"}}, keep_call, "");
 }
 

@@ -2,6 +2,7 @@
 // begin with `_` and only the library sees them), and the few public forms that the language itself
 // cannot say (`implicit`, `cached`).
 #include "typecheck/builtins.h"
+#include "typecheck/textures.h"
 
 #include <fmt/format.h>
 
@@ -337,6 +338,11 @@ static Value paint_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     auto m = want_material(ev, args[1], site.arg(1), "`paint`");
     if (!s || !m) return poison();
     if (is_empty(ev, *s)) return args[0];
+    if (m->texture.image >= 0) {
+        auto painted =
+            painted_by_base(ev, *s, *m, kind == ShapeKind::Repaint, site.arg(1));
+        return painted ? shape_value(*painted, args[0].size) : poison();
+    }
     ir::Shape out;
     out.kind = kind;
     out.payload = intern_material(ev, *m);

@@ -432,7 +432,8 @@ std::uint32_t intern_region(Evaluator &ev, const ir::Region &region) {
 
 std::uint32_t intern_material(Evaluator &ev, const ir::Material &m) {
     std::string key = "material:" + number_key(m.diffuse.index) + number_key(m.specular.index) +
-                      number_key(m.exponent.index) + number_key(m.emission.index);
+                      number_key(m.exponent.index) + number_key(m.emission.index) +
+                      number_key(static_cast<std::uint32_t>(m.texture.image));
     auto [it, added] = ev.interned_records.try_emplace(
         key, static_cast<std::uint32_t>(ev.scene.shapes.materials.size()));
     if (added) ev.scene.shapes.materials.push_back(m);

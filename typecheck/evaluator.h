@@ -221,6 +221,7 @@ struct Evaluator {
         interned_records{};                // libraries, regions, materials by content
     std::vector<ir::NodeId> param_nodes{}; // by Scene::params
     std::unordered_map<std::uint32_t, bool> only_shapes{};
+    std::map<std::string, std::uint32_t> assets{}; // images and grids by what was asked for: their number
     std::vector<std::string> usage_errors{};
 };
 
@@ -389,6 +390,7 @@ void add_list_builtins(std::vector<Builtin> &table);
 void add_shape_builtins(std::vector<Builtin> &table);
 void add_transform_builtins(std::vector<Builtin> &table);
 void add_scene_builtins(std::vector<Builtin> &table);
+void add_texture_builtins(std::vector<Builtin> &table);
 
 // -- families.cpp
 std::vector<ir::ShapeId> gather_families(Evaluator &ev, std::vector<ir::ShapeId> shapes, int dims);

@@ -73,6 +73,7 @@ struct Walk {
         case ShapeKind::Repaint: {
             const ir::Material &m = scene.shapes.materials[s.payload];
             node(m.diffuse), node(m.specular), node(m.exponent), node(m.emission);
+            skeleton.push_back(static_cast<std::uint64_t>(m.texture.image + 1));
             break;
         }
         case ShapeKind::Library: {

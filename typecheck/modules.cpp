@@ -199,6 +199,7 @@ const std::vector<Builtin> &builtins() {
         add_shape_builtins(t);
         add_transform_builtins(t);
         add_scene_builtins(t);
+        add_texture_builtins(t);
         return t;
     }();
     return table;

@@ -164,10 +164,10 @@ class Reference {
         return v;
     }
 
-    // Texel centres at (i + 1/2)/size, repeated.
+    // Texel centres at (i + 1/2)/size, repeated; rows run downward, v upward.
     Value image(const ir::Node &node, const Value &uv) const {
         const ir::ImageData &image = scene_->images.at(node.payload);
-        const double x = uv.value[0] * image.width - 0.5, y = uv.value[1] * image.height - 0.5;
+        const double x = uv.value[0] * image.width - 0.5, y = -uv.value[1] * image.height - 0.5;
         const double fx = x - std::floor(x), fy = y - std::floor(y);
         Value v{ir::Type::Vec4, {}};
         for (int j = 0; j < 2; ++j)

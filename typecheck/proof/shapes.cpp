@@ -279,10 +279,16 @@ Known Prover::know_displaced(ShapeId id) {
     Interval amount;
     double slope = 0;
     if (varies) {
-        FieldBound b = bound(id, shape.args[0],
-                             shape.kind == ShapeKind::Displace ? "the displacement" : "the amount");
-        amount = b.value;
-        slope = b.lipschitz;
+        if (shape.args.size() > 3) { // a map: the library states what its chart and its data give (ir/charts.h)
+            slope = number(shape.args[1]).magnitude();
+            amount = hull(number(shape.args[2]), number(shape.args[3]));
+        } else {
+            FieldBound b = bound(
+                id, shape.args[0],
+                shape.kind == ShapeKind::Displace ? "the displacement" : "the amount");
+            amount = b.value;
+            slope = b.lipschitz;
+        }
         k.parts = Box::everything();
         k.fact.lever = {infinity, infinity, infinity};
         k.fact.symmetric = {false, false, false};

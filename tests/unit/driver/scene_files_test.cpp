@@ -68,6 +68,13 @@ TEST_CASE("nothing outside is read, nor told whether it exists") {
     for (const auto &[file, state] : files.touched()) CHECK(file.string().find("secret") == std::string::npos);
 }
 
+TEST_CASE("a missing file beside a scene that is named without a folder is missing, not outside") {
+    SceneFiles files("", {});
+    Answer a = ask(files, "there is no such file.png", files.add_root("scene.sdf"));
+    CHECK_FALSE(a.outside);
+    CHECK(a.error == "no such file");
+}
+
 TEST_CASE("a link within the allowed folders is followed") {
     ScratchFolder folder;
     folder.write("scene/real.sdf", "real");

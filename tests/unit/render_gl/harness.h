@@ -14,19 +14,22 @@ namespace fathom {
 struct Harness {
     GLuint program = 0, framebuffer = 0, texture = 0, vertex_array = 0, buffer = 0,
            buffer_texture = 0;
+    std::vector<GLuint> samplers;
     ~Harness() {
         glDeleteProgram(program);
         glDeleteFramebuffers(1, &framebuffer);
         glDeleteTextures(1, &texture);
         glDeleteTextures(1, &buffer_texture);
+        glDeleteTextures(static_cast<GLsizei>(samplers.size()), samplers.data());
         glDeleteBuffers(1, &buffer);
         glDeleteVertexArrays(1, &vertex_array);
     }
 };
 
 // `sdf(vec3(row, component, 0))` of an emitted field for rows 0 … count-1 and `components`
-// components.
-inline std::vector<float> run_shader(const glsl::Output &output, int count, int components) {
+// components. Where the field reads images or grids, they are those of `scene`.
+inline std::vector<float> run_shader(const glsl::Output &output, int count, int components,
+                                     const ir::Scene *scene = nullptr) {
     Harness h;
     const std::string main = "\nout vec4 value;\nvoid main() {\n    value = "
                              "vec4(sdf(vec3(gl_FragCoord.xy - 0.5, 0.0)));\n}\n";
@@ -70,6 +73,29 @@ inline std::vector<float> run_shader(const glsl::Output &output, int count, int 
         glBindTexture(GL_TEXTURE_BUFFER, h.buffer_texture);
         glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, h.buffer);
         glUniform1i(glGetUniformLocation(h.program, "fathom_tables"), 0);
+    }
+    const auto bind = [&](GLenum kind, const glsl::Sampler &sampler) {
+        GLuint texture = 0;
+        glGenTextures(1, &texture);
+        h.samplers.push_back(texture);
+        const auto unit = static_cast<GLint>(h.samplers.size());
+        glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+        glBindTexture(kind, texture);
+        for (GLenum side : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+            glTexParameteri(kind, side, GL_NEAREST);
+        glUniform1i(glGetUniformLocation(h.program, sampler.name.c_str()), unit);
+    };
+    for (const glsl::Sampler &sampler : output.images) {
+        bind(GL_TEXTURE_2D, sampler);
+        const ir::ImageData &image = scene->images.at(sampler.index);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, image.width, image.height, 0, GL_RGBA, GL_FLOAT,
+                     image.rgba.data());
+    }
+    for (const glsl::Sampler &sampler : output.grids) {
+        bind(GL_TEXTURE_3D, sampler);
+        const ir::GridData &grid = scene->grids.at(sampler.index);
+        glTexImage3D(GL_TEXTURE_3D, 0, GL_R32F, grid.size[0], grid.size[1], grid.size[2], 0, GL_RED,
+                     GL_FLOAT, grid.values.data());
     }
     glViewport(0, 0, count, components);
     glDrawArrays(GL_TRIANGLES, 0, 3);

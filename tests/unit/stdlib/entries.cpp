@@ -35,7 +35,10 @@ std::vector<Example> examples() {
     return found;
 }
 
-driver::Compilation compiled(const std::string &text) { return driver::compile_text("test.sdf", text, "", {}); }
+// Examples with images find them among those of the gallery.
+driver::Compilation compiled(const std::string &text) {
+    return driver::compile_text("test.sdf", text, FATHOM_SOURCE_DIR "/examples/parts", {});
+}
 
 } // namespace
 

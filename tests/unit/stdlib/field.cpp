@@ -26,7 +26,8 @@ std::string said(const driver::Compilation &compilation) {
     return out;
 }
 
-Field::Field(const std::string &text) : compilation_(driver::compile_text("test.sdf", text, "", {})) {
+Field::Field(const std::string &text, const std::string &folder)
+    : compilation_(driver::compile_text("test.sdf", text, folder, {})) {
     if (good()) program_ = cpu::compile(compilation_.scene, compilation_.scene.distance);
 }
 

@@ -38,7 +38,7 @@ std::string said(const driver::Compilation &compilation); // its diagnostics, on
 // The marched field (divided by its bound) of a scene that has to compile.
 class Field {
   public:
-    explicit Field(const std::string &text);
+    explicit Field(const std::string &text, const std::string &folder = ""); // where its files lie
     bool good() const { return compilation_.good(); }
     std::string said() const { return test::said(compilation_); }
     const ir::Scene &scene() const { return compilation_.scene; }

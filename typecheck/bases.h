@@ -1,0 +1,30 @@
+// A shape's tree made anew with something done to each of its base shapes: how an image comes to
+// lie on a whole scene by the natural parametrisation of its parts. Private to typecheck; knows
+// nothing of images.
+#pragma once
+
+#include "typecheck/evaluator.h"
+
+#include <functional>
+
+namespace fathom::typecheck {
+
+// Where a base shape stands below the shape that was asked.
+struct Below {
+    bool inverted = false; // below an odd number of complements: its outside is the whole's inside
+    ir::NodeId factor;     // its lengths times this are those of the whole
+};
+
+// A base shape is one of the library's solids, an extruded or turned flat shape, a flat shape, or a
+// field of the user's own. `dress` gives what shall stand in its place.
+using Dress = std::function<ir::ShapeId(ir::ShapeId, const Below &)>;
+
+enum class Paints : std::uint8_t {
+    Keep,
+    KeepWhole,
+    Strip
+}; // KeepWhole: what is painted already is left as it is
+
+ir::ShapeId dressed(Evaluator &ev, ir::ShapeId shape, Paints paints, const Dress &dress);
+
+} // namespace fathom::typecheck

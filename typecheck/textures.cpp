@@ -1,0 +1,374 @@
+// Images and grids of a scene: loading them, images as fields, textures and displacement maps by
+// the natural parametrisation of each base shape (thesis, 4.6), and grids of distances. Files are
+// read by the loader alone.
+#include "typecheck/textures.h"
+#include "typecheck/bases.h"
+#include "typecheck/builtins.h"
+
+#include "ir/charts.h"
+#include "ir/semantics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::typecheck {
+
+using ir::NodeId;
+using ir::Op;
+using ir::ShapeId;
+using ir::ShapeKind;
+using ir::Type;
+
+// -- files ---------------------------------------------------------------------------------------
+
+static void refuse(Evaluator &ev, Span place, const char *what, const std::string &path,
+                   const LoadError &error) {
+    const Code code =
+        error.reason == LoadError::Reason::Outside ? Code::ImportOutside : Code::FileNotFound;
+    report(ev, code, place, fmt::format("the {} `{}`: {}", what, path, error.why));
+}
+
+// The file whose text asks: a path is looked up beside it, also where the library's own text hands
+// the path on.
+static const std::string &asking_file(const Evaluator &ev) {
+    std::size_t i = ev.calls.size();
+    while (i > 0 && ev.calls[i - 1].library) --i;
+    if (i < ev.calls.size())
+        for (const Module &module : ev.modules)
+            if (module.source == ev.calls[i].call.source) return module.identity;
+    return ev.modules[ev.current_module].identity;
+}
+
+// A file that is named twice is read once.
+template <class Data, class Load>
+static std::optional<std::uint32_t> loaded(Evaluator &ev, const Load &load, std::vector<Data> &all,
+                                           const char *what, const std::string &path, Span place) {
+    const std::string from = asking_file(ev);
+    auto [it, added] = ev.assets.try_emplace(fmt::format("{}\n{}\n{}", what, from, path), 0);
+    if (!added) return it->second;
+    auto data = load(path, from);
+    if (auto *error = std::get_if<LoadError>(&data)) {
+        refuse(ev, place, what, path, *error);
+        ev.assets.erase(it);
+        return std::nullopt;
+    }
+    it->second = static_cast<std::uint32_t>(all.size());
+    all.push_back(std::move(std::get<Data>(data)));
+    return it->second;
+}
+
+static Value image_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+    auto path = want_string(ev, args[0], site.arg(0), "`image`");
+    auto scale = given(args[1]) ? want_known_number(ev, args[1], site.arg(1), "`scale`")
+                                : std::optional(1.0);
+    if (!path || !scale) return poison();
+    if (*scale == 0) {
+        report(ev, Code::BadArgument, site.arg(1), "an image's scale cannot be 0");
+        return poison();
+    }
+    auto index =
+        loaded<ir::ImageData>(ev, ev.loader.image, ev.scene.images, "image", *path, site.arg(0));
+    if (!index) return poison();
+    Value v = make_value(ValueKind::ImageField, *index);
+    v.num[0] = *scale;
+    return v;
+}
+
+// -- textures ------------------------------------------------------------------------------------
+
+// A number, or two, other than 0.
+static std::optional<std::array<double, 2>> want_scale(Evaluator &ev, const Value &v, Span place,
+                                                       const char *what) {
+    if (!given(v)) return std::array{1.0, 1.0};
+    auto node = want_vec_node(ev, v, 2, place, what);
+    if (!node) return std::nullopt;
+    if (!ev.scene.graph.is_constant(*node)) {
+        report(ev, Code::StageMismatch, place,
+               fmt::format("{} has to be known at scene time", what));
+        return std::nullopt;
+    }
+    const ir::Constant &c = ev.scene.graph.constant_of(*node);
+    if (c.value[0] == 0 || c.value[1] == 0) {
+        report(ev, Code::BadArgument, place, fmt::format("{} cannot be 0", what));
+        return std::nullopt;
+    }
+    return std::array{c.value[0], c.value[1]};
+}
+
+std::optional<ir::Texture> want_texture(Evaluator &ev, const Value &image, Span image_place,
+                                        const Value &scale, Span scale_place, const char *what,
+                                        const char *scale_what) {
+    if (is_poison(image)) return std::nullopt;
+    auto times = want_scale(ev, scale, scale_place, scale_what);
+    if (image.kind != ValueKind::ImageField) {
+        report(ev, Code::TypeMismatch, image_place,
+               fmt::format("{} wants an image, this is {}", what, describe(ev, image)))
+            .help("write `image(\"file.png\")`");
+        return std::nullopt;
+    }
+    if (!times) return std::nullopt;
+    return ir::Texture{static_cast<std::int32_t>(image.id),
+                       {(*times)[0] * image.num[0], (*times)[1] * image.num[0]}};
+}
+
+// How many images lie along a coordinate of 0..1; round what closes upon itself a whole number.
+static double images_along(double scale, bool around) {
+    const double count = 1 / scale;
+    if (!around) return count;
+    return std::copysign(std::max(1.0, std::round(std::fabs(count))), count);
+}
+
+static NodeId sampled(ir::Graph &g, const ir::Chart &chart, const ir::Texture &texture,
+                      std::int32_t image) {
+    const NodeId counts = g.vec(std::array{images_along(texture.scale[0], chart.around_u),
+                                           images_along(texture.scale[1], chart.around_v)});
+    return g.make(Op::Image, Type::Vec4, {g.mul(chart.uv, counts)},
+                  static_cast<std::uint32_t>(image));
+}
+
+// The parametrisation that is natural to a base shape, by what the library calls it.
+static std::optional<ir::Chart> chart_of(Evaluator &ev, ShapeId id) {
+    ir::Graph &g = ev.scene.graph;
+    const ir::Shape shape = ev.scene.shapes[id];
+    if (shape.dims == 2) return ir::flat_chart(g, Type::Vec2);
+    if (shape.kind == ShapeKind::Extrude) return ir::flat_chart(g, Type::Vec3);
+    if (shape.kind == ShapeKind::Map) { // revolved
+        auto extent = ev.options.extent ? ev.options.extent(ev.scene, id, 0) : std::nullopt;
+        const double reach =
+            extent ? std::max(std::fabs(extent->first), std::fabs(extent->second)) : 1;
+        return ir::turned_chart(g, g.number(std::isfinite(reach) && reach > 0 ? reach : 1));
+    }
+    if (shape.kind != ShapeKind::Library) return std::nullopt;
+    const ir::Library library = ev.scene.shapes.libraries[shape.payload];
+    const auto called = [&](std::initializer_list<std::string_view> names) {
+        return std::find(names.begin(), names.end(), library.name) != names.end();
+    };
+    const auto argument = [&](std::string_view name) {
+        for (const auto &[known, node] : library.arguments)
+            if (known == name) return node;
+        return g.vec3(0, 1, 0);
+    };
+    if (called({"heightfield"})) return ir::plane_chart(g, g.vec3(0, 1, 0));
+    if (called({"plane"})) return ir::plane_chart(g, argument("normal"));
+    if (called({"slab"})) return ir::plane_chart(g, argument("axis"));
+    const NodeId lo = library.claims.lo, hi = library.claims.hi;
+    if (!lo || !hi) return std::nullopt;
+    const auto part = [&](int i) { return g.component(hi, i); };
+    if (called({"box", "rounded_box", "box_frame", "menger", "menger_sponge", "gdf_cube"}))
+        return ir::box_chart(g, hi);
+    if (called({"cylinder", "rounded_cylinder", "prism"}))
+        return ir::can_chart(g, part(0), g.mul(part(1), g.number(2)));
+    if (called({"torus"})) return ir::ring_chart(g, g.sub(part(0), part(1)), part(1));
+    if (g.is_constant(lo) && g.is_constant(hi))
+        for (std::size_t i = 0; i < 3; ++i)
+            if (!std::isfinite(g.constant_of(hi).value[i] - g.constant_of(lo).value[i]))
+                return std::nullopt;
+    return ir::ball_chart(g, lo, hi);
+}
+
+static void report_no_chart(Evaluator &ev, ShapeId id, Span place, const char *what) {
+    const ir::Shape &shape = ev.scene.shapes[id];
+    const std::string name =
+        shape.kind == ShapeKind::Library
+            ? fmt::format("`{}`", ev.scene.shapes.libraries[shape.payload].name)
+            : "a field of one's own";
+    Diagnostic &d =
+        report(ev, Code::BadArgument, place,
+               fmt::format("{} lies on a shape by its natural parametrisation, and {} has none",
+                           what, name));
+    if (shape.origin.source && shape.origin != place) d.label(shape.origin, "this shape");
+    d.help(
+        "project the image yourself: `triplanar(image(…))` is a field of the point and the normal");
+}
+
+std::optional<ShapeId> painted_by_base(Evaluator &ev, ShapeId shape, const ir::Material &material,
+                                       bool over, Span place) {
+    ir::Graph &g = ev.scene.graph;
+    bool ok = true;
+    const ShapeId result = dressed(
+        ev, shape, over ? Paints::Strip : Paints::KeepWhole,
+        [&](ShapeId base, const Below &) -> ShapeId {
+            auto chart = chart_of(ev, base);
+            if (!chart) {
+                if (ok) report_no_chart(ev, base, place, "a texture");
+                ok = false;
+                return base;
+            }
+            // What is transparent shows the diffuse colour.
+            ir::Material here = material;
+            const NodeId texel = sampled(g, *chart, material.texture, material.texture.image);
+            here.diffuse = g.make(Op::Mix, {material.diffuse, g.swizzle(texel, std::array{0, 1, 2}),
+                                            g.splat(g.component(texel, 3), Type::Vec3)});
+            const ir::Shape below = ev.scene.shapes[base];
+            ir::Shape paint;
+            paint.kind = ShapeKind::Paint;
+            paint.dims = below.dims;
+            paint.payload = intern_material(ev, here);
+            paint.children = {base};
+            paint.origin = below.origin;
+            return ev.scene.shapes.add(std::move(paint));
+        });
+    return ok ? std::optional(result) : std::nullopt;
+}
+
+// -- displacement --------------------------------------------------------------------------------
+
+// An image's brightness as it is stored (not linear), 0..1: what a height map means.
+static std::uint32_t heights_of(Evaluator &ev, std::uint32_t image) {
+    auto [it, added] = ev.assets.try_emplace(fmt::format("heights\n{}", image), 0);
+    if (!added) return it->second;
+    ir::ImageData heights = ev.scene.images[image];
+    for (std::size_t i = 0; i + 3 < heights.rgba.size(); i += 4) {
+        const double linear = 0.2126 * heights.rgba[i] + 0.7152 * heights.rgba[i + 1] +
+                              0.0722 * heights.rgba[i + 2]; // Rec. 709's weights
+        const double stored =
+            linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+        std::fill_n(heights.rgba.begin() + static_cast<std::ptrdiff_t>(i), 3,
+                    static_cast<float>(stored));
+        heights.rgba[i + 3] = 1;
+    }
+    it->second = static_cast<std::uint32_t>(ev.scene.images.size());
+    ev.scene.images.push_back(std::move(heights));
+    return it->second;
+}
+
+struct Heights {
+    double least = 0, most = 0, mean = 0;
+    double slope_u = 0, slope_v = 0; // per image: bilinear, so the largest step between neighbours
+};
+static Heights measured(const ir::ImageData &image) {
+    Heights out{1e30, -1e30, 0, 0, 0};
+    const auto at = [&](int x, int y) {
+        return double(
+            image.rgba[static_cast<std::size_t>(y % image.height * image.width + x % image.width) *
+                       4]);
+    };
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const double h = at(x, y);
+            out.least = std::min(out.least, h), out.most = std::max(out.most, h);
+            out.mean += h / (double(image.width) * image.height);
+            out.slope_u = std::max(out.slope_u, std::fabs(at(x + 1, y) - h) * image.width);
+            out.slope_v = std::max(out.slope_v, std::fabs(at(x, y + 1) - h) * image.height);
+        }
+    return out;
+}
+
+// _displace_map(s, image, amount, scale): f - amount * h on each base shape, h the map's
+// brightness; at seams and poles its mean, where the chart says.
+static Value displace_map_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+    auto s = first_shape(ev, site, args);
+    auto map =
+        want_texture(ev, args[1], site.arg(1), args[3], site.arg(3), "`displace_map`", "`scale`");
+    auto amount = want_scalar_node(ev, args[2], site.arg(2), "`amount`");
+    if (!s || !map || !amount) return poison();
+    ir::Graph &g = ev.scene.graph;
+    const std::uint32_t image = heights_of(ev, static_cast<std::uint32_t>(map->image));
+    const Heights heights = measured(ev.scene.images[image]);
+    const double span = std::max(heights.most - heights.mean, heights.mean - heights.least);
+    ev.scene.shapes.displacement_maps.push_back({*map, *amount});
+    const auto record = static_cast<std::uint32_t>(ev.scene.shapes.displacement_maps.size());
+    bool ok = true;
+    const ShapeId result =
+        dressed(ev, *s, Paints::Keep, [&](ShapeId base, const Below &below) -> ShapeId {
+            auto chart = chart_of(ev, base);
+            if (!chart) {
+                if (ok) report_no_chart(ev, base, site.call, "a displacement map");
+                ok = false;
+                return base;
+            }
+            const NodeId here = g.div(below.inverted ? g.neg(*amount) : *amount, below.factor);
+            const NodeId mean = g.number(heights.mean);
+            const NodeId height =
+                g.component(sampled(g, *chart, *map, static_cast<std::int32_t>(image)), 0);
+            const NodeId seamless = g.add(mean, g.mul(chart->weight, g.sub(height, mean)));
+            const double along_u =
+                heights.slope_u * std::fabs(images_along(map->scale[0], chart->around_u));
+            const double along_v =
+                heights.slope_v * std::fabs(images_along(map->scale[1], chart->around_v));
+            const NodeId slope = g.add(g.add(g.mul(chart->slope_u, g.number(along_u)),
+                                             g.mul(chart->slope_v, g.number(along_v))),
+                                       g.mul(chart->slope_weight, g.number(span)));
+            const NodeId a = g.mul(here, g.number(heights.least)),
+                         b = g.mul(here, g.number(heights.most));
+            const ir::Shape inner = ev.scene.shapes[base];
+            ir::Shape out;
+            out.kind = ShapeKind::Displace;
+            out.dims = inner.dims;
+            out.payload = record;
+            out.children = {base};
+            out.args = {g.mul(here, seamless), g.mul(g.make(Op::Abs, {here}), slope),
+                        g.make(Op::Min, {a, b}), g.make(Op::Max, {a, b})};
+            out.origin = inner.origin;
+            return ev.scene.shapes.add(std::move(out));
+        });
+    return ok ? shape_value(result, args[0].size) : poison();
+}
+
+// -- grids ---------------------------------------------------------------------------------------
+
+// _grid(file): [its number, the corners lo and hi, the slope of its trilinear field]
+static Value grid_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+    auto path = want_string(ev, args[0], site.arg(0), "`distance_grid`");
+    if (!path) return poison();
+    auto index =
+        loaded<ir::GridData>(ev, ev.loader.grid, ev.scene.grids, "grid", *path, site.arg(0));
+    if (!index) return poison();
+    const ir::GridData &grid = ev.scene.grids[*index];
+    // In a cell each partial derivative is a mean of the steps along its four edges.
+    const auto [nx, ny, nz] = grid.size;
+    const auto at = [&, nx = nx, ny = ny](int x, int y, int z) {
+        return double(grid.values[static_cast<std::size_t>((z * ny + y) * nx + x)]);
+    };
+    std::array<double, 3> spacing{};
+    for (std::size_t i = 0; i < 3; ++i) spacing[i] = (grid.hi[i] - grid.lo[i]) / (grid.size[i] - 1);
+    double steepest = 0;
+    for (int z = 0; z + 1 < nz; ++z)
+        for (int y = 0; y + 1 < ny; ++y)
+            for (int x = 0; x + 1 < nx; ++x) {
+                std::array<double, 3> d{};
+                for (int i = 0; i < 2; ++i)
+                    for (int j = 0; j < 2; ++j) {
+                        d[0] = std::max(d[0],
+                                        std::fabs(at(x + 1, y + i, z + j) - at(x, y + i, z + j)));
+                        d[1] = std::max(d[1],
+                                        std::fabs(at(x + i, y + 1, z + j) - at(x + i, y, z + j)));
+                        d[2] = std::max(d[2],
+                                        std::fabs(at(x + i, y + j, z + 1) - at(x + i, y + j, z)));
+                    }
+                steepest = std::max(
+                    steepest, std::hypot(d[0] / spacing[0], d[1] / spacing[1], d[2] / spacing[2]));
+            }
+    const auto corner = [](const std::array<double, 3> &c) {
+        return vec(3, {c[0], c[1], c[2], 0});
+    };
+    return list_value(
+        ev, {integer(*index), corner(grid.lo), corner(grid.hi), number(steepest * (1 + 1e-6))});
+}
+
+// _grid_at(grid, p): its value at p, 0..1 from corner to corner
+static Value grid_at_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+    auto index = want_known_int(ev, args[0], site.arg(0), "a grid");
+    auto p = want_vec_node(ev, args[1], 3, site.arg(1), "a grid's point");
+    if (!index || !p) return poison();
+    return from_node(
+        ev, ev.scene.graph.make(Op::Grid, Type::Float, {*p}, static_cast<std::uint32_t>(*index)));
+}
+
+void add_texture_builtins(std::vector<Builtin> &table) {
+    auto add = [&](const char *name, std::vector<BuiltinParameter> parameters, auto call,
+                   const char *doc) {
+        table.push_back({name, std::move(parameters), false, name[0] == '_', call, "", doc});
+    };
+    add("image", {{"file"}, {"scale", true}}, image_call,
+        "a picture (PNG or JPEG) as a function of a vec2, repeated; 0..1 times `scale` is the "
+        "whole of it, "
+        "to the right and up");
+    add("_displace_map", {{"s"}, {"image"}, {"amount"}, {"scale", true}}, displace_map_call, "");
+    add("_grid", {{"file"}}, grid_call, "");
+    add("_grid_at", {{"grid"}, {"p"}}, grid_at_call, "");
+}
+
+} // namespace fathom::typecheck
