@@ -2,6 +2,7 @@
 
 #include "driver/scene_files.h"
 #include "ir/lower.h"
+#include "save-format/save_format.h"
 #include "typecheck/proof/prove.h"
 
 #include <cassert>
@@ -84,6 +85,16 @@ void run_phases(Compilation &out, SceneFiles &files, const std::string &identity
     enter(options, Phase::Done);
 }
 
+// A save file stands for the text that an import makes of it; what is to be said of the file itself joins the diagnostics.
+bool is_save_file(const std::filesystem::path &file) {
+    return file.extension() == ".yaml" || file.extension() == ".yml";
+}
+
+SourceId imported(Compilation &out, SourceId save_file) {
+    save::ImportResult result = save::import_yaml(out.sources, save_file, out.diagnostics);
+    return out.sources.add(out.sources[save_file].name + " (imported)", std::move(result.sdf));
+}
+
 } // namespace
 
 Compilation compile_text(std::string name, std::string text, const std::filesystem::path &folder,
@@ -113,6 +124,7 @@ Compilation compile_file(const std::filesystem::path &file, const CompileOptions
     } else {
         std::string identity = files.add_root(file);
         SourceId root = out.sources.add(file.string(), std::move(*text));
+        if (is_save_file(file)) root = imported(out, root);
         run_phases(out, files, identity, root, options);
     }
     out.files = files.touched();

@@ -35,7 +35,8 @@ struct Compilation {
     bool good() const { return unreadable.empty() && usage_errors.empty() && !diagnostics.has_errors(); }
 };
 
-// `file` as the user wrote it; `-` is standard input, whose imports are those of the current folder.
+// `file` as the user wrote it; `-` is standard input, whose imports are those of the current folder. A save file
+// (`.yaml`, `.yml`) is imported first.
 Compilation compile_file(const std::filesystem::path &file, const CompileOptions &options);
 
 // Text that is no file (yet): printed as `name`, importing as if it lay in `folder`.

@@ -450,16 +450,12 @@ std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
         std::string place;
         for (const std::size_t index : record->path)
             place += (place.empty() ? "" : "/") + std::to_string(index);
-        diagnostics
-            .add(Code::Unsupported, {},
-                 "the kept `" + record->label + " " + place +
-                     "` no longer has a place in the scene")
-            .severity = Severity::Warning;
+        unsaved(diagnostics, {},
+                "the kept `" + record->label + " " + place +
+                    "` no longer has a place in the scene");
     }
     for (const std::string &statement : kept.unread) {
-        diagnostics
-            .add(Code::Unsupported, {}, "the kept `" + statement.substr(0, 60) + "` cannot be read")
-            .severity = Severity::Warning;
+        unsaved(diagnostics, {}, "the kept `" + statement.substr(0, 60) + "` cannot be read");
     }
 
     std::string out = "---\n";

@@ -61,12 +61,13 @@ std::optional<TreeNode> TreeWriter::profile_blend(ShapeId id, bool complemented,
     if (s.kind == ShapeKind::Many) {
         profile = 0;
         const auto listed = scene_.shapes.listed.find(id);
-        if (listed == scene_.shapes.listed.end()) return left_out(id, "a smooth union of a family");
+        if (listed == scene_.shapes.listed.end())
+            return otherwise(id, paint, "a smooth union of a family");
         children = listed->second;
     }
     const auto radius = numbers_.number(s.args[0]);
     const auto count = s.args.size() > 1 ? numbers_.number(s.args[1]) : std::optional(0.0);
-    if (!radius || !count) return left_out(id, "a blend whose size is no number");
+    if (!radius || !count) return otherwise(id, paint, "a blend whose size is no number");
     std::vector<bool> negative;
     for (ShapeId &child : children) {
         child = bare(child);
@@ -91,9 +92,28 @@ std::optional<TreeNode> TreeWriter::profile_blend(ShapeId id, bool complemented,
     return result;
 }
 
+std::optional<TreeNode> TreeWriter::seam(ShapeId id, const Paint &paint) {
+    const Shape &s = shape(id);
+    static constexpr const char *names[] = {"Pipe", "Engrave", "Groove", "Tongue"};
+    const auto radius = numbers_.number(s.args[0]);
+    const auto depth = s.args.size() > 1 ? numbers_.number(s.args[1]) : std::optional(0.0);
+    auto first = single(s.children[0], paint);
+    std::vector<TreeNode> rest;
+    united(s.children[1], paint, rest);
+    if (!radius || !depth || !first || rest.empty()) return otherwise(id, paint, "this seam");
+    TreeNode result = made(NodeType::Seam);
+    add(result, "Profile", yaml_word(names[s.payload]));
+    add(result, "Radius", yaml_scalar(*radius));
+    if (s.payload >= 2) add(result, "Depth", yaml_scalar(*depth));
+    result.children.push_back(std::move(*first));
+    for (TreeNode &other : rest) result.children.push_back(std::move(other));
+    return result;
+}
+
 std::optional<TreeNode> TreeWriter::lerp(ShapeId id, const Paint &paint) {
     const Shape &s = shape(id);
     ir::Graph &graph = numbers_.graph();
+    const int functions = functions_;
     TreeNode result = made(NodeType::Blend);
     const NodeId t = numbers_.reduced(s.args[0]);
     if (const auto factor = graph.as_number(t)) {
@@ -119,15 +139,19 @@ std::optional<TreeNode> TreeWriter::lerp(ShapeId id, const Paint &paint) {
         if (center) {
             add(result, "Center", yaml_xyz((*center)[0], (*center)[1], (*center)[2]));
         } else {
-            auto field_steps = steps(t, id, "a blend by a function");
-            if (!field_steps) return std::nullopt;
+            auto field_steps = steps(t);
+            if (!field_steps) return otherwise(id, paint, "a blend by this function");
             add(result, "Factor Field", std::move(*field_steps));
         }
     }
     auto first = single(s.children[0], paint);
     std::vector<TreeNode> rest;
     united(s.children[1], paint, rest);
-    if (!first || rest.empty()) return left_out(id, "a blend with something that is left out");
+    if (!first || rest.empty())
+        return otherwise(id, paint, "a blend with something that is left out");
+    // Where the factor varies, both have to end somewhere.
+    if (functions_ != functions && !graph.as_number(t))
+        return otherwise(id, paint, "this blend by a function");
     result.children.push_back(std::move(*first));
     for (TreeNode &other : rest) result.children.push_back(std::move(other));
     return result;

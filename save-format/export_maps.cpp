@@ -80,12 +80,11 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
     const auto push = [&](std::optional<TreeNode> result) {
         if (result) out.push_back(std::move(*result));
     };
-    if (s.dims == 2) return push(left_out(id, "flat shapes"));
     static constexpr const char *axes[] = {"X", "Y", "Z"};
     switch (s.map) {
     case ir::MapKind::Translate: {
         const auto by = numbers_.vector(s.args[2]);
-        if (!by) return push(left_out(id, "a movement that is no number"));
+        if (!by) return push(otherwise(id, paint, "a movement that is no number"));
         if (*by == std::array<double, 3>{}) return united(s.children[0], paint, out);
         auto result = one_child(NodeType::Translation, s.children[0], paint);
         if (result) add(*result, "Vector", yaml_xyz(-(*by)[0], -(*by)[1], -(*by)[2]));
@@ -93,7 +92,7 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
     }
     case ir::MapKind::Rotate: {
         const auto matrix = numbers_.constant(s.args[2]);
-        if (!matrix) return push(left_out(id, "a rotation that is no number"));
+        if (!matrix) return push(otherwise(id, paint, "a rotation that is no number"));
         const auto &m = matrix->value;
         const double det = m[0] * (m[4] * m[8] - m[5] * m[7]) - m[3] * (m[1] * m[8] - m[2] * m[7]) +
                            m[6] * (m[1] * m[5] - m[2] * m[4]);
@@ -102,7 +101,16 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
         for (std::size_t i = 0; i < 9; ++i)
             identity = identity && std::abs(m[i] - (i % 4 == 0 ? 1 : 0)) < 1e-15;
         if (identity) return united(s.children[0], paint, out);
-        // A reflection is the reflection in x, then the rotation that is left.
+        // A reflection in planes of the axes is a scaling; any other is one in x, then the rotation
+        // that is left.
+        bool diagonal = det < 0;
+        for (std::size_t i = 0; i < 9; ++i)
+            diagonal = diagonal && (i % 4 == 0 ? std::abs(m[i]) == 1 : m[i] == 0);
+        if (diagonal) {
+            auto result = one_child(NodeType::Scaling, s.children[0], paint);
+            if (result) add(*result, "Factors", yaml_xyz(m[0], m[4], m[8]));
+            return push(std::move(result));
+        }
         TreeNode inner = made(NodeType::Rotation);
         united(s.children[0], paint, inner.children);
         if (inner.children.empty()) return;
@@ -111,13 +119,6 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
             add(mirror, "Factors", yaml_xyz(-1, 1, 1));
             mirror.children = std::move(inner.children);
             for (std::size_t i = 0; i < 3; ++i) turn.value[i] = -turn.value[i];
-            bool plain = true;
-            for (std::size_t i = 0; i < 9; ++i)
-                plain = plain && std::abs(turn.value[i] - (i % 4 == 0 ? 1 : 0)) < 1e-15;
-            if (plain) {
-                out.push_back(std::move(mirror));
-                return;
-            }
             return rotation(turn, std::move(mirror), out);
         }
         std::vector<TreeNode> children = std::move(inner.children);
@@ -128,7 +129,7 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
     }
     case ir::MapKind::Scale: {
         const auto by = numbers_.vector(s.args[2]);
-        if (!by) return push(left_out(id, "a scale that is no number"));
+        if (!by) return push(otherwise(id, paint, "a scale that is no number"));
         if (*by == std::array<double, 3>{1, 1, 1}) return united(s.children[0], paint, out);
         auto result = one_child(NodeType::Scaling, s.children[0], paint);
         // the shortest number whose reciprocal the scale is
@@ -142,7 +143,7 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
     }
     case ir::MapKind::Twist: {
         const auto rate = numbers_.number(s.args[2]);
-        if (!rate) return push(left_out(id, "a twist that is no number"));
+        if (!rate) return push(otherwise(id, paint, "a twist that is no number"));
         if (*rate == 0) return united(s.children[0], paint, out);
         auto result = one_child(NodeType::Twist, s.children[0], paint);
         if (result) {
@@ -157,7 +158,8 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
         const auto first = numbers_.number(s.args[2]);
         const auto from = bend ? std::optional(0.0) : numbers_.number(s.args[3]),
                    to = bend ? std::optional(0.0) : numbers_.number(s.args[4]);
-        if (!first || !from || !to) return push(left_out(id, "a deformation that is no number"));
+        if (!first || !from || !to)
+            return push(otherwise(id, paint, "a deformation that is no number"));
         auto result = one_child(NodeType::Deformation, s.children[0], paint);
         if (!result) return;
         add(*result, "Function", yaml_word(bend ? "bend" : "taper"));
@@ -198,22 +200,34 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
                 return push(std::move(result));
             }
         }
-        auto map_steps = steps(q, id, "a map of space");
-        if (!map_steps) return;
+        auto map_steps = steps(q);
+        if (!map_steps) return push(otherwise(id, paint, "this map of space"));
         auto result = one_child(NodeType::Distortion, s.children[0], paint);
         if (result) add(*result, "Map", std::move(*map_steps));
         return push(std::move(result));
     }
-    case ir::MapKind::Revolve: return push(left_out(id, "flat shapes"));
+    case ir::MapKind::Revolve: return push(otherwise(id, paint, "flat shapes"));
     }
 }
 
+// The copies of what is written as a function have no ends that an import could know: then the
+// whole repetition is one.
 void TreeWriter::repeat(ShapeId id, const Paint &paint, std::vector<TreeNode> &out) {
+    const int functions = functions_;
+    const std::size_t before = out.size();
+    copies(id, paint, out);
+    if (functions_ == functions || scene_.shapes.repetitions[shape(id).payload].id) return;
+    out.resize(before);
+    if (auto whole = otherwise(id, paint, "this repetition")) out.push_back(std::move(*whole));
+}
+
+void TreeWriter::copies(ShapeId id, const Paint &paint, std::vector<TreeNode> &out) {
     const Shape &s = shape(id);
     const ir::Repetition &r = scene_.shapes.repetitions[s.payload];
     static constexpr const char *axes[] = {"X", "Y", "Z"};
-    const auto refuse = [&](const char *what) { left_out(id, what); };
-    if (s.dims == 2) return refuse("flat shapes");
+    const auto refuse = [&](const char *what) {
+        if (auto result = otherwise(id, paint, what)) out.push_back(std::move(*result));
+    };
     if (r.polar) {
         const auto count = numbers_.number(s.args[0]);
         if (!count) return refuse("a repetition that is no number");
@@ -289,7 +303,7 @@ void TreeWriter::repeat(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
                 const double index[3] = {double(x), double(y), double(z)};
                 double moved[3];
                 for (std::size_t i = 0; i < 3; ++i)
-                    moved[i] = -(index[i] - (copies[i] - 1) / 2) * size[i];
+                    moved[i] = shortest_near(((copies[i] - 1) / 2 - index[i]) * size[i]);
                 TreeNode copy = made(NodeType::Translation);
                 add(copy, "Vector", yaml_xyz(moved[0], moved[1], moved[2]));
                 united(s.children[0], paint, copy.children);

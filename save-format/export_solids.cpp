@@ -1,7 +1,8 @@
-// Fields and the library's solids, as nodes: a solid under its own name where the save format has
-// one, else as a call of numbers; a field of one's own as its steps and where it holds.
-#include "save-format/program.h"
+// The library's solids, as nodes: under their own names where the save format has them, else as
+// calls with numbers.
 #include "save-format/tree_writer.h"
+
+#include <unordered_set>
 
 namespace fathom::save {
 namespace {
@@ -13,71 +14,20 @@ const NodeId *argument(const ir::Library &library, std::string_view name) {
     return nullptr;
 }
 
+// The first grid that these expressions read.
+std::optional<std::uint32_t> grid_below(const ir::Graph &graph, std::vector<NodeId> open) {
+    std::unordered_set<NodeId> seen;
+    while (!open.empty()) {
+        const NodeId id = open.back();
+        open.pop_back();
+        if (!seen.insert(id).second) continue;
+        if (graph[id].op == ir::Op::Grid) return graph[id].payload;
+        open.insert(open.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    return std::nullopt;
+}
+
 } // namespace
-
-std::optional<Value> TreeWriter::region(const ir::Region &region) {
-    Value value;
-    value.kind = Value::Kind::Mapping;
-    static constexpr const char *axes[] = {"X", "Y", "Z"};
-    const auto center = region.center ? numbers_.vector(region.center) : std::array<double, 3>{};
-    switch (region.kind) {
-    case ir::RegionKind::Everywhere:
-        value.entries.emplace_back("Everywhere", yaml_switch(true));
-        break;
-    case ir::RegionKind::Ball: {
-        const auto radius = numbers_.number(region.size);
-        if (!radius || !center) return std::nullopt;
-        value.entries.emplace_back("Ball", yaml_scalar(*radius));
-        value.entries.emplace_back("Center", yaml_xyz((*center)[0], (*center)[1], (*center)[2]));
-        break;
-    }
-    case ir::RegionKind::Box: {
-        const auto size = numbers_.vector(region.size);
-        if (!size || !center) return std::nullopt;
-        std::array<double, 3> low{}, high{};
-        for (std::size_t i = 0; i < 3; ++i)
-            low[i] = (*center)[i] - (*size)[i] / 2, high[i] = (*center)[i] + (*size)[i] / 2;
-        value.entries.emplace_back("Low", yaml_xyz(low[0], low[1], low[2]));
-        value.entries.emplace_back("High", yaml_xyz(high[0], high[1], high[2]));
-        break;
-    }
-    case ir::RegionKind::Tube: {
-        const auto radius = numbers_.number(region.size);
-        if (!radius) return std::nullopt;
-        value.entries.emplace_back("Tube", yaml_scalar(*radius));
-        value.entries.emplace_back("Axis", yaml_word(axes[region.axis]));
-        break;
-    }
-    }
-    if (!region.less.empty()) {
-        std::vector<Value> less;
-        for (const ir::Region &other : region.less) {
-            auto part = this->region(other);
-            if (!part) return std::nullopt;
-            less.push_back(std::move(*part));
-        }
-        value.entries.emplace_back("Less", yaml_list(std::move(less)));
-    }
-    return value;
-}
-
-std::optional<TreeNode> TreeWriter::field(ShapeId id, const ir::Region *within,
-                                          const Paint &paint) {
-    const Shape &s = shape(id);
-    auto field_steps = steps(s.args[0], id, "a function of the point");
-    if (!field_steps) return std::nullopt;
-    TreeNode result = made(NodeType::Field);
-    add(result, "Field", std::move(*field_steps));
-    if (within) {
-        auto limits = region(*within);
-        if (!limits) return left_out(id, "a region that is no number");
-        add(result, "Within", std::move(*limits));
-    }
-    if (s.assumed > 0) add(result, "Assumed", yaml_scalar(s.assumed));
-    if (s.estimate > 0) add(result, "Estimate", yaml_scalar(s.estimate));
-    if (!paint.fill.empty()) add(result, "Material", yaml_word(paint.fill));
-    return result;
-}
 
 std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
     const Shape &s = shape(id);
@@ -99,13 +49,12 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         return yaml_xyz(v[0], v[1], v[2]);
     };
     const auto finish = [&](TreeNode result) -> std::optional<TreeNode> {
-        if (!whole) return left_out(id, "`" + name + "` with these arguments");
+        if (!whole) return otherwise(id, paint, "`" + name + "` with these arguments");
         if (!paint.fill.empty()) add(result, "Material", yaml_word(paint.fill));
         if (result.type != row_of(NodeType::LibraryShape).name)
             add(result, "Offset", yaml_mapping({{"X", yaml_scalar(0)}, {"Y", yaml_scalar(0)}}));
         return result;
     };
-    if (s.dims == 2) return left_out(id, "flat shapes");
     if (name == "sphere" && exact) {
         TreeNode result = made(NodeType::Sphere);
         add(result, "Radius", number("radius"));
@@ -170,17 +119,12 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         add(result, "Second Exponent", number("b_exponent"));
         return finish(std::move(result));
     }
-    // What the body reads decides for explicit fields: the file is no number, so the call does not
-    // carry it.
-    if (name == "distance_grid") {
-        for (std::size_t i = 0; i < scene_.graph.size(); ++i) {
-            const ir::Node &n = scene_.graph[NodeId{i}];
-            if (n.op != ir::Op::Grid || n.payload >= scene_.grids.size()) continue;
-            TreeNode result = made(NodeType::ExplicitField);
-            add(result, "File", yaml_word(scene_.grids[n.payload].name));
-            return finish(std::move(result));
-        }
-        return left_out(id, "a distance grid");
+    if (name == "distance_grid") { // the file is no number: the body tells which it reads
+        const auto grid = grid_below(scene_.graph, shape(bare(s.children[0])).args);
+        if (!grid) return otherwise(id, paint, "this grid");
+        TreeNode result = made(NodeType::ExplicitField);
+        add(result, "File", yaml_word(scene_.grids[*grid].name));
+        return finish(std::move(result));
     }
     const bool of_numbers = name != "gdf" && name != "gdf_blend" && name != "metaballs" &&
                             name != "tubes" && is_library_solid(name);
@@ -191,7 +135,7 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         arguments.kind = Value::Kind::Mapping;
         for (const auto &[key, node] : l.arguments) {
             const auto value = numbers_.constant(node);
-            if (!value) return left_out(id, "`" + name + "` with these arguments");
+            if (!value) return otherwise(id, paint, "`" + name + "` with these arguments");
             std::vector<Value> parts;
             for (int i = 0; i < ir::components(value->type); ++i)
                 parts.push_back(yaml_scalar(value->value[static_cast<std::size_t>(i)]));
@@ -202,6 +146,7 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         add(result, "Arguments", std::move(arguments));
         return finish(std::move(result));
     }
+    if (l.has_claims) return otherwise(id, paint, "`" + name + "`");
     return single(s.children[0], paint); // a combination or transform under its library's name
 }
 

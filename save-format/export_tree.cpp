@@ -10,6 +10,12 @@
 
 namespace fathom::save {
 
+Remark unsaved(Diagnostics &diagnostics, Span place, std::string message) {
+    return {diagnostics,
+            Diagnostic{
+                Code::Unsupported, Severity::Warning, std::move(message), {place, {}}, {}, {}, {}}};
+}
+
 TreeNode made(NodeType type) {
     TreeNode node;
     node.type = row_of(type).name;
@@ -25,20 +31,9 @@ ShapeId TreeWriter::bare(ShapeId id) const {
     return id;
 }
 
-std::optional<TreeNode> TreeWriter::left_out(ShapeId id, std::string what) {
-    diagnostics_
-        .add(Code::Unsupported, shape(id).origin, "the save format has no words for " + what)
-        .note("it is left out of the file")
-        .severity = Severity::Warning;
-    return std::nullopt;
-}
-
-std::optional<Value> TreeWriter::steps(NodeId expression, ShapeId at, const char *what) {
-    const std::string flow = program_flow(numbers_.graph(), numbers_.reduced(expression));
-    if (flow.empty()) {
-        left_out(at, std::string(what) + " with loops, tables or images");
-        return std::nullopt;
-    }
+std::optional<Value> TreeWriter::steps(NodeId expression) {
+    const std::string flow = numbers_.program(expression);
+    if (flow.empty()) return std::nullopt;
     return parse_text(flow).value;
 }
 
@@ -124,17 +119,18 @@ void TreeWriter::painted(ShapeId id, Paint paint, std::vector<TreeNode> &out) {
     Value looks;
     looks.kind = Value::Kind::Mapping;
     const auto part = [&](const char *key, NodeId expression) {
-        const std::string flow = expression
-                                     ? program_flow(numbers_.graph(), numbers_.reduced(expression))
-                                     : std::string();
-        if (!flow.empty()) looks.entries.emplace_back(key, parse_text(flow).value);
-        return !flow.empty();
+        auto program = steps(expression);
+        if (program) looks.entries.emplace_back(key, std::move(*program));
+        return program.has_value();
     };
     bool whole = part("Diffuse", m.diffuse);
     whole = part("Specular", m.specular) && whole;
     whole = part("Exponent", m.exponent) && whole;
     whole = part("Emission", m.emission) && whole;
-    if (!whole) left_out(id, "a part of this material: a function with loops, tables or images");
+    if (!whole)
+        unsaved(diagnostics_, s.origin,
+                "the save format has no words for a part of this material: " + no_words)
+            .note("it is left out of the file");
     looks.entries.emplace_back("Repaint", yaml_switch(s.kind == ShapeKind::Repaint));
     add(group, "Paint", std::move(looks));
     paint.fill.clear();
@@ -144,7 +140,6 @@ void TreeWriter::painted(ShapeId id, Paint paint, std::vector<TreeNode> &out) {
 
 std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
     const Shape &s = shape(id);
-    if (s.dims == 2) return left_out(id, "flat shapes");
     switch (s.kind) {
     case ShapeKind::Leaf: return field(id, nullptr, paint);
     case ShapeKind::Within: {
@@ -161,7 +156,7 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
                 return result;
             }
         }
-        return left_out(id, "this use of `within:`");
+        return otherwise(id, paint, "this use of `within:`");
     }
     case ShapeKind::Intersection: return intersection(id, paint);
     case ShapeKind::Complement: {
@@ -194,7 +189,8 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
         auto first = single(s.children[0], paint);
         std::vector<TreeNode> rest;
         united(s.children[1], paint, rest);
-        if (!exponent || !first || rest.empty()) return left_out(id, "this pseudo-norm blend");
+        if (!exponent || !first || rest.empty())
+            return otherwise(id, paint, "this pseudo-norm blend");
         TreeNode result = made(NodeType::PseudoNormBlend);
         add(result, "Exponent", yaml_scalar(*exponent));
         result.children.push_back(std::move(*first));
@@ -203,14 +199,14 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
     }
     case ShapeKind::Offset: {
         const auto distance = numbers_.number(s.args[0]);
-        if (!distance) return left_out(id, "an offset that is no number");
+        if (!distance) return otherwise(id, paint, "an offset that is no number");
         auto result = one_child(NodeType::Offset, s.children[0], paint);
         if (result) add(*result, "Distance", yaml_scalar(*distance));
         return result;
     }
     case ShapeKind::Shell: {
         const auto thickness = numbers_.number(s.args[0]);
-        if (!thickness) return left_out(id, "a shell that is no number");
+        if (!thickness) return otherwise(id, paint, "a shell that is no number");
         auto result = one_child(NodeType::Deformation, s.children[0], paint);
         if (!result) return result;
         add(*result, "Function", yaml_word("shell"));
@@ -218,15 +214,20 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
         return result;
     }
     case ShapeKind::Displace: {
-        auto field_steps = steps(s.args[0], id, "a displacement");
-        if (!field_steps) return single(s.children[0], paint); // reported; the shape itself stays
+        auto field_steps = steps(s.args[0]);
+        if (!field_steps) { // the shape itself stays
+            unsaved(diagnostics_, s.origin,
+                    "the save format has no words for this displacement: " + no_words)
+                .note("the shape is written without it");
+            return single(s.children[0], paint);
+        }
         auto result = one_child(NodeType::Displacement, s.children[0], paint);
         if (result) add(*result, "Field", std::move(*field_steps));
         return result;
     }
     case ShapeKind::Library: return library(id, paint);
-    case ShapeKind::Seam: return left_out(id, "a seam's profile");
-    case ShapeKind::Extrude: return left_out(id, "flat shapes");
+    case ShapeKind::Seam: return seam(id, paint);
+    case ShapeKind::Extrude: return otherwise(id, paint, "flat shapes");
     case ShapeKind::Empty:
     case ShapeKind::Union:
     case ShapeKind::Map:
@@ -255,6 +256,8 @@ Numbers::Numbers(const ir::Scene &scene) : graph_(scene.graph) {
 NodeId Numbers::reduced(NodeId id) {
     return values_.empty() ? id : ir::substitute(graph_, id, values_);
 }
+
+std::string Numbers::program(NodeId id) { return program_flow(graph_, id, values_); }
 
 std::optional<ir::Constant> Numbers::constant(NodeId id) {
     if (!id) return std::nullopt;

@@ -20,7 +20,8 @@ class Numbers {
     std::optional<ir::Constant> constant(ir::NodeId id);
     std::optional<double> number(ir::NodeId id);
     std::optional<std::array<double, 3>> vector(ir::NodeId id); // a vec2's third component is 0
-    ir::NodeId reduced(ir::NodeId id); // the expression, with those values in it
+    ir::NodeId reduced(ir::NodeId id);  // the expression, with those values in it
+    std::string program(ir::NodeId id); // its steps in flow form; empty where there are no words
     void set(ir::NodeId variable, const ir::Constant &value);
     ir::Graph &graph() { return graph_; }
 
@@ -28,6 +29,9 @@ class Numbers {
     ir::Graph graph_;
     ir::Substitution values_;
 };
+
+// What the file cannot hold: a warning, since the rest is written.
+Remark unsaved(Diagnostics &diagnostics, Span place, std::string message);
 
 // Names a material (an index into Shapes::materials) as the file does; empty where its looks depend
 // on the point.

@@ -140,12 +140,11 @@ void read_material(Importer &in, const TakenValue &taken) {
             names.emplace_back(other);
         }
         if (known) continue;
-        Diagnostic &added = in.report
-                                .content(value.span, "a material has no property `" +
-                                                         printable(name.substr(0, 80)) + "`")
-                                .note("it is kept for an export");
+        Remark remark = in.report.content(value.span, "a material has no property `" +
+                                                          printable(name.substr(0, 80)) + "`");
+        remark.note("it is kept for an export");
         const std::string near = nearest_name(name, names);
-        if (!near.empty()) added.help("did you mean `" + near + "`?");
+        if (!near.empty()) remark.help("did you mean `" + near + "`?");
     }
     const Value *name = all.find("Name");
     if (!name || name->kind != Value::Kind::Scalar || name->text.empty()) {

@@ -138,9 +138,11 @@ void Importer::read_property(const NodeTypeRow &row, const Event &key, Propertie
         std::string message =
             std::string(of) + " has no property `" + printable(key.text.substr(0, 80)) + "`";
         const std::string near = nearest_name(key.text, known);
-        Diagnostic &added =
-            report.content(key.span, std::move(message)).note("it is kept for an export");
-        if (!near.empty()) added.help("did you mean `" + near + "`?");
+        {
+            Remark remark = report.content(key.span, std::move(message));
+            remark.note("it is kept for an export");
+            if (!near.empty()) remark.help("did you mean `" + near + "`?");
+        }
         std::string flow;
         take_flow(reader, reader.next(), flow);
         properties.keep(key.text, flow);

@@ -106,7 +106,7 @@ void TreeReader::children(const Event &key, const NodeTypeRow *row, Body &body, 
     into.given = true;
     const NodeType type = row ? row->type : NodeType::Generic;
     const bool first_alone = type == NodeType::Difference || type == NodeType::Blend ||
-                             type == NodeType::PseudoNormBlend;
+                             type == NodeType::PseudoNormBlend || type == NodeType::Seam;
     for (;; ++into.read) {
         Event event = in_.reader.next();
         if (event.kind == EventKind::SequenceEnd || event.kind == EventKind::Broken ||
@@ -214,12 +214,12 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     if (!row) {
         std::vector<std::string> known;
         for (const NodeTypeRow &other : node_types()) known.emplace_back(other.name);
-        Diagnostic &added = in_.report.content(type_span, "there is no node type `" +
-                                                              printable(type.substr(0, 80)) + "`");
-        added.note(
+        Remark remark = in_.report.content(type_span, "there is no node type `" +
+                                                          printable(type.substr(0, 80)) + "`");
+        remark.note(
             "its children, if it has any, are united in its place; it is kept for an export");
         const std::string near = nearest_name(type, known);
-        if (!near.empty()) added.help("did you mean `" + near + "`?");
+        if (!near.empty()) remark.help("did you mean `" + near + "`?");
     }
 
     std::string name;

@@ -239,6 +239,7 @@ std::string leaf_text(Importer &in, const NodeTypeRow &row, Properties &properti
     case NodeType::Displacement:
     case NodeType::ProfileBlend:
     case NodeType::PseudoNormBlend:
+    case NodeType::Seam:
     case NodeType::Distortion:
     case NodeType::Complement:
     case NodeType::Deformation:
@@ -392,6 +393,7 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
     case NodeType::LibraryShape:
     case NodeType::ProfileBlend:
     case NodeType::PseudoNormBlend:
+    case NodeType::Seam:
     case NodeType::Field:
     case NodeType::Lighting: break;
     }
@@ -425,10 +427,21 @@ void operator_text(Importer &in, const NodeTypeRow &row, Properties &properties,
                      (stepped ? ", " + reading.text("Count") : "") + (mixed ? ", mix: true" : "") +
                      ") {");
     }
-    // blend(a, b, t) and pseudonorm_blend(a, b, exponent)
+    // blend(a, b, t), pseudonorm_blend(a, b, exponent), and the seams with their sizes
     std::string last;
+    std::string call = row.type == NodeType::Blend ? "blend" : "pseudonorm_blend";
     if (row.type == NodeType::PseudoNormBlend) {
         last = reading.text("Exponent");
+    } else if (row.type == NodeType::Seam) {
+        call = spelling_key(reading.word("Profile"));
+        last = reading.text("Radius");
+        if (call == "groove" || call == "tongue") {
+            last += ", " + reading.text("Depth");
+        } else if (call != "pipe" && call != "engrave") {
+            in.report.content(at, "a seam's profile is Pipe, Engrave, Groove or Tongue")
+                .note("a pipe stands in");
+            call = "pipe";
+        }
     } else if (reading["Factor Field"].given) {
         std::string why;
         last = program_text(reading["Factor Field"].tree, why);
@@ -446,8 +459,7 @@ void operator_text(Importer &in, const NodeTypeRow &row, Properties &properties,
     } else {
         last = reading.text("Factor");
     }
-    body[begin] = {
-        Piece::Kind::Open, row.type == NodeType::Blend ? "blend(" : "pseudonorm_blend(", {}};
+    body[begin] = {Piece::Kind::Open, call + "(", {}};
     body[first_end - 1].text += ',';
     if (rest > 1) {
         body[rest_mark] = {Piece::Kind::Open, "union {", {}};
@@ -472,7 +484,7 @@ std::string paint_call(Importer &in, const NodeTypeRow &row, Properties &propert
         const Value *steps = looks.find(key);
         if (!steps) continue;
         std::string why;
-        const std::string lambda = program_text(*steps, why);
+        const std::string lambda = program_text(*steps, why, true);
         if (lambda.empty()) {
             in.report.content(at,
                               std::string("`") + key + "` of this paint cannot be read: " + why);

@@ -81,6 +81,7 @@ constexpr P library[] = {word("Function", ""), tree("Arguments"), material};
 constexpr P profile_blend[] = {word("Operation", "Union"), word("Profile", "Smooth"),
                                size("Radius", 0.1), number("Count", 4), labelled(flag("Mix"))};
 constexpr P pseudo_norm[] = {size("Exponent", 2)};
+constexpr P seam[] = {word("Profile", "Pipe"), size("Radius", 0.1), size("Depth", 0.1)};
 constexpr P field[] = {tree("Field"),
                        tree("Within"),
                        {"Assumed", K::Number, 0, "", 0, 1e9, false, true},
@@ -125,6 +126,7 @@ constexpr NodeTypeRow rows[] = {
     {NodeType::LibraryShape, "Library Shape", Arity::Leaf, library},
     {NodeType::ProfileBlend, "Profile Blend", Arity::Many, profile_blend},
     {NodeType::PseudoNormBlend, "Pseudo-norm Blend", Arity::Two, pseudo_norm},
+    {NodeType::Seam, "Seam", Arity::Two, seam},
     {NodeType::Field, "Field", Arity::Leaf, field},
     {NodeType::Distortion, "Distortion", Arity::One, distortion},
     {NodeType::Complement, "Complement", Arity::One, {}},

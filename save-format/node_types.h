@@ -39,6 +39,7 @@ enum class NodeType : std::uint8_t {
     LibraryShape,
     ProfileBlend,
     PseudoNormBlend,
+    Seam,
     Field,
     Distortion,
     Complement,

@@ -22,6 +22,7 @@ constexpr Spelling spellings[] = {
     {"Sub", "-", 2, true},
     {"Mul", "*", 2, true},
     {"Div", "/", 2, true},
+    {"WholeDiv", "div", 2, false},
     {"Mod", "%", 2, true},
     {"Pow", "pow", 2, false},
     {"Min", "min", 2, false},
@@ -88,8 +89,8 @@ std::string constant_text(const Value &value) {
 
 class Program {
   public:
-    Program(const Value &steps, std::string_view parameter, std::string &why)
-        : steps_(steps), parameter_(parameter), why_(why) {}
+    Program(const Value &steps, bool with_normal, std::string &why)
+        : steps_(steps), with_normal_(with_normal), why_(why) {}
 
     std::string text() {
         if (steps_.kind != Value::Kind::Sequence || steps_.items.empty()) {
@@ -117,7 +118,7 @@ class Program {
         std::string result = texts_.back();
         if (result.size() > 2 && result.front() == '(' && whole_in_parentheses(result))
             result = result.substr(1, result.size() - 2);
-        return std::string(parameter_) + " => " +
+        return std::string(normal_used_ ? "(p, n) => " : "p => ") +
                (lets_.empty() ? result : "{ " + lets_ + result + " }");
     }
 
@@ -157,8 +158,12 @@ class Program {
         if (value.kind != Value::Kind::Sequence || value.items.empty()) return {};
         const std::string &op = value.items[0].text;
         const std::size_t count = value.items.size() - 1;
-        if (op == "Point") return std::string(parameter_);
+        if (op == "Point") return "p";
         if (op == "Time") return "time";
+        if (op == "Normal" && with_normal_) {
+            normal_used_ = true;
+            return "n";
+        }
         if (op == "Const") return count == 1 ? constant_text(value.items[1]) : std::string();
         std::vector<std::string> arguments;
         std::size_t first = 1;
@@ -217,7 +222,7 @@ class Program {
     }
 
     const Value &steps_;
-    std::string_view parameter_;
+    bool with_normal_, normal_used_ = false;
     std::string &why_;
     std::vector<int> uses_;
     std::vector<std::string> texts_;
@@ -244,8 +249,8 @@ std::string yaml_number(double value) {
     return sdf_number(value);
 }
 
-std::string program_text(const Value &steps, std::string &why, std::string_view parameter) {
-    return Program(steps, parameter, why).text();
+std::string program_text(const Value &steps, std::string &why, bool with_normal) {
+    return Program(steps, with_normal, why).text();
 }
 
 // {Ball: radius, Center: {X, Y, Z}}, {Low: …, High: …}, {Tube: radius, Axis: Y}, `Everywhere`, and

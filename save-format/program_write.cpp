@@ -1,4 +1,6 @@
-// The steps of an expression of the IR, calls and caches written out where they stand.
+// The steps of an expression of the IR: calls and caches written out where they stand, loops turn
+// by turn. The graph does the work: what a turn or a call leaves constant it folds, and what two of
+// them share it finds again.
 #include "save-format/program.h"
 
 #include "save-format/yaml_writer.h"
@@ -13,19 +15,19 @@ using ir::NodeId;
 using ir::Op;
 
 constexpr int most_steps = 20000;
+constexpr double most_turns = 1024; // of a loop
 
 class StepWriter {
   public:
-    explicit StepWriter(const ir::Graph &graph) : graph_(graph) {}
+    StepWriter(ir::Graph &graph, const ir::Substitution &present)
+        : graph_(graph), present_(present), most_nodes_(graph.size() + 16 * most_steps) {}
 
     std::string flow(NodeId root) {
-        std::unordered_map<NodeId, int> steps;
-        return step(root, steps, 0) < 0 ? std::string() : "[" + text_ + "]";
+        return step(ir::substitute(graph_, root, present_), 0) < 0 ? std::string()
+                                                                   : "[" + text_ + "]";
     }
 
   private:
-    using Steps = std::unordered_map<NodeId, int>;
-
     int push(const std::string &text) {
         if (count_ >= most_steps) return -1;
         if (count_ > 0) text_ += ", ";
@@ -57,37 +59,65 @@ class StepWriter {
         return push(all);
     }
 
-    int step(NodeId id, Steps &steps, int depth) {
-        if (const auto found = steps.find(id); found != steps.end()) return found->second;
-        if (depth > 2000) return -1;
-        const int made = make(id, steps, depth);
-        if (made >= 0) steps.emplace(id, made);
+    int step(NodeId id, int depth) {
+        if (const auto found = steps_.find(id); found != steps_.end()) return found->second;
+        if (depth > 2000 || graph_.size() > most_nodes_) return -1;
+        const int made = make(id, depth);
+        if (made >= 0) steps_.emplace(id, made);
         return made;
     }
 
-    // A function's body where it is called: its parameters are the steps of the arguments.
-    int call(const ir::Function &function, std::span<const NodeId> args, Steps &steps, int depth) {
-        Steps inside;
-        for (std::size_t i = 0; i < function.params.size() && i < args.size(); ++i) {
-            const int argument = step(args[i], steps, depth + 1);
-            if (argument < 0) return -1;
-            inside.emplace(function.params[i], argument);
-        }
-        return step(function.result, inside, depth + 1);
+    // A function's body where it is called.
+    int call(ir::FunctionId id, const std::vector<NodeId> &args, int depth) {
+        const ir::Function function = graph_.function(id);
+        ir::Substitution inside = present_;
+        for (std::size_t i = 0; i < function.params.size() && i < args.size(); ++i)
+            inside[function.params[i]] = args[i];
+        return step(ir::substitute(graph_, function.result, inside), depth + 1);
     }
 
-    int make(NodeId id, Steps &steps, int depth) {
+    // What a loop's variables are after its last turn; none where there are too many turns, or
+    // nobody knows how many. After the first turn whose condition is false nothing changes any
+    // more.
+    const std::vector<NodeId> *results(NodeId id) {
+        if (const auto found = loops_.find(id); found != loops_.end()) return &found->second;
+        const ir::Fold loop = graph_.fold(ir::FoldId{graph_[id].payload});
+        const auto turns = graph_.as_number(loop.count);
+        if (!turns || *turns > most_turns) return nullptr;
+        std::vector<NodeId> values(graph_.args(id).begin(), graph_.args(id).end());
+        NodeId running = graph_.boolean(true);
+        for (int turn = 0; turn < static_cast<int>(*turns); ++turn) {
+            if (graph_.size() > most_nodes_) return nullptr;
+            ir::Substitution now{{loop.index, graph_.integer(turn)}};
+            for (std::size_t k = 0; k < values.size(); ++k) now.emplace(loop.vars[k], values[k]);
+            if (loop.condition)
+                running =
+                    graph_.make(Op::And, {running, ir::substitute(graph_, loop.condition, now)});
+            for (std::size_t k = 0; k < values.size(); ++k)
+                values[k] = graph_.make(
+                    Op::Select, {running, ir::substitute(graph_, loop.next[k], now), values[k]});
+        }
+        return &loops_.emplace(id, std::move(values)).first->second;
+    }
+
+    int result(NodeId loop, std::size_t which, int depth) {
+        const std::vector<NodeId> *values = results(loop);
+        return values && which < values->size() ? step((*values)[which], depth + 1) : -1;
+    }
+
+    int make(NodeId id, int depth) {
         const ir::Node node = graph_[id];
         const std::vector<NodeId> args(graph_.args(id).begin(), graph_.args(id).end());
         switch (node.op) {
         case Op::Const: return constant(graph_.constant_of(id));
         case Op::Point: return push("Point");
+        case Op::Normal: return push("Normal");
         case Op::Time: return push("Time");
-        case Op::Call:
-            return call(graph_.function(ir::FunctionId{node.payload}), args, steps, depth);
-        case Op::Cached:
-            return call(graph_.function(graph_.cache(ir::CacheId{node.payload}).field), args, steps,
-                        depth);
+        case Op::Call: return call(ir::FunctionId{node.payload}, args, depth);
+        case Op::Cached: return call(graph_.cache(ir::CacheId{node.payload}).field, args, depth);
+        case Op::Fold: return result(id, 0, depth);
+        case Op::FoldResult: return result(args[0], node.payload, depth);
+        case Op::Blend: return step(blend_expression(graph_, id), depth + 1);
         case Op::TableRead: {
             const auto row = graph_.as_number(args[0]);
             const ir::Table &table = graph_.table(ir::table_of(node.payload));
@@ -103,15 +133,11 @@ class StepWriter {
             }
             return constant(value);
         }
-        case Op::Normal:
         case Op::Direction:
         case Op::Param:
         case Op::Var:
         case Op::Image:
         case Op::Grid:
-        case Op::Fold:
-        case Op::FoldResult:
-        case Op::Blend:
         case Op::MakeHit:
         case Op::HitDistance:
         case Op::HitPaint:
@@ -186,9 +212,11 @@ class StepWriter {
         case Op::Union:
         case Op::Intersection: break;
         }
-        if (node.op == Op::Div && node.type == ir::Type::Int)
-            return -1; // truncates, unlike the language's `/`
-        std::string text = ir::info(node.op).name;
+        // What truncates is not the language's `/`, and what hashes a whole number not what hashes
+        // a float: numbers do not say in text which of the two they are.
+        const bool whole = node.op == Op::Div && node.type == ir::Type::Int;
+        const bool hashed = node.op == Op::Hash && graph_.type(args[0]) == ir::Type::Float;
+        std::string text = whole ? "WholeDiv" : ir::info(node.op).name;
         if (node.op == Op::Splat || node.op == Op::Make)
             text += std::string(", ") + ir::type_name(node.type);
         if (node.op == Op::Column) text += ", " + std::to_string(node.payload);
@@ -198,22 +226,27 @@ class StepWriter {
                 text += "xyzw"[ir::swizzle_component(node.payload, i)];
         }
         for (const NodeId argument : args) {
-            const int made = step(argument, steps, depth + 1);
+            int made = step(argument, depth + 1);
+            if (made >= 0 && hashed) made = push("ToFloat, " + std::to_string(made));
             if (made < 0) return -1;
             text += ", " + std::to_string(made);
         }
         return push(text);
     }
 
-    const ir::Graph &graph_;
+    ir::Graph &graph_;
+    const ir::Substitution &present_;
+    std::size_t most_nodes_;
+    std::unordered_map<NodeId, int> steps_;
+    std::unordered_map<NodeId, std::vector<NodeId>> loops_;
     std::string text_;
     int count_ = 0;
 };
 
 } // namespace
 
-std::string program_flow(const ir::Graph &graph, NodeId root) {
-    return StepWriter(graph).flow(root);
+std::string program_flow(ir::Graph &graph, NodeId root, const ir::Substitution &present) {
+    return StepWriter(graph, present).flow(root);
 }
 
 } // namespace fathom::save

@@ -1,11 +1,13 @@
 // The walk from shapes to nodes of a save file, whose parts lie by idea in export_tree.cpp (what
 // unites, groups and looks), export_maps.cpp (movements, deformations, repetitions),
-// export_blends.cpp (intersections and blends) and export_solids.cpp (fields and the library's
-// solids). Private to those four files.
+// export_blends.cpp (intersections, blends and seams), export_solids.cpp (the library's solids) and
+// export_fields.cpp (functions of the point). Private to those five files.
 #pragma once
 
 #include "save-format/export_tree.h"
 #include "save-format/node_types.h"
+
+#include <unordered_map>
 
 namespace fathom::save {
 
@@ -36,6 +38,7 @@ class TreeWriter {
     void map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
     void rotation(const ir::Constant &matrix, TreeNode made, std::vector<TreeNode> &out);
     void repeat(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
+    void copies(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
     void painted(ShapeId id, Paint paint, std::vector<TreeNode> &out);
     std::optional<TreeNode> intersection(ShapeId id, const Paint &paint);
     std::optional<TreeNode> profile_blend(ShapeId id, bool complemented, const Paint &paint);
@@ -43,8 +46,14 @@ class TreeWriter {
     std::optional<TreeNode> library(ShapeId id, const Paint &paint);
     std::optional<TreeNode> field(ShapeId id, const ir::Region *region, const Paint &paint);
     std::optional<TreeNode> one_child(NodeType type, ShapeId child, const Paint &paint);
-    std::optional<TreeNode> left_out(ShapeId id, std::string what);
-    std::optional<Value> steps(NodeId expression, ShapeId at, const char *what);
+    std::optional<TreeNode> seam(ShapeId id, const Paint &paint);
+    // What nodes cannot say, or not with these numbers: the shape as the function of the point that
+    // it is. Where that has no words either, `what` is reported.
+    std::optional<TreeNode> otherwise(ShapeId id, const Paint &paint, const std::string &what);
+    std::optional<TreeNode> no_field(ShapeId id, const std::string &what); // reports
+    NodeId raw_field(ShapeId id);
+    bool painted_within(ShapeId id) const;
+    std::optional<Value> steps(NodeId expression); // none where it has no words
     std::optional<Value> region(const ir::Region &region);
 
     const Shape &shape(ShapeId id) const { return scene_.shapes[id]; }
@@ -55,7 +64,12 @@ class TreeWriter {
     Numbers &numbers_;
     const MaterialName &material_name_;
     Diagnostics &diagnostics_;
+    std::optional<ir::Scene> lowered_; // made when a function is first asked for
+    std::unordered_map<ShapeId, NodeId> raw_;
+    int functions_ = 0; // shapes that went out as functions, so that no one knows where they end
 };
+
+inline const std::string no_words = "it reads an image, or loops too often";
 
 TreeNode made(NodeType type);
 void add(TreeNode &node, const char *name, Value value);

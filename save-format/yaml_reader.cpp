@@ -10,14 +10,15 @@
 
 namespace fathom::save {
 
-Diagnostic &Report::content(Span span, std::string message, Code code) {
-    Diagnostic &added = diagnostics.add(code, span, std::move(message));
-    if (strict) added.severity = Severity::Error;
-    return added;
+Remark Report::content(Span span, std::string message, Code code) {
+    const Severity severity = strict ? Severity::Error : Severity::Warning;
+    return {diagnostics, Diagnostic{code, severity, std::move(message), {span, {}}, {}, {}, {}}};
 }
 
-Diagnostic &Report::structure(Span span, std::string message) {
-    return diagnostics.add(Code::YamlStructure, span, std::move(message));
+Remark Report::structure(Span span, std::string message) {
+    return {diagnostics,
+            Diagnostic{
+                Code::YamlStructure, Severity::Error, std::move(message), {span, {}}, {}, {}, {}}};
 }
 
 struct YamlReader::Parser {

@@ -12,13 +12,36 @@
 
 namespace fathom::save {
 
+// A diagnostic that is given when its words are complete, at the end of the statement that makes
+// it: only then is it known how severe it is, which `Diagnostics` counts.
+class Remark {
+  public:
+    Remark(Diagnostics &to, Diagnostic diagnostic) : to_(to), diagnostic_(std::move(diagnostic)) {}
+    ~Remark() { to_.add(std::move(diagnostic_)); }
+    Remark(const Remark &) = delete;
+    Remark &operator=(const Remark &) = delete;
+
+    Remark &note(std::string text) {
+        diagnostic_.note(std::move(text));
+        return *this;
+    }
+    Remark &help(std::string text) {
+        diagnostic_.help(std::move(text));
+        return *this;
+    }
+
+  private:
+    Diagnostics &to_;
+    Diagnostic diagnostic_;
+};
+
 // Where the importer's complaints go: content is a warning unless strict, structure an error.
 struct Report {
     Diagnostics &diagnostics;
     bool strict = false;
 
-    Diagnostic &content(Span span, std::string message, Code code = Code::YamlValue);
-    Diagnostic &structure(Span span, std::string message);
+    Remark content(Span span, std::string message, Code code = Code::YamlValue);
+    Remark structure(Span span, std::string message);
 };
 
 enum class EventKind {

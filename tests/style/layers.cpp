@@ -24,7 +24,7 @@ const std::map<std::string, Names> sees{
     {"backend-glsl", {"base", "ir"}},
     {"backend-cpu", {"base", "ir"}},
     {"save-format", {"base", "ir"}},
-    {"driver", {"base", "lang", "ir", "typecheck"}},
+    {"driver", {"base", "lang", "ir", "typecheck", "save-format"}},
     {"render-gl", {"base", "ir", "backend-glsl"}},
     {"viewer", {"base", "ir", "backend-glsl", "save-format", "driver", "render-gl"}},
     {"cli",

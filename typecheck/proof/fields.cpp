@@ -242,21 +242,26 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
         }
         return p;
     };
-    using Values = std::array<double, 4>;
+    using Values = std::array<Interval, 4>;
     auto ask = [&](const std::array<double, 3> &p) {
         machine.run({{Interval(p[0]), Interval(p[1]), Interval(p[2])}});
-        Values v{};
+        Values v{Interval(0), Interval(0), Interval(0), Interval(0)};
         for (int i = 0; i < std::min(machine.size(), 4); ++i)
-            v[static_cast<std::size_t>(i)] =
-                machine.value(i).finite() ? machine.value(i).middle() : NAN;
+            v[static_cast<std::size_t>(i)] = machine.value(i);
         return v;
     };
+    // The rise is what lies between the two intervals: where rounding leaves a choice open, both of
+    // its branches are in there, and nothing is refuted.
     auto slope = [&](const std::array<double, 3> &p, const std::array<double, 3> &q) {
         Values a = ask(p), b = ask(q);
         double rise = 0, run = 0;
-        for (std::size_t i = 0; i < 4; ++i) rise += (a[i] - b[i]) * (a[i] - b[i]);
+        for (std::size_t i = 0; i < 4; ++i) {
+            double gap = std::max({0.0, a[i].lo - b[i].hi, b[i].lo - a[i].hi});
+            if (!a[i].finite() || !b[i].finite()) return 0.0;
+            rise += gap * gap;
+        }
         for (std::size_t i = 0; i < 3; ++i) run += (p[i] - q[i]) * (p[i] - q[i]);
-        return run > 0 && std::isfinite(rise) ? std::sqrt(rise / run) : 0;
+        return run > 0 ? std::sqrt(rise / run) : 0.0;
     };
     const int pairs = 2000;
     int violations = 0;

@@ -1,1 +1,1 @@
-set(libs fathom_save-format fathom_typecheck)
+set(libs fathom_save-format fathom_typecheck fathom_driver fathom_cpu)
