@@ -4,6 +4,7 @@
 #pragma once
 
 #include "backend-cpu/kernels.h"
+#include "backend-cpu/trigonometry.h"
 #include "ir/semantics.h"
 
 #include <array>
@@ -52,8 +53,8 @@ template <class F, class... X> F hash(X... components) {
 #define FATHOM_KERNEL(name, parameters, expression, ...)                                           \
     template <class F> struct name##Row {                                                          \
         static auto run parameters {                                                               \
-            using std::floor, std::ceil, std::trunc, std::exp, std::exp2, std::sin, std::cos,      \
-                std::tan, std::atan, std::sinh, std::cosh, std::tanh;                              \
+            using std::floor, std::ceil, std::trunc, std::exp, std::exp2, std::tan, std::sinh,     \
+                std::cosh, std::tanh;                                                              \
             using sem::plain;                                                                      \
             return expression;                                                                     \
         }                                                                                          \

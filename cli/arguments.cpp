@@ -11,15 +11,21 @@ namespace {
 
 constexpr const char *version_text = "fathom " FATHOM_VERSION "\n";
 
-// -- words of the line -----------------------------------------------------------------------------
+// -- words of the line
+// -----------------------------------------------------------------------------
 
 // Each reads one word into its place, or says what it wanted.
 std::string read_pair(const std::string &word, int &first, int &second) {
     std::size_t x = word.find('x');
-    std::optional<double> w = x == word.npos ? std::nullopt : parse_number(std::string_view(word).substr(0, x));
-    std::optional<double> h = x == word.npos ? std::nullopt : parse_number(std::string_view(word).substr(x + 1));
-    auto good = [](std::optional<double> n) { return n && *n >= 1 && *n <= 16384 && *n == static_cast<int>(*n); };
-    if (!good(w) || !good(h)) return fmt::format("a size is WIDTHxHEIGHT, each 1 to 16384, as 1280x720, not `{}`", word);
+    std::optional<double> w =
+        x == word.npos ? std::nullopt : parse_number(std::string_view(word).substr(0, x));
+    std::optional<double> h =
+        x == word.npos ? std::nullopt : parse_number(std::string_view(word).substr(x + 1));
+    auto good = [](std::optional<double> n) {
+        return n && *n >= 1 && *n <= 16384 && *n == static_cast<int>(*n);
+    };
+    if (!good(w) || !good(h))
+        return fmt::format("a size is WIDTHxHEIGHT, each 1 to 16384, as 1280x720, not `{}`", word);
     first = static_cast<int>(*w);
     second = static_cast<int>(*h);
     return "";
@@ -29,7 +35,8 @@ std::string read_point(const std::string &word, std::array<double, 3> &point) {
     std::string_view rest = word;
     for (std::size_t i = 0; i < 3; ++i) {
         std::size_t comma = i < 2 ? rest.find(',') : rest.size();
-        std::optional<double> number = comma == rest.npos ? std::nullopt : parse_number(rest.substr(0, comma));
+        std::optional<double> number =
+            comma == rest.npos ? std::nullopt : parse_number(rest.substr(0, comma));
         if (!number) return fmt::format("a point is X,Y,Z, as 0,1.5,-2, not `{}`", word);
         point[i] = *number;
         rest.remove_prefix(std::min(comma + 1, rest.size()));
@@ -58,26 +65,51 @@ std::string read_frames(const std::string &word, std::pair<int, int> &frames) {
 
 std::string read_override(const std::string &word, std::vector<typecheck::Override> &overrides) {
     std::size_t equals = word.find('=');
-    if (equals == word.npos || equals == 0) return fmt::format("a param is set as -D name=value, not `{}`", word);
+    if (equals == word.npos || equals == 0)
+        return fmt::format("a param is set as -D name=value, not `{}`", word);
     overrides.push_back({word.substr(0, equals), word.substr(equals + 1)});
     return "";
 }
 
-// -- commands --------------------------------------------------------------------------------------
+// -- commands
+// --------------------------------------------------------------------------------------
 
 // An option whose words are read by a function that says what is wrong with them.
-template <class Read> CLI::Option *option(CLI::App *app, const std::string &name, Read read, const std::string &help) {
-    return app->add_option_function<std::vector<std::string>>(
-                  name,
-                  [name, read](const std::vector<std::string> &words) {
-                      for (const std::string &word : words) {
-                          std::string error = read(word);
-                          if (!error.empty()) throw CLI::ValidationError(name, error);
-                      }
-                  },
-                  help)
+template <class Read>
+CLI::Option *option(CLI::App *app, const std::string &name, Read read, const std::string &help) {
+    return app
+        ->add_option_function<std::vector<std::string>>(
+            name,
+            [name, read](const std::vector<std::string> &words) {
+                for (const std::string &word : words) {
+                    std::string error = read(word);
+                    if (!error.empty()) throw CLI::ValidationError(name, error);
+                }
+            },
+            help)
         ->expected(1)
+        ->allow_extra_args(false) // the word behind it may be the scene
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+// An option that takes one of a few words.
+template <class T> CLI::Option *choice(CLI::App *app, const std::string &name, T &value,
+                                       std::vector<std::pair<std::string, T>> words,
+                                       const std::string &help) {
+    return option(
+        app, name,
+        [&value, words](const std::string &word) {
+            std::string all;
+            for (std::size_t i = 0; i < words.size(); ++i) {
+                if (words[i].first == word) {
+                    value = words[i].second;
+                    return std::string();
+                }
+                all += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i].first;
+            }
+            return fmt::format("wants {}, not `{}`", all, word);
+        },
+        help);
 }
 
 void add_scene(CLI::App *app, SceneArguments &scene) {
@@ -89,6 +121,7 @@ void add_scene(CLI::App *app, SceneArguments &scene) {
     app->add_option("-I", scene.include_folders, "look here too for imports, images and grids")
         ->type_name("DIR")
         ->expected(1)
+        ->allow_extra_args(false) // the word behind it may be the scene
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
@@ -98,6 +131,9 @@ void add_size(CLI::App *app, int &width, int &height) {
         fmt::format("size in pixels, {}x{} unless said", width, height))
         ->type_name("WxH");
 }
+
+// The help says in words what is allowed, so that CLI11 need not add it in its own.
+CLI::Validator quiet(CLI::Validator validator) { return validator.description(""); }
 
 struct Reader {
     CLI::App app{"Fathom: scenes as text, distance fields whose step is proved.", "fathom"};
@@ -128,19 +164,22 @@ struct Reader {
         app.fallthrough();
         app.set_help_flag("-h,--help", "print this");
         app.add_flag("--version", version, "print the version");
-        app.add_option("--color", invocation.color, "colour the words: auto, always or never")
-            ->transform(CLI::CheckedTransformer(
-                std::map<std::string, ColorChoice>{
-                    {"auto", ColorChoice::Auto}, {"always", ColorChoice::Always}, {"never", ColorChoice::Never}},
-                CLI::ignore_case))
+        choice<ColorChoice>(&app, "--color", invocation.color,
+                            {{"auto", ColorChoice::Auto},
+                             {"always", ColorChoice::Always},
+                             {"never", ColorChoice::Never}},
+                            "colour the words: auto, always or never")
             ->type_name("WHEN");
-        app.footer("`fathom help COMMAND` shows a command's options. Exit status: 0 done, 1 the scene has an error,\n"
-                   "2 the command line is wrong, 3 a file named on it or the device cannot be used.");
+        app.footer(
+            "`fathom help COMMAND` shows a command's options. Exit status: 0 done, 1 the scene has "
+            "an error,\n"
+            "2 the command line is wrong, 3 a file named on it or the device cannot be used.");
 
         CLI::App *sub = command("view", "open a window that follows the file", view);
         add_scene(sub, view.scene);
         add_size(sub, view.width, view.height);
-        sub->add_option("--record", view.record, "save a picture of the window here after every reload")
+        sub->add_option("--record", view.record,
+                        "save a picture of the window here after every reload")
             ->type_name("DIR")
             ->check(CLI::ExistingDirectory);
 
@@ -153,24 +192,29 @@ struct Reader {
         sub = command("compile", "write the scene's shader, validated", compile);
         add_scene(sub, compile.scene);
         sub->add_option("-o", compile.out, "write here, not to standard output")->type_name("OUT");
-        sub->add_option("--target", compile.target,
-                        "glsl450 (unless said), glsl330, es300, shadertoy, glslviewer, spirv or html")
-            ->check(CLI::IsMember({"glsl450", "glsl330", "es300", "shadertoy", "glslviewer", "spirv", "html"}))
+        sub->add_option(
+               "--target", compile.target,
+               "glsl450 (unless said), glsl330, es300, shadertoy, glslviewer, spirv or html")
+            ->check(CLI::IsMember(
+                {"glsl450", "glsl330", "es300", "shadertoy", "glslviewer", "spirv", "html"}))
             ->type_name("TARGET");
-        sub->add_flag("--field-only", compile.field_only, "the field functions alone, for a renderer of your own");
+        sub->add_flag("--field-only", compile.field_only,
+                      "the field functions alone, for a renderer of your own");
         sub->add_flag("--watch", compile.watch, "compile again after every save");
 
         sub = command("render", "make a picture, without a window", render);
         add_scene(sub, render.scene);
-        sub->add_option("-o", render.out, "the PNG; for --frames, `#`s stand for the frame's number")
+        sub->add_option("-o", render.out,
+                        "the PNG; for --frames, `#`s stand for the frame's number")
             ->type_name("OUT.png")
             ->required();
         add_size(sub, render.width, render.height);
-        sub->add_option("--backend", render.backend, "gl, cpu, or auto: gl where a context can be had")
-            ->transform(CLI::CheckedTransformer(std::map<std::string, Backend>{
-                {"auto", Backend::Auto}, {"gl", Backend::Gl}, {"cpu", Backend::Cpu}}))
+        choice<Backend>(sub, "--backend", render.backend,
+                        {{"auto", Backend::Auto}, {"gl", Backend::Gl}, {"cpu", Backend::Cpu}},
+                        "gl, cpu, or auto: gl where a context can be had")
             ->type_name("WHICH");
-        sub->add_option("--time", render.time, "seconds; with --frames, when frame 0 is")->type_name("T");
+        sub->add_option("--time", render.time, "seconds; with --frames, when frame 0 is")
+            ->type_name("T");
         option(
             sub, "--frames",
             [this](const std::string &word) {
@@ -182,10 +226,10 @@ struct Reader {
             "a picture for each of these frames; B is left out, A..=B takes it too")
             ->type_name("A..B");
         sub->add_option("--fps", render.frame_rate, "frames in a second, 30 unless said")
-            ->check(CLI::Range(0.001, 1000.0))
+            ->check(quiet(CLI::Range(0.001, 1000.0)))
             ->type_name("N");
         sub->add_option("--samples", render.samples, "rays a pixel, 1 to 256")
-            ->check(CLI::Range(1, 256))
+            ->check(quiet(CLI::Range(1, 256)))
             ->type_name("N");
 
         sub = command("eval", "print the field at points: distance gx gy gz", eval);
@@ -199,25 +243,34 @@ struct Reader {
             sub, "--points",
             [this](const std::string &word) {
                 eval.points = true;
-                return word == "-" ? "" : fmt::format("points are read from standard input: --points -, not `{}`", word);
+                return word == "-"
+                           ? ""
+                           : fmt::format(
+                                 "points are read from standard input: --points -, not `{}`", word);
             },
             "`-`: one `X Y Z` a line on standard input")
             ->type_name("-");
         sub->add_option("--time", eval.time, "seconds")->type_name("T");
 
         sub = command("import", "turn a YAML save file into the language", import);
-        sub->add_option("IN.yaml", import.file, "the save file, `-` for standard input")->required();
-        sub->add_option("-o", import.out, "write here, not to standard output")->type_name("OUT.sdf");
+        sub->add_option("IN.yaml", import.file, "the save file, `-` for standard input")
+            ->required();
+        sub->add_option("-o", import.out, "write here, not to standard output")
+            ->type_name("OUT.sdf");
         sub->add_flag("--strict", import.strict, "take nothing that is not understood");
-        sub->add_flag("--partial", import.partial, "write what was read of a file whose structure is broken");
+        sub->add_flag("--partial", import.partial,
+                      "write what was read of a file whose structure is broken");
 
         sub = command("export", "turn a scene into a YAML save file", export_);
         add_scene(sub, export_.scene);
-        sub->add_option("-o", export_.out, "write here, not to standard output")->type_name("OUT.yaml");
+        sub->add_option("-o", export_.out, "write here, not to standard output")
+            ->type_name("OUT.yaml");
 
         sub = command("fmt", "format scenes, in place", fmt);
-        sub->add_option("FILE", fmt.files, "the scenes; `-`: standard input to standard output")->required();
-        sub->add_flag("--check", fmt.check, "change nothing; name the files that are not formatted, and exit with 1");
+        sub->add_option("FILE", fmt.files, "the scenes; `-`: standard input to standard output")
+            ->required();
+        sub->add_flag("--check", fmt.check,
+                      "change nothing; name the files that are not formatted, and exit with 1");
 
         sub = command("doc", "print the library's entry of a name", doc);
         sub->add_option("NAME", doc.name, "left out: list all names");
@@ -238,18 +291,21 @@ Answer wrong(const std::string &words) { return {usage_error, "", "fathom: " + w
 
 std::string help_hint(const CLI::App &app) {
     std::vector<CLI::App *> chosen = app.get_subcommands();
-    return chosen.empty() ? "`fathom help` lists the commands"
-                          : fmt::format("`fathom help {}` shows its options", chosen.front()->get_name());
+    return chosen.empty()
+               ? "`fathom help` lists the commands"
+               : fmt::format("`fathom help {}` shows its options", chosen.front()->get_name());
 }
 
 std::vector<std::string> command_names(CLI::App &app) {
     std::vector<std::string> names;
-    for (const CLI::App *sub : app.get_subcommands([](CLI::App *) { return true; })) names.push_back(sub->get_name());
+    for (const CLI::App *sub : app.get_subcommands([](CLI::App *) { return true; }))
+        names.push_back(sub->get_name());
     return names;
 }
 
 CLI::App *find_command(CLI::App &app, const std::string &name) {
-    std::vector<CLI::App *> found = app.get_subcommands([&](CLI::App *sub) { return sub->get_name() == name; });
+    std::vector<CLI::App *> found =
+        app.get_subcommands([&](CLI::App *sub) { return sub->get_name() == name; });
     return found.empty() ? nullptr : found.front();
 }
 

@@ -1,5 +1,5 @@
-// The program as scripts and editors see it: exit statuses, which stream says what, what is left behind. Runs the real
-// one, through a shell.
+// The program as scripts and editors see it: exit statuses, which stream says what, what is left
+// behind. Runs the real one, through a shell.
 #include "scratch_folder.h"
 
 #include <catch2/catch.hpp>
@@ -17,16 +17,20 @@ struct Result {
 
 // Runs a shell line in the folder, with `fathom` for the program.
 Result shell(const ScratchFolder &folder, const std::string &line) {
-    std::string whole = "cd '" + folder.path().string() + "' && fathom() { '" FATHOM_PROGRAM "' \"$@\"; } && { " +
-                        line + "; } >.out 2>.err";
+    std::string whole = "cd '" + folder.path().string() +
+                        "' && fathom() { '" FATHOM_PROGRAM "' \"$@\"; } && { " + line +
+                        "; } >.out 2>.err";
     int status = std::system(whole.c_str());
-    Result result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder.read(".out"), folder.read(".err")};
+    Result result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder.read(".out"),
+                  folder.read(".err")};
     fs::remove(folder / ".out");
     fs::remove(folder / ".err");
     return result;
 }
 
-bool contains(const std::string &text, const std::string &part) { return text.find(part) != text.npos; }
+bool contains(const std::string &text, const std::string &part) {
+    return text.find(part) != text.npos;
+}
 
 struct Scenes : ScratchFolder {
     Scenes() {
@@ -44,7 +48,8 @@ TEST_CASE("the exit status tells what went wrong") {
     Scenes folder;
     CHECK(shell(folder, "fathom check good.sdf").exit == 0);
     CHECK(shell(folder, "fathom check bad.sdf").exit == 1);
-    CHECK(shell(folder, "fathom check missing.sdf").exit == 1); // a missing import is the scene's error
+    CHECK(shell(folder, "fathom check missing.sdf").exit ==
+          1); // a missing import is the scene's error
     CHECK(shell(folder, "fathom check nothing.sdf").exit == 3);
     CHECK(shell(folder, "fathom check .").exit == 3);
     CHECK(shell(folder, "fathom").exit == 2);
@@ -56,6 +61,21 @@ TEST_CASE("the exit status tells what went wrong") {
     CHECK(shell(folder, "fathom check param.sdf -D radios=1").exit == 2);
     CHECK(shell(folder, "fathom check param.sdf -D radius=1.5").exit == 0);
     CHECK(shell(folder, "fathom compile good.sdf -o none/x.glsl").exit == 3);
+}
+
+TEST_CASE("options stand before the scene or behind it") {
+    Scenes folder;
+    for (const std::string options :
+         {"--backend cpu --size 8x8", "--size 8x8 --backend cpu", "--size 8x8 -I ."}) {
+        INFO(options);
+        CHECK(shell(folder, "fathom render " + options + " good.sdf -o a.png").exit == 0);
+        CHECK(shell(folder, "fathom render good.sdf " + options + " -o a.png").exit == 0);
+        CHECK(shell(folder, "fathom render -o a.png " + options + " good.sdf").exit == 0);
+    }
+    CHECK(shell(folder, "fathom --color never eval --at 2,0,0 --at 3,0,0 good.sdf").exit == 0);
+    const Result wrong = shell(folder, "fathom render --backend tea good.sdf -o a.png");
+    CHECK(wrong.exit == 2);
+    CHECK_THAT(wrong.err, Catch::Contains("wants auto, gl or cpu, not `tea`"));
 }
 
 TEST_CASE("results go to standard output, words to standard error") {
@@ -70,7 +90,8 @@ TEST_CASE("results go to standard output, words to standard error") {
     CHECK(json.out.starts_with("{\"ok\": false"));
     CHECK(contains(json.out, "\"code\": \"unknown-name\""));
     Result good = shell(folder, "fathom check --json good.sdf");
-    CHECK(contains(good.out, "\"ok\": true, \"lipschitz\": 1, \"status\": \"proved\", \"exact\": true"));
+    CHECK(contains(good.out,
+                   "\"ok\": true, \"lipschitz\": 1, \"status\": \"proved\", \"exact\": true"));
     CHECK(contains(good.out, "\"bounds\": [[-1")); // a little outside of the sphere
     CHECK(shell(folder, "fathom compile good.sdf").out.starts_with("#version"));
     CHECK(shell(folder, "fathom compile bad.sdf").out.empty());
@@ -85,9 +106,11 @@ TEST_CASE("a scene can come from standard input") {
 TEST_CASE("points are answered with distance and gradient") {
     Scenes folder;
     CHECK(shell(folder, "fathom eval good.sdf --at 3,0,0").out == "2 1 0 0\n");
-    CHECK(shell(folder, "fathom eval good.sdf --at 3,0,0 --at 0,-2,0").out == "2 1 0 0\n1 0 -1 0\n");
+    CHECK(shell(folder, "fathom eval good.sdf --at 3,0,0 --at 0,-2,0").out ==
+          "2 1 0 0\n1 0 -1 0\n");
     CHECK(shell(folder, "fathom eval good.sdf --at -3,0,0").out == "2 -1 0 0\n");
-    Result many = shell(folder, "printf '2 0 0\\n\\n0 3 0\\n0 0 4' | fathom eval good.sdf --points -");
+    Result many =
+        shell(folder, "printf '2 0 0\\n\\n0 3 0\\n0 0 4' | fathom eval good.sdf --points -");
     CHECK(many.out == "1 1 0 0\n2 0 1 0\n3 0 0 1\n");
     Result wrong = shell(folder, "printf '2 0 0\\n1 2\\n' | fathom eval good.sdf --points -");
     CHECK(wrong.exit == 2);
@@ -104,7 +127,9 @@ TEST_CASE("a failed command leaves the old file") {
     CHECK(shell(folder, "fathom compile good.sdf -o out.glsl").exit == 0);
     CHECK(folder.read("out.glsl").starts_with("#version"));
     folder.write("out.png", "old");
-    CHECK(shell(folder, "ulimit -f 0; trap '' XFSZ; fathom render good.sdf -o out.png --backend cpu --size 64x48").exit == 3);
+    CHECK(shell(folder, "ulimit -f 0; trap '' XFSZ; fathom render good.sdf -o out.png --backend "
+                        "cpu --size 64x48")
+              .exit == 3);
     CHECK(folder.read("out.png") == "old");
     for (const auto &entry : fs::directory_iterator(folder.path()))
         CHECK_FALSE(contains(entry.path().filename().string(), "fathom-tmp"));
@@ -160,10 +185,14 @@ TEST_CASE("pictures are made, one or many, named by their frame") {
     Scenes folder;
     CHECK(shell(folder, "fathom render good.sdf -o one.png --size 32x24 --backend cpu").exit == 0);
     CHECK(folder.read("one.png").starts_with("\x89PNG"));
-    CHECK(shell(folder, "fathom render good.sdf -o f.png --size 8x8 --backend cpu --frames 0..3").exit == 0);
-    for (std::string name : {"f_0000.png", "f_0001.png", "f_0002.png"}) CHECK(fs::exists(folder / name));
+    CHECK(shell(folder, "fathom render good.sdf -o f.png --size 8x8 --backend cpu --frames 0..3")
+              .exit == 0);
+    for (std::string name : {"f_0000.png", "f_0001.png", "f_0002.png"})
+        CHECK(fs::exists(folder / name));
     CHECK_FALSE(fs::exists(folder / "f_0003.png"));
-    CHECK(shell(folder, "fathom render good.sdf -o 'g##.png' --size 8x8 --backend cpu --frames 9..=10").exit == 0);
+    CHECK(shell(folder,
+                "fathom render good.sdf -o 'g##.png' --size 8x8 --backend cpu --frames 9..=10")
+              .exit == 0);
     CHECK((fs::exists(folder / "g09.png") && fs::exists(folder / "g10.png")));
     CHECK(shell(folder, "fathom render good.sdf -o x.png --frames 3..3").exit == 2);
 }
@@ -171,7 +200,8 @@ TEST_CASE("pictures are made, one or many, named by their frame") {
 TEST_CASE("watch goes on after an error and sees the next save") {
     Scenes folder;
     folder.write("w.sdf", "spere(1)\n");
-    Result result = shell(folder, "timeout 60 sh -c '\"" FATHOM_PROGRAM "\" compile --watch w.sdf -o w.glsl & p=$!; "
+    Result result = shell(folder, "timeout 60 sh -c '\"" FATHOM_PROGRAM
+                                  "\" compile --watch w.sdf -o w.glsl & p=$!; "
                                   "sleep 1; echo \"sphere(1)\" > w.sdf; "
                                   "until [ -s w.glsl ]; do sleep 0.1; done; kill $p'");
     CHECK(result.exit == 0);
@@ -181,7 +211,8 @@ TEST_CASE("watch goes on after an error and sees the next save") {
 
 TEST_CASE("no display is a sentence and status 3") {
     Scenes folder;
-    Result result = shell(folder, "env -u DISPLAY -u WAYLAND_DISPLAY '" FATHOM_PROGRAM "' view good.sdf");
+    Result result =
+        shell(folder, "env -u DISPLAY -u WAYLAND_DISPLAY '" FATHOM_PROGRAM "' view good.sdf");
     CHECK(result.exit == 3);
     CHECK(contains(result.err, "no display"));
     CHECK(shell(folder, "fathom view nothing.sdf").exit == 3);
