@@ -44,7 +44,19 @@ std::string nearest_name(std::string_view word, const std::vector<std::string> &
         const std::size_t distance = edit_distance(word, name);
         if (distance < best) best = distance, nearest = &name;
     }
-    return nearest ? *nearest : std::string{};
+    if (nearest) return *nearest;
+    return word.size() < 3 ? std::string{} : shortest_begun_by(word, names);
+}
+
+std::string shortest_begun_by(std::string_view word, const std::vector<std::string> &names) {
+    const std::string *shortest = nullptr;
+    for (const std::string &name : names) {
+        const bool begun = !word.empty() && name.size() > word.size() &&
+                           std::equal(word.begin(), word.end(), name.begin(),
+                                      [](char a, char b) { return folded(a) == folded(b); });
+        if (begun && (!shortest || name.size() < shortest->size())) shortest = &name;
+    }
+    return shortest ? *shortest : std::string{};
 }
 
 } // namespace fathom

@@ -84,6 +84,7 @@ static std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::stri
                     report(ev, Code::UnknownArgument, a.name->span,
                            fmt::format("`{}` has no argument `{}`", name, a.name->text));
                 std::string near = nearest_name(a.name->text, names);
+                if (near.empty()) near = shortest_begun_by(a.name->text, names); // `r` for `radius`
                 if (!near.empty())
                     d.help(fmt::format("did you mean `{}`?", near), {{a.name->span, near}});
                 d.note(fmt::format("it is `{}`", signature_text(name, formals)));

@@ -79,7 +79,48 @@ struct FoldInput {
     std::function<std::optional<Value>()>
         condition;              // evaluated before each turn; none: always true
     std::function<Exit()> body; // with the index set
+    bool has_limit = true;      // else only a loop whose turns can be counted is one
 };
+
+// How often a loop turns whose condition hangs on nothing but numbers that are known before it and
+// change in a known way, as a counter does; none where it hangs on more, or goes on for `limit`.
+std::optional<int> known_turns(ir::Graph &g, ir::NodeId condition,
+                               const std::vector<ir::NodeId> &vars,
+                               const std::vector<ir::NodeId> &next,
+                               const std::vector<ir::NodeId> &initial, int limit) {
+    std::vector<std::size_t> used;
+    std::vector<ir::NodeId> todo{condition};
+    while (!todo.empty()) {
+        const ir::NodeId node = todo.back();
+        todo.pop_back();
+        const ir::Graph::Reads reads = g.reads(node);
+        if (reads.point || reads.normal || reads.direction || reads.time || reads.params)
+            return std::nullopt;
+        for (ir::NodeId var : g.free_vars(node)) {
+            const auto it = std::find(vars.begin(), vars.end(), var);
+            if (it == vars.end()) return std::nullopt;
+            const auto k = static_cast<std::size_t>(it - vars.begin());
+            if (std::find(used.begin(), used.end(), k) != used.end()) continue;
+            if (!g.is_constant(initial[k])) return std::nullopt;
+            used.push_back(k);
+            todo.push_back(next[k]);
+        }
+    }
+    ir::Substitution now;
+    for (std::size_t k : used) now[vars[k]] = initial[k];
+    for (int turn = 0; turn < limit; ++turn) {
+        const ir::NodeId go = ir::substitute(g, condition, now);
+        if (!g.is_constant(go)) return std::nullopt;
+        if (g.constant_of(go).value[0] == 0) return turn;
+        ir::Substitution after;
+        for (std::size_t k : used) {
+            after[vars[k]] = ir::substitute(g, next[k], now);
+            if (!g.is_constant(after[vars[k]])) return std::nullopt;
+        }
+        now = std::move(after);
+    }
+    return std::nullopt;
+}
 
 // Tries the Fold, quietly. On success the assigned variables hold its results and the exit says how
 // it was left.
@@ -171,13 +212,19 @@ std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input,
             value_at = vars.size() - 1;
         }
         if (vars.empty()) return Exit{};
+        Value go = *condition;
+        int count = input.count;
+        const std::optional<int> turns =
+            always(go) ? std::nullopt
+                       : known_turns(g, to_node(ev, go), vars, next, initial, input.count);
+        if (turns) count = *turns, go = boolean(true);
+        if (!turns && !input.has_limit) return std::nullopt;
         ir::Fold fold;
-        fold.count = g.integer(input.count);
-        fold.max_count = input.count;
+        fold.count = g.integer(count);
+        fold.max_count = count;
         fold.index = input.index;
         fold.vars = vars;
         fold.next = next;
-        Value go = *condition;
         if (left_at) go = logical_and(ev, go, logical_not(ev, from_node(ev, vars[*left_at])));
         if (!always(go)) fold.condition = to_node(ev, go);
         ir::FoldId id = g.add_fold(std::move(fold));
@@ -324,14 +371,9 @@ Outcome run_while(Evaluator &ev, const File &ast, const lang::While &node, std::
         Exit exit = turn();
         std::vector<Change> changes = journal_take(ev, mark);
         if (unknown(*go) || touches_unknown(exit, changes)) {
-            if (!node.limit) {
-                report(ev, Code::LoopLimit, place,
-                       "a loop over numbers that hang on the point needs a limit")
-                    .help("say how many turns it takes at most: `while … limit 32 { … }`");
-                return out;
-            }
             FoldInput input;
-            input.count = limit - i;
+            input.count = node.limit ? limit - i : max_fold_turns;
+            input.has_limit = node.limit.has_value();
             input.index = ev.scene.graph.fresh_var(Type::Int);
             input.condition = condition;
             input.body = turn;
@@ -340,6 +382,12 @@ Outcome run_while(Evaluator &ev, const File &ast, const lang::While &node, std::
                 return out;
             }
             if (ev.diagnostics.items().size() + ev.quiet_errors > said) return out; // one cause
+            if (!node.limit) {
+                report(ev, Code::LoopLimit, place,
+                       "a loop over numbers that hang on the point needs a limit")
+                    .help("say how many turns it takes at most: `while … limit 32 { … }`");
+                return out;
+            }
             report(ev, Code::StageMismatch, place,
                    "this loop's variables have to be numbers of one type, since it hangs on the "
                    "point");

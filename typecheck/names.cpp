@@ -109,10 +109,27 @@ std::vector<std::string> visible_names(Evaluator &ev, std::uint32_t frame) {
     return result;
 }
 
+// What other languages and libraries call what is here.
+static std::string_view name_from_elsewhere(std::string_view name) {
+    static const std::unordered_map<std::string_view, std::string_view> ours = {
+        {"cube", "box"},           {"cuboid", "box"},         {"square", "rectangle"},
+        {"perlin", "noise"},       {"snoise", "simplex"},     {"voronoi", "worley"},
+        {"cellular", "worley"},    {"color", "rgb"},          {"linear_extrude", "extrude"},
+        {"rotate_extrude", "revolve"}, {"lathe", "revolve"},  {"move", "translate"},
+        {"symmetry", "mirror"},    {"lerp", "mix"},           {"frac", "fract"},
+        {"fabs", "abs"},           {"fmod", "mod"},           {"atan2", "atan"},
+        {"rsqrt", "inversesqrt"},  {"rand", "random"},        
+        {"half_space", "plane"},   {"blobs", "metaballs"},    {"echo", "print"},
+        {"subtract", "difference"}, {"intersect", "intersection"}};
+    const auto it = ours.find(name);
+    return it == ours.end() ? std::string_view() : it->second;
+}
+
 void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place) {
     Diagnostic &d =
         report(ev, Code::UnknownName, place, fmt::format("nothing here is called `{}`", name));
-    std::string near = nearest_name(name, visible_names(ev, frame));
+    std::string near(name_from_elsewhere(name));
+    if (near.empty()) near = nearest_name(name, visible_names(ev, frame));
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});
 }
 
