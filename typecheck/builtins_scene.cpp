@@ -199,7 +199,8 @@ void add_scene_builtins(std::vector<Builtin> &table) {
          {"name", true}},
         material_call,
         "how a surface looks; each property a constant or a function of the point, or of the point "
-        "and the normal; `texture` an image that lies on each base shape by its natural parametrisation, in the "
+        "and the normal; `texture` an image that lies on each base shape by its natural "
+        "parametrisation, in the "
         "place of `diffuse`");
     add("camera", {{"at"}, {"look_at", true}, {"fov", true}, {"orthographic", true}}, camera_call,
         "where the scene is seen from; `fov` is vertical");

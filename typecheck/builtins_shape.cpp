@@ -339,8 +339,7 @@ static Value paint_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     if (!s || !m) return poison();
     if (is_empty(ev, *s)) return args[0];
     if (m->texture.image >= 0) {
-        auto painted =
-            painted_by_base(ev, *s, *m, kind == ShapeKind::Repaint, site.arg(1));
+        auto painted = painted_by_base(ev, *s, *m, kind == ShapeKind::Repaint, site.arg(1));
         return painted ? shape_value(*painted, args[0].size) : poison();
     }
     ir::Shape out;

@@ -112,15 +112,31 @@ std::vector<std::string> visible_names(Evaluator &ev, std::uint32_t frame) {
 // What other languages and libraries call what is here.
 static std::string_view name_from_elsewhere(std::string_view name) {
     static const std::unordered_map<std::string_view, std::string_view> ours = {
-        {"cube", "box"},           {"cuboid", "box"},         {"square", "rectangle"},
-        {"perlin", "noise"},       {"snoise", "simplex"},     {"voronoi", "worley"},
-        {"cellular", "worley"},    {"color", "rgb"},          {"linear_extrude", "extrude"},
-        {"rotate_extrude", "revolve"}, {"lathe", "revolve"},  {"move", "translate"},
-        {"symmetry", "mirror"},    {"lerp", "mix"},           {"frac", "fract"},
-        {"fabs", "abs"},           {"fmod", "mod"},           {"atan2", "atan"},
-        {"rsqrt", "inversesqrt"},  {"rand", "random"},        
-        {"half_space", "plane"},   {"blobs", "metaballs"},    {"echo", "print"},
-        {"subtract", "difference"}, {"intersect", "intersection"}};
+        {"cube", "box"},
+        {"cuboid", "box"},
+        {"square", "rectangle"},
+        {"perlin", "noise"},
+        {"snoise", "simplex"},
+        {"voronoi", "worley"},
+        {"cellular", "worley"},
+        {"color", "rgb"},
+        {"linear_extrude", "extrude"},
+        {"rotate_extrude", "revolve"},
+        {"lathe", "revolve"},
+        {"move", "translate"},
+        {"symmetry", "mirror"},
+        {"lerp", "mix"},
+        {"frac", "fract"},
+        {"fabs", "abs"},
+        {"fmod", "mod"},
+        {"atan2", "atan"},
+        {"rsqrt", "inversesqrt"},
+        {"rand", "random"},
+        {"half_space", "plane"},
+        {"blobs", "metaballs"},
+        {"echo", "print"},
+        {"subtract", "difference"},
+        {"intersect", "intersection"}};
     const auto it = ours.find(name);
     return it == ours.end() ? std::string_view() : it->second;
 }

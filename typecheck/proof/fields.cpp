@@ -174,8 +174,9 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
         } else if (Diagnostic *d = report(id, Code::LipschitzUnbounded,
                                           "it cannot be proved that " + what +
                                               " does not jump near " + point_text(b.where, dims)))
-            d->note(cause + " chooses there; the values on both sides are " +
-                    number_text(b.value_a) + " and " + number_text(b.value_b))
+            d->note(cause + " chooses there; its sides meet where they were tried (" +
+                    number_text(b.value_a) + " and " + number_text(b.value_b) +
+                    "), but that they meet everywhere is not seen")
                 .help("write it with `min`, `max`, `clamp` or `abs`, whose continuity is known, " +
                       assume);
         return;

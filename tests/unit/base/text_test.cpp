@@ -83,6 +83,8 @@ TEST_CASE("near names are those within a third of the word") {
     CHECK(nearest_name("Sphere", names) == "sphere");
     CHECK(nearest_name("bx", names) == "box");
     CHECK(nearest_name("smoothunion", names) == "smooth_union");
+    CHECK(nearest_name("smoo", names) == "smooth_union"); // the beginning of a name
+    CHECK(nearest_name("sm", names).empty());             // two letters begin too many
     CHECK(nearest_name("y", names) == "Y");
     CHECK(nearest_name("z", names).empty());
     CHECK(nearest_name("cube", names).empty());
