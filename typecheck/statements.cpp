@@ -577,6 +577,8 @@ static bool contribute_if(Evaluator &ev, const File &ast, const lang::If &node, 
 
 static bool contribute_stmt(Evaluator &ev, const File &ast, const lang::Stmt &stmt,
                             std::uint32_t frame, std::vector<Contribution> &out) {
+    if (std::holds_alternative<lang::Bad>(stmt.kind)) // it may have been a shape
+        out.push_back({poison(), stmt.span});
     if (run_simple(ev, ast, stmt, frame)) return false;
     if (auto *e = std::get_if<lang::ExprStmt>(&stmt.kind)) {
         if (auto *choice = std::get_if<lang::If>(&ast.exprs[e->value].kind))
