@@ -112,8 +112,8 @@ struct Facing {
     float facing;
 };
 
-void add_light(Worker &worker, std::span<const RayState> rays, const Points &at, std::span<const float> open,
-               const ir::LightValue &light, std::span<Vec> colors) {
+void add_light(Worker &worker, std::span<const RayState> rays, const Points &at, const ir::LightValue &light,
+               std::span<Vec> colors) {
     const Stage &stage = worker.stage;
     const Lengths lengths(stage);
     const Stage::Look &lighting = stage.look;
@@ -145,7 +145,7 @@ void add_light(Worker &worker, std::span<const RayState> rays, const Points &at,
         float gleam = std::max(-dot(r, rays[at.ray[k]].direction), 0.0f);
         gleam = gleam > 0 ? lighting.specular_intensity * std::pow(gleam, m.exponent) : 0.0f;
         Vec &sum = colors[at.ray[k]];
-        sum = sum + seen[i] * color * (open[k] * facing * m.diffuse + gleam * m.specular);
+        sum = sum + seen[i] * color * (facing * m.diffuse + gleam * m.specular);
     }
 }
 
@@ -197,7 +197,7 @@ void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landi
         const Material &m = at.material[k];
         colors[at.ray[k]] = open[k] * m.diffuse * ambient + m.emission;
     }
-    for (const ir::LightValue &light : stage.lights) add_light(worker, rays, at, open, light, colors);
+    for (const ir::LightValue &light : stage.lights) add_light(worker, rays, at, light, colors);
 }
 
 } // namespace fathom::cpu

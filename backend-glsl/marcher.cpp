@@ -177,7 +177,7 @@ constexpr const char *shade_phong = R"(    fathom_Lighting look = fathom_lightin
         vec3 r = 2.0 * facing * n - l;
         float gleam = max(-dot(r, direction), 0.0);
         gleam = gleam > 0.0 ? look.specular_intensity * pow(gleam, m.exponent) : 0.0;
-        color += seen * light.color * (open * facing * m.diffuse + gleam * m.specular);
+        color += seen * light.color * (facing * m.diffuse + gleam * m.specular);
     }
     return color;
 }

@@ -48,8 +48,10 @@
 //     space: hit(p + h*n).point - s.point, normalised (n where that is 0)
 //   skip (Lighting::skip): color = diffuse + emission. Else Phong (thesis, 2.1), with the light's
 //   visibility: color = ao * diffuse * ambient + emission + sum over lights of seen * light color *
-//           (ao * diffuse * max(n.l, 0) + specular_intensity * specular * max(r.v, 0)^exponent), r
-//           = l mirrored in n
+//           (diffuse * max(n.l, 0) + specular_intensity * specular * max(r.v, 0)^exponent), r = l
+//           mirrored in n
+//   What is closed in sees less of the sky, so `ao` dims the ambient light alone; how much of a
+//   light arrives is `seen`'s to say, which never makes a contact black (thesis, 4.2.1 has both).
 //   Lights with n.l <= 0 add nothing. A sun's l is its direction; else l points from p to its
 //   place. seen = 1 - shadow_darkness * (1 - shadow) ao = 1 - ambient_occlusion * occlusion
 //

@@ -15,11 +15,36 @@ struct Dresser {
     Evaluator &ev;
     Paints paints;
     const Dress &dress;
-    std::map<std::tuple<ShapeId, bool, NodeId>, ShapeId> done{};
+    std::map<std::tuple<ShapeId, bool, NodeId, Line>, ShapeId> done{};
 
     ShapeId rebuilt(ir::Shape shape, const Below &below) {
         for (ShapeId &child : shape.children) child = of(child, below);
         return ev.scene.shapes.add(std::move(shape));
+    }
+
+    // The line in the space of a flat map's child, where its numbers are known.
+    Line mapped(const ir::Shape &shape, Line line) const {
+        const ir::Graph &g = ev.scene.graph;
+        if (!line.known() || shape.dims != 2 || shape.args.size() < 3 ||
+            !g.is_constant(shape.args[2]))
+            return {};
+        const auto &n = g.constant_of(shape.args[2]).value;
+        auto &[at, along] = line;
+        switch (shape.map) {
+        case ir::MapKind::Translate: return {{at[0] - n[0], at[1] - n[1]}, along};
+        case ir::MapKind::Scale:
+            return {{at[0] / n[0], at[1] / n[1]}, {along[0] / n[0], along[1] / n[1]}};
+        case ir::MapKind::Rotate: // by the transposed matrix, whose columns are n[0..1] and n[2..3]
+            return {{n[0] * at[0] + n[1] * at[1], n[2] * at[0] + n[3] * at[1]},
+                    {n[0] * along[0] + n[1] * along[1], n[2] * along[0] + n[3] * along[1]}};
+        case ir::MapKind::Fold:
+        case ir::MapKind::Revolve:
+        case ir::MapKind::Twist:
+        case ir::MapKind::Bend:
+        case ir::MapKind::Taper:
+        case ir::MapKind::Distort: return {};
+        }
+        return {};
     }
 
     // Unions gather like shapes into families, so the parts are taken as they were listed and
@@ -31,7 +56,7 @@ struct Dresser {
     }
 
     ShapeId of(ShapeId id, const Below &below) {
-        const auto key = std::make_tuple(id, below.inverted, below.factor);
+        const auto key = std::make_tuple(id, below.inverted, below.factor, below.axis);
         if (const auto it = done.find(key); it != done.end()) return it->second;
         const ShapeId made = make(id, below);
         done.emplace(key, made);
@@ -61,11 +86,13 @@ struct Dresser {
                 return united(id, listed->second, below);
             return rebuilt(shape, below);
         }
-        case ShapeKind::Complement: return rebuilt(shape, {!below.inverted, below.factor});
+        case ShapeKind::Complement:
+            return rebuilt(shape, {!below.inverted, below.factor, below.axis});
         case ShapeKind::Map: {
             if (shape.map == ir::MapKind::Revolve) return dress(id, below);
             Below inner = below;
             if (shape.map == ir::MapKind::Scale) inner.factor = g.mul(below.factor, shape.args[1]);
+            inner.axis = mapped(shape, below.axis);
             return rebuilt(shape, inner);
         }
         case ShapeKind::Paint:
@@ -76,6 +103,9 @@ struct Dresser {
         case ShapeKind::Intersection:
         case ShapeKind::Xor:
         case ShapeKind::Blend:
+        case ShapeKind::Mixed:
+        case ShapeKind::Contract: return rebuilt(shape, below);
+        // what makes new surfaces of the old ones, or asks elsewhere
         case ShapeKind::Seam:
         case ShapeKind::Lerp:
         case ShapeKind::PseudoNorm:
@@ -83,9 +113,7 @@ struct Dresser {
         case ShapeKind::Shell:
         case ShapeKind::Displace:
         case ShapeKind::Repeat:
-        case ShapeKind::Within:
-        case ShapeKind::Mixed:
-        case ShapeKind::Contract: return rebuilt(shape, below);
+        case ShapeKind::Within: return rebuilt(shape, {below.inverted, below.factor, {}});
         }
         return id;
     }
@@ -93,9 +121,9 @@ struct Dresser {
 
 } // namespace
 
-ShapeId dressed(Evaluator &ev, ShapeId shape, Paints paints, const Dress &dress) {
+ShapeId dressed(Evaluator &ev, ShapeId shape, Paints paints, const Dress &dress, Line axis) {
     Dresser dresser{ev, paints, dress};
-    return dresser.of(shape, {false, ev.scene.graph.number(1)});
+    return dresser.of(shape, {false, ev.scene.graph.number(1), axis});
 }
 
 } // namespace fathom::typecheck

@@ -9,10 +9,18 @@
 
 namespace fathom::typecheck {
 
+// A line of the plane: a point of it, and its direction (0: there is none, or it is not known).
+struct Line {
+    std::array<double, 2> at{}, along{};
+    bool known() const { return along[0] != 0 || along[1] != 0; }
+    friend auto operator<=>(const Line &, const Line &) = default;
+};
+
 // Where a base shape stands below the shape that was asked.
 struct Below {
     bool inverted = false; // below an odd number of complements: its outside is the whole's inside
     ir::NodeId factor;     // its lengths times this are those of the whole
+    Line axis{};           // the line that was given with the whole, in the base shape's own space
 };
 
 // A base shape is one of the library's solids, an extruded or turned flat shape, a flat shape, or a
@@ -25,6 +33,7 @@ enum class Paints : std::uint8_t {
     Strip
 }; // KeepWhole: what is painted already is left as it is
 
-ir::ShapeId dressed(Evaluator &ev, ir::ShapeId shape, Paints paints, const Dress &dress);
+ir::ShapeId dressed(Evaluator &ev, ir::ShapeId shape, Paints paints, const Dress &dress,
+                    Line axis = {});
 
 } // namespace fathom::typecheck

@@ -42,8 +42,19 @@ std::optional<ir::ShapeId> first_shape(Evaluator &ev, const CallSite &site,
 
 // -- leaves --------------------------------------------------------------------------------------
 
-// _solid(f, exact, lipschitz, lo, hi, symmetric, lever) and _flat(…): a field with the library's
-// claims.
+// A polygon's corners are kept for those who turn it about an axis; what is not known now is left.
+static void note_corners(Evaluator &ev, ir::ShapeId leaf, const Value &list) {
+    if (list.kind != ValueKind::List) return;
+    std::vector<std::array<double, 2>> corners;
+    for (const Value &item : ev.lists[list.id]) {
+        if (item.kind != ValueKind::Vec || item.size != 2) return;
+        corners.push_back({item.num[0], item.num[1]});
+    }
+    ev.corners[leaf] = std::move(corners);
+}
+
+// _solid(f, exact, lipschitz, lo, hi, symmetric, lever) and _flat(…, corners): a field with the
+// library's claims.
 template <int dims>
 static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     ir::Graph &g = ev.scene.graph;
@@ -54,6 +65,7 @@ static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     leaf.kind = ShapeKind::Leaf;
     leaf.args = {*field};
     Value body = added(ev, std::move(leaf), site, dims);
+    if (args.size() > 7 && given(args[7])) note_corners(ev, shape_of(body), args[7]);
 
     ir::Library library;
     library.name = ev.calls.empty() ? site.name : ev.calls.back().name;
@@ -409,6 +421,7 @@ void add_shape_builtins(std::vector<Builtin> &table) {
                                          {"lo", true},   {"hi", true},    {"symmetric", true},
                                          {"lever", true}};
     add("_solid", claims, leaf_call<3>);
+    claims.push_back({"corners", true});
     add("_flat", claims, leaf_call<2>);
     add("implicit", {{"f"}, {"within", true}, {"lipschitz", true}, {"estimate", true}},
         implicit_call,

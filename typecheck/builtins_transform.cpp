@@ -1,5 +1,6 @@
 // Transforms, repetition and the regions of `within:`: the intrinsics from which
 // stdlib/transforms.sdf is written.
+#include "typecheck/bases.h"
 #include "typecheck/builtins.h"
 
 #include "ir/maps.h"
@@ -60,11 +61,68 @@ static Value fold_shape_call(Evaluator &ev, const CallSite &site, std::vector<Va
     return added(ev, ir::folded(ev.scene.graph, *s, *q), site, args[0].size);
 }
 
+// The profile with the edges that lie on the line left out of its polygons' surfaces:
+// `open(corners, kept)` makes such a polygon, kept[i] whether the edge to corner i counts.
+static ir::ShapeId opened(Evaluator &ev, ir::ShapeId profile, Line axis, const Value &open,
+                          Span place_of_call) {
+    return dressed(
+        ev, profile, Paints::Keep,
+        [&](ir::ShapeId base, const Below &below) {
+            const auto found = ev.corners.find(
+                ev.scene.shapes[base].children.empty() ? base : ev.scene.shapes[base].children[0]);
+            if (found == ev.corners.end() || !below.axis.known()) return base;
+            // Turned and moved so that the line is the y axis and the polygon lies to its right.
+            const auto &[at, along] = below.axis;
+            const double length = std::hypot(along[0], along[1]);
+            std::array<double, 2> up{along[0] / length, along[1] / length};
+            double size = 0, farthest = 0;
+            for (const auto &c : found->second) {
+                const double x = (c[0] - at[0]) * up[1] - (c[1] - at[1]) * up[0];
+                size = std::max({size, std::fabs(c[0] - at[0]), std::fabs(c[1] - at[1])});
+                if (std::fabs(x) > std::fabs(farthest)) farthest = x;
+            }
+            if (farthest < 0) up = {-up[0], -up[1]};
+            std::vector<Value> corners, kept;
+            bool all = true, before = false;
+            const auto place = [&](const std::array<double, 2> &c) {
+                std::array<double, 2> q{(c[0] - at[0]) * up[1] - (c[1] - at[1]) * up[0],
+                                        (c[0] - at[0]) * up[0] + (c[1] - at[1]) * up[1]};
+                if (std::fabs(q[0]) <= 1e-7 * size) q[0] = 0;
+                return q;
+            };
+            before = place(found->second.back())[0] == 0;
+            for (const auto &corner : found->second) {
+                const auto [x, y] = place(corner);
+                const bool counts = x != 0 || !before;
+                before = x == 0;
+                all = all && counts;
+                corners.push_back(vec(2, {x, y, 0, 0}));
+                kept.push_back(boolean(counts));
+            }
+            if (all) return base;
+            const Value made = call_with(
+                ev, open, {list_value(ev, std::move(corners)), list_value(ev, std::move(kept))},
+                place_of_call);
+            if (made.kind != ValueKind::Shape) return base;
+            ir::Graph &g = ev.scene.graph;
+            const ir::Constant turn{Type::Mat2, {up[1], -up[0], up[0], up[1]}};
+            ir::ShapeId result = shape_of(made);
+            if (up != std::array{0.0, 1.0})
+                result = ev.scene.shapes.add(ir::rotated(g, result, g.constant(turn)));
+            if (at != std::array{0.0, 0.0})
+                result = ev.scene.shapes.add(ir::translated(g, result, g.vec(at)));
+            return result;
+        },
+        axis);
+}
+
+// _revolve(s, offset, open)
 static Value revolve_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args, 2);
-    auto offset = given(args[1]) ? want_scalar_node(ev, args[1], site.arg(1), "`offset`")
-                                 : std::optional(ev.scene.graph.number(0));
+    auto offset = want_scalar_node(ev, args[1], site.arg(1), "`offset`");
     if (!s || !offset) return poison();
+    if (auto out = ev.scene.graph.as_number(*offset))
+        s = opened(ev, *s, {{-*out, 0}, {0, 1}}, args[2], site.call);
     return added(ev, ir::revolved(ev.scene.graph, *s, *offset), site, 3);
 }
 
@@ -385,7 +443,7 @@ void add_transform_builtins(std::vector<Builtin> &table) {
     add("_rotate", {{"s"}, {"m"}}, rotate_call);
     add("_scale", {{"s"}, {"by"}}, scale_call);
     add("_fold", {{"s"}, {"q"}}, fold_shape_call);
-    add("_revolve", {{"s"}, {"offset", true}}, revolve_call);
+    add("_revolve", {{"s"}, {"offset"}, {"open"}}, revolve_call);
     add("_extrude", {{"s"}, {"height"}}, extrude_call);
     add("_twist", {{"s"}, {"rate"}, {"axis"}}, twist_call);
     add("_bend", {{"s"}, {"rate"}, {"axis"}, {"towards"}}, bend_call);

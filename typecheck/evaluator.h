@@ -221,7 +221,10 @@ struct Evaluator {
         interned_records{};                // libraries, regions, materials by content
     std::vector<ir::NodeId> param_nodes{}; // by Scene::params
     std::unordered_map<std::uint32_t, bool> only_shapes{};
-    std::map<std::string, std::uint32_t> assets{}; // images and grids by what was asked for: their number
+    std::map<ir::ShapeId, std::vector<std::array<double, 2>>>
+        corners{}; // of polygons' fields, where known
+    std::map<std::string, std::uint32_t>
+        assets{}; // images and grids by what was asked for: their number
     std::vector<std::string> usage_errors{};
 };
 

@@ -79,3 +79,17 @@ TEST_CASE("GL and the CPU draw the same picture of each example") {
         CHECK(disagreeing(by_cpu.rgba, by_gl->rgba) < allowed);
     }
 }
+
+// What is closed in sees less of the sky; a lamp that shines on it shines undimmed, so that contacts are not black.
+TEST_CASE("occlusion dims the ambient light alone") {
+    const auto picture = [](const std::string &lighting) {
+        const std::string text = "sphere(1).translate(y: 1)\nplane(Y)\nsun([1, 3, 1])\ncamera([0, 2, 6])\nlighting(" + lighting +
+                                 ", shadow_darkness: 0.5)";
+        const driver::Compilation made = driver::compile_text("contact.sdf", text, "", {});
+        REQUIRE(made.good());
+        const ir::View view = ir::view_of(made.scene, 0, static_cast<double>(width) / height);
+        return cpu::render(cpu::prepare(made.scene, view, width, height, 0), {}).rgba;
+    };
+    CHECK(picture("ambient: 0, ambient_occlusion: 1") == picture("ambient: 0, ambient_occlusion: 0"));
+    CHECK(picture("ambient: 0.3, ambient_occlusion: 1") != picture("ambient: 0.3, ambient_occlusion: 0"));
+}

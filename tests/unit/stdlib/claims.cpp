@@ -160,3 +160,12 @@ TEST_CASE("each solid is the one that its definition says", "[stdlib]") {
         }
     }
 }
+
+// A profile's edge on the axis is inside of the solid; were it a surface, what is cut out with it would keep a needle there, and
+// rays past it would crawl.
+TEST_CASE("nothing is left along the axis of what is turned", "[stdlib]") {
+    Field cut("box(4) - rectangle([0.8, 1]).translate(x: 0.4).revolve()");
+    REQUIRE(cut.good());
+    for (double y = -0.4; y < 0.45; y += 0.1)
+        CHECK(cut.at({{1e-9, y, 0}})[0] == Approx(0.5 - std::abs(y)).margin(1e-6));
+}

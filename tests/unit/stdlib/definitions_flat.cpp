@@ -40,6 +40,7 @@ bool near_bezier(double x, double y, const Corners &c, double r) {
 } // namespace
 
 std::vector<Solid> flat_solids() {
+    const Inside can = [](Point p) { return std::hypot(p[0], p[2]) < 0.8 && std::abs(p[1]) < 0.5; };
     const Corners arrow{{-1, -0.6}, {1, -0.6}, {0.3, 0}, {0, 0.9}};
     const Corners pentagon{star_corners(5, 0.8, 0.8 * std::cos(pi / 5))};
     return {
@@ -69,7 +70,13 @@ std::vector<Solid> flat_solids() {
                  [](double x, double y) { return to_segment({x, y, 0}, {-1, -0.5, 0}, {1, 0.5, 0}) < 0.1; }, false),
         {"rectangle([0.4, 0.8]).revolve(0.7)", [](Point p) { return std::abs(std::hypot(p[0], p[2]) - 0.7) < 0.2 && std::abs(p[1]) < 0.4; }, 1.2, true},
         {"polygon([[0, -0.6], [0.8, -0.6], [0, 0.9]]).revolve()",
-         [](Point p) { return p[1] > -0.6 && std::hypot(p[0], p[2]) < 0.8 * (0.9 - p[1]) / 1.5; }, 1.2, false},
+         [](Point p) { return p[1] > -0.6 && std::hypot(p[0], p[2]) < 0.8 * (0.9 - p[1]) / 1.5; }, 1.2, true},
+        // edges on the axis are no surface, wherever the profile was made
+        {"rectangle([0.8, 1]).translate(x: 0.4).revolve()", can, 1.2, true},
+        {"rectangle([0.5, 0.4]).scale(-2).rotate(-90deg).reflect([1, 0]).translate(x: 0.4).revolve()", can, 1.2, true},
+        {"regular_polygon(4, sqrt(0.5)).rotate(45deg).scale([0.8, 1]).translate(x: 0.2).revolve(0.2)", can, 1.2, false},
+        {"sphere(1.1) - (rectangle([0.8, 1]).translate(x: 0.4) & circle(0.7)).paint(red).revolve()",
+         [=](Point p) { return norm(p) < 1.1 && !(can(p) && norm(p) < 0.7); }, 1.2, false},
         {"rectangle([1, 1]).extrude(1.6, taper: 0.5)",
          [](Point p) {
              double half = 0.5 * (1 - 0.5 * (p[2] + 0.8) / 1.6);

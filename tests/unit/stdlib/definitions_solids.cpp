@@ -25,16 +25,17 @@ double to_box(Point p, double x, double y, double z) {
 // Along the screw line, finely; right-handed about y, so that it turns from x towards -z.
 bool in_helix(Point p, double radius, double pitch, double turns, double thickness) {
     if (std::abs(around_y(p) - radius) > thickness || std::abs(p[1]) > pitch * turns / 2 + thickness) return false;
-    const int n = static_cast<int>(turns * 720);
-    double least = 1e9;
-    Point before{};
-    for (int i = 0; i <= n; ++i) {
+    const int n = static_cast<int>(turns * 360);
+    const auto at = [&](int i) {
         double t = -pi * turns + 2 * pi * turns * i / n;
-        Point at{radius * std::cos(t), pitch * t / (2 * pi), -radius * std::sin(t)};
-        if (i > 0) least = std::min(least, to_segment(p, before, at));
-        before = at;
-    }
-    return least < thickness / 2;
+        return Point{radius * std::cos(t), pitch * t / (2 * pi), -radius * std::sin(t)};
+    };
+    // pieces that lie higher or lower than half the thickness are too far
+    const auto piece = [&](double y) { return std::clamp(n * (y / (pitch * turns) + 0.5), 0.0, double(n)); };
+    const int first = static_cast<int>(piece(p[1] - thickness / 2)), last = static_cast<int>(std::ceil(piece(p[1] + thickness / 2)));
+    for (int i = first; i < std::max(last, first + 1) && i < n; ++i)
+        if (to_segment(p, at(i), at(i + 1)) < thickness / 2) return true;
+    return to_segment(p, at(first == n ? n - 1 : first), at(first == n ? n : first + 1)) < thickness / 2;
 }
 
 bool in_round_cone(Point p, double bottom, double top, double height) {
