@@ -174,7 +174,7 @@ static Value css_color(std::uint32_t rgb) {
 
 static void declare_constants(Evaluator &ev) {
     auto let = [&](const char *name, Value v) {
-        declare(ev, ev.prelude_frame, intern(ev, name), std::move(v), false, {});
+        declare(ev, ev.prelude_frame, intern(ev, name), v, false, {});
     };
     let("pi", number(std::numbers::pi));
     let("tau", number(2 * std::numbers::pi));

@@ -39,7 +39,7 @@ std::vector<Change> journal_take(Evaluator &ev, JournalMark mark) {
 void assign(Evaluator &ev, std::uint32_t frame, std::uint32_t slot, Value value) {
     Value &stored = ev.frames[frame].bindings[slot].value;
     if (ev.journaling > 0) ev.journal.push_back({frame, slot, stored});
-    stored = std::move(value);
+    stored = value;
 }
 
 // -- assignment ----------------------------------------------------------------------------------
