@@ -90,9 +90,11 @@ bool Lowering::passes_through(ShapeId id) const {
 NodeId Lowering::answer(Reading reading, ShapeId id, Frame frame) {
     if (reading == Reading::Raw && fact(id).local) {
         const Box &box = fact(id).bounds;
-        const NodeId q = graph_.make(Op::Clamp, {frame.p, graph_.vec3(box.lo[0], box.lo[1], box.lo[2]),
-                                                 graph_.vec3(box.hi[0], box.hi[1], box.hi[2])});
-        return joined_distance(graph_, std::array{box_distance(graph_, box, frame.p), structural(reading, id, at(frame, q))});
+        const NodeId q =
+            graph_.make(Op::Clamp, {frame.p, graph_.vec3(box.lo[0], box.lo[1], box.lo[2]),
+                                    graph_.vec3(box.hi[0], box.hi[1], box.hi[2])});
+        return joined_distance(graph_, std::array{box_distance(graph_, box, frame.p),
+                                                  structural(reading, id, at(frame, q))});
     }
     if (reading == Reading::Raw) return structural(reading, id, frame);
     if (reading == Reading::Hit && !paint_[id.index])
@@ -284,15 +286,18 @@ template <class F> Region map_region(const Region &region, F read) {
 Frame Lowering::inside(ShapeId id, Frame frame) {
     const Region region = map_region(shapes_.regions[shape(id).payload],
                                      [&](NodeId number) { return read(number, frame); });
-    NodeId q = region_nearest(graph_, region, point3(frame.p));
-    for (const Region &less : region.less) q = region_way_out(graph_, less, q);
-    return at(frame, graph_.type(frame.p) == Type::Vec2 ? graph_.swizzle(q, std::array{0, 1}) : q);
+    NodeId q = region_between_caps(graph_, region, region_nearest(graph_, region, point3(frame.p)));
+    for (const Region &less : region.less) q = region_way_out(graph_, less, q).point;
+    return point_of(frame, q);
+}
+Frame Lowering::point_of(Frame frame, NodeId p) {
+    return at(frame, graph_.type(frame.p) == Type::Vec2 ? graph_.swizzle(p, std::array{0, 1}) : p);
 }
 
-// The field is asked once, at a point q where its bound L holds; g = f(q)/L there. In the region:
-// max(g, sd_R); outside, with q the nearest point of R: sqrt(|p-q|^2 + max(g, 0)^2). Both are
-// |(max(sd_R,0), max(g,0))| + min(max(sd_R, g), 0). A carved region cuts with -sd; in it q is the
-// point where one gets out of it, and g is less by the way there. Raw is the same with L = 1.
+// The field is asked where its bound L holds: at q, the point of the region R nearest to p; inside
+// of what R leaves out, at the way out of it. With g the value there: in R max(g, sd_R); outside
+// sqrt(|p-q|^2 + max(g, 0)^2). Both are |(max(sd_R,0), max(g,0))| + min(max(sd_R, g), 0). What is
+// left out cuts with -sd.
 NodeId Lowering::within(Reading reading, ShapeId id, Frame frame) {
     Graph &g = graph_;
     const Region region = map_region(shapes_.regions[shape(id).payload],
@@ -300,14 +305,26 @@ NodeId Lowering::within(Reading reading, ShapeId id, Frame frame) {
     const NodeId p = point3(frame.p);
     const ShapeId child = shape(id).children.front();
     NodeId field = ask(Reading::Raw, child, inside(id, frame));
-    // The child's bound holds in the region. Round what is carved from it the way is longer than the
-    // straight one: the shape's own bound counts that.
-    if (reading == Reading::Marched) field = divided(region.less.empty() ? child : id, field);
-    NodeId q = region_nearest(g, region, p);
-    for (const Region &less : region.less) {
-        const NodeId out = region_way_out(g, less, q);
-        field = g.sub(field, g.make(Op::Length, {g.sub(q, out)}));
-        q = out;
+    const NodeId nearest = region_nearest(g, region, p);
+    NodeId q = region_between_caps(g, region, nearest);
+    if (reading == Reading::Marched) {
+        // Ways round a hole are longer than straight ones. In a hole, less the way out.
+        field = fact(id).cells.lipschitz.empty() ? divided(child, field, fact(id).detour)
+                                                 : divided_by_cells(id, field, q);
+        NodeId out = q;
+        for (const Region &less : region.less) out = region_way_out(g, less, out).point;
+        if (out != nearest) field = g.sub(field, g.make(Op::Length, {g.sub(nearest, out)}));
+    } else {
+        // Continuous, as what uses the value needs: from the border's value at the way out to the
+        // mean of two opposite ones in the middle. No step has to be safe by it.
+        for (const Region &less : region.less) {
+            NodeId mean = g.number(0);
+            for (NodeId side : region_opposites(g, less, q))
+                mean = g.add(mean, ask(Reading::Raw, child, point_of(frame, side)));
+            const WayOut out = region_way_out(g, less, q);
+            field = g.make(Op::Mix, {g.mul(mean, g.number(0.5)), field, out.part});
+            q = out.point;
+        }
     }
     Region convex = region;
     convex.less.clear();
@@ -317,6 +334,64 @@ NodeId Lowering::within(Reading reading, ShapeId id, Frame frame) {
     for (const Region &less : region.less)
         distance = g.make(Op::Max, {distance, g.neg(region_distance(g, less, p))});
     return distance;
+}
+
+// A field that is steep in places is divided by its bound in the cell where q lies, the mean of
+// the cell's corners there, so that nothing jumps. That holds as far as the cell, grown by its
+// margin, reaches: so the step ends there, if it is longer than what the bound for all of the
+// region gives (semantics.md, 13).
+NodeId Lowering::divided_by_cells(ShapeId id, NodeId field, NodeId q) {
+    Graph &g = graph_;
+    const CellBounds &cells = fact(id).cells;
+    std::array<double, 3> size{}, lo = cells.box.lo, last{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        size[i] = (cells.box.hi[i] - lo[i]) / cells.count[i];
+        last[i] = cells.count[i] - 1;
+    }
+    const NodeId u = g.div(g.sub(q, g.vec(lo)), g.vec(size)); // in cells
+    const NodeId cell =
+        g.make(Op::Clamp, {g.make(Op::Floor, {u}), g.vec(std::array<double, 3>{}), g.vec(last)});
+    const std::array<double, 3> strides{1, cells.count[0] + 1.0,
+                                        (cells.count[0] + 1.0) * (cells.count[1] + 1.0)};
+    const NodeId first = g.make(Op::ToInt, Type::Int,
+                                {g.add(g.make(Op::Dot, {cell, g.vec(strides)}), g.number(0.5))});
+    const auto found = cell_tables_.try_emplace(id);
+    if (found.second) {
+        Table table;
+        table.rows = static_cast<int>(cells.lipschitz.size());
+        table.stride = 1;
+        for (double bound : cells.lipschitz)
+            table.data.push_back(std::nextafter(float(bound), INFINITY));
+        found.first->second = g.add_table(std::move(table));
+    }
+    const NodeId part = g.make(Op::Clamp, {g.sub(u, cell), g.vec(std::array<double, 3>{}),
+                                           g.vec(std::array{1.0, 1.0, 1.0})});
+    std::vector<NodeId> bounds;
+    for (int corner = 0; corner < 8; ++corner) {
+        const double row = corner % 2 + corner / 2 % 2 * strides[1] + corner / 4 * strides[2];
+        bounds.push_back(
+            g.make(Op::TableRead, Type::Float,
+                   {g.make(Op::Add, Type::Int, {first, g.integer(static_cast<int>(row))})},
+                   table_slot(found.first->second, 0)));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<NodeId> mixed;
+        for (std::size_t i = 0; i < bounds.size(); i += 2)
+            mixed.push_back(g.make(Op::Mix, {bounds[i], bounds[i + 1], g.component(part, axis)}));
+        bounds = std::move(mixed);
+    }
+    const NodeId bound = bounds.front();
+    // |u - middle| cells from the middle; the walls are half a cell from there.
+    const NodeId from_middle =
+        g.make(Op::Abs, {g.sub(u, g.add(cell, g.vec(std::array{0.5, 0.5, 0.5})))});
+    const NodeId left = g.mul(g.sub(g.vec(std::array{0.5, 0.5, 0.5}), from_middle), g.vec(size));
+    const NodeId wall =
+        g.make(Op::Min, {g.component(left, 0),
+                         g.make(Op::Min, {g.component(left, 1), g.component(left, 2)})});
+    const NodeId whole = divided(shape(id).children.front(), field);
+    const NodeId reach =
+        g.make(Op::Max, {g.add(wall, g.number(cells.margin)), g.make(Op::Abs, {whole})});
+    return g.make(Op::Clamp, {g.div(field, bound), g.neg(reach), reach});
 }
 
 } // namespace fathom::ir

@@ -50,6 +50,8 @@ class Lowering {
     // -- per kind
     NodeId within(Reading reading, ShapeId id, Frame frame);
     Frame inside(ShapeId id, Frame frame); // where `within` asks its child
+    Frame point_of(Frame frame, NodeId p);
+    NodeId divided_by_cells(ShapeId id, NodeId field, NodeId q);
     NodeId blend(const Shape &shape, Frame frame);
     NodeId seam(const Shape &shape, Frame frame);
     NodeId pseudonorm(const Shape &shape, Frame frame);
@@ -111,6 +113,7 @@ class Lowering {
     std::map<std::pair<Reading, ShapeId>, FunctionId> functions_;
     std::map<std::pair<std::uint32_t, bool>, std::int32_t> surfaces_;
     std::map<ShapeId, std::int32_t> mixed_surfaces_;
+    std::map<ShapeId, TableId> cell_tables_;
     std::vector<double> cost_, uses_; // by shape; saturating
     std::vector<char> paint_, reached_;
     std::vector<std::string> names_;
@@ -119,8 +122,12 @@ class Lowering {
 
 // regions.cpp
 NodeId joined_distance(Graph &graph, std::span<const NodeId> distances);
-NodeId region_way_out(Graph &graph, const Region &region,
-                      NodeId p); // convex part: the nearest point not inside
+struct WayOut {
+    NodeId point, part;
+};
+WayOut region_way_out(Graph &graph, const Region &hole, NodeId p);
+std::array<NodeId, 2> region_opposites(Graph &graph, const Region &hole, NodeId p);
+NodeId region_between_caps(Graph &graph, const Region &region, NodeId q);
 NodeId box_distance(Graph &graph, const Box &box, NodeId p);
 
 // repeat.cpp: how many copies are evaluated one by one, before a loop does it

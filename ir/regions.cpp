@@ -95,37 +95,83 @@ NodeId region_nearest(Graph &graph, const Region &region, NodeId p) {
     return {};
 }
 
-NodeId region_way_out(Graph &graph, const Region &region, NodeId p) {
-    switch (region.kind) {
-    case RegionKind::Everywhere: return p; // there is none; nothing of the solid is left either
+// From p inside a hole straight away from its middle (or, of a tube, its axis) to its border, and
+// how far out p is: 0 in the middle, 1 at the border and beyond.
+WayOut region_way_out(Graph &graph, const Region &hole, NodeId p) {
+    const NodeId one = graph.number(1), some = graph.number(1e-20);
+    switch (hole.kind) {
+    case RegionKind::Everywhere: return {p, one}; // there is none; nothing of the solid is left
     case RegionKind::Ball:
-        return graph.add(region.center,
-                         lengthened(graph, graph.sub(p, region.center), region.size));
-    case RegionKind::Tube:
-        return with_across(graph, p, region.axis,
-                           lengthened(graph, across(graph, p, region.axis), region.size));
+    case RegionKind::Tube: {
+        const bool tube = hole.kind == RegionKind::Tube;
+        const NodeId v = tube ? across(graph, p, hole.axis) : graph.sub(p, hole.center);
+        const NodeId out = lengthened(graph, v, hole.size);
+        const NodeId part =
+            graph.div(graph.make(Op::Length, {v}), graph.make(Op::Max, {hole.size, some}));
+        return {tube ? with_across(graph, p, hole.axis, out) : graph.add(hole.center, out),
+                graph.make(Op::Min, {part, one})};
+    }
     case RegionKind::Box: {
-        // Through the nearest of the six faces.
-        const NodeId half = graph.mul(region.size, graph.number(0.5));
-        const NodeId v = graph.sub(p, region.center);
-        const NodeId d = graph.sub(graph.make(Op::Abs, {v}), half);
-        const NodeId most = graph.make(
+        const NodeId half = graph.make(
+            Op::Max, {graph.mul(hole.size, graph.number(0.5)), graph.splat(some, Type::Vec3)});
+        const NodeId v = graph.sub(p, hole.center);
+        const NodeId d = graph.make(Op::Abs, {graph.div(v, half)});
+        const NodeId part = graph.make(
             Op::Max, {graph.make(Op::Max, {graph.component(d, 0), graph.component(d, 1)}),
                       graph.component(d, 2)});
+        const NodeId inside = graph.make(Op::Min, {part, one});
+        const NodeId face = graph.make(
+            Op::Make, Type::Vec3, {graph.component(half, 0), graph.number(0), graph.number(0)});
+        const NodeId out =
+            graph.make(Op::Select, {graph.make(Op::Less, {graph.number(1e-6), inside}),
+                                    graph.div(v, graph.make(Op::Max, {inside, some})), face});
+        return {graph.add(hole.center, out), inside};
+    }
+    }
+    return {p, one};
+}
+
+// Two points of the hole's border that lie opposite to each other; of a tube, at p's height.
+std::array<NodeId, 2> region_opposites(Graph &graph, const Region &hole, NodeId p) {
+    const NodeId zero = graph.number(0);
+    switch (hole.kind) {
+    case RegionKind::Everywhere: break;
+    case RegionKind::Ball: {
+        const NodeId by = graph.make(Op::Make, Type::Vec3, {hole.size, zero, zero});
+        return {graph.add(hole.center, by), graph.sub(hole.center, by)};
+    }
+    case RegionKind::Tube: {
+        const NodeId by = graph.make(Op::Make, Type::Vec2, {hole.size, zero});
+        return {with_across(graph, p, hole.axis, by),
+                with_across(graph, p, hole.axis, graph.neg(by))};
+    }
+    case RegionKind::Box: {
+        const NodeId half = graph.mul(graph.component(hole.size, 0), graph.number(0.5));
+        const NodeId by = graph.make(Op::Make, Type::Vec3, {half, zero, zero});
+        return {graph.add(hole.center, by), graph.sub(hole.center, by)};
+    }
+    }
+    return {p, p};
+}
+
+// A ball less a tube through it: what is above the ring where both meet is asked at the ring's
+// height, so that the way out of the tube ends inside the ball.
+NodeId region_between_caps(Graph &graph, const Region &region, NodeId q) {
+    if (region.kind != RegionKind::Ball) return q;
+    for (const Region &less : region.less) {
+        if (less.kind != RegionKind::Tube) continue;
+        const NodeId rest =
+            graph.sub(graph.mul(region.size, region.size), graph.mul(less.size, less.size));
+        const NodeId height = graph.make(Op::Sqrt, {graph.make(Op::Max, {rest, graph.number(0)})});
+        const NodeId middle = graph.component(region.center, less.axis);
         std::array<NodeId, 3> parts;
-        for (int i = 0; i < 3; ++i) {
-            const NodeId x = graph.component(v, i), face = graph.component(half, i);
-            const NodeId out = graph.make(
-                Op::Select, {graph.make(Op::Less, {x, graph.number(0)}), graph.neg(face), face});
-            const NodeId here =
-                graph.make(Op::And, {graph.make(Op::LessEqual, {most, graph.component(d, i)}),
-                                     graph.make(Op::Less, {most, graph.number(0)})});
-            parts[static_cast<std::size_t>(i)] = graph.make(Op::Select, {here, out, x});
-        }
-        return graph.add(region.center, graph.make(Op::Make, Type::Vec3, parts));
+        for (int i = 0; i < 3; ++i) parts[static_cast<std::size_t>(i)] = graph.component(q, i);
+        NodeId &along = parts[static_cast<std::size_t>(less.axis)];
+        along =
+            graph.make(Op::Clamp, {along, graph.sub(middle, height), graph.add(middle, height)});
+        q = graph.make(Op::Make, Type::Vec3, parts);
     }
-    }
-    return {};
+    return q;
 }
 
 NodeId box_distance(Graph &graph, const Box &box, NodeId p) {

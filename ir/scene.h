@@ -14,6 +14,15 @@ struct RepeatPlan {
     Box copy;                              // the child's bounds, for the guard
 };
 
+// A field's bound by cells of a box: one number a corner, x first, the largest of the cells that meet there. A mean of a
+// cell's corners holds within the cell grown by `margin`.
+struct CellBounds {
+    Box box;
+    std::array<int, 3> count{};
+    double margin = 0;
+    std::vector<double> lipschitz; // empty: none
+};
+
 // What the analysis proved of one shape, in the shape's own space.
 struct ShapeFact {
     FieldKind kind = FieldKind::Bound;
@@ -28,6 +37,8 @@ struct ShapeFact {
                                  // joined with the way to it as Within's is
     bool guard = false;          // when marched, take the max with the distance to `bounds` (cheap far away)
     RepeatPlan repeat;
+    double detour = 1;           // Within: the ways round what its region leaves out, over the straight ones, at most
+    CellBounds cells;            // Within: its child's bounds cell by cell, where they differ much
 };
 
 struct Param {

@@ -159,6 +159,12 @@ TEST_CASE("kinds that must not lengthen, in float32") {
                          NodeId f = s.g.sub(s.g.mul(s.x, s.x), s.g.mul(s.n(0.5), s.y));
                          return s.within(s.leaf(f), s.ball(1.5));
                      }});
+    plain.push_back({"within, steep in the corners: a bound for each cell", [](Scenery &s) {
+                         NodeId xx = s.g.mul(s.x, s.x), yy = s.g.mul(s.y, s.y);
+                         NodeId f = s.g.sub(s.g.add(s.g.mul(xx, s.g.mul(xx, xx)), s.g.mul(yy, yy)),
+                                            s.g.add(s.n(0.3), s.g.mul(s.z, s.n(0.1))));
+                         return s.within(s.leaf(f), s.ball(2));
+                     }});
     plain.push_back({"scale by a vector", [](Scenery &s) {
                          return s.add(scaled(s.g, s.box(1, 1, 1), s.g.vec3(0.5, 2, 1)));
                      }});

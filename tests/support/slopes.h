@@ -136,15 +136,26 @@ inline Slopes measure(const ir::Scene &scene, Point3 lo, Point3 hi, int count, d
         for (const auto &[g, c] : best)
             for (int i = 0; i < 16; ++i) {
                 Point3 q = sampler.in_ball(c, reach);
-                for (std::size_t k = 0; k < 3; ++k) q[k] = std::clamp(q[k], lo[k], hi[k]);
+                // Back in at a random depth: two coordinates that are clamped alike are a kink's.
+                for (std::size_t k = 0; k < 3; ++k)
+                    if (q[k] < lo[k] || q[k] > hi[k])
+                        q[k] = float(std::clamp(q[k], lo[k], hi[k]) +
+                                     0.01 * sampler.random() * (q[k] < lo[k] ? 1 : -1));
                 p.push_back(q);
             }
         std::vector<float> g = sampler.steepness(p);
         for (std::size_t i = 0; i < p.size(); ++i)
             if (auto &from = best[i / 16]; g[i] > from.first) from = {g[i], p[i]};
     }
-    for (const auto &[g, p] : best)
-        if (g > out.steepest) out.steepest = g, out.where = p;
+    // Exactly on a kink a chain of choices may pick a gradient that no side has; right beside it
+    // none.
+    for (const auto &[g, p] : best) {
+        std::vector<Point3> beside;
+        for (int i = 0; i < 8; ++i) beside.push_back(sampler.in_ball(p, 1e-5 * size));
+        const std::vector<float> there = sampler.steepness(beside);
+        const double seen = std::min(g, *std::max_element(there.begin(), there.end()));
+        if (seen > out.steepest) out.steepest = seen, out.where = p;
+    }
     return out;
 }
 

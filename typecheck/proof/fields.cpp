@@ -214,6 +214,7 @@ Known Prover::know_leaf(ShapeId id) {
         return k;
     }
     set_lipschitz(k, b.lipschitz * options.rules[Rule::Field]);
+    k.leaf = shape.args[0];
     if (b.lipschitz == 0) set_lipschitz(k, 1); // a constant
     return k;
 }

@@ -29,6 +29,21 @@ Box grow(const Box &box, const std::array<double, 3> &by) {
     return out;
 }
 Box grow(const Box &box, double by) { return grow(box, {by, by, by}); }
+Box reached(const Box &box, double swell, double t) {
+    if (t <= 0 || swell == 0) return box;
+    if (!std::isfinite(swell) || !std::isfinite(t)) return Box::everything();
+    return grow(box, up(swell * t));
+}
+// Of sides a.hi < b.lo, grown by w*t: [b.lo - w*t, a.hi + w*t] lies within w*t of the middle.
+Box meeting(const Box &a, const Box &b) {
+    if (a.empty() || b.empty()) return empty_box();
+    Box out;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double lo = std::max(a.lo[i], b.lo[i]), hi = std::min(a.hi[i], b.hi[i]);
+        set(out, i, lo <= hi ? Interval(lo, hi) : Interval(Interval(hi, lo).middle()));
+    }
+    return out;
+}
 Box moved(const Box &box, const Vec &by) {
     if (box.empty()) return box;
     Box out;

@@ -30,7 +30,12 @@ struct Known {
     // {f < t} lies in fact.bounds grown by swell*t, t >= 0; {f > -t} in outer grown by swell_out*t.
     double swell = 0, swell_out = 0;
     Box outer = Box::everything();
-    Ball ball;           // set anew after every rule (balls.cpp)
+    Ball ball; // set anew after every rule (balls.cpp)
+    // By how much the field may differ from that of a part that makes its gradient: an offset by r
+    // moves surfaces, and not what gradients point away from.
+    double drift = 0;
+    double lowered = 0;  // outside, an exact field and at most this much (offsets by less than 0)
+    NodeId leaf;         // of a field of one's own, that field
     bool failed = false; // reported, here or below
 };
 
@@ -39,6 +44,11 @@ Box from_cell(const Cell &cell, int dims);
 Cell to_cell(const Box &box);
 Box grow(const Box &box, double by); // outward on all sides; an empty box stays empty
 Box grow(const Box &box, const std::array<double, 3> &by);
+// What holds {f < t}, t >= 0, of a field whose solid lies in `box` and that swells so.
+Box reached(const Box &box, double swell, double t);
+// What holds {max(f, g) < t} for all t >= 0, as the boxes grow: their meet, and in axes where they
+// are apart the middle between them. Nowhere empty, unless one of them is.
+Box meeting(const Box &a, const Box &b);
 Box moved(const Box &box, const Vec &by);
 Box times(const Box &box, const Vec &by);
 Box turned(const Box &box, const std::array<Interval, 16> &matrix, int side); // column-major

@@ -100,11 +100,13 @@ Known Prover::know_map(ShapeId id) {
             least = std::min(least, by[i].mignitude());
         }
         if (flat) by[2] = 1.0;
+        k.lowered = up(k.lowered * most);
         k.fact.bounds = times(k.fact.bounds, by);
         k.outer = everywhere(k.outer) ? k.outer : times(k.outer, by);
         if (uniform) {
             k.parts = everywhere(k.parts) ? k.parts : times(k.parts, by);
             for (double &lever : k.fact.lever) lever = up(lever * most);
+            k.drift = up(k.drift * most);
         } else {
             // min|s| * |J^T g| <= min|s| / min|s| * L: the factor takes back what the map adds. Not
             // exact any more, and gradients no longer point from nearest points.
@@ -383,11 +385,14 @@ Known Prover::know_deformed(ShapeId id) {
         double r = radius_about(parts, shape.axis);
         // How far along the axis a point between the ends can be from its nearest surface point.
         double v = std::max((Interval(parts.hi[a]) - from).hi, (to - Interval(parts.lo[a])).hi);
+        const Interval sections(std::max(std::min(1.0, ratio.lo), 0.0), most);
         if (!k.fact.bounds.empty())
             for (std::size_t i = 0; i < 3; ++i)
-                if (i != a)
-                    k.fact.bounds.lo[i] = std::min(k.fact.bounds.lo[i] * most, k.fact.bounds.lo[i]),
-                    k.fact.bounds.hi[i] = std::max(k.fact.bounds.hi[i] * most, k.fact.bounds.hi[i]);
+                if (i != a) {
+                    const Interval side =
+                        Interval(k.fact.bounds.lo[i], k.fact.bounds.hi[i]) * sections;
+                    k.fact.bounds.lo[i] = side.lo, k.fact.bounds.hi[i] = side.hi;
+                }
         k.fact.symmetric[a] = k.fact.symmetric[a] && still;
         // {c f(x/c) < t} needs f < t/c.
         k.swell = ratio.lo > 0 ? up(k.swell * most / std::min(1.0, ratio.lo)) : infinity;
@@ -409,16 +414,21 @@ Known Prover::know_deformed(ShapeId id) {
             inside = padded(k.fact.bounds);
             alone = true;
         }
-        if (inside.finite() && !inside.empty() && inner.fact.bounds.finite() &&
-            !inner.fact.bounds.empty()) {
-            // In a region: |grad| <= L [[1,0],[|c'| r/c, c]] + |c'| |f|, |f| <= L * the distance
-            // across.
+        if (inside.finite() && !inside.empty()) {
+            // In a region: |grad| <= L [[1,0],[|c'| r/c, c]] + |c'| |f|.
             double least = std::max(std::min(1.0, ratio.lo), 1e-4);
             double across =
                 (alone ? radius_about(inside, shape.axis) : region_radius(id, shape.axis)) / least;
-            double size = up(norm_of(inside) / least + norm_of(inner.fact.bounds));
-            norm = std::min(
-                norm, up(lower_triangle_norm(most, up(steepness * across)) + steepness * size));
+            Box image = inside; // x/c for x in the region
+            for (std::size_t i = 0; i < 3; ++i)
+                if (i != a) {
+                    const Interval side =
+                        Interval(inside.lo[i], inside.hi[i]) / Interval(least, most);
+                    image.lo[i] = side.lo, image.hi[i] = side.hi;
+                }
+            const double size = magnitude(shape.children[0], image);
+            norm = std::min(norm, up(lower_triangle_norm(most, up(steepness * across)) +
+                                     steepness * size / std::max(l, 1e-9)));
         }
         if (!std::isfinite(norm)) {
             needs_region("a taper of " + child_name +

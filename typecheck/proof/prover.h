@@ -49,6 +49,7 @@ struct Prover {
     }
     const Place &place(ir::ShapeId id) const { return places[id.index]; }
     Zone zone_of(const ir::Region &region);
+    bool is_field(ir::ShapeId id) const;
 
     // -- places, from the root down
     void find_places();
@@ -82,6 +83,10 @@ struct Prover {
     std::optional<ir::NodeId> shift_of(ir::NodeId q, int i);
     std::optional<Vec> whole_shift(ir::NodeId q); // the interval of p - q, where limited
     Interval number_anywhere(ir::NodeId id);
+
+    // What values the raw field may have in a box of its own space; and how far from 0 they are.
+    Interval values(ir::ShapeId id, const Cell &cell, int depth = 0);
+    double magnitude(ir::ShapeId id, const Box &box);
 
     // The raw field as one expression in Point, where the shape is made of leaves, maps, min and
     // max; else nothing.

@@ -1,4 +1,4 @@
-// The rules of the kinds that combine, displace, confine, repeat as a family, or claim. Proofs:
+// The rules of the kinds that combine, displace, repeat as a family, or claim. Proofs:
 // docs/lipschitz.md.
 #include "typecheck/proof/prover.h"
 
@@ -22,13 +22,11 @@ namespace {
 ProofStatus worse(ProofStatus a, ProofStatus b) { return std::max(a, b); }
 
 // Of a min of fields: {min < t} is in the hull of the children's; {min > -t} in the meet of theirs.
-// A meet of grown boxes is the grown meet where that is not empty.
 void unite(Known &k, const Known &c) {
     k.fact.bounds = ir::hull(k.fact.bounds, c.fact.bounds);
     k.swell = std::max(k.swell, c.swell);
-    Box meet = ir::intersect(k.outer, c.outer);
-    k.swell_out = meet.empty() ? infinity : std::max(k.swell_out, c.swell_out);
-    k.outer = meet.empty() ? empty_box() : meet;
+    k.swell_out = std::max(k.swell_out, c.swell_out);
+    k.outer = meeting(k.outer, c.outer);
 }
 void meet(Known &k, const Known &c) {
     std::swap(k.fact.bounds, k.outer);
@@ -45,6 +43,8 @@ void inherit(Known &k, const Known &c) {
     k.failed = k.failed || c.failed;
     k.fact.status = worse(k.fact.status, c.fact.status);
     k.parts = ir::hull(k.parts, c.parts);
+    k.drift = std::max(k.drift, c.drift);
+    k.lowered = std::max(k.lowered, c.lowered);
     for (std::size_t a = 0; a < 3; ++a) {
         k.fact.symmetric[a] = k.fact.symmetric[a] && c.fact.symmetric[a];
         k.fact.lever[a] = std::max(k.fact.lever[a], c.fact.lever[a]);
@@ -98,11 +98,24 @@ Known Prover::know_set(ShapeId id) {
             break;
         case ShapeKind::Blend: {
             // The part that the profile adds lies where both are below r (blends.h).
-            Box both = ir::intersect(grow(k.fact.bounds, w * r), grow(c.fact.bounds, w * r));
+            const Box both =
+                ir::intersect(reached(k.fact.bounds, w, r), reached(c.fact.bounds, w, r));
+            // Further out: where both are below t + r. If that is nowhere for t = 0, as the boxes
+            // are `gap` > 2wr apart, it is from 2w(t + r) = gap on, where w(t + r) is at most wt *
+            // gap/(gap - 2wr).
+            if (both.empty() && !k.fact.bounds.empty() && !c.fact.bounds.empty()) {
+                double gap = 0;
+                for (std::size_t a = 0; a < 3; ++a)
+                    gap = std::max({gap, k.fact.bounds.lo[a] - c.fact.bounds.hi[a],
+                                    c.fact.bounds.lo[a] - k.fact.bounds.hi[a]});
+                w = gap > 2 * w * r ? up(w * gap / (gap - 2 * w * r), 4) : infinity;
+            }
             unite(k, c);
+            k.swell = std::max(k.swell, w);
             if (!both.empty()) k.fact.bounds = ir::hull(k.fact.bounds, both);
+            k.drift = up(k.drift + 2 * r); // a part decides only where it is within r of the least
             if (profile == ir::Profile::Columns) { // not a function of the difference alone
-                k.fact.bounds = grow(k.fact.bounds, w * r);
+                k.fact.bounds = reached(k.fact.bounds, w, r);
                 k.swell = infinity;
                 k.outer = Box::everything();
             }
@@ -110,13 +123,14 @@ Known Prover::know_set(ShapeId id) {
         }
         case ShapeKind::Seam: {
             k.outer = Box::everything(), k.swell_out = 0;
+            k.drift = infinity;
             if (seam == ir::SeamKind::Pipe) {
                 k.fact.bounds =
-                    ir::intersect(grow(first.fact.bounds, w * r), grow(c.fact.bounds, w * r));
+                    meeting(reached(first.fact.bounds, w, r), reached(c.fact.bounds, w, r));
                 k.swell = w;
             } else if (seam == ir::SeamKind::Tongue) {
                 double depth = std::max(number(shape.args[1]).hi, 0.0);
-                k.fact.bounds = grow(first.fact.bounds, first.swell * depth);
+                k.fact.bounds = reached(first.fact.bounds, first.swell, depth);
                 k.swell = first.swell;
             } else {
                 k.fact.bounds = first.fact.bounds; // takes away
@@ -127,7 +141,8 @@ Known Prover::know_set(ShapeId id) {
         case ShapeKind::PseudoNorm: // 1 - |((1-a)+, (1-b)+)|_p < 0 needs a or b below 1 - 2^(-1/p)
                                     // <= 1/2
             unite(k, c);
-            k.fact.bounds = grow(k.fact.bounds, w * 0.5);
+            k.fact.bounds = reached(k.fact.bounds, w, 0.5);
+            k.drift = infinity;
             k.swell = infinity;
             k.outer = Box::everything();
             break;
@@ -173,7 +188,7 @@ Known Prover::know_set(ShapeId id) {
         k.fact.lever = {infinity, infinity, infinity};
         k.parts = Box::everything();
         if (shape.kind == ShapeKind::Blend)
-            k.fact.bounds = grow(k.fact.bounds, std::max(b.value.hi, 0.0) * k.swell);
+            k.fact.bounds = reached(k.fact.bounds, k.swell, b.value.hi);
     }
     if (k.failed)
         fail(k);
@@ -202,6 +217,7 @@ Known Prover::know_lerp(ShapeId id) {
     double sup =
         convex ? (varies || !range.is_point() ? std::max(la, lb) : up(range.hi * la + rest.hi * lb))
                : up(range.magnitude() * la + rest.magnitude() * lb);
+    k.drift = infinity;
     // t*a + (1-t)*b < 0 needs a < 0 or b < 0 while both weights are at least 0.
     unite(k, b);
     if (!convex) {
@@ -220,7 +236,7 @@ Known Prover::know_lerp(ShapeId id) {
                                  // D], inside above -D/2
             for (std::size_t i = 0; i < 3; ++i)
                 diagonal += std::pow(common.hi[i] - common.lo[i], 2);
-            gap = 1.5 * std::sqrt(diagonal);
+            gap = up(1.5 * std::sqrt(diagonal) + a.lowered + b.lowered, 4);
             auto f = expression(shape.children[0]), g = expression(shape.children[1]);
             if (f && g) {
                 Budget budget;
@@ -230,12 +246,9 @@ Known Prover::know_lerp(ShapeId id) {
             }
         }
         Box box = place(id).box;
-        if (box.finite() && !box.empty() && a.fact.bounds.finite() && b.fact.bounds.finite()) {
-            // Lipschitz fields that vanish (or begin) in their bounds: |f| <= L * the distance
-            // across.
-            double size = norm_of(box) + std::max(norm_of(a.fact.bounds), norm_of(b.fact.bounds));
-            gap = std::min(gap, size * (la + lb));
-        }
+        if (box.finite() && !box.empty())
+            gap = std::min(
+                gap, up(magnitude(shape.children[0], box) + magnitude(shape.children[1], box)));
         k.fact.lever = {infinity, infinity, infinity};
         k.parts = Box::everything();
         k.fact.symmetric = {false, false, false};
@@ -307,13 +320,16 @@ Known Prover::know_displaced(ShapeId id) {
     if (shape.kind == ShapeKind::Shell) {
         double half = std::max(amount.hi, 0.0) / 2;
         slope /= 2;
-        k.fact.bounds = grow(k.fact.bounds, k.swell * half);
+        k.fact.bounds = reached(k.fact.bounds, k.swell, half);
+        k.drift = up(k.drift + half);
         k.outer = Box::everything();
         k.swell_out = 0;
         k.exact_outside = was_exact && !varies;
     } else {
-        k.fact.bounds = grow(k.fact.bounds, k.swell * std::max(amount.hi, 0.0));
-        k.outer = grow(k.outer, k.swell_out * std::max(-amount.lo, 0.0));
+        k.fact.bounds = reached(k.fact.bounds, k.swell, amount.hi);
+        k.outer = reached(k.outer, k.swell_out, -amount.lo);
+        k.drift = up(k.drift + amount.magnitude());
+        k.lowered = up(k.lowered + std::max(-amount.lo, 0.0));
         k.exact_outside = k.exact_outside && !varies;
         // What moves inward only is still below the child's field: the shell begins at the surface
         // itself.
@@ -350,6 +366,10 @@ Known Prover::know_extrude(ShapeId id) {
     // are at right angles, lie on a unit circle: max(L, 1).
     double lever = k.fact.lever[2];
     stand(k.fact.bounds);
+    // The solid's nearest point is that of the flat shape as it is, not of the part that makes the
+    // gradient: they differ by the drift, along that gradient.
+    k.parts = reached(k.parts, 1, k.drift);
+    k.drift = 0;
     stand(k.parts);
     k.fact.symmetric[2] = true;
     for (int a = 0; a < 2; ++a)
@@ -366,110 +386,6 @@ Known Prover::know_extrude(ShapeId id) {
     return k;
 }
 
-namespace {
-
-// The longest way round the holes over the straight line through them (lipschitz.md, regions): pi/2
-// for a ball or a tube, 1 + the second smallest side over the smallest for a box. Infinity where
-// the way round may leave the region.
-double detour_of(const Zone &zone) {
-    double worst = 1;
-    const bool bounded = zone.kind != ir::RegionKind::Everywhere;
-    const Box whole = from_cell(outer_box(zone), 3);
-    for (std::size_t i = 0; i < zone.less.size(); ++i) {
-        const Zone &hole = zone.less[i];
-        const Box box = from_cell(outer_box(hole), 3);
-        bool fits = !bounded;
-        if (hole.kind == ir::RegionKind::Tube) { // the region looks the same all round the tube's
-                                                 // axis, and is wider
-            fits = fits || (zone.kind == ir::RegionKind::Tube && zone.axis == hole.axis &&
-                            zone.half[0].lo > hole.half[0].hi);
-            bool centred = true, wider = true;
-            for (std::size_t a = 0; a < 3; ++a) {
-                if (int(a) == hole.axis) continue;
-                centred = centred && zone.center[a] == Interval(0.0);
-                wider = wider &&
-                        zone.half[zone.kind == ir::RegionKind::Box ? a : 0].lo > hole.half[0].hi;
-            }
-            fits =
-                fits || ((zone.kind == ir::RegionKind::Ball || zone.kind == ir::RegionKind::Box) &&
-                         centred && wider);
-        } else if (zone.kind == ir::RegionKind::Ball) {
-            double far = 0;
-            for (std::size_t a = 0; a < 3; ++a) {
-                Interval off = hole.center[a] - zone.center[a];
-                double reach =
-                    off.magnitude() + hole.half[hole.kind == ir::RegionKind::Box ? a : 0].hi;
-                if (hole.kind == ir::RegionKind::Ball) reach = off.magnitude();
-                far += reach * reach;
-            }
-            far = std::sqrt(far) + (hole.kind == ir::RegionKind::Ball ? hole.half[0].hi : 0);
-            fits = far < zone.half[0].lo;
-        } else {
-            fits = fits || holds(whole, box);
-        }
-        for (std::size_t j = 0; j < i; ++j)
-            fits = fits && disjoint(box, from_cell(outer_box(zone.less[j]), 3));
-        if (!fits || hole.kind == ir::RegionKind::Everywhere) return infinity;
-        double round = 1.5707963267948968;
-        if (hole.kind == ir::RegionKind::Box) {
-            std::array<double, 3> sides{hole.half[0].lo, hole.half[1].lo, hole.half[2].lo},
-                most{hole.half[0].hi, hole.half[1].hi, hole.half[2].hi};
-            std::sort(sides.begin(), sides.end());
-            std::sort(most.begin(), most.end());
-            round = sides[0] > 0 ? std::max(1.4142135623730952, up(1 + most[1] / sides[0], 4))
-                                 : infinity;
-        }
-        worst = std::max(worst, round);
-    }
-    return worst;
-}
-
-} // namespace
-
-Known Prover::know_within(ShapeId id) {
-    const Shape shape = scene.shapes[id];
-    Known k = child(shape);
-    k.fact.repeat = {};
-    k.fact.guard = false;
-    Zone zone = zone_of(scene.shapes.regions[shape.payload]);
-    if (zone.kind == ir::RegionKind::Everywhere && zone.less.empty()) return k;
-    Box region = from_cell(outer_box(zone), shape.dims);
-    // Outside the region the value is at least the distance to it: {d < t} lies in the region grown
-    // by t. What is inside may be smaller than the region.
-    Box solid = ir::intersect(region, k.fact.bounds);
-    k.swell = holds(k.fact.bounds, region) ? 1 : infinity;
-    k.fact.bounds = solid.empty() ? empty_box() : solid;
-    k.outer = Box::everything();
-    k.swell_out = 0;
-    k.parts = Box::everything();
-    k.fact.lever = {infinity, infinity, infinity};
-    if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
-    k.exact_outside = k.parts_exact = false;
-    for (std::size_t a = 0; a < 3; ++a) {
-        bool centred = zone.kind == ir::RegionKind::Tube ||
-                       zone.kind == ir::RegionKind::Everywhere || zone.center[a] == Interval(0.0);
-        k.fact.symmetric[a] = k.fact.symmetric[a] && centred && zone.less.empty();
-    }
-    if (k.failed) {
-        fail(k);
-        return k;
-    }
-    double detour = detour_of(zone);
-    if (!std::isfinite(detour)) {
-        if (Diagnostic *d = report(id, Code::NeedsRegion,
-                                   "a region's hole that reaches over its border, or into another "
-                                   "hole, cannot be used for a proof"))
-            d->help("keep the holes apart and inside the region, or centre the region on the "
-                    "tube's axis");
-        fail(k);
-        return k;
-    }
-    NodeId formula =
-        graph.make(Op::Max, {graph.mul(k.fact.lipschitz, graph.number(detour)), graph.number(1)});
-    set_lipschitz(k, formula, std::max(up(k.fact.lipschitz_sup * detour), 1.0));
-    return k;
-}
-
 Known Prover::know_many(ShapeId id) {
     const Shape shape = scene.shapes[id];
     const ir::Family family = scene.shapes.families[shape.payload];
@@ -481,8 +397,11 @@ Known Prover::know_many(ShapeId id) {
         k.exact_outside = k.exact_outside && plain;
         k.parts_exact = k.parts_exact && plain;
         // By induction over the fold: {acc < t} lies in the copies' box grown by swell*(t + k).
-        if (family.smooth)
-            k.fact.bounds = grow(k.fact.bounds, k.swell * std::max(number(shape.args[0]).hi, 0.0));
+        if (family.smooth) {
+            const double smooth = std::max(number(shape.args[0]).hi, 0.0);
+            k.fact.bounds = reached(k.fact.bounds, k.swell, smooth);
+            k.drift = up(k.drift + 2 * smooth * family.count);
+        }
     }
     // Symmetric copies need not be a symmetric whole.
     k.fact.symmetric = {false, false, false};

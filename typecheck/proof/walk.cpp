@@ -60,6 +60,7 @@ void Prover::run() {
             local = false;
             outward = infinity;
             k = know(ShapeId{i});
+            if (!is_field(ShapeId{i})) k.leaf = {};
             keep_in_ball(ShapeId{i}, k);
             k.fact.local = local;
             k.fact.outward = outward;
@@ -94,6 +95,37 @@ void Prover::run() {
     }
     scene.far = scene.render.far > 0 ? scene.render.far : 100 * std::max({radius, distance, 1e-6});
     if (scene.bounds.empty() && scene.render.far <= 0) scene.far = std::max(scene.far, 100.0);
+}
+
+// A leaf, and what is only written round it.
+bool Prover::is_field(ShapeId id) const {
+    const Shape &shape = scene.shapes[id];
+    switch (shape.kind) {
+    case ShapeKind::Leaf:
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint:
+    case ShapeKind::Contract: return true;
+    case ShapeKind::Library: return !scene.shapes.libraries[shape.payload].has_claims;
+    case ShapeKind::Empty:
+    case ShapeKind::Union:
+    case ShapeKind::Intersection:
+    case ShapeKind::Complement:
+    case ShapeKind::Xor:
+    case ShapeKind::Blend:
+    case ShapeKind::Seam:
+    case ShapeKind::Lerp:
+    case ShapeKind::PseudoNorm:
+    case ShapeKind::Map:
+    case ShapeKind::Offset:
+    case ShapeKind::Shell:
+    case ShapeKind::Displace:
+    case ShapeKind::Extrude:
+    case ShapeKind::Repeat:
+    case ShapeKind::Within:
+    case ShapeKind::Mixed:
+    case ShapeKind::Many: return false;
+    }
+    return false;
 }
 
 // -- numbers

@@ -1,0 +1,170 @@
+// Random compositions of everything in the library: the safe ball against the scene's plain
+// geometry (every copy asked, nothing guarded), the slope of what offsets, shells and blends use,
+// over params at both ends of their ranges. A scene that fails is cut down before it is shown.
+// FATHOM_SCENES and FATHOM_SEED in the environment make it longer, or another.
+#include "driver/compile.h"
+#include "ir/lower.h"
+#include "random_scenes.h"
+#include "tests/support/slopes.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstdlib>
+#include <map>
+
+using namespace fathom;
+using namespace fathom::test;
+
+namespace {
+
+constexpr double reach = 2.5;
+
+// The same solid from the shapes alone: nothing of what the proof makes cheaper. (What is proved in
+// its own box alone is joined with the way to it, raw too; and the distance to copies that are not
+// asked is part of a raw field, so it stays unless `all` are to be asked.)
+ir::Scene plain(ir::Scene scene, bool all) {
+    for (std::size_t i = 0; i < scene.facts.size(); ++i) {
+        ir::ShapeFact &fact = scene.facts[i];
+        fact.guard = false;
+        fact.outward = std::numeric_limits<double>::infinity();
+        ir::RepeatPlan &plan = fact.repeat;
+        const bool polar = scene.shapes[ir::ShapeId{i}].kind == ir::ShapeKind::Repeat &&
+                           scene.shapes.repetitions[scene.shapes[ir::ShapeId{i}].payload].polar;
+        if (plan.guard && !all) continue;
+        plan.guard = false;
+        for (int &n : plan.neighbors)
+            if (n > 0) n = polar ? 1000 : 9;
+    }
+    ir::lower(scene);
+    return scene;
+}
+
+struct Verdict {
+    std::string wrong; // empty: sound
+    std::string code;  // of the error, where the scene was refused
+    double steepest = 0;
+};
+
+driver::Compilation compiled(const std::string &text) {
+    return driver::compile_text("random.sdf", text, {}, {});
+}
+
+void set_params(ir::Scene &scene, int end) {
+    for (ir::Param &param : scene.params)
+        param.value[0] = end == 0   ? param.lo[0]
+                         : end == 1 ? param.hi[0]
+                                    : (param.lo[0] + param.hi[0]) / 2;
+}
+
+std::string place(const Point3 &p) {
+    return "[" + std::to_string(p[0]) + ", " + std::to_string(p[1]) + ", " + std::to_string(p[2]) +
+           "]";
+}
+
+// A marched distance d at p, against the plain solid: no point within |d| may have the other sign.
+std::string against_plain(const ir::Scene &scene, const ir::Scene &truth, int count) {
+    Sampler marched(scene), plain(truth);
+    const double rounding = 3e-5 * reach;
+    std::vector<Point3> p, q;
+    for (int i = 0; i < count; ++i)
+        p.push_back(marched.in_box({-reach, -reach, -reach}, {reach, reach, reach}));
+    std::vector<float> d = marched.values(p);
+    for (std::size_t i = 0; i < p.size(); ++i)
+        q.push_back(marched.in_ball(p[i], std::min(double(std::fabs(d[i])), 4 * reach)));
+    std::vector<float> e = plain.values(q), own = plain.values(p);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        if (std::fabs(d[i]) < rounding) continue;
+        if ((own[i] < 0) != (d[i] < 0) && std::fabs(own[i]) > rounding)
+            return "the solid is another at " + place(p[i]) + ": marched " + std::to_string(d[i]) +
+                   ", plain " + std::to_string(own[i]);
+        if ((e[i] < 0) != (d[i] < 0) && std::fabs(e[i]) > rounding)
+            return "the step " + std::to_string(d[i]) + " at " + place(p[i]) + " reaches over " +
+                   place(q[i]) + ", where the field is " + std::to_string(e[i]);
+    }
+    return {};
+}
+
+Verdict judge(const std::string &head, const Term &tree, int count) {
+    Verdict out;
+    const std::string shape = text_of(tree);
+    const bool repeated = tree.text.find(".repeat") != std::string::npos;
+    for (const bool raw : {false, true}) {
+        // The raw reading, as an offset uses it: divided by its bound, at most 1 steep.
+        driver::Compilation c = compiled(head + (raw ? "(" + shape + ").offset(0.003)" : shape));
+        if (!c.good()) {
+            for (const Diagnostic &d : c.diagnostics.items())
+                if (d.severity == Severity::Error) {
+                    out.code = code_name(d.code);
+                    return out;
+                }
+            return out;
+        }
+        ir::Scene truth = plain(c.scene, repeated && !raw);
+        for (int end = 0; end < (c.scene.params.empty() ? 1 : 3); ++end) {
+            set_params(c.scene, end);
+            set_params(truth, end);
+            out.wrong = against_plain(c.scene, truth, count);
+            if (!out.wrong.empty()) return out;
+            if (!raw) continue;
+            Slopes s = measure(c.scene, {-reach, -reach, -reach}, {reach, reach, reach}, count);
+            out.steepest = std::max(out.steepest, s.steepest);
+            if (s.unsafe)
+                out.wrong = "the offset's step at " + place(s.unsafe_center) + " is " +
+                            std::to_string(s.unsafe_by) + " times the way to " +
+                            place(s.unsafe_point);
+            if (s.steepest > 1 + 5e-3)
+                out.wrong = "the raw field is " + std::to_string(s.steepest) +
+                            " times as steep as proved, at " + place(s.where);
+            if (!out.wrong.empty()) return out;
+        }
+    }
+    return out;
+}
+
+int number_from(const char *variable, int otherwise) {
+    const char *text = std::getenv(variable);
+    return text ? std::atoi(text) : otherwise;
+}
+
+} // namespace
+
+TEST_CASE("random compositions are marched safely, and are no steeper than proved") {
+    const int scenes = number_from("FATHOM_SCENES", 150), seed = number_from("FATHOM_SEED", 1);
+    int good = 0, wrong = 0;
+    std::map<std::string, int> refused;
+    for (int i = 0; i < scenes; ++i) {
+        RandomScene random(std::uint64_t(seed) * 1'000'003u + std::uint64_t(i));
+        TermPtr tree = random.solid(1 + i % 4);
+        std::string head;
+        for (const std::string &param : random.params()) head += param;
+        Verdict verdict = judge(head, *tree, 4096);
+        if (!verdict.code.empty()) {
+            ++refused[verdict.code];
+            if (std::getenv("FATHOM_SHOW"))
+                std::printf("refused %s: %s%s\n", verdict.code.c_str(), head.c_str(),
+                            text_of(*tree).c_str());
+            continue;
+        }
+        ++good;
+        if (verdict.wrong.empty()) continue;
+        for (bool smaller = true; smaller;) {
+            smaller = false;
+            std::vector<TermPtr> tries;
+            cuts(tree, tree, tries);
+            for (const TermPtr &one : tries) {
+                Verdict v = judge(head, *one, 4096);
+                if (v.wrong.empty()) continue;
+                tree = one, verdict = v, smaller = true;
+                break;
+            }
+        }
+        ++wrong;
+        std::printf("%d: %s\n%s%s\n", i, verdict.wrong.c_str(), head.c_str(),
+                    text_of(*tree).c_str());
+        std::fflush(stdout);
+    }
+    for (const auto &[code, count] : refused)
+        std::printf("refused %d times: %s\n", count, code.c_str());
+    CHECK(wrong == 0);
+    CHECK(good > scenes / 2);
+}
