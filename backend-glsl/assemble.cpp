@@ -31,7 +31,9 @@ class Assembler {
             want(graph_.function(id).result);
         };
         want_function(scene_.distance, "sdf");
-        if (scene_.hit != scene_.distance) want_function(scene_.hit, "fathom_hit");
+        if (scene_.hit != scene_.distance)
+            want_function(scene_.hit,
+                          module_.options.part_stride > 0 ? "fathom_marked_hit" : "fathom_hit");
         for (const ir::Surface &s : scene_.surfaces)
             for (NodeId id : {s.diffuse, s.specular, s.exponent, s.emission}) want(id);
         if (with_looks) {

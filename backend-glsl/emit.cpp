@@ -2,8 +2,10 @@
 #include "backend-glsl/emit.h"
 
 #include "backend-glsl/assemble.h"
+#include "backend-glsl/fill.h"
 #include "backend-glsl/html.h"
 #include "backend-glsl/marcher.h"
+#include "backend-glsl/probe.h"
 #include "backend-glsl/validate.h"
 #include "base/text.h"
 #include "ir/view.h"
@@ -49,7 +51,8 @@ class Emitter {
           diagnostics_(diagnostics), module_{scene, options, {}, {}, {}, {}, {}, {}, {}, {}} {}
 
     Output run() {
-        const SceneText scene = assemble(module_, !options_.field_only);
+        const SceneText scene = assemble(
+            module_, !options_.field_only && options_.instruments != Instruments::Probe);
         Output output;
         output.tables = module_.texels;
         output.reads_time = module_.reads_time;
@@ -99,13 +102,28 @@ class Emitter {
         marcher.lo = vector_text(frame.lo);
         marcher.hi = vector_text(frame.hi);
         marcher.zero = zero();
-        return head() + inputs(view) + scene.tables + scene.functions + hit_function() +
-               scene.looks + marcher_text(marcher) + entry(view);
+        marcher.pick = options_.instruments == Instruments::Pick;
+        const std::string before = head() + inputs(view) + scene.tables + scene.functions;
+        if (options_.instruments == Instruments::Probe) return before + probe_text(marcher);
+        return before + hit_function() + scene.looks + marcher_text(marcher) + entry(view);
     }
 
     std::string hit_function() const {
+        if (scene_.hit && options_.part_stride > 0)
+            return fill("\nint fathom_part;\n\n"
+                        "// A marked hit's paint is code + stride * part; the last code is no paint.\n"
+                        "Hit fathom_hit(vec3 p) {\n    Hit s = fathom_marked_hit(p);\n"
+                        "    fathom_part = s.paint < 0 ? 0 : s.paint / $STRIDE;\n"
+                        "    s.paint = s.paint < 0 ? -1 : s.paint - fathom_part * $STRIDE;\n"
+                        "    if (s.paint == $STRIDE - 1) s.paint = -1;\n"
+                        "    return s;\n}\n",
+                        {{"STRIDE", std::to_string(options_.part_stride)}});
+        if (options_.instruments == Instruments::Pick && scene_.hit)
+            return "\nconst int fathom_part = 0;\n";
         if (scene_.hit) return "";
-        return "\nHit fathom_hit(vec3 p) {\n    return Hit(sdf(p), -1, p, vec4(0.0));\n}\n";
+        const std::string part =
+            options_.instruments == Instruments::Pick ? "\nconst int fathom_part = 0;\n" : "";
+        return part + "\nHit fathom_hit(vec3 p) {\n    return Hit(sdf(p), -1, p, vec4(0.0));\n}\n";
     }
 
     // An int that is 0 whenever the shader runs, though the compiler does not know.
@@ -155,7 +173,7 @@ class Emitter {
         if (options_.target == Target::Spirv)
             return "layout(location = " + std::to_string(location_++) + ") uniform " + type + " " +
                    name + ";\n";
-        const bool es = is_es(options_.target);
+        const bool es = is_es(options_.target) || options_.instruments != Instruments::None;
         return "uniform " + type + " " + name + (es || value.empty() ? "" : " = " + value) + ";\n";
     }
 
@@ -179,7 +197,8 @@ class Emitter {
         for (const auto &[index, name] : module_.params) {
             const ir::Param &param = scene_.params[index];
             const std::string value = param_value(param), type = glsl_type(param.type);
-            if (!param.label.empty()) text += "// " + one_line(param.label) + "\n";
+            if (!param.label.empty() && options_.instruments == Instruments::None)
+                text += "// " + one_line(param.label) + "\n";
             if (is_hosted(options_.target))
                 text += uniform(type, name, value);
             else
@@ -285,7 +304,9 @@ class Emitter {
                    "gl_FragCoord.y));\n}\n";
         }
         return std::string("\n") +
-               (options_.target == Target::Spirv ? "layout(location = 0) " : "") +
+               (options_.target == Target::Spirv || options_.instruments == Instruments::Pick
+                    ? "layout(location = 0) "
+                    : "") +
                "out vec4 fathom_color;\n\nvoid main() {\n"
                "    vec2 place = vec2(gl_FragCoord.x, fathom_resolution.y - gl_FragCoord.y);\n"
                "    fathom_color = fathom_picture(place + fathom_offset - 0.5);\n}\n";

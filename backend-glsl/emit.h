@@ -18,7 +18,19 @@ enum class Target { Glsl450, Glsl330, Es300, Shadertoy, GlslViewer, Spirv, Html 
 std::optional<Target> target_by_name(std::string_view name); // "glsl450", "es300", …
 const char *target_name(Target target);
 
+// What a shader tells its host beside the picture. Texts with instruments are for a host of ours
+// that sets every uniform: they carry no defaults, so that a number that changed in the scene's
+// camera or params changes no text.
+enum class Instruments {
+    None,
+    Pick, // a second output, fathom_pick: (part, t, steps, slope of the marched field at the hit);
+          // (0, -1, steps, 0) where the ray hits nothing
+    Probe // no picture: fathom_pick is, by fathom_mode, what probe.h says
+};
+
 struct Options {
+    Instruments instruments = Instruments::None;
+    int part_stride = 0; // ir::Parts::stride, where the scene was lowered with its parts
     Target target = Target::Glsl450;
     bool field_only = false; // just `float sdf(vec3 p)`, the material function and the bound
     bool buffers = false; // the host binds large tables as the texture buffer `fathom_tables`; else

@@ -18,7 +18,7 @@ constexpr const char *lengths = R"(
 // ---- how rays are marched and points are shaded ----
 
 float fathom_slack, fathom_pixel, fathom_far, fathom_tolerance_base, fathom_tolerance_slope;
-int fathom_steps;
+int fathom_steps = 0;
 
 void fathom_lengths() {
     fathom_slack = $FLOAT_SLACK * (length(fathom_origin) + $RADIUS);
@@ -148,7 +148,7 @@ vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
     float slope = length(g);
     vec3 n = slope > 0.0 ? g / slope : -direction;
     Hit s = fathom_hit(p);
-)";
+$PICK_HIT)";
 
 constexpr const char *local_normal = R"(    vec3 turned = fathom_hit(p + h * n).point - s.point;
     float size = length(turned);
@@ -197,7 +197,17 @@ vec3 fathom_heat(int steps) {
 
 // `place`: in pixels from the top left of the picture.
 vec4 fathom_picture(vec2 place) {
-    fathom_lengths();
+$RAY    float t = end < begin ? -1.0 : fathom_march(origin, direction, begin, end);
+$PICK_RAY    if (fathom_mode == 1) return vec4(fathom_heat(fathom_steps), 1.0);
+    if (fathom_mode == 2)
+        return vec4(float(fathom_steps), t, t < 0.0 ? -2.0 : float(fathom_hit(origin + t * direction).paint), t < 0.0 ? 0.0 : 1.0);
+    vec3 color = t < 0.0 ? fathom_background(direction) : fathom_shade(origin, direction, t);
+    return vec4(fathom_mode == 3 ? color : fathom_encode(color), 1.0);
+}
+)";
+
+// The ray of a place in the picture, and between which distances it can meet anything.
+constexpr const char *ray = R"(    fathom_lengths();
     float u = (2.0 * place.x / fathom_resolution.x - 1.0) * fathom_resolution.x / fathom_resolution.y;
     float v = 1.0 - 2.0 * place.y / fathom_resolution.y;
     vec3 aside = fathom_extent * (u * fathom_right + v * fathom_up);
@@ -207,67 +217,83 @@ vec4 fathom_picture(vec2 place) {
     else direction = normalize(direction + aside);
     float begin = 0.0;
     float end = fathom_far;
-$CLIP    float t = end < begin ? -1.0 : fathom_march(origin, direction, begin, end);
-    if (fathom_mode == 1) return vec4(fathom_heat(fathom_steps), 1.0);
-    if (fathom_mode == 2)
-        return vec4(float(fathom_steps), t, t < 0.0 ? -2.0 : float(fathom_hit(origin + t * direction).paint), t < 0.0 ? 0.0 : 1.0);
-    vec3 color = t < 0.0 ? fathom_background(direction) : fathom_shade(origin, direction, t);
-    return vec4(fathom_mode == 3 ? color : fathom_encode(color), 1.0);
-}
-)";
+$CLIP)";
+
+// What a click, the outline and the colours of steps and slopes are read from (emit.h).
+constexpr const char *pick_output = "\nlayout(location = 1) out vec4 fathom_pick;\n";
+constexpr const char *pick_ray = "    fathom_pick = vec4(0.0, t, float(fathom_steps), 0.0);\n";
+constexpr const char *pick_hit = "    fathom_pick.x = float(fathom_part);\n"
+                                 "    fathom_pick.w = slope;\n";
 
 std::string number(double value) { return float_literal(static_cast<float>(value)); }
+
+using Values = std::map<std::string, std::string, std::less<>>;
+
+Values values_of(const MarcherOptions &options) {
+    namespace look = ir::look;
+    const std::string clip = "    vec2 inside = fathom_box(origin, direction);\n"
+                             "    begin = max(begin, inside.x);\n"
+                             "    end = min(end, inside.y);\n";
+    const std::string far = "100.0 * max(" + number(options.radius) + ", length(fathom_origin - " +
+                            options.center + "))";
+    Values values{
+        {"AND_NEAR",
+         options.steep ? " && fathom_near(p, d, fathom_arm(t)) <= fathom_tolerance(t)" : ""},
+        {"NEAR_Q", options.steep ? "fathom_near(q, sdf(q), h)" : "sdf(q)"},
+        {"NEAR_P", options.steep ? "fathom_near(p, d, h)" : "d"},
+        {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
+        {"CLIP", options.boxed ? clip : ""},
+        {"FAR", options.far > 0 ? number(options.far) : far},
+        {"RADIUS", number(options.radius)},
+        {"CENTER", options.center},
+        {"LO", options.lo},
+        {"HI", options.hi},
+        {"EPSILON", number(options.epsilon)},
+        {"MAX_STEPS", std::to_string(options.max_steps)},
+        {"ZERO", options.zero},
+        {"LIGHTS", std::to_string(options.lights)},
+        {"FLOAT_SLACK", number(look::float_slack)},
+        {"NORMAL_SLACK", number(look::normal_slack)},
+        {"LEAST_SLOPE", number(look::least_slope)},
+        {"RELAXATION", number(look::relaxation)},
+        {"FLATTEST", number(look::flattest)},
+        {"OCCLUSION_SAMPLES", std::to_string(look::occlusion_samples)},
+        {"OCCLUSION_REACH",
+         number(look::occlusion_reach * options.radius / look::occlusion_samples)},
+        {"PICK_RAY", options.pick ? pick_ray : ""},
+        {"PICK_HIT", options.pick ? pick_hit : ""},
+        {"SHADOW_STEPS", std::to_string(look::shadow_steps)},
+        {"SHADOW_BIAS", number(look::shadow_bias)},
+        {"LEAST_ANGLE", number(look::least_angle)},
+    };
+    values["RAY"] = fill(ray, values);
+    return values;
+}
+
+std::string march_form(const MarcherOptions &options) {
+    std::string text = lengths;
+    if (options.steep) text += near_steep;
+    if (options.boxed) text += box;
+    return text + march;
+}
 
 } // namespace
 
 std::string marcher_text(const MarcherOptions &options) {
-    namespace look = ir::look;
-    std::string text = lengths;
-    if (options.steep) text += near_steep;
-    if (options.boxed) text += box;
-    text += march;
+    std::string text = march_form(options);
     if (!options.skip_shading) text += occlusion;
     text += shade_head;
     text +=
         options.local_normals ? local_normal : "    fathom_Material m = fathom_material(s, n);\n";
     text += options.skip_shading ? "    return m.diffuse + m.emission;\n}\n" : shade_phong;
     text += output;
-
-    const std::string clip = "    vec2 inside = fathom_box(origin, direction);\n"
-                             "    begin = max(begin, inside.x);\n"
-                             "    end = min(end, inside.y);\n";
-    const std::string far = "100.0 * max(" + number(options.radius) + ", length(fathom_origin - " +
-                            options.center + "))";
-    return fill(
-        text,
-        {
-            {"AND_NEAR",
-             options.steep ? " && fathom_near(p, d, fathom_arm(t)) <= fathom_tolerance(t)" : ""},
-            {"NEAR_Q", options.steep ? "fathom_near(q, sdf(q), h)" : "sdf(q)"},
-            {"NEAR_P", options.steep ? "fathom_near(p, d, h)" : "d"},
-            {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
-            {"CLIP", options.boxed ? clip : ""},
-            {"FAR", options.far > 0 ? number(options.far) : far},
-            {"RADIUS", number(options.radius)},
-            {"CENTER", options.center},
-            {"LO", options.lo},
-            {"HI", options.hi},
-            {"EPSILON", number(options.epsilon)},
-            {"MAX_STEPS", std::to_string(options.max_steps)},
-            {"ZERO", options.zero},
-            {"LIGHTS", std::to_string(options.lights)},
-            {"FLOAT_SLACK", number(look::float_slack)},
-            {"NORMAL_SLACK", number(look::normal_slack)},
-            {"LEAST_SLOPE", number(look::least_slope)},
-            {"RELAXATION", number(look::relaxation)},
-            {"FLATTEST", number(look::flattest)},
-            {"OCCLUSION_SAMPLES", std::to_string(look::occlusion_samples)},
-            {"OCCLUSION_REACH",
-             number(look::occlusion_reach * options.radius / look::occlusion_samples)},
-            {"SHADOW_STEPS", std::to_string(look::shadow_steps)},
-            {"SHADOW_BIAS", number(look::shadow_bias)},
-            {"LEAST_ANGLE", number(look::least_angle)},
-        });
+    return (options.pick ? pick_output : "") + fill(text, values_of(options));
 }
+
+std::string march_text(const MarcherOptions &options) {
+    return fill(march_form(options), values_of(options));
+}
+
+std::string ray_text(const MarcherOptions &options) { return fill(ray, values_of(options)); }
 
 } // namespace fathom::glsl

@@ -22,6 +22,7 @@ struct MarcherOptions {
     bool skip_shading = false;
     bool local_normals = false; // some material reads its normal
     bool default_sun = false;
+    bool pick = false; // writes fathom_pick too (emit.h)
     int lights = 0;
     int max_steps = 256;
     double epsilon = 5e-4;
@@ -32,5 +33,10 @@ struct MarcherOptions {
 };
 
 std::string marcher_text(const MarcherOptions &options);
+
+// Parts of it, for probe.h: lengths, gradient and the march itself; and the statements that make
+// the ray of a `place`: origin, direction, begin and end.
+std::string march_text(const MarcherOptions &options);
+std::string ray_text(const MarcherOptions &options);
 
 } // namespace fathom::glsl

@@ -180,8 +180,14 @@ struct Reader {
         add_size(sub, view.width, view.height);
         sub->add_option("--record", view.record,
                         "save a picture of the window here after every reload")
-            ->type_name("DIR")
-            ->check(CLI::ExistingDirectory);
+            ->type_name("DIR");
+        sub->add_flag("--save-view", view.save_view,
+                      "write the view into FILE when the window closes");
+        sub->add_flag("--times", view.times, "say of each reload what took how long");
+        sub->add_flag("--still", view.still, "begin with the time stopped");
+        sub->add_flag("--one-context", view.one_context,
+                      "let the graphics driver compile on the window's thread: for drivers that "
+                      "cannot share");
 
         sub = command("check", "parse, type and prove a scene", check);
         add_scene(sub, check.scene);

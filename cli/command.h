@@ -61,6 +61,7 @@ struct ViewCommand {
     SceneArguments scene;
     int width = 1280, height = 800;
     std::string record; // a folder for a picture after every reload
+    bool save_view = false, times = false, still = false, one_context = false;
 };
 struct ImportCommand {
     std::string file, out;

@@ -22,6 +22,10 @@ Exit run(const ViewCommand &command, Terminal &terminal) {
     settings.width = command.width;
     settings.height = command.height;
     settings.record = command.record;
+    settings.save_view = command.save_view;
+    settings.still = command.still;
+    settings.one_context = command.one_context;
+    if (command.times) settings.tell = [&](const std::string &line) { terminal.say(line); };
     std::string error = viewer::run(settings);
     if (error.empty()) return done;
     terminal.say("fathom: " + error);

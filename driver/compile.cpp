@@ -79,7 +79,10 @@ void run_phases(Compilation &out, SceneFiles &files, const std::string &identity
     proof::prove(out.scene, out.diagnostics);
     if (out.good()) {
         enter(options, Phase::Lower);
-        ir::lower(out.scene);
+        if (options.parts)
+            out.parts = ir::lower_with_parts(out.scene);
+        else
+            ir::lower(out.scene);
         assert(ir::verify(out.scene).empty());
     }
     enter(options, Phase::Done);

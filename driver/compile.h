@@ -3,6 +3,7 @@
 #pragma once
 
 #include "driver/files.h"
+#include "ir/lower.h"
 #include "typecheck/check.h"
 
 #include <filesystem>
@@ -21,12 +22,14 @@ struct CompileOptions {
     std::vector<std::filesystem::path> include_folders; // -I
     std::vector<Override> overrides;                    // -D
     std::function<void(Phase)> entered;                 // may be empty
+    bool parts = false; // lower so that hits tell their parts (ir::lower_with_parts): for the viewer alone
 };
 
 struct Compilation {
     Sources sources;
     Diagnostics diagnostics;
     ir::Scene scene;                       // proved and lowered where `good()`, else poisoned
+    ir::Parts parts;                       // where they were asked for
     std::vector<std::string> usage_errors; // of the overrides: the command line is wrong
     std::string unreadable;                // why the scene's own file cannot be used, or empty
     std::map<std::filesystem::path, FileStamp> files; // all that was read or looked for: what to watch

@@ -90,6 +90,7 @@ Lowering::Lowering(Scene &scene) : scene_(scene), graph_(scene.graph), shapes_(s
 
 void Lowering::run() {
     scene_.surfaces.clear();
+    find_parts();
     count_uses();
     find_names();
     find_free_vars();
@@ -136,7 +137,7 @@ void Lowering::count_uses() {
         for (ShapeId child : s.children) {
             assert(child.index < i);
             cost += cost_[child.index];
-            paint |= paint_[child.index] != 0;
+            paint |= paint_[child.index] != 0 || part_[child.index] != 0;
         }
         cost_[i] = std::min(cost, plenty);
         paint_[i] = paint;

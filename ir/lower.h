@@ -19,6 +19,15 @@ namespace fathom::ir {
 
 void lower(Scene &scene);
 
+// Lowered so that a hit also tells which part of the scene it is on: the innermost operand of a union, a blend or another
+// combination. A hit's paint, where it is not negative, then holds two numbers: code + stride * part, where the code
+// stride - 1 says that nobody painted; part 0 is none, part n is shapes[n - 1]. Only who decodes them (backend-glsl's Options::part_stride) may ask for it.
+struct Parts {
+    std::vector<ShapeId> shapes;
+    int stride = 0;
+};
+Parts lower_with_parts(Scene &scene);
+
 // Signed distance of a region, exact, negative inside; and the point of the convex part nearest to p (p itself inside).
 NodeId region_distance(Graph &graph, const Region &region, NodeId p);
 NodeId region_nearest(Graph &graph, const Region &region, NodeId p);

@@ -12,6 +12,8 @@ NodeId Lowering::least(Reading reading, std::span<const NodeId> values) {
                                    : graph_.make(Op::Union, Type::Float, values);
 }
 NodeId Lowering::greatest(Reading reading, std::span<const NodeId> values) {
+    if (reading == Reading::Hit && parts_.stride > 0)
+        return farthest_part(graph_.make(Op::FarthestHit, Type::Hit, values), values.front());
     return reading == Reading::Hit ? graph_.make(Op::FarthestHit, Type::Hit, values)
                                    : graph_.make(Op::Intersection, Type::Float, values);
 }
@@ -88,6 +90,11 @@ bool Lowering::passes_through(ShapeId id) const {
 }
 
 NodeId Lowering::answer(Reading reading, ShapeId id, Frame frame) {
+    const NodeId value = unmarked(reading, id, frame);
+    return reading == Reading::Hit ? marked(id, value) : value;
+}
+
+NodeId Lowering::unmarked(Reading reading, ShapeId id, Frame frame) {
     if (reading == Reading::Raw && fact(id).local) {
         const Box &box = fact(id).bounds;
         const NodeId q =

@@ -6,47 +6,197 @@
 
 namespace fathom::gl {
 
+namespace {
+
+// A texture of that size and format in a framebuffer's attachment.
+void attach(GLuint &texture, GLint format, int width, int height, GLuint framebuffer,
+            GLenum attachment) {
+    if (!texture) glGenTextures(1, &texture);
+    const bool bytes = format == GL_RGBA8;
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, GL_RGBA,
+                 bytes ? GL_UNSIGNED_BYTE : GL_FLOAT, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
+}
+
+bool complete() { return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE; }
+
+template <class T> std::vector<T> upside_down(const std::vector<T> &rows, int width, int height) {
+    const std::size_t row = static_cast<std::size_t>(width) * 4;
+    std::vector<T> result(rows.size());
+    for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
+        std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(
+                                       (static_cast<std::size_t>(height) - 1 - y) * row),
+                    row, result.begin() + static_cast<std::ptrdiff_t>(y * row));
+    return result;
+}
+
+Picture read_bytes(GLuint framebuffer, int width, int height) {
+    std::vector<std::uint8_t> upward(static_cast<std::size_t>(width) *
+                                     static_cast<std::size_t>(height) * 4);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, upward.data());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    Picture picture{width, height, upside_down(upward, width, height)};
+    for (std::size_t i = 3; i < picture.rgba.size(); i += 4)
+        picture.rgba[i] = 255; // a window has no holes
+    return picture;
+}
+
+} // namespace
+
 int context_version() { return epoxy_gl_version(); }
 
+std::string lost_context() {
+    // Where the window was asked for without robustness the driver says nothing, and then ends the
+    // program itself.
+    if (epoxy_gl_version() < 45 && !epoxy_has_gl_extension("GL_ARB_robustness")) return "";
+    const GLenum status =
+        epoxy_gl_version() >= 45 ? glGetGraphicsResetStatus() : glGetGraphicsResetStatusARB();
+    switch (status) {
+    case GL_NO_ERROR: return "";
+    case GL_GUILTY_CONTEXT_RESET:
+        return "the graphics driver gave up on this scene's shader and lost the window";
+    default: return "the graphics driver was reset and lost the window";
+    }
+}
+
 Canvas::~Canvas() {
-    if (framebuffer_) glDeleteFramebuffers(1, &framebuffer_);
-    if (texture_) glDeleteTextures(1, &texture_);
+    for (GLuint framebuffer :
+         {framebuffer_, picks_framebuffer_, probe_framebuffer_, shown_framebuffer_})
+        if (framebuffer) glDeleteFramebuffers(1, &framebuffer);
+    for (GLuint texture : {sum_, picks_, probe_, shown_})
+        if (texture) glDeleteTextures(1, &texture);
 }
 
 bool Canvas::resize(int width, int height) {
     if (width == width_ && height == height_) return true;
-    while (glGetError() != GL_NO_ERROR) {} // what was wrong before is not ours to report
-    if (!texture_) glGenTextures(1, &texture_);
-    if (!framebuffer_) glGenFramebuffers(1, &framebuffer_);
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, texture_);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
-    bool good = glGetError() == GL_NO_ERROR && glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    while (glGetError() != GL_NO_ERROR) {
+    } // what was wrong before is not ours to report
+    for (GLuint *framebuffer :
+         {&framebuffer_, &picks_framebuffer_, &probe_framebuffer_, &shown_framebuffer_})
+        if (!*framebuffer) glGenFramebuffers(1, framebuffer);
+    attach(sum_, GL_RGBA32F, width, height, framebuffer_, GL_COLOR_ATTACHMENT0);
+    attach(picks_, GL_RGBA32F, width, height, framebuffer_, GL_COLOR_ATTACHMENT1);
+    const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glDrawBuffers(2, both);
+    bool good = complete();
+    attach(picks_, GL_RGBA32F, width, height, picks_framebuffer_, GL_COLOR_ATTACHMENT0);
+    good &= complete();
+    attach(shown_, GL_RGBA8, width, height, shown_framebuffer_, GL_COLOR_ATTACHMENT0);
+    good &= complete() && glGetError() == GL_NO_ERROR;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    probed_ = false;
+    samples_ = 0;
     width_ = good ? width : 0;
     height_ = good ? height : 0;
     return good;
 }
 
-bool Canvas::draw(const Program &program, const FrameInputs &inputs, const std::vector<ir::Param> &params) {
-    if (!resize(inputs.width, inputs.height)) return false;
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    glViewport(0, 0, width_, height_);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
+// A view's shader counts places from the top left of its own tile: its offset takes away where the
+// tile lies.
+void Canvas::draw_views(const Program &program, std::span<const TileView> views,
+                        const std::vector<ir::Param> &params, int sample, bool linear) {
+    glEnable(GL_SCISSOR_TEST);
+    for (const TileView &view : views) {
+        const Tile &tile = view.tile;
+        const int bottom = height_ - tile.y - tile.height;
+        glViewport(tile.x, bottom, tile.width, tile.height);
+        glScissor(tile.x, bottom, tile.width, tile.height);
+        FrameInputs inputs = view.inputs;
+        inputs.width = tile.width;
+        inputs.height = tile.height;
+        const std::array<double, 2> offset = ir::sample_offset(sample);
+        inputs.offset = {offset[0] - tile.x, offset[1] + bottom};
+        if (linear) inputs.mode = Mode::Linear;
+        program.draw(inputs, params);
+    }
     glDisable(GL_SCISSOR_TEST);
-    glDisable(GL_CULL_FACE);
-    program.draw(inputs, params);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glFinish();
+}
+
+bool Canvas::draw(const Program &program, int width, int height, std::span<const TileView> views,
+                  const std::vector<ir::Param> &params, int sample) {
+    if (!resize(width, height)) return false;
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_BLEND);
+    if (sample == 0) {
+        const float background[] = {0.01f, 0.01f, 0.01f, 1}, nothing[] = {0, -1, 0, 0};
+        glClearBufferfv(GL_COLOR, 0, background);
+        glClearBufferfv(GL_COLOR, 1, nothing);
+    } else { // colours add up; what a pixel shows is told by its first sample, in the middle
+        glEnablei(GL_BLEND, 0);
+        glBlendFunc(GL_ONE, GL_ONE);
+        glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    }
+    draw_views(program, views, params, sample, true);
+    glDisablei(GL_BLEND, 0);
+    glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    samples_ = sample + 1;
     return true;
 }
 
+bool Canvas::probe(const Program &program, std::span<const TileView> views,
+                   const std::vector<ir::Param> &params) {
+    if (!probed_) {
+        while (glGetError() != GL_NO_ERROR) {
+        }
+        attach(probe_, GL_RGBA32F, width_, height_, probe_framebuffer_, GL_COLOR_ATTACHMENT1);
+        const GLenum second[] = {GL_NONE, GL_COLOR_ATTACHMENT1};
+        glDrawBuffers(2, second);
+        glReadBuffer(GL_COLOR_ATTACHMENT1);
+        probed_ = complete() && glGetError() == GL_NO_ERROR;
+        if (!probed_) return false;
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, probe_framebuffer_);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    const float nothing[] = {0, 0, 0, 0};
+    glClearBufferfv(GL_COLOR, 1, nothing);
+    draw_views(program, views, params, 0, false);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    return true;
+}
+
+void Canvas::finish(const PostSettings &settings) {
+    if (samples_ == 0) return;
+    post_.run(settings, sum_, samples_, picks_, probed_ ? probe_ : 0, shown_framebuffer_, width_,
+              height_);
+}
+
+Pick Canvas::pick(int x, int y) const {
+    if (samples_ == 0 || x < 0 || y < 0 || x >= width_ || y >= height_) return {};
+    std::array<float, 4> value{};
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, picks_framebuffer_);
+    glReadPixels(x, height_ - 1 - y, 1, 1, GL_RGBA, GL_FLOAT, value.data());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    return {static_cast<int>(value[0]), value[1], value[2], value[3]};
+}
+
+std::vector<float> Canvas::read(unsigned framebuffer) const {
+    std::vector<float> upward(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) *
+                              4);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, upward.data());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    return upside_down(upward, width_, height_);
+}
+
+Picture Canvas::read_picture() const { return read_bytes(shown_framebuffer_, width_, height_); }
+
 void Canvas::show(int window_width, int window_height) const {
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_framebuffer_);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     glDisable(GL_SCISSOR_TEST);
     bool same = width_ == window_width && height_ == window_height;
@@ -63,18 +213,6 @@ void clear_window(int width, int height, float gray) {
     glClear(GL_COLOR_BUFFER_BIT);
 }
 
-Picture read_window(int width, int height) {
-    const std::size_t row = static_cast<std::size_t>(width) * 4;
-    std::vector<std::uint8_t> upward(row * static_cast<std::size_t>(height));
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, upward.data());
-    Picture picture{width, height, std::vector<std::uint8_t>(upward.size())};
-    for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
-        std::copy_n(upward.begin() + static_cast<std::ptrdiff_t>((static_cast<std::size_t>(height) - 1 - y) * row), row,
-                    picture.rgba.begin() + static_cast<std::ptrdiff_t>(y * row));
-    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255; // a window has no holes
-    return picture;
-}
+Picture read_window(int width, int height) { return read_bytes(0, width, height); }
 
 } // namespace fathom::gl

@@ -1,14 +1,39 @@
-// A picture kept on the graphics card: drawn when something in it changed, shown as often as a window wants.
-// Knows nothing of windows; needs a current context.
+// A picture kept on the graphics card: drawn when something in it changed, sample by sample, shown
+// as often as a window wants. Beside the colours it keeps what each pixel shows (part, distance,
+// steps, slope). Knows nothing of windows; needs a current context.
 #pragma once
 
 #include "base/picture.h"
+#include "render-gl/post.h"
 #include "render-gl/program.h"
+
+#include <span>
 
 namespace fathom::gl {
 
 // The version that the current context has, 33 for 3.3; 0 where it has none.
 int context_version();
+
+// A sentence where the driver lost the context, which then draws nothing any more; else nothing.
+std::string lost_context();
+
+// A part of the canvas, in pixels from its top left.
+struct Tile {
+    int x = 0, y = 0, width = 0, height = 0;
+    friend bool operator==(const Tile &, const Tile &) = default;
+};
+
+// One view in its tile; the inputs' size and offset follow from tile and sample.
+struct TileView {
+    Tile tile;
+    FrameInputs inputs;
+};
+
+// What a pixel shows: part 0 is none, t < 0 nothing at all.
+struct Pick {
+    int part = 0;
+    float t = -1, steps = 0, slope = 0;
+};
 
 class Canvas {
   public:
@@ -17,18 +42,43 @@ class Canvas {
     Canvas(const Canvas &) = delete;
     Canvas &operator=(const Canvas &) = delete;
 
-    // Draws at the inputs' size and waits until it is done, so that what it took can be measured. False where the card
-    // has no memory for it.
-    bool draw(const Program &program, const FrameInputs &inputs, const std::vector<ir::Param> &params);
+    // Adds a sample of every view (ir::sample_offset), the first of them anew, and waits until it
+    // is done. False where the card has no memory for it.
+    bool draw(const Program &program, int width, int height, std::span<const TileView> views,
+              const std::vector<ir::Param> &params, int sample);
+    // The same of a program with Instruments::Probe, at the size that was drawn last.
+    bool probe(const Program &program, std::span<const TileView> views,
+               const std::vector<ir::Param> &params);
+    // Makes of it what is shown.
+    void finish(const PostSettings &settings);
+
     bool empty() const { return width_ == 0; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+    int samples() const { return samples_; }
+
+    Pick pick(int x, int y) const; // from the top left
+    // Rows from the top, four floats a pixel: the picks as pick() reads them, the probe as glsl's
+    // probe.h says.
+    std::vector<float> read_picks() const { return read(picks_framebuffer_); }
+    std::vector<float> read_probe() const { return read(probe_framebuffer_); }
+    Picture read_picture() const; // what is shown, without a window
 
     // Fills the window's framebuffer with it, whatever the sizes.
     void show(int window_width, int window_height) const;
 
   private:
     bool resize(int width, int height);
-    unsigned texture_ = 0, framebuffer_ = 0;
-    int width_ = 0, height_ = 0;
+    void draw_views(const Program &program, std::span<const TileView> views,
+                    const std::vector<ir::Param> &params, int sample, bool linear);
+    std::vector<float> read(unsigned framebuffer) const;
+
+    unsigned sum_ = 0, picks_ = 0, probe_ = 0, shown_ = 0; // textures
+    unsigned framebuffer_ = 0, picks_framebuffer_ = 0, probe_framebuffer_ = 0,
+             shown_framebuffer_ = 0;
+    int width_ = 0, height_ = 0, samples_ = 0;
+    bool probed_ = false; // the probe is of this size
+    Post post_;
 };
 
 void clear_window(int width, int height, float gray);

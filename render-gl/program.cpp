@@ -101,7 +101,6 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
         glGetProgramInfoLog(result.program_, length, nullptr, log.data());
         return read_log(log, output.text);
     }
-    glGenVertexArrays(1, &result.vertex_array_);
     glUseProgram(result.program_);
 
     if (!output.tables.empty()) {
@@ -164,6 +163,12 @@ void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) 
     glUniform1i(location("fathom_orthographic"), in.view.orthographic ? 1 : 0);
     glUniform1i(location("fathom_mode"), static_cast<GLint>(in.mode));
     glUniform1f(location("fathom_time"), static_cast<float>(in.time));
+    glUniform4f(location("fathom_plane"), static_cast<float>(in.plane[0]),
+                static_cast<float>(in.plane[1]), static_cast<float>(in.plane[2]),
+                static_cast<float>(in.plane[3]));
+    if (!edited_.empty())
+        glUniform1fv(location("fathom_edited"), static_cast<GLsizei>(edited_.size()),
+                     edited_.data());
 
     for (const glsl::Uniform &uniform : uniforms_) {
         const std::array<double, 4> &v = params[uniform.param].value;
@@ -191,8 +196,46 @@ void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) 
         glActiveTexture(GL_TEXTURE1 + static_cast<GLenum>(i));
         glBindTexture(textures_[i].first, textures_[i].second);
     }
-    glBindVertexArray(vertex_array_);
+    draw_triangle();
+}
+
+void draw_triangle() {
+    GLuint array = 0;
+    glGenVertexArrays(1, &array);
+    glBindVertexArray(array);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
+    glDeleteVertexArrays(1, &array);
+}
+
+void Program::warm_up(const std::vector<ir::Param> &params) const {
+    constexpr int side = 8;
+    GLint before = 0, viewport[4];
+    glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
+    glGetIntegerv(GL_VIEWPORT, viewport);
+    GLuint framebuffer = 0, textures[2] = {0, 0};
+    glGenFramebuffers(1, &framebuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glGenTextures(2, textures);
+    glActiveTexture(GL_TEXTURE0);
+    for (GLuint i = 0; i < 2; ++i) {
+        glBindTexture(GL_TEXTURE_2D, textures[i]);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, side, side, 0, GL_RGBA, GL_FLOAT, nullptr);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + i, GL_TEXTURE_2D, textures[i],
+                               0);
+    }
+    const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glDrawBuffers(2, both);
+    glViewport(0, 0, side, side);
+    FrameInputs inputs;
+    inputs.width = inputs.height = side;
+    inputs.mode = Mode::Linear;
+    draw(inputs, params);
+    glFinish();
+    glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
+    glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
+    glDeleteFramebuffers(1, &framebuffer);
+    glDeleteTextures(2, textures);
 }
 
 void Program::upload_tables(const std::vector<float> &texels) const {
@@ -202,25 +245,29 @@ void Program::upload_tables(const std::vector<float> &texels) const {
                     texels.data());
 }
 
+void Program::adopt(const glsl::Output &output) {
+    uniforms_ = output.uniforms;
+    upload_tables(output.tables);
+}
+
 void Program::release() {
     for (const auto &[target, name] : textures_) glDeleteTextures(1, &name);
     if (table_texture_) glDeleteTextures(1, &table_texture_);
     if (table_buffer_) glDeleteBuffers(1, &table_buffer_);
-    if (vertex_array_) glDeleteVertexArrays(1, &vertex_array_);
     if (program_) glDeleteProgram(program_);
     textures_.clear();
-    program_ = vertex_array_ = table_buffer_ = table_texture_ = 0;
+    program_ = table_buffer_ = table_texture_ = 0;
 }
 
 Program::Program(Program &&other) noexcept { *this = std::move(other); }
 
 Program &Program::operator=(Program &&other) noexcept {
     std::swap(program_, other.program_);
-    std::swap(vertex_array_, other.vertex_array_);
     std::swap(table_buffer_, other.table_buffer_);
     std::swap(table_texture_, other.table_texture_);
     std::swap(textures_, other.textures_);
     std::swap(uniforms_, other.uniforms_);
+    std::swap(edited_, other.edited_);
     return *this;
 }
 

@@ -18,7 +18,7 @@ struct ProgramError {
     std::string message, source_line;
 };
 
-enum class Mode { Picture = 0, Heat = 1, Numbers = 2, Linear = 3 };
+enum class Mode { Picture = 0, Heat = 1, Numbers = 2, Linear = 3, Slice = 4, Check = 5 };
 
 struct FrameInputs {
     ir::View view;
@@ -27,6 +27,7 @@ struct FrameInputs {
     std::array<double, 2> offset{0.5, 0.5};
     double time = 0;
     Mode mode = Mode::Picture;
+    std::array<double, 4> plane{0, 0, 1, 0}; // Mode::Slice: unit normal, offset
 };
 
 class Program {
@@ -43,6 +44,16 @@ class Program {
     // Replaces the tables' numbers where only these changed. Their size must be the same.
     void upload_tables(const std::vector<float> &texels) const;
 
+    // A fresh output of the same text, literals apart: its params may stand elsewhere, its tables
+    // hold other numbers.
+    void adopt(const glsl::Output &output);
+
+    // The numbers that stand in for literals of the text (`uniform float fathom_edited[N]`).
+    void set_edited(std::vector<float> values) { edited_ = std::move(values); }
+
+    // What the driver puts off to the first draw is done now, in a picture of a few pixels.
+    void warm_up(const std::vector<ir::Param> &params) const;
+
     Program(Program &&other) noexcept;
     Program &operator=(Program &&other) noexcept;
     ~Program();
@@ -52,9 +63,15 @@ class Program {
     void release();
     int location(const char *name) const;
 
-    unsigned program_ = 0, vertex_array_ = 0, table_buffer_ = 0, table_texture_ = 0;
+    unsigned program_ = 0, table_buffer_ = 0, table_texture_ = 0;
     std::vector<std::pair<unsigned, unsigned>> textures_; // target, name; bound to units 1, 2, …
     std::vector<glsl::Uniform> uniforms_;
+    std::vector<float> edited_;
 };
+
+// One triangle over the current viewport, with the current program. Its vertex array lives no
+// longer than the call: such objects, unlike programs and textures, belong to one context of
+// several that share.
+void draw_triangle();
 
 } // namespace fathom::gl

@@ -5,7 +5,7 @@
 build_packages="g++ cmake ninja-build ccache pkg-config libfmt-dev tao-pegtl-dev libcli11-dev libglfw3-dev libimgui-dev
 libepoxy-dev libegl-dev libyaml-dev glslang-dev spirv-tools libpng-dev libjpeg-dev catch2 libegl1 libgl1-mesa-dri"
 # To test: a display of our own for the viewer, a second compiler for the fuzzers.
-test_packages="xvfb xauth clang"
+test_packages="xvfb xauth xdotool clang"
 
 say() { printf '%s\n' "fathom: $*" >&2; }
 

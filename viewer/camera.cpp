@@ -34,7 +34,8 @@ Camera camera_of(const ir::View &view) {
                        ? Triple{-view.forward[0], 0, -view.forward[2]}
                        : Triple{-view.up[0] * -view.forward[1], 0, -view.up[2] * -view.forward[1]};
     camera.yaw = std::atan2(level[0], level[2]);
-    camera.pitch = std::clamp(std::asin(std::clamp(-view.forward[1], -1.0, 1.0)), -steepest, steepest);
+    camera.pitch =
+        std::clamp(std::asin(std::clamp(-view.forward[1], -1.0, 1.0)), -steepest, steepest);
     camera.slope = view.orthographic ? view.extent / camera.distance : view.extent;
     return camera;
 }
@@ -42,7 +43,8 @@ Camera camera_of(const ir::View &view) {
 ir::View view_of(const Camera &camera) {
     Triple eye = camera.target;
     move(eye, from_target(camera), camera.distance);
-    return ir::look_at(eye, camera.target, camera.orthographic ? camera.slope * camera.distance : camera.slope,
+    return ir::look_at(eye, camera.target,
+                       camera.orthographic ? camera.slope * camera.distance : camera.slope,
                        camera.orthographic);
 }
 
@@ -79,22 +81,26 @@ void look_from(Camera &camera, Side side) {
 
 void frame(Camera &camera, const Triple &center, double radius, double aspect) {
     camera.target = center;
-    // The narrower way across has to hold the sphere: sin of half the angle is radius over distance.
+    // The narrower way across has to hold the sphere: sin of half the angle is radius over
+    // distance.
     double slope = camera.slope * std::min(1.0, aspect);
-    camera.distance = camera.orthographic ? radius / slope : radius * std::sqrt(1 + 1 / (slope * slope));
+    camera.distance =
+        camera.orthographic ? radius / slope : radius * std::sqrt(1 + 1 / (slope * slope));
 }
 
 std::string camera_line(const Camera &camera) {
     Triple eye = camera.target;
     move(eye, from_target(camera), camera.distance);
-    // To a thousandth of the distance: finer than the eye tells, and no digits that only rounding made.
+    // To a thousandth of the distance: finer than the eye tells, and no digits that only rounding
+    // made.
     double unit = std::pow(10, std::floor(std::log10(camera.distance)) - 3);
     auto number = [&](double x) { return std::round(x / unit) * unit + 0.0; };
     auto triple = [&](const Triple &t) {
         return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", number(t[0]), number(t[1]), number(t[2]));
     };
-    return fmt::format("camera(at: {}, look_at: {}, fov: {:.4g}deg{})", triple(eye), triple(camera.target),
-                       2 * std::atan(camera.slope) * 180 / pi, camera.orthographic ? ", orthographic: true" : "");
+    return fmt::format("camera(at: {}, look_at: {}, fov: {:.4g}deg{})", triple(eye),
+                       triple(camera.target), 2 * std::atan(camera.slope) * 180 / pi,
+                       camera.orthographic ? ", orthographic: true" : "");
 }
 
 } // namespace fathom::viewer

@@ -24,8 +24,9 @@ ir::View view_of(const Camera &camera);
 // Drags, in fractions of the window's height.
 void orbit(Camera &camera, double dx, double dy);
 void pan(Camera &camera, double dx, double dy);
-void dolly(Camera &camera, double steps);  // > 0 nearer
-void fly(Camera &camera, const ir::Triple &by); // right, up, forward, in units of the distance to the target
+void dolly(Camera &camera, double steps); // > 0 nearer
+void fly(Camera &camera,
+         const ir::Triple &by); // right, up, forward, in units of the distance to the target
 void look_from(Camera &camera, Side side);
 void frame(Camera &camera, const ir::Triple &center, double radius, double aspect);
 

@@ -13,10 +13,11 @@ namespace {
 const ImVec4 red{1.0f, 0.45f, 0.4f, 1}, yellow{1.0f, 0.85f, 0.4f, 1}, green{0.55f, 0.9f, 0.6f, 1},
     pale{0.92f, 0.92f, 0.92f, 1};
 constexpr ImGuiWindowFlags plain = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                                   ImGuiWindowFlags_NoNav;
+                                   ImGuiWindowFlags_NoSavedSettings |
+                                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
-// A diagnostic as it is printed: the head in its colour, the line that underlines in another, the help in a third.
+// A diagnostic as it is printed: the head in its colour, the line that underlines in another, the
+// help in a third.
 void show_diagnostic(const std::string &text, const ImVec4 &head) {
     std::size_t begin = 0;
     bool first = true;
@@ -39,65 +40,105 @@ void show_diagnostic(const std::string &text, const ImVec4 &head) {
     ImGui::Spacing();
 }
 
-void show_messages(const char *name, const std::vector<std::string> &messages, const ImVec4 &head, float top) {
+void show_messages(const char *name, const std::vector<std::string> &messages, const ImVec4 &head,
+                   float top) {
     constexpr std::size_t most = 6;
     ImVec2 size = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({12, top});
     ImGui::SetNextWindowBgAlpha(0.85f);
-    ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(size.x - 24, 50.0f), std::max(size.y - 80, 50.0f)});
-    ImGui::Begin(name, nullptr, plain | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_HorizontalScrollbar);
-    for (std::size_t i = 0; i < std::min(most, messages.size()); ++i) show_diagnostic(messages[i], head);
+    ImGui::SetNextWindowSizeConstraints(
+        {0, 0}, {std::max(size.x - 24, 50.0f), std::max(size.y - 80, 50.0f)});
+    ImGui::Begin(name, nullptr,
+                 plain | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_HorizontalScrollbar);
+    for (std::size_t i = 0; i < std::min(most, messages.size()); ++i)
+        show_diagnostic(messages[i], head);
     if (messages.size() > most) ImGui::Text("and %zu more", messages.size() - most);
     ImGui::End();
 }
 
-void show_status(const Status &status, const std::string &file, bool has_errors, std::size_t remarks) {
+void show_status(const Shown &shown) {
+    const Status &status = shown.status;
     ImVec2 size = ImGui::GetIO().DisplaySize;
-    float height = ImGui::GetFrameHeight() + 6;
+    const std::size_t remarks = shown.remarks.size();
+    std::vector<std::string> parts{
+        shown.file + (shown.errors.empty() ? "" : " (last good)"),
+        status.bound,
+        fmt::format("front end {:.1f} ms", status.front_end_ms),
+        fmt::format("{:.1f} KB GLSL", static_cast<double>(status.shader_bytes) / 1024),
+        status.linked_anew ? fmt::format("driver {:.0f} ms", status.driver_ms)
+                           : std::string("driver untouched"),
+        fmt::format("frame {:.1f} ms", status.frame_ms),
+        fmt::format("{:.1f} steps a ray", status.mean_steps),
+        fmt::format("{}x{}", status.width, status.height),
+        "? keys"};
+    if (remarks)
+        parts.insert(parts.begin() + 2,
+                     fmt::format("{} remark{} (N)", remarks, remarks == 1 ? "" : "s"));
+    std::vector<std::string> lines{status.note};
+    if (status.note.empty()) lines.clear();
+    const float room = size.x - 2 * ImGui::GetStyle().WindowPadding.x;
+    bool begun = false; // a line of parts
+    for (const std::string &part : parts) {
+        if (part.empty()) continue;
+        const std::string longer = begun ? lines.back() + " | " + part : part;
+        if (begun && ImGui::CalcTextSize(longer.c_str()).x <= room)
+            lines.back() = longer;
+        else
+            lines.push_back(part);
+        begun = true;
+    }
+    const float height = ImGui::GetTextLineHeightWithSpacing() * static_cast<float>(lines.size()) +
+                         ImGui::GetStyle().WindowPadding.y * 2;
     ImGui::SetNextWindowPos({0, size.y - height});
     ImGui::SetNextWindowSize({size.x, height});
     ImGui::SetNextWindowBgAlpha(0.7f);
     ImGui::Begin("status", nullptr, plain | ImGuiWindowFlags_NoInputs);
-    std::string line = fmt::format(
-        "{}{} | {} | front end {:.1f} ms | {:.1f} KB GLSL | {} | frame {:.1f} ms", file, has_errors ? " (last good)" : "",
-        status.bound, status.front_end_ms, static_cast<double>(status.shader_bytes) / 1024,
-        status.linked_anew ? fmt::format("driver {:.0f} ms", status.link_ms) : std::string("driver untouched"),
-        status.frame_ms);
-    if (remarks) line += fmt::format(" | {} remark{} (N)", remarks, remarks == 1 ? "" : "s");
-    line += " | ? keys";
-    if (!status.note.empty()) line += " | " + status.note;
-    ImGui::TextUnformatted(line.c_str());
+    for (const std::string &line : lines) ImGui::TextUnformatted(line.c_str());
     ImGui::End();
 }
 
 void show_keys(bool &open) {
-    static constexpr std::array<std::array<const char *, 2>, 17> rows{{
-        {"drag", "turn round the target"},
-        {"right drag, shift drag", "move the target across the picture"},
-        {"wheel, + and -", "nearer, farther"},
-        {"W A S D, Q E", "fly: forward, left, back, right, down, up"},
-        {"F", "frame everything"},
-        {"1 3 7", "from the front, the right, the top"},
-        {"5", "perspective or orthographic"},
-        {"R", "the scene's own camera"},
-        {"C", "copy the camera as a line of the scene"},
-        {"Tab", "show or hide the sliders"},
-        {"Backspace", "all sliders back to the text's values"},
-        {"H", "picture, or steps per ray as colours"},
-        {"Space, 0", "stop and run time, set it to 0"},
-        {"N", "show or hide warnings and notes"},
-        {"P", "save a picture of the window"},
-        {"?, F1", "these keys"},
-        {"Ctrl Q", "close"},
-    }};
+    struct Row {
+        const char *keys, *what;
+    };
+    static constexpr std::array rows{
+        Row{"click", "name a shape, outline it, open its line ($EDITOR)"},
+        Row{"O", "open the selected shape's line, in a terminal too"},
+        Row{"drag", "turn round the target"},
+        Row{"right drag, shift drag", "move the target across the picture"},
+        Row{"wheel, + and -", "nearer, farther"},
+        Row{"W A S D, Q E", "fly: forward, left, back, right, down, up"},
+        Row{"F, Z", "frame everything, the selected shape"},
+        Row{"1 3 7", "from the front, the right, the top"},
+        Row{"5", "perspective or orthographic"},
+        Row{"V", "one, two or four views"},
+        Row{"R", "the scene's own camera"},
+        Row{"C, Ctrl S", "copy the camera as a line, write the views into the file"},
+        Row{"Tab", "show or hide the params"},
+        Row{"[ ], comma period", "choose a param, change it (shift: more)"},
+        Row{"Y, I, Del", "copy its value, write it into the file, reset it"},
+        Row{"Backspace", "all params back to the text's values"},
+        Row{"H B L K", "colours: steps, bound, slice, check of steps"},
+        Row{"G", "the analysis panel"},
+        Row{"X, J", "FXAA, four samples at rest"},
+        Row{"T, U", "turn by itself, draw as fast as it can"},
+        Row{"Space, 0", "stop and run time, set it to 0"},
+        Row{"N", "show or hide warnings and notes"},
+        Row{"P, M", "save a picture of the window, every frame"},
+        Row{"Esc", "select nothing"},
+        Row{"?, F1", "these keys"},
+        Row{"Ctrl Q", "close"},
+    };
     ImVec2 size = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::SetNextWindowBgAlpha(0.9f);
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 20, std::max(size.y - 20, 60.0f)});
+    ImGui::SetNextWindowBgAlpha(0.92f);
     ImGui::Begin("Keys", &open,
-                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse |
+                     ImGuiWindowFlags_NoSavedSettings);
     if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
-        for (const auto &row : rows)
-            for (const char *cell : row) {
+        for (const Row &row : rows)
+            for (const char *cell : {row.keys, row.what}) {
                 ImGui::TableNextColumn();
                 ImGui::TextUnformatted(cell);
             }
@@ -117,29 +158,34 @@ bool edit(ir::Param &param) {
     }
     if (param.type == ir::Type::Int) {
         int value = static_cast<int>(param.value[0]);
-        bool edited = param.has_range ? ImGui::SliderInt(label, &value, static_cast<int>(param.lo[0]),
-                                                         static_cast<int>(param.hi[0]), "%d", ImGuiSliderFlags_AlwaysClamp)
-                                      : ImGui::DragInt(label, &value);
+        bool edited = param.has_range
+                          ? ImGui::SliderInt(label, &value, static_cast<int>(param.lo[0]),
+                                             static_cast<int>(param.hi[0]), "%d",
+                                             ImGuiSliderFlags_AlwaysClamp)
+                          : ImGui::DragInt(label, &value);
         param.value[0] = value;
         return edited;
     }
     std::size_t count = static_cast<std::size_t>(ir::components(param.type));
     std::array<float, 4> value{};
     for (std::size_t i = 0; i < count; ++i)
-        value[i] = static_cast<float>(param.is_color ? srgb_of_linear(param.value[i]) : param.value[i]);
+        value[i] =
+            static_cast<float>(param.is_color ? srgb_of_linear(param.value[i]) : param.value[i]);
     bool edited = false;
     if (param.is_color) {
         edited = ImGui::ColorEdit3(label, value.data());
     } else if (count == 1) {
         float lo = static_cast<float>(param.lo[0]), hi = static_cast<float>(param.hi[0]);
-        edited = param.has_range ? ImGui::SliderFloat(label, &value[0], lo, hi, "%.4g", ImGuiSliderFlags_AlwaysClamp)
+        edited = param.has_range ? ImGui::SliderFloat(label, &value[0], lo, hi, "%.4g",
+                                                      ImGuiSliderFlags_AlwaysClamp)
                                  : ImGui::DragFloat(label, &value[0], 0.01f, 0, 0, "%.4g");
     } else {
         for (std::size_t i = 0; i < count; ++i) { // by component: each has its own range
             std::string part = fmt::format("{}.{}", label, "xyzw"[i]);
             float lo = static_cast<float>(param.lo[i]), hi = static_cast<float>(param.hi[i]);
             edited |= param.has_range
-                          ? ImGui::SliderFloat(part.c_str(), &value[i], lo, hi, "%.4g", ImGuiSliderFlags_AlwaysClamp)
+                          ? ImGui::SliderFloat(part.c_str(), &value[i], lo, hi, "%.4g",
+                                               ImGuiSliderFlags_AlwaysClamp)
                           : ImGui::DragFloat(part.c_str(), &value[i], 0.01f, 0, 0, "%.4g");
         }
     }
@@ -151,47 +197,88 @@ bool edit(ir::Param &param) {
     return true;
 }
 
-Asked show_params(std::vector<ir::Param> &params) {
-    Asked asked;
+void show_params(Controls &controls, std::vector<ir::Param> &params, Asked &asked) {
     ImVec2 size = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({size.x - 12, 12}, ImGuiCond_Always, {1, 0});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 24, std::max(size.y - 80, 50.0f)});
     ImGui::SetNextWindowBgAlpha(0.8f);
     ImGui::Begin("Params", nullptr,
-                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoFocusOnAppearing);
-    ImGui::PushItemWidth(ImGui::GetFontSize() * 14);
+                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::PushItemWidth(ImGui::GetFontSize() * 12);
     for (std::size_t i = 0; i < params.size(); ++i) {
         ir::Param &param = params[i];
         ImGui::PushID(static_cast<int>(i));
+        const bool chosen = i == controls.chosen;
+        if (chosen) ImGui::PushStyleColor(ImGuiCol_Text, yellow);
         bool edited = edit(param);
+        if (chosen) ImGui::PopStyleColor();
+        if (ImGui::IsItemActivated()) controls.chosen = i;
         if (ImGui::BeginPopupContextItem("more")) {
             if (ImGui::MenuItem("Back to the text's value")) {
                 param.value = param.initial;
                 edited = true;
             }
             if (ImGui::MenuItem("Copy the value")) asked.copy = value_text(param);
+            if (ImGui::MenuItem("Write it into the file")) asked.write.push_back(i);
             ImGui::EndPopup();
         }
-        if (edited) (param.structural ? asked.rebuild : asked.redraw) = true;
+        if (changed(param)) { // what stands off the text's value can be sent back, or into the text
+            ImGui::SameLine();
+            if (ImGui::SmallButton("reset")) {
+                param.value = param.initial;
+                edited = true;
+            }
+            ImGui::SameLine();
+            if (ImGui::SmallButton("write")) asked.write.push_back(i);
+        }
+        if (edited) asked.changed.push_back(i);
         ImGui::PopID();
     }
     ImGui::PopItemWidth();
     ImGui::End();
-    return asked;
+}
+
+void show_words_at(const std::string &words, float x, float y, const ImVec4 &color) {
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    list->AddText({x + 1, y + 1}, IM_COL32(0, 0, 0, 200), words.c_str());
+    list->AddText({x, y}, ImGui::GetColorU32(color), words.c_str());
+}
+
+void show_picked(const Shown &shown) {
+    if (!shown.selected.empty()) {
+        const ImVec2 size = ImGui::CalcTextSize(shown.selected.c_str());
+        const ImVec2 window = ImGui::GetIO().DisplaySize;
+        show_words_at(shown.selected, std::max((window.x - size.x) / 2, 8.0f),
+                      window.y - 3.6f * ImGui::GetTextLineHeightWithSpacing() - size.y,
+                      {1.0f, 0.75f, 0.35f, 1});
+    }
+    if (!shown.hovered.empty() && !ImGui::GetIO().WantCaptureMouse)
+        ImGui::SetTooltip("%s", shown.hovered.c_str());
 }
 
 } // namespace
 
-Asked show_panels(PanelState &state, const Status &status, const std::string &file, std::vector<ir::Param> &params,
-                  const std::vector<std::string> &errors, const std::vector<std::string> &remarks) {
+Asked show_panels(Controls &controls, const Shown &shown, std::vector<ir::Param> &params) {
     Asked asked;
-    if (state.params && !params.empty()) asked = show_params(params);
-    if (!errors.empty())
-        show_messages("errors", errors, red, 12);
-    else if (state.remarks && !remarks.empty())
-        show_messages("remarks", remarks, yellow, 12);
-    if (state.keys) show_keys(state.keys);
-    show_status(status, file, !errors.empty(), remarks.size());
+    for (const auto &[name, place] : shown.view_names)
+        show_words_at(name, place[0] + 8, place[1] + 6, pale);
+    if (controls.look == gl::Look::Slice)
+        for (const IsolineLabel &label : shown.labels) {
+            const std::string words = fmt::format("{:.3g}", label.value + 0.0);
+            const ImVec2 size = ImGui::CalcTextSize(words.c_str());
+            show_words_at(words, label.x - size.x / 2, label.y - size.y / 2, pale);
+        }
+    show_picked(shown);
+    if (controls.params && !params.empty()) show_params(controls, params, asked);
+    if (controls.analysis || controls.look != gl::Look::Picture)
+        show_analysis(controls, shown, asked);
+    if (!shown.errors.empty())
+        show_messages("errors", shown.errors, red, 12);
+    else if (controls.remarks && !shown.remarks.empty())
+        show_messages("remarks", shown.remarks, yellow, 12);
+    if (controls.keys) show_keys(controls.keys);
+    show_status(shown);
     return asked;
 }
 

@@ -1,35 +1,57 @@
-// What lies over the picture, in Dear ImGui: the status line, the sliders, the errors, the keys. Reads and changes plain
-// values; knows neither the window nor GL.
+// What lies over the picture, in Dear ImGui: the status line, the sliders, the errors, the keys,
+// the analysis. Reads and changes plain values; knows neither the window nor GL.
 #pragma once
 
 #include "ir/scene.h"
+#include "viewer/controls.h"
+#include "viewer/frame_times.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace fathom::viewer {
 
 struct Status {
-    double front_end_ms = 0, link_ms = 0, frame_ms = 0;
+    double front_end_ms = 0, driver_ms = 0, frame_ms = 0;
     std::size_t shader_bytes = 0;
-    std::string bound; // "L 1.25 proved"
-    std::string note;  // the last thing done: "camera line copied"
+    std::string bound;     // "L 1.25 proved"
+    std::string note;      // the last thing done: "camera line copied"
+    double mean_steps = 0; // a ray
     bool linked_anew = false;
+    int width = 0, height = 0; // of the viewport, in pixels
 };
 
-struct PanelState {
-    bool keys = false;    // the list of keys is shown
-    bool params = true;   // the sliders are shown
-    bool remarks = false; // warnings and notes are shown
+struct IsolineLabel {
+    float x = 0, y = 0; // in the window
+    double value = 0;
+};
+
+// All that panels show and do not change.
+struct Shown {
+    const Status &status;
+    std::string file;
+    const std::vector<std::string> &errors, &remarks;
+    std::string selected, hovered; // what was picked, in words; empty: nothing
+    std::vector<std::pair<std::string, std::array<float, 2>>> view_names; // and where they stand
+    const std::vector<IsolineLabel> &labels;
+    const FrameTimes &frame_times, &gpu_times;
+    const std::array<std::size_t, 4> &verdicts;
+    int max_steps = 256;
+    double reach = 1; // how far a slice can be moved
 };
 
 struct Asked {
-    bool redraw = false;      // a value changed
-    bool rebuild = false;     // a structural one did
-    std::string copy;         // text for the clipboard
+    std::vector<std::size_t> changed; // params with a new value
+    std::vector<std::size_t> write;   // params whose value is to stand in the text
+    std::string copy;                 // text for the clipboard
+    bool look = false;                // a control that the picture depends on changed
+    std::array<int, 2> size{0, 0};    // a size for the window
 };
 
-Asked show_panels(PanelState &state, const Status &status, const std::string &file, std::vector<ir::Param> &params,
-                  const std::vector<std::string> &errors, const std::vector<std::string> &remarks);
+Asked show_panels(Controls &controls, const Shown &shown, std::vector<ir::Param> &params);
+
+// analysis.cpp
+void show_analysis(Controls &controls, const Shown &shown, Asked &asked);
 
 } // namespace fathom::viewer

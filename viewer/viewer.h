@@ -4,6 +4,7 @@
 #include "driver/compile.h"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace fathom::viewer {
@@ -12,7 +13,14 @@ struct Settings {
     std::filesystem::path file;
     driver::CompileOptions options;
     int width = 1280, height = 800;
-    std::filesystem::path record; // a folder: a picture of the window goes there after every reload; empty: none
+    std::filesystem::path
+        record; // a folder: a picture of the window goes there after every reload; empty: none
+    bool save_view = false; // the view is written into the file when the window closes
+    bool still = false;     // time stands, from the start
+    bool one_context =
+        false; // the driver links on the window's thread, as where contexts cannot share
+    std::function<void(const std::string &)>
+        tell{}; // a line for each reload that is on the screen; may be empty
 };
 
 // Runs until the window is closed. An empty text, or the sentence that says why there is no window.

@@ -1,5 +1,7 @@
 #include "viewer/worker.h"
 
+#include "driver/edit.h"
+
 #include <algorithm>
 #include <chrono>
 
@@ -12,10 +14,27 @@ void sort_out(const Diagnostics &diagnostics, const Sources &sources, Build &bui
             .push_back(to_text(diagnostic, sources, false));
 }
 
+// What the driver has made for a build that nobody took is not lost: the next one may count on it.
+void inherit(Link &link, Link &before) {
+    if (link.program || !before.program) return;
+    link.program = std::move(before.program);
+    link.program->set_edited(link.edited);
+    link.driver_ms = before.driver_ms;
+}
+
 } // namespace
 
-Worker::Worker(std::filesystem::path file, driver::CompileOptions options, std::function<void()> ready)
-    : file_(std::move(file)), options_(std::move(options)), ready_(std::move(ready)), thread_([this] { run(); }) {}
+void Linkers::link(Build &build) {
+    build.picture_link = picture.link(build.picture, build.compilation.scene);
+    if (!build.picture_link.error.empty()) build.errors.push_back(build.picture_link.error);
+    if (!build.probe.text.empty())
+        build.probe_link = probe.link(build.probe, build.compilation.scene);
+    if (!build.probe_link.error.empty()) build.remarks.push_back(build.probe_link.error);
+}
+
+Worker::Worker(std::filesystem::path file, driver::CompileOptions options, Hooks hooks)
+    : file_(std::move(file)), options_(std::move(options)), hooks_(std::move(hooks)),
+      thread_([this] { run(); }) {}
 
 Worker::~Worker() {
     ending_ = true;
@@ -28,23 +47,38 @@ std::unique_ptr<Build> Worker::take() {
     return std::move(finished_);
 }
 
+std::string Worker::complaint() {
+    std::lock_guard lock(mutex_);
+    return complaint_;
+}
+
+void Worker::again() {
+    asked_ = true;
+    watcher_.wake();
+}
+
 void Worker::rebuild(std::vector<driver::Override> overrides) {
     {
         std::lock_guard lock(mutex_);
         overrides_ = std::move(overrides);
     }
-    asked_ = true;
-    watcher_.wake();
+    again();
+}
+
+void Worker::want_probe() {
+    if (!probe_.exchange(true)) again();
 }
 
 std::unique_ptr<Build> Worker::build() {
     auto start = std::chrono::steady_clock::now();
     auto result = std::make_unique<Build>();
     driver::CompileOptions options = options_;
+    options.parts = true;
     {
         std::lock_guard lock(mutex_);
         for (const driver::Override &value : overrides_) {
-            std::erase_if(options.overrides, [&](const auto &given) { return given.name == value.name; });
+            std::erase_if(options.overrides,
+                          [&](const auto &given) { return given.name == value.name; });
             options.overrides.push_back(value);
         }
     }
@@ -57,10 +91,17 @@ std::unique_ptr<Build> Worker::build() {
     if (result->good()) {
         glsl::Options target;
         target.target = glsl::Target::Glsl330;
-        target.buffers = true; // no places in the text: a moved line changes nothing for the graphics driver
+        target.buffers =
+            true; // no places in the text: a moved line changes nothing for the graphics driver
+        target.part_stride = compilation.parts.stride;
+        target.instruments = glsl::Instruments::Pick;
         Diagnostics emission;
-        result->shader = glsl::emit(compilation.scene, target, emission);
+        result->picture = glsl::emit(compilation.scene, target, emission);
+        target.instruments = glsl::Instruments::Probe;
+        if (probe_) result->probe = glsl::emit(compilation.scene, target, emission);
         sort_out(emission, compilation.sources, *result);
+        if (compilation.sources.size() > 0)
+            result->views = driver::views_in(compilation.sources[SourceId{0}].text);
     }
     result->front_end_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -68,17 +109,34 @@ std::unique_ptr<Build> Worker::build() {
 }
 
 void Worker::run() {
-    while (!ending_) {
-        asked_ = false;
-        std::unique_ptr<Build> made = build();
-        watcher_.watch(made->compilation.files);
-        {
-            std::lock_guard lock(mutex_);
-            finished_ = std::move(made);
+    const bool lent = hooks_.take_context && hooks_.take_context();
+    {
+        Linkers linkers;
+        while (!ending_) {
+            asked_ = false;
+            std::unique_ptr<Build> made = build();
+            watcher_.watch(made->compilation.files);
+            if (lent && made->good()) {
+                linkers.link(*made);
+                made->linked = true;
+            }
+            {
+                std::lock_guard lock(mutex_);
+                if (finished_ && made->good()) {
+                    inherit(made->picture_link, finished_->picture_link);
+                    inherit(made->probe_link, finished_->probe_link);
+                } else if (finished_ && finished_->picture_link.program) {
+                    linkers = {}; // its program ends with it, so the next is made anew
+                }
+                finished_ = std::move(made);
+                if (!watcher_.good()) complaint_ = watcher_.error();
+            }
+            hooks_.ready();
+            while (!ending_ && !asked_ && !watcher_.wait(std::chrono::hours(1))) {
+            }
         }
-        ready_();
-        while (!ending_ && !asked_ && !watcher_.wait(std::chrono::hours(1))) {}
     }
+    if (lent) hooks_.leave_context();
 }
 
 } // namespace fathom::viewer

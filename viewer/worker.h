@@ -1,12 +1,15 @@
-// The thread that follows the file: compiles after each save, newest wins, and hands over what came of it. The window
-// never waits for it. Knows no GL and no window.
+// The thread that follows the file: compiles after each save, has the driver link what must be,
+// newest wins, and hands over what came of it. The window never waits for it. Knows no window; GL
+// only through a context that it is lent.
 #pragma once
 
 #include "backend-glsl/emit.h"
 #include "driver/compile.h"
 #include "driver/watch.h"
+#include "viewer/linker.h"
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -16,17 +19,33 @@ namespace fathom::viewer {
 // What came of one save.
 struct Build {
     driver::Compilation compilation;
-    glsl::Output shader;              // empty where there is an error
-    std::vector<std::string> errors;  // as printed, without colours; the good picture stays while there are any
+    glsl::Output picture;          // empty where there is an error
+    glsl::Output probe;            // where it was asked for
+    Link picture_link, probe_link; // where `linked`
+    bool linked = false;           // else whoever takes it links
+    std::vector<std::string>
+        errors; // as printed, without colours; the good picture stays while there are any
     std::vector<std::string> remarks; // warnings and notes
+    std::vector<std::string> views;   // cameras beside the scene's own (driver::views_in)
     double front_end_ms = 0;          // reading, checking, proving, lowering, emitting
     bool good() const { return errors.empty(); }
 };
 
+// One a program kind.
+struct Linkers {
+    Linker picture, probe;
+    void link(Build &build); // errors of the driver become the build's
+};
+
 class Worker {
   public:
-    // `ready` is called on the worker's thread when a build can be taken.
-    Worker(std::filesystem::path file, driver::CompileOptions options, std::function<void()> ready);
+    struct Hooks {
+        std::function<void()> ready; // on the worker's thread: a build can be taken
+        std::function<bool()>
+            take_context; // makes a context current that shares with the window's; empty: none
+        std::function<void()> leave_context;
+    };
+    Worker(std::filesystem::path file, driver::CompileOptions options, Hooks hooks);
     ~Worker();
     Worker(const Worker &) = delete;
     Worker &operator=(const Worker &) = delete;
@@ -37,18 +56,26 @@ class Worker {
     // Builds again with these values of structural params, over those of the command line.
     void rebuild(std::vector<driver::Override> overrides);
 
+    // From now on builds hold the probe too; one is made at once.
+    void want_probe();
+
+    // Why saves are not followed (no watches left), or nothing.
+    std::string complaint();
+
   private:
     void run();
     std::unique_ptr<Build> build();
+    void again();
 
     std::filesystem::path file_;
     driver::CompileOptions options_;
-    std::function<void()> ready_;
+    Hooks hooks_;
     driver::Watcher watcher_;
-    std::mutex mutex_; // over the two below
+    std::mutex mutex_; // over the three below
     std::unique_ptr<Build> finished_;
     std::vector<driver::Override> overrides_;
-    std::atomic<bool> asked_ = false, ending_ = false;
+    std::string complaint_;
+    std::atomic<bool> asked_ = false, ending_ = false, probe_ = false;
     std::thread thread_; // last: starts when all else is there
 };
 

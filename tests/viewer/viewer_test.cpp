@@ -1,205 +1,285 @@
-// The viewer for real: a window on a display of its own (Xvfb), a file that is saved, and pictures of the window that the
-// program itself takes after every reload. And its parts that need no window.
-#include "driver/image.h"
-#include "scratch_folder.h"
-#include "viewer/camera.h"
-#include "viewer/params.h"
+// The viewer for real: saves, keys and clicks, and pictures of the window compared.
+#include "tests/viewer/window.h"
 
-#include <catch2/catch.hpp>
-#include <chrono>
-#include <cmath>
-#include <csignal>
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <thread>
-#include <unistd.h>
+#include <sys/stat.h>
 
 using namespace fathom;
-namespace fs = std::filesystem;
+using namespace fathom::viewer_test;
 
 namespace {
 
-constexpr std::chrono::seconds patience{120}; // for a loaded machine: nothing here measures time
-constexpr int status_height = 32;             // its numbers differ from run to run
+const std::string camera = "camera(at: [0, 0, 6], look_at: [0, 0, 0])\n";
 
-// A child process that ends with its owner.
-class Process {
-  public:
-    explicit Process(const std::vector<std::string> &words, int out = -1) {
-        pid_ = ::fork();
-        if (pid_ == 0) {
-            if (out >= 0) ::dup2(out, 3);
-            int nowhere = ::open("/dev/null", O_WRONLY);
-            ::dup2(nowhere, STDOUT_FILENO);
-            std::vector<char *> arguments;
-            for (const std::string &word : words) arguments.push_back(const_cast<char *>(word.c_str()));
-            arguments.push_back(nullptr);
-            ::execvp(arguments[0], arguments.data());
-            ::_exit(127);
-        }
-    }
-    Process(const Process &) = delete;
-    Process &operator=(const Process &) = delete;
-    ~Process() {
-        ::kill(pid_, SIGTERM);
-        ::waitpid(pid_, nullptr, 0);
-    }
-    bool runs() const { return ::waitpid(pid_, nullptr, WNOHANG) == 0; }
+bool red(const std::array<float, 3> &p) { return p[0] > 2 * p[1]; }
+bool blue(const std::array<float, 3> &p) { return p[2] > 2 * p[0]; }
 
-  private:
-    pid_t pid_ = -1;
-};
-
-// A display without a screen; `number` is empty where there is no Xvfb.
-class Display {
-  public:
-    Display() {
-        int ends[2];
-        if (::pipe(ends) != 0) return;
-        server_ = std::make_unique<Process>(
-            std::vector<std::string>{"Xvfb", "-displayfd", "3", "-screen", "0", "800x600x24", "-nolisten", "tcp"}, ends[1]);
-        ::close(ends[1]);
-        for (char c; ::read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
-        ::close(ends[0]);
-        if (!number.empty()) ::setenv("DISPLAY", (":" + number).c_str(), 1);
-        ::unsetenv("WAYLAND_DISPLAY");
-    }
-    std::string number;
-
-  private:
-    std::unique_ptr<Process> server_;
-};
-
-struct Session {
-    ScratchFolder folder;
-    Process *viewer = nullptr;
-
-    // The n-th picture of the window, waited for.
-    std::optional<ir::ImageData> picture(int n) const {
-        std::string name = "shots/000" + std::to_string(n) + ".png";
-        auto end = std::chrono::steady_clock::now() + patience;
-        while (std::chrono::steady_clock::now() < end && !fs::exists(folder / name)) {
-            if (!viewer->runs()) return std::nullopt;
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        }
-        std::string error;
-        return driver::decode_image(folder.read(name), error);
-    }
-};
-
-// The share of pixels above the status line that differ, from a row on (a share of the height).
-double difference(const ir::ImageData &a, const ir::ImageData &b, double from = 0) {
-    REQUIRE(a.width == b.width);
-    REQUIRE(a.height == b.height);
-    int differing = 0, all = 0;
-    for (int y = static_cast<int>(from * a.height); y < a.height - status_height; ++y)
-        for (int x = 0; x < a.width; ++x, ++all)
-            for (std::size_t c = 0; c < 3; ++c) {
-                std::size_t at = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) +
-                                      static_cast<std::size_t>(x)) + c;
-                if (std::abs(a.rgba[at] - b.rgba[at]) > 0.02f) {
-                    ++differing;
-                    break;
-                }
-            }
-    return static_cast<double>(differing) / all;
-}
+bool touched_driver(const std::string &line) { return line.find("driver untouched") == line.npos; }
 
 } // namespace
 
-TEST_CASE("save and see; an error keeps the picture under its message; the next good save clears it") {
-    Display display;
-    INFO("this test needs Xvfb (./fathom-test installs it)");
-    REQUIRE(!display.number.empty());
-    Session session;
-    const std::string camera = "camera(at: [0, 0, 6], look_at: [0, 0, 0])\n";
-    fs::path file = session.folder.write("scene.sdf", "import \"parts/a.sdf\"\nball()\n" + camera);
-    session.folder.write("parts/a.sdf", "fn ball() -> shape = sphere(1).paint(red)\n");
-    fs::create_directory(session.folder / "shots");
-    Process viewer({FATHOM_PROGRAM, "view", file.string(), "--size", "480x320", "--record", (session.folder / "shots").string()});
-    session.viewer = &viewer;
-
-    std::optional<ir::ImageData> first = session.picture(1);
-    REQUIRE(first);
-    CHECK(first->width == 480);
-    std::size_t middle = 4 * (160 * 480 + 240);
-    CHECK(first->rgba[middle] > 2 * first->rgba[middle + 1]); // it is red
+TEST_CASE(
+    "save and see; an error keeps the picture under its message; the next good save clears it") {
+    Window window("import \"parts/a.sdf\"\nball()\n" + camera, {}, [](const ScratchFolder &f) {
+        f.write("parts/a.sdf", "fn ball() -> shape = sphere(1).paint(red)\n");
+    });
+    const Picture first = window.picture();
+    CHECK(first.width == 480);
+    CHECK(red(pixel(first, 240, 160)));
 
     // An import that is saved is a save.
-    session.folder.write("parts/a.sdf", "fn ball() -> shape = box(2).paint(blue)\n");
-    std::optional<ir::ImageData> second = session.picture(2);
-    REQUIRE(second);
-    CHECK(second->rgba[middle + 2] > 2 * second->rgba[middle]); // it is blue
-    CHECK(difference(*first, *second) > 0.05);
+    window.folder.write("parts/a.sdf", "fn ball() -> shape = box(2).paint(blue)\n");
+    REQUIRE(window.reloads(2));
+    const Picture second = window.picture();
+    CHECK(blue(pixel(second, 240, 160)));
 
     // An error: the picture stays, the message lies over its upper left.
-    session.folder.write("scene.sdf", "import \"parts/a.sdf\"\nbll()\n" + camera);
-    std::optional<ir::ImageData> third = session.picture(3);
-    REQUIRE(third);
-    CHECK(difference(*second, *third) > 0.01);
-    CHECK(difference(*second, *third, 0.6) == 0);
-    CHECK(third->rgba[4 * (220 * 480 + 240) + 2] > 2 * third->rgba[4 * (220 * 480 + 240)]);
+    CHECK(window.reload("import \"parts/a.sdf\"\nbll()\n" + camera).find("error") !=
+          std::string::npos);
+    const Picture third = window.picture();
+    CHECK(difference(second, third) > 0.01);
+    CHECK(difference(second, third, 0.6) == 0);
+    CHECK(blue(pixel(third, 240, 220)));
 
     // The mended file, by an editor's atomic rename: the very picture of before.
-    fs::rename(session.folder.write("scene.tmp", "import \"parts/a.sdf\"\nball()\n" + camera), file);
-    std::optional<ir::ImageData> fourth = session.picture(4);
-    REQUIRE(fourth);
-    CHECK(difference(*second, *fourth) == 0);
+    fs::rename(window.folder.write("scene.tmp", "import \"parts/a.sdf\"\nball()\n" + camera),
+               window.folder / "scene.sdf");
+    REQUIRE(window.reloads(4));
+    CHECK(difference(second, window.picture()) == 0);
+
+    // The file goes, and comes back.
+    fs::remove(window.folder / "scene.sdf");
+    REQUIRE(window.reloads(5));
+    CHECK(window.lines().back().find("error") != std::string::npos);
+    CHECK(blue(pixel(window.picture(), 240, 220)));
+    window.reload("import \"parts/a.sdf\"\nball()\n" + camera);
+    CHECK(difference(second, window.picture()) == 0);
 }
 
-TEST_CASE("a camera is kept by its view and written as a line of the scene") {
-    ir::View view = ir::look_at({3, 2, 5}, {0, 1, 0}, std::tan(0.3), false);
-    viewer::Camera camera = viewer::camera_of(view);
-    ir::View again = viewer::view_of(camera);
-    for (std::size_t i = 0; i < 3; ++i) {
-        CHECK(again.origin[i] == Approx(view.origin[i]).margin(1e-9));
-        CHECK(again.forward[i] == Approx(view.forward[i]).margin(1e-9));
-        CHECK(again.right[i] == Approx(view.right[i]).margin(1e-9));
+TEST_CASE("a number that was edited before, and a param, leave the driver alone; the picture is a "
+          "cold start's") {
+    const auto scene = [](const std::string &r, const std::string &p) {
+        return "param lift = " + p + " in -1..1\n(sphere(" + r +
+               ") | box(0.8).translate([0.9, lift, 0])).paint(orange)\n" + "camera(at: [" + r +
+               ", 1, 6], look_at: [0, 0, 0])\n";
+    };
+    const Picture cold = cold_picture(scene("0.9", "-0.5"));
+    Window window(scene("1", "0.25"));
+    CHECK(touched_driver(window.lines().back()));
+    CHECK(touched_driver(window.reload(scene("1.1", "0.25")))); // from here on it is data
+    for (const char *r : {"1.2", "1.25", "0.9"})
+        CHECK_FALSE(touched_driver(window.reload(scene(r, "0.25"))));
+    CHECK_FALSE(touched_driver(window.reload(scene("0.9", "-0.5"))));
+    CHECK(difference(window.picture(), cold) == 0);
+}
+
+TEST_CASE("fifty saves in a burst: the newest wins, by two reloads at most after the last, as from "
+          "a cold start") {
+    const auto text = [&](int i) {
+        return "sphere(" + std::to_string(1 + i * 0.01) + ")" +
+               (i % 2 ? ".paint(blue)\n" : ".paint(red)\n") + camera;
+    };
+    const Picture wanted = cold_picture(text(49));
+    Window window("sphere(1)\n" + camera);
+    for (int i = 0; i < 50; ++i) {
+        window.save(text(i));
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    CHECK(again.extent == Approx(view.extent));
-    CHECK(viewer::camera_line(camera).starts_with("camera(at: [3, 2, 5], look_at: [0, 1, 0], fov: 34.38deg"));
+    const std::size_t before = window.lines().size();
+    std::size_t after = 0;
+    CHECK(waited([&] {
+        after = window.lines().size();
+        return difference(window.picture(), wanted) == 0;
+    }));
+    CHECK(after <= before + 2);
 }
 
-TEST_CASE("turning keeps the distance, panning the direction, framing the whole sphere in sight") {
-    viewer::Camera camera = viewer::camera_of(ir::look_at({0, 0, 5}, {0, 0, 0}, std::tan(0.4), false));
-    viewer::orbit(camera, 0.25, 0.1);
-    ir::View turned = viewer::view_of(camera);
-    CHECK(std::hypot(turned.origin[0], turned.origin[1], turned.origin[2]) == Approx(5));
-    viewer::pan(camera, 0.5, 0);
-    for (std::size_t i = 0; i < 3; ++i) CHECK(viewer::view_of(camera).forward[i] == Approx(turned.forward[i]).margin(1e-9));
-    for (int i = 0; i < 100; ++i) viewer::orbit(camera, 0, 1);
-    CHECK(std::isfinite(viewer::view_of(camera).right[0])); // never straight up
-    viewer::frame(camera, {1, 2, 3}, 2, 0.5);
-    CHECK(2 / camera.distance <= Approx(std::sin(std::atan(camera.slope * 0.5))));
-    CHECK(camera.target == ir::Triple{1, 2, 3});
+TEST_CASE("no save of a hundred is missed, and memory stays flat") {
+    Window window("sphere(1)\n" + camera);
+    const auto resident = [&] {
+        std::ifstream in("/proc/" + std::to_string(window.process().id()) + "/status");
+        for (std::string line; std::getline(in, line);)
+            if (line.starts_with("VmRSS:")) return std::stol(line.substr(6));
+        return 0L;
+    };
+    long warm = 0;
+    int missed = 0;
+    for (int i = 1; i <= 100; ++i) {
+        // Every tenth save is another shader, so programs come and go.
+        const std::string shape = i % 10 ? "sphere(" : i % 20 ? "box(" : "torus(major: 1, minor: ";
+        const std::size_t before = window.lines().size();
+        window.save(shape + std::to_string(0.5 + i * 0.001) + ").paint(orange)\n" + camera);
+        missed += !window.reloads(before + 1);
+        if (i == 40) warm = resident();
+    }
+    CHECK(missed == 0);
+    INFO("resident after 40 reloads: " << warm << " KB, after 100: " << resident());
+    CHECK(resident() - warm < 16 * 1024);
 }
 
-TEST_CASE("a slider's value outlives a reload, unless the text's own value changed") {
-    ir::Param param;
-    param.name = "radius";
-    param.has_range = true;
-    param.lo[0] = 0;
-    param.hi[0] = 2;
-    param.value[0] = param.initial[0] = 1;
-    std::vector<ir::Param> before{param}, fresh{param};
-    before[0].value[0] = 1.5;
-    viewer::carry_over(before, fresh);
-    CHECK(fresh[0].value[0] == 1.5);
-    fresh = {param};
-    fresh[0].value[0] = fresh[0].initial[0] = 0.5; // the text was edited
-    viewer::carry_over(before, fresh);
-    CHECK(fresh[0].value[0] == 0.5);
-    fresh = {param};
-    fresh[0].hi[0] = 1.2; // no place for it any more
-    viewer::carry_over(before, fresh);
-    CHECK(fresh[0].value[0] == 1);
-    CHECK(viewer::value_text(before[0]) == "1.5");
-    before[0].structural = true;
-    REQUIRE(viewer::structural_values(before).size() == 1);
-    CHECK(viewer::structural_values(before)[0].text == "1.5");
-    std::vector<driver::Override> values = viewer::structural_values(before);
-    CHECK_FALSE(viewer::drop_outdated(before, {param}, values));
-    param.initial[0] = 0.5;
-    CHECK(viewer::drop_outdated(before, {param}, values));
-    CHECK(values.empty());
+TEST_CASE("sliders: by keys and by the mouse; the value goes into the text, and back") {
+    const std::string text =
+        "param size = 1 in 0.5..2\nparam round = false\nsphere(size).paint(red)\n" + camera;
+    const std::string written =
+        "param size = 1.15 in 0.5..2\nparam round = false\nsphere(size).paint(red)\n" + camera;
+    const Picture cold = cold_picture(written);
+    Window window(text);
+    const Picture first = window.picture();
+    window.key("shift+period"); // a tenth of the range
+    const Picture larger = window.picture();
+    CHECK(difference(first, larger, 0, 0.02f) > 0.01);
+    CHECK(window.lines().size() == 1); // nothing was compiled
+    window.key("i");
+    REQUIRE(window.reloads(2));
+    CHECK(window.folder.read("scene.sdf") == written);
+    CHECK_FALSE(touched_driver(window.lines().back()));
+    window.key("Escape"); // the note of the writing
+    CHECK(difference(window.picture(), cold) == 0);
+
+    // The slider of the first param, dragged to its right end: 2.
+    const Picture before = window.picture();
+    window.hands("mousemove 360 44 mousedown 1");
+    window.hands("mousemove 479 44");
+    window.hands("mouseup 1");
+    CHECK(difference(before, window.picture(), 0, 0.02f) > 0.02);
+    window.key("BackSpace");
+    CHECK(difference(before, window.picture(), 0.35) == 0);
+}
+
+TEST_CASE("a click names the shape, outlines it and opens its line") {
+    Window *opened = nullptr;
+    Display::need();
+    ScratchFolder tools;
+    const fs::path editor =
+        tools.write("editor", "#!/bin/sh\necho \"$@\" >> " + (tools / "log").string() + "\n");
+    ::chmod(editor.c_str(), 0755);
+    ::setenv("EDITOR", editor.c_str(), 1);
+    Window window(
+        "let a = sphere(1)\na.translate([-1.5, 0, 0])\nbox(1.5)\n  .translate([1.5, 0, 0])\n" +
+        camera);
+    ::unsetenv("EDITOR");
+    opened = &window;
+    CHECK(outlined(opened->picture(), 0, 480) == 0);
+    window.hands("mousemove 340 160");
+    window.hands("click 1");
+    const Picture right = window.picture();
+    CHECK(outlined(right, 0, 240) == 0);
+    CHECK(outlined(right, 240, 480) > 100);
+    REQUIRE(waited([&] { return fs::exists(tools / "log"); }));
+    CHECK(waited([&] { return tools.read("log") == "+3 scene.sdf\n"; }));
+    window.hands("mousemove 150 160");
+    window.hands("click 1");
+    const Picture left = window.picture();
+    CHECK(outlined(left, 0, 240) > 100);
+    CHECK(outlined(left, 240, 480) == 0);
+    CHECK(waited([&] { return tools.read("log") == "+3 scene.sdf\n+2 scene.sdf\n"; }));
+    // The selection survives a reload that moves its line.
+    window.reload(
+        "\nlet a = sphere(1)\na.translate([-1.5, 0, 0])\nbox(1.5)\n  .translate([1.5, 0, 0])\n" +
+        camera);
+    const Picture again = window.picture();
+    CHECK(outlined(again, 0, 240) > 100);
+    CHECK(outlined(again, 240, 480) == 0);
+    window.key("z"); // framed, it fills the window
+    const Picture framed = window.picture();
+    CHECK(outlined(framed, 120, 360) > 100);
+    window.key("Escape");
+    CHECK(outlined(window.picture(), 0, 480) == 0);
+}
+
+TEST_CASE("views: from the front as a camera there, four at once, and written into the scene") {
+    const std::string parts = "sun(direction: [1, 2, 3])\n(sphere(1) | box(0.6).translate([1.2, "
+                              "0.4, 0.8])).paint(orange)\n";
+    const Picture cold =
+        cold_picture(parts + "camera(at: [0, 0, 7.0710678], look_at: [0, 0, 0], fov: 40deg)\n");
+    std::string text;
+    Picture four;
+    {
+        Window window(parts + "camera(at: [3, 4, 5], look_at: [0, 0, 0], fov: 40deg)\n");
+        const Picture scene_view = window.picture();
+        window.key("1");
+        const Picture front = window.picture();
+        CHECK(difference(front, cold, 0, 0.02f) < 0.002);
+        window.key("r");
+        CHECK(difference(window.picture(), scene_view, 0, 0.004f) == 0);
+        window.key("v");
+        window.key("v");
+        four = window.picture();
+        CHECK(difference(four, scene_view) > 0.1);
+        const auto background = pixel(four, 5, 60);
+        for (auto [x, y] : {std::pair{119, 79}, {360, 79}, {119, 238}, {360, 238}})
+            CHECK(std::abs(pixel(four, x, y)[2] - background[2]) >
+                  0.1); // something stands in each tile
+        window.key("ctrl+s");
+        REQUIRE(window.reloads(2));
+        text = window.folder.read("scene.sdf");
+        CHECK(
+            text.find(
+                "camera(at: [3, 4, 5], look_at: [0, 0, 0], fov: 40deg)\n// view 2: camera(at: [") !=
+            text.npos);
+        CHECK(text.find("orthographic: true)\n// view 4:") != text.npos);
+    }
+    CHECK(difference(cold_picture(text), four, 0, 0.02f) < 0.002);
+}
+
+TEST_CASE("the window's size, and how it is coloured, change nothing that stays") {
+    const std::string text =
+        "(sphere(1) | box(0.8).translate([1.2, 0, 0])).paint(orange)\n" + camera;
+    const Picture cold = cold_picture(text, {"--size", "640x400"});
+    Window window(text);
+    const Picture first = window.picture();
+    window.hands("search --name scene.sdf windowsize 640 400");
+    CHECK(waited([&] { return window.picture().width == 640; }));
+    CHECK(difference(window.picture(), cold) == 0);
+    window.hands("search --name scene.sdf windowsize 480 320");
+    CHECK(waited([&] { return window.picture().width == 480; }));
+    CHECK(difference(window.picture(), first) == 0);
+    for (const char *key : {"h", "b", "l", "k", "question", "g"}) {
+        INFO(key);
+        window.key(key);
+        const Picture other = window.picture();
+        CHECK(difference(other, first) > 0.02);
+        window.key(key);
+        CHECK(difference(window.picture(), first) == 0);
+    }
+}
+
+TEST_CASE("a still scene costs less than a hundredth of a core") {
+    Window window("sphere(1).paint(orange)\n" + camera);
+    window.picture();
+    const auto ticks = [&] { // processor time, in hundredths of a second
+        std::ifstream in("/proc/" + std::to_string(window.process().id()) + "/stat");
+        std::string word;
+        long used = 0;
+        for (int i = 1; i <= 15 && in >> word; ++i)
+            if (i >= 14) used += std::stol(word);
+        return used;
+    };
+    std::this_thread::sleep_for(std::chrono::milliseconds(500)); // it comes to rest
+    const long before = ticks();
+    std::this_thread::sleep_for(std::chrono::seconds(4));
+    CHECK(ticks() - before <= 4);
+}
+
+TEST_CASE("what stands in the way is said in a sentence") {
+    Display::need();
+    ScratchFolder folder;
+    folder.write("scene.sdf", "sphere(1)\n");
+    const auto said = [&](std::vector<std::string> options, const char *display) {
+        const std::string kept = std::getenv("DISPLAY");
+        if (*display)
+            ::setenv("DISPLAY", display, 1);
+        else
+            ::unsetenv("DISPLAY");
+        std::vector<std::string> words{FATHOM_PROGRAM, "view", "scene.sdf"};
+        words.insert(words.end(), options.begin(), options.end());
+        fs::remove(folder / "errors.txt");
+        Process process(words, {-1, folder / "errors.txt", folder.path()});
+        ::setenv("DISPLAY", kept.c_str(), 1);
+        CHECK(process.exit_status() == 3);
+        return folder.read("errors.txt");
+    };
+    CHECK(said({}, "").find("there is no display to open a window on") != std::string::npos);
+    CHECK(said({}, ":987").find("no window can be opened") != std::string::npos);
+    CHECK(said({"--record", "/proc/pictures"}, std::getenv("DISPLAY"))
+              .find("cannot make the folder /proc/pictures") != std::string::npos);
 }

@@ -1,0 +1,28 @@
+// What the graphics card itself takes for what is drawn between begin and end (GL_TIME_ELAPSED,
+// GL 3.3). Answers come some frames later; nothing waits for them. Needs a current context.
+#pragma once
+
+#include <array>
+#include <optional>
+
+namespace fathom::gl {
+
+class Timer {
+  public:
+    Timer() = default;
+    ~Timer();
+    Timer(const Timer &) = delete;
+    Timer &operator=(const Timer &) = delete;
+
+    void begin();
+    void end();
+    std::optional<double> poll(); // the next answer that is there, in milliseconds, in order
+
+  private:
+    static constexpr std::size_t most = 8; // asked and not yet answered
+    std::array<unsigned, most> queries_{};
+    std::size_t asked_ = 0, answered_ = 0;
+    bool open_ = false;
+};
+
+} // namespace fathom::gl

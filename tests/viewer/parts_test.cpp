@@ -1,0 +1,168 @@
+// The viewer's parts that need no window: cameras, values, literals, editors, edits of the text.
+#include "driver/edit.h"
+#include "viewer/camera.h"
+#include "viewer/editor.h"
+#include "viewer/frame_times.h"
+#include "viewer/params.h"
+#include "viewer/slots.h"
+#include "viewer/views.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace fathom;
+
+TEST_CASE("a camera is kept by its view and written as a line of the scene") {
+    ir::View view = ir::look_at({3, 2, 5}, {0, 1, 0}, std::tan(0.3), false);
+    viewer::Camera camera = viewer::camera_of(view);
+    ir::View again = viewer::view_of(camera);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(again.origin[i] == Approx(view.origin[i]).margin(1e-9));
+        CHECK(again.forward[i] == Approx(view.forward[i]).margin(1e-9));
+        CHECK(again.right[i] == Approx(view.right[i]).margin(1e-9));
+    }
+    CHECK(again.extent == Approx(view.extent));
+    CHECK(viewer::camera_line(camera).starts_with(
+        "camera(at: [3, 2, 5], look_at: [0, 1, 0], fov: 34.38deg"));
+}
+
+TEST_CASE("turning keeps the distance, panning the direction, framing the whole sphere in sight") {
+    viewer::Camera camera =
+        viewer::camera_of(ir::look_at({0, 0, 5}, {0, 0, 0}, std::tan(0.4), false));
+    viewer::orbit(camera, 0.25, 0.1);
+    ir::View turned = viewer::view_of(camera);
+    CHECK(std::hypot(turned.origin[0], turned.origin[1], turned.origin[2]) == Approx(5));
+    viewer::pan(camera, 0.5, 0);
+    for (std::size_t i = 0; i < 3; ++i)
+        CHECK(viewer::view_of(camera).forward[i] == Approx(turned.forward[i]).margin(1e-9));
+    for (int i = 0; i < 100; ++i) viewer::orbit(camera, 0, 1);
+    CHECK(std::isfinite(viewer::view_of(camera).right[0])); // never straight up
+    viewer::frame(camera, {1, 2, 3}, 2, 0.5);
+    CHECK(2 / camera.distance <= Approx(std::sin(std::atan(camera.slope * 0.5))));
+    CHECK(camera.target == ir::Triple{1, 2, 3});
+}
+
+TEST_CASE("a slider's value outlives a reload, unless the text's own value changed") {
+    ir::Param param;
+    param.name = "radius";
+    param.has_range = true;
+    param.lo[0] = 0;
+    param.hi[0] = 2;
+    param.value[0] = param.initial[0] = 1;
+    std::vector<ir::Param> before{param}, fresh{param};
+    before[0].value[0] = 1.5;
+    viewer::carry_over(before, fresh);
+    CHECK(fresh[0].value[0] == 1.5);
+    fresh = {param};
+    fresh[0].value[0] = fresh[0].initial[0] = 0.5; // the text was edited
+    viewer::carry_over(before, fresh);
+    CHECK(fresh[0].value[0] == 0.5);
+    fresh = {param};
+    fresh[0].hi[0] = 1.2; // no place for it any more
+    viewer::carry_over(before, fresh);
+    CHECK(fresh[0].value[0] == 1);
+    CHECK(viewer::value_text(before[0]) == "1.5");
+    before[0].structural = true;
+    REQUIRE(viewer::structural_values(before).size() == 1);
+    CHECK(viewer::structural_values(before)[0].text == "1.5");
+    std::vector<driver::Override> values = viewer::structural_values(before);
+    CHECK_FALSE(viewer::drop_outdated(before, {param}, values));
+    param.initial[0] = 0.5;
+    CHECK(viewer::drop_outdated(before, {param}, values));
+    CHECK(values.empty());
+}
+
+TEST_CASE("a literal that is edited becomes data, once") {
+    const std::string a =
+        "#version 330 core\n// 1.5\nconst vec4 t[1] = vec4[](\n    vec4(1.0, 2.0, 3.0, 4.0));\n"
+        "float f1(vec3 p2) { return length(p2) - 1.5 * 1e-3; }\n";
+    auto with = [&](const std::string &from, const std::string &to) {
+        std::string b = a;
+        b.replace(b.find(from), from.size(), to);
+        return b;
+    };
+    viewer::Slots slots{a, {}};
+    CHECK(viewer::text_with_slots(slots) == a);
+    REQUIRE(viewer::values_in(slots, a));
+    CHECK(viewer::values_in(slots, a)->empty());
+    const std::string b = with("- 1.5", "- 1.75");
+    CHECK_FALSE(viewer::values_in(slots, b)); // not edited before
+    auto wider = viewer::widened(slots, b);
+    REQUIRE(wider);
+    REQUIRE(wider->edited.size() == 1);
+    CHECK(viewer::text_with_slots(*wider).find("length(p2) - fathom_edited[0] * 1e-3") !=
+          std::string::npos);
+    CHECK(viewer::text_with_slots(*wider).find("uniform float fathom_edited[1];") !=
+          std::string::npos);
+    CHECK(viewer::values_in(*wider, with("- 1.5", "- 2.5")) == std::vector<float>{2.5f});
+    CHECK(viewer::values_in(*wider, a) == std::vector<float>{1.5f});
+    CHECK_FALSE(viewer::values_in(*wider, with("3.0", "3.5")));
+    CHECK_FALSE(viewer::values_in(*wider, with("t[1]", "t[2]"))); // a whole number is structure
+    CHECK_FALSE(viewer::widened(*wider, with("length", "dot")));
+    // A second literal joins the first; the table that holds it is constant no more.
+    auto both = viewer::widened(*wider, with("3.0", "3.5"));
+    REQUIRE(both);
+    CHECK(both->edited.size() == 2);
+    CHECK(viewer::text_with_slots(*both).find("const") == std::string::npos);
+    CHECK(viewer::values_in(*both, with("3.0", "3.5")) == std::vector<float>{3.5f, 1.5f});
+}
+
+TEST_CASE("editors are told the line in their own way") {
+    using Words = std::vector<std::string>;
+    CHECK(viewer::editor_command("gedit", "a b.sdf", 7, 3) == Words{"gedit", "+7", "a b.sdf"});
+    CHECK(viewer::editor_command("code --wait", "a.sdf", 7, 3) ==
+          Words{"code", "--wait", "-g", "a.sdf:7:3"});
+    CHECK(viewer::editor_command("/usr/bin/subl", "a.sdf", 7, 3) ==
+          Words{"/usr/bin/subl", "a.sdf:7:3"});
+    CHECK(viewer::needs_terminal("vim"));
+    CHECK(viewer::needs_terminal("/usr/bin/emacsclient -t"));
+    CHECK_FALSE(viewer::needs_terminal("emacsclient -n"));
+    CHECK(viewer::open_in_editor("no-such-editor-here", "a.sdf", 7, 3) ==
+          "cannot start `no-such-editor-here`; it is at a.sdf:7");
+}
+
+TEST_CASE("a param's value and a camera are written where they stand, and nowhere else") {
+    const std::string text = "// a comment\nparam r = (1) in 0..2 // radius\r\nsphere(r)";
+    CHECK(driver::with_param(text, "r", "1.5") ==
+          "// a comment\nparam r = (1.5) in 0..2 // radius\r\nsphere(r)");
+    CHECK_FALSE(driver::with_param(text, "s", "1"));
+    CHECK(driver::with_camera(text, "camera(at: [1, 2, 3])") == text + "\ncamera(at: [1, 2, 3])\n");
+    CHECK(driver::with_camera("camera(at: [0, 0, 9]) // mine\nbox(1)\n", "camera(at: [1, 2, 3])") ==
+          "camera(at: [1, 2, 3]) // mine\nbox(1)\n");
+    const std::vector<std::string> two{"camera(at: [0, 9, 0])", "camera(at: [9, 0, 0])"};
+    const std::string with = driver::with_views("box(1)", two);
+    CHECK(with == "box(1)\n// view 2: camera(at: [0, 9, 0])\n// view 3: camera(at: [9, 0, 0])\n");
+    CHECK(driver::views_in(with) == two);
+    CHECK(driver::with_views(with, {}) == "box(1)\n");
+}
+
+TEST_CASE("views share the window and each has its place") {
+    viewer::Views views;
+    viewer::show_views(views, 4);
+    const auto tiles = viewer::tiles_of(views, 101, 80);
+    REQUIRE(tiles.size() == 4);
+    for (int y = 0; y < 80; ++y)
+        for (int x = 0; x < 101; ++x) {
+            int holders = 0;
+            for (const gl::Tile &t : tiles)
+                holders += x >= t.x && y >= t.y && x < t.x + t.width && y < t.y + t.height;
+            const int at = viewer::tile_at(tiles, x, y);
+            CHECK(holders == (at >= 0 ? 1 : 0));
+        }
+    CHECK(viewer::view_name(views.cameras[1]) == "top");
+    CHECK(viewer::view_name(views.cameras[2]) == "front");
+    CHECK(viewer::view_name(views.cameras[3]) == "right");
+    viewer::orbit(views.cameras[3], 0.1, 0);
+    CHECK(viewer::view_name(views.cameras[3]).empty());
+}
+
+TEST_CASE("frame times: the median, and what all but one in a hundred stay below") {
+    viewer::FrameTimes times;
+    CHECK(times.at_share(0.5) == 0);
+    for (int i = 1; i <= 200; ++i) times.add(i);
+    CHECK(times.at_share(0.5) == 100);
+    CHECK(times.at_share(0.99) == 198);
+    for (int i = 0; i < 500; ++i) times.add(7);
+    CHECK(times.milliseconds.size() == viewer::FrameTimes::most);
+    CHECK(times.at_share(0.99) == 7);
+}

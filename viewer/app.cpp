@@ -1,0 +1,155 @@
+// What a save does to the window: a new build is taken, camera, time, values and selection survive.
+#include "viewer/app.h"
+
+#include "driver/edit.h"
+#include "driver/verdict.h"
+#include "viewer/params.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <utility>
+
+namespace fathom::viewer {
+namespace {
+
+// The camera of a `camera(…)` line alone.
+std::optional<Camera> camera_of_line(const std::string &line) {
+    const driver::Compilation alone = driver::compile_text("view", line + "\n", "", {});
+    if (!alone.good() || !alone.scene.camera.given) return std::nullopt;
+    return camera_of(ir::view_of(alone.scene, 0, 1));
+}
+
+} // namespace
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+void App::note(std::string words) {
+    status.note = std::move(words);
+    frames_due = std::max(frames_due, 2);
+}
+
+// True where the build's picture can be drawn. The same text keeps the same program: only numbers
+// go to the card.
+bool App::adopt(Build &build) {
+    if (!build.linked) linkers.link(build);
+    if (!build.good()) return false;
+    const auto use = [](std::optional<gl::Program> &mine, Link &link, const glsl::Output &output) {
+        if (link.program) mine = std::move(link.program);
+        link.program.reset();
+        if (!mine) return;
+        mine->adopt(output);
+        mine->set_edited(link.edited);
+    };
+    status.linked_anew = build.picture_link.program.has_value();
+    if (status.linked_anew) status.driver_ms = build.picture_link.driver_ms;
+    use(program, build.picture_link, build.picture);
+    if (build.probe.text.empty())
+        probe.reset();
+    else
+        use(probe, build.probe_link, build.probe);
+    return program.has_value();
+}
+
+void App::rebuild(std::vector<driver::Override> values) {
+    structural = values;
+    worker->rebuild(std::move(values));
+}
+
+void App::take(std::unique_ptr<Build> build) {
+    frames_due = 3;
+    // A slider's value that the changed text has no place for any more: the text's own counts.
+    if (!build->compilation.usage_errors.empty() && !structural.empty()) return rebuild({});
+    record_next = true;
+    told = false;
+    const bool good = build->good() && adopt(*build);
+    errors = build->errors;
+    remarks = build->remarks;
+    status.front_end_ms = build->front_end_ms;
+    if (const std::string complaint = worker->complaint(); !complaint.empty()) note(complaint);
+    if (!good) return; // the last good picture stays
+
+    std::vector<ir::Param> before = std::move(params);
+    params = build->compilation.scene.params;
+    carry_over(before, params);
+    if (drop_outdated(before, params, structural)) rebuild(structural);
+    const std::vector<std::string> old_views = scene ? scene->views : std::vector<std::string>{};
+    scene = std::move(build);
+    stale = true;
+    const ir::Scene &s = scene->compilation.scene;
+    status.shader_bytes = scene->picture.text.size();
+
+    // The camera is the user's, until the text's own changes.
+    const Camera fresh = camera_of(ir::view_of(s, 0, aspect()));
+    if (!std::exchange(has_camera, true) || (s.camera.given && fresh != scene_camera))
+        views.cameras[0] = fresh;
+    scene_camera = fresh;
+    if (scene->views != old_views) {
+        const std::size_t shown = scene->views.size() >= 3 ? 4 : scene->views.empty() ? 1 : 2;
+        show_views(views, static_cast<int>(shown));
+        for (std::size_t i = 0; i + 1 < shown; ++i)
+            if (const auto camera = camera_of_line(scene->views[i])) views.cameras[i + 1] = *camera;
+    }
+
+    selected = found_again(scene->compilation, selected);
+    hovered = {};
+    controls.chosen = params.empty() ? 0 : std::min(controls.chosen, params.size() - 1);
+    const driver::Verdict verdict = driver::judge(s);
+    status.bound = verdict.lipschitz ? fmt::format("L {:.4g} {}", *verdict.lipschitz,
+                                                   driver::status_name(verdict.status))
+                                     : "no bound";
+}
+
+void App::param_changed(const ir::Param &param) {
+    stale = true;
+    touched = Clock::now();
+    frames_due = 3;
+    if (param.structural) rebuild(structural_values(params));
+}
+
+// -- back into the text
+// ----------------------------------------------------------------------------
+
+namespace {
+
+// Reads, edits and writes a file; the sentence that says what came of it.
+template <class Edit>
+std::string edit_file(const std::filesystem::path &file, const std::string &done, Edit edit) {
+    std::string error;
+    const std::optional<std::string> text =
+        driver::read_file(file, driver::max_source_bytes, error);
+    if (!text) return fmt::format("cannot read {}: {}", file.string(), error);
+    const std::optional<std::string> edited = edit(*text);
+    if (!edited) return file.string() + " has no place for it any more";
+    error = driver::write_file(file, *edited);
+    return error.empty() ? done : fmt::format("cannot write {}: {}", file.string(), error);
+}
+
+} // namespace
+
+void App::write_param(const ir::Param &param) {
+    const Span origin = param.origin;
+    std::filesystem::path file = settings.file;
+    if (scene && origin.source && origin.source.index < scene->compilation.sources.size())
+        file = scene->compilation.sources[origin.source].name;
+    const std::string value = value_text(param);
+    note(edit_file(
+        file, fmt::format("wrote {} = {} into {}", param.name, value, file.string()),
+        [&](const std::string &text) { return driver::with_param(text, param.name, value); }));
+}
+
+void App::write_view() {
+    note(edit_file(settings.file, "wrote the view into " + settings.file.string(),
+                   [&](const std::string &text) {
+                       std::vector<std::string> others;
+                       for (int i = 1; i < views.count; ++i)
+                           others.push_back(
+                               camera_line(views.cameras[static_cast<std::size_t>(i)]));
+                       return std::optional(driver::with_views(
+                           driver::with_camera(text, camera_line(views.cameras[0])), others));
+                   }));
+}
+
+} // namespace fathom::viewer

@@ -1,0 +1,112 @@
+// The window's state, and what is done to it: builds are taken (app.cpp), the scene is drawn
+// (draw.cpp), keys and the mouse are heard (input.cpp). For those files and viewer.cpp alone.
+#pragma once
+
+#include "render-gl/timer.h"
+#include "viewer/controls.h"
+#include "viewer/frame_times.h"
+#include "viewer/panels.h"
+#include "viewer/pick.h"
+#include "viewer/viewer.h"
+#include "viewer/views.h"
+#include "viewer/worker.h"
+
+#include <chrono>
+
+struct GLFWwindow;
+
+namespace fathom::viewer {
+
+using Clock = std::chrono::steady_clock;
+double milliseconds_since(Clock::time_point start);
+
+// All that a picture depends on, program and params apart: while it stays, nothing is drawn anew.
+struct Shot {
+    Views views;
+    double time = 0;
+    int width = 0, height = 0;
+    friend bool operator==(const Shot &, const Shot &) = default;
+};
+
+struct App {
+    explicit App(const Settings &s) : settings(s) {}
+
+    const Settings &settings;
+    GLFWwindow *window = nullptr;
+    std::unique_ptr<Worker> worker;
+    Linkers linkers; // where the worker has no context of its own
+
+    // The good picture: its scene, its programs, what was drawn of it.
+    std::unique_ptr<Build> scene;
+    std::optional<gl::Program> program, probe;
+    std::vector<ir::Param> params;
+    gl::Canvas canvas;
+    gl::Timer timer;
+    std::optional<Shot> drawn;
+    bool stale = true;     // the program or a value changed since `drawn`
+    bool drew_now = false; // in this turn of the loop
+    bool probed = false;   // the probe shows what is drawn
+    bool finished = false; // what is shown is what was drawn
+    int samples_drawn = 0, frames_drawn = 0;
+
+    std::vector<std::string> errors, remarks; // of the newest build, good or not
+    std::vector<driver::Override> structural; // what the worker builds with
+    Views views;
+    Camera scene_camera;
+    bool has_camera = false;
+    Controls controls;
+    Status status;
+    FrameTimes frame_times, gpu_times;
+    std::vector<IsolineLabel> labels;
+    std::array<std::size_t, 4> verdicts{}; // pixels, by the check's verdict
+    Part selected, hovered;
+
+    bool running = true; // time passes, where the scene reads it
+    double time = 0;
+    Clock::time_point touched{}; // the last time the picture was moved by hand
+    Clock::time_point last_draw{};
+    int frames_due = 3;             // the panels settle within a few frames after an event
+    int recorded = 0, sequence = 0; // pictures so far; of a sequence, 0 where none is taken
+    std::filesystem::path sequence_folder;
+    bool record_next = false, picture_asked = false, told = true;
+    double cursor_x = 0, cursor_y = 0, pressed_x = 0, pressed_y = 0;
+    int dragged = -1; // the view in which the button went down
+    float font_scale = 1;
+
+    // app.cpp
+    void take(std::unique_ptr<Build> build);
+    bool adopt(Build &build);
+    void rebuild(std::vector<driver::Override> values);
+    bool animated() const { return scene && running && scene->picture.reads_time; }
+    void param_changed(const ir::Param &param);
+    void write_param(const ir::Param &param);
+    void write_view();
+    void note(std::string words);
+
+    // input.cpp
+    void key(int key, int mods);
+    void character(unsigned code);
+    void move_cursor(double x, double y);
+    void button(int button, bool down);
+    void scroll(double steps);
+    void fly_by_keys(double seconds);
+    void frame_box(const ir::Box &box);
+    void frame_all();
+    void select(bool open);
+    void step_param(double by);
+    void toggle_look(gl::Look look);
+
+    // draw.cpp
+    void draw(double seconds);
+    void draw_scene(int width, int height, bool moving, bool drew_before);
+    void draw_probe();
+    void draw_panels(int width, int height);
+    void save_pictures(int width, int height, bool moving);
+    bool save_window(const std::filesystem::path &file, int width, int height);
+    double aspect() const; // of the first view
+    bool pending() const;  // more samples are wanted, or something was not shown yet
+    std::vector<gl::TileView> tile_views(int width, int height) const;
+    gl::Pick pick_at_cursor() const;
+};
+
+} // namespace fathom::viewer
