@@ -60,6 +60,12 @@ class TreeReader {
     std::string path_text() const;
 
     Importer &in_;
+    struct Statement { // written before the present one, for a part of it
+        std::string identifier;
+        Body body;
+        std::size_t begin = 0, end = 0; // in Importer::out
+    };
+    std::optional<Statement> last_;
     std::vector<std::size_t> path_;
     std::size_t blocks_ = 0; // that are open in the present statement
 };
@@ -421,8 +427,10 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     if (hoisted) {
         const std::string identifier =
             in_.names.unique(result.display.empty() ? type : result.display, "shape");
+        const std::size_t out_begin = in_.out.size();
         print_body(own, "let " + identifier + " = ", in_.out);
         in_.out += '\n';
+        last_ = Statement{identifier, std::move(own), out_begin, in_.out.size()};
         body.push_back({Piece::Kind::Line, identifier, {}});
     } else if (custom && !top) {
         add_comment(target[begin].kind == Piece::Kind::Open ? target[begin] : target.back(), name);
@@ -433,9 +441,23 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
 void TreeReader::top_level(const Event &first) {
     Body body;
     blocks_ = 0;
+    last_.reset();
     Result result = node(first, Place::United, body, true);
     if (!result.contributed) return;
-    const std::string identifier = in_.names.unique(result.display, "shape");
+    // A chain of calls on one named block continues that block's own statement.
+    std::erase_if(body, [](const Piece &piece) { return piece.kind == Piece::Kind::Nothing; });
+    const bool continues = last_ && last_->end == in_.out.size() && body.size() == 1 &&
+                           body[0].text.starts_with(last_->identifier + chain_mark);
+    if (continues) {
+        in_.out.resize(last_->begin);
+        last_->body.back().text += body[0].text.substr(last_->identifier.size());
+        last_->body.back().comment = body[0].comment;
+        body = std::move(last_->body);
+    }
+    for (Piece &piece : body) // the statement's own name says it
+        if (piece.comment == result.display) piece.comment.clear();
+    const std::string identifier =
+        continues ? last_->identifier : in_.names.unique(result.display, "shape");
     print_body(body, "let " + identifier + " = ", in_.out);
     in_.scene.push_back(identifier);
 }

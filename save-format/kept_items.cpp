@@ -22,13 +22,49 @@ std::optional<std::vector<std::size_t>> path_of(std::string_view text) {
     return path;
 }
 
+// Records come in the order of the tree, so that the children before a record's place are settled:
+// they stand in `children`, the others wait in `rest`, and each is moved once. Thereby the whole is
+// linear, where inserting into a long list of children would not be.
+void open(TreeNode &node) {
+    node.rest.assign(std::make_move_iterator(node.children.rbegin()),
+                     std::make_move_iterator(node.children.rend()));
+    node.children.clear();
+}
+void close(TreeNode &node) {
+    node.children.insert(node.children.end(), std::make_move_iterator(node.rest.rbegin()),
+                         std::make_move_iterator(node.rest.rend()));
+    node.rest.clear();
+}
+void close_all(TreeNode &node) {
+    close(node);
+    for (TreeNode &child : node.children) close_all(child);
+}
+
+// Settles the first `count` children; false where there are not as many.
+bool settle(TreeNode &node, std::size_t count) {
+    while (node.children.size() < count && !node.rest.empty()) {
+        node.children.push_back(std::move(node.rest.back()));
+        node.rest.pop_back();
+    }
+    return node.children.size() >= count;
+}
+
 TreeNode *node_at(TreeNode &root, const std::vector<std::size_t> &path, std::size_t length) {
     TreeNode *node = &root;
     for (std::size_t i = 0; i < length; ++i) {
-        if (path[i] >= node->children.size() || node->children[path[i]].verbatim) return nullptr;
+        if (!settle(*node, path[i] + 1) || node->children[path[i]].verbatim) return nullptr;
         node = &node->children[path[i]];
     }
     return node;
+}
+
+// A place among the children, everything before it settled and everything behind it waiting.
+bool stand_at(TreeNode &node, std::size_t index) {
+    if (node.children.size() > index) { // the first record here, or one out of order
+        close(node);
+        open(node);
+    }
+    return settle(node, index);
 }
 
 void set_properties(TreeNode &node, const Value &properties) {
@@ -67,27 +103,24 @@ bool apply(const TreeRecord &record, TreeNode &root) {
         if (record.path.empty()) return false;
         TreeNode *parent = node_at(root, record.path, record.path.size() - 1);
         const std::size_t index = record.path.back();
-        if (!parent || index > parent->children.size()) return false;
-        const auto at = parent->children.begin() + static_cast<std::ptrdiff_t>(index);
+        if (!parent || !stand_at(*parent, index)) return false;
         TreeNode made;
         if (record.label == "node") {
             made.verbatim = value;
-            parent->children.insert(at, std::move(made));
-            return true;
+        } else {
+            const auto count = value.items.size() == 4 ? number_of(value.items[0]) : std::nullopt;
+            if (!count || *count < 1 || *count > static_cast<double>(parent->rest.size()))
+                return false;
+            made.type = value.items[1].text;
+            made.name = value.items[2].text;
+            made.named = made.head = true;
+            made.properties = value.items[3].entries;
+            const auto from = parent->rest.rbegin(),
+                       to = from + static_cast<std::ptrdiff_t>(*count);
+            made.children.assign(std::make_move_iterator(from), std::make_move_iterator(to));
+            parent->rest.resize(parent->rest.size() - static_cast<std::size_t>(*count));
         }
-        if (value.items.size() != 4) return false;
-        const auto count = number_of(value.items[0]);
-        if (!count || *count < 1 ||
-            index + static_cast<std::size_t>(*count) > parent->children.size())
-            return false;
-        const auto end = at + static_cast<std::ptrdiff_t>(*count);
-        made.type = value.items[1].text;
-        made.name = value.items[2].text;
-        made.named = made.head = true;
-        made.properties = value.items[3].entries;
-        made.children.assign(std::make_move_iterator(at), std::make_move_iterator(end));
-        *at = std::move(made);
-        parent->children.erase(at + 1, end);
+        parent->children.push_back(std::move(made));
         return true;
     }
     TreeNode *node = node_at(root, record.path, record.path.size());
@@ -153,6 +186,7 @@ std::vector<const TreeRecord *> apply_records(const std::vector<TreeRecord> &rec
     for (const TreeRecord &record : records) {
         if (!apply(record, root)) homeless.push_back(&record);
     }
+    close_all(root);
     return homeless;
 }
 

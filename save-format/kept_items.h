@@ -41,6 +41,7 @@ struct TreeNode {
     std::vector<TreeNode> children;
     std::optional<Value> verbatim; // instead of all that
     std::vector<Value> extra;
+    std::vector<TreeNode> rest; // while records are applied: the children behind those, last first
 };
 
 // Brings groups, names, properties and unknown nodes back, in the order of the records. What no

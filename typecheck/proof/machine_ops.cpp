@@ -155,6 +155,16 @@ void Step::run() {
                       any_odd);
     }
     case Op::Mul: {
+        if (in.form == Form::OddPower) {
+            double most = 0;
+            for (int c = 0; c < n; ++c) {
+                Interval x = value(0, c), e = value(1, c), power = positive_power(abs(x), e);
+                Interval d = (e + Interval(1.0)) * power;
+                most = std::max(most, d.magnitude());
+                set(c, x * power, scaled(d, grad(0, c)), odd(0, c));
+            }
+            return finish(times(most, norm(0)), false);
+        }
         double a = 0, b = 0;
         for (int c = 0; c < n; ++c) {
             Interval x = value(0, c), y = value(1, c);

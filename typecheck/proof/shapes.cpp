@@ -197,6 +197,29 @@ Known Prover::know_set(ShapeId id) {
     return k;
 }
 
+// Where a weight clamp(length(p - c), a, b) varies (thesis 2.14): its gradient is 0 beyond b of c.
+static Box varying_part(const ir::Graph &graph, NodeId weight) {
+    if (graph[weight].op != ir::Op::Clamp) return Box::everything();
+    NodeId length = graph.arg(weight, 0);
+    auto reach = graph.as_number(graph.arg(weight, 2));
+    if (graph[length].op != ir::Op::Length || !reach) return Box::everything();
+    NodeId from = graph.arg(length, 0);
+    Box box{{-*reach, -*reach, -*reach}, {*reach, *reach, *reach}};
+    if (graph[from].op == ir::Op::Point) return box;
+    const bool moved = graph[from].op == ir::Op::Sub || graph[from].op == ir::Op::Add;
+    for (int i = 0; moved && i < 2; ++i) {
+        NodeId point = graph.arg(from, i), by = graph.arg(from, 1 - i);
+        if (graph[point].op != ir::Op::Point || !graph.is_constant(by)) continue;
+        const bool less = graph[from].op == ir::Op::Sub; // p - c and c - p alike
+        for (std::size_t k = 0; k < 3; ++k) {
+            double c = graph.constant_of(by).value[k] * (less ? 1 : -1);
+            box.lo[k] += c, box.hi[k] += c;
+        }
+        return box;
+    }
+    return Box::everything();
+}
+
 Known Prover::know_lerp(ShapeId id) {
     const Shape shape = scene.shapes[id];
     const Known &a = child(shape, 0), &b = child(shape, 1);
@@ -245,7 +268,7 @@ Known Prover::know_lerp(ShapeId id) {
                                                     {to_cell(common), nullptr}, budget));
             }
         }
-        Box box = place(id).box;
+        Box box = ir::intersect(place(id).box, varying_part(graph, t));
         if (box.finite() && !box.empty())
             gap = std::min(
                 gap, up(magnitude(shape.children[0], box) + magnitude(shape.children[1], box)));

@@ -250,6 +250,15 @@ struct Flattener {
                 out.args = {slot(scope, graph.arg(id, 0))};
                 return emit(scope, out);
             }
+            for (int i = 0; i < 2; ++i) {
+                NodeId x = graph.arg(id, i), power = graph.arg(id, 1 - i);
+                if (graph[power].op != Op::Pow || graph[graph.arg(power, 0)].op != Op::Abs) continue;
+                auto exponent = number(graph.arg(power, 1));
+                if (graph.arg(graph.arg(power, 0), 0) != x || !exponent || *exponent <= 0) continue;
+                out.form = Form::OddPower;
+                out.args = {slot(scope, x), slot(scope, graph.arg(power, 1))};
+                return emit(scope, out);
+            }
             break;
         case Op::Div: {
             NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
