@@ -102,6 +102,7 @@ struct Texture {
 struct DisplacementMap {
     Texture map;
     NodeId amount; // as written, in the space where `displace_map` stands
+    ShapeId whole; // what it made: the shape given to it, its bases displaced
 };
 
 // A colour or number of a material: an expression in Point and Normal of the space where the paint stands.

@@ -2,6 +2,7 @@
 // unlabelled rest. What was kept from an import goes back to its place; what the scene says by now
 // goes before it.
 #include "ir/view.h"
+#include "save-format/export_looks.h"
 #include "save-format/export_tree.h"
 #include "save-format/importer.h"
 #include "save-format/program.h"
@@ -15,165 +16,9 @@
 namespace fathom::save {
 namespace {
 
-// The inverse of sRGB's curve (IEC 61966-2-1), as a channel 0..255; whole where it is one up to
-// rounding.
-double channel_of(double linear) {
-    linear = std::clamp(linear, 0.0, 1.0);
-    const double encoded =
-        linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-    const double channel = encoded * 255;
-    return std::abs(channel - std::round(channel)) < 1e-4 ? std::round(channel)
-                                                          : std::round(channel * 1e6) / 1e6;
-}
-
-struct Look {
-    std::array<double, 3> diffuse{}, specular{}, emission{};
-    double exponent = 32;
-};
-
 Value *find(Value &mapping, std::string_view key) {
     return const_cast<Value *>(std::as_const(mapping).find(key));
 }
-
-Value color_value(const std::array<double, 3> &c, double alpha) {
-    return yaml_mapping({{"Red", yaml_scalar(c[0])},
-                         {"Green", yaml_scalar(c[1])},
-                         {"Blue", yaml_scalar(c[2])},
-                         {"Alpha", yaml_scalar(alpha)}});
-}
-
-// The materials of the file: those that were kept, in order, and behind them what else the scene
-// paints with.
-class Materials {
-  public:
-    Materials(const ir::Scene &scene, Numbers &numbers, std::vector<Value> kept)
-        : scene_(scene), numbers_(numbers), items_(std::move(kept)) {
-        for (std::size_t i = 0; i < items_.size(); ++i) {
-            const Value *name = entry(items_[i], "Name");
-            if (name && name->kind == Value::Kind::Scalar && !name->text.empty())
-                by_name_.try_emplace(name->text, i);
-        }
-    }
-
-    // Empty for looks that depend on the point.
-    std::string name(std::uint32_t index) {
-        const ir::Material &material = scene_.shapes.materials[index];
-        const std::optional<Look> look = look_of(material);
-        if (!look) { // a texture, if a kept material has this name
-            return by_name_.contains(material.name) ? material.name : std::string();
-        }
-        if (const auto kept = by_name_.find(material.name); kept != by_name_.end()) {
-            update(items_[kept->second], *look);
-            return material.name;
-        }
-        for (const auto &[name, i] : by_name_) {
-            if (same(items_[i], *look)) return name;
-        }
-        std::string name = material.name;
-        for (int i = 1; name.empty() || by_name_.contains(name); ++i)
-            name = "Material " + std::to_string(i);
-        by_name_.emplace(name, items_.size());
-        Value specular = color_value(look->specular, 255);
-        specular.entries.emplace_back("Exponent", yaml_scalar(look->exponent));
-        const Value none = [] {
-            Value value;
-            value.text = "<None>";
-            value.plain = true;
-            return value;
-        }();
-        const Value one = yaml_mapping({{"X", yaml_scalar(1)}, {"Y", yaml_scalar(1)}});
-        Value first = yaml_mapping({{"Name", yaml_word(name)},
-                                    {"Diffuse", color_value(look->diffuse, 255)},
-                                    {"Specular", std::move(specular)}});
-        if (look->emission != std::array<double, 3>{})
-            first.entries.emplace_back("Emission", color_value(look->emission, 255));
-        items_.push_back(
-            yaml_list({std::move(first), yaml_mapping({{"Color Texture", none},
-                                                       {"Texture Scale", one},
-                                                       {"Displacement Map", none},
-                                                       {"Displacement Amount", yaml_scalar(0.1)},
-                                                       {"Displacement Scale", one}})}));
-        return name;
-    }
-
-    const std::vector<Value> &items() const { return items_; }
-
-  private:
-    // In whichever of the material's mappings it stands.
-    static const Value *entry(const Value &item, std::string_view key) {
-        if (item.kind == Value::Kind::Mapping) return item.find(key);
-        for (const Value &part : item.items) {
-            if (const Value *found = part.find(key)) return found;
-        }
-        return nullptr;
-    }
-
-    std::optional<Look> look_of(const ir::Material &material) {
-        Look look;
-        const auto read = [&](ir::NodeId id, std::array<double, 3> &out) {
-            const auto value = numbers_.vector(id);
-            if (value)
-                for (std::size_t i = 0; i < 3; ++i) out[i] = channel_of((*value)[i]);
-            return value.has_value();
-        };
-        const auto exponent = numbers_.number(material.exponent);
-        if (!read(material.diffuse, look.diffuse) || !read(material.specular, look.specular) ||
-            !read(material.emission, look.emission) || !exponent)
-            return std::nullopt;
-        look.exponent = *exponent;
-        return look;
-    }
-
-    static bool same_color(const Value *value, const std::array<double, 3> &color) {
-        static constexpr const char *names[] = {"Red", "Green", "Blue"};
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Value *part = value ? value->find(names[i]) : nullptr;
-            const auto number = part ? number_of(*part) : std::nullopt;
-            if (!number || std::abs(*number - color[i]) > 1e-3) return false;
-        }
-        return true;
-    }
-
-    static bool same(const Value &item, const Look &look) {
-        const Value *specular = entry(item, "Specular");
-        const Value *exponent = specular ? specular->find("Exponent") : nullptr;
-        return same_color(entry(item, "Diffuse"), look.diffuse) &&
-               same_color(specular, look.specular) && exponent &&
-               number_of(*exponent) == look.exponent;
-    }
-
-    // What the scene says by now. A value that made no sense in the file stays where its default is
-    // still in use.
-    static void update(Value &item, const Look &look) {
-        const auto channels = [&](const char *what, const std::array<double, 3> &color,
-                                  const std::array<double, 3> &fallback) {
-            Value *value = const_cast<Value *>(entry(item, what));
-            if (!value || value->kind != Value::Kind::Mapping) return;
-            static constexpr const char *names[] = {"Red", "Green", "Blue"};
-            for (std::size_t i = 0; i < 3; ++i) {
-                Value *part = find(*value, names[i]);
-                const auto number = part ? number_of(*part) : std::nullopt;
-                const bool legal = number && *number >= 0 && *number <= 255;
-                if (part && (legal ? std::abs(*number - color[i]) > 1e-3 : color[i] != fallback[i]))
-                    *part = yaml_scalar(color[i]);
-            }
-        };
-        channels("Diffuse", look.diffuse, {128, 128, 128});
-        channels("Specular", look.specular, {255, 255, 255});
-        Value *specular = const_cast<Value *>(entry(item, "Specular"));
-        Value *exponent = specular && specular->kind == Value::Kind::Mapping
-                              ? find(*specular, "Exponent")
-                              : nullptr;
-        const auto number = exponent ? number_of(*exponent) : std::nullopt;
-        if (exponent && (number ? *number != look.exponent : look.exponent != 32))
-            *exponent = yaml_scalar(look.exponent);
-    }
-
-    const ir::Scene &scene_;
-    Numbers &numbers_;
-    std::vector<Value> items_;
-    std::map<std::string, std::size_t, std::less<>> by_name_;
-};
 
 Value node_value(const TreeNode &node, std::map<std::string, int> &ordinals) {
     if (node.verbatim) return *node.verbatim;
@@ -439,13 +284,12 @@ std::vector<Value> settings_values(const ir::Scene &scene, Numbers &numbers,
 std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
     KeptItems kept = read_kept(scene.kept);
     Numbers numbers(scene);
-    Materials materials(scene, numbers, std::move(kept.materials));
+    Looks looks(scene, numbers, std::move(kept.textures), std::move(kept.materials));
     TreeNode root;
     root.type = "Generic";
     root.name = "Distance field";
     root.named = root.head = true;
-    root.children = export_tree(
-        scene, numbers, [&](std::uint32_t index) { return materials.name(index); }, diagnostics);
+    root.children = export_tree(scene, numbers, looks, diagnostics);
     for (const TreeRecord *record : apply_records(kept.tree, root)) {
         std::string place;
         for (const std::size_t index : record->path)
@@ -463,13 +307,8 @@ std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
     version.text = written_version;
     version.plain = true;
     write_item(kept.version.value_or(version), 0, out);
-    Value textures;
-    textures.kind = Value::Kind::Mapping;
-    for (Value &texture : kept.textures) {
-        for (auto &entry : texture.entries) textures.entries.push_back(std::move(entry));
-    }
-    write_item(textures, 0, out);
-    write_item(yaml_list(materials.items()), 0, out);
+    write_item(looks.textures(), 0, out);
+    write_item(yaml_list(looks.materials()), 0, out);
     std::map<std::string, int> ordinals;
     Value tree = node_value(root, ordinals);
     Value lighting = lighting_value(scene, numbers, kept);

@@ -3,6 +3,7 @@
 // (import_tree.cpp), and record the rest.
 #include "save-format/export_tree.h"
 
+#include "save-format/export_looks.h"
 #include "save-format/program.h"
 #include "save-format/tree_writer.h"
 
@@ -39,6 +40,7 @@ std::optional<Value> TreeWriter::steps(NodeId expression) {
 
 void TreeWriter::united(ShapeId id, const Paint &paint, std::vector<TreeNode> &out) {
     id = bare(id);
+    if (displaced(id, paint, out)) return;
     const Shape &s = shape(id);
     if (const auto listed = scene_.shapes.listed.find(id);
         listed != scene_.shapes.listed.end() && s.args.empty()) {
@@ -103,10 +105,57 @@ std::optional<TreeNode> TreeWriter::one_child(NodeType type, ShapeId child, cons
     return result;
 }
 
+// A displacement map lies on the base shapes, but is said where it was given: at the whole that
+// they are of, or by the material that has it.
+bool TreeWriter::displaced(ShapeId id, const Paint &paint, std::vector<TreeNode> &out) {
+    const auto found = maps_.find(id);
+    if (found == maps_.end() || open_maps_.contains(found->second)) return false;
+    const ir::DisplacementMap &map = scene_.shapes.displacement_maps[found->second];
+    const auto amount = numbers_.number(map.amount);
+    const std::string texture = looks_.texture(map.map.image);
+    if (!amount || texture.empty()) return false;
+    open_maps_.insert(found->second);
+    if (looks_.displaces(paint.fill, map, *amount))
+        united(id, paint, out);
+    else if (auto result = map_node(map, *amount, id, paint))
+        out.push_back(std::move(*result));
+    open_maps_.erase(found->second);
+    return true;
+}
+
+std::optional<TreeNode> TreeWriter::map_node(const ir::DisplacementMap &map, double amount,
+                                             ShapeId child, const Paint &paint) {
+    auto result = one_child(NodeType::Displacement, child, paint);
+    if (!result) return result;
+    add(*result, "Map", yaml_word(looks_.texture(map.map.image)));
+    add(*result, "Amount", yaml_scalar(amount));
+    add(*result, "Scale",
+        yaml_mapping({{"X", yaml_scalar(map.map.scale[0])}, {"Y", yaml_scalar(map.map.scale[1])}}));
+    return result;
+}
+
+// A base shape's own part of a map whose whole was taken apart since, by a texture that lies below:
+// the amount is here what the transforms between have made of it.
+std::optional<TreeNode> TreeWriter::displaced_base(ShapeId id, const Paint &paint) {
+    const Shape &s = shape(id);
+    const ir::DisplacementMap &map = scene_.shapes.displacement_maps[s.payload - 1];
+    const NodeId moved = numbers_.reduced(s.args[0]);
+    const ir::Graph &graph = numbers_.graph();
+    double amount = graph[moved].op == ir::Op::Neg ? -1 : 1;
+    if (graph[moved].op == ir::Op::Mul) {
+        for (int i = 0; i < 2; ++i) amount = graph.as_number(graph.arg(moved, i)).value_or(amount);
+    }
+    const ShapeId child = s.children[0];
+    std::string name = paint.fill;
+    if (shape(child).kind == ShapeKind::Paint) name = looks_.material(shape(child).payload);
+    if (looks_.displaces(name, map, amount)) return single(child, paint);
+    return map_node(map, amount, child, paint);
+}
+
 void TreeWriter::painted(ShapeId id, Paint paint, std::vector<TreeNode> &out) {
     const Shape &s = shape(id);
     if (paint.forced) return united(s.children[0], paint, out);
-    const std::string name = material_name_(s.payload);
+    const std::string name = looks_.material(s.payload);
     if (!name.empty()) {
         paint.fill = name;
         paint.forced = s.kind == ShapeKind::Repaint;
@@ -214,6 +263,11 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
         return result;
     }
     case ShapeKind::Displace: {
+        if (s.payload > 0 && open_maps_.contains(s.payload - 1))
+            return single(s.children[0], paint); // said by `displaced`
+        if (s.payload > 0 &&
+            !looks_.texture(scene_.shapes.displacement_maps[s.payload - 1].map.image).empty())
+            return displaced_base(id, paint);
         auto field_steps = steps(s.args[0]);
         if (!field_steps) { // the shape itself stays
             unsaved(diagnostics_, s.origin,
@@ -285,9 +339,9 @@ void Numbers::set(NodeId variable, const ir::Constant &value) {
     values_[variable] = graph_.constant(value);
 }
 
-std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers,
-                                  const MaterialName &material_name, Diagnostics &diagnostics) {
-    TreeWriter writer(scene, numbers, material_name, diagnostics);
+std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers, Looks &looks,
+                                  Diagnostics &diagnostics) {
+    TreeWriter writer(scene, numbers, looks, diagnostics);
     std::vector<TreeNode> nodes;
     for (const ir::TopLevel &top : scene.top_level) writer.united(top.shape, {}, nodes);
     return nodes;

@@ -6,7 +6,6 @@
 #include "save-format/kept_items.h"
 #include "save-format/yaml_writer.h"
 
-#include <functional>
 #include <optional>
 
 namespace fathom::save {
@@ -33,12 +32,10 @@ class Numbers {
 // What the file cannot hold: a warning, since the rest is written.
 Remark unsaved(Diagnostics &diagnostics, Span place, std::string message);
 
-// Names a material (an index into Shapes::materials) as the file does; empty where its looks depend
-// on the point.
-using MaterialName = std::function<std::string(std::uint32_t)>;
+class Looks;
 
 // The nodes that unite to the scene, in the order of its text.
-std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers,
-                                  const MaterialName &material_name, Diagnostics &diagnostics);
+std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers, Looks &looks,
+                                  Diagnostics &diagnostics);
 
 } // namespace fathom::save

@@ -360,8 +360,12 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
             in.report.content(at, "there is no texture `" + printable(map.substr(0, 80)) + "`");
             return {};
         }
-        return ".displace_map(" + texture->second + ", " + reading.text("Amount") +
-               ", scale: " + reading.vector_text("Scale") + ")";
+        if (reading.number("Amount") == 0) return {};
+        reading.vector("Scale", v); // of a picture: X and Y
+        return ".displace_map(" + texture->second + ", " + reading.text("Amount") + ", scale: " +
+               (v[0] == v[1] ? sdf_number(v[0])
+                             : "[" + sdf_number(v[0]) + ", " + sdf_number(v[1]) + "]") +
+               ")";
     }
     case NodeType::Complement: return ".complement()";
     case NodeType::Deformation:

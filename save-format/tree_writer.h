@@ -4,10 +4,12 @@
 // export_fields.cpp (functions of the point). Private to those five files.
 #pragma once
 
+#include "save-format/export_looks.h"
 #include "save-format/export_tree.h"
 #include "save-format/node_types.h"
 
 #include <unordered_map>
+#include <unordered_set>
 
 namespace fathom::save {
 
@@ -23,9 +25,12 @@ struct Paint {
 
 class TreeWriter {
   public:
-    TreeWriter(const ir::Scene &scene, Numbers &numbers, const MaterialName &name,
-               Diagnostics &diagnostics)
-        : scene_(scene), numbers_(numbers), material_name_(name), diagnostics_(diagnostics) {}
+    TreeWriter(const ir::Scene &scene, Numbers &numbers, Looks &looks, Diagnostics &diagnostics)
+        : scene_(scene), numbers_(numbers), looks_(looks), diagnostics_(diagnostics) {
+        const auto &maps = scene.shapes.displacement_maps;
+        for (std::size_t i = 0; i < maps.size(); ++i)
+            if (maps[i].whole) maps_.emplace(maps[i].whole, i);
+    }
 
     // Appends the nodes whose union the shape is.
     void united(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
@@ -40,6 +45,10 @@ class TreeWriter {
     void repeat(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
     void copies(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
     void painted(ShapeId id, Paint paint, std::vector<TreeNode> &out);
+    bool displaced(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
+    std::optional<TreeNode> displaced_base(ShapeId id, const Paint &paint);
+    std::optional<TreeNode> map_node(const ir::DisplacementMap &map, double amount, ShapeId child,
+                                     const Paint &paint);
     std::optional<TreeNode> intersection(ShapeId id, const Paint &paint);
     std::optional<TreeNode> profile_blend(ShapeId id, bool complemented, const Paint &paint);
     std::optional<TreeNode> lerp(ShapeId id, const Paint &paint);
@@ -62,7 +71,9 @@ class TreeWriter {
 
     const ir::Scene &scene_;
     Numbers &numbers_;
-    const MaterialName &material_name_;
+    Looks &looks_;
+    std::unordered_map<ShapeId, std::size_t> maps_; // displacement maps, by the whole they lie on
+    std::unordered_set<std::size_t> open_maps_;     // whose nodes are being written
     Diagnostics &diagnostics_;
     std::optional<ir::Scene> lowered_; // made when a function is first asked for
     std::unordered_map<ShapeId, NodeId> raw_;

@@ -268,7 +268,7 @@ static Value displace_map_call(Evaluator &ev, const CallSite &site, std::vector<
     const std::uint32_t image = heights_of(ev, static_cast<std::uint32_t>(map->image));
     const Heights heights = measured(ev.scene.images[image]);
     const double span = std::max(heights.most - heights.mean, heights.mean - heights.least);
-    ev.scene.shapes.displacement_maps.push_back({*map, *amount});
+    ev.scene.shapes.displacement_maps.push_back({*map, *amount, {}});
     const auto record = static_cast<std::uint32_t>(ev.scene.shapes.displacement_maps.size());
     bool ok = true;
     const ShapeId result =
@@ -304,6 +304,7 @@ static Value displace_map_call(Evaluator &ev, const CallSite &site, std::vector<
             out.origin = inner.origin;
             return ev.scene.shapes.add(std::move(out));
         });
+    ev.scene.shapes.displacement_maps[record - 1].whole = result;
     return ok ? shape_value(result, args[0].size) : poison();
 }
 

@@ -1,36 +1,10 @@
 // The program as scripts and editors see it: exit statuses, which stream says what, what is left
 // behind. Runs the real one, through a shell.
-#include "scratch_folder.h"
+#include "shell.h"
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <sys/wait.h>
 
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Result {
-    int exit = -1;
-    std::string out, err;
-};
-
-// Runs a shell line in the folder, with `fathom` for the program.
-Result shell(const ScratchFolder &folder, const std::string &line) {
-    std::string whole = "cd '" + folder.path().string() +
-                        "' && fathom() { '" FATHOM_PROGRAM "' \"$@\"; } && { " + line +
-                        "; } >.out 2>.err";
-    int status = std::system(whole.c_str());
-    Result result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder.read(".out"),
-                  folder.read(".err")};
-    fs::remove(folder / ".out");
-    fs::remove(folder / ".err");
-    return result;
-}
-
-bool contains(const std::string &text, const std::string &part) {
-    return text.find(part) != text.npos;
-}
 
 struct Scenes : ScratchFolder {
     Scenes() {

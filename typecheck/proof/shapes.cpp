@@ -315,13 +315,14 @@ Known Prover::know_displaced(ShapeId id) {
     Interval amount;
     double slope = 0;
     if (varies) {
-        if (shape.args.size() > 3) { // a map: the library states what its chart and its data give (ir/charts.h)
+        if (shape.args.size() >
+            3) { // a map: the library states what its chart and its data give (ir/charts.h)
             slope = number(shape.args[1]).magnitude();
             amount = hull(number(shape.args[2]), number(shape.args[3]));
         } else {
-            FieldBound b = bound(
-                id, shape.args[0],
-                shape.kind == ShapeKind::Displace ? "the displacement" : "the amount");
+            FieldBound b =
+                bound(id, shape.args[0],
+                      shape.kind == ShapeKind::Displace ? "the displacement" : "the amount");
             amount = b.value;
             slope = b.lipschitz;
         }

@@ -252,7 +252,8 @@ struct Flattener {
             }
             for (int i = 0; i < 2; ++i) {
                 NodeId x = graph.arg(id, i), power = graph.arg(id, 1 - i);
-                if (graph[power].op != Op::Pow || graph[graph.arg(power, 0)].op != Op::Abs) continue;
+                if (graph[power].op != Op::Pow || graph[graph.arg(power, 0)].op != Op::Abs)
+                    continue;
                 auto exponent = number(graph.arg(power, 1));
                 if (graph.arg(graph.arg(power, 0), 0) != x || !exponent || *exponent <= 0) continue;
                 out.form = Form::OddPower;

@@ -123,6 +123,27 @@ TEST_CASE("every example is the same scene after an export and an import", "[sav
     CHECK(seen > 30);
 }
 
+TEST_CASE("images, grids and maps go out by their names, and come back the same", "[save][field]") {
+    const std::string text = R"(let tiles = image("parts/tiles.png")
+let bumps = image("parts/pebbles.png")
+sphere(1).displace_map(bumps, 0.1, scale: [0.5, 0.25]).paint(material(texture: tiles, texture_scale: 0.5))
+union { box(1).translate(y: 2)
+  torus(1, 0.3).scale(0.5) }.displace_map(bumps, 0.05).translate(x: 3)
+distance_grid("parts/rock.nrrd").translate(x: -3)
+)";
+    const driver::Compilation first =
+        driver::compile_text("a.sdf", text, FATHOM_SOURCE_DIR "/examples", {});
+    REQUIRE(first.good());
+    const Comparison result = compared(first, 3);
+    INFO(result.sdf);
+    CHECK(result.exported == "");
+    CHECK(result.imported == "");
+    CHECK(result.errors == "");
+    check_fields(result, false);
+    CHECK(result.sdf.find("texture: tiles, texture_scale: 0.5") != std::string::npos);
+    CHECK(result.sdf.find(".displace_map(pebbles, 0.05, scale: 1)") != std::string::npos);
+}
+
 namespace {
 
 // Scenes as people write them, of all that the library has by numbers.

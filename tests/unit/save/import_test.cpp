@@ -3,7 +3,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <ctime>
 #include <locale>
+#include <random>
 
 using namespace save_test;
 
@@ -276,6 +278,49 @@ TEST_CASE("a hundred thousand nodes stay a line each", "[save]") {
     CHECK(imported.result.sdf.size() < 60 * 100000);
     CHECK(imported.said() == "");
     CHECK(imported.result.sdf.find("keep") == std::string::npos); // the names are those that an export gives
+}
+
+TEST_CASE("time grows with the file, and no faster", "[save]") {
+    // Processor time of one run, and that as a ratio: ten times the nodes take about ten times as long.
+    const auto seconds = [](int nodes) {
+        std::string text = "- 0.3\n- {}\n- []\n- - Generic\n  - Distance field\n  - Children:\n";
+        for (int i = 0; i < nodes; ++i)
+            text += i % 2 ? "    - [Sphere, round one, {Radius: 0.5}]\n" : "    - [Wobble, w, {Rate: 1}]\n";
+        const std::clock_t before = std::clock();
+        const Imported imported = import_text(text);
+        REQUIRE(imported.result.nodes == static_cast<std::size_t>(nodes));
+        return double(std::clock() - before) / CLOCKS_PER_SEC;
+    };
+    seconds(1000);
+    CHECK(seconds(100000) < 30 * seconds(10000));
+}
+
+TEST_CASE("mutations of save files are answered", "[save]") {
+    // What tests/fuzz/yaml_fuzz.cpp asks of any bytes, asked here of a few thousand that are nearly right.
+    const std::string seed = std::string(appendix_b) + file_of("[Blend, b, {Center: {X: 1}, Children: [[Box, a, {}], [Mystery, m, {A: [1, {b: c}]}]]}]").substr(8);
+    static const char *const words[] = {"[", "]", "{", "}", ": ", "- ", "\n", ", ", "'", "\"", "&a ", "*a", "!!str ", "~", ".nan", "|\n", "? ", "%TAG", "\t", "\x00", "\xff", "---\n"};
+    std::mt19937 random(5);
+    for (int round = 0; round < 3000; ++round) {
+        std::string text = seed;
+        for (unsigned n = 1 + random() % 4; n > 0; --n) {
+            const std::size_t at = random() % text.size();
+            switch (random() % 4) {
+            case 0: text.erase(at, 1 + random() % 20); break;
+            case 1: text.insert(at, words[random() % std::size(words)]); break;
+            case 2: text[at] = static_cast<char>(random() % 256); break;
+            default: text.insert(at, text.substr(random() % text.size(), random() % 60)); break;
+            }
+            if (text.empty()) text = "-";
+        }
+        const Imported imported = import_text(text);
+        REQUIRE(imported.result.structural_error == imported.diagnostics.has_errors());
+        REQUIRE(imported.result.sdf.find("import \"dfmodel\" as dfmodel") != std::string::npos);
+        REQUIRE(imported.result.sdf.size() < 4096 + 200 * text.size());
+        if (round % 30 == 0) { // what is written is always a text of the language
+            INFO(imported.result.sdf);
+            REQUIRE(check_text(imported.result.sdf).errors() == "");
+        }
+    }
 }
 
 TEST_CASE("line ends, versions, documents and locales", "[save]") {

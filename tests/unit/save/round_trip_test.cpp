@@ -114,6 +114,30 @@ const char *everything = R"(---
 
 TEST_CASE("a file with everything comes back whole", "[save]") { CHECK(lost(everything) == ""); }
 
+TEST_CASE("textures and displacement maps come back, on materials and on nodes", "[save]") {
+    const char *file = R"(- 0.3
+- {wood: wood.png, bumps: maps/bumps.png, unused: other.png}
+- - - {Name: Boards, Diffuse: {Red: 1, Green: 2, Blue: 3, Alpha: 9}, Specular: {Red: 255, Green: 255, Blue: 255, Exponent: 5}}
+    - {Color Texture: wood, Texture Scale: {X: 0.5, Y: 0.25}, Displacement Map: <None>}
+  - - {Name: Rough, Diffuse: {Red: 1, Green: 2, Blue: 3, Alpha: 9}, Specular: {Red: 255, Green: 255, Blue: 255, Exponent: 5}}
+    - {Displacement Map: bumps, Displacement Amount: 0.2, Displacement Scale: {X: 2, Y: 3}}
+  - - {Name: Both, Diffuse: {Red: 1, Green: 2, Blue: 3, Alpha: 9}, Specular: {Red: 255, Green: 255, Blue: 255, Exponent: 5}}
+    - {Color Texture: wood, Displacement Map: bumps, Displacement Amount: -0.2}
+- - Generic
+  - Distance field
+  - Children:
+      - [Sphere, Sphere 1, {Radius: 2, Material: Boards}]
+      - [Sphere, ball, {Radius: 3, Material: Rough}]
+      - [Box, box, {Size: {X: 1, Y: 2, Z: 3}, Material: Both}]
+      - [Displacement, bumpy, {Map: bumps, Amount: 0.3, Scale: {X: 2, Y: 2}, Children: [[Translation, t, {Vector: {X: 1, Y: 0, Z: 0}, Children: [[Sphere, s, {Radius: 4, Material: Boards}], [Torus, ring, {}]]}]]}]
+      - [Translation, moved, {Vector: {X: 5, Y: 0, Z: 0}, Children: [[Displacement, d, {Map: bumps, Amount: 0.1, Children: [[Sphere, s, {Radius: 5}]]}]]}]
+      - [Displacement, no map, {Map: missing, Amount: 0.3, Children: [[Sphere, s, {Radius: 6}]]}]
+- [LightingNode, Lighting, {}]
+- 100
+)";
+    CHECK(lost(file) == "");
+}
+
 TEST_CASE("long lists of like shapes keep their order, doubles and digits", "[save]") {
     std::string nodes = "[Difference, Difference 1, {Children: [[Box, Box 1, {Size: {X: 9, Y: 9, Z: 9}}]";
     for (int i = 0; i < 20; ++i) {
@@ -149,20 +173,34 @@ TEST_CASE("generated trees come back whole", "[save]") {
             for (int i = 0; i < count; ++i) children += (i ? ", " : "") + node(depth - 1);
             return "Children: [" + children + "]}]";
         };
-        switch (depth <= 0 ? pick(5) : pick(14)) {
+        switch (depth <= 0 ? pick(9) : pick(28)) {
         case 0: return "[Sphere, " + name + ", {Radius: " + number() + "}]";
         case 1: return "[Box, " + name + ", {Size: {X: 1, Y: " + number() + ", Z: 2}}]";
         case 2: return "[Torus, " + name + ", {Major Radius: 12, Minor Radius: " + number() + "}]";
         case 3: return "[Cylinder, " + name + ", {Radius: 1, Height: " + number() + ", Exact: True}]";
         case 4: return "[Mystery, " + name + ", {Value: " + number() + "}]";
-        case 5: return "[Union, " + name + ", {" + kids(0, 4);
-        case 6: return "[Generic, " + name + ", {" + kids(0, 4);
-        case 7: return "[Intersection, " + name + ", {" + kids(0, 3);
-        case 8: return "[Difference, " + name + ", {" + kids(0, 3);
-        case 9: return "[Translation, " + name + ", {Vector: " + xyz() + ", " + kids(0, 3);
-        case 10: return "[Rotation, " + name + ", {Angles: {X: " + number() + ", Y: 0, Z: " + number() + "}, " + kids(1, 2);
-        case 11: return "[Scaling, " + name + ", {Factors: {X: 2, Y: " + number() + ", Z: 3}, " + kids(1, 2);
-        case 12: return "[Blend, " + name + ", {Factor: 0.25, " + kids(0, 3);
+        case 14: return "[Generalized Distance Function, " + name + ", {Shape: Dodecahedron, Radius: " + number() + ", Exponent: 9}]";
+        case 15: return "[Blobby Objects, " + name + ", {Balls: 3, Size: {X: 1, Y: " + number() + ", Z: 1}, Radius: 0.1, Seed: " + std::to_string(pick(9)) + "}]";
+        case 16: return "[Menger Sponge, " + name + ", {Size: " + number() + ", Iterations: " + std::to_string(pick(4)) + "}]";
+        case 17: return "[Twist, " + name + ", {Rate: " + number() + ", Tightness: {X: [1, 2]}, " + kids(1, 2);
+        case 18: return "[Turnaround, " + name + ", {" + kids(1, 2);
+        case 19: return "[Repetition, " + name + ", {Cell: {X: " + number() + ", Y: 0, Z: " + number() + "}, " + kids(1, 2);
+        case 20: return "[Hyperize, " + name + ", {Exponent: " + number() + ", " + kids(1, 2);
+        case 21: return "[Offset, " + name + ", {Distance: " + number() + ", " + kids(1, 3);
+        case 22: return "[Pseudo-norm Blend, " + name + ", {Exponent: " + number() + ", " + kids(2, 3);
+        case 23: return "[Seam, " + name + ", {Profile: Groove, Radius: 0.1, Depth: " + number() + ", " + kids(2, 3);
+        case 8: return "[Cone, " + name + ", {Radius: " + number() + ", Height: 2, Steepness: high}]";
+        case 7: return "[Library Shape, " + name + ", {Function: octahedron, Arguments: {radius: " + number() + "}}]";
+        case 6: return "[Sphere, " + name + ", {Radius: -1, Colour: [red, {a: \"b\"}]}, behind, {it: all}]";
+        case 5: return "just a word";
+        case 9: return "[Union, " + name + ", {" + kids(0, 4);
+        case 10: return "[Generic, " + name + ", {" + kids(0, 4);
+        case 11: return "[Intersection, " + name + ", {" + kids(0, 3);
+        case 12: return "[Difference, " + name + ", {" + kids(0, 3);
+        case 13: return "[Translation, " + name + ", {Vector: " + xyz() + ", " + kids(0, 3);
+        case 24: return "[Rotation, " + name + ", {Angles: {X: " + number() + ", Y: 0, Z: " + number() + "}, " + kids(1, 2);
+        case 25: return "[Scaling, " + name + ", {Factors: {X: 2, Y: " + number() + ", Z: 3}, " + kids(1, 2);
+        case 26: return "[Blend, " + name + ", {Factor: 0.25, " + kids(0, 3);
         default: return "[Mystery, " + name + ", {Rate: 1, " + kids(0, 3);
         }
     };
