@@ -136,6 +136,8 @@ std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
     return Polynomial{{{id}, 1.0}};
 }
 
+} // namespace
+
 // Sums of products of doubles that are equal in exact arithmetic may differ by rounding of this
 // relative size.
 constexpr double rounding = 1e-12;
@@ -144,13 +146,15 @@ bool same(Graph &graph, NodeId a, NodeId b) {
     if (a == b) return true;
     const ir::Node x = graph[a], y = graph[b];
     if (x.type != y.type) return false;
-    if (x.type != ir::Type::Float) { // by component, where both are made of them
-        if (x.op != y.op || x.count != y.count || x.payload != y.payload || x.count == 0)
-            return false;
+    const bool alike = x.op == y.op && x.count == y.count && x.payload == y.payload && x.count > 0;
+    // of one op of one argument, or of vectors: the same of the same
+    if (alike && (x.count == 1 || x.type != ir::Type::Float)) {
+        bool all = true;
         for (int i = 0; i < int(x.count); ++i)
-            if (!same(graph, graph.arg(a, i), graph.arg(b, i))) return false;
-        return true;
+            all = all && same(graph, graph.arg(a, i), graph.arg(b, i));
+        if (all) return true;
     }
+    if (x.type != ir::Type::Float) return false;
     auto p = polynomial(graph, a), q = polynomial(graph, b);
     if (!p || !q) return false;
     double size = 0;
@@ -160,6 +164,8 @@ bool same(Graph &graph, NodeId a, NodeId b) {
         if (std::fabs(c) > rounding * std::max(size, 1e-30)) return false;
     return true;
 }
+
+namespace {
 
 // The arms for u = v: u replaced by v, v by u, or one atom of u - v by what the others make it.
 bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b) {
@@ -193,6 +199,26 @@ bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b) {
 }
 
 } // namespace
+
+std::optional<Solved> solved(Graph &graph, NodeId scalar, NodeId is) {
+    const auto sum = polynomial(graph, scalar);
+    if (!sum) return {};
+    for (const auto &[atom, c] : *sum) {
+        if (atom.size() != 1 || c == 0) continue;
+        const ir::Node node = graph[atom[0]];
+        if (node.op != Op::Swizzle) continue;
+        bool elsewhere = false; // the coordinate must occur in this one term only
+        for (const auto &[m, k] : *sum)
+            for (NodeId f : m) elsewhere = elsewhere || (m != atom && k != 0 && f == atom[0]);
+        if (elsewhere) continue;
+        Polynomial rest;
+        for (const auto &[m, k] : *sum)
+            if (m != atom && k != 0) rest[m] = -k / c;
+        const NodeId value = graph.add(graph.mul(is, graph.number(1 / c)), rebuilt(graph, rest));
+        return Solved{graph.arg(atom[0], 0), ir::swizzle_component(node.payload, 0), value};
+    }
+    return {};
+}
 
 std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {
     auto p = polynomial(graph, a), q = polynomial(graph, b);

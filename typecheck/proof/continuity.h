@@ -19,6 +19,19 @@ ir::NodeId in_one_form(ir::Graph &graph, ir::NodeId scalar);
 // |q| = |p| for all p, as of reflections: proved as polynomials.
 bool keeps_length(ir::Graph &graph, ir::NodeId q);
 
+// Are both the same number (or vector) in exact arithmetic, as polynomials in whatever they are
+// made of?
+bool same(ir::Graph &graph, ir::NodeId a, ir::NodeId b);
+
+// A coordinate (a component of a vector that is not made of scalars) in which `scalar` is linear,
+// and what it is where `scalar` has the value `is`: of 2 x + y, x is (is - y) / 2.
+struct Solved {
+    ir::NodeId vector;
+    int component = 0;
+    ir::NodeId value;
+};
+std::optional<Solved> solved(ir::Graph &graph, ir::NodeId scalar, ir::NodeId is);
+
 // a - b as a sum in which equal terms have cancelled; nothing where the expressions are too large.
 std::optional<ir::NodeId> difference(ir::Graph &graph, ir::NodeId a, ir::NodeId b);
 

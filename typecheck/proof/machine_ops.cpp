@@ -69,7 +69,7 @@ void Step::run() {
             if (turns.is_point() && turns.finite())
                 set(c, x - m * turns, grad(0, c), odd(0, c));
             else
-                set(c, {-m.hi / 2, m.hi / 2}, grad(0, c), !zero(grad(0, c)));
+                set(c, {-m.hi / 2, m.hi / 2}, grad(0, c), !in.cancels && !zero(grad(0, c)));
         }
         if (bad) return fail(Trouble::Jump);
         finish(norm(0), any_odd);
@@ -225,8 +225,8 @@ void Step::run() {
                 set(c, x - m * turns, sum(grad(0, c), scaled(-turns, grad(1, c))));
                 continue;
             }
-            jumps = jumps || !zero(grad(0, c)) || !zero(grad(1, c));
-            set(c, {std::min(m.lo, 0.0), std::max(m.hi, 0.0)}, none);
+            jumps = jumps || !zero(grad(1, c)) || (!in.cancels && !zero(grad(0, c)));
+            set(c, {std::min(m.lo, 0.0), std::max(m.hi, 0.0)}, grad(0, c));
         }
         if (is_int()) return settle_int();
         if (jumps) return fail(Trouble::Jump);
@@ -360,8 +360,8 @@ void Step::run() {
             if (whole.is_point() && whole.finite())
                 set(c, x - whole, grad(0, c));
             else {
-                jumps = jumps || !zero(grad(0, c));
-                set(c, {0, 1}, none);
+                jumps = jumps || (!in.cancels && !zero(grad(0, c)));
+                set(c, {0, 1}, grad(0, c));
             }
         }
         if (jumps) return fail(Trouble::Jump);
@@ -379,7 +379,8 @@ void Step::run() {
             v = meet(pi, ir::outward(std::min({a, b, c, d}), std::max({a, b, c, d}),
                                      ir::rounding::library));
         }
-        if (!varies || cut) {
+        const bool crosses = cut && !(in.cancels && !x.contains(0));
+        if (!varies || crosses) {
             set(0, v, none);
             if (varies) return fail(x.contains(0) ? Trouble::Singular : Trouble::Jump);
             return finish(0, any_odd);

@@ -96,7 +96,7 @@ struct Step {
             jumps = jumps || (!v.is_point() && !zero(grad(0, c)));
             set(c, v, none);
         }
-        if (jumps)
+        if (jumps && !in.cancels)
             fail(Trouble::Jump);
         else
             finish(0, any_odd && !jumps);

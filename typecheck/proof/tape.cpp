@@ -2,6 +2,7 @@
 #include "typecheck/proof/tape.h"
 
 #include "typecheck/proof/continuity.h"
+#include "typecheck/proof/steps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +26,7 @@ struct Flattener {
     Tape tape;
     std::vector<bool> varies; // by slot
     std::size_t count = 0;
+    std::unordered_set<NodeId> cancelling; // steps
 
     explicit Flattener(Flattening &c) : context(c), graph(c.graph) {}
 
@@ -215,6 +217,7 @@ struct Flattener {
         out.type = node.type;
         out.payload = node.payload;
         out.node = id;
+        out.cancels = cancelling.contains(id);
         switch (node.op) {
         case Op::Point: out.varies = true; return emit(scope, out);
         case Op::Call: return call(scope, id, ir::FunctionId{node.payload});
@@ -229,6 +232,8 @@ struct Flattener {
             if (auto parts = wave(id)) {
                 out.form = Form::Wave;
                 out.args = {slot(scope, parts->x), slot(scope, parts->m)};
+                for (NodeId arg : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
+                    out.cancels = out.cancels || cancelling.contains(arg);
                 return emit(scope, out);
             }
             break;
@@ -448,6 +453,11 @@ std::size_t Tape::length() const {
 
 Tape flatten(Flattening &context, NodeId root) {
     Flattener flattener(context);
+    if (has_steps(context.graph, root)) {
+        const NodeId whole = without_calls(context.graph, root);
+        flattener.cancelling = cancelling_steps(context.graph, whole);
+        if (!flattener.cancelling.empty()) root = whole;
+    }
     Scope scope;
     scope.block = &flattener.tape.each;
     flattener.tape.result = flattener.slot(scope, root);

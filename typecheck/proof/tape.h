@@ -33,7 +33,8 @@ struct Instruction {
     Op op = Op::Const;
     Form form = Form::Plain;
     ir::Type type = ir::Type::Float;
-    bool varies = false; // with the point
+    bool varies = false;  // with the point
+    bool cancels = false; // a step whose jumps the result does not see (steps.h)
     Slot out = 0;
     std::vector<Slot> args;
     std::uint32_t payload = 0; // the op's; of a Loop: index into Tape::loops

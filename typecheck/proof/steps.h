@@ -1,0 +1,24 @@
+// Jumps that cancel: fields that are continuous although a `floor`, a `%` or an angle inside them
+// jumps, as own value noise, `p - round(p)` and polar copies by `atan` are. Decided on expressions,
+// never by sampling.
+#pragma once
+
+#include "ir/graph.h"
+
+#include <unordered_set>
+
+namespace fathom::proof {
+
+// The steps (Floor, Ceil, Round, Fract, Mod, Atan2) below `root` whose jumps `root` is proved not
+// to see: it has one value on both sides of each border. Enters no loops; calls should have been
+// written out before (without_calls).
+std::unordered_set<ir::NodeId> cancelling_steps(ir::Graph &graph, ir::NodeId root);
+
+// Does the expression, its calls included, hold such a step?
+bool has_steps(const ir::Graph &graph, ir::NodeId root);
+
+// The same expression with every call replaced by its function's body; `root` itself where that
+// would be very large.
+ir::NodeId without_calls(ir::Graph &graph, ir::NodeId root);
+
+} // namespace fathom::proof
