@@ -11,19 +11,18 @@ int main(int argc, char **argv) {
         const char *name;
         void (*measure)(Table &);
     };
-    constexpr Group groups[] = {{"process", measure_process},
-                                {"front-end", measure_front_end},
-                                {"shader", measure_shader},
-                                {"steps", measure_steps},
-                                {"interpreter", measure_interpreter}};
+    constexpr Group groups[] = {{"process", measure_process}, {"front-end", measure_front_end},
+                                {"reload", measure_reload},   {"shader", measure_shader},
+                                {"steps", measure_steps},     {"interpreter", measure_interpreter}};
     const std::vector<std::string> wanted(argv + 1, argv + argc);
     for (const std::string &name : wanted)
         if (std::none_of(std::begin(groups), std::end(groups),
                          [&](const Group &group) { return group.name == name; })) {
-            std::fprintf(stderr,
-                         "fathom-bench: no group `%s`; there are process, front-end, shader, "
-                         "steps, interpreter\n",
-                         name.c_str());
+            std::fprintf(
+                stderr,
+                "fathom-bench: no group `%s`; there are process, front-end, reload, shader, "
+                "steps, interpreter\n",
+                name.c_str());
             return 2;
         }
     std::printf("%s\n\n", machine().c_str());

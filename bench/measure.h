@@ -36,6 +36,7 @@ double rate(double amount, const std::function<void()> &run);
 
 double seconds(const std::function<void()> &run); // once
 double processor_seconds(); // of this process so far: what others take meanwhile does not count
+double seconds_now(); // of a steady clock
 double median(std::vector<double> values);
 
 void print(const Table &table);
@@ -56,6 +57,7 @@ complaint(const driver::Compilation &compilation); // its first error in words, 
 void measure_interpreter(Table &table); // interpreter.cpp
 void measure_process(Table &table);     // process.cpp
 void measure_front_end(Table &table);   // front_end.cpp
+void measure_reload(Table &table);      // reload.cpp
 void measure_shader(Table &table);      // shader.cpp
 void measure_steps(Table &table);       // steps.cpp
 
