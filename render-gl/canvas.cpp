@@ -88,8 +88,7 @@ bool Canvas::resize(int width, int height) {
     bool good = complete();
     attach(picks_, GL_RGBA32F, width, height, picks_framebuffer_, GL_COLOR_ATTACHMENT0);
     good &= complete();
-    attach(shown_, GL_RGBA8, width, height, shown_framebuffer_, GL_COLOR_ATTACHMENT0);
-    good &= complete() && glGetError() == GL_NO_ERROR;
+    good &= glGetError() == GL_NO_ERROR;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     probed_ = false;
     samples_ = 0;
@@ -101,13 +100,16 @@ bool Canvas::resize(int width, int height) {
 // A view's shader counts places from the top left of its own tile: its offset takes away where the
 // tile lies.
 void Canvas::draw_views(const Program &program, std::span<const TileView> views,
-                        const std::vector<ir::Param> &params, int sample, bool linear) {
+                        const std::vector<ir::Param> &params, int sample, bool linear, int row,
+                        int rows) {
     glEnable(GL_SCISSOR_TEST);
     for (const TileView &view : views) {
         const Tile &tile = view.tile;
         const int bottom = height_ - tile.y - tile.height;
         glViewport(tile.x, bottom, tile.width, tile.height);
-        glScissor(tile.x, bottom, tile.width, tile.height);
+        const int first = std::max(tile.y, row), last = std::min(tile.y + tile.height, row + rows);
+        if (first >= last) continue;
+        glScissor(tile.x, height_ - last, tile.width, last - first);
         FrameInputs inputs = view.inputs;
         inputs.width = tile.width;
         inputs.height = tile.height;
@@ -121,27 +123,31 @@ void Canvas::draw_views(const Program &program, std::span<const TileView> views,
 }
 
 bool Canvas::draw(const Program &program, int width, int height, std::span<const TileView> views,
-                  const std::vector<ir::Param> &params, int sample) {
+                  const std::vector<ir::Param> &params, int sample, int row, int rows) {
+    rows = std::min(rows, height - row);
     if (!resize(width, height)) return false;
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_BLEND);
-    if (sample == 0) {
+    if (sample == 0 && row == 0) {
+        samples_ = 0;
         const float background[] = {0.01f, 0.01f, 0.01f, 1}, nothing[] = {0, -1, 0, 0};
         glClearBufferfv(GL_COLOR, 0, background);
         glClearBufferfv(GL_COLOR, 1, nothing);
-    } else { // colours add up; what a pixel shows is told by its first sample, in the middle
+    }
+    if (sample >
+        0) { // colours add up; what a pixel shows is told by its first sample, in the middle
         glEnablei(GL_BLEND, 0);
         glBlendFunc(GL_ONE, GL_ONE);
         glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     }
-    draw_views(program, views, params, sample, true);
+    draw_views(program, views, params, sample, true, row, rows);
     glDisablei(GL_BLEND, 0);
     glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    samples_ = sample + 1;
+    if (row + rows >= height_) samples_ = sample + 1;
     return true;
 }
 
@@ -163,19 +169,26 @@ bool Canvas::probe(const Program &program, std::span<const TileView> views,
     glDisable(GL_CULL_FACE);
     const float nothing[] = {0, 0, 0, 0};
     glClearBufferfv(GL_COLOR, 1, nothing);
-    draw_views(program, views, params, 0, false);
+    draw_views(program, views, params, 0, false, 0, height_);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return true;
 }
 
 void Canvas::finish(const PostSettings &settings) {
     if (samples_ == 0) return;
+    if (shown_width_ != width_ || shown_height_ != height_) {
+        attach(shown_, GL_RGBA8, width_, height_, shown_framebuffer_, GL_COLOR_ATTACHMENT0);
+        const bool good = complete();
+        shown_width_ = good ? width_ : 0;
+        shown_height_ = good ? height_ : 0;
+        if (!good) return;
+    }
     post_.run(settings, sum_, samples_, picks_, probed_ ? probe_ : 0, shown_framebuffer_, width_,
               height_);
 }
 
 Pick Canvas::pick(int x, int y) const {
-    if (samples_ == 0 || x < 0 || y < 0 || x >= width_ || y >= height_) return {};
+    if (x < 0 || y < 0 || x >= width_ || y >= height_) return {};
     std::array<float, 4> value{};
     glBindFramebuffer(GL_READ_FRAMEBUFFER, picks_framebuffer_);
     glReadPixels(x, height_ - 1 - y, 1, 1, GL_RGBA, GL_FLOAT, value.data());
@@ -193,15 +206,17 @@ std::vector<float> Canvas::read(unsigned framebuffer) const {
     return upside_down(upward, width_, height_);
 }
 
-Picture Canvas::read_picture() const { return read_bytes(shown_framebuffer_, width_, height_); }
+Picture Canvas::read_picture() const {
+    return read_bytes(shown_framebuffer_, shown_width_, shown_height_);
+}
 
 void Canvas::show(int window_width, int window_height) const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_framebuffer_);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     glDisable(GL_SCISSOR_TEST);
-    bool same = width_ == window_width && height_ == window_height;
-    glBlitFramebuffer(0, 0, width_, height_, 0, 0, window_width, window_height, GL_COLOR_BUFFER_BIT,
-                      same ? GL_NEAREST : GL_LINEAR);
+    bool same = shown_width_ == window_width && shown_height_ == window_height;
+    glBlitFramebuffer(0, 0, shown_width_, shown_height_, 0, 0, window_width, window_height,
+                      GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 

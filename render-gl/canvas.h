@@ -43,16 +43,18 @@ class Canvas {
     Canvas &operator=(const Canvas &) = delete;
 
     // Adds a sample of every view (ir::sample_offset), the first of them anew, and waits until it
-    // is done. False where the card has no memory for it.
+    // is done. Of the canvas's rows only those from `row` on, `rows` of them: a slow picture is
+    // drawn in bands from 0 down, and events are heard between them. What is shown stays until
+    // finish(). False where the card has no memory for it.
     bool draw(const Program &program, int width, int height, std::span<const TileView> views,
-              const std::vector<ir::Param> &params, int sample);
+              const std::vector<ir::Param> &params, int sample, int row = 0, int rows = 1 << 24);
     // The same of a program with Instruments::Probe, at the size that was drawn last.
     bool probe(const Program &program, std::span<const TileView> views,
                const std::vector<ir::Param> &params);
     // Makes of it what is shown.
     void finish(const PostSettings &settings);
 
-    bool empty() const { return width_ == 0; }
+    bool empty() const { return shown_width_ == 0; }
     int width() const { return width_; }
     int height() const { return height_; }
     int samples() const { return samples_; }
@@ -70,13 +72,15 @@ class Canvas {
   private:
     bool resize(int width, int height);
     void draw_views(const Program &program, std::span<const TileView> views,
-                    const std::vector<ir::Param> &params, int sample, bool linear);
+                    const std::vector<ir::Param> &params, int sample, bool linear, int row,
+                    int rows);
     std::vector<float> read(unsigned framebuffer) const;
 
     unsigned sum_ = 0, picks_ = 0, probe_ = 0, shown_ = 0; // textures
     unsigned framebuffer_ = 0, picks_framebuffer_ = 0, probe_framebuffer_ = 0,
              shown_framebuffer_ = 0;
-    int width_ = 0, height_ = 0, samples_ = 0;
+    int width_ = 0, height_ = 0, samples_ = 0; // samples: whole ones
+    int shown_width_ = 0, shown_height_ = 0;
     bool probed_ = false; // the probe is of this size
     Post post_;
 };

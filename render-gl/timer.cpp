@@ -8,11 +8,12 @@ Timer::~Timer() {
     if (queries_[0]) glDeleteQueries(static_cast<GLsizei>(most), queries_.data());
 }
 
-void Timer::begin() {
+bool Timer::begin() {
     if (!queries_[0]) glGenQueries(static_cast<GLsizei>(most), queries_.data());
-    if (asked_ - answered_ == most) return; // the card is far behind: this one goes unmeasured
+    if (asked_ - answered_ == most) return false;
     glBeginQuery(GL_TIME_ELAPSED, queries_[asked_ % most]);
     open_ = true;
+    return true;
 }
 
 void Timer::end() {

@@ -14,7 +14,7 @@ class Timer {
     Timer(const Timer &) = delete;
     Timer &operator=(const Timer &) = delete;
 
-    void begin();
+    bool begin(); // false where the card is too far behind for one more
     void end();
     std::optional<double> poll(); // the next answer that is there, in milliseconds, in order
 

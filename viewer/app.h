@@ -47,6 +47,10 @@ struct App {
     bool drew_now = false; // in this turn of the loop
     bool probed = false;   // the probe shows what is drawn
     bool finished = false; // what is shown is what was drawn
+    bool drawing = false;  // a sample is drawn in part: so many rows, which took so long
+    int next_sample = 0, next_row = 0;
+    double sample_ms = 0, gpu_ms = 0;
+    std::vector<bool> bands_asked; // of the timer's answers to come: whether it is a sample's last
     int samples_drawn = 0, frames_drawn = 0;
 
     std::vector<std::string> errors, remarks; // of the newest build, good or not
@@ -70,6 +74,7 @@ struct App {
     std::filesystem::path sequence_folder;
     bool record_next = false, picture_asked = false, told = true;
     double cursor_x = 0, cursor_y = 0, pressed_x = 0, pressed_y = 0;
+    bool flies = true; // the keys that are held move the camera
     int dragged = -1; // the view in which the button went down
     float font_scale = 1;
 
@@ -99,6 +104,7 @@ struct App {
     // draw.cpp
     void draw(double seconds);
     void draw_scene(int width, int height, bool moving, bool drew_before);
+    bool draw_rows(bool whole);
     void draw_probe();
     void draw_panels(int width, int height);
     void save_pictures(int width, int height, bool moving);

@@ -107,14 +107,48 @@ std::vector<gl::TileView> App::tile_views(int width, int height) const {
 
 bool App::pending() const {
     if (!program) return false;
-    if (stale || !drawn || !finished) return true;
+    if (stale || !drawn || drawing || !finished) return true;
     return controls.accumulate && controls.look == gl::Look::Picture && !animated() &&
            !controls.always && !controls.rotate && samples_drawn < samples_at_rest;
 }
 
+// One sample of the picture, or as many of its rows as fit into a turn of the loop: a slow scene
+// does not keep events waiting, and what was shown stays until the new picture is whole. True when
+// it is.
+bool App::draw_rows(bool whole) {
+    constexpr double turn_ms = 30, band_ms = 10;
+    const Clock::time_point start = Clock::now();
+    const std::vector<gl::TileView> tiles = tile_views(drawn->width, drawn->height);
+    const double expected = status.frame_ms > 0 ? status.frame_ms : 16 * band_ms;
+    const int band =
+        whole ? drawn->height
+              : std::clamp(static_cast<int>(drawn->height * band_ms / expected), 8, drawn->height);
+    while (next_row < drawn->height) {
+        const bool measured = timer.begin();
+        const bool good = canvas.draw(*program, drawn->width, drawn->height, tiles, params,
+                                      next_sample, next_row, band);
+        timer.end();
+        if (!good) {
+            drawing = false;
+            note("the graphics card has no memory for this size");
+            return false;
+        }
+        next_row += band;
+        if (measured) bands_asked.push_back(next_row >= drawn->height);
+        while (const auto milliseconds = timer.poll()) {
+            gpu_ms += *milliseconds;
+            const bool last = bands_asked.front();
+            bands_asked.erase(bands_asked.begin());
+            if (last) gpu_times.add(std::exchange(gpu_ms, 0));
+        }
+        if (milliseconds_since(start) > turn_ms) break;
+    }
+    sample_ms += milliseconds_since(start);
+    return next_row >= drawn->height;
+}
+
 // While it is moved by hand, the picture is drawn as coarsely as it takes to keep up; at rest in
-// full, then smoothed by more samples, one a turn of the loop so that events are heard between
-// them.
+// full, then smoothed by more samples.
 void App::draw_scene(int width, int height, bool moving, bool drew_before) {
     constexpr double wanted_ms = 30;
     double scale = 1;
@@ -122,29 +156,31 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
         scale = std::clamp(std::sqrt(wanted_ms / status.frame_ms), 0.125, 1.0);
     const Shot shot{views, time, std::max(1, static_cast<int>(width * scale)),
                     std::max(1, static_cast<int>(height * scale))};
-    const bool anew = stale || drawn != shot || controls.always;
-    if (!anew && finished && (!pending() || moving)) return;
-    if (anew || (samples_drawn < samples_at_rest && pending() && finished)) {
-        const int sample = anew ? 0 : samples_drawn;
-        const Clock::time_point start = Clock::now();
-        timer.begin();
-        const bool good = canvas.draw(*program, shot.width, shot.height,
-                                      tile_views(shot.width, shot.height), params, sample);
-        timer.end();
-        if (!good) return note("the graphics card has no memory for this size");
+    const bool anew = stale || drawn != shot || (controls.always && !drawing);
+    if (anew) {
+        drawn = shot;
+        stale = probed = false;
+    }
+    const bool more = !anew && !drawing && finished && pending() && !moving;
+    if (anew || more) {
+        drawing = true;
+        next_sample = anew ? 0 : samples_drawn;
+        next_row = 0;
+        sample_ms = 0;
+    }
+    if (!drawing && finished) return;
+    const bool first = drawing && next_sample == 0;
+    if (drawing) {
+        drew_now = true;
+        if (!draw_rows(moving || controls.always || controls.rotate || sequence > 0)) return;
+        drawing = false;
+        samples_drawn = next_sample + 1;
         // What a full frame would take: the measure that decides how coarse the next may be.
-        status.frame_ms = milliseconds_since(start) / (scale * scale);
-        samples_drawn = sample + 1;
-        if (anew) {
-            drawn = shot;
-            stale = probed = false;
-            // Frames that follow one another; what came after a rest says nothing of speed.
-            if (drew_before) frame_times.add(milliseconds_since(last_draw));
-            drew_now = true;
-        }
+        status.frame_ms = sample_ms / (scale * scale);
+        // Frames that follow one another; what came after a rest says nothing of speed.
+        if (drew_before) frame_times.add(milliseconds_since(last_draw));
         last_draw = Clock::now();
     }
-    while (const auto milliseconds = timer.poll()) gpu_times.add(*milliseconds);
     draw_probe();
 
     gl::PostSettings post;
@@ -157,7 +193,7 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
     post.isolines = isoline_step(views.cameras[0]);
     canvas.finish(post);
     finished = true;
-    if (anew && (!moving || frames_drawn++ % 32 == 0)) {
+    if (first && (!moving || frames_drawn++ % 32 == 0)) {
         double sum = 0;
         const std::vector<float> picks = canvas.read_picks();
         for (std::size_t i = 2; i < picks.size(); i += 4) sum += picks[i];

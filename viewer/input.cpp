@@ -79,6 +79,7 @@ void App::key(int key, int mods) {
     frames_due = 3;
     const bool shift = (mods & GLFW_MOD_SHIFT) != 0;
     if ((mods & GLFW_MOD_CONTROL) != 0) {
+        flies = false; // not even when Control is let go first
         if (key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
         if (key == GLFW_KEY_S) write_view();
         return;
@@ -218,7 +219,8 @@ void App::fly_by_keys(double seconds) {
     auto held = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS ? 1.0 : 0.0; };
     ir::Triple by{held(GLFW_KEY_D) - held(GLFW_KEY_A), held(GLFW_KEY_E) - held(GLFW_KEY_Q),
                   held(GLFW_KEY_W) - held(GLFW_KEY_S)};
-    if (by == ir::Triple{}) return;
+    if (by == ir::Triple{}) flies = true;
+    if (by == ir::Triple{} || !flies) return;
     for (double &part : by) part *= 0.8 * std::min(seconds, 0.1);
     fly(views.camera(), by);
     touched = Clock::now();

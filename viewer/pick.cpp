@@ -20,7 +20,7 @@ std::string one_line(std::string_view text) {
     if (result.size() <= longest_words) return result;
     std::size_t end = longest_words;
     while (end > 0 && (static_cast<unsigned char>(result[end]) & 0xc0) == 0x80)
-        --end; // no half of a letter
+        --end;                            // no half of a letter
     return result.substr(0, end) + "..."; // the panels' font has no ellipsis
 }
 

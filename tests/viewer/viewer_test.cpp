@@ -243,6 +243,35 @@ TEST_CASE("the window's size, and how it is coloured, change nothing that stays"
     }
 }
 
+TEST_CASE("without a context to share the driver works on the window's thread, and the pictures "
+          "are the same") {
+    const auto scene = [](const char *r) {
+        return "sphere(" + std::string(r) + ").paint(orange)\n" + camera;
+    };
+    const Picture cold = cold_picture(scene("1.3"));
+    Window window(scene("1"), {"--one-context"});
+    CHECK(touched_driver(window.reload(scene("1.1"))));
+    CHECK_FALSE(touched_driver(window.reload(scene("1.3"))));
+    CHECK(difference(window.picture(), cold) == 0);
+    CHECK(touched_driver(window.reload("box(1)\n" + camera)));
+    CHECK(difference(window.picture(), cold) > 0.01);
+}
+
+TEST_CASE(
+    "with --save-view the camera is in the file when the window closes; frames are numbered") {
+    Window window("sphere(1)\nbox(1).translate([time, 0, 0])\n" + camera, {"--save-view"});
+    window.key("3");
+    window.key("m");
+    window.key("space"); // time passes
+    CHECK(waited([&] { return fs::exists(window.folder / "scene-frames/00004.png"); }));
+    window.key("m");
+    window.key("ctrl+q");
+    CHECK(window.process().exit_status() == 0);
+    CHECK(window.folder.read("scene.sdf") ==
+          "sphere(1)\nbox(1).translate([time, 0, 0])\ncamera(at: [6, 0, 0], look_at: [0, 0, 0], "
+          "fov: 45deg)\n");
+}
+
 TEST_CASE("a still scene costs less than a hundredth of a core") {
     Window window("sphere(1).paint(orange)\n" + camera);
     window.picture();
