@@ -17,6 +17,12 @@ files = [
     ("flat", "Flat shapes"), ("combining", "Combining"), ("transforms", "Transforms"), ("fields", "Fields and numbers"),
     ("looks", "Looks"), ("dfmodel", "The thesis's own forms: module `dfmodel`"),
 ]
+# Two tops in one plane, blended with a post: as written first, and by the recipe.
+coplanar = """let a = box([1, 0.6, 1.4]).translate(x: -0.5)
+let b = box([1, 0.6, 1]).translate(x: 0.5)
+let c = cylinder(0.22, 1.6).translate([0.5, 0.5, 0])
+round_union(0.25, a, b, c).translate(x: -1.3)
+round_union(0.25, a | b, c).translate(x: 1.3)"""
 no_shape = {"dfmodel_keep"}  # its example makes none
 introduction = """# The standard library
 
@@ -26,8 +32,14 @@ Sizes are full, outer lengths unless said; shapes are centred at the origin; y i
 in degrees). A number stands for a vector of equal components. A last argument `shapes` takes a block, a list, or shapes.
 
 Faces in one plane: `round_union`, `chamfer_union` and their like add material wherever two surfaces are near, so two boxes whose
-tops lie in one plane get a swelling along it. Unite such parts plainly, and blend the result with the others:
+tops lie in one plane get a swelling along their seam (left). Unite such parts plainly, and blend the result with the others (right):
 `round_union(0.2, a | b, c)`; or move one top by the blend's radius.
+
+![Left a swelling where two tops meet, right none](stdlib/coplanar.png)
+
+```
+COPLANAR
+```
 """
 
 
@@ -69,7 +81,9 @@ def picture(program, name, example, module):
 
 def main():
     program, with_pictures, names = sys.argv[1], "--pictures" in sys.argv, sys.argv[3:]
-    page = [introduction]
+    page = [introduction.replace("COPLANAR", coplanar)]
+    if with_pictures and (not names or "coplanar" in names):
+        picture(program, "coplanar", coplanar + "\ncamera([0.6, 2.6, 5.6], look_at: [0, 0.2, 0], fov: 40deg)\nsun([-2, 1, 1.2])", False)
     for stem, title in files:
         page.append(f"\n## {title}\n")
         module = stem == "dfmodel"

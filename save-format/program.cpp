@@ -69,9 +69,9 @@ constexpr Spelling spellings[] = {
     {"MatMul", "*", 2, true},
     {"Transpose", "transpose", 1, false},
     {"Hash", "hash", 1, false},
-    {"Perlin", "noise", 1, false},
-    {"Simplex", "simplex", 1, false},
-    {"ValueNoise", "value_noise", 1, false},
+    {"Perlin", "dfmodel.perlin", 1, false},
+    {"Simplex", "dfmodel.simplex", 1, false},
+    {"ValueNoise", "dfmodel.value_noise", 1, false},
     {"Worley", "worley", 1, false},
     {"SpotNoise", "spot_noise", 3, false},
 };
