@@ -69,21 +69,26 @@ inline Interval meet(Interval a, Interval b) {
 }
 
 inline Interval operator-(Interval a) { return {-a.hi, -a.lo}; }
-inline Interval operator+(Interval a, Interval b) {
+inline Interval operator+(const Interval &a, const Interval &b) {
     if (a.lo == 0 && a.hi == 0) return b; // exact, and common in gradients
     if (b.lo == 0 && b.hi == 0) return a;
     return outward(a.lo + b.lo, a.hi + b.hi);
 }
 inline Interval operator-(Interval a, Interval b) { return a + (-b); }
-inline Interval operator*(Interval a, Interval b) {
-    using rounding::times;
+// By numbers, not intervals: pairs of doubles just written are slow to read again as one.
+inline Interval product(double a, double b, double c, double d) { // [a, b] * [c, d]
+    double p = a * c, q = a * d, r = b * c, s = b * d;
+    if (std::isnan(p + q + r + s)) // a 0 times an infinity, perhaps
+        p = rounding::times(a, c), q = rounding::times(a, d), r = rounding::times(b, c),
+        s = rounding::times(b, d);
+    return outward(std::min(std::min(p, q), std::min(r, s)),
+                   std::max(std::max(p, q), std::max(r, s)));
+}
+inline Interval operator*(const Interval &a, const Interval &b) {
     if ((a.lo == 0 && a.hi == 0) || (b.lo == 0 && b.hi == 0)) return 0.0;
     if (a.lo == 1 && a.hi == 1) return b;
     if (b.lo == 1 && b.hi == 1) return a;
-    double p = times(a.lo, b.lo), q = times(a.lo, b.hi), r = times(a.hi, b.lo),
-           s = times(a.hi, b.hi);
-    return outward(std::min(std::min(p, q), std::min(r, s)),
-                   std::max(std::max(p, q), std::max(r, s)));
+    return product(a.lo, a.hi, b.lo, b.hi);
 }
 inline Interval operator/(Interval a, Interval b) {
     if (b.contains(0)) return a.lo == 0 && a.hi == 0 ? Interval(0.0) : Interval::everything();

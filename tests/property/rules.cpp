@@ -114,6 +114,45 @@ std::vector<Case> cases() {
                                     {s.g.vec3(1, 0, 0), s.g.vec3(1e9, 1, 1)}, 0);
                    },
                    0.95});
+    out.push_back(
+        {"blend with a weight beyond 1", Rule::LerpWeights,
+         [](Scenery &s) {
+             return s.add(ShapeKind::Lerp,
+                          {s.sphere(0.5), s.add(translated(s.g, s.sphere(0.5), s.g.vec3(2, 0, 0)))},
+                          {s.n(2)});
+         },
+         0.95});
+    out.push_back({"a blend whose radius varies", Rule::BlendRadius,
+                   [](Scenery &s) {
+                       NodeId r = s.g.add(s.n(0.5), s.g.mul(s.n(0.3), s.sin(s.g.mul(s.n(5), s.x))));
+                       return s.add(ShapeKind::Blend, {s.sphere(1), s.sphere(1)}, {r, s.n(1)},
+                                    static_cast<std::uint32_t>(Profile::Chamfer));
+                   },
+                   0.9});
+    // Half the angle from the x axis: near the poles as steep across a ball's border as along it.
+    // Its bound in the region is stated, so that the rule for the hole is alone.
+    out.push_back({"a raw field in a hole", Rule::Holes,
+                   [](Scenery &s) {
+                       NodeId off = s.length(s.g.swizzle(s.p, std::array{1, 2}));
+                       Shape leaf;
+                       leaf.kind = ShapeKind::Leaf;
+                       leaf.args = {s.g.mul(s.n(0.5), s.g.make(Op::Atan2, {off, s.x}))};
+                       leaf.assumed = 1.01;
+                       Region region = s.ball(1);
+                       region.less = {s.ball(0.5)};
+                       return s.add(ShapeKind::Offset, {s.within(s.add(leaf), region)}, {s.n(0.4)});
+                   },
+                   0.95});
+    out.push_back({"a ring", Rule::Sectors,
+                   [](Scenery &s) {
+                       Repetition r;
+                       r.polar = true;
+                       r.axis = 1;
+                       s.scene.shapes.repetitions.push_back(r);
+                       ShapeId motif = s.add(translated(s.g, s.sphere(0.2), s.g.vec3(1, 0, 0.3)));
+                       return s.add(ShapeKind::Repeat, {motif}, {s.g.integer(5)}, 0);
+                   },
+                   0.95});
     return out;
 }
 
@@ -132,6 +171,15 @@ TEST_CASE("no rule is exceeded, each is nearly attained, and none can be halved"
             Slopes broken = run(test, 0.5, weakened);
             CHECK((broken.unsafe > 0 || broken.steepest > 1 + 5e-3));
         }
+    }
+}
+
+TEST_CASE("each rule has a case of its own") {
+    for (std::size_t rule = 0; rule < std::size_t(Rule::Count); ++rule) {
+        const std::vector<Case> all = cases();
+        INFO("rule " << rule);
+        CHECK(std::any_of(all.begin(), all.end(),
+                          [&](const Case &one) { return std::size_t(one.rule) == rule; }));
     }
 }
 

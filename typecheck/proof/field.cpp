@@ -62,11 +62,10 @@ bool inside(const Zone &zone, const Cell &cell) { // certainly all of the cell
     return false;
 }
 
-struct Candidate {
+struct Candidate { // small: heaps move them about
     double bound;
     int depth;
-    Cell cell;
-    Interval value;
+    std::uint32_t at; // of the cell and its values
 };
 struct Worse { // finite bounds: the greatest first; infinite ones: the deepest, so that trouble is
                // found soon
@@ -133,6 +132,35 @@ bool misses(const Zone &zone, const Cell &cell) {
                        [&](const Zone &z) { return inside(z, cell); });
 }
 
+namespace {
+
+// A domain that is its own mirror image is cut down to the part where coordinates are not below 0,
+// as far as the field is as steep on both sides; true where its values there are the others
+// negated.
+bool keep_half(const Tape &tape, Cell &whole, const Zone *zone) {
+    auto centred = [&](std::size_t i) {
+        if (zone && (!zone->less.empty() || zone->kind == ir::RegionKind::Everywhere ||
+                     (zone->kind != ir::RegionKind::Tube && !(zone->center[i] == Interval(0.0)))))
+            return false;
+        // Of a period the upper end lies a little further out.
+        return whole.p[i].lo < 0 && -whole.p[i].lo <= whole.p[i].hi;
+    };
+    bool halved = false, negated = false;
+    auto try_axes = [&](const std::array<bool, 3> &axes, std::size_t cut) {
+        const Reflected how = reflected(tape, axes);
+        if (how == Reflected::Unknown) return;
+        whole.p[cut].lo = 0;
+        halved = true;
+        negated = negated || how == Reflected::Negated;
+    };
+    for (std::size_t i = 0; i < 3; ++i)
+        if (centred(i)) try_axes({i == 0, i == 1, i == 2}, i);
+    if (!halved && centred(0) && centred(1) && centred(2)) try_axes({true, true, true}, 0);
+    return negated;
+}
+
+} // namespace
+
 FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
                        const Domain &domain, const Budget &budget) {
     FieldBound out;
@@ -156,6 +184,7 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
         if (!periods.reads[i] && !whole.p[i].finite()) whole.p[i] = 0.0;
     }
     const Zone *zone = reduced ? nullptr : domain.zone; // a shifted copy need not lie in the zone
+    const bool negated = keep_half(tape, whole, zone);
 
     auto outside = [&](const Cell &cell) { return zone && misses(*zone, cell); };
     auto sample = [&](const std::array<double, 3> &p) {
@@ -177,11 +206,13 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
     }
 
     std::priority_queue<Candidate, std::vector<Candidate>, Worse> queue;
+    std::vector<std::pair<Cell, Interval>> cells;
     auto push = [&](const Cell &cell, int depth) {
         if (outside(cell)) return;
         machine.run(cell);
         ++out.evaluations;
-        queue.push({machine.norm(), depth, cell, machine.value(0)});
+        queue.push({machine.norm(), depth, static_cast<std::uint32_t>(cells.size())});
+        cells.emplace_back(cell, machine.value(0));
     };
     push(whole, 0);
     double settled = 0; // of cells that cannot be cut any more
@@ -192,18 +223,19 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
         if (top.bound <= std::max(out.sampled * budget.tolerance, settled)) break;
         if (top.bound != infinity && machine.work() > limit) break;
         queue.pop();
+        const auto [cell, value] = cells[top.at];
         int axis = 0;
-        double width = widest(top.cell, periods.reads, &axis);
+        double width = widest(cell, periods.reads, &axis);
         auto k = static_cast<std::size_t>(axis);
-        std::array<double, 3> centre = middle(top.cell);
+        std::array<double, 3> centre = middle(cell);
         double size =
             std::max({std::fabs(centre[0]), std::fabs(centre[1]), std::fabs(centre[2]), 1.0});
         bool endless = !std::isfinite(width);
         if (top.bound == infinity &&
             (width <= 1e-7 * size || (endless && top.depth > 60) || machine.work() > 4 * limit)) {
-            machine.run(top.cell);
+            machine.run(cell);
             out.lipschitz = infinity;
-            out.value = hull(settled_value, top.value);
+            out.value = hull(settled_value, value);
             out.trouble = machine.trouble();
             out.at_infinity = endless;
             out.cause = machine.cause();
@@ -214,12 +246,12 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
         }
         if (width <= 1e-9 * size) {
             settled = std::max(settled, top.bound);
-            settled_value = hull(settled_value, top.value);
+            settled_value = hull(settled_value, value);
             continue;
         }
         sample(centre);
-        Cell left = top.cell, right = top.cell;
-        double cut = top.cell.p[k].middle();
+        Cell left = cell, right = cell;
+        double cut = cell.p[k].middle();
         left.p[k].hi = cut, right.p[k].lo = cut;
         push(left, top.depth + 1);
         push(right, top.depth + 1);
@@ -228,10 +260,11 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
     out.lipschitz = settled;
     if (!queue.empty()) out.lipschitz = std::max(settled, queue.top().bound);
     while (!queue.empty()) {
-        out.value = hull(out.value, queue.top().value);
+        out.value = hull(out.value, cells[queue.top().at].second);
         queue.pop();
     }
     if (out.value.lo > out.value.hi) out.value = Interval::everything(); // an empty region
+    if (negated) out.value = hull(out.value, -out.value);
     out.sampled = std::min(out.sampled, out.lipschitz);
     return out;
 }
@@ -243,6 +276,7 @@ double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
     Machine machine(tape, ranges);
     const std::array<bool, 3> all{true, true, true};
     std::priority_queue<Candidate, std::vector<Candidate>, Worse> queue;
+    std::vector<Cell> cells;
     double seen = 0;
     auto push = [&](const Cell &cell, int depth) {
         if (domain.zone && misses(*domain.zone, cell)) return;
@@ -258,7 +292,8 @@ double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
             seen = std::max(seen, machine.value(0).mignitude());
             value = meet(machine.value(0) + Interval(-reach, reach), value);
         }
-        queue.push({value.magnitude(), depth, cell, value});
+        queue.push({value.magnitude(), depth, static_cast<std::uint32_t>(cells.size())});
+        cells.push_back(cell);
     };
     push(domain.box, 0);
     while (!queue.empty()) {
@@ -266,11 +301,12 @@ double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
         if (top.bound <= seen * budget.tolerance || machine.work() > budget.instructions)
             return top.bound;
         queue.pop();
+        const Cell cell = cells[top.at];
         int axis = 0;
-        if (widest(top.cell, all, &axis) <= 1e-9) return top.bound;
+        if (widest(cell, all, &axis) <= 1e-9) return top.bound;
         auto k = static_cast<std::size_t>(axis);
-        Cell left = top.cell, right = top.cell;
-        left.p[k].hi = right.p[k].lo = top.cell.p[k].middle();
+        Cell left = cell, right = cell;
+        left.p[k].hi = right.p[k].lo = cell.p[k].middle();
         push(left, top.depth + 1);
         push(right, top.depth + 1);
     }

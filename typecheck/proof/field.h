@@ -65,6 +65,11 @@ struct Periods {
 };
 Periods periods_of(const Tape &tape, const ir::Graph &graph);
 
+// Where p -> p with these coordinates' signs changed, each component of the field keeps its value
+// or changes its sign (then its Jacobian has the same norm there): which, of the first one.
+enum class Reflected { Unknown, Same, Negated };
+Reflected reflected(const Tape &tape, const std::array<bool, 3> &axes);
+
 // Deterministic points: the same everywhere.
 struct Dice {
     std::uint64_t state;

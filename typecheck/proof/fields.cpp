@@ -23,8 +23,11 @@ std::string number_text(double x) {
     return fmt::format("{:.3g}", x);
 }
 std::string point_text(const std::array<double, 3> &p, int dims) {
-    std::string out = "[" + number_text(p[0]) + ", " + number_text(p[1]);
-    if (dims == 3) out += ", " + number_text(p[2]);
+    // What is nothing beside the others is the width of the cell where a search ended.
+    const double nothing = 1e-6 * std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+    std::string out = "[";
+    for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
+        out += (i > 0 ? ", " : "") + number_text(std::fabs(p[i]) < nothing ? 0 : p[i]);
     return out + "]";
 }
 

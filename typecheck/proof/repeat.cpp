@@ -88,6 +88,7 @@ Known Prover::know_repeat(ShapeId id) {
                 plan.guard = false;
             }
         }
+        if (need > 1) need = std::max(1, int(need * options.rules[Rule::Sectors]));
         if (need > most_copies) too_many = true;
         plan.neighbors[0] = std::min(need, n);
         product = plan.neighbors[0];

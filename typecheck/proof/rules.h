@@ -14,11 +14,15 @@ enum class Rule : std::size_t {
     Distort,
     Displace,
     LerpVarying,
+    LerpWeights,
+    BlendRadius,
     Columns,
     Pipe,
     PseudoNorm,
     Field,
+    Holes,
     RepeatNeighbors,
+    Sectors,
     Count
 };
 

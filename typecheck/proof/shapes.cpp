@@ -183,7 +183,7 @@ Known Prover::know_set(ShapeId id) {
         // quadratic).
         FieldBound b = bound(id, shape.args[0], "the blend's radius");
         k.failed = k.failed || !std::isfinite(b.lipschitz) || profile == ir::Profile::Columns;
-        sup = up(sup + 0.5 * b.lipschitz);
+        sup = up(sup + 0.5 * b.lipschitz * options.rules[Rule::BlendRadius]);
         formula = graph.number(sup);
         k.fact.lever = {infinity, infinity, infinity};
         k.parts = Box::everything();
@@ -240,6 +240,7 @@ Known Prover::know_lerp(ShapeId id) {
     double sup =
         convex ? (varies || !range.is_point() ? std::max(la, lb) : up(range.hi * la + rest.hi * lb))
                : up(range.magnitude() * la + rest.magnitude() * lb);
+    if (!convex) sup = 1 + (sup - 1) * options.rules[Rule::LerpWeights];
     k.drift = infinity;
     // t*a + (1-t)*b < 0 needs a < 0 or b < 0 while both weights are at least 0.
     unite(k, b);

@@ -153,7 +153,7 @@ Known Prover::know_within(ShapeId id) {
             bound_cells(flattening, ranges, inner.leaf, zone, inner.fact.lipschitz_sup, budget);
         for (double &bound : k.fact.cells.lipschitz) bound *= options.rules[Rule::Field];
     }
-    const double across = slope_in_holes(zone);
+    const double across = 1 + (slope_in_holes(zone) - 1) * options.rules[Rule::Holes];
     NodeId formula =
         graph.make(Op::Max, {graph.mul(k.fact.lipschitz, graph.number(across)), graph.number(1)});
     set_lipschitz(k, formula, std::max(up(k.fact.lipschitz_sup * across), 1.0));

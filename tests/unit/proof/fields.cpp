@@ -165,3 +165,20 @@ TEST_CASE("rotations by an angle that varies are as steep as their shear") {
     CHECK(b.lipschitz >= truth * (1 - 1e-6));
     CHECK(b.lipschitz < truth * 1.1);
 }
+
+TEST_CASE("one side of a mirror is enough to look at, and both sides' values are told") {
+    Scenery s;
+    const proof::Cell box{
+        {proof::Interval(-1.4, 1.4), proof::Interval(-1.4, 1.4), proof::Interval(-1.4, 1.4)}};
+    auto waves = [&](double shift) {
+        auto wave = [&](NodeId x) { return s.sin(s.g.add(x, s.n(shift))); };
+        return s.g.mul(wave(s.x), s.g.mul(wave(s.y), wave(s.z)));
+    };
+    const proof::FieldBound odd = s.bound(waves(0), box), none = s.bound(waves(0.01), box);
+    CHECK(odd.evaluations * 3 < none.evaluations);
+    CHECK(odd.lipschitz == Approx(none.lipschitz).epsilon(0.06));
+    CHECK(odd.value.contains(-0.95));
+    CHECK(odd.value.contains(0.95));
+    // An even one has its values once: a length is not below 0.
+    CHECK(s.bound(s.g.add(s.g.mul(s.x, s.x), s.length(s.p)), box).value.lo >= -1e-9);
+}
