@@ -74,6 +74,7 @@ struct App {
     std::filesystem::path sequence_folder;
     bool record_next = false, picture_asked = false, told = true;
     double cursor_x = 0, cursor_y = 0, pressed_x = 0, pressed_y = 0;
+    bool click_asked = false;
     bool flies = true; // the keys that are held move the camera
     int dragged = -1; // the view in which the button went down
     float font_scale = 1;

@@ -331,6 +331,7 @@ void App::draw(double seconds) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
+    if (std::exchange(click_asked, false) && !ImGui::GetIO().WantCaptureMouse) select(true);
     draw_panels(width, height);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

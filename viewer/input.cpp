@@ -280,7 +280,7 @@ void App::button(int button, bool down) {
     const bool click = button == GLFW_MOUSE_BUTTON_LEFT && dragged >= 0 &&
                        std::hypot(cursor_x - pressed_x, cursor_y - pressed_y) < click_reach;
     dragged = -1;
-    if (click) select(true);
+    click_asked |= click; // panels know only with the next frame whether it was theirs
 }
 
 // An editor with a window of its own jumps to the line at each click; one in a terminal only when

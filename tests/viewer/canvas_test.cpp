@@ -9,6 +9,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <set>
 
@@ -261,4 +262,36 @@ TEST_CASE("the card's own clock answers in order") {
         }
     CHECK(answers == 3);
     CHECK_FALSE(timer.poll());
+}
+
+TEST_CASE("every example has a shader with parts, and every part a place in a file") {
+    int scenes = 0;
+    for (const auto &entry : std::filesystem::directory_iterator(FATHOM_SOURCE_DIR "/examples")) {
+        if (entry.path().extension() != ".sdf") continue;
+        INFO(entry.path().filename().string());
+        driver::CompileOptions options;
+        options.parts = true;
+        const auto compilation = driver::compile_file(entry.path(), options);
+        REQUIRE(compilation.good());
+        ++scenes;
+        Diagnostics diagnostics;
+        for (auto instruments : {glsl::Instruments::Pick, glsl::Instruments::Probe}) {
+            glsl::Options target;
+            target.target = glsl::Target::Glsl330;
+            target.buffers = true;
+            target.instruments = instruments;
+            target.part_stride = compilation.parts.stride;
+            CHECK_FALSE(glsl::emit(compilation.scene, target, diagnostics).text.empty());
+        }
+        CHECK_FALSE(diagnostics.has_errors());
+        int nameless = 0;
+        for (std::size_t i = 1; i <= compilation.parts.shapes.size(); ++i) {
+            const viewer::Part part = viewer::part_of(compilation, static_cast<int>(i));
+            nameless += part.words.empty() || part.line == 0;
+            CHECK(part.file.ends_with(".sdf"));
+            CHECK(std::filesystem::exists(part.file));
+        }
+        CHECK(nameless == 0);
+    }
+    CHECK(scenes > 30);
 }

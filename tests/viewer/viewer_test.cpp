@@ -159,7 +159,12 @@ TEST_CASE("a click names the shape, outlines it and opens its line") {
     ::unsetenv("EDITOR");
     opened = &window;
     CHECK(outlined(opened->picture(), 0, 480) == 0);
+    const Picture bare = window.picture();
     window.hands("mousemove 340 160");
+    const Picture hovering =
+        window.picture(false); // named beside the mouse, with a pale line round it
+    CHECK(difference(bare, hovering) > 0.02);
+    CHECK(outlined(hovering, 0, 480) == 0);
     window.hands("click 1");
     const Picture right = window.picture();
     CHECK(outlined(right, 0, 240) == 0);
@@ -201,6 +206,19 @@ TEST_CASE("views: from the front as a camera there, four at once, and written in
         CHECK(difference(front, cold, 0, 0.02f) < 0.002);
         window.key("r");
         CHECK(difference(window.picture(), scene_view, 0, 0.004f) == 0);
+        for (const char *there_and_back :
+             {"5 5", "equal minus", "r r"}) { // orthographic, nearer, the scene's own
+            const std::string keys = there_and_back;
+            window.key(keys.substr(0, keys.find(' ')));
+            const Picture there = window.picture();
+            CHECK((difference(there, scene_view, 0, 0.02f) > 0.005) == (keys != "r r"));
+            window.key(keys.substr(keys.find(' ') + 1));
+            CHECK(difference(window.picture(), scene_view, 0, 0.02f) < 0.002);
+        }
+        window.hands("keydown w");
+        window.hands("keyup w"); // it flew
+        CHECK(difference(window.picture(), scene_view, 0, 0.02f) > 0.002);
+        window.key("r");
         window.key("v");
         window.key("v");
         four = window.picture();
@@ -270,6 +288,30 @@ TEST_CASE(
     CHECK(window.folder.read("scene.sdf") ==
           "sphere(1)\nbox(1).translate([time, 0, 0])\ncamera(at: [6, 0, 0], look_at: [0, 0, 0], "
           "fov: 45deg)\n");
+}
+
+TEST_CASE("no frame is blank while the driver works on the next shader") {
+    Window window("sphere(1).rotate(time, axis: Y).paint(red)\n" + camera);
+    window.key("m"); // every frame is kept
+    window.key("space");
+    for (int i = 0; i < 8; ++i) {
+        const std::string shape = i % 2 ? "box(" : "torus(major: 0.2, minor: ";
+        window.reload(shape + std::to_string(1.5 + 0.01 * i) +
+                      ").rotate(time, axis: Y).paint(red)\n" + camera);
+    }
+    window.key("m");
+    int frames = 0, blank = 0;
+    for (const fs::directory_entry &entry :
+         fs::directory_iterator(window.folder / "scene-frames")) {
+        std::string error;
+        const auto frame = driver::decode_image(
+            window.folder.read("scene-frames/" + entry.path().filename().string()), error);
+        REQUIRE(frame);
+        ++frames;
+        blank += !red(pixel(*frame, frame->width / 2, frame->height / 2));
+    }
+    CHECK(frames > 8);
+    CHECK(blank == 0);
 }
 
 TEST_CASE("a still scene costs less than a hundredth of a core") {

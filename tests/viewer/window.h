@@ -165,9 +165,11 @@ class Window {
     }
     void key(const std::string &name) { hands("key " + name); }
 
-    // What the window shows now, by its own key for that.
-    ir::ImageData picture() {
-        hands("mousemove 2 " + std::to_string(2) + " key p");
+    // What the window shows now, by its own key for that; the mouse out of the way first, unless it
+    // is to stay.
+    ir::ImageData picture(bool mouse_away = true) {
+        if (mouse_away) hands("mousemove 2 2");
+        key("p");
         const fs::path file = folder / ("scene-" + std::to_string(++pictures_) + ".png");
         REQUIRE(waited([&] { return fs::exists(file) || !process_->runs(); }));
         std::string error;
