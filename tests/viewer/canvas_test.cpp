@@ -29,11 +29,15 @@ struct Drawn {
     std::optional<gl::Program> picture, probe;
     gl::Canvas canvas;
 
-    explicit Drawn(const std::string &text) {
+    explicit Drawn(const std::string &text)
+        : Drawn(driver::compile_text("scene.sdf", text, "", with_parts())) {}
+    explicit Drawn(driver::Compilation made) : compilation(std::move(made)) { link(); }
+    static driver::CompileOptions with_parts() {
         driver::CompileOptions options;
         options.parts = true;
-        compilation = driver::compile_text("scene.sdf", text, "", options);
-        INFO(text);
+        return options;
+    }
+    void link() {
         REQUIRE(compilation.good());
         Diagnostics diagnostics;
         for (auto instruments : {glsl::Instruments::Pick, glsl::Instruments::Probe}) {
@@ -294,4 +298,29 @@ TEST_CASE("every example has a shader with parts, and every part a place in a fi
         CHECK(nameless == 0);
     }
     CHECK(scenes > 30);
+}
+
+TEST_CASE("to know its parts changes no pixel of a scene") {
+    if (!has_context()) return;
+    for (const char *name : {"still_life", "02_csg", "repetition", "bolts"}) {
+        INFO(name);
+        const std::filesystem::path file =
+            std::string(FATHOM_SOURCE_DIR "/examples/") + name + ".sdf";
+        const auto plain = driver::compile_file(file, {});
+        REQUIRE(plain.good());
+        gl::Request request;
+        request.width = 80;
+        request.height = 60;
+        Diagnostics diagnostics;
+        const auto wanted = gl::render(plain.scene, request, diagnostics);
+        REQUIRE(wanted);
+        Drawn drawn(driver::compile_file(file, Drawn::with_parts()));
+        drawn.draw(80, 60, {drawn.view({0, 0, 80, 60})});
+        drawn.canvas.finish(settings(gl::Look::Picture, false));
+        const Picture mine = drawn.canvas.read_picture();
+        int differing = 0;
+        for (std::size_t i = 0; i < mine.rgba.size(); ++i)
+            differing += std::abs(mine.rgba[i] - wanted->rgba[i]) > 2;
+        CHECK(differing <= 80 * 60 * 4 / 500); // rounding at edges
+    }
 }
