@@ -1,0 +1,23 @@
+#!/bin/sh
+# Builds a libFuzzer target with clang++ in build-fuzz/ and runs it for a minute: scripts/fuzz.sh TARGET [SECONDS]
+# Targets: parse_fuzz (text to tree), compile_fuzz (text to shader), yaml_fuzz (save files). What it finds is left in
+# build-fuzz/ as crash-…; what it learns is kept in build-fuzz/TARGET_corpus.
+root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
+target=${1:?which target: parse_fuzz, compile_fuzz or yaml_fuzz}
+seconds=${2:-60}
+build=$root/build-fuzz
+fuzz=$root/tests/fuzz
+case $target in
+parse_fuzz) length=4096 words=fathom.dict seeds="$fuzz/seeds $root/examples $root/stdlib" ;;
+compile_fuzz) length=2048 words=fathom.dict seeds="$fuzz/seeds $root/tests/golden/cases $root/examples" ;;
+yaml_fuzz) length=4096 words=yaml.dict seeds=$fuzz/yaml_seeds ;;
+*) echo "there is no target $target" >&2; exit 2 ;;
+esac
+launcher=""
+command -v ccache >/dev/null && launcher=-DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+[ -e "$build/build.ninja" ] ||
+    cmake -G Ninja -S "$root" -B "$build" -DCMAKE_CXX_COMPILER=clang++ -DFATHOM_FUZZ=ON $launcher || exit 3
+ninja -C "$build" "$target" || exit 3
+mkdir -p "$build/${target}_corpus"
+cd "$build" && exec "./$target" -max_total_time="$seconds" -max_len=$length -timeout=60 -rss_limit_mb=2048 -seed=1 \
+    -dict="$fuzz/$words" -print_final_stats=1 "${target}_corpus" $seeds
