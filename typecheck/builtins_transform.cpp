@@ -72,7 +72,7 @@ static ir::ShapeId opened(Evaluator &ev, ir::ShapeId profile, Line axis, const V
                 ev.scene.shapes[base].children.empty() ? base : ev.scene.shapes[base].children[0]);
             if (found == ev.corners.end() || !below.axis.known()) return base;
             // Turned and moved so that the line is the y axis and the polygon lies to its right.
-            const auto &[at, along] = below.axis;
+            const std::array<double, 2> at = below.axis.at, along = below.axis.along;
             const double length = std::hypot(along[0], along[1]);
             std::array<double, 2> up{along[0] / length, along[1] / length};
             double size = 0, farthest = 0;
