@@ -169,3 +169,45 @@ TEST_CASE("nothing is left along the axis of what is turned", "[stdlib]") {
     for (double y = -0.4; y < 0.45; y += 0.1)
         CHECK(cut.at({{1e-9, y, 0}})[0] == Approx(0.5 - std::abs(y)).margin(1e-6));
 }
+
+// By the orbits of z^8 + p, z as (radius, latitude, longitude): what never leaves is solid, what leaves at once is not.
+TEST_CASE("the mandelbulb holds what stays bounded", "[stdlib]") {
+    Field field("mandelbulb(8, 8)");
+    REQUIRE(field.good());
+    const std::vector<Point> points = places(20000, 1.3, 6);
+    const std::vector<double> d = field.at(points);
+    int bounded = 0, wrong = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        Point z = points[i];
+        int turns = 0;
+        while (turns < 60 && norm(z) < 2) {
+            const double r = norm(z), latitude = 8 * std::asin(z[1] / std::max(r, 1e-12)), longitude = 8 * std::atan2(z[2], z[0]);
+            z = points[i] + std::pow(r, 8) * Point{std::cos(latitude) * std::cos(longitude), std::sin(latitude),
+                                                   std::cos(latitude) * std::sin(longitude)};
+            ++turns;
+        }
+        bounded += turns == 60;
+        wrong += (turns == 60 && d[i] > 1e-3) || (turns < 5 && d[i] < 0);
+    }
+    CHECK(bounded > 1000);
+    CHECK(wrong == 0);
+}
+
+// A solid, operation or transform that nobody has defined anew here would be believed as it is.
+TEST_CASE("every entry that makes or changes a solid has a definition of its own", "[stdlib]") {
+    std::string all = " mandelbulb( "; // above; images and grids have their own tests
+    for (const Solid &solid : all_solids()) all += " " + solid.text;
+    for (const typecheck::LibraryEntry &entry : typecheck::library_entries(driver::standard_library())) {
+        if (entry.file == "built in" || entry.file == "dfmodel" || entry.file == "fields.sdf" || entry.file == "looks.sdf" ||
+            entry.name == "displace_map" || entry.name == "distance_grid")
+            continue;
+        INFO(entry.file << ": " << entry.signature);
+        bool defined = false;
+        for (std::size_t at = all.find(entry.name); at != all.npos; at = all.find(entry.name, at + 1)) {
+            const char after = at + entry.name.size() < all.size() ? all[at + entry.name.size()] : ' ';
+            const char before = all[at - 1];
+            defined = defined || ((after == '(' || after == ' ') && (before == ' ' || before == '.' || before == '('));
+        }
+        CHECK(defined);
+    }
+}

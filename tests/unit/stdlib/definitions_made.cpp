@@ -51,6 +51,14 @@ std::vector<Solid> combined_solids() {
     auto bevel = [](double x, double y) { return x + y < 0.5; };
     // 2 treads and 3 risers between (0, 0.6) and (0.6, 0)
     auto stairs = [](double x, double y) { return std::floor(x / 0.2) + std::floor(y / 0.2) < 2; };
+    // 3 columns side by side on a chamfer; the whole, with the chamfer behind, reaches 0.5 along both walls
+    auto columns = [](double x, double y) {
+        const double c = 0.5 * std::sqrt(2) / (4 + std::sqrt(2)), middle = (0.5 - 2 * c) / 2;
+        if (x + y < 2 * middle) return true;
+        for (int i : {-1, 0, 1})
+            if (std::hypot(x - middle + i * c * std::sqrt(2), y - middle - i * c * std::sqrt(2)) < c) return true;
+        return false;
+    };
     auto smooth = [](double x, double y) {
         double h = std::max(0.5 - std::abs(x - y), 0.0);
         return std::min(x, y) < h * h / 2;
@@ -83,6 +91,16 @@ std::vector<Solid> combined_solids() {
         {"chamfer_difference(0.5) { plane(X); plane(-Y) }", [=](Point p) { return p[0] < 0 && p[1] < 0 && !bevel(-p[0], -p[1]); }, 1, false},
         corner("stairs_union(0.6, 2, ", stairs),
         edge("stairs_intersection(0.6, 2, ", stairs),
+        {"stairs_difference(0.6, 2) { plane(X); plane(-Y) }", [=](Point p) { return p[0] < 0 && p[1] < 0 && !stairs(-p[0], -p[1]); }, 1, false},
+        corner("columns_union(0.5, 3, ", columns),
+        edge("columns_intersection(0.5, 3, ", columns),
+        {"columns_difference(0.5, 3) { plane(X); plane(-Y) }", [=](Point p) { return p[0] < 0 && p[1] < 0 && !columns(-p[0], -p[1]); }, 1, false},
+        {"pseudonorm_blend(sphere(0.6).translate(x: -0.5), sphere(0.6).translate(x: 0.5), 4)",
+         [](Point p) {
+             double a = std::max(1.6 - norm(p - Point{-0.5, 0, 0}), 0.0), b = std::max(1.6 - norm(p - Point{0.5, 0, 0}), 0.0);
+             return std::pow(a, 4) + std::pow(b, 4) > 1;
+         },
+         1.4, false},
         {"pipe(sphere(1), plane(Y, 0.3), 0.1)",
          [](Point p) { return std::hypot(norm(p) - 1, p[1] - 0.3) < 0.1; }, 1.3, false},
         {"engrave(plane(X), plane(Y), 0.3)", [](Point p) { return p[0] < 0 && !(-p[0] < 0.3 - std::abs(p[1])); }, 1, false},
@@ -121,6 +139,7 @@ std::vector<Solid> transformed_solids() {
         {"sphere(0.5).elongate([1, 0, 0.4])",
          [](Point p) { return norm({std::max(std::abs(p[0]) - 0.5, 0.0), p[1], std::max(std::abs(p[2]) - 0.2, 0.0)}) < 0.5; }, 1.2, false},
         {"sphere(1).hyperize(2)", [](Point p) { return norm({p[0] * p[0], p[1] * p[1], p[2] * p[2]}) < 1; }, 1.3, false},
+        {"plane(Y).within(ball(1))", [](Point p) { return p[1] < 0 && norm(p) < 1; }, 1.2, false},
         {"box([1.4, 0.8, 0.6]).offset(0.2)",
          [](Point p) {
              Point q{std::clamp(p[0], -0.7, 0.7), std::clamp(p[1], -0.4, 0.4), std::clamp(p[2], -0.3, 0.3)};

@@ -189,6 +189,7 @@ std::vector<Solid> round_solids() {
         {"metaballs([[0.2, 0, 0]], 0.6)", [](Point p) { return norm(p - Point{0.2, 0, 0}) < 0.6; }, 1.2, false},
         {"metaballs([[-0.6, 0, 0], [0.5, 0.1, 0], [0, 0.7, 0]], radius: 0.5)",
          [=](Point p) { return blob_weight(p, blobs, 0.5) > 0.5625; }, 1.6, false},
+        {"metaballs_random(1, [0, 0, 0], seed: 4, radius: 0.6)", [](Point p) { return norm(p) < 0.6; }, 1.2, false},
         {"menger(2, 2)", [](Point p) { return in_menger(p, 2, 2); }, 1.2, false},
         {"gyroid(1.5, 0.2)",
          [](Point p) {
