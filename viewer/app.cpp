@@ -60,6 +60,7 @@ void App::rebuild(std::vector<driver::Override> values) {
 
 void App::take(std::unique_ptr<Build> build) {
     frames_due = 3;
+    if (!scene) status.note.clear(); // that said that nothing is here yet
     // A slider's value that the changed text has no place for any more: the text's own counts.
     if (!build->compilation.usage_errors.empty() && !structural.empty()) return rebuild({});
     record_next = true;

@@ -56,7 +56,8 @@ void show_messages(const char *name, const std::vector<std::string> &messages, c
     ImGui::End();
 }
 
-void show_status(const Shown &shown) {
+// Its height.
+float show_status(const Shown &shown) {
     const Status &status = shown.status;
     ImVec2 size = ImGui::GetIO().DisplaySize;
     const std::size_t remarks = shown.remarks.size();
@@ -95,6 +96,7 @@ void show_status(const Shown &shown) {
     ImGui::Begin("status", nullptr, plain | ImGuiWindowFlags_NoInputs);
     for (const std::string &line : lines) ImGui::TextUnformatted(line.c_str());
     ImGui::End();
+    return height;
 }
 
 void show_keys(bool &open) {
@@ -245,15 +247,14 @@ void show_words_at(const std::string &words, float x, float y, const ImVec4 &col
     list->AddText({x, y}, ImGui::GetColorU32(color), words.c_str());
 }
 
-void show_picked(const Shown &shown) {
+void show_picked(const Shown &shown, float below, bool tooltip) {
     if (!shown.selected.empty()) {
         const ImVec2 size = ImGui::CalcTextSize(shown.selected.c_str());
         const ImVec2 window = ImGui::GetIO().DisplaySize;
         show_words_at(shown.selected, std::max((window.x - size.x) / 2, 8.0f),
-                      window.y - 3.6f * ImGui::GetTextLineHeightWithSpacing() - size.y,
-                      {1.0f, 0.75f, 0.35f, 1});
+                      window.y - below - size.y - 6, {1.0f, 0.75f, 0.35f, 1});
     }
-    if (!shown.hovered.empty() && !ImGui::GetIO().WantCaptureMouse)
+    if (tooltip && !shown.hovered.empty() && !ImGui::GetIO().WantCaptureMouse)
         ImGui::SetTooltip("%s", shown.hovered.c_str());
 }
 
@@ -269,7 +270,8 @@ Asked show_panels(Controls &controls, const Shown &shown, std::vector<ir::Param>
             const ImVec2 size = ImGui::CalcTextSize(words.c_str());
             show_words_at(words, label.x - size.x / 2, label.y - size.y / 2, pale);
         }
-    show_picked(shown);
+    const float status_height = show_status(shown);
+    show_picked(shown, status_height, !controls.keys);
     if (controls.params && !params.empty()) show_params(controls, params, asked);
     if (controls.analysis || controls.look != gl::Look::Picture)
         show_analysis(controls, shown, asked);
@@ -278,7 +280,6 @@ Asked show_panels(Controls &controls, const Shown &shown, std::vector<ir::Param>
     else if (controls.remarks && !shown.remarks.empty())
         show_messages("remarks", shown.remarks, yellow, 12);
     if (controls.keys) show_keys(controls.keys);
-    show_status(shown);
     return asked;
 }
 

@@ -190,6 +190,7 @@ std::string run(const Settings &settings) {
         App app(settings); // its programs and canvas end before their context
         app.window = opened.window;
         app.running = !settings.still;
+        app.status.note = "the first picture is on its way";
         glfwSetWindowUserPointer(opened.window, &app);
         install_callbacks(opened.window);
         start_panels(app);
