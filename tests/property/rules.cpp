@@ -29,6 +29,7 @@ Slopes run(const Case &test, double factor, double &proved) {
     Diagnostics diagnostics;
     proof::Options options;
     options.rules.factor[static_cast<std::size_t>(test.rule)] = factor;
+    options.tighten = false;
     proved = s.prove(shape, diagnostics, options).lipschitz_sup;
     INFO(said(diagnostics));
     REQUIRE(!diagnostics.has_errors());

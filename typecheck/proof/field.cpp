@@ -221,6 +221,7 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
     while (!queue.empty()) {
         Candidate top = queue.top();
         if (top.bound <= std::max(out.sampled * budget.tolerance, settled)) break;
+        if (out.sampled > budget.hopeless) break;
         if (top.bound != infinity && machine.work() > limit) break;
         queue.pop();
         const auto [cell, value] = cells[top.at];

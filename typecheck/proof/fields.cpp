@@ -36,6 +36,52 @@ Diagnostic *Prover::report(ShapeId id, Code code, std::string message) {
     return &diagnostics.add(code, scene.shapes[id].origin, std::move(message));
 }
 
+namespace {
+
+// A product as a number times the rest.
+struct Scaled {
+    double by = 1;
+    NodeId rest; // invalid: 1
+};
+Scaled split(ir::Graph &graph, NodeId id) {
+    if (auto number = graph.as_number(id)) return {*number, {}};
+    const ir::Node node = graph[id];
+    if (node.type == ir::Type::Float && node.op == Op::Neg) {
+        Scaled out = split(graph, graph.arg(id, 0));
+        return {-out.by, out.rest};
+    }
+    if (node.type == ir::Type::Float && node.op == Op::Mul) {
+        const Scaled a = split(graph, graph.arg(id, 0)), b = split(graph, graph.arg(id, 1));
+        return {a.by * b.by, !a.rest ? b.rest : !b.rest ? a.rest : graph.mul(a.rest, b.rest)};
+    }
+    return {1, id};
+}
+
+} // namespace
+
+// Fields that differ by a factor are analysed once.
+FieldBound Prover::bound_once(NodeId field, const Place &here) {
+    Budget budget;
+    budget.instructions = options.field_instructions;
+    const Scaled parts = split(graph, field);
+    const double by = std::fabs(parts.by);
+    if (here.zone || !parts.rest || !(by > 0) || !std::isfinite(by))
+        return bound_field(flattening, ranges, field, {to_cell(here.box), here.zone}, budget);
+    const auto key = std::tuple(parts.rest, here.box.lo, here.box.hi);
+    auto found = bounds.find(key);
+    if (found == bounds.end())
+        found = bounds
+                    .emplace(key, bound_field(flattening, ranges, parts.rest,
+                                              {to_cell(here.box), nullptr}, budget))
+                    .first;
+    FieldBound out = found->second;
+    out.lipschitz = ir::rounding::up(out.lipschitz * by, 4);
+    out.sampled *= by * (1 - 1e-15);
+    out.value = out.value * Interval(parts.by);
+    out.value_a *= parts.by, out.value_b *= parts.by;
+    return out;
+}
+
 FieldBound Prover::bound(ShapeId id, NodeId field, const std::string &what, bool report_it) {
     const Place &here = place(id);
     FieldBound out;
@@ -44,9 +90,7 @@ FieldBound Prover::bound(ShapeId id, NodeId field, const std::string &what, bool
         out.value = Interval::everything();
         return out;
     }
-    Budget budget;
-    budget.instructions = options.field_instructions;
-    out = bound_field(flattening, ranges, field, {to_cell(here.box), here.zone}, budget);
+    out = bound_once(field, here);
     if (!std::isfinite(out.lipschitz) && report_it) report_field(id, out, what);
     return out;
 }

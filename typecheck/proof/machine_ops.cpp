@@ -99,6 +99,7 @@ void Step::run() {
         return finish(times(2 * most, norm(0)), false);
     }
     if (in.form == Form::Norm) return length();
+    if (in.form == Form::Corner) return corner();
 
     switch (in.op) {
     case Op::Const: {

@@ -46,6 +46,7 @@ struct Step {
     void column();
     void transpose();
     void length();
+    void corner();
     void dot();
     void cross();
     void normalize();

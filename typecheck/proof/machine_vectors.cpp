@@ -61,6 +61,30 @@ void Step::transpose() {
 }
 
 // |q|: gradient J^T q/|q|, at most |J|; at q = 0 any of slope <= |J|
+// h(v) = |v+| + min(max v, 0) grows with every component, and its gradient is w on the unit sphere,
+// 0 <= w, with weights only where a component is positive, or the greatest: so the slope is at most
+// the norm of those rows.
+void Step::corner() {
+    const Interval zero_at(0.0);
+    const int m = size(0);
+    double greatest = -infinity; // some component is at least this
+    for (int c = 0; c < m; ++c) greatest = std::max(greatest, value(0, c).lo);
+    Interval outside, most(-infinity);
+    Row rows[4], g{};
+    int used = 0;
+    for (int c = 0; c < m; ++c) {
+        const Interval v = value(0, c);
+        outside += square(max(v, zero_at));
+        most = c == 0 ? v : max(most, v);
+        if (v.hi < std::min(greatest, 0.0)) continue; // below 0, and another is greater
+        rows[used++] = grad(0, c);
+    }
+    for (int c = 0; c < used; ++c)
+        g = used == 1 ? rows[0] : sum(g, scaled(Interval(0, 1), rows[c]));
+    set(0, sqrt(outside) + min(most, zero_at), g);
+    finish(std::min(norm(0), spectral_norm(rows, used)), any_odd);
+}
+
 void Step::length() {
     Interval length;
     Row columns[16];

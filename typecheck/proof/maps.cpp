@@ -493,8 +493,28 @@ Known Prover::know_deformed(ShapeId id) {
     case MapKind::Fold:
     case MapKind::Revolve: break;
     }
+    if (!k.failed && own_box() && (alone || shape.map == MapKind::Taper)) tighten(id, k);
     if (k.failed) fail(k);
     return k;
+}
+
+// Rules that hold for every shape count its farthest point and its steepest gradient as one. Where
+// the field can be written as one expression, its slope in the shape's own box is measured whole.
+void Prover::tighten(ShapeId id, Known &k) {
+    const double rule = k.fact.lipschitz_sup;
+    if (!options.tighten || rule <= 1.25 || !graph.is_constant(k.fact.lipschitz) ||
+        !place(id).audible)
+        return;
+    const auto field = expression(id);
+    if (!field) return;
+    Budget budget;
+    budget.instructions = options.field_instructions / 25;
+    budget.tolerance = 1.1;
+    budget.hopeless = 0.9 * rule;
+    const FieldBound b =
+        bound_field(flattening, ranges, *field, {to_cell(padded(k.fact.bounds)), nullptr}, budget);
+    // Joined with the way to the box, it is as steep as a distance at least.
+    if (b.lipschitz < budget.hopeless) keep_local(k, b.lipschitz, graph.number(b.lipschitz));
 }
 
 } // namespace fathom::proof

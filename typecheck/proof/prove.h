@@ -15,7 +15,8 @@ namespace fathom::proof {
 struct Options {
     Rules rules;                              // tests weaken one to see it caught
     std::size_t field_instructions = 250'000; // work per field: interval instructions, never time
-    bool test_assumptions = true;             // sample `lipschitz:` and `estimate:`
+    bool tighten = true; // deformed shapes by their own expressions, too; tests ask for rules alone
+    bool test_assumptions = true; // sample `lipschitz:` and `estimate:`
 };
 
 // Fills scene.facts (one a shape), scene.bounds and scene.far. A shape without a proof is reported

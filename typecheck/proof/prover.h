@@ -6,7 +6,9 @@
 #include "typecheck/proof/prove.h"
 
 #include <deque>
+#include <map>
 #include <optional>
+#include <tuple>
 
 namespace fathom::proof {
 
@@ -73,6 +75,7 @@ struct Prover {
     Ball ball_of(ir::ShapeId id, const Known &k); // from the children's balls, where that says more
     void keep_in_ball(ir::ShapeId id, Known &k);  // sets the ball, and cuts the box to it
 
+    void tighten(ir::ShapeId id, Known &k); // a deformed shape's bound, by its own expression
     double region_radius(ir::ShapeId id, int axis) const;
 
     // -- folds: q is p by component, |p_i|, or p less something limited
@@ -92,6 +95,10 @@ struct Prover {
     // max; else nothing.
     std::optional<ir::NodeId> expression(ir::ShapeId id, int depth = 0);
 
+    FieldBound bound_once(ir::NodeId field, const Place &here);
+    std::map<std::tuple<ir::NodeId, std::array<double, 3>, std::array<double, 3>>, FieldBound>
+        bounds; // by field and box
+
     // The bound of an expression of the point over where the shape is asked. Reports failures.
     FieldBound bound(ir::ShapeId id, ir::NodeId field, const std::string &what, bool report = true);
 
@@ -104,6 +111,7 @@ struct Prover {
     void finish(ir::ShapeId id, Known &k); // guards, notes
 
     // -- reports; silent where the shape is not audible
+    static std::string cheaper(const ir::Shape &shape);
     Diagnostic *report(ir::ShapeId id, Code code, std::string message);
     void report_field(ir::ShapeId id, const FieldBound &bound, const std::string &what);
     void test_assumed(ir::ShapeId id, ir::NodeId field, double limit, bool estimate);

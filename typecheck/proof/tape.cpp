@@ -210,6 +210,48 @@ struct Flattener {
         return {};
     }
 
+    // |max(v, 0)| + min(max of all components of v, 0), as everyone writes a box.
+    std::optional<NodeId> corner(NodeId id) {
+        if (graph[id].op != Op::Add || graph[id].type != ir::Type::Float) return {};
+        for (int i = 0; i < 2; ++i) {
+            const NodeId length = graph.arg(id, i), inside = graph.arg(id, 1 - i);
+            if (graph[length].op != Op::Length || graph[inside].op != Op::Min) continue;
+            const auto v = above_zero(Op::Max, graph.arg(length, 0)),
+                       most = above_zero(Op::Min, inside);
+            if (!v || !most) continue;
+            std::vector<NodeId> found, wanted;
+            greatest_of(*most, found);
+            for (int c = 0; c < ir::components(graph[*v].type); ++c)
+                wanted.push_back(graph.component(*v, c));
+            std::sort(found.begin(), found.end());
+            std::sort(wanted.begin(), wanted.end());
+            if (found == wanted) return v;
+        }
+        return {};
+    }
+    // x of max(x, 0), or of min(x, 0).
+    std::optional<NodeId> above_zero(Op op, NodeId id) {
+        if (graph[id].op != op) return {};
+        for (int i = 0; i < 2; ++i)
+            if (all_zero(graph.arg(id, i))) return graph.arg(id, 1 - i);
+        return {};
+    }
+    bool all_zero(NodeId id) {
+        if (!graph.is_constant(id)) return false;
+        const ir::Constant &c = graph.constant_of(id);
+        for (int i = 0; i < ir::components(c.type); ++i)
+            if (c.value[static_cast<std::size_t>(i)] != 0) return false;
+        return true;
+    }
+    void greatest_of(NodeId id, std::vector<NodeId> &out) {
+        if (graph[id].op == Op::Max && graph[id].type == ir::Type::Float) {
+            greatest_of(graph.arg(id, 0), out);
+            greatest_of(graph.arg(id, 1), out);
+        } else if (out.size() < 4) {
+            out.push_back(id);
+        }
+    }
+
     Slot flatten_node(Scope &scope, NodeId id) {
         const ir::Node node = graph[id]; // a copy: recognising a form may add nodes
         Instruction out;
@@ -234,6 +276,11 @@ struct Flattener {
                 out.args = {slot(scope, parts->x), slot(scope, parts->m)};
                 for (NodeId arg : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
                     out.cancels = out.cancels || cancelling.contains(arg);
+                return emit(scope, out);
+            }
+            if (auto v = corner(id)) {
+                out.form = Form::Corner;
+                out.args = {slot(scope, *v)};
                 return emit(scope, out);
             }
             break;

@@ -21,6 +21,7 @@ enum class Form : std::uint8_t {
     Wave, // x - m*round(x/m): jumps, but only from m/2 to -m/2, which an even function does not see
     Sinc, // sin(x)/x, 1 at 0
     Norm, // the length of all arguments' components together
+    Corner,   // |max(v, 0)| + min(greatest of v, 0): the distance to a corner, 1-Lipschitz in v
     Square,   // x*x, never negative
     OddPower, // x*|x|^c, c > 0, whose slope (c + 1)*|x|^c is finite at 0 where that of |x|^c is not
     Joined,   // a Select whose arms were proved to agree on the border

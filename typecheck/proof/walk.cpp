@@ -347,7 +347,54 @@ void Prover::finish(ShapeId id, Known &k) {
                        operation_name(scene, id) + " makes this shape cost up to " +
                            number_text(k.fact.lipschitz_sup / below) + " times the steps"))
             d->note("its field is at most " + number_text(k.fact.lipschitz_sup) +
-                    " times as steep as a distance, and every step is divided by that");
+                    " times as steep as a distance, and every step is divided by that")
+                .help(cheaper(shape));
+}
+
+// What would make an operation's bound less.
+std::string Prover::cheaper(const Shape &shape) {
+    switch (shape.kind) {
+    case ShapeKind::Leaf:
+        return "keep the region where the field is steep out with a smaller `within:`, or cut the "
+               "field off where it is large, as in `min(…, 0.5)`";
+    case ShapeKind::Displace: return "displace by less, or by a field that changes more slowly";
+    case ShapeKind::Lerp:
+        return "let the weight change more slowly, or blend shapes that differ by less";
+    case ShapeKind::Within: return "keep holes of a region out of where an offset or a blend is";
+    case ShapeKind::Blend: return "let the radius change more slowly";
+    case ShapeKind::Map:
+        switch (shape.map) {
+        case MapKind::Twist: return "twist by a lower rate, or a shape that is nearer to the axis";
+        case MapKind::Bend: return "bend by a lower rate, or a shape that is nearer to the origin";
+        case MapKind::Taper:
+            return "taper by less, or over a longer stretch with `from:` and `to:`";
+        case MapKind::Distort: return "prove the map over less, with a smaller `within:`";
+        case MapKind::Translate:
+        case MapKind::Rotate:
+        case MapKind::Scale:
+        case MapKind::Fold:
+        case MapKind::Revolve: break;
+        }
+        break;
+    case ShapeKind::Empty:
+    case ShapeKind::Union:
+    case ShapeKind::Intersection:
+    case ShapeKind::Complement:
+    case ShapeKind::Xor:
+    case ShapeKind::Seam:
+    case ShapeKind::PseudoNorm:
+    case ShapeKind::Offset:
+    case ShapeKind::Shell:
+    case ShapeKind::Extrude:
+    case ShapeKind::Repeat:
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint:
+    case ShapeKind::Mixed:
+    case ShapeKind::Many:
+    case ShapeKind::Library:
+    case ShapeKind::Contract: break;
+    }
+    return "use shapes with a lower bound";
 }
 
 } // namespace fathom::proof

@@ -182,3 +182,17 @@ TEST_CASE("one side of a mirror is enough to look at, and both sides' values are
     // An even one has its values once: a length is not below 0.
     CHECK(s.bound(s.g.add(s.g.mul(s.x, s.x), s.length(s.p)), box).value.lo >= -1e-9);
 }
+
+TEST_CASE("a box as everyone writes it is no steeper than a distance") {
+    Scenery s;
+    Graph &g = s.g;
+    NodeId q = g.sub(s.call(Op::Abs, s.p), g.vec3(0.5, 0.3, 0.4)), zero = g.vec3(0, 0, 0);
+    NodeId outside = s.length(g.make(Op::Max, {q, zero}));
+    auto inside = [&](NodeId most) { return g.make(Op::Min, {most, s.n(0)}); };
+    NodeId yz = g.make(Op::Max, {g.component(q, 1), g.component(q, 2)});
+    NodeId all = g.make(Op::Max, {g.component(q, 0), yz});
+    auto b = s.bound(g.add(outside, inside(all)));
+    CHECK(b.lipschitz == Approx(1).epsilon(1e-9));
+    // With a component forgotten it is another field, which is steeper.
+    CHECK(s.bound(g.add(inside(yz), outside)).lipschitz > 1.3);
+}
