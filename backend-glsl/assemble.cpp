@@ -52,7 +52,7 @@ class Assembler {
 
         std::string functions;
         for (const auto &[index, name] : module_.functions)
-            functions += function(FunctionId{index}, name);
+            functions += function(FunctionId{index}, name) + readers(index);
         if (!scene_.distance) functions += "\nfloat sdf(vec3 p) {\n    return 1e9;\n}\n";
         std::string looks = materials();
         if (with_looks) looks += lighting() + lights();
@@ -64,14 +64,47 @@ class Assembler {
         }
         result_.functions = "\nstruct Hit {\n    float distance;\n    int paint;\n    vec3 "
                             "point;\n    vec4 extra;\n};\n" +
-                            helper_text(module_.helpers) + functions;
+                            helper_text(module_.helpers) + kept_inputs() + functions;
         result_.looks = looks;
         for (const auto &[index, use] : module_.tables) result_.tables += table(use);
         for (const TableUse &use : own_tables_) result_.tables += table(use);
         return std::move(result_);
     }
 
+    SceneText run_functions(std::span<const FunctionId> wanted) {
+        std::vector<NodeId> roots;
+        for (FunctionId id : wanted) {
+            module_.functions[id.index] = module_.names.unique(graph_.function(id).name);
+            roots.push_back(graph_.function(id).result);
+        }
+        gather(module_, roots);
+        std::string functions;
+        for (const auto &[index, name] : module_.functions)
+            functions += function(FunctionId{index}, name);
+        result_.functions = helper_text(module_.helpers) + functions;
+        for (const auto &[index, use] : module_.tables) result_.tables += table(use);
+        return std::move(result_);
+    }
+
   private:
+    std::string kept_inputs() const {
+        std::vector<KeptText> fields;
+        for (const auto &[id, field] : module_.kept) fields.push_back(field);
+        return fields.empty() ? "" : cache_look_up(fields);
+    }
+
+    // What reads the kept fields that this function computes.
+    std::string readers(std::uint32_t function) const {
+        std::string text;
+        std::size_t number = 0;
+        for (const auto &[id, field] : module_.kept) {
+            if (graph_.cache(ir::CacheId{id}).field.index == function)
+                text += cache_reader(field, number);
+            ++number;
+        }
+        return text;
+    }
+
     std::string function(FunctionId id, const std::string &name) {
         const ir::Function &f = graph_.function(id);
         std::vector<Bound> bound;
@@ -255,6 +288,10 @@ class Assembler {
 };
 
 } // namespace
+
+SceneText assemble_functions(Module &module, std::span<const FunctionId> wanted) {
+    return Assembler(module).run_functions(wanted);
+}
 
 SceneText assemble(Module &module, bool with_looks) { return Assembler(module).run(with_looks); }
 

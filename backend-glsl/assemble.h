@@ -14,6 +14,9 @@ struct SceneText {
     int lights = 0;
 };
 
+// Some functions of the scene and what they need, and nothing else.
+SceneText assemble_functions(Module &module, std::span<const ir::FunctionId> wanted);
+
 // `with_looks`: also what shading needs beyond the materials.
 SceneText assemble(Module &module, bool with_looks);
 

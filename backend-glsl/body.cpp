@@ -363,7 +363,8 @@ class Writer {
         case Op::Call: return {module_.functions.at(node.payload) + "(" + list(id) + ")", Primary};
         case Op::Cached: {
             const auto field = graph_.cache(ir::CacheId{node.payload}).field;
-            return {module_.functions.at(field.index) + "(" + list(id) + ")", Primary};
+            const char *kept = module_.kept.contains(node.payload) ? "_kept(" : "(";
+            return {module_.functions.at(field.index) + kept + list(id) + ")", Primary};
         }
         case Op::Fold: return {name_.at(id), Primary};
         case Op::FoldResult: {

@@ -50,16 +50,30 @@ class Emitter {
         : scene_(scene), options_(options),
           diagnostics_(diagnostics), module_{scene, options, {}, {}, {}, {}, {}, {}, {}, {}} {}
 
+    // The fields that a text with the noise cache keeps, as a text of their own that ends in `tail`.
+    Output run_fields(const std::vector<std::uint32_t> &caches) {
+        std::vector<ir::FunctionId> fields;
+        for (std::uint32_t id : caches)
+            fields.push_back(scene_.graph.cache(ir::CacheId{id}).field);
+        const SceneText scene = assemble_functions(module_, fields);
+        std::vector<KeptText> kept;
+        for (std::size_t i = 0; i < caches.size(); ++i)
+            kept.push_back({module_.functions.at(fields[i].index),
+                            scene_.graph[scene_.graph.function(fields[i]).result].type,
+                            scene_.graph.cache(ir::CacheId{caches[i]}).cell,
+                            scene_.caches[caches[i]].slope});
+        Output output = gathered();
+        output.text = "#version 420 core\n// " + options_.title + ": written by fathom.\n\n" +
+                      scene_inputs() + scene.tables + scene.functions + cache_fill(kept);
+        if (!check(output.text, output)) return {};
+        return output;
+    }
+
     Output run() {
         const SceneText scene = assemble(
             module_, !options_.field_only && options_.instruments != Instruments::Probe);
-        Output output;
-        output.tables = module_.texels;
-        output.reads_time = module_.reads_time;
-        for (const auto &[index, name] : module_.params)
-            output.uniforms.push_back({name, scene_.params[index].type, index, -1});
-        for (const auto &[index, name] : module_.images) output.images.push_back({name, index});
-        for (const auto &[index, name] : module_.grids) output.grids.push_back({name, index});
+        Output output = gathered();
+        for (const auto &[id, field] : module_.kept) output.kept.push_back(kept_field(id));
         const Target target = options_.target;
         if ((!module_.images.empty() || !module_.grids.empty()) &&
             (!is_hosted(target) || target == Target::Html)) {
@@ -82,6 +96,49 @@ class Emitter {
     }
 
   private:
+    Output gathered() const {
+        Output output;
+        output.tables = module_.texels;
+        output.reads_time = module_.reads_time;
+        for (const auto &[index, name] : module_.params)
+            output.uniforms.push_back({name, scene_.params[index].type, index, -1});
+        for (const auto &[index, name] : module_.images) output.images.push_back({name, index});
+        for (const auto &[index, name] : module_.grids) output.grids.push_back({name, index});
+        return output;
+    }
+
+    // A field's meaning is all that its own text says, and the data that the text only names.
+    KeptField kept_field(std::uint32_t id) const {
+        Options plain;
+        Module alone{scene_, plain, {}, {}, {}, {}, {}, {}, {}, {}};
+        const ir::FunctionId field = scene_.graph.cache(ir::CacheId{id}).field;
+        const SceneText text = assemble_functions(alone, {&field, 1});
+        KeptField kept;
+        kept.cache = id;
+        kept.wide = module_.kept.at(id).type != ir::Type::Float;
+        kept.meaning = 14695981039346656037u; // FNV-1a, 64 bits
+        const auto mix = [&](const void *data, std::size_t size) {
+            for (std::size_t i = 0; i < size; ++i)
+                kept.meaning = (kept.meaning ^ static_cast<const unsigned char *>(data)[i]) *
+                               1099511628211u;
+        };
+        mix(text.tables.data(), text.tables.size());
+        mix(text.functions.data(), text.functions.size());
+        mix(&module_.kept.at(id).cell, sizeof(double));
+        for (const auto &[index, name] : alone.images) {
+            const ir::ImageData &image = scene_.images[index];
+            mix(&image.width, sizeof image.width);
+            mix(image.rgba.data(), image.rgba.size() * sizeof(float));
+        }
+        for (const auto &[index, name] : alone.grids) {
+            const ir::GridData &grid = scene_.grids[index];
+            mix(grid.size.data(), sizeof grid.size);
+            mix(grid.values.data(), grid.values.size() * sizeof(float));
+        }
+        for (const auto &[index, name] : alone.params) kept.params.push_back(index);
+        return kept;
+    }
+
     // -- a whole picture
     // -----------------------------------------------------------------------------------------------
 
@@ -103,6 +160,7 @@ class Emitter {
         marcher.hi = vector_text(frame.hi);
         marcher.zero = zero();
         marcher.pick = options_.instruments == Instruments::Pick;
+        marcher.kept = !module_.kept.empty();
         const std::string before = head() + inputs(view) + scene.tables + scene.functions;
         if (options_.instruments == Instruments::Probe) return before + probe_text(marcher);
         return before + hit_function() + scene.looks + marcher_text(marcher) + entry(view);
@@ -145,7 +203,9 @@ class Emitter {
         switch (options_.target) {
         case Target::Glsl450:
         case Target::Glsl330:
-        case Target::GlslViewer: text = "#version 330 core\n"; break;
+        case Target::GlslViewer:
+            text = module_.kept.empty() ? "#version 330 core\n" : "#version 420 core\n";
+            break;
         case Target::Es300:
         case Target::Html: text = "#version 300 es\n"; break;
         case Target::Spirv: text = "#version 450 core\n"; break;
@@ -303,13 +363,16 @@ class Emitter {
                    "    fathom_color = fathom_picture(vec2(gl_FragCoord.x, u_resolution.y - "
                    "gl_FragCoord.y));\n}\n";
         }
+        const bool kept = !module_.kept.empty();
         return std::string("\n") +
-               (options_.target == Target::Spirv || options_.instruments == Instruments::Pick
+               (options_.target == Target::Spirv || options_.instruments == Instruments::Pick || kept
                     ? "layout(location = 0) "
                     : "") +
-               "out vec4 fathom_color;\n\nvoid main() {\n"
+               "out vec4 fathom_color;\n" + (kept ? cache_outputs() : "") +
+               "\nvoid main() {\n"
                "    vec2 place = vec2(gl_FragCoord.x, fathom_resolution.y - gl_FragCoord.y);\n"
-               "    fathom_color = fathom_picture(place + fathom_offset - 0.5);\n}\n";
+               "    fathom_color = fathom_picture(place + fathom_offset - 0.5);\n" +
+               (kept ? cache_output() : "") + "}\n";
     }
 
     // -- the field alone
@@ -395,6 +458,18 @@ const char *target_name(Target target) {
     for (const auto &[known, text] : targets)
         if (known == target) return text;
     return "";
+}
+
+CachePasses emit_cache_passes(const ir::Scene &scene, const Options &options,
+                              Diagnostics &diagnostics) {
+    std::vector<std::uint32_t> caches;
+    for (const KeptField &field : emit(scene, options, diagnostics).kept)
+        caches.push_back(field.cache);
+    if (caches.empty()) return {};
+    Options direct = options;
+    direct.noise_cache = false;
+    return {cache_reserve(), cache_publish(), cache_sweep(),
+            Emitter(scene, direct, diagnostics).run_fields(caches)};
 }
 
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics) {

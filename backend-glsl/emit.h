@@ -35,6 +35,7 @@ struct Options {
     bool field_only = false; // just `float sdf(vec3 p)`, the material function and the bound
     bool buffers = false; // the host binds large tables as the texture buffer `fathom_tables`; else
                           // all data is text
+    bool noise_cache = false; // GL 4.2: cached fields worth it are read through the noise cache (cache.h)
     double time = 0; // where a target has no host that sets a camera: the moment whose camera is
                      // the first view
     std::string title = "scene";              // html: the page's title
@@ -54,6 +55,15 @@ struct Sampler {
     std::uint32_t index = 0; // into Scene::images or Scene::grids
 };
 
+// A field that a text with `noise_cache` reads through the cache. The host sets fathom_cache_fields[i], i its place
+// in Output::kept, to a number of its own choice below cache_most_fields.
+struct KeptField {
+    std::uint32_t cache = 0;           // index into Graph::caches
+    bool wide = false;                 // vectors: its values lie in fathom_cache_wide
+    std::uint64_t meaning = 0;         // equal for fields that compute the same from the same params
+    std::vector<std::uint32_t> params; // that it reads
+};
+
 struct Output {
     std::string text;                 // empty where an error was reported
     std::vector<std::uint32_t> words; // spirv
@@ -61,9 +71,18 @@ struct Output {
     std::vector<float>
         tables; // RGBA32F texels of `fathom_tables`; empty where the text holds the data
     std::vector<Sampler> images, grids;
+    std::vector<KeptField> kept;
     bool reads_time = false;
 };
 
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics);
+
+// The passes that follow a picture drawn by a text with `noise_cache`. Empty where no field is kept.
+struct CachePasses {
+    std::string reserve, publish, sweep; // the same for every scene
+    Output fill;
+};
+CachePasses emit_cache_passes(const ir::Scene &scene, const Options &options,
+                              Diagnostics &diagnostics);
 
 } // namespace fathom::glsl

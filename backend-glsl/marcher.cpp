@@ -39,12 +39,12 @@ float fathom_arm(float t) {
 
 // A loop whose bound the compiler cannot see, so that sdf is inlined once and not four times.
 vec3 fathom_gradient(vec3 p, float h) {
-    vec3 sum = vec3(0.0);
+$KEPT_BEFORE    vec3 sum = vec3(0.0);
     for (int i = $ZERO; i < 4; ++i) {
         vec3 e = 0.577350269 * (2.0 * vec3(float(((i + 3) >> 1) & 1), float((i >> 1) & 1), float(i & 1)) - 1.0);
         sum += e * sdf(p + h * e);
-    }
-    return 0.75 / h * sum;
+$KEPT_TAP    }
+$KEPT_AFTER    return 0.75 / h * sum;
 }
 )";
 
@@ -75,15 +75,15 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     float stride = 0.0;
     float d = 0.0;
     int steps = 0;
-    for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
+$KEPT_START    for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
         vec3 p = origin + t * direction;
-        d = sdf(p);
-        if (stride > before + max(d, 0.0)) {
+$KEPT_ASK        d = sdf(p);
+$KEPT_AGAIN        if (stride > before + max(d, 0.0)) {
             t += before - stride;
             stride = before;
             continue;
         }
-        if (d <= fathom_tolerance(t)$AND_NEAR) {
+$KEPT_SAFE        if (d <= fathom_tolerance(t)$AND_NEAR) {
             fathom_steps = steps + 1;
             return t + d;
         }
@@ -124,10 +124,10 @@ float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, floa
     float s = reach;
     float before = 0.0;
     float shadow = 1.0;
-    for (int i = $ZERO; i < $SHADOW_STEPS && s > margin; ++i) {
+$SHADOW_START    for (int i = $ZERO; i < $SHADOW_STEPS && s > margin; ++i) {
         vec3 p = q + s * l;
-        float d = sdf(p);
-        float near = d;
+$KEPT_ASK        float d = sdf(p);
+$SHADOW_AGAIN        float near = d;
         if (d < shadow * angle * s) near = $NEAR_P;
         float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
         float c = sqrt(max(near * near - y * y, 0.0));
@@ -225,6 +225,69 @@ constexpr const char *pick_ray = "    fathom_pick = vec4(0.0, t, float(fathom_st
 constexpr const char *pick_hit = "    fathom_pick.x = float(fathom_part);\n"
                                  "    fathom_pick.w = slope;\n";
 
+// A ray's march through the shell of a displacement reads kept values only, or computes all: where a value that it
+// wants is absent, it goes back to the last point at which no kept field was asked, and computes until the next. So the
+// field that it sees is continuous and not steeper than proved, whatever the cache holds (docs/noise-cache.md). The
+// points of one gradient do likewise.
+struct KeptMarch {
+    const char *name, *text;
+};
+constexpr KeptMarch kept_march[] = {
+    {"KEPT_BEFORE", R"(    bool absent = fathom_absent, computing = fathom_computing;
+    fathom_absent = false;
+)"},
+    {"KEPT_TAP", R"(        if (fathom_absent && !fathom_computing) {
+            fathom_computing = true;
+            sum = vec3(0.0);
+            i = -1;
+        }
+)"},
+    {"KEPT_AFTER", R"(    fathom_absent = absent;
+    fathom_computing = computing;
+)"},
+    {"KEPT_START", R"(    float safe = begin, absent = begin;
+    int since = 0;
+    fathom_computing = false;
+)"},
+    {"KEPT_ASK", "        fathom_asked = fathom_absent = false;\n"},
+    {"KEPT_AGAIN", R"(        if (fathom_absent && !fathom_computing) {
+            fathom_computing = true;
+            absent = t;
+            t = safe;
+            steps = since;
+            before = stride = 0.0;
+            continue;
+        }
+)"},
+    {"KEPT_SAFE", R"(        if (!fathom_asked) {
+            fathom_computing = fathom_computing && t <= absent;
+            safe = t;
+            since = steps;
+        }
+)"},
+    {"SHADOW_START", R"(    float safe = s, absent = s, before_safe = 0.0, shadow_safe = 1.0;
+    int since = 0;
+    fathom_computing = false;
+)"},
+    {"SHADOW_AGAIN", R"(        if (fathom_absent && !fathom_computing) {
+            fathom_computing = true;
+            absent = s;
+            s = safe;
+            i = since;
+            before = before_safe;
+            shadow = shadow_safe;
+            continue;
+        }
+        if (!fathom_asked) {
+            fathom_computing = fathom_computing && s >= absent;
+            safe = s;
+            since = i;
+            before_safe = before;
+            shadow_safe = shadow;
+        }
+)"},
+};
+
 std::string number(double value) { return float_literal(static_cast<float>(value)); }
 
 using Values = std::map<std::string, std::string, std::less<>>;
@@ -267,6 +330,7 @@ Values values_of(const MarcherOptions &options) {
         {"LEAST_ANGLE", number(look::least_angle)},
     };
     values["RAY"] = fill(ray, values);
+    for (const KeptMarch &part : kept_march) values[part.name] = options.kept ? part.text : "";
     return values;
 }
 

@@ -23,6 +23,7 @@ struct MarcherOptions {
     bool local_normals = false; // some material reads its normal
     bool default_sun = false;
     bool pick = false; // writes fathom_pick too (emit.h)
+    bool kept = false; // some field is read through the noise cache (cache.h)
     int lights = 0;
     int max_steps = 256;
     double epsilon = 5e-4;

@@ -2,6 +2,7 @@
 #include "backend-glsl/module.h"
 
 #include "base/text.h"
+#include "ir/cost.h"
 
 #include <algorithm>
 #include <cmath>
@@ -93,6 +94,7 @@ class Gatherer {
                 function(node.payload, todo);
             } else if (node.op == Op::Cached) {
                 function(graph_.cache(ir::CacheId{node.payload}).field.index, todo);
+                caches_.insert(node.payload);
             } else if (node.op == Op::TableRead) {
                 tables_.insert(ir::table_of(node.payload).index);
             } else if (node.op == Op::Param) {
@@ -118,12 +120,24 @@ class Gatherer {
         for (std::uint32_t index : grids_)
             module_.grids[index] = module_.names.unique("grid_" + std::to_string(index));
         for (std::uint32_t index : tables_) table(index);
+        if (module_.options.noise_cache)
+            for (std::uint32_t index : caches_) keep(ir::CacheId{index});
     }
 
   private:
     void function(std::uint32_t index, std::vector<NodeId> &todo) {
         if (functions_.insert(index).second)
             todo.push_back(graph_.function(ir::FunctionId{index}).result);
+    }
+
+    void keep(ir::CacheId id) {
+        if (module_.kept.size() >= cache_most_fields || ir::kept(module_.scene, id) != ir::Kept::Yes)
+            return;
+        const ir::Cache &cache = graph_.cache(id);
+        const std::string &name = module_.functions.at(cache.field.index);
+        module_.names.unique(name + "_kept");
+        module_.kept[id.index] = {name, graph_[graph_.function(cache.field).result].type, cache.cell,
+                                  module_.scene.caches[id.index].slope};
     }
 
     void table(std::uint32_t index) {
@@ -135,7 +149,7 @@ class Gatherer {
     Module &module_;
     const ir::Graph &graph_;
     std::unordered_set<NodeId> seen_;
-    std::set<std::uint32_t> functions_, params_, tables_, images_, grids_;
+    std::set<std::uint32_t> functions_, params_, tables_, images_, grids_, caches_;
 };
 
 } // namespace

@@ -2,6 +2,7 @@
 // that is emitted.
 #pragma once
 
+#include "backend-glsl/cache.h"
 #include "backend-glsl/emit.h"
 #include "backend-glsl/names.h"
 
@@ -34,6 +35,7 @@ struct Module {
     std::vector<float> texels;
     bool reads_time = false;
     bool hits = false; // the struct Hit is used
+    std::map<std::uint32_t, KeptText> kept{}; // by CacheId: the fields read through the noise cache
 };
 
 const char *glsl_type(ir::Type type);

@@ -31,6 +31,16 @@ std::string read_pair(const std::string &word, int &first, int &second) {
     return "";
 }
 
+std::string read_cells(const std::string &word, int &bits) {
+    const std::optional<double> cells = parse_number(word);
+    for (int b = 2; b <= 7; ++b)
+        if (cells && *cells == 1 << b) {
+            bits = b;
+            return "";
+        }
+    return fmt::format("the cache has 4, 8, 16, 32, 64 or 128 cells an axis, not `{}`", word);
+}
+
 std::string read_point(const std::string &word, std::array<double, 3> &point) {
     std::string_view rest = word;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -287,6 +297,11 @@ struct Reader {
         sub = command("bench", "measure the phases and a frame of a scene", bench);
         add_scene(sub, bench.scene);
         add_size(sub, bench.width, bench.height);
+        sub->add_flag("--noise-cache", bench.noise_cache, "measure the noise cache against exact frames");
+        option(
+            sub, "--cells", [this](const std::string &word) { return read_cells(word, bench.cache_bits); },
+            "cells of the noise cache along an axis: 4, 8, … 128; 64 unless said")
+            ->type_name("N");
 
         help = app.add_subcommand("help", "show this, or a command's options");
         help->add_option("COMMAND", help_about, "");

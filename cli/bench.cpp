@@ -2,6 +2,7 @@
 // depend on it.
 #include "backend-cpu/march.h"
 #include "backend-glsl/emit.h"
+#include "cli/bench.h"
 #include "cli/terminal.h"
 #include "render-gl/context.h"
 #include "render-gl/render.h"
@@ -121,6 +122,7 @@ Exit run(const BenchCommand &command, Terminal &terminal) {
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     terminal.put(fmt::format("{} at {}x{}\n", command.scene.file, command.width, command.height));
+    if (command.noise_cache) return bench_noise_cache(command, compilation.scene, terminal);
     bench_front_end(command, terminal);
     bench_gl(command, compilation.scene, terminal);
     bench_cpu(command, compilation.scene, terminal);

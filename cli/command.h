@@ -80,6 +80,8 @@ struct ExplainCommand { std::string code; }; // empty: the list of all
 struct BenchCommand {
     SceneArguments scene;
     int width = 400, height = 400;
+    bool noise_cache = false;
+    int cache_bits = 6; // 2^bits cells an axis
 };
 
 using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, EvalCommand, ViewCommand, ImportCommand,

@@ -33,12 +33,19 @@ struct ShapeFact {
     std::array<bool, 3> symmetric{};
     std::array<double, 3> lever{}; // sup |(p x grad f)_axis| over space; infinity: unknown
     double outward = std::numeric_limits<double>::infinity(); // Displace: the most by which it moves the surface outward
+    double inward = std::numeric_limits<double>::infinity(); // … and inward
     bool local = false;          // the bound holds within `bounds` alone: the raw field is asked at the nearest point there, and
                                  // joined with the way to it as Within's is
     bool guard = false;          // when marched, take the max with the distance to `bounds` (cheap far away)
     RepeatPlan repeat;
     double detour = 1;           // Within: the ways round what its region leaves out, over the straight ones, at most
     CellBounds cells;            // Within: its child's bounds cell by cell, where they differ much
+};
+
+// What was proved of a cached field (Graph::caches) everywhere, for all params.
+struct CacheFact {
+    double slope = std::numeric_limits<double>::infinity(); // >= |grad f|; of a vector, of all components together
+    double span = std::numeric_limits<double>::infinity();  // >= the distance of any two values
 };
 
 struct Param {
@@ -109,6 +116,7 @@ struct Scene {
     ShapeId root;                    // the union of the top-level shapes
     std::vector<TopLevel> top_level;
     std::vector<ShapeFact> facts;    // by ShapeId; filled by the analysis
+    std::vector<CacheFact> caches;   // by CacheId; filled by the analysis
     std::vector<Param> params;
     std::vector<Light> lights;
     Lighting lighting;

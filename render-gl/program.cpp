@@ -199,6 +199,8 @@ void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) 
     draw_triangle();
 }
 
+void Program::use() const { glUseProgram(program_); }
+
 void draw_triangle() {
     GLuint array = 0;
     glGenVertexArrays(1, &array);

@@ -41,6 +41,10 @@ class Program {
     // params' values of `params`.
     void draw(const FrameInputs &inputs, const std::vector<ir::Param> &params) const;
 
+    // For passes that set uniforms of their own: the GL program, and how to make it current.
+    unsigned name() const { return program_; }
+    void use() const;
+
     // Replaces the tables' numbers where only these changed. Their size must be the same.
     void upload_tables(const std::vector<float> &texels) const;
 

@@ -47,6 +47,8 @@ class Target {
 
 } // namespace
 
+void finish() { glFinish(); }
+
 int largest_side() {
     GLint texture = 0, viewport[2] = {0, 0};
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);

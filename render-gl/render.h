@@ -25,6 +25,9 @@ struct Pixels {
     std::vector<float> rgba;
 };
 
+// Waits until all that was asked for is drawn.
+void finish();
+
 // The largest width and height that the context can draw at once.
 int largest_side();
 

@@ -32,6 +32,7 @@ struct Prover {
     std::vector<Place> places;
     std::deque<Zone> zones; // stable addresses
     double outward = 0;     // ShapeFact::outward of the shape at hand
+    double inward = 0;      // ShapeFact::inward
     bool local = false;     // the shape at hand is proved in its own box alone (ShapeFact::local)
 
     Prover(ir::Scene &s, Diagnostics &d, const Options &o)
@@ -52,6 +53,8 @@ struct Prover {
     const Place &place(ir::ShapeId id) const { return places[id.index]; }
     Zone zone_of(const ir::Region &region);
     bool is_field(ir::ShapeId id) const;
+
+    void know_caches(); // caches.cpp
 
     // -- places, from the root down
     void find_places();

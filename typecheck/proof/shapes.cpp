@@ -358,8 +358,10 @@ Known Prover::know_displaced(ShapeId id) {
         k.exact_outside = k.exact_outside && !varies;
         // What moves inward only is still below the child's field: the shell begins at the surface
         // itself.
-        if (shape.kind == ShapeKind::Displace && !k.failed)
+        if (shape.kind == ShapeKind::Displace && !k.failed) {
             outward = std::max(amount.hi, 0.0) * (1 + slack);
+            inward = up(std::max(-amount.lo, 0.0) + 1e-5 * amount.magnitude());
+        }
     }
     k.parts_exact = false;
     if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;

@@ -58,12 +58,13 @@ void Prover::run() {
         set_lipschitz(k, 1);
         if (places[i].reached) { // what no one asks keeps facts that say nothing
             local = false;
-            outward = infinity;
+            outward = inward = infinity;
             k = know(ShapeId{i});
             if (!is_field(ShapeId{i})) k.leaf = {};
             keep_in_ball(ShapeId{i}, k);
             k.fact.local = local;
             k.fact.outward = outward;
+            k.fact.inward = inward;
             finish(ShapeId{i}, k);
         }
         known[i] = k;
@@ -71,6 +72,7 @@ void Prover::run() {
         scene.facts[i].bounds = padded(k.fact.bounds);
         scene.facts[i].repeat.copy = padded(k.fact.repeat.copy);
     }
+    know_caches();
     scene.bounds = {};
     double radius = 0;
     for (const ir::TopLevel &top : scene.top_level) {

@@ -1,0 +1,406 @@
+// See cache.h. Nothing here waits for the CPU: the passes follow each other on the card, with barriers between.
+//
+// Why no place is ever lost and no key found half made. A place is in exactly one of three: an entry of the hash, the
+// ring between Head and Tail, the hand of one invocation. Entries change by compare-and-swap alone: who swaps one out
+// has it in hand, and puts it in at its next slot or its place into the ring. A key is written before the entry that
+// names it, its corners before the next frame reads; entries of this frame are fresh, so nobody moves them. Two pixels
+// that miss the same cell meet at its first slot that is not fresh: one wins, the other sees the key there.
+#include "backend-glsl/cache.h"
+
+#include "backend-glsl/fill.h"
+#include "backend-glsl/module.h"
+
+namespace fathom::glsl {
+
+namespace {
+
+constexpr const char *hashing = R"(
+const ivec3 fathom_cache_shifts[$AGES] = ivec3[]($SHIFTS);
+
+// Where the key (cell, field) lies at that age.
+ivec3 fathom_cache_slot(ivec4 key, int age) {
+    int last = (1 << fathom_cache_bits) - 1;
+    return (key.xyz + fathom_cache_shifts[age] + key.w * $FIELD_SHIFT) & last;
+}
+
+ivec3 fathom_cache_place(uint index) {
+    int last = (1 << fathom_cache_bits) - 1;
+    int place = int(index & $PLACES);
+    return ivec3(place, place >> fathom_cache_bits, place >> (2 * fathom_cache_bits)) & last;
+}
+)";
+
+constexpr const char *look_up = R"(
+uniform int fathom_cache_on = 0;   // 0: every field is computed, and nothing below need be bound
+uniform int fathom_cache_show = 0; // 1: misses are red
+uniform int fathom_cache_bits = 0, fathom_cache_ages = 4;
+uniform int fathom_cache_fields[$COUNT];
+uniform usampler3D fathom_cache_index;
+uniform sampler3D fathom_cache_pool;
+uniform sampler3D fathom_cache_wide;
+
+// What one evaluation of the scene did: asked a field that may be kept; found a value absent. While `computing`, kept
+// values are looked for, so that what is absent is asked for, but not read.
+bool fathom_asked = false, fathom_absent = false, fathom_computing = false;
+ivec4 fathom_miss = ivec4(0, 0, 0, -1); // the pixel's last miss
+uvec2 fathom_tally = uvec2(0u);         // hits, misses
+)";
+
+constexpr const char *kept = R"(
+// Whether the field's value at p is in the cache, and where in the pool.
+bool fathom_kept(vec3 p, float cell, int field, out vec3 at) {
+    at = vec3(0.0);
+    if (fathom_cache_on == 0) return false;
+    fathom_asked = true;
+    vec3 q = p / cell;
+    vec3 corner = floor(q);
+    // Further out a cell's numbers do not fit, and float32 has few steps within a cell.
+    if (!all(lessThan(abs(q), vec3(float($HIGHEST << fathom_cache_bits))))) {
+        fathom_absent = true;
+        return false;
+    }
+    ivec4 key = ivec4(ivec3(corner), field);
+    ivec3 high = key.xyz >> fathom_cache_bits & $HIGH_MASK;
+    uint tag = uint(high.x | high.y << $HIGH_BITS | high.z << (2 * $HIGH_BITS));
+    for (int age = 0; age < fathom_cache_ages; ++age) {
+        uvec2 found = texelFetch(fathom_cache_index, fathom_cache_slot(key, age), 0).xy;
+        if ((found.x & 0x7fffffffu) != tag || found.y >> $PLACE_BITS != uint(field | age << 8)) continue;
+        if (found.x != tag) {
+            fathom_absent = true;
+            return false;
+        }
+        ++fathom_tally.x;
+        if (fathom_computing) return false;
+        at = (vec3(2 * fathom_cache_place(found.y)) + 0.5 + (q - corner)) / float(2 << fathom_cache_bits);
+        return true;
+    }
+    ++fathom_tally.y;
+    fathom_absent = true;
+    fathom_miss = key;
+    return false;
+}
+)";
+
+constexpr const char *counts = R"(
+void fathom_count(int which) {
+    imageAtomicAdd(fathom_cache_counts, which, 1u);
+}
+
+void fathom_give_back(uint entry) {
+    uint at = imageAtomicAdd(fathom_cache_counts, $TAIL, 1u);
+    imageStore(fathom_cache_free, fathom_cache_place(at), uvec4(entry & $PLACES));
+}
+)";
+
+constexpr const char *reserve = R"(#version 420 core
+// The second pass: for every pixel that missed a cell, a place is reserved. Draw one triangle over the picture.
+uniform int fathom_cache_bits, fathom_cache_ages;
+uniform uint fathom_cache_frame; // counts the frames
+uniform isampler2D fathom_cache_misses;
+layout(r32ui) coherent uniform uimage3D fathom_cache_hash;
+layout(rgba32i) coherent uniform iimage3D fathom_cache_keys;
+layout(r32ui) coherent uniform uimage3D fathom_cache_free;
+layout(r32ui) coherent uniform uimageBuffer fathom_cache_counts;
+layout(location = 0) out uint fathom_reserved;
+$HASHING$COUNTS
+uint fathom_entry(uint place, int age, uint frame) {
+    return (place & $PLACES) | uint(age) << $PLACE_BITS | (frame & 255u) << 24u;
+}
+
+int fathom_age(uint entry) {
+    return int(entry >> $PLACE_BITS & 7u);
+}
+
+// Came in this frame: nobody may move it.
+bool fathom_fresh(uint entry) {
+    return entry != $EMPTY && entry >> 24u == (fathom_cache_frame & 255u);
+}
+
+bool fathom_is(uint entry, ivec4 key) {
+    ivec4 found = imageLoad(fathom_cache_keys, fathom_cache_place(entry));
+    return found.xyz == key.xyz && (found.w & 255) == key.w;
+}
+
+// A free place; where there is none, that of a key which lies where this one may.
+uint fathom_take(ivec4 key) {
+    uint limit = imageLoad(fathom_cache_counts, $LIMIT).x;
+    uint at = imageAtomicAdd(fathom_cache_counts, $HEAD, 1u);
+    if (int(limit - at) > 0) return imageLoad(fathom_cache_free, fathom_cache_place(at)).x;
+    imageAtomicAdd(fathom_cache_counts, $HEAD, 0xffffffffu);
+    for (int age = 0; age < fathom_cache_ages; ++age) {
+        ivec3 slot = fathom_cache_slot(key, age);
+        uint entry = imageLoad(fathom_cache_hash, slot).x;
+        if (entry == $EMPTY || fathom_fresh(entry)) continue;
+        if (imageAtomicCompSwap(fathom_cache_hash, slot, entry, $EMPTY) != entry) continue;
+        fathom_count($DELETED);
+        return entry & $PLACES;
+    }
+    return $NOWHERE;
+}
+
+// The evicted go on to their next slots, evicting in turn, until one finds an empty slot or is too old.
+void fathom_carry(uint entry) {
+    for (int turn = 0; turn < 64 && entry != $EMPTY; ++turn) {
+        int age = fathom_age(entry) + 1;
+        if (age >= fathom_cache_ages) break;
+        ivec4 key = imageLoad(fathom_cache_keys, fathom_cache_place(entry));
+        key.w &= 255;
+        uint moved = fathom_entry(entry, age, entry >> 24u);
+        ivec3 slot = fathom_cache_slot(key, age);
+        uint there = imageLoad(fathom_cache_hash, slot).x;
+        if (fathom_fresh(there)) {
+            entry = moved;
+            continue;
+        }
+        if (imageAtomicCompSwap(fathom_cache_hash, slot, there, moved) != there) continue;
+        fathom_count($EVICTED);
+        entry = there;
+    }
+    if (entry == $EMPTY) return;
+    fathom_give_back(entry);
+    fathom_count($DELETED);
+}
+
+void main() {
+    fathom_reserved = $NOWHERE;
+    ivec4 key = texelFetch(fathom_cache_misses, ivec2(gl_FragCoord.xy), 0);
+    if (key.w < 0) return;
+    for (int age = 0; age < fathom_cache_ages; ++age) {
+        uint entry = imageLoad(fathom_cache_hash, fathom_cache_slot(key, age)).x;
+        if (!fathom_fresh(entry)) break;
+        if (fathom_is(entry, key)) return;
+    }
+    uint place = fathom_take(key);
+    if (place == $NOWHERE) {
+        fathom_count($FULL);
+        return;
+    }
+    imageStore(fathom_cache_keys, fathom_cache_place(place), key);
+    memoryBarrier();
+    int age = 0;
+    // Every turn without success another invocation had some, so this ends; the limit is for drivers' sake.
+    for (int turn = 0; turn < 1024 && age < fathom_cache_ages; ++turn) {
+        ivec3 slot = fathom_cache_slot(key, age);
+        uint there = imageLoad(fathom_cache_hash, slot).x;
+        if (fathom_fresh(there)) {
+            if (fathom_is(there, key)) {
+                fathom_give_back(place);
+                return;
+            }
+            ++age;
+            continue;
+        }
+        uint entry = fathom_entry(place, age, fathom_cache_frame);
+        if (imageAtomicCompSwap(fathom_cache_hash, slot, there, entry) != there) continue;
+        fathom_count($INSERTED);
+        fathom_reserved = place;
+        fathom_carry(there);
+        return;
+    }
+    fathom_give_back(place);
+    fathom_count($CROWDED);
+}
+)";
+
+constexpr const char *fill_pass = R"(
+// The third pass: computes and stores the corners of every cell that got a place. Draw one triangle over the picture.
+uniform int fathom_cache_bits;
+uniform int fathom_cache_fields[$COUNT];
+uniform isampler2D fathom_cache_misses;
+uniform usampler2D fathom_cache_places; // what the second pass reserved
+layout(rgba32i) writeonly uniform iimage3D fathom_cache_keys;
+layout(r32f) writeonly uniform image3D fathom_cache_pool;
+layout(rgba32f) writeonly uniform image3D fathom_cache_wide;
+
+ivec3 fathom_cache_place(uint index) {
+    int last = (1 << fathom_cache_bits) - 1;
+    int place = int(index & $PLACES);
+    return ivec3(place, place >> fathom_cache_bits, place >> (2 * fathom_cache_bits)) & last;
+}
+
+vec4 fathom_value(int which, vec3 p) {
+$VALUES    return vec4(0.0);
+}
+
+void main() {
+    uint index = texelFetch(fathom_cache_places, ivec2(gl_FragCoord.xy), 0).x;
+    if (index == $NOWHERE) return;
+    ivec4 key = texelFetch(fathom_cache_misses, ivec2(gl_FragCoord.xy), 0);
+    int which = 0;
+    for (int i = 0; i < $COUNT; ++i)
+        if (fathom_cache_fields[i] == key.w) which = i;
+    float cell = $CELLS[which];
+    ivec3 place = fathom_cache_place(index);
+    vec4 corners[8];
+    for (int i = 0; i < 8; ++i) {
+        ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2);
+        corners[i] = fathom_value(which, vec3(key.xyz + corner) * cell);
+        if ($WIDE[which]) imageStore(fathom_cache_wide, 2 * place + corner, corners[i]);
+        else imageStore(fathom_cache_pool, 2 * place + corner, corners[i]);
+    }
+    // Between its corners the kept field is at most as steep as its steepest edges along the axes together say. Where
+    // that is more than what is proved of the field, steps could be too long: it is computed there.
+    vec3 steep = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        int y = (i & 1) | (i & 2) << 1;
+        steep = max(steep, vec3(distance(corners[2 * i], corners[2 * i + 1]),
+                                distance(corners[y], corners[y + 2]),
+                                distance(corners[i], corners[i + 4])));
+    }
+    if (!(length(steep) <= cell * $SLOPES[which])) imageStore(fathom_cache_keys, place, ivec4(key.xyz, key.w | $REFUSED));
+}
+)";
+
+constexpr const char *sweep = R"(#version 420 core
+// Gives up every cell of one field, or with -1 all. Draw one triangle over 2^fathom_cache_bits^3 pixels in all.
+uniform int fathom_cache_bits, fathom_cache_gone;
+uniform int fathom_cache_width; // of what is drawn over
+layout(r32ui) uniform uimage3D fathom_cache_hash;
+layout(rgba32i) uniform iimage3D fathom_cache_keys;
+layout(r32ui) uniform uimage3D fathom_cache_free;
+layout(r32ui) coherent uniform uimageBuffer fathom_cache_counts;
+$HASHING$COUNTS
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    ivec3 slot = fathom_cache_place(uint(pixel.x + fathom_cache_width * pixel.y));
+    uint entry = imageLoad(fathom_cache_hash, slot).x;
+    if (entry == $EMPTY) return;
+    int field = imageLoad(fathom_cache_keys, fathom_cache_place(entry)).w & 255;
+    if (fathom_cache_gone >= 0 && field != fathom_cache_gone) return;
+    imageStore(fathom_cache_hash, slot, uvec4($EMPTY));
+    fathom_give_back(entry);
+    fathom_count($SWEPT);
+}
+)";
+
+constexpr const char *publish = R"(#version 420 core
+// The last pass: what a look-up reads, from hash and keys. Draw one triangle over 2^fathom_cache_bits^3 pixels in all.
+uniform int fathom_cache_bits;
+uniform int fathom_cache_width; // of what is drawn over
+uniform usampler3D fathom_cache_hash;
+uniform isampler3D fathom_cache_keys;
+layout(r32ui) readonly uniform uimageBuffer fathom_cache_counts;
+layout(rg32ui) writeonly uniform uimage3D fathom_cache_index;
+$HASHING
+void main() {
+    if (imageLoad(fathom_cache_counts, $INSERTED).x + imageLoad(fathom_cache_counts, $SWEPT).x == 0u) return;
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    ivec3 slot = fathom_cache_place(uint(pixel.x + fathom_cache_width * pixel.y));
+    uint entry = texelFetch(fathom_cache_hash, slot, 0).x;
+    uvec2 index = uvec2($EMPTY);
+    if (entry != $EMPTY) {
+        ivec4 key = texelFetch(fathom_cache_keys, fathom_cache_place(entry), 0);
+        ivec3 high = key.xyz >> fathom_cache_bits & $HIGH_MASK;
+        index.x = uint(high.x | high.y << $HIGH_BITS | high.z << (2 * $HIGH_BITS));
+        if (key.w > 255) index.x |= 0x80000000u;
+        index.y = (entry & $PLACES) | uint(key.w & 255) << $PLACE_BITS | (entry >> $PLACE_BITS & 7u) << 29u;
+    }
+    imageStore(fathom_cache_index, slot, uvec4(index, 0u, 0u));
+}
+)";
+
+std::string whole(const std::array<int, 3> &v) {
+    return "ivec3(" + std::to_string(v[0]) + ", " + std::to_string(v[1]) + ", " +
+           std::to_string(v[2]) + ")";
+}
+
+std::string word(std::uint32_t value) { return std::to_string(value) + "u"; }
+
+using Values = std::map<std::string, std::string, std::less<>>;
+
+Values numbers() {
+    std::string shifts;
+    for (const auto &shift : cache_shifts) shifts += (shifts.empty() ? "" : ", ") + whole(shift);
+    const auto at = [](Count count) { return std::to_string(static_cast<int>(count)); };
+    return {{"AGES", std::to_string(cache_ages)},
+            {"SHIFTS", shifts},
+            {"FIELD_SHIFT", whole(cache_field_shift)},
+            {"PLACES", word((1u << cache_place_bits) - 1)},
+            {"PLACE_BITS", word(cache_place_bits)},
+            {"EMPTY", word(cache_empty)},
+            {"NOWHERE", word(cache_nowhere)},
+            {"REFUSED", std::to_string(cache_refused)},
+            {"HIGH_BITS", std::to_string(cache_high_bits)},
+            {"HIGH_MASK", std::to_string((1 << cache_high_bits) - 1)},
+            {"HIGHEST", std::to_string(1 << (cache_high_bits - 1))},
+            {"HEAD", at(Count::Head)},
+            {"TAIL", at(Count::Tail)},
+            {"LIMIT", at(Count::Limit)},
+            {"INSERTED", at(Count::Inserted)},
+            {"EVICTED", at(Count::Evicted)},
+            {"DELETED", at(Count::Deleted)},
+            {"CROWDED", at(Count::Crowded)},
+            {"FULL", at(Count::Full)},
+            {"SWEPT", at(Count::Swept)}};
+}
+
+std::string filled(std::string_view form) {
+    Values values = numbers();
+    values["HASHING"] = fill(hashing, values);
+    values["COUNTS"] = fill(counts, values);
+    return fill(form, values);
+}
+
+const char *components_of(ir::Type type) {
+    if (type == ir::Type::Vec3) return ".xyz";
+    return type == ir::Type::Vec4 ? "" : ".x";
+}
+
+} // namespace
+
+std::string cache_look_up(std::span<const KeptText> fields) {
+    Values values = numbers();
+    values["COUNT"] = std::to_string(fields.size());
+    return fill(look_up, values) + fill(hashing, values) + fill(kept, values);
+}
+
+std::string cache_reader(const KeptText &field, std::size_t number) {
+    const bool wide = field.type != ir::Type::Float;
+    return std::string("\n") + glsl_type(field.type) + " " + field.function +
+           "_kept(vec3 p) {\n    vec3 at;\n    if (fathom_kept(p, " +
+           float_literal(static_cast<float>(field.cell)) + ", fathom_cache_fields[" +
+           std::to_string(number) + "], at)) return textureLod(" +
+           (wide ? "fathom_cache_wide" : "fathom_cache_pool") + ", at, 0.0)" + components_of(field.type) +
+           ";\n    return " + field.function + "(p);\n}\n";
+}
+
+std::string cache_outputs() {
+    return "layout(location = 2) out ivec4 fathom_missed;\n"
+           "layout(location = 3) out uvec2 fathom_counted;\n";
+}
+
+std::string cache_output() {
+    return "    fathom_missed = fathom_miss;\n    fathom_counted = fathom_tally;\n"
+           "    if (fathom_cache_show != 0 && fathom_miss.w >= 0) fathom_color.rgb = "
+           "mix(fathom_color.rgb, vec3(1.0, 0.0, 0.0), 0.8);\n";
+}
+
+std::string cache_fill(std::span<const KeptText> fields) {
+    Values values = numbers();
+    values["COUNT"] = std::to_string(fields.size());
+    std::string cases, cells, slopes, wide;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        const KeptText &field = fields[i];
+        const char *rest = field.type == ir::Type::Float  ? ", 0.0, 0.0, 0.0"
+                           : field.type == ir::Type::Vec3 ? ", 0.0"
+                                                          : "";
+        cases += "    if (which == " + std::to_string(i) + ") return vec4(" + field.function +
+                 "(p)" + rest + ");\n";
+        const std::string comma = i ? ", " : "";
+        cells += comma + float_literal(static_cast<float>(field.cell));
+        slopes += comma + float_literal(static_cast<float>(field.slope));
+        wide += comma + (field.type == ir::Type::Float ? "false" : "true");
+    }
+    const std::string size = "[" + std::to_string(fields.size()) + "](";
+    values["VALUES"] = cases;
+    values["CELLS"] = "float" + size + cells + ")";
+    values["SLOPES"] = "float" + size + slopes + ")";
+    values["WIDE"] = "bool" + size + wide + ")";
+    return fill(fill_pass, values);
+}
+
+std::string cache_reserve() { return filled(reserve); }
+std::string cache_publish() { return filled(publish); }
+std::string cache_sweep() { return filled(sweep); }
+
+} // namespace fathom::glsl

@@ -1,0 +1,10 @@
+// The parts of `fathom bench` that stand in files of their own.
+#pragma once
+
+#include "cli/terminal.h"
+
+namespace fathom::cli {
+
+Exit bench_noise_cache(const BenchCommand &command, const ir::Scene &scene, Terminal &terminal); // bench_cache.cpp
+
+} // namespace fathom::cli

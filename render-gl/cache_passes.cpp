@@ -1,0 +1,380 @@
+#include "render-gl/cache_passes.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace fathom::gl {
+
+namespace {
+
+constexpr GLenum cached_outputs[] = {GL_COLOR_ATTACHMENT0, GL_NONE, GL_COLOR_ATTACHMENT2,
+                                     GL_COLOR_ATTACHMENT3}; // backend-glsl/cache.h
+
+void set(const Program &program, const char *name, int value) {
+    glUniform1i(glGetUniformLocation(program.name(), name), value);
+}
+
+void set_unsigned(const Program &program, const char *name, unsigned value) {
+    glUniform1ui(glGetUniformLocation(program.name(), name), value);
+}
+
+void bind_image(const Program &program, const char *name, int unit, GLuint texture, GLenum format,
+                GLenum access) {
+    glBindImageTexture(static_cast<GLuint>(unit), texture, 0, GL_TRUE, 0, access, format);
+    set(program, name, unit);
+}
+
+GLuint target_2d(GLint format, int width, int height, GLuint framebuffer, GLenum attachment) {
+    const GLenum layout = format == GL_RGBA32F  ? GL_RGBA
+                          : format == GL_R8     ? GL_RED
+                          : format == GL_RGBA32I ? GL_RGBA_INTEGER
+                          : format == GL_RG32UI ? GL_RG_INTEGER
+                                                : GL_RED_INTEGER;
+    const GLenum type = format == GL_RGBA32F || format == GL_R8 ? GL_FLOAT
+                        : format == GL_RGBA32I                  ? GL_INT
+                                                                : GL_UNSIGNED_INT;
+    GLuint name = 0;
+    glGenTextures(1, &name);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, name);
+    glTexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, layout, type, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, name, 0);
+    return name;
+}
+
+// Takes the program over, or says why the driver does not.
+std::string take(std::optional<Program> &into, const glsl::Output &output, const ir::Scene &scene) {
+    auto built = Program::build(output, scene);
+    if (const auto *error = std::get_if<ProgramError>(&built))
+        return "the graphics driver refuses the noise cache's shader: " + error->message;
+    into.emplace(std::move(std::get<Program>(built)));
+    return "";
+}
+
+} // namespace
+
+std::string cache_unavailable() {
+    const int version = epoxy_gl_version();
+    if (version < 42)
+        return "the noise cache needs OpenGL 4.2, this driver has " + std::to_string(version / 10) +
+               "." + std::to_string(version % 10);
+    GLint images = 0;
+    glGetIntegerv(GL_MAX_FRAGMENT_IMAGE_UNIFORMS, &images);
+    if (images < 4) return "the noise cache needs images in fragment shaders, which this driver has none of";
+    return "";
+}
+
+CachedView::~CachedView() { release(); }
+
+void CachedView::release() {
+    for (GLuint *framebuffer : {&framebuffer_, &places_framebuffer_, &sweep_framebuffer_}) {
+        if (*framebuffer) glDeleteFramebuffers(1, framebuffer);
+        *framebuffer = 0;
+    }
+    for (GLuint *texture : {&color_, &misses_, &tally_, &places_, &sweep_target_}) {
+        if (*texture) glDeleteTextures(1, texture);
+        *texture = 0;
+    }
+    width_ = height_ = 0;
+}
+
+std::string CachedView::use(const ir::Scene &scene, const CacheSize &size, Diagnostics &diagnostics) {
+    picture_.reset();
+    if (std::string why = cache_unavailable(); !why.empty()) return why;
+    glsl::Options options;
+    options.target = glsl::Target::Glsl450;
+    options.buffers = true;
+    options.noise_cache = true;
+    const glsl::Output output = glsl::emit(scene, options, diagnostics);
+    if (output.text.empty()) return "the shader with the noise cache cannot be made";
+    if (output.kept.empty()) return "no field of this scene is worth keeping";
+    const glsl::CachePasses passes = glsl::emit_cache_passes(scene, options, diagnostics);
+    if (passes.fill.text.empty()) return "the noise cache's shaders cannot be made";
+
+    GLint units = 16;
+    glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
+    first_unit_ = units - 3;
+    if (static_cast<int>(1 + output.images.size() + output.grids.size()) > first_unit_)
+        return "the scene has too many images to leave room for the noise cache";
+
+    CacheSize wanted = size;
+    for (const glsl::KeptField &field : output.kept) wanted.wide |= field.wide;
+    if (!store_.hash() || store_.size().bits != wanted.bits || (wanted.wide && !store_.size().wide)) {
+        meanings_.clear();
+        if (!store_.make(wanted)) return "the graphics card has no memory for the noise cache";
+    }
+    std::optional<Program> picture;
+    if (std::string why = take(picture, output, scene); !why.empty()) return why;
+    if (std::string why = take(fill_, passes.fill, scene); !why.empty()) return why;
+    glsl::Output alone;
+    alone.text = passes.reserve;
+    if (!reserve_)
+        if (std::string why = take(reserve_, alone, scene); !why.empty()) return why;
+    alone.text = passes.publish;
+    if (!publish_)
+        if (std::string why = take(publish_, alone, scene); !why.empty()) return why;
+    alone.text = passes.sweep;
+    if (!sweep_)
+        if (std::string why = take(sweep_, alone, scene); !why.empty()) return why;
+
+    // A field that the cache knows keeps its number; others get one that nobody has.
+    kept_ = output.kept;
+    numbers_.assign(kept_.size(), -1);
+    const auto means = [](const std::vector<double> &known, std::uint64_t meaning) {
+        std::uint64_t first = 0;
+        std::memcpy(&first, known.data(), sizeof first);
+        return first == meaning;
+    };
+    std::vector<bool> taken(glsl::cache_most_fields, false);
+    for (std::size_t i = 0; i < kept_.size(); ++i)
+        for (const auto &[number, known] : meanings_)
+            if (!taken[static_cast<std::size_t>(number)] && means(known, kept_[i].meaning)) {
+                numbers_[i] = number;
+                taken[static_cast<std::size_t>(number)] = true;
+                break;
+            }
+    for (int &number : numbers_)
+        if (number < 0) {
+            // Better one that was never used than one whose cells have to be given up.
+            const auto unused = [&](bool new_ones) {
+                for (int n = 0; n < glsl::cache_most_fields; ++n)
+                    if (!taken[static_cast<std::size_t>(n)] && (!new_ones || !meanings_.contains(n)))
+                        return n;
+                return -1;
+            };
+            number = unused(true);
+            if (number < 0) number = unused(false);
+            taken[static_cast<std::size_t>(number)] = true;
+        }
+    picture_ = std::move(picture);
+    return "";
+}
+
+int CachedView::number_of(std::uint32_t cache) const {
+    for (std::size_t i = 0; i < kept_.size(); ++i)
+        if (kept_[i].cache == cache) return numbers_[i];
+    return -1;
+}
+
+bool CachedView::resize(int width, int height) {
+    if (width == width_ && height == height_) return true;
+    release();
+    while (glGetError() != GL_NO_ERROR) {
+    }
+    glGenFramebuffers(1, &framebuffer_);
+    glGenFramebuffers(1, &places_framebuffer_);
+    color_ = target_2d(GL_RGBA32F, width, height, framebuffer_, GL_COLOR_ATTACHMENT0);
+    misses_ = target_2d(GL_RGBA32I, width, height, framebuffer_, GL_COLOR_ATTACHMENT2);
+    tally_ = target_2d(GL_RG32UI, width, height, framebuffer_, GL_COLOR_ATTACHMENT3);
+    glDrawBuffers(4, cached_outputs);
+    bool good = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    places_ = target_2d(GL_R32UI, width, height, places_framebuffer_, GL_COLOR_ATTACHMENT0);
+    good &= glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    good &= glGetError() == GL_NO_ERROR;
+    if (!good) {
+        release();
+        return false;
+    }
+    width_ = width;
+    height_ = height;
+    return true;
+}
+
+void CachedView::set_fields(const Program &program) const {
+    glUniform1iv(glGetUniformLocation(program.name(), "fathom_cache_fields"),
+                 static_cast<GLsizei>(numbers_.size()), numbers_.data());
+    set(program, "fathom_cache_bits", store_.size().bits);
+}
+
+// Gives up what was filled with other values of the params, or by what had the number before.
+void CachedView::renew(const std::vector<ir::Param> &params) {
+    bool swept = false;
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+        std::vector<double> now(1);
+        std::memcpy(now.data(), &kept_[i].meaning, sizeof kept_[i].meaning);
+        for (std::uint32_t param : kept_[i].params)
+            now.insert(now.end(), params[param].value.begin(), params[param].value.end());
+        const auto known = meanings_.find(numbers_[i]);
+        const bool same = known != meanings_.end() && known->second.size() == now.size() &&
+                          std::memcmp(known->second.data(), now.data(), now.size() * sizeof(double)) == 0;
+        if (same) continue;
+        if (known != meanings_.end()) {
+            sweep(numbers_[i]);
+            swept = true;
+        }
+        meanings_[numbers_[i]] = std::move(now);
+    }
+    if (swept) publish();
+}
+
+// One invocation a cell of the cache.
+void CachedView::draw_cells(const Program &program) {
+    const int width = 1 << (3 * store_.size().bits + 1) / 2,
+              height = static_cast<int>(store_.cells()) / width;
+    if (!sweep_framebuffer_) {
+        glGenFramebuffers(1, &sweep_framebuffer_);
+        sweep_target_ = target_2d(GL_R8, width, height, sweep_framebuffer_, GL_COLOR_ATTACHMENT0);
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, sweep_framebuffer_);
+    glViewport(0, 0, width, height);
+    set(program, "fathom_cache_bits", store_.size().bits);
+    set(program, "fathom_cache_width", width);
+    draw_triangle();
+}
+
+void CachedView::publish() {
+    publish_->use();
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_3D, store_.hash());
+    set(*publish_, "fathom_cache_hash", 0);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_3D, store_.keys());
+    set(*publish_, "fathom_cache_keys", 1);
+    bind_image(*publish_, "fathom_cache_counts", 0, store_.counts(), GL_R32UI, GL_READ_ONLY);
+    bind_image(*publish_, "fathom_cache_index", 1, store_.index(), GL_RG32UI, GL_WRITE_ONLY);
+    draw_cells(*publish_);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+void CachedView::sweep(int field) {
+    sweep_->use();
+    set(*sweep_, "fathom_cache_gone", field);
+    bind_image(*sweep_, "fathom_cache_hash", 0, store_.hash(), GL_R32UI, GL_READ_WRITE);
+    bind_image(*sweep_, "fathom_cache_keys", 1, store_.keys(), GL_RGBA32I, GL_READ_ONLY);
+    bind_image(*sweep_, "fathom_cache_free", 2, store_.free(), GL_R32UI, GL_READ_WRITE);
+    bind_image(*sweep_, "fathom_cache_counts", 3, store_.counts(), GL_R32UI, GL_READ_WRITE);
+    draw_cells(*sweep_);
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &params,
+                      const CacheSettings &settings) {
+    if (!picture_ || !resize(inputs.width, inputs.height)) return false;
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_CULL_FACE);
+    const int ages = std::clamp(settings.max_age, 1, glsl::cache_ages);
+    ++frame_;
+    store_.begin_frame();
+    renew(params);
+
+    // 1: the picture, and each pixel's last miss
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glViewport(0, 0, width_, height_);
+    picture_->use();
+    set_fields(*picture_);
+    set(*picture_, "fathom_cache_on", 1);
+    set(*picture_, "fathom_cache_show", settings.show_misses ? 1 : 0);
+    set(*picture_, "fathom_cache_ages", ages);
+    const char *const samplers[] = {"fathom_cache_index", "fathom_cache_pool", "fathom_cache_wide"};
+    for (int i = 0; i < 3; ++i) set(*picture_, samplers[i], first_unit_ + i);
+    store_.bind_textures(first_unit_);
+    picture_->draw(inputs, params);
+
+    // 2: a place for each cell that was missed
+    glBindFramebuffer(GL_FRAMEBUFFER, places_framebuffer_);
+    reserve_->use();
+    set(*reserve_, "fathom_cache_bits", store_.size().bits);
+    set(*reserve_, "fathom_cache_ages", ages);
+    set_unsigned(*reserve_, "fathom_cache_frame", frame_);
+    set(*reserve_, "fathom_cache_misses", 0);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, misses_);
+    bind_image(*reserve_, "fathom_cache_hash", 0, store_.hash(), GL_R32UI, GL_READ_WRITE);
+    bind_image(*reserve_, "fathom_cache_keys", 1, store_.keys(), GL_RGBA32I, GL_READ_WRITE);
+    bind_image(*reserve_, "fathom_cache_free", 2, store_.free(), GL_R32UI, GL_READ_WRITE);
+    bind_image(*reserve_, "fathom_cache_counts", 3, store_.counts(), GL_R32UI, GL_READ_WRITE);
+    draw_triangle();
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+
+    // 3: its corners. Nothing is drawn; the framebuffer is any of the size.
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    const GLenum color[] = {GL_COLOR_ATTACHMENT0};
+    glDrawBuffers(1, color); // the misses are read, so they cannot be a target
+    fill_->use();
+    set_fields(*fill_);
+    set(*fill_, "fathom_cache_misses", first_unit_);
+    set(*fill_, "fathom_cache_places", first_unit_ + 1);
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_unit_));
+    glBindTexture(GL_TEXTURE_2D, misses_);
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_unit_) + 1);
+    glBindTexture(GL_TEXTURE_2D, places_);
+    bind_image(*fill_, "fathom_cache_keys", 0, store_.keys(), GL_RGBA32I, GL_WRITE_ONLY);
+    bind_image(*fill_, "fathom_cache_pool", 1, store_.pool(), GL_R32F, GL_WRITE_ONLY);
+    if (store_.wide())
+        bind_image(*fill_, "fathom_cache_wide", 2, store_.wide(), GL_RGBA32F, GL_WRITE_ONLY);
+    fill_->draw(inputs, params);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDrawBuffers(4, cached_outputs);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+
+    // 4: the index that the next frame looks up in
+    publish();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    return true;
+}
+
+bool CachedView::draw_exactly(const Program &program, const FrameInputs &inputs,
+                              const std::vector<ir::Param> &params) {
+    if (!resize(inputs.width, inputs.height)) return false;
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_CULL_FACE);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glViewport(0, 0, width_, height_);
+    const GLenum color[] = {GL_COLOR_ATTACHMENT0};
+    glDrawBuffers(1, color);
+    program.draw(inputs, params);
+    glDrawBuffers(4, cached_outputs);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    return true;
+}
+
+void CachedView::forget() {
+    if (store_.hash()) store_.clear();
+    meanings_.clear();
+}
+
+Pixels CachedView::read_pixels() const {
+    Pixels pixels{width_, height_, {}};
+    const std::size_t row = static_cast<std::size_t>(width_) * 4;
+    std::vector<float> upward(row * static_cast<std::size_t>(height_));
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, upward.data());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    for (int y = height_; y-- > 0;)
+        pixels.rgba.insert(pixels.rgba.end(), upward.begin() + static_cast<std::ptrdiff_t>(row) * y,
+                           upward.begin() + static_cast<std::ptrdiff_t>(row) * (y + 1));
+    return pixels;
+}
+
+CacheTally CachedView::read_tally() const {
+    std::vector<std::uint32_t> words(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 2);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+    glReadBuffer(GL_COLOR_ATTACHMENT3);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glReadPixels(0, 0, width_, height_, GL_RG_INTEGER, GL_UNSIGNED_INT, words.data());
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    CacheTally tally;
+    for (std::size_t i = 0; i < words.size(); i += 2) {
+        tally.hits += words[i];
+        tally.misses += words[i + 1];
+        tally.missing_pixels += words[i + 1] != 0;
+    }
+    return tally;
+}
+
+} // namespace fathom::gl

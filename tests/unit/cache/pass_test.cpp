@@ -1,0 +1,232 @@
+// The cache's passes on the context at hand: what is kept, found, moved and given up, and the rules that hold after
+// every frame. The rules are the store's own reading of what lies on the card (gl::check_cache): the CPU's hash against
+// the GPU's, each place owned once.
+#include "tests/support/reference_eval.h"
+#include "tests/unit/cache/scenes.h"
+
+#include <map>
+
+namespace fathom {
+
+namespace {
+
+// Every kept cell's corners hold the field's own values there: `field` is Graph::caches' i-th.
+void check_values(const gl::CachedView &view, const ir::Scene &scene, std::uint32_t field, std::size_t most = 40) {
+    const gl::CacheStore::Dump dump = view.store().dump(true);
+    test::Reference reference(scene);
+    const ir::Cache &cache = scene.graph.cache(ir::CacheId{field});
+    const ir::Type type = scene.graph[scene.graph.function(cache.field).result].type;
+    const int number = view.number_of(field), side = 2 << dump.bits, last = (1 << dump.bits) - 1;
+    std::size_t checked = 0;
+    for (std::uint32_t entry : dump.hash) {
+        const std::uint32_t place = entry & ((1u << glsl::cache_place_bits) - 1);
+        if (entry == glsl::cache_empty || dump.keys[place][3] != number || checked >= most) continue;
+        ++checked;
+        const int p = static_cast<int>(place);
+        for (int i = 0; i < 8; ++i) {
+            const std::array<int, 3> corner{i & 1, i >> 1 & 1, i >> 2};
+            std::array<double, 3> at{};
+            for (std::size_t a = 0; a < 3; ++a) at[a] = (dump.keys[place][a] + corner[a]) * cache.cell;
+            const auto wanted = reference.call(cache.field, {test::Reference::vec3(at)});
+            const int x = 2 * (p & last) + corner[0], y = 2 * (p >> dump.bits & last) + corner[1],
+                      z = 2 * (p >> (2 * dump.bits)) + corner[2];
+            const auto texel = static_cast<std::size_t>(x + side * (y + side * z));
+            for (std::size_t c = 0; c < static_cast<std::size_t>(ir::components(type)); ++c) {
+                const float got = type == ir::Type::Float ? dump.pool[texel] : dump.wide[texel][c];
+                REQUIRE(got == Approx(wanted.value[c]).margin(2e-5));
+            }
+        }
+    }
+    CHECK(checked > 0);
+}
+
+} // namespace
+
+TEST_CASE("a still view is learnt, and then nothing is missed any more") {
+    if (!has_context()) return;
+    const driver::Compilation c = compiled(rock);
+    gl::CachedView view;
+    use(view, c.scene);
+    const gl::FrameInputs inputs = frame_of(c.scene, 32);
+    view.draw(inputs, c.scene.params, {});
+    const gl::CacheTally first = view.read_tally();
+    const gl::CacheCounts counts = view.store().read_counts();
+    CHECK(first.hits == 0);
+    CHECK(first.misses > 1000);
+    CHECK(counts.inserted > 100); // several pixels miss the same cell: one gets it in
+    CHECK(counts.inserted <= first.missing_pixels);
+    CHECK(gl::occupancy(view.store().dump(false)).keys == counts.inserted);
+    const int frames = warm(view, inputs, c.scene);
+    CHECK(frames < 60);
+    CHECK(view.read_tally().hits > 1000);
+    CHECK(view.store().read_counts().inserted == 0);
+    CHECK(gl::check_cache(view.store().dump(false)) == "");
+    check_values(view, c.scene, 0);
+    // half of the ball lies at negative x
+    bool negative = false;
+    for (const auto &key : view.store().dump(false).keys) negative |= key[0] < -5;
+    CHECK(negative);
+}
+
+TEST_CASE("no place is lost and no value torn, however small the cache") {
+    if (!has_context()) return;
+    const driver::Compilation c = compiled(rock);
+    for (const int age : {1, 4, glsl::cache_ages}) {
+        gl::CachedView view;
+        use(view, c.scene, {.bits = 2}); // 64 cells for thousands
+        for (int frame = 0; frame < 40; ++frame) {
+            view.draw(frame_of(c.scene, 16, 0.1 * frame), c.scene.params, {.max_age = age});
+            REQUIRE(gl::check_cache(view.store().dump(false)) == "");
+        }
+        const gl::CacheOccupancy full = gl::occupancy(view.store().dump(false));
+        CHECK(full.keys > full.cells * 3 / 4);
+        CHECK(view.store().read_counts().deleted > 0); // it goes on learning
+        check_values(view, c.scene, 0);
+    }
+}
+
+TEST_CASE("old keys move on, and are given up at the largest age") {
+    if (!has_context()) return;
+    const driver::Compilation c = compiled(rock);
+    gl::CachedView view;
+    use(view, c.scene, {.bits = 4});
+    gl::CacheCounts all;
+    for (int frame = 0; frame < 30; ++frame) {
+        view.draw(frame_of(c.scene, 24, 0.05 * frame), c.scene.params, {.max_age = 3});
+        const gl::CacheCounts counts = view.store().read_counts();
+        all.inserted += counts.inserted, all.evicted += counts.evicted, all.deleted += counts.deleted;
+        REQUIRE(gl::check_cache(view.store().dump(false)) == "");
+    }
+    const gl::CacheOccupancy there = gl::occupancy(view.store().dump(false));
+    CHECK(all.evicted > 0);
+    CHECK(all.deleted > 0);
+    CHECK(all.inserted - all.deleted == there.keys); // what came and did not go is there
+    CHECK(there.ages[0] > there.ages[1]);            // a bias towards the young (thesis, figure 8.3)
+    CHECK(there.ages[3] == 0);
+}
+
+TEST_CASE("ten thousand frames", "[.soak]") {
+    if (!has_context()) return;
+    const driver::Compilation c = compiled(rock);
+    gl::CachedView view;
+    use(view, c.scene, {.bits = 3});
+    for (int frame = 0; frame < 10000; ++frame) {
+        view.draw(frame_of(c.scene, 12, 0.03 * frame), c.scene.params, {.max_age = 1 + frame / 1000 % 7});
+        REQUIRE(gl::check_cache(view.store().dump(false)) == "");
+        if (frame % 500 == 499) check_values(view, c.scene, 0);
+    }
+}
+
+TEST_CASE("beyond the cells that can be counted, a field is computed") {
+    if (!has_context()) return;
+    const driver::Compilation c = compiled(R"(
+let bumps = cached(p => 0.1 * fbm(2 * (p - [40000, 0, 0]), octaves: 5), cell: 0.05)
+sphere(1).translate(x: 40000).displace(bumps)
+camera(at: [40000, 0, 4], look_at: [40000, 0, 0])
+)");
+    gl::CachedView view;
+    use(view, c.scene);
+    gl::FrameInputs inputs = frame_of(c.scene, 24, 0, gl::Mode::Numbers);
+    view.draw(inputs, c.scene.params, {});
+    CHECK(view.store().read_counts().inserted == 0);
+    const gl::Pixels wanted = exact(c.scene, 24, gl::Mode::Numbers), got = view.read_pixels();
+    CHECK(got.rgba == wanted.rgba);
+}
+
+TEST_CASE("numbers and colours share one cache, told apart by their keys") {
+    if (!has_context()) return;
+    const driver::Compilation c = compiled(R"(
+let bumps = cached(p => 0.1 * fbm(2 * p, octaves: 5), cell: 0.05)
+let tint = cached(p => mix(#203040, #f0c080, saturate(0.5 + fbm(3 * p, octaves: 5))), cell: 0.05)
+sphere(1).displace(bumps).paint(material(diffuse: p => tint(p)))
+camera(at: [0, 0, 4], look_at: [0, 0, 0])
+)");
+    gl::CachedView view;
+    use(view, c.scene);
+    const gl::FrameInputs inputs = frame_of(c.scene, 24);
+    CHECK(warm(view, inputs, c.scene) < 60);
+    const gl::CacheStore::Dump dump = view.store().dump(false);
+    CHECK(gl::check_cache(dump) == "");
+    const gl::CacheOccupancy there = gl::occupancy(dump);
+    REQUIRE(view.number_of(0) != view.number_of(1));
+    CHECK(there.fields[static_cast<std::size_t>(view.number_of(0))] > 100);
+    CHECK(there.fields[static_cast<std::size_t>(view.number_of(1))] > 100);
+    check_values(view, c.scene, 0);
+    check_values(view, c.scene, 1);
+}
+
+TEST_CASE("an edit invalidates the fields that it changes alone") {
+    if (!has_context()) return;
+    const auto text = [](const std::string &radius, const std::string &octaves) {
+        return R"(
+param depth = 0.1 in 0.05..0.2
+param size = 1.0 in 0.8..1.2
+let bumps = cached(p => depth * fbm(2 * p, octaves: 5), cell: 0.1)
+let tint = cached(p => mix(#203040, #f0c080, saturate(0.5 + fbm(3 * p, octaves: )" +
+               octaves + R"())), cell: 0.1)
+sphere()" + radius +
+               R"( * size).displace(bumps).paint(material(diffuse: p => tint(p)))
+camera(at: [0, 0, 4], look_at: [0, 0, 0])
+)";
+    };
+    driver::Compilation c = compiled(text("1", "5"));
+    gl::CachedView view;
+    use(view, c.scene);
+    const gl::FrameInputs inputs = frame_of(c.scene, 24);
+    CHECK(warm(view, inputs, c.scene) < 60);
+    const int bumps = view.number_of(0), tint = view.number_of(1);
+    const auto keys = [&](int number) {
+        return gl::occupancy(view.store().dump(false)).fields[static_cast<std::size_t>(number)];
+    };
+    const std::size_t bumps_before = keys(bumps), tint_before = keys(tint);
+    const auto set = [&](const char *name, double value) {
+        for (ir::Param &p : c.scene.params)
+            if (p.name == name) p.value[0] = value;
+    };
+    SECTION("a param that the field reads") {
+        set("depth", 0.12);
+        view.draw(inputs, c.scene.params, {});
+        CHECK(view.store().read_counts().swept == bumps_before);
+        CHECK(keys(tint) >= tint_before);
+        CHECK(warm(view, inputs, c.scene) < 60);
+        check_values(view, c.scene, 0);
+    }
+    SECTION("a param that it does not read") {
+        set("size", 1.01);
+        view.draw(inputs, c.scene.params, {});
+        CHECK(view.store().read_counts().swept == 0);
+        CHECK(view.read_tally().hits > view.read_tally().misses); // most of it stays useful (figure 8.5)
+    }
+    SECTION("the text around the fields") {
+        const driver::Compilation other = compiled(text("1.01", "5"));
+        use(view, other.scene);
+        CHECK(view.number_of(0) == bumps);
+        CHECK(view.number_of(1) == tint);
+        view.draw(inputs, other.scene.params, {});
+        CHECK(view.store().read_counts().swept == 0);
+        CHECK(view.read_tally().hits > view.read_tally().misses);
+    }
+    SECTION("one field's text") {
+        const driver::Compilation other = compiled(text("1", "6"));
+        use(view, other.scene);
+        CHECK(view.number_of(0) == bumps);
+        CHECK(view.number_of(1) != tint);
+        CHECK(keys(bumps) == bumps_before);
+        CHECK(warm(view, inputs, other.scene) < 60);
+        check_values(view, other.scene, 1);
+    }
+    CHECK(gl::check_cache(view.store().dump(false)) == "");
+}
+
+TEST_CASE("a field that is cheap or moves is not kept") {
+    if (!has_context()) return;
+    for (const char *field : {"0.1 * noise(2 * p)", "0.1 * fbm(2 * p + [time, 0, 0], octaves: 6)"}) {
+        const driver::Compilation c = compiled("let f = cached(p => " + std::string(field) +
+                                               ", cell: 0.05)\nsphere(1).displace(f)\n");
+        gl::CachedView view;
+        Diagnostics diagnostics;
+        CHECK(view.use(c.scene, {}, diagnostics) == "no field of this scene is worth keeping");
+    }
+}
+
+} // namespace fathom
