@@ -1,10 +1,12 @@
-// See cache.h. Nothing here waits for the CPU: the passes follow each other on the card, with barriers between.
+// See cache.h. Nothing here waits for the CPU: the passes follow each other on the card, with
+// barriers between.
 //
-// Why no place is ever lost and no key found half made. A place is in exactly one of three: an entry of the hash, the
-// ring between Head and Tail, the hand of one invocation. Entries change by compare-and-swap alone: who swaps one out
-// has it in hand, and puts it in at its next slot or its place into the ring. A key is written before the entry that
-// names it, its corners before the next frame reads; entries of this frame are fresh, so nobody moves them. Two pixels
-// that miss the same cell meet at its first slot that is not fresh: one wins, the other sees the key there.
+// Why no place is ever lost and no key found half made. A place is in exactly one of three: an
+// entry of the hash, the ring between Head and Tail, the hand of one invocation. Entries change by
+// compare-and-swap alone: who swaps one out has it in hand, and puts it in at its next slot or its
+// place into the ring. A key is written before the entry that names it, its corners before the next
+// frame reads; entries of this frame are fresh, so nobody moves them. Two pixels that miss the same
+// cell meet at its first slot that is not fresh: one wins, the other sees the key there.
 #include "backend-glsl/cache.h"
 
 #include "backend-glsl/fill.h"
@@ -360,8 +362,8 @@ std::string cache_reader(const KeptText &field, std::size_t number) {
            "_kept(vec3 p) {\n    vec3 at;\n    if (fathom_kept(p, " +
            float_literal(static_cast<float>(field.cell)) + ", fathom_cache_fields[" +
            std::to_string(number) + "], at)) return textureLod(" +
-           (wide ? "fathom_cache_wide" : "fathom_cache_pool") + ", at, 0.0)" + components_of(field.type) +
-           ";\n    return " + field.function + "(p);\n}\n";
+           (wide ? "fathom_cache_wide" : "fathom_cache_pool") + ", at, 0.0)" +
+           components_of(field.type) + ";\n    return " + field.function + "(p);\n}\n";
 }
 
 std::string cache_outputs() {

@@ -1,14 +1,15 @@
-// The noise cache in GLSL (thesis, 7.2 and 7.3; docs/noise-cache.md): the look-up that a picture's shader reads
-// kept fields by, and the passes that reserve places, fill them and give them up. Knows fields by number, cell and
-// the name of the function that computes them, nothing of scenes; calls no GL.
+// The noise cache in GLSL (thesis, 7.2 and 7.3; docs/noise-cache.md): the look-up that a picture's
+// shader reads kept fields by, and the passes that reserve places, fill them and give them up.
+// Knows fields by number, cell and the name of the function that computes them, nothing of scenes;
+// calls no GL.
 //
 // The textures, for a cache of N^3 cells, N a power of two up to 128:
-//   fathom_cache_hash   r32ui,   N^3     bits 0..20 a place, 21..23 its age, 24..31 the frame it came in; or empty
-//   fathom_cache_keys   rgba32i, N^3     by place: the cell's x, y, z and its field; + refused where it is too steep
-//   fathom_cache_pool   r32f,    (2N)^3  by place: a number at each corner of the cell
-//   fathom_cache_wide   rgba32f, (2N)^3  the same, for vectors and colours
-//   fathom_cache_index  rg32ui,  N^3     hash and keys in one, by slot: what a look-up reads
-//   fathom_cache_free   r32ui,   N^3     a ring of the places that nobody has
+//   fathom_cache_hash   r32ui,   N^3     bits 0..20 a place, 21..23 its age, 24..31 the frame it
+//   came in; or empty fathom_cache_keys   rgba32i, N^3     by place: the cell's x, y, z and its
+//   field; + refused where it is too steep fathom_cache_pool   r32f,    (2N)^3  by place: a number
+//   at each corner of the cell fathom_cache_wide   rgba32f, (2N)^3  the same, for vectors and
+//   colours fathom_cache_index  rg32ui,  N^3     hash and keys in one, by slot: what a look-up
+//   reads fathom_cache_free   r32ui,   N^3     a ring of the places that nobody has
 //   fathom_cache_counts r32ui, a buffer  see Count
 #pragma once
 
@@ -22,8 +23,8 @@
 
 namespace fathom::glsl {
 
-// h_i(k) = (k + O[i]) mod N in each axis, i the key's age (thesis, 7.1; Garcia et al. 2011): O by chance, once.
-// Fields that have the same cell are moved apart, each by `cache_field_shift` more.
+// h_i(k) = (k + O[i]) mod N in each axis, i the key's age (thesis, 7.1; Garcia et al. 2011): O by
+// chance, once. Fields that have the same cell are moved apart, each by `cache_field_shift` more.
 constexpr int cache_ages = 7; // the largest maximum age
 constexpr std::array<std::array<int, 3>, cache_ages> cache_shifts{{{41, 87, 19},
                                                                    {6, 110, 75},
@@ -38,13 +39,15 @@ constexpr int cache_place_bits = 21, cache_age_bits = 3;
 constexpr std::uint32_t cache_empty = 0xffffffffu; // age 7, which no key reaches
 constexpr std::uint32_t cache_nowhere = 0xffffffffu;
 constexpr int cache_refused = 256; // in a key's field
-// An index entry: x holds the cell's x, y and z over N, ten bits each (which with the slot and the age says the cell),
-// and the highest bit where it is refused; y the place, the field from bit 21, the age from bit 29.
+// An index entry: x holds the cell's x, y and z over N, ten bits each (which with the slot and the
+// age says the cell), and the highest bit where it is refused; y the place, the field from bit 21,
+// the age from bit 29.
 constexpr int cache_high_bits = 10;
 constexpr int cache_most_fields = 256;
 
-// The words of fathom_cache_counts. Places are taken from the ring at `Head` and given back at `Tail`; what is given
-// back in a frame is taken in the next one at the earliest, from before `Limit`.
+// The words of fathom_cache_counts. Places are taken from the ring at `Head` and given back at
+// `Tail`; what is given back in a frame is taken in the next one at the earliest, from before
+// `Limit`.
 enum class Count { Head, Tail, Limit, Inserted, Evicted, Deleted, Crowded, Full, Swept, Total };
 
 struct KeptText {

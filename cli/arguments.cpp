@@ -216,6 +216,8 @@ struct Reader {
             ->type_name("TARGET");
         sub->add_flag("--field-only", compile.field_only,
                       "the field functions alone, for a renderer of your own");
+        sub->add_flag("--noise-cache", compile.noise_cache,
+                      "read cached fields through the noise cache; its passes are written beside OUT");
         sub->add_flag("--watch", compile.watch, "compile again after every save");
 
         sub = command("render", "make a picture, without a window", render);
@@ -247,6 +249,8 @@ struct Reader {
         sub->add_option("--samples", render.samples, "rays a pixel, 1 to 256")
             ->check(quiet(CLI::Range(1, 256)))
             ->type_name("N");
+
+        sub->add_flag("--cache", render.cache, "read cached fields through the noise cache, as a moving view does");
 
         sub = command("eval", "print the field at points: distance gx gy gz", eval);
         add_scene(sub, eval.scene);
@@ -367,6 +371,15 @@ std::variant<Invocation, Answer> read_arguments(int count, const char *const *ar
     if (app.get_subcommands().empty()) return Answer{usage_error, "", app.help()};
     if (reader.eval.scene.file == "-" && reader.eval.points)
         return wrong("the scene and the points cannot both come from standard input");
+    if (app.got_subcommand("compile") && reader.compile.noise_cache) {
+        if (reader.compile.target != "glsl450" || reader.compile.field_only)
+            return wrong("--noise-cache is for whole pictures by `--target glsl450`");
+        if (reader.compile.out.empty()) return wrong("--noise-cache writes several files: name the first by -o");
+    }
+    if (app.got_subcommand("render") && reader.render.cache) {
+        if (reader.render.backend == Backend::Cpu) return wrong("--cache needs GL, which --backend cpu leaves out");
+        if (reader.render.samples > 1) return wrong("--cache takes one ray a pixel");
+    }
     if (app.got_subcommand("eval") && reader.eval.at.empty() && !reader.eval.points)
         return wrong("eval wants points: --at X,Y,Z or --points -");
     return reader.invocation;

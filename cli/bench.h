@@ -5,6 +5,7 @@
 
 namespace fathom::cli {
 
-Exit bench_noise_cache(const BenchCommand &command, const ir::Scene &scene, Terminal &terminal); // bench_cache.cpp
+Exit bench_noise_cache(const BenchCommand &command, const ir::Scene &scene,
+                       Terminal &terminal); // bench_cache.cpp
 
 } // namespace fathom::cli

@@ -1,5 +1,6 @@
-// fathom bench --noise-cache: what the thesis measured of its cache (figures 8.2 to 8.6), of one scene. Times are ratios of
-// two ways taken in turn in one run; where the CPU draws, its own time counts, since others may share the machine.
+// fathom bench --noise-cache: what the thesis measured of its cache (figures 8.2 to 8.6), of one
+// scene. Times are ratios of two ways taken in turn in one run; where the CPU draws, its own time
+// counts, since others may share the machine.
 #include "cli/bench.h"
 #include "ir/cost.h"
 #include "render-gl/cache_passes.h"
@@ -37,7 +38,8 @@ struct Bench {
 };
 
 double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    std::nth_element(values.begin(),
+                     values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
     return values.empty() ? 0 : values[values.size() / 2];
 }
 
@@ -47,7 +49,9 @@ ir::View turned(const ir::Scene &scene, double aspect, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     ir::Triple target{};
     for (std::size_t i = 0; i < 3; ++i) target[i] = view.origin[i] + view.focus * view.forward[i];
-    const auto turn = [&](const ir::Triple &v) { return ir::Triple{c * v[0] + s * v[2], v[1], c * v[2] - s * v[0]}; };
+    const auto turn = [&](const ir::Triple &v) {
+        return ir::Triple{c * v[0] + s * v[2], v[1], c * v[2] - s * v[0]};
+    };
     ir::Triple back = view.origin;
     for (std::size_t i = 0; i < 3; ++i) back[i] -= target[i];
     back = turn(back);
@@ -70,7 +74,7 @@ gl::FrameInputs inputs_of(const Bench &bench, double angle, gl::Mode mode = gl::
 }
 
 struct Motion {
-    double cached = 0, exact = 0; // medians of a frame
+    double cached = 0, exact = 0;                                           // medians of a frame
     double misses = 0, missing = 0, inserted = 0, evicted = 0, deleted = 0; // means of a frame
     double hits = 0;
     gl::CacheOccupancy occupancy;
@@ -81,9 +85,10 @@ void draw_exactly(const Bench &bench, gl::CachedView &view, const gl::FrameInput
     view.draw_exactly(bench.exact, inputs, params);
 }
 
-// `frames` frames, after as many that warm the cache up, each drawn both ways. `param`: which is moved, -1 none: then
-// the view turns.
-Motion move(const Bench &bench, gl::CachedView &view, double speed, int frames, int age, int param = -1) {
+// `frames` frames, after as many that warm the cache up, each drawn both ways. `param`: which is
+// moved, -1 none: then the view turns.
+Motion move(const Bench &bench, gl::CachedView &view, double speed, int frames, int age,
+            int param = -1) {
     Motion motion;
     std::vector<double> cached, exact;
     std::vector<ir::Param> params = bench.scene.params;
@@ -93,7 +98,8 @@ Motion move(const Bench &bench, gl::CachedView &view, double speed, int frames, 
         if (param >= 0) { // there and back over a share of its range
             ir::Param &p = params[static_cast<std::size_t>(param)];
             const double phase = std::sin(speed * frame * frame_time);
-            p.value[0] = std::clamp(p.initial[0] + 0.25 * (p.hi[0] - p.lo[0]) * phase, p.lo[0], p.hi[0]);
+            p.value[0] =
+                std::clamp(p.initial[0] + 0.25 * (p.hi[0] - p.lo[0]) * phase, p.lo[0], p.hi[0]);
         }
         const gl::FrameInputs inputs = inputs_of(bench, angle);
         const double one = bench.time([&] { view.draw(inputs, params, {.max_age = age}); });
@@ -107,7 +113,8 @@ Motion move(const Bench &bench, gl::CachedView &view, double speed, int frames, 
         motion.inserted += static_cast<double>(counts.inserted) / frames;
         motion.evicted += static_cast<double>(counts.evicted) / frames;
         motion.deleted += static_cast<double>(counts.deleted) / frames;
-        if (frame % 4 == 0) exact.push_back(bench.time([&] { draw_exactly(bench, view, inputs, params); }));
+        if (frame % 4 == 0)
+            exact.push_back(bench.time([&] { draw_exactly(bench, view, inputs, params); }));
     }
     motion.cached = median(cached);
     motion.exact = median(exact);
@@ -127,8 +134,10 @@ void print_fields(const Bench &bench) {
         case ir::Kept::Moving: verdict = "computed: it moves with time"; break;
         case ir::Kept::Steep: verdict = "computed: its slope has no bound"; break;
         }
-        bench.terminal.put(fmt::format("field {}: cell {:g}, about {:.3g} ns against {:g} for a look-up, error at most {:.3g}; {}\n",
-                                       i, graph.cache(id).cell, cost, ir::look_up_cost, ir::kept_error(bench.scene, id), verdict));
+        bench.terminal.put(fmt::format("field {}: cell {:g}, about {:.3g} ns against {:g} for a "
+                                       "look-up, error at most {:.3g}; {}\n",
+                                       i, graph.cache(id).cell, cost, ir::look_up_cost,
+                                       ir::kept_error(bench.scene, id), verdict));
     }
 }
 
@@ -153,44 +162,53 @@ void print_difference(const Bench &bench, gl::CachedView &view) {
         const double d = std::abs(kept.rgba[i + 1] - exact.rgba[i + 1]);
         most = std::max(most, d), sum += d, ++both;
     }
-    bench.terminal.put(fmt::format("\ndifference from exact (figure 8.4), a still view after {} frames\n", frames));
-    bench.terminal.put(fmt::format("  along the ray: mean {:.3g}, most {:.3g}; pixels that only one of them hits: {} of {}\n",
-                                   sum / static_cast<double>(std::max<std::size_t>(both, 1)), most, one, both + one));
+    bench.terminal.put(fmt::format(
+        "\ndifference from exact (figure 8.4), a still view after {} frames\n", frames));
+    bench.terminal.put(fmt::format(
+        "  along the ray: mean {:.3g}, most {:.3g}; pixels that only one of them hits: {} of {}\n",
+        sum / static_cast<double>(std::max<std::size_t>(both, 1)), most, one, both + one));
     bench.terminal.put("  misses by frame:");
-    for (std::size_t i = 0; i < misses.size() && i < 12; ++i) bench.terminal.put(fmt::format(" {}", misses[i]));
+    for (std::size_t i = 0; i < misses.size() && i < 12; ++i)
+        bench.terminal.put(fmt::format(" {}", misses[i]));
     bench.terminal.put("\n");
 }
 
 void measure_all(const Bench &bench, gl::CachedView &view) {
     constexpr int frames = 24;
     print_difference(bench, view);
-    bench.terminal.put("\nspeed-up against the speed of turning (figure 8.6)\n  rad/s   cached ms   exact ms   "
-                       "speed-up   misses a frame   pixels that miss   hits a frame\n");
+    bench.terminal.put(
+        "\nspeed-up against the speed of turning (figure 8.6)\n  rad/s   cached ms   exact ms   "
+        "speed-up   misses a frame   pixels that miss   hits a frame\n");
     for (double speed : {0.0, 0.1, 0.5, 1.0, 2.0, 4.0}) {
         const Motion m = move(bench, view, speed, frames, 4);
-        bench.terminal.put(fmt::format("  {:<5g} {:>11.1f} {:>10.1f} {:>10.2f} {:>16.0f} {:>18.0f} {:>14.0f}\n", speed, m.cached,
-                                       m.exact, m.exact / m.cached, m.misses, m.missing, m.hits));
+        bench.terminal.put(
+            fmt::format("  {:<5g} {:>11.1f} {:>10.1f} {:>10.2f} {:>16.0f} {:>18.0f} {:>14.0f}\n",
+                        speed, m.cached, m.exact, m.exact / m.cached, m.misses, m.missing, m.hits));
     }
-    bench.terminal.put("\nmaximum age, turning at 2 rad/s (figure 8.2)\n  age   cached ms   inserted   evicted   deleted   "
+    bench.terminal.put("\nmaximum age, turning at 2 rad/s (figure 8.2)\n  age   cached ms   "
+                       "inserted   evicted   deleted   "
                        "misses a frame\n");
     Motion usual;
     for (int age = 1; age <= glsl::cache_ages; ++age) {
         const Motion m = move(bench, view, 2, frames, age);
         if (age == 4) usual = m;
-        bench.terminal.put(fmt::format("  {:<3} {:>11.1f} {:>10.0f} {:>9.0f} {:>9.0f} {:>16.0f}\n", age, m.cached, m.inserted,
-                                       m.evicted, m.deleted, m.misses));
+        bench.terminal.put(fmt::format("  {:<3} {:>11.1f} {:>10.0f} {:>9.0f} {:>9.0f} {:>16.0f}\n",
+                                       age, m.cached, m.inserted, m.evicted, m.deleted, m.misses));
     }
-    bench.terminal.put(fmt::format("\nages at 2 rad/s, {} keys in {} cells (figure 8.3)\n ", usual.occupancy.keys, usual.occupancy.cells));
+    bench.terminal.put(fmt::format("\nages at 2 rad/s, {} keys in {} cells (figure 8.3)\n ",
+                                   usual.occupancy.keys, usual.occupancy.cells));
     for (int age = 0; age < 4; ++age)
-        bench.terminal.put(fmt::format("  {}: {}", age, usual.occupancy.ages[static_cast<std::size_t>(age)]));
+        bench.terminal.put(
+            fmt::format("  {}: {}", age, usual.occupancy.ages[static_cast<std::size_t>(age)]));
     bench.terminal.put("\n");
     for (std::size_t i = 0; i < bench.scene.params.size(); ++i) {
         const ir::Param &p = bench.scene.params[i];
         if (p.structural || p.type != ir::Type::Float || !p.has_range) continue;
         const Motion m = move(bench, view, 1, frames, 4, static_cast<int>(i));
-        bench.terminal.put(fmt::format("\nmoving `{}` (figure 8.5): cached {:.1f} ms, exact {:.1f} ms, speed-up {:.2f}, "
-                                       "{:.0f} misses a frame\n",
-                                       p.name, m.cached, m.exact, m.exact / m.cached, m.misses));
+        bench.terminal.put(fmt::format(
+            "\nmoving `{}` (figure 8.5): cached {:.1f} ms, exact {:.1f} ms, speed-up {:.2f}, "
+            "{:.0f} misses a frame\n",
+            p.name, m.cached, m.exact, m.exact / m.cached, m.misses));
     }
 }
 
@@ -204,15 +222,22 @@ Exit bench_noise_cache(const BenchCommand &command, const ir::Scene &scene, Term
     }
     const std::string driver = std::get<gl::Context>(context).describe();
     Diagnostics diagnostics;
-    const glsl::Output plain = glsl::emit(scene, {.target = glsl::Target::Glsl330, .buffers = true}, diagnostics);
+    const glsl::Output plain =
+        glsl::emit(scene, {.target = glsl::Target::Glsl330, .buffers = true}, diagnostics);
     auto program = gl::Program::build(plain, scene);
     if (const auto *error = std::get_if<gl::ProgramError>(&program)) {
-        terminal.say(fmt::format("fathom: the graphics driver refuses the shader: {}", error->message));
+        terminal.say(
+            fmt::format("fathom: the graphics driver refuses the shader: {}", error->message));
         return device_error;
     }
-    Bench bench{scene,   command.width, command.height, driver.find("llvmpipe") != driver.npos,
-                std::move(std::get<gl::Program>(program)), terminal};
-    terminal.put(fmt::format("GL {}; times are {}\n", driver, bench.software ? "the processor's" : "on the clock"));
+    Bench bench{scene,
+                command.width,
+                command.height,
+                driver.find("llvmpipe") != driver.npos,
+                std::move(std::get<gl::Program>(program)),
+                terminal};
+    terminal.put(fmt::format("GL {}; times are {}\n", driver,
+                             bench.software ? "the processor's" : "on the clock"));
     print_fields(bench);
     gl::CachedView view;
     const std::string why = view.use(scene, {.bits = command.cache_bits}, diagnostics);

@@ -39,6 +39,7 @@ struct CompileCommand {
     std::string out; // empty: standard output
     std::string target = "glsl450";
     bool field_only = false, watch = false;
+    bool noise_cache = false; // with the cache's hooks, and its passes beside `out`
 };
 enum class Backend { Auto, Gl, Cpu };
 struct RenderCommand {
@@ -50,6 +51,7 @@ struct RenderCommand {
     std::optional<std::pair<int, int>> frames; // first, one past the last
     double frame_rate = 30;
     int samples = 1;
+    bool cache = false; // through the noise cache
 };
 struct EvalCommand {
     SceneArguments scene;

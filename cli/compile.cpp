@@ -7,6 +7,27 @@
 namespace fathom::cli {
 namespace {
 
+// The noise cache's passes, beside the picture's shader: OUT.frag, OUT.reserve.frag, …
+Exit write_passes(const std::string &out, const ir::Scene &scene, const glsl::Options &options, Terminal &terminal) {
+    Diagnostics diagnostics; // the picture's own text was good, and these are made of its parts
+    const glsl::CachePasses passes = glsl::emit_cache_passes(scene, options, diagnostics);
+    if (diagnostics.has_errors()) return scene_error;
+    if (passes.fill.text.empty()) {
+        terminal.say("fathom: no field of this scene is worth keeping; the shader computes all");
+        return done;
+    }
+    const std::pair<const char *, const std::string &> files[] = {{"reserve", passes.reserve},
+                                                                  {"fill", passes.fill.text},
+                                                                  {"publish", passes.publish},
+                                                                  {"sweep", passes.sweep}};
+    for (const auto &[pass, text] : files) {
+        std::filesystem::path path(out);
+        path.replace_filename(fmt::format("{}.{}{}", path.stem().string(), pass, path.extension().string()));
+        if (const Exit exit = write_result(path.string(), text, terminal); exit != done) return exit;
+    }
+    return done;
+}
+
 Exit emit(const CompileCommand &command, const driver::Compilation &compilation, Terminal &terminal) {
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
@@ -19,6 +40,7 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
         const Source &source = compilation.sources[span.source];
         return fmt::format("{}:{}", source.name, position(source, span.begin).line);
     };
+    options.noise_cache = command.noise_cache;
     Diagnostics diagnostics;
     glsl::Output output = glsl::emit(compilation.scene, options, diagnostics);
     print_diagnostics(diagnostics, compilation.sources, terminal);
@@ -28,7 +50,8 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
                                output.words.size() * sizeof(std::uint32_t));
         return write_result(command.out, bytes, terminal);
     }
-    return write_result(command.out, output.text, terminal);
+    if (command.noise_cache) exit = write_passes(command.out, compilation.scene, options, terminal);
+    return exit == done ? write_result(command.out, output.text, terminal) : exit;
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "backend-cpu/march.h"
 #include "base/picture.h"
 #include "cli/terminal.h"
+#include "render-gl/cache_passes.h"
 #include "render-gl/context.h"
 #include "render-gl/render.h"
 
@@ -14,7 +15,30 @@ namespace {
 struct Painter {
     std::optional<gl::Context> context; // none: the CPU
     std::optional<gl::Program> program;
+    std::unique_ptr<gl::CachedView> cache; // with --cache, where it can be had
 };
+
+// A still picture is drawn until the cache has nearly all that it asks for; so often at most.
+constexpr int most_learning_frames = 60;
+
+std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &scene, const RenderCommand &command, double time,
+                                      const std::function<void(double)> &progress) {
+    gl::FrameInputs inputs;
+    const double aspect = static_cast<double>(command.width) / command.height;
+    inputs.view = ir::view_of(scene, time, aspect);
+    inputs.sun = ir::lights_of(scene, time, inputs.view)[0].position;
+    inputs.width = command.width;
+    inputs.height = command.height;
+    inputs.time = time;
+    inputs.mode = gl::Mode::Linear;
+    for (int frame = 0; frame < most_learning_frames; ++frame) {
+        if (!view.draw(inputs, scene.params, {})) return std::nullopt;
+        const gl::CacheTally tally = view.read_tally();
+        if (command.frames || 1000 * tally.misses <= tally.hits) break; // what is left shows nowhere
+        progress(static_cast<double>(frame) / most_learning_frames);
+    }
+    return view.read_pixels();
+}
 
 // `out` with the frame's number in place of its `#`s, or before its extension where it has none.
 std::string frame_name(const std::string &out, int frame) {
@@ -64,11 +88,24 @@ Exit prepare_gl(Painter &painter, const driver::Compilation &compilation, const 
         return scene_error;
     }
     painter.program = std::move(std::get<gl::Program>(program));
+    if (command.cache) {
+        auto view = std::make_unique<gl::CachedView>();
+        const std::string why = view->use(compilation.scene, {}, diagnostics);
+        if (why.empty())
+            painter.cache = std::move(view);
+        else
+            terminal.say(fmt::format("fathom: drawn exactly: {}", why));
+    }
     return done;
 }
 
 std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene, const RenderCommand &command, double time,
                              const std::function<void(double)> &progress) {
+    if (painter.cache) {
+        std::optional<gl::Pixels> pixels = draw_cached(*painter.cache, scene, command, time, progress);
+        if (!pixels) return std::nullopt;
+        return picture_of_linear(pixels->width, pixels->height, pixels->rgba);
+    }
     if (painter.program) {
         gl::Request request;
         request.width = command.width;

@@ -1,5 +1,5 @@
-// One row an op. The numbers of noise and look-ups are measured (docs/noise-cache.md); the others are by their
-// number of instructions.
+// One row an op. The numbers of noise and look-ups are measured (docs/noise-cache.md); the others
+// are by their number of instructions.
 #include "ir/cost.h"
 
 #include <algorithm>
@@ -118,7 +118,8 @@ double cost_of(const Graph &graph, NodeId root) {
         if (!id || !seen.insert(id).second) continue;
         const Node &node = graph[id];
         cost += own_cost(node);
-        if (node.op == Op::Call) cost += cost_of(graph, graph.function(FunctionId{node.payload}).result);
+        if (node.op == Op::Call)
+            cost += cost_of(graph, graph.function(FunctionId{node.payload}).result);
         if (node.op == Op::Cached)
             cost += cost_of(graph, graph.function(graph.cache(CacheId{node.payload}).field).result);
         if (node.op == Op::Fold) {

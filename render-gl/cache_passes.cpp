@@ -27,11 +27,11 @@ void bind_image(const Program &program, const char *name, int unit, GLuint textu
 }
 
 GLuint target_2d(GLint format, int width, int height, GLuint framebuffer, GLenum attachment) {
-    const GLenum layout = format == GL_RGBA32F  ? GL_RGBA
-                          : format == GL_R8     ? GL_RED
+    const GLenum layout = format == GL_RGBA32F   ? GL_RGBA
+                          : format == GL_R8      ? GL_RED
                           : format == GL_RGBA32I ? GL_RGBA_INTEGER
-                          : format == GL_RG32UI ? GL_RG_INTEGER
-                                                : GL_RED_INTEGER;
+                          : format == GL_RG32UI  ? GL_RG_INTEGER
+                                                 : GL_RED_INTEGER;
     const GLenum type = format == GL_RGBA32F || format == GL_R8 ? GL_FLOAT
                         : format == GL_RGBA32I                  ? GL_INT
                                                                 : GL_UNSIGNED_INT;
@@ -66,7 +66,8 @@ std::string cache_unavailable() {
                "." + std::to_string(version % 10);
     GLint images = 0;
     glGetIntegerv(GL_MAX_FRAGMENT_IMAGE_UNIFORMS, &images);
-    if (images < 4) return "the noise cache needs images in fragment shaders, which this driver has none of";
+    if (images < 4)
+        return "the noise cache needs images in fragment shaders, which this driver has none of";
     return "";
 }
 
@@ -84,7 +85,8 @@ void CachedView::release() {
     width_ = height_ = 0;
 }
 
-std::string CachedView::use(const ir::Scene &scene, const CacheSize &size, Diagnostics &diagnostics) {
+std::string CachedView::use(const ir::Scene &scene, const CacheSize &size,
+                            Diagnostics &diagnostics) {
     picture_.reset();
     if (std::string why = cache_unavailable(); !why.empty()) return why;
     glsl::Options options;
@@ -105,7 +107,8 @@ std::string CachedView::use(const ir::Scene &scene, const CacheSize &size, Diagn
 
     CacheSize wanted = size;
     for (const glsl::KeptField &field : output.kept) wanted.wide |= field.wide;
-    if (!store_.hash() || store_.size().bits != wanted.bits || (wanted.wide && !store_.size().wide)) {
+    if (!store_.hash() || store_.size().bits != wanted.bits ||
+        (wanted.wide && !store_.size().wide)) {
         meanings_.clear();
         if (!store_.make(wanted)) return "the graphics card has no memory for the noise cache";
     }
@@ -144,7 +147,8 @@ std::string CachedView::use(const ir::Scene &scene, const CacheSize &size, Diagn
             // Better one that was never used than one whose cells have to be given up.
             const auto unused = [&](bool new_ones) {
                 for (int n = 0; n < glsl::cache_most_fields; ++n)
-                    if (!taken[static_cast<std::size_t>(n)] && (!new_ones || !meanings_.contains(n)))
+                    if (!taken[static_cast<std::size_t>(n)] &&
+                        (!new_ones || !meanings_.contains(n)))
                         return n;
                 return -1;
             };
@@ -202,8 +206,9 @@ void CachedView::renew(const std::vector<ir::Param> &params) {
         for (std::uint32_t param : kept_[i].params)
             now.insert(now.end(), params[param].value.begin(), params[param].value.end());
         const auto known = meanings_.find(numbers_[i]);
-        const bool same = known != meanings_.end() && known->second.size() == now.size() &&
-                          std::memcmp(known->second.data(), now.data(), now.size() * sizeof(double)) == 0;
+        const bool same =
+            known != meanings_.end() && known->second.size() == now.size() &&
+            std::memcmp(known->second.data(), now.data(), now.size() * sizeof(double)) == 0;
         if (same) continue;
         if (known != meanings_.end()) {
             sweep(numbers_[i]);
@@ -361,7 +366,8 @@ Pixels CachedView::read_pixels() const {
 }
 
 CacheTally CachedView::read_tally() const {
-    std::vector<std::uint32_t> words(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 2);
+    std::vector<std::uint32_t> words(static_cast<std::size_t>(width_) *
+                                     static_cast<std::size_t>(height_) * 2);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
     glReadBuffer(GL_COLOR_ATTACHMENT3);
     glPixelStorei(GL_PACK_ALIGNMENT, 4);

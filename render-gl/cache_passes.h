@@ -1,6 +1,7 @@
-// Pictures drawn through the noise cache: the three passes of a frame (thesis, 7.3), and which fields the cache holds.
-// One CachedView keeps its cache over frames, views, params and reloads of a scene: only what a field computes itself
-// makes its values stale. Needs a current context of GL 4.2.
+// Pictures drawn through the noise cache: the three passes of a frame (thesis, 7.3), and which
+// fields the cache holds. One CachedView keeps its cache over frames, views, params and reloads of
+// a scene: only what a field computes itself makes its values stale. Needs a current context of
+// GL 4.2.
 #pragma once
 
 #include "base/diagnostic.h"
@@ -34,16 +35,18 @@ class CachedView {
     CachedView(const CachedView &) = delete;
     CachedView &operator=(const CachedView &) = delete;
 
-    // Takes a scene's programs. What the cache already holds of the same fields stays. An empty text where all went
-    // well and some field is kept; else why the scene is drawn exactly.
+    // Takes a scene's programs. What the cache already holds of the same fields stays. An empty
+    // text where all went well and some field is kept; else why the scene is drawn exactly.
     std::string use(const ir::Scene &scene, const CacheSize &size, Diagnostics &diagnostics);
     bool ready() const { return picture_.has_value(); }
 
     // Draws a frame, and lets the cache learn what it missed. False where there is no memory.
-    bool draw(const FrameInputs &inputs, const std::vector<ir::Param> &params, const CacheSettings &settings);
+    bool draw(const FrameInputs &inputs, const std::vector<ir::Param> &params,
+              const CacheSettings &settings);
     // The same picture by another program, into the same place; the cache learns nothing.
-    bool draw_exactly(const Program &program, const FrameInputs &inputs, const std::vector<ir::Param> &params);
-    void forget(); // empties the cache
+    bool draw_exactly(const Program &program, const FrameInputs &inputs,
+                      const std::vector<ir::Param> &params);
+    void forget();                                        // empties the cache
     unsigned framebuffer() const { return framebuffer_; } // colour 0: RGBA32F, as the mode says
     Pixels read_pixels() const;
     CacheTally read_tally() const;
@@ -65,8 +68,9 @@ class CachedView {
     CacheStore store_;
     std::optional<Program> picture_, fill_, reserve_, publish_, sweep_;
     std::vector<glsl::KeptField> kept_;
-    std::vector<int> numbers_;                            // by kept_
-    std::map<int, std::vector<double>> meanings_;         // by number: the meaning and the params' values it was filled with
+    std::vector<int> numbers_; // by kept_
+    std::map<int, std::vector<double>>
+        meanings_; // by number: the meaning and the params' values it was filled with
     int first_unit_ = 0;
     std::uint32_t frame_ = 0;
     int width_ = 0, height_ = 0;

@@ -19,7 +19,7 @@ GLuint texture_3d(GLint format, int side, bool linear) {
                           : format == GL_RGBA32I ? GL_RGBA_INTEGER
                           : format == GL_R32F    ? GL_RED
                                                  : GL_RGBA;
-    const GLenum type = format == GL_RGBA32I                            ? GL_INT
+    const GLenum type = format == GL_RGBA32I                        ? GL_INT
                         : format == GL_R32UI || format == GL_RG32UI ? GL_UNSIGNED_INT
                                                                     : GL_FLOAT;
     glGenTextures(1, &name);
@@ -42,7 +42,8 @@ void fill_words(GLuint texture, int side, const std::vector<std::uint32_t> &word
                     words.data());
 }
 
-template <class T> std::vector<T> read_3d(GLuint texture, std::size_t size, GLenum layout, GLenum type) {
+template <class T>
+std::vector<T> read_3d(GLuint texture, std::size_t size, GLenum layout, GLenum type) {
     std::vector<T> values(size);
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_3D, texture);
@@ -117,8 +118,8 @@ void CacheStore::clear() {
     fill_words(hash_, side(), words);
     words.resize(2 * cells(), glsl::cache_empty);
     glBindTexture(GL_TEXTURE_3D, index_);
-    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, side(), side(), side(), GL_RG_INTEGER, GL_UNSIGNED_INT,
-                    words.data());
+    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, side(), side(), side(), GL_RG_INTEGER,
+                    GL_UNSIGNED_INT, words.data());
     std::array<std::uint32_t, count_words> counts{};
     counts[static_cast<std::size_t>(glsl::Count::Tail)] = static_cast<std::uint32_t>(cells());
     glBindBuffer(GL_TEXTURE_BUFFER, counts_);
@@ -161,7 +162,8 @@ CacheStore::Dump CacheStore::dump(bool with_pool) const {
     dump.bits = size_.bits;
     dump.hash = read_3d<std::uint32_t>(hash_, cells(), GL_RED_INTEGER, GL_UNSIGNED_INT);
     dump.free = read_3d<std::uint32_t>(free_, cells(), GL_RED_INTEGER, GL_UNSIGNED_INT);
-    dump.index = read_3d<std::array<std::uint32_t, 2>>(index_, cells(), GL_RG_INTEGER, GL_UNSIGNED_INT);
+    dump.index =
+        read_3d<std::array<std::uint32_t, 2>>(index_, cells(), GL_RG_INTEGER, GL_UNSIGNED_INT);
     dump.keys = read_3d<std::array<std::int32_t, 4>>(keys_, cells(), GL_RGBA_INTEGER, GL_INT);
     dump.counts.resize(count_words);
     glBindBuffer(GL_COPY_READ_BUFFER, counts_);
@@ -189,13 +191,16 @@ std::string check_cache(const CacheStore::Dump &dump) {
     const int last = (1 << dump.bits) - 1;
     std::vector<int> owners(cells, 0);
     const auto text = [](const std::array<std::int32_t, 4> &key) {
-        return std::to_string(key[0]) + " " + std::to_string(key[1]) + " " + std::to_string(key[2]) +
-               " of field " + std::to_string(key[3]);
+        return std::to_string(key[0]) + " " + std::to_string(key[1]) + " " +
+               std::to_string(key[2]) + " of field " + std::to_string(key[3]);
     };
-    const auto word = [&](glsl::Count count) { return dump.counts[static_cast<std::size_t>(count)]; };
+    const auto word = [&](glsl::Count count) {
+        return dump.counts[static_cast<std::size_t>(count)];
+    };
     const std::uint32_t head = word(glsl::Count::Head), tail = word(glsl::Count::Tail);
     if (tail - head > cells)
-        return "the ring holds " + std::to_string(tail - head) + " places of " + std::to_string(cells);
+        return "the ring holds " + std::to_string(tail - head) + " places of " +
+               std::to_string(cells);
     for (std::uint32_t at = head; at != tail; ++at) {
         const std::uint32_t place = dump.free[at & static_cast<std::uint32_t>(cells - 1)];
         if (place >= cells) return "the ring names place " + std::to_string(place);
@@ -222,9 +227,11 @@ std::string check_cache(const CacheStore::Dump &dump) {
             return "the key " + text(key) + " does not lie where its age says";
         std::uint32_t tag = dump.keys[place][3] > 255 ? 0x80000000u : 0u;
         for (std::size_t i = 0; i < 3; ++i)
-            tag |= (static_cast<std::uint32_t>(key[i] >> dump.bits) & ((1u << glsl::cache_high_bits) - 1))
+            tag |= (static_cast<std::uint32_t>(key[i] >> dump.bits) &
+                    ((1u << glsl::cache_high_bits) - 1))
                    << (i * glsl::cache_high_bits);
-        const std::uint32_t rest = place | static_cast<std::uint32_t>(key[3]) << glsl::cache_place_bits |
+        const std::uint32_t rest = place |
+                                   static_cast<std::uint32_t>(key[3]) << glsl::cache_place_bits |
                                    static_cast<std::uint32_t>(age_of(entry)) << 29;
         if (index != std::array{tag, rest}) return "the index of " + text(key) + " is wrong";
         if (!seen.emplace(key, slot).second) return "the key " + text(key) + " is there twice";

@@ -1,5 +1,6 @@
-// The noise cache's textures on the card (backend-glsl/cache.h says what each holds), and their reading back for
-// statistics and tests. Needs a current context of GL 4.2; knows no scene and no shader.
+// The noise cache's textures on the card (backend-glsl/cache.h says what each holds), and their
+// reading back for statistics and tests. Needs a current context of GL 4.2; knows no scene and no
+// shader.
 #pragma once
 
 #include "backend-glsl/cache.h"
@@ -38,7 +39,7 @@ class CacheStore {
 
     bool make(const CacheSize &size); // empty; false where the card has no memory for it
     void clear();
-    void begin_frame();              // counts start again
+    void begin_frame();                       // counts start again
     void bind_textures(int first_unit) const; // index, pool, wide
 
     const CacheSize &size() const { return size_; }
@@ -80,8 +81,8 @@ struct CacheOccupancy {
 };
 CacheOccupancy occupancy(const CacheStore::Dump &dump);
 
-// The first broken rule in words, or an empty text: each place is an entry's or free, once; each key lies at the
-// slot of its age, once; and the index says the same.
+// The first broken rule in words, or an empty text: each place is an entry's or free, once; each
+// key lies at the slot of its age, once; and the index says the same.
 std::string check_cache(const CacheStore::Dump &dump);
 
 } // namespace fathom::gl

@@ -55,6 +55,7 @@ struct Prover {
     bool is_field(ir::ShapeId id) const;
 
     void know_caches(); // caches.cpp
+    void report_not_kept(ir::CacheId id);
 
     // -- places, from the root down
     void find_places();

@@ -1,5 +1,5 @@
-// How far a picture through the cache is from the exact one: never more than stated, less with finer cells as theory has
-// it, and in no mixture of present and absent cells is a surface passed.
+// How far a picture through the cache is from the exact one: never more than stated, less with
+// finer cells as theory has it, and in no mixture of present and absent cells is a surface passed.
 #include "ir/cost.h"
 #include "tests/support/reference_eval.h"
 #include "tests/unit/cache/scenes.h"
@@ -9,12 +9,14 @@ namespace fathom {
 namespace {
 
 struct Error {
-    double most = 0, mean = 0; // of |f| at the hits, f the exact field before its division
+    double most = 0, mean = 0;  // of |f| at the hits, f the exact field before its division
     int hits = 0, only_one = 0; // pixels that only one of the two pictures hits
 };
 
-// Where the picture's rays stopped, the exact field is 0, but for what interpolation and the march's tolerance change.
-Error error_of(const gl::CachedView &view, const ir::Scene &scene, const gl::FrameInputs &in, const gl::Pixels &wanted) {
+// Where the picture's rays stopped, the exact field is 0, but for what interpolation and the
+// march's tolerance change.
+Error error_of(const gl::CachedView &view, const ir::Scene &scene, const gl::FrameInputs &in,
+               const gl::Pixels &wanted) {
     const gl::Pixels got = view.read_pixels();
     test::Reference reference(scene);
     const ir::Cache &cache = scene.graph.cache(ir::CacheId{0});
@@ -28,11 +30,13 @@ Error error_of(const gl::CachedView &view, const ir::Scene &scene, const gl::Fra
             std::array<double, 3> d{}, p{};
             double size = 0;
             for (std::size_t a = 0; a < 3; ++a) {
-                d[a] = in.view.forward[a] + in.view.extent * (u * in.view.right[a] + v * in.view.up[a]);
+                d[a] = in.view.forward[a] +
+                       in.view.extent * (u * in.view.right[a] + v * in.view.up[a]);
                 size += d[a] * d[a];
             }
             for (std::size_t a = 0; a < 3; ++a)
-                p[a] = in.view.origin[a] + static_cast<double>(got.rgba[i + 1]) * d[a] / std::sqrt(size);
+                p[a] = in.view.origin[a] +
+                       static_cast<double>(got.rgba[i + 1]) * d[a] / std::sqrt(size);
             const double f = std::hypot(p[0], p[1], p[2]) - 1 -
                              reference.call(cache.field, {test::Reference::vec3(p)}).value[0];
             error.most = std::max(error.most, std::abs(f));
@@ -48,7 +52,8 @@ constexpr double tolerance = 0.02;
 
 } // namespace
 
-TEST_CASE("every frame, from the first to the last miss, is within the stated bound of the exact field") {
+TEST_CASE(
+    "every frame, from the first to the last miss, is within the stated bound of the exact field") {
     if (!has_context()) return;
     const driver::Compilation c = compiled(rock);
     const double bound = ir::kept_error(c.scene, ir::CacheId{0});
@@ -75,12 +80,14 @@ TEST_CASE("halving the cell of a smooth field divides its error by about four") 
     for (const char *cell : {"0.2", "0.1", "0.05"}) {
         const driver::Compilation c = compiled(
             "let f = cached(p => 0.1 * fbm(1.2 * p, octaves: 3), cell: " + std::string(cell) +
-            ")\nsphere(1).displace(f)\ncamera(at: [0, 0, 4], look_at: [0, 0, 0])\nrender(epsilon: 1e-5)\n");
+            ")\nsphere(1).displace(f)\ncamera(at: [0, 0, 4], look_at: [0, 0, 0])\nrender(epsilon: "
+            "1e-5)\n");
         gl::CachedView view;
         use(view, c.scene);
         const gl::FrameInputs inputs = frame_of(c.scene, 32, 0, gl::Mode::Numbers);
         CHECK(warm(view, inputs, c.scene, 80) < 80);
-        means.push_back(error_of(view, c.scene, inputs, exact(c.scene, 32, gl::Mode::Numbers)).mean);
+        means.push_back(
+            error_of(view, c.scene, inputs, exact(c.scene, 32, gl::Mode::Numbers)).mean);
     }
     INFO(means[0] << " " << means[1] << " " << means[2]);
     CHECK(means[0] / means[1] > 2.5);
@@ -93,7 +100,8 @@ TEST_CASE("the shader with the cache's hooks and no cache draws the exact pictur
     if (!has_context()) return;
     const driver::Compilation c = compiled(rock);
     Diagnostics diagnostics;
-    const glsl::Output hooked = glsl::emit(c.scene, {.buffers = true, .noise_cache = true}, diagnostics);
+    const glsl::Output hooked =
+        glsl::emit(c.scene, {.buffers = true, .noise_cache = true}, diagnostics);
     REQUIRE(hooked.kept.size() == 1);
     const auto program = gl::Program::build(hooked, c.scene);
     REQUIRE(std::holds_alternative<gl::Program>(program));

@@ -25,12 +25,14 @@ sphere(1).displace(bumps)
 camera(at: [0, 0, 4], look_at: [0, 0, 0])
 )";
 
-inline gl::FrameInputs frame_of(const ir::Scene &scene, int side, double turn = 0, gl::Mode mode = gl::Mode::Linear) {
+inline gl::FrameInputs frame_of(const ir::Scene &scene, int side, double turn = 0,
+                                gl::Mode mode = gl::Mode::Linear) {
     gl::FrameInputs inputs;
     inputs.view = ir::view_of(scene, 0, 1);
     inputs.sun = ir::lights_of(scene, 0, inputs.view)[0].position;
     const double c = std::cos(turn), s = std::sin(turn);
-    for (ir::Triple *v : {&inputs.view.origin, &inputs.view.right, &inputs.view.up, &inputs.view.forward})
+    for (ir::Triple *v :
+         {&inputs.view.origin, &inputs.view.right, &inputs.view.up, &inputs.view.forward})
         *v = {c * (*v)[0] + s * (*v)[2], (*v)[1], c * (*v)[2] - s * (*v)[0]};
     inputs.width = inputs.height = side;
     inputs.mode = mode;
@@ -44,8 +46,8 @@ inline void use(gl::CachedView &view, const ir::Scene &scene, const gl::CacheSiz
 }
 
 // Frames of the same view until nothing is missed, at most so many. How many it took.
-inline int warm(gl::CachedView &view, const gl::FrameInputs &inputs, const ir::Scene &scene, int most = 60,
-                const gl::CacheSettings &settings = {}) {
+inline int warm(gl::CachedView &view, const gl::FrameInputs &inputs, const ir::Scene &scene,
+                int most = 60, const gl::CacheSettings &settings = {}) {
     for (int frame = 0; frame < most; ++frame) {
         if (!view.draw(inputs, scene.params, settings)) FAIL("no memory");
         if (view.read_tally().misses == 0) return frame;
