@@ -85,35 +85,39 @@ void draw_exactly(const Bench &bench, gl::CachedView &view, const gl::FrameInput
     view.draw_exactly(bench.exact, inputs, params);
 }
 
-// `frames` frames, after as many that warm the cache up, each drawn both ways. `param`: which is
-// moved, -1 none: then the view turns.
-Motion move(const Bench &bench, gl::CachedView &view, double speed, int frames, int age,
-            int param = -1) {
+struct Move {
+    double speed = 0; // radians a second; of a param: of the sine that moves it
+    int settle = 0;   // frames before those that are measured
+    int frames = 8;
+    int age = 4;
+    int param = -1; // which is moved; none: the view turns
+};
+
+Motion move(const Bench &bench, gl::CachedView &view, const Move &how) {
     Motion motion;
     std::vector<double> cached, exact;
     std::vector<ir::Param> params = bench.scene.params;
-    view.forget();
-    for (int frame = 0; frame < 2 * frames; ++frame) {
-        const double angle = param < 0 ? speed * frame * frame_time : 0;
-        if (param >= 0) { // there and back over a share of its range
-            ir::Param &p = params[static_cast<std::size_t>(param)];
-            const double phase = std::sin(speed * frame * frame_time);
-            p.value[0] =
-                std::clamp(p.initial[0] + 0.25 * (p.hi[0] - p.lo[0]) * phase, p.lo[0], p.hi[0]);
+    const auto add = [&](double &to, double value) { to += value / how.frames; };
+    for (int frame = 0; frame < how.settle + how.frames; ++frame) {
+        const double phase = how.speed * frame * frame_time;
+        if (how.param >= 0) { // there and back over a quarter of its range
+            ir::Param &p = params[static_cast<std::size_t>(how.param)];
+            p.value[0] = std::clamp(p.initial[0] + 0.25 * (p.hi[0] - p.lo[0]) * std::sin(phase),
+                                    p.lo[0], p.hi[0]);
         }
-        const gl::FrameInputs inputs = inputs_of(bench, angle);
-        const double one = bench.time([&] { view.draw(inputs, params, {.max_age = age}); });
-        if (frame < frames) continue;
+        const gl::FrameInputs inputs = inputs_of(bench, how.param < 0 ? phase : 0);
+        const double one = bench.time([&] { view.draw(inputs, params, {.max_age = how.age}); });
+        if (frame < how.settle) continue;
         const gl::CacheTally tally = view.read_tally();
         const gl::CacheCounts counts = view.store().read_counts();
         cached.push_back(one);
-        motion.hits += static_cast<double>(tally.hits) / frames;
-        motion.misses += static_cast<double>(tally.misses) / frames;
-        motion.missing += static_cast<double>(tally.missing_pixels) / frames;
-        motion.inserted += static_cast<double>(counts.inserted) / frames;
-        motion.evicted += static_cast<double>(counts.evicted) / frames;
-        motion.deleted += static_cast<double>(counts.deleted) / frames;
-        if (frame % 4 == 0)
+        add(motion.hits, static_cast<double>(tally.hits));
+        add(motion.misses, static_cast<double>(tally.misses));
+        add(motion.missing, static_cast<double>(tally.missing_pixels));
+        add(motion.inserted, counts.inserted);
+        add(motion.evicted, counts.evicted);
+        add(motion.deleted, counts.deleted);
+        if (frame % 2 == 0)
             exact.push_back(bench.time([&] { draw_exactly(bench, view, inputs, params); }));
     }
     motion.cached = median(cached);
@@ -173,43 +177,62 @@ void print_difference(const Bench &bench, gl::CachedView &view) {
     bench.terminal.put("\n");
 }
 
-void measure_all(const Bench &bench, gl::CachedView &view) {
-    constexpr int frames = 24;
-    print_difference(bench, view);
-    bench.terminal.put(
-        "\nspeed-up against the speed of turning (figure 8.6)\n  rad/s   cached ms   exact ms   "
-        "speed-up   misses a frame   pixels that miss   hits a frame\n");
+void print_speeds(const Bench &bench, gl::CachedView &view, int frames) {
+    bench.terminal.put("\nspeed-up against the speed of turning (figure 8.6)\n"
+                       "  rad/s   cached ms   exact ms   speed-up   misses a frame   pixels that "
+                       "miss   hits a frame\n");
     for (double speed : {0.0, 0.1, 0.5, 1.0, 2.0, 4.0}) {
-        const Motion m = move(bench, view, speed, frames, 4);
+        // The view before was still and is known; a turning one settles to its own share of misses.
+        const Motion m = move(bench, view, {.speed = speed, .settle = frames, .frames = frames});
         bench.terminal.put(
             fmt::format("  {:<5g} {:>11.1f} {:>10.1f} {:>10.2f} {:>16.0f} {:>18.0f} {:>14.0f}\n",
                         speed, m.cached, m.exact, m.exact / m.cached, m.misses, m.missing, m.hits));
+        bench.terminal.flush();
     }
-    bench.terminal.put("\nmaximum age, turning at 2 rad/s (figure 8.2)\n  age   cached ms   "
-                       "inserted   evicted   deleted   "
-                       "misses a frame\n");
+}
+
+void print_ages(const Bench &bench, gl::CachedView &view, int frames) {
+    bench.terminal.put("\nmaximum age, turning at 2 rad/s (figure 8.2)\n"
+                       "  age   cached ms   inserted   evicted   deleted   misses a frame\n");
     Motion usual;
     for (int age = 1; age <= glsl::cache_ages; ++age) {
-        const Motion m = move(bench, view, 2, frames, age);
+        view.forget();
+        const Motion m =
+            move(bench, view, {.speed = 2, .settle = 2 * frames, .frames = frames, .age = age});
         if (age == 4) usual = m;
         bench.terminal.put(fmt::format("  {:<3} {:>11.1f} {:>10.0f} {:>9.0f} {:>9.0f} {:>16.0f}\n",
                                        age, m.cached, m.inserted, m.evicted, m.deleted, m.misses));
+        bench.terminal.flush();
     }
     bench.terminal.put(fmt::format("\nages at 2 rad/s, {} keys in {} cells (figure 8.3)\n ",
                                    usual.occupancy.keys, usual.occupancy.cells));
-    for (int age = 0; age < 4; ++age)
-        bench.terminal.put(
-            fmt::format("  {}: {}", age, usual.occupancy.ages[static_cast<std::size_t>(age)]));
+    for (std::size_t age = 0; age < 4; ++age)
+        bench.terminal.put(fmt::format("  {}: {}", age, usual.occupancy.ages[age]));
     bench.terminal.put("\n");
+}
+
+void print_edits(const Bench &bench, gl::CachedView &view, int frames) {
     for (std::size_t i = 0; i < bench.scene.params.size(); ++i) {
         const ir::Param &p = bench.scene.params[i];
         if (p.structural || p.type != ir::Type::Float || !p.has_range) continue;
-        const Motion m = move(bench, view, 1, frames, 4, static_cast<int>(i));
-        bench.terminal.put(fmt::format(
-            "\nmoving `{}` (figure 8.5): cached {:.1f} ms, exact {:.1f} ms, speed-up {:.2f}, "
-            "{:.0f} misses a frame\n",
-            p.name, m.cached, m.exact, m.exact / m.cached, m.misses));
+        const Motion m = move(
+            bench, view,
+            {.speed = 1, .settle = 2 * frames, .frames = frames, .param = static_cast<int>(i)});
+        bench.terminal.put(fmt::format("\nmoving `{}` (figure 8.5): cached {:.1f} ms, exact {:.1f} "
+                                       "ms, speed-up {:.2f}, {:.0f} misses a frame\n",
+                                       p.name, m.cached, m.exact, m.exact / m.cached, m.misses));
     }
+}
+
+void measure_all(const Bench &bench, gl::CachedView &view) {
+    print_difference(bench, view);
+    // As many frames as take about a minute in all.
+    const gl::FrameInputs inputs = inputs_of(bench, 0);
+    const double one = bench.time([&] { draw_exactly(bench, view, inputs, bench.scene.params); });
+    const int frames = std::clamp(static_cast<int>(1000 / std::max(one, 1.0)), 4, 24);
+    print_speeds(bench, view, frames);
+    print_ages(bench, view, frames);
+    print_edits(bench, view, frames);
 }
 
 } // namespace
