@@ -19,6 +19,7 @@ bool Timer::begin() {
 void Timer::end() {
     if (!open_) return;
     glEndQuery(GL_TIME_ELAPSED);
+    glFlush(); // an end that stays in the queue is never answered
     open_ = false;
     ++asked_;
 }
