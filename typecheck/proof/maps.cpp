@@ -508,7 +508,8 @@ void Prover::tighten(ShapeId id, Known &k) {
     const auto field = expression(id);
     if (!field) return;
     Budget budget;
-    budget.instructions = options.field_instructions / 25;
+    // Few deformed shapes share what many would.
+    budget.instructions = options.field_instructions / std::clamp<std::size_t>(deformed, 1, 25);
     budget.tolerance = 1.1;
     budget.hopeless = 0.9 * rule;
     const FieldBound b =

@@ -30,10 +30,11 @@ struct Prover {
     Ranges ranges;
     std::vector<Known> known;
     std::vector<Place> places;
-    std::deque<Zone> zones; // stable addresses
-    double outward = 0;     // ShapeFact::outward of the shape at hand
-    double inward = 0;      // ShapeFact::inward
-    bool local = false;     // the shape at hand is proved in its own box alone (ShapeFact::local)
+    std::deque<Zone> zones;   // stable addresses
+    double outward = 0;       // ShapeFact::outward of the shape at hand
+    double inward = 0;        // ShapeFact::inward
+    std::size_t deformed = 0; // how many shapes are twisted, bent, tapered or distorted
+    bool local = false;       // the shape at hand is proved in its own box alone (ShapeFact::local)
 
     Prover(ir::Scene &s, Diagnostics &d, const Options &o)
         : scene(s), diagnostics(d), options(o), graph(s.graph), flattening{s.graph, {}},

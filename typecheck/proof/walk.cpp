@@ -54,6 +54,12 @@ void Prover::run() {
     }
     find_places();
     for (std::size_t i = 0; i < count; ++i) {
+        const Shape &shape = scene.shapes[ShapeId{i}];
+        deformed += shape.kind == ShapeKind::Map &&
+                    (shape.map == MapKind::Twist || shape.map == MapKind::Bend ||
+                     shape.map == MapKind::Taper || shape.map == MapKind::Distort);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
         Known k;
         set_lipschitz(k, 1);
         if (places[i].reached) { // what no one asks keeps facts that say nothing
