@@ -86,13 +86,14 @@ void CachedView::release() {
 }
 
 std::string CachedView::use(const ir::Scene &scene, const CacheSize &size,
-                            Diagnostics &diagnostics) {
+                            Diagnostics &diagnostics, int part_stride) {
     picture_.reset();
     if (std::string why = cache_unavailable(); !why.empty()) return why;
     glsl::Options options;
     options.target = glsl::Target::Glsl450;
     options.buffers = true;
     options.noise_cache = true;
+    options.part_stride = part_stride;
     const glsl::Output output = glsl::emit(scene, options, diagnostics);
     if (output.text.empty()) return "the shader with the noise cache cannot be made";
     if (output.kept.empty()) return "no field of this scene is worth keeping";

@@ -37,7 +37,8 @@ class CachedView {
 
     // Takes a scene's programs. What the cache already holds of the same fields stays. An empty
     // text where all went well and some field is kept; else why the scene is drawn exactly.
-    std::string use(const ir::Scene &scene, const CacheSize &size, Diagnostics &diagnostics);
+    std::string use(const ir::Scene &scene, const CacheSize &size, Diagnostics &diagnostics,
+                    int part_stride = 0); // of a scene that was lowered with its parts
     bool ready() const { return picture_.has_value(); }
 
     // Draws a frame, and lets the cache learn what it missed. False where there is no memory.

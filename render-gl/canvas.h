@@ -85,6 +85,9 @@ class Canvas {
     Post post_;
 };
 
+// Another framebuffer's first colours over the whole window, both of that size.
+void show_in_window(unsigned framebuffer, int width, int height);
+
 void clear_window(int width, int height, float gray);
 
 // What the window's back buffer holds, to be called before it is swapped.

@@ -78,6 +78,7 @@ void App::take(std::unique_ptr<Build> build) {
     if (drop_outdated(before, params, structural)) rebuild(structural);
     const std::vector<std::string> old_views = scene ? scene->views : std::vector<std::string>{};
     scene = std::move(build);
+    cached.scene_changed();
     stale = true;
     const ir::Scene &s = scene->compilation.scene;
     status.shader_bytes = scene->picture.text.size();
@@ -105,6 +106,7 @@ void App::take(std::unique_ptr<Build> build) {
 
 void App::param_changed(const ir::Param &param) {
     stale = true;
+    cached.view_changed();
     touched = Clock::now();
     frames_due = 3;
     if (param.structural) rebuild(structural_values(params));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "render-gl/timer.h"
+#include "viewer/cached.h"
 #include "viewer/controls.h"
 #include "viewer/frame_times.h"
 #include "viewer/panels.h"
@@ -42,6 +43,8 @@ struct App {
     std::vector<ir::Param> params;
     gl::Canvas canvas;
     gl::Timer timer;
+    Cached cached;
+    std::optional<Shot> cached_shot;
     std::optional<Shot> drawn;
     bool stale = true;     // the program or a value changed since `drawn`
     bool drew_now = false; // in this turn of the loop
@@ -76,7 +79,7 @@ struct App {
     double cursor_x = 0, cursor_y = 0, pressed_x = 0, pressed_y = 0;
     bool click_asked = false;
     bool flies = true; // the keys that are held move the camera
-    int dragged = -1; // the view in which the button went down
+    int dragged = -1;  // the view in which the button went down
     float font_scale = 1;
 
     // app.cpp
@@ -107,6 +110,7 @@ struct App {
     void draw_scene(int width, int height, bool moving, bool drew_before);
     bool draw_rows(bool whole);
     void draw_probe();
+    bool draw_cached(int width, int height); // false where there is nothing to show
     void draw_panels(int width, int height);
     void save_pictures(int width, int height, bool moving);
     bool save_window(const std::filesystem::path &file, int width, int height);

@@ -106,7 +106,7 @@ std::vector<gl::TileView> App::tile_views(int width, int height) const {
 }
 
 bool App::pending() const {
-    if (!program) return false;
+    if (!program || controls.cache) return false;
     if (stale || !drawn || drawing || !finished) return true;
     return controls.accumulate && controls.look == gl::Look::Picture && !animated() &&
            !controls.always && !controls.rotate && samples_drawn < samples_at_rest;
@@ -199,6 +199,29 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
         for (std::size_t i = 2; i < picks.size(); i += 4) sum += picks[i];
         status.mean_steps = picks.empty() ? 0 : sum / (static_cast<double>(picks.size()) / 4);
     }
+}
+
+bool App::draw_cached(int width, int height) {
+    if (!scene) return false;
+    const Shot shot{views, time, width, height};
+    if (cached_shot != shot) cached.view_changed();
+    cached_shot = shot;
+    if (!cached.settled()) {
+        gl::FrameInputs inputs = tile_views(width, height)[0].inputs;
+        inputs.width = width;
+        inputs.height = height;
+        inputs.mode = gl::Mode::Picture;
+        const std::string why =
+            cached.draw(scene->compilation.scene, scene->compilation.parts.stride, inputs, params);
+        if (!why.empty()) {
+            controls.cache = false;
+            note("no noise cache: " + why);
+            return false;
+        }
+        note(cached.words());
+    }
+    gl::show_in_window(cached.framebuffer(), width, height);
+    return true;
 }
 
 void App::draw_probe() {
@@ -322,8 +345,10 @@ void App::draw(double seconds) {
     const bool moving =
         (animated() || by_hand) && !controls.always && !controls.rotate && sequence == 0;
     const bool drew_before = std::exchange(drew_now, false);
-    if (program) draw_scene(width, height, moving, drew_before);
-    if (canvas.empty())
+    if (program && !controls.cache) draw_scene(width, height, moving, drew_before);
+    if (controls.cache && draw_cached(width, height)) {
+        // in place of the picture
+    } else if (canvas.empty())
         gl::clear_window(width, height, 0.12f);
     else
         canvas.show(width, height);

@@ -149,6 +149,11 @@ void App::key(int key, int mods) {
     case GLFW_KEY_B: toggle_look(gl::Look::Bound); break;
     case GLFW_KEY_L: toggle_look(gl::Look::Slice); break;
     case GLFW_KEY_K: toggle_look(gl::Look::Check); break;
+    case GLFW_KEY_2:
+        controls.cache = !controls.cache;
+        cached.view_changed();
+        note("");
+        break;
     case GLFW_KEY_X:
         controls.fxaa = !controls.fxaa;
         finished = false;

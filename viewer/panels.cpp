@@ -121,6 +121,7 @@ void show_keys(bool &open) {
         Row{"Y, I, Del", "copy its value, write it into the file, reset it"},
         Row{"Backspace", "all params back to the text's values"},
         Row{"H B L K", "colours: steps, bound, slice, check of steps"},
+        Row{"2", "the noise cache at work: misses red"},
         Row{"G", "the analysis panel"},
         Row{"X, J", "FXAA, four samples at rest"},
         Row{"T, U", "turn by itself, draw as fast as it can"},

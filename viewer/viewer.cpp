@@ -87,7 +87,8 @@ std::string loop(App &app) {
         const bool settling =
             milliseconds_since(app.touched) < 200; // until the full picture is there again
         const bool busy = app.animated() || app.controls.always || app.controls.rotate ||
-                          app.sequence > 0 || app.frames_due > 0 || app.pending();
+                          app.sequence > 0 || app.frames_due > 0 || app.pending() ||
+                          (app.controls.cache && !app.cached.settled());
         if (busy && !hidden)
             glfwPollEvents();
         else if (settling && !hidden)

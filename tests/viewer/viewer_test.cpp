@@ -314,6 +314,28 @@ TEST_CASE("no frame is blank while the driver works on the next shader") {
     CHECK(blank == 0);
 }
 
+TEST_CASE("the noise cache's misses are red, and grow fewer") {
+    Window window("let bumps = cached(p => 0.1 * fbm(3 * p, octaves: 6), cell: 0.05)\n"
+                  "sphere(1).displace(bumps).paint(white)\n" +
+                      camera,
+                  {"--size", "160x160"});
+    const Picture exact = window.picture();
+    const auto reds = [](const Picture &picture) {
+        int count = 0;
+        for (int y = 0; y < picture.height / 2; ++y)
+            for (int x = 0; x < picture.width; ++x) count += red(pixel(picture, x, y));
+        return count;
+    };
+    CHECK(reds(exact) == 0);
+    window.key("2");
+    const int first = reds(window.picture());
+    CHECK(first > 100);
+    CHECK(waited([&] { return reds(window.picture()) < first; }));
+    window.key("2");
+    window.key("Escape");
+    CHECK(reds(window.picture()) == 0);
+}
+
 TEST_CASE("a still scene costs less than a hundredth of a core") {
     Window window("sphere(1).paint(orange)\n" + camera);
     window.picture();
