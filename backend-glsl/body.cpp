@@ -314,7 +314,7 @@ class Writer {
             if (node.type == Type::Int && !known_.in_range(id)) return saturating(id, "fathom_mul");
             return infix(id, " * ");
         case Op::Div:
-            if (node.type == Type::Int)
+            if (node.type == Type::Int && !known_.plain_quotient(id))
                 return {helper("fathom_div") + "(" + list(id) + ")", Primary};
             return infix(id, " / ");
         case Op::Add:
@@ -393,6 +393,10 @@ class Writer {
         case Op::Mod: // by a constant it is GLSL's own
             if (node.type != Type::Int && !ir::is_matrix(node.type) && known_.is_nonzero(arg(1)))
                 return {"mod(" + list(id) + ")", Primary};
+            if (node.type == Type::Int && known_.plain_quotient(id))
+                return {at_least(expression(arg(0)), Product) + " % " +
+                            at_least(expression(arg(1)), Unary),
+                        Product};
             return by_table(id);
         case Op::Smoothstep:
             if (!ir::is_matrix(node.type) && known_.below(arg(0), arg(1)))
@@ -561,8 +565,12 @@ class Writer {
 
     Text table_read(NodeId id) {
         const ir::Node &node = graph_[id];
-        const TableUse &use = module_.tables.at(ir::table_of(node.payload).index);
         const NodeId row = graph_.arg(id, 0);
+        if (const auto formula = module_.computed.find(node.payload);
+            formula != module_.computed.end())
+            return {module_.functions.at(formula->second.index) + "(" + expression(row).text + ")",
+                    Primary};
+        const TableUse &use = module_.tables.at(ir::table_of(node.payload).index);
         const auto counted = plan_.rows.find(row);
         const bool inside = counted != plan_.rows.end() && counted->second <= use.rows;
         std::string at = inside

@@ -48,7 +48,7 @@ class Emitter {
   public:
     Emitter(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics)
         : scene_(scene), options_(options),
-          diagnostics_(diagnostics), module_{scene, options, {}, {}, {}, {}, {}, {}, {}, {}} {}
+          diagnostics_(diagnostics), module_{scene, options, {}, {}, {}, {}, {}, {}, {}, {}, {}} {}
 
     // The fields that a text with the noise cache keeps, as a text of their own that ends in `tail`.
     Output run_fields(const std::vector<std::uint32_t> &caches) {
@@ -264,7 +264,9 @@ class Emitter {
             else
                 text += "const " + type + " " + name + " = " + value + ";\n";
         }
-        if (!module_.texels.empty()) text += sampler("samplerBuffer", "fathom_tables");
+        if (!module_.texels.empty())
+            text += "// A texture buffer of RGBA32F texels: the file written beside this text.\n" +
+                    sampler("samplerBuffer", "fathom_tables");
         for (const auto &[index, name] : module_.images) text += sampler("sampler2D", name);
         for (const auto &[index, name] : module_.grids) text += sampler("sampler3D", name);
         return text;

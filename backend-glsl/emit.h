@@ -34,7 +34,9 @@ struct Options {
     Target target = Target::Glsl450;
     bool field_only = false; // just `float sdf(vec3 p)`, the material function and the bound
     bool buffers = false; // the host binds large tables as the texture buffer `fathom_tables`; else
-                          // all data is text
+                          // a formula stands for a table that has one, and all other data is text
+    bool computed = false; // formulas first, also where there is a buffer
+    int table_text = 16;  // rows up to which data is text all the same
     bool noise_cache = false; // GL 4.2: cached fields worth it are read through the noise cache (cache.h)
     double time = 0; // where a target has no host that sets a camera: the moment whose camera is
                      // the first view

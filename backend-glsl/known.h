@@ -5,6 +5,7 @@
 #include "backend-glsl/schedule.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace fathom::glsl {
@@ -74,7 +75,15 @@ struct Known {
             const auto [lo, hi] = of(1);
             if (lo > 0) return {0, hi - 1};
         }
+        if (node.op == Op::Div && plain_quotient(id, depth + 1))
+            return {0, std::floor(of(0).second / of(1).first)};
         return all;
+    }
+
+    // Of what is not negative by what is positive GLSL's `/` and `%` are ours.
+    bool plain_quotient(NodeId id, int depth = 0) const {
+        return range(graph.arg(id, 0), depth + 1).first >= 0 &&
+               range(graph.arg(id, 1), depth + 1).first > 0;
     }
 
     std::pair<double, double> exact_range(NodeId id, int depth = 0) const {

@@ -69,9 +69,6 @@ std::string literal(const ir::Constant &constant) {
 
 namespace {
 
-constexpr int small_table =
-    16; // rows up to which a table is text even where the host could bind a buffer
-
 class Gatherer {
   public:
     explicit Gatherer(Module &module) : module_(module), graph_(module.scene.graph) {}
@@ -96,7 +93,7 @@ class Gatherer {
                 function(graph_.cache(ir::CacheId{node.payload}).field.index, todo);
                 caches_.insert(node.payload);
             } else if (node.op == Op::TableRead) {
-                tables_.insert(ir::table_of(node.payload).index);
+                read(node.payload, todo);
             } else if (node.op == Op::Param) {
                 params_.insert(node.payload);
             } else if (node.op == Op::Image) {
@@ -140,6 +137,17 @@ class Gatherer {
                                   module_.scene.caches[id.index].slope};
     }
 
+    void read(std::uint32_t slot, std::vector<NodeId> &todo) {
+        const ir::Table &table = graph_.table(ir::table_of(slot));
+        if (module_.options.computed || !module_.options.buffers)
+            for (const auto &[column, formula] : table.computed)
+                if (column == ir::column_of(slot)) {
+                    module_.computed[slot] = formula;
+                    return function(formula.index, todo);
+                }
+        tables_.insert(ir::table_of(slot).index);
+    }
+
     void table(std::uint32_t index) {
         const ir::Table &data = graph_.table(ir::TableId{index});
         module_.tables[index] =
@@ -165,7 +173,7 @@ TableUse add_table(Module &module, const std::string &name, int rows, int stride
                     0.0f);
     for (int row = 0; row < rows; ++row)
         std::copy_n(data.begin() + row * stride, stride, use.data.begin() + row * use.texels * 4);
-    use.buffer = module.options.buffers && rows > small_table;
+    use.buffer = module.options.buffers && rows > module.options.table_text;
     if (use.buffer) {
         use.start = static_cast<int>(module.texels.size() / 4);
         module.texels.insert(module.texels.end(), use.data.begin(), use.data.end());

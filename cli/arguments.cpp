@@ -207,7 +207,8 @@ struct Reader {
 
         sub = command("compile", "write the scene's shader, validated", compile);
         add_scene(sub, compile.scene);
-        sub->add_option("-o", compile.out, "write here, not to standard output")->type_name("OUT");
+        sub->add_option("-o", compile.out, "write here, not to standard output; for glsl450, large tables to OUT.tables")
+            ->type_name("OUT");
         sub->add_option(
                "--target", compile.target,
                "glsl450 (unless said), glsl330, es300, shadertoy, glslviewer, spirv or html")

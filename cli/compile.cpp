@@ -1,4 +1,5 @@
-// fathom compile: a scene's shader, for one of the targets. Nothing is written unless all went well.
+// fathom compile: a scene's shader, for one of the targets, and the data of its buffer. Nothing is written unless all
+// went well.
 #include "backend-glsl/emit.h"
 #include "cli/terminal.h"
 
@@ -34,6 +35,10 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
     glsl::Options options;
     options.target = *glsl::target_by_name(command.target);
     options.field_only = command.field_only;
+    // Only beside a file there is room for the data of a buffer.
+    options.buffers = options.target == glsl::Target::Glsl450 && !command.out.empty() && command.out != "-";
+    options.computed = true;
+    options.table_text = 256;
     options.title = std::filesystem::path(command.scene.file).stem().string();
     options.place = [&](Span span) {
         if (!span.source) return std::string();
@@ -51,6 +56,11 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
         return write_result(command.out, bytes, terminal);
     }
     if (command.noise_cache) exit = write_passes(command.out, compilation.scene, options, terminal);
+    if (exit == done && !output.tables.empty()) {
+        std::string_view texels(reinterpret_cast<const char *>(output.tables.data()),
+                                output.tables.size() * sizeof(float));
+        exit = write_result(command.out + ".tables", texels, terminal);
+    }
     return exit == done ? write_result(command.out, output.text, terminal) : exit;
 }
 

@@ -5,6 +5,8 @@
 #include "save-format/save_format.h"
 #include "typecheck/proof/prove.h"
 
+#include <fmt/format.h>
+
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -73,6 +75,7 @@ void run_phases(Compilation &out, SceneFiles &files, const std::string &identity
                                                   check_options(options), out.diagnostics);
     out.scene = std::move(checked.scene);
     out.usage_errors = std::move(checked.usage_errors);
+    out.names = std::move(checked.names);
     out.evaluations = checked.evaluations;
     // What checked is proved also where other statements did not: all errors in one run.
     enter(options, Phase::Prove);
@@ -84,6 +87,14 @@ void run_phases(Compilation &out, SceneFiles &files, const std::string &identity
         else
             ir::lower(out.scene);
         assert(ir::verify(out.scene).empty());
+        const ir::Graph &graph = out.scene.graph;
+        const double cost = ir::operations(graph, graph.function(out.scene.distance).result);
+        if (cost > ir::most_operations)
+            out.diagnostics
+                .add(Code::LoopLimit, out.scene.top_level.empty() ? Span{root, 0, 0} : out.scene.top_level[0].span,
+                     fmt::format("a point of this scene would take {:.0e} operations", cost))
+                .note(fmt::format("at most {:.0e} are allowed, so that every picture ends", ir::most_operations))
+                .help("look for copies of copies, or loops in loops");
     }
     enter(options, Phase::Done);
 }

@@ -33,6 +33,7 @@ struct Compilation {
     std::vector<std::string> usage_errors; // of the overrides: the command line is wrong
     std::string unreadable;                // why the scene's own file cannot be used, or empty
     std::map<std::filesystem::path, FileStamp> files; // all that was read or looked for: what to watch
+    std::vector<typecheck::NameFact> names; // of the scene's own file: types and stages
     std::size_t evaluations = 0;
 
     bool good() const { return unreadable.empty() && usage_errors.empty() && !diagnostics.has_errors(); }

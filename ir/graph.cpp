@@ -326,7 +326,22 @@ NodeId Graph::call(FunctionId id, std::span<const NodeId> args) {
 
 FunctionId Graph::add_function(Function function) { return functions_.add(std::move(function)); }
 FoldId Graph::add_fold(Fold fold) { return folds_.add(std::move(fold)); }
-TableId Graph::add_table(Table table) { return tables_.add(std::move(table)); }
+TableId Graph::add_table(Table table) {
+    std::uint64_t h =
+        stir(static_cast<std::uint64_t>(table.rows), static_cast<std::uint64_t>(table.stride));
+    for (float x : table.data) h = stir(h, std::bit_cast<std::uint32_t>(x));
+    const auto [first, last] = interned_tables_.equal_range(h);
+    for (auto it = first; it != last; ++it) {
+        const Table &have = tables_[it->second];
+        if (have.rows == table.rows && have.stride == table.stride &&
+            have.computed == table.computed &&
+            std::equal(have.data.begin(), have.data.end(), table.data.begin(), table.data.end()))
+            return it->second;
+    }
+    const TableId id = tables_.add(std::move(table));
+    interned_tables_.emplace(h, id);
+    return id;
+}
 CacheId Graph::add_cache(Cache cache) { return caches_.add(cache); }
 
 } // namespace fathom::ir

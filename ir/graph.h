@@ -101,6 +101,9 @@ struct Table {
     int rows = 0;
     int stride = 0;
     std::vector<float> data;
+    // Where the rows follow from their number: the first column of what a formula gives, and that formula, a function
+    // (row: int) -> the numbers, which clamps the row itself. It gives the data to float precision; the data is what is true.
+    std::vector<std::pair<int, FunctionId>> computed{};
 };
 // TableRead's payload: which table and the first of components(type) columns.
 std::uint32_t table_slot(TableId table, int column); // 20 bits table, 12 bits column
@@ -161,7 +164,7 @@ class Graph {
 
     FunctionId add_function(Function function);
     FoldId add_fold(Fold fold);
-    TableId add_table(Table table);
+    TableId add_table(Table table); // or finds the equal one
     CacheId add_cache(Cache cache);
     const Function &function(FunctionId id) const { return functions_[id]; }
     const Fold &fold(FoldId id) const { return folds_[id]; }
@@ -200,6 +203,7 @@ class Graph {
     std::vector<Constant> folding_; // the arguments of the fold in hand
     std::vector<NodeId> slots_; // open addressing by content; a power of two, at most half full
     std::unordered_multimap<std::uint64_t, std::uint32_t> interned_constants_;
+    std::unordered_multimap<std::uint64_t, TableId> interned_tables_;
 };
 
 // A copy of `root` in which every node that `map` names is replaced. Fold bodies are entered; calls are not (functions are closed).

@@ -183,6 +183,8 @@ NodeId Graph::simplified(Op op, Type type, std::span<const NodeId> args, std::ui
     case Op::Select:
         if (is(0, 1)) return args[1];
         if (is(0, 0)) return args[2];
+        if (type == Type::Bool && is(1, 1) && is(2, 0)) return args[0];
+        if (type == Type::Bool && is(1, 0) && is(2, 1)) return make(Op::Not, {args[0]});
         return args[1] == args[2] ? args[1] : NodeId{};
     case Op::ToFloat:
     case Op::ToInt: return nodes_[args[0]].type == type ? args[0] : NodeId{};

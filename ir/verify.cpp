@@ -268,6 +268,13 @@ class Verifier {
                  is(0, Type::Int) && table.index < graph_.table_count() &&
                      column_of(node.payload) + components(node.type) <= graph_.table(table).stride,
                  "there is no such column");
+            for (const auto &[column, formula] : graph_.table(table).computed)
+                want(id,
+                     graph_.function(formula).params.size() == 1 &&
+                         type(graph_.function(formula).params[0]) == Type::Int &&
+                         column + components(type(graph_.function(formula).result)) <=
+                             graph_.table(table).stride,
+                     "a column's formula does not fit");
             break;
         }
         case Op::Hash:

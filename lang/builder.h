@@ -7,6 +7,8 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <unordered_set>
 #include <vector>
 
 namespace fathom::lang {
@@ -99,6 +101,7 @@ class Builder {
 
     // Functions. A head begins at `fn`, or at a lambda's parameters.
     void declared_name(Index at);
+    bool is_declared(const std::string &name);
     void some_value(); // an operand that may be left away
     void no_value() { maybe_items_.emplace_back(); }
     void parameter();
@@ -278,6 +281,8 @@ class Builder {
     };
     std::vector<ForeignName> foreign_names_;
     std::vector<std::string_view> declared_;
+    std::unordered_set<std::string_view> known_names_; // the first known_ of them
+    std::size_t known_ = 0;
 };
 
 } // namespace fathom::lang

@@ -202,6 +202,12 @@ bool Builder::is_target(ExprId id) const {
     }
 }
 
+// Whether a name was declared above, anywhere: then an assignment means to change it.
+bool Builder::is_declared(const std::string &name) {
+    for (; known_ < declared_.size(); ++known_) known_names_.insert(declared_[known_]);
+    return known_names_.count(name) > 0;
+}
+
 void Builder::assignment() {
     const Index at = take_back(remembered_);
     const Item value = pop_item();
@@ -209,7 +215,7 @@ void Builder::assignment() {
     const Span whole{id_, target.begin, value.end};
     const std::uint32_t tall = std::max(height(target.id), height(value.id));
     const Name *name = std::get_if<Name>(&ast_.exprs[target.id].kind);
-    if (!in_function_ && name && kind(at) == Tok::Assign) {
+    if (!in_function_ && name && kind(at) == Tok::Assign && !is_declared(name->text)) {
         foreign(span(target), "a new name is bound with `let`")
             .help("write `let " + name->text + " = …`",
                   {{{id_, target.begin, target.begin}, "let "}});

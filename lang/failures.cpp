@@ -138,6 +138,12 @@ void Builder::generic_failure(Wanted wanted, Index at) {
         diagnostics_.add(Code::SyntaxError, span(at), "this `else` belongs to no `if`");
         return;
     }
+    if (exists && wanted == Wanted::CloseList && found == Tok::Comma) { // no list: an index
+        diagnostics_.add(Code::SyntaxError, span(at), "an index is one number")
+            .label(span(enclosing(at)), "of this index")
+            .help("the arguments of a call stand in `( … )`");
+        return;
+    }
     Diagnostic &d = diagnostics_.add(Code::SyntaxError, place(at),
                                      "expected " + wanted_text(wanted) + ", found " + describe(at));
     switch (wanted) {
@@ -157,6 +163,11 @@ void Builder::generic_failure(Wanted wanted, Index at) {
         if (exists && is_keyword(found)) d.note("a keyword cannot be a name");
         break;
     case Wanted::StatementEnd:
+        if (found == Tok::Comma) {
+            const bool last = at + 1 >= tokens_.tokens.size() || kind(at + 1) == Tok::End;
+            d.help("statements stand on lines of their own, without commas",
+                   {{span(at), last ? "" : ";"}});
+        }
         if (begins_operand(found) && kind(at - 1) != Tok::Name) {
             const std::uint32_t end = token(at - 1).end;
             d.help("begin a new line, or part statements by `;`", {{{id_, end, end}, ";"}});

@@ -132,7 +132,7 @@ class Layout {
         for (std::size_t i = 0; i < words_.size(); ++i) place(i);
         if (levels_.size() > 1) {
             const Level &level = suspect_ ? *suspect_ : levels_.back();
-            report_unclosed(level, nullptr);
+            report_unclosed(level, suspect_ ? nullptr : left_of(level));
             while (levels_.size() > 1) close_missing();
         }
         out_.kinds.reserve(out_.tokens.size());
@@ -173,6 +173,21 @@ class Layout {
         const auto line = position(source_, t.begin).line;
         const std::string_view text = line_text(source_, line);
         return static_cast<std::uint32_t>(std::min(text.find_first_not_of(" \t"), text.size()));
+    }
+
+    // The first line behind an opening bracket that stands no further in than its own, after some
+    // that do: where its writer thought that it had ended.
+    const Token *left_of(const Level &open) const {
+        const std::uint32_t margin = indent_of(out_.tokens[open.index]);
+        bool inside = false;
+        for (std::size_t i = open.index + 1; i < out_.tokens.size(); ++i) {
+            const Token &t = out_.tokens[i];
+            if (!t.first_on_line || t.begin == t.end) continue;
+            const bool deeper = indent_of(t) > margin;
+            if (!deeper) return inside ? &t : nullptr;
+            inside = true;
+        }
+        return nullptr;
     }
 
     const Source &source_;

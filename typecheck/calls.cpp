@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace fathom::typecheck {
 
@@ -314,9 +315,11 @@ static Value run_closure(Evaluator &ev, const Value &callee, std::string_view na
 }
 
 // A call with numbers of field time: the body becomes a function of the graph, made once for each
-// set of known arguments.
+// set of known arguments. Where these sets are many (a shape's sizes, in a loop), known floats and
+// vectors are passed too, so that like shapes call one function; unless the body has to know them.
 static std::optional<Value> specialized(Evaluator &ev, const Value &callee, std::string_view name,
-                                        std::span<const Value> values, Span call) {
+                                        std::span<const Value> known, Span call) {
+    std::span<const Value> values = known;
     if (std::none_of(values.begin(), values.end(), [&](const Value &v) { return varies(ev, v); }))
         return std::nullopt;
     const Closure c = ev.closures[callee.id];
@@ -331,10 +334,19 @@ static std::optional<Value> specialized(Evaluator &ev, const Value &callee, std:
     auto id = std::pair{c.ast, c.function.index};
     if (auto it = ev.never_specialize.find(id); it != ev.never_specialize.end())
         return std::nullopt;
+    ir::Graph &g = ev.scene.graph;
+    std::vector<Value> opened;
+    const bool open = ev.specialized[id] >= most_known_sets;
+    if (open) {
+        opened.assign(values.begin(), values.end());
+        for (Value &v : opened)
+            if (v.kind == ValueKind::Float || v.kind == ValueKind::Vec)
+                v = from_node(ev, g.fresh_var(numeric_type(ev, v)), v.color);
+        values = opened;
+    }
     std::vector<std::uint64_t> key{reinterpret_cast<std::uintptr_t>(c.ast), c.function.index,
                                    c.frame};
     for (const Value &v : values) key_of(ev, v, key);
-    ir::Graph &g = ev.scene.graph;
     auto it = ev.specializations.find(key);
     if (it == ev.specializations.end()) {
         std::vector<Value> inner(values.begin(), values.end());
@@ -348,10 +360,16 @@ static std::optional<Value> specialized(Evaluator &ev, const Value &callee, std:
             v = from_node(ev, var, v.color);
         }
         std::size_t errors = ev.quiet > 0 ? ev.quiet_errors : ev.diagnostics.errors();
-        ++ev.in_field;
+        ++ev.in_field, ev.quiet += open;
+        if (open) errors = ev.quiet_errors;
         Value result = run_closure(ev, callee, name, inner, call);
-        --ev.in_field;
         bool failed = (ev.quiet > 0 ? ev.quiet_errors : ev.diagnostics.errors()) > errors;
+        --ev.in_field, ev.quiet -= open;
+        if (open && (is_poison(result) || failed || !is_numeric(result))) {
+            ev.quiet_errors = errors;
+            ev.specialized[id] = std::numeric_limits<int>::min();
+            return specialized(ev, callee, name, known, call);
+        }
         if (is_poison(result) || failed) return poison();
         if (!is_numeric(result)) {
             ev.never_specialize[id] = true;
@@ -370,12 +388,13 @@ static std::optional<Value> specialized(Evaluator &ev, const Value &callee, std:
             s.function = g.add_function(std::move(function));
         }
         it = ev.specializations.emplace(std::move(key), s).first;
+        ++ev.specialized[id];
     }
     const Specialization &s = it->second;
     if (!s.function) return s.shape_of_result;
     std::vector<ir::NodeId> nodes;
-    for (const Value &v : values)
-        if (varies(ev, v)) nodes.push_back(node_of(v));
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (varies(ev, values[i])) nodes.push_back(to_node(ev, known[i]));
     return from_node(ev, g.call(s.function, nodes), s.shape_of_result.color);
 }
 
@@ -504,11 +523,9 @@ static Value call_closure(Evaluator &ev, const Value &callee, std::string_view n
             ev.current_module = module;
         }
         if (p.type && v.kind != ValueKind::None) {
-            if (!known_type(*p.type)) {
-                report(ev, Code::UnknownName, p.type->span,
-                       fmt::format("there is no type `{}`", type_text(*p.type)));
+            if (!check_type(ev, *p.type))
                 ok = false;
-            } else
+            else
                 v = convert(ev, v, *p.type, given.span, quoted(p.name.text, name), ok);
         }
         warn_of_degrees(ev, formals[i], given, v);

@@ -89,7 +89,9 @@ void add_top_level(Evaluator &ev, const Value &v, Span span, std::vector<ir::Sha
     Diagnostic &d =
         report(ev, Code::WrongPlace, span,
                fmt::format("the scene is made of shapes; {} does nothing here", describe(ev, v)));
-    if (is_function(v))
+    if (v.kind == ValueKind::Closure && parameter_count(ev, v) == 1)
+        d.help("a distance function becomes a shape with `implicit(…)`; any other is called");
+    else if (is_function(v))
         d.help("call it: `name(…)`");
     else
         d.help("name it with `let`, or look at it with `print(…)`");
@@ -224,6 +226,7 @@ Checked check(Sources &sources, SourceId root, const std::string &root_identity,
                 ev.usage_errors.push_back(
                     fmt::format("-D {}: the scene has no parameter of this name", o.name));
         }
+        out.names = name_facts(ev, m.frame, root);
         out.scene = std::move(ev.scene);
         out.usage_errors = std::move(ev.usage_errors);
         out.evaluations = ev.evaluations;

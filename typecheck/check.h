@@ -69,10 +69,21 @@ struct Options {
     std::size_t max_evaluations = 20'000'000, max_list_elements = 10'000'000;
 };
 
+// When a value is known: while the scene is read, once its parameters are set, or where a point or
+// the time is asked for. Of a shape: its latest number but the point.
+enum class Stage { Scene, Parameter, Field };
+const char *stage_name(Stage stage);
+struct NameFact {
+    std::string name, type;
+    Stage stage = Stage::Scene;
+    Span declared;
+};
+
 struct Checked {
     ir::Scene scene; // without what diagnostics refused; the rest can still be proved
     std::vector<std::string>
         usage_errors;            // overrides that name no param or are out of range: exit 2
+    std::vector<NameFact> names; // of the scene's own file, as declared
     std::size_t evaluations = 0; // counted work of scene time
 };
 

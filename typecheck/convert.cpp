@@ -3,6 +3,8 @@
 // constant stands for a field.
 #include "typecheck/evaluator.h"
 
+#include "base/suggest.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -26,13 +28,26 @@ std::string type_text(const lang::TypeExpr &type) {
     return "";
 }
 
-bool known_type(const lang::TypeExpr &type) {
+// Wrong wherever the function is called from, so it is said of no call.
+bool check_type(Evaluator &ev, const lang::TypeExpr &type) {
     if (type.kind != lang::TypeExpr::Kind::Name) {
-        for (const lang::TypeExpr &item : type.items)
-            if (!known_type(item)) return false;
-        return true;
+        bool ok = true;
+        for (const lang::TypeExpr &item : type.items) ok = check_type(ev, item) && ok;
+        return ok;
     }
-    return type.named != lang::TypeName::Unknown;
+    if (type.named != lang::TypeName::Unknown) return true;
+    if (ev.quiet > 0) {
+        ++ev.quiet_errors;
+        return false;
+    }
+    static const std::vector<std::string> names = {
+        "float", "int",  "bool",  "string", "vec2",   "vec3",     "vec4",  "mat2",
+        "mat3",  "mat4", "color", "shape",  "shape2", "material", "light", "region"};
+    Diagnostic &d = ev.diagnostics.add(Code::UnknownName, type.span,
+                                       fmt::format("there is no type `{}`", type.name));
+    const std::string near = nearest_name(type.name, names);
+    if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{type.span, near}});
+    return false;
 }
 
 bool is_function(const Value &v) {
@@ -222,10 +237,12 @@ Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span pl
 
 // -- what builtins ask of their arguments --------------------------------------------------------
 
-static void want(Evaluator &ev, const Value &v, Span place, What what, const std::string &wanted) {
+static void want(Evaluator &ev, const Value &v, Span place, What what, std::string_view wanted) {
     if (is_poison(v)) return;
-    report(ev, Code::TypeMismatch, place,
-           fmt::format("{} wants {}, this is {}", what, wanted, describe(ev, v)));
+    Diagnostic &d = report(ev, Code::TypeMismatch, place,
+                           fmt::format("{} wants {}, this is {}", what, wanted, describe(ev, v)));
+    if (v.kind == ValueKind::String && wanted == "a color")
+        d.help("colours are written without quotes: `red`, `#ff0000`");
 }
 
 std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what) {

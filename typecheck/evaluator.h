@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -172,6 +173,17 @@ struct Specialization {
     Value shape_of_result; // a Field or constant: kind and colour of what it returns
 };
 
+// A shape that a loop made: what its body gives with the turn's number left open, and that number,
+// the innermost loop's first (turns.cpp).
+struct LoopVariable {
+    ir::NodeId node; // Int: 0, 1, …
+    int count = 0;
+};
+struct Turn {
+    ir::ShapeId symbolic;
+    std::vector<std::pair<std::uint32_t, int>> at; // index into Evaluator::loop_variables
+};
+
 struct Evaluator {
     Sources &sources;
     Diagnostics &diagnostics;
@@ -217,6 +229,8 @@ struct Evaluator {
     std::unordered_map<std::vector<std::uint64_t>, Value, HashOfWords> remembered{};
     std::map<std::pair<const File *, std::uint32_t>, bool>
         never_specialize{}; // functions seen to give no number
+    std::map<std::pair<const File *, std::uint32_t>, int>
+        specialized{}; // how often; far below 0: the body has to know its numbers
     std::map<std::string, std::uint32_t>
         interned_records{};                // libraries, regions, materials by content
     std::vector<ir::NodeId> param_nodes{}; // by Scene::params
@@ -225,6 +239,10 @@ struct Evaluator {
         corners{}; // of polygons' fields, where known
     std::map<std::string, std::uint32_t>
         assets{}; // images and grids by what was asked for: their number
+    std::vector<LoopVariable> loop_variables{};
+    std::unordered_map<std::uint32_t, Turn> turns{};   // by ShapeId
+    int symbolic_turns = 0;                            // > 0 while one runs
+    std::set<std::array<std::uint32_t, 6>> reported{}; // code and places, so that each is said once
     std::vector<std::string> usage_errors{};
 };
 
@@ -235,6 +253,7 @@ constexpr int max_depth = 40000; // nested evaluations; the stack is sized for i
 constexpr int max_unrolled = 4096;
 constexpr std::size_t max_remembered = 100'000; // calls of the library
 constexpr int max_fold_turns = 100'000;
+constexpr int most_known_sets = 8; // of one function's arguments that its body is made for
 
 // -- names.cpp
 Symbol intern(Evaluator &ev, const std::string &text);
@@ -290,12 +309,15 @@ std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place,
                                       What what); // scene time demanded
 Value to_float(Evaluator &ev, const Value &v);
 
+// -- facts.cpp
+std::vector<NameFact> name_facts(const Evaluator &ev, std::uint32_t frame, SourceId source);
+
 // -- convert.cpp: types as written, and conversions
 Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place, What what,
               bool &ok);
 bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type);
 std::string type_text(const lang::TypeExpr &type);
-bool known_type(const lang::TypeExpr &type);
+bool check_type(Evaluator &ev, const lang::TypeExpr &type); // reports a name that is none
 std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what);
 std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, What what);
 std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, What what);
@@ -395,7 +417,29 @@ void add_transform_builtins(std::vector<Builtin> &table);
 void add_scene_builtins(std::vector<Builtin> &table);
 void add_texture_builtins(std::vector<Builtin> &table);
 
+// -- turns.cpp
+// After a loop in shape position: what its turns made, each from `starts[i]` on; `turn` runs its
+// body for a value of its variable.
+constexpr std::size_t least_computed =
+    64; // shapes from which on a table's rows are worth a formula
+void note_turns(Evaluator &ev, const std::vector<Value> &items,
+                const std::vector<std::size_t> &starts, const std::vector<Contribution> &made,
+                const std::function<void(const Value &item, std::vector<Contribution> &out)> &turn);
+
+// -- closed_forms.cpp
+// What differs between shapes that one loop's body made.
+struct TurnTable {
+    ir::ShapeId symbolic;                        // the shape with the loops' numbers left open
+    std::vector<ir::NodeId> places;              // the expressions in it that hang on them alone
+    std::vector<std::vector<ir::Constant>> rows; // their values, by member
+    std::vector<ir::NodeId> formulas;            // in `row`; invalid where float32 would miss a row
+    ir::NodeId row;
+};
+// Nothing where these are no turns of one loop, or not all in equal steps.
+std::optional<TurnTable> table_of_turns(Evaluator &ev, const std::vector<ir::ShapeId> &members);
+
 // -- families.cpp
+void shape_nodes(const ir::Scene &scene, ir::ShapeId id, std::vector<ir::NodeId> &out);
 std::vector<ir::ShapeId> gather_families(Evaluator &ev, std::vector<ir::ShapeId> shapes, int dims);
 std::optional<ir::ShapeId> smooth_family(Evaluator &ev, const std::vector<ir::ShapeId> &shapes,
                                          ir::NodeId k, int dims);

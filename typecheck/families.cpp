@@ -7,6 +7,7 @@
 #include "typecheck/evaluator.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 namespace fathom::typecheck {
@@ -115,8 +116,8 @@ struct Walk {
     }
 };
 
-// The same walk, writing the tree anew with `replacement[k]` for the k-th constant.
-struct Rebuild {
+// The same walk over expressions, with `replacement[k]` for the k-th constant.
+struct Constants {
     Evaluator &ev;
     const std::vector<NodeId> &replacement;
     std::size_t next = 0;
@@ -133,6 +134,13 @@ struct Rebuild {
         for (NodeId &a : args) a = node(a);
         return g.make(n.op, n.type, args, n.payload);
     }
+};
+
+// A tree of shapes with other expressions, in the same order.
+struct Rebuild {
+    Evaluator &ev;
+    std::function<NodeId(NodeId)> node;
+
     ir::Region region(ir::Region r) {
         r.center = node(r.center), r.size = node(r.size);
         for (ir::Region &l : r.less) l = region(l);
@@ -162,6 +170,20 @@ struct Rebuild {
         return ev.scene.shapes.add(std::move(s));
     }
 };
+
+void region_nodes(const ir::Region &r, std::vector<NodeId> &out) {
+    out.push_back(r.center), out.push_back(r.size);
+    for (const ir::Region &less : r.less) region_nodes(less, out);
+}
+
+// Tables hold ints and bools as floats.
+NodeId read_of(ir::Graph &g, Type type, NodeId index, std::uint32_t slot) {
+    bool whole = type == Type::Int || type == Type::Bool;
+    NodeId read = g.make(Op::TableRead, whole ? Type::Float : type, {index}, slot);
+    if (type == Type::Int) return g.make(Op::ToInt, Type::Int, {read});
+    if (type == Type::Bool) return g.make(Op::NotEqual, {read, g.number(0)});
+    return read;
+}
 
 bool same(const ir::Constant &a, const ir::Constant &b) {
     return a.type == b.type && a.value == b.value;
@@ -208,39 +230,107 @@ bool add_columns(Evaluator &ev, const std::vector<std::vector<ir::Constant>> &ro
     ir::TableId id = g.add_table(std::move(table));
     for (const auto &[c, k] : slot_of) {
         Type type = rows[0][c].type;
-        bool whole = type == Type::Int || type == Type::Bool;
-        NodeId read = g.make(Op::TableRead, whole ? Type::Float : type, {index},
-                             ir::table_slot(id, offset[k]));
-        if (type == Type::Int) read = g.make(Op::ToInt, Type::Int, {read});
-        if (type == Type::Bool) read = g.make(Op::NotEqual, {read, g.number(0)});
-        replacement[c] = read;
+        replacement[c] = read_of(g, type, index, ir::table_slot(id, offset[k]));
     }
     return true;
 }
 
-ShapeId make_family(Evaluator &ev, const std::vector<ShapeId> &members,
-                    const std::vector<std::vector<ir::Constant>> &rows,
-                    const std::vector<bool> &stated, bool smooth, NodeId k, int dims) {
-    ir::Family family;
-    family.index = ev.scene.graph.fresh_var(Type::Int);
-    family.count = static_cast<int>(members.size());
-    family.smooth = smooth;
-    std::vector<NodeId> replacement(rows[0].size());
-    if (!add_columns(ev, rows, stated, false, family.index, replacement)) return {};
-    if (!add_columns(ev, rows, stated, true, family.index, replacement)) return {};
-    Rebuild rebuild{ev, replacement};
+ShapeId add_family(Evaluator &ev, ir::Family family, ShapeId copy, NodeId k, int dims) {
     ir::Shape many;
     many.kind = ShapeKind::Many;
     many.dims = static_cast<std::uint8_t>(dims);
-    many.children = {rebuild.shape(members[0])};
-    many.origin = ev.scene.shapes[members[0]].origin;
-    if (smooth) many.args = {k};
+    many.children = {copy};
+    many.origin = ev.scene.shapes[copy].origin;
+    if (family.smooth) many.args = {k};
     many.payload = static_cast<std::uint32_t>(ev.scene.shapes.families.size());
     ev.scene.shapes.families.push_back(family);
     return ev.scene.shapes.add(std::move(many));
 }
 
+ir::Family family_of(Evaluator &ev, std::size_t count, bool smooth) {
+    return {ev.scene.graph.fresh_var(Type::Int), static_cast<int>(count), smooth};
+}
+
+ShapeId make_family(Evaluator &ev, const std::vector<ShapeId> &members,
+                    const std::vector<std::vector<ir::Constant>> &rows,
+                    const std::vector<bool> &stated, bool smooth, NodeId k, int dims) {
+    const ir::Family family = family_of(ev, members.size(), smooth);
+    std::vector<NodeId> replacement(rows[0].size());
+    if (!add_columns(ev, rows, stated, false, family.index, replacement)) return {};
+    if (!add_columns(ev, rows, stated, true, family.index, replacement)) return {};
+    Constants constants{ev, replacement};
+    Rebuild rebuild{ev, [&](NodeId id) { return constants.node(id); }};
+    return add_family(ev, family, rebuild.shape(members[0]), k, dims);
+}
+
+// The turns of one loop: its body's shape, which reads what hangs on the turn from a table. Columns
+// with a formula stand in a table of their own, so that a text may do without it.
+std::optional<ShapeId> family_of_turns(Evaluator &ev, const std::vector<ShapeId> &members,
+                                       bool smooth, NodeId k, int dims) {
+    const std::optional<TurnTable> turns = table_of_turns(ev, members);
+    if (!turns) return std::nullopt;
+    ir::Graph &g = ev.scene.graph;
+    const ir::Family family = family_of(ev, members.size(), smooth);
+    ir::Substitution reads;
+    for (bool computed : {true, false}) {
+        ir::Table table;
+        table.rows = static_cast<int>(members.size());
+        std::vector<std::size_t> columns;
+        std::vector<int> offset;
+        for (std::size_t c = 0; c < turns->places.size(); ++c) {
+            if (static_cast<bool>(turns->formulas[c]) != computed) continue;
+            columns.push_back(c), offset.push_back(table.stride);
+            table.stride += ir::components(g.type(turns->places[c]));
+        }
+        if (columns.empty()) continue;
+        if (table.stride > 4000) return std::nullopt;
+        for (const auto &row : turns->rows)
+            for (std::size_t c : columns)
+                for (int i = 0; i < ir::components(row[c].type); ++i)
+                    table.data.push_back(
+                        static_cast<float>(row[c].value[static_cast<std::size_t>(i)]));
+        for (std::size_t j = 0; j < columns.size() && computed; ++j) {
+            NodeId formula = turns->formulas[columns[j]];
+            Type type = g.type(formula);
+            if (type == Type::Int || type == Type::Bool)
+                formula = g.make(Op::ToFloat, Type::Float, {formula});
+            table.computed.emplace_back(
+                offset[j],
+                g.add_function(
+                    {"of_row", ev.scene.shapes[turns->symbolic].origin, {turns->row}, formula}));
+        }
+        ir::TableId id = g.add_table(std::move(table));
+        for (std::size_t j = 0; j < columns.size(); ++j) {
+            NodeId place = turns->places[columns[j]];
+            reads[place] = read_of(g, g.type(place), family.index, ir::table_slot(id, offset[j]));
+        }
+    }
+    Rebuild rebuild{ev, [&](NodeId id) { return id ? ir::substitute(g, id, reads) : id; }};
+    return add_family(ev, family, rebuild.shape(turns->symbolic), k, dims);
+}
+
 } // namespace
+
+// Every expression of a tree of shapes; of one with more parts than a walk takes, more than that
+// many, and not all.
+void shape_nodes(const ir::Scene &scene, ShapeId id, std::vector<NodeId> &out) {
+    if (out.size() > largest_walk) return;
+    out.push_back({}); // a shape counts, also one without any
+    const ir::Shape &s = scene.shapes[id];
+    if (s.kind == ShapeKind::Within) region_nodes(scene.shapes.regions[s.payload], out);
+    if (s.kind == ShapeKind::Paint || s.kind == ShapeKind::Repaint) {
+        const ir::Material &m = scene.shapes.materials[s.payload];
+        out.insert(out.end(), {m.diffuse, m.specular, m.exponent, m.emission});
+    }
+    if (s.kind == ShapeKind::Library) {
+        const ir::Library &l = scene.shapes.libraries[s.payload];
+        for (const auto &[name, argument] : l.arguments) out.push_back(argument);
+        out.insert(out.end(), {l.claims.lipschitz, l.claims.lo, l.claims.hi});
+        out.insert(out.end(), l.claims.lever.begin(), l.claims.lever.end());
+    }
+    out.insert(out.end(), s.args.begin(), s.args.end());
+    for (ShapeId child : s.children) shape_nodes(scene, child, out);
+}
 
 // Order matters to colours only on ties, so a plain union may gather its like members from anywhere
 // in the list.
@@ -251,8 +341,23 @@ std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes,
         std::vector<std::vector<ir::Constant>> rows;
         std::vector<bool> stated;
     };
+    std::vector<bool> taken(shapes.size(), false);
+    std::map<std::size_t, ShapeId> made; // by the first member's place, to keep a stable order
+    std::map<ShapeId, std::vector<std::size_t>> loops; // turns by their body's shape
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+        if (auto turn = ev.turns.find(shapes[i].index); turn != ev.turns.end())
+            loops[turn->second.symbolic].push_back(i);
+    for (const auto &[symbolic, places] : loops) {
+        std::vector<ShapeId> members;
+        for (std::size_t i : places) members.push_back(shapes[i]);
+        auto family = family_of_turns(ev, members, false, {}, dims);
+        if (!family) continue;
+        for (std::size_t i : places) taken[i] = true;
+        made[places[0]] = *family;
+    }
     std::map<std::vector<std::uint64_t>, Group> groups;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
+        if (taken[i]) continue;
         Walk walk{ev.scene, {}, {}};
         walk.shape(shapes[i]);
         if (walk.too_large || walk.row.empty()) continue;
@@ -261,8 +366,6 @@ std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes,
         g.rows.push_back(std::move(walk.row));
         g.stated = std::move(walk.stated);
     }
-    std::vector<bool> taken(shapes.size(), false);
-    std::map<std::size_t, ShapeId> made; // by the first member's place, to keep a stable order
     for (auto &[skeleton, g] : groups) {
         if (g.members.size() < least_family) continue;
         std::vector<ShapeId> members;
@@ -287,6 +390,10 @@ std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes,
 std::optional<ShapeId> smooth_family(Evaluator &ev, const std::vector<ShapeId> &shapes, NodeId k,
                                      int dims) {
     if (shapes.size() < least_family) return std::nullopt;
+    if (auto turns = family_of_turns(ev, shapes, true, k, dims)) {
+        ev.scene.shapes.listed.emplace(*turns, shapes);
+        return turns;
+    }
     std::vector<std::vector<ir::Constant>> rows;
     std::vector<std::uint64_t> skeleton;
     std::vector<bool> stated;

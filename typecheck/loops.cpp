@@ -4,6 +4,8 @@
 // time, say), the turns are written out one by one.
 #include "typecheck/evaluator.h"
 
+#include "ir/lower.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -228,6 +230,15 @@ std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input,
         if (left_at) go = logical_and(ev, go, logical_not(ev, from_node(ev, vars[*left_at])));
         if (!always(go)) fold.condition = to_node(ev, go);
         ir::FoldId id = g.add_fold(std::move(fold));
+        if (const double cost =
+                ir::operations(g, g.make(Op::Fold, g[vars[0]].type, initial, id.index));
+            cost > ir::most_operations) {
+            report(ev, Code::LoopLimit, place,
+                   fmt::format("this loop would take {:.0e} operations a point", cost))
+                .note(fmt::format("at most {:.0e} are allowed, so that every picture ends",
+                                  ir::most_operations));
+            return Exit{};
+        }
         ir::NodeId node = g.make(Op::Fold, g[vars[0]].type, initial, id.index);
         auto result = [&](std::size_t k) {
             return k == 0 ? node

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace fathom::typecheck {
@@ -144,6 +145,10 @@ static std::string_view name_from_elsewhere(std::string_view name) {
 void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place) {
     Diagnostic &d =
         report(ev, Code::UnknownName, place, fmt::format("nothing here is called `{}`", name));
+    if (ev.in_field == 0 && (name == "p" || name == "pos" || name == "uv")) {
+        d.help("the point is the argument of a function: `implicit(p => length(p) - 1)`");
+        return;
+    }
     std::string near(name_from_elsewhere(name));
     if (near.empty()) near = nearest_name(name, visible_names(ev, frame));
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});
@@ -153,25 +158,56 @@ void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &
 
 namespace {
 
+// Of all the forms that a function has; false where they are not known.
+bool parameter_names(Evaluator &ev, const Value &f, std::vector<std::string> &out) {
+    if (f.kind == ValueKind::Closure) {
+        const Closure &c = ev.closures[f.id];
+        for (const lang::Parameter &p : c.ast->functions[c.function].parameters)
+            out.push_back(p.name.text);
+        return true;
+    }
+    if (f.kind == ValueKind::Builtin) {
+        for (const BuiltinParameter &p : builtins()[f.id].parameters) out.push_back(p.name);
+        return true;
+    }
+    if (f.kind != ValueKind::Overloads) return false;
+    for (const Value &form : ev.lists[f.id])
+        if (!parameter_names(ev, form, out)) return false;
+    return true;
+}
+
 // Walks a tree with the names that each block declares. Only names are judged: what they hold is
 // known when they are used.
 struct NameWalk {
     Evaluator &ev;
     const File &ast;
     std::uint32_t frame;
-    std::vector<std::set<std::string>> scopes;
+    std::vector<std::map<std::string, Span>> scopes;
 
-    bool known(const std::string &name) {
+    bool local(const std::string &name) const {
         for (const auto &scope : scopes)
             if (scope.count(name)) return true;
+        return false;
+    }
+    bool known(const std::string &name) {
+        if (local(name)) return true;
         return look_up(ev, frame, intern(ev, name)).has_value();
+    }
+    void declared(const lang::Identifier &name) {
+        auto [it, fresh] = scopes.back().try_emplace(name.text, name.span);
+        if (fresh || it->second == name.span) return;
+        report(ev, Code::DuplicateName, name.span,
+               fmt::format("`{}` is declared twice in this block", name.text))
+            .label(it->second, "first declared here");
     }
     void parameters(const lang::Function &f) {
         scopes.emplace_back();
         for (const lang::Parameter &p : f.parameters) {
+            if (p.type) check_type(ev, *p.type);
             if (p.default_value) expr(*p.default_value);
-            scopes.back().insert(p.name.text);
+            declared(p.name);
         }
+        if (f.result) check_type(ev, *f.result);
         block(f.body);
         scopes.pop_back();
     }
@@ -180,29 +216,31 @@ struct NameWalk {
         const lang::Block &b = ast.blocks[id];
         for (const lang::Stmt &s : b.stmts)
             if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind))
-                if (ast.functions[f->function].name)
-                    scopes.back().insert(ast.functions[f->function].name->text);
+                if (ast.functions[f->function].name) declared(*ast.functions[f->function].name);
         for (const lang::Stmt &s : b.stmts) stmt(s);
         scopes.pop_back();
+    }
+    void typed(const std::optional<lang::TypeExpr> &type) {
+        if (type) check_type(ev, *type);
     }
     void stmt(const lang::Stmt &s) {
         if (auto *e = std::get_if<lang::ExprStmt>(&s.kind))
             expr(e->value);
         else if (auto *l = std::get_if<lang::Let>(&s.kind))
-            expr(l->value), scopes.back().insert(l->name.text);
+            typed(l->type), expr(l->value), declared(l->name);
         else if (auto *v = std::get_if<lang::Var>(&s.kind))
-            expr(v->value), scopes.back().insert(v->name.text);
+            typed(v->type), expr(v->value), declared(v->name);
         else if (auto *a = std::get_if<lang::Assign>(&s.kind))
             expr(a->target), expr(a->value);
         else if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind))
             parameters(ast.functions[f->function]);
         else if (auto *p = std::get_if<lang::Param>(&s.kind))
-            scopes.back().insert(p->name.text);
+            declared(p->name);
         else if (auto *i = std::get_if<lang::Import>(&s.kind)) {
-            if (i->as) scopes.back().insert(i->as->text);
+            if (i->as) declared(*i->as);
         } else if (auto *loop = std::get_if<lang::For>(&s.kind)) {
             expr(loop->sequence);
-            scopes.push_back({loop->variable.text});
+            scopes.push_back({{loop->variable.text, loop->variable.span}});
             block(loop->body);
             scopes.pop_back();
         } else if (auto *w = std::get_if<lang::While>(&s.kind)) {
@@ -211,6 +249,28 @@ struct NameWalk {
             block(w->body);
         } else if (auto *r = std::get_if<lang::Return>(&s.kind)) {
             if (r->value) expr(*r->value);
+        }
+    }
+    bool is_module(lang::ExprId id) {
+        auto *n = std::get_if<lang::Name>(&ast.exprs[id].kind);
+        if (!n || local(n->text)) return false;
+        auto value = look_up(ev, frame, intern(ev, n->text));
+        return value && value->kind == ValueKind::Module;
+    }
+    // The arguments that a call names, where the function is known and none that is local.
+    void arguments(const lang::Call &call, const std::string &name) {
+        auto value = local(name) ? std::nullopt : look_up(ev, frame, intern(ev, name));
+        if (!value) return;
+        std::vector<std::string> names;
+        if (!parameter_names(ev, *value, names)) return;
+        for (const lang::Argument &a : call.arguments) {
+            if (!a.name || std::find(names.begin(), names.end(), a.name->text) != names.end())
+                continue;
+            Diagnostic &d = report(ev, Code::UnknownArgument, a.name->span,
+                                   fmt::format("`{}` has no argument `{}`", name, a.name->text));
+            const std::string near = nearest_name(a.name->text, names);
+            if (!near.empty())
+                d.help(fmt::format("did you mean `{}`?", near), {{a.name->span, near}});
         }
     }
     void expr(lang::ExprId id) {
@@ -229,10 +289,14 @@ struct NameWalk {
             for (lang::ExprId operand : b->operands) expr(operand);
         } else if (auto *call = std::get_if<lang::Call>(&e.kind)) {
             // the `f` of `a.f(b)` is found when `a` is known
-            if (auto *m = std::get_if<lang::Member>(&ast.exprs[call->callee].kind))
+            if (auto *m = std::get_if<lang::Member>(&ast.exprs[call->callee].kind)) {
                 expr(m->object);
-            else
+                if (!is_module(m->object)) arguments(*call, m->name.text);
+            } else {
                 expr(call->callee);
+                if (auto *n = std::get_if<lang::Name>(&ast.exprs[call->callee].kind))
+                    arguments(*call, n->text);
+            }
             for (const lang::Argument &a : call->arguments) expr(a.value);
             if (call->trailing) block(*call->trailing);
         } else if (auto *i = std::get_if<lang::Index>(&e.kind))

@@ -28,24 +28,38 @@ Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message) {
         swallowed = {};
         return swallowed;
     }
-    if (!of_library(place)) {
-        Diagnostic &d = ev.diagnostics.add(code, place, std::move(message));
-        // a generic body is wrong only for this call: say which
-        for (std::size_t i = ev.calls.size(); i-- > 0;) {
-            const ActiveCall &call = ev.calls[i];
-            if (call.library || call.name.empty() || of_library(call.call) || call.call == place)
-                continue;
-            d.label(call.call, fmt::format("in this call of `{}`", call.name));
+    // Where it is shown, and of which call of the user's it is true.
+    Span shown = place, of_call;
+    std::string_view inside, called;
+    const bool in_library = of_library(place);
+    for (std::size_t i = ev.calls.size(); i-- > 0;) {
+        const ActiveCall &call = ev.calls[i];
+        if (of_library(call.call)) continue;
+        if (in_library) {
+            shown = call.call, inside = call.name;
             break;
         }
-        return d;
+        // a generic body is wrong only for this call: say which
+        if (call.library || call.name.empty() || call.call == place) continue;
+        of_call = call.call, called = call.name;
+        break;
     }
-    for (std::size_t i = ev.calls.size(); i-- > 0;) {
-        if (of_library(ev.calls[i].call)) continue;
-        return ev.diagnostics.add(code, ev.calls[i].call,
-                                  fmt::format("{}, in `{}`", message, ev.calls[i].name));
+    // In a loop the same thing is wrong in every turn.
+    const std::array<std::uint32_t, 6> key{static_cast<std::uint32_t>(code),
+                                           shown.source.index,
+                                           shown.begin,
+                                           shown.end,
+                                           of_call.source.index,
+                                           of_call.begin};
+    if (code_severity(code) != Severity::Note && !ev.reported.insert(key).second) {
+        swallowed = {};
+        return swallowed;
     }
-    return ev.diagnostics.add(code, place, std::move(message));
+    if (!inside.empty() && message.find(fmt::format("`{}`", inside)) == std::string::npos)
+        message += fmt::format(", in `{}`", inside);
+    Diagnostic &d = ev.diagnostics.add(code, shown, std::move(message));
+    if (!called.empty()) d.label(of_call, fmt::format("in this call of `{}`", called));
+    return d;
 }
 
 static const char *vector_name(int size) {

@@ -204,7 +204,10 @@ static void run_assign(Evaluator &ev, const File &ast, const lang::Assign &node,
             report(ev, Code::NotAssignable, base.span,
                    fmt::format("`{}` was declared with `let` and does not change", name->text));
         if (binding.declared.source) d.label(binding.declared, "declared here");
-        d.help("declare it with `var` inside the function");
+        if (ev.calls.empty() && ev.in_field == 0)
+            d.help("a scene's names keep their value: give the new value a name of its own");
+        else
+            d.help("declare it with `var` inside the function");
         return;
     }
     Value old = binding.value;
@@ -252,11 +255,7 @@ static Value declared_value(Evaluator &ev, const File &ast, lang::ExprId value,
                             std::uint32_t frame) {
     Value v = eval(ev, ast, value, frame);
     if (!type || is_poison(v)) return v;
-    if (!known_type(*type)) {
-        report(ev, Code::UnknownName, type->span,
-               fmt::format("there is no type `{}`", type_text(*type)));
-        return v;
-    }
+    if (!check_type(ev, *type)) return v;
     bool ok = true;
     return convert(ev, v, *type, ast.exprs[value].span, quoted(name), ok);
 }
@@ -588,15 +587,24 @@ static bool contribute_stmt(Evaluator &ev, const File &ast, const lang::Stmt &st
     } else if (auto *f = std::get_if<lang::For>(&stmt.kind)) {
         Value seq = eval(ev, ast, f->sequence, frame);
         auto items = sequence_items(ev, seq, ast.exprs[f->sequence].span);
-        if (!items) return false;
-        for (const Value &item : *items) {
-            if (!spend(ev, stmt.span)) return true;
+        if (!items) {
+            out.push_back({poison(), stmt.span}); // what it would have given is not nothing
+            return false;
+        }
+        auto turn = [&](const Value &item, std::vector<Contribution> &made) {
             std::uint32_t inner = push_frame(ev, frame);
             declare(ev, inner, symbol_of(ast, f->variable), item, false, f->variable.span);
-            bool broke = contribute_block(ev, ast, f->body, inner, out);
+            bool broke = contribute_block(ev, ast, f->body, inner, made);
             pop_frame(ev, inner);
-            if (broke) break;
+            return broke;
+        };
+        std::vector<std::size_t> starts;
+        for (const Value &item : *items) {
+            if (!spend(ev, stmt.span)) return true;
+            starts.push_back(out.size());
+            if (turn(item, out)) return false;
         }
+        note_turns(ev, *items, starts, out, turn);
     } else if (std::holds_alternative<lang::While>(stmt.kind)) {
         report(ev, Code::WrongPlace, stmt.span, "`while` stands inside a function")
             .help("use `for`, or a function that calls itself");

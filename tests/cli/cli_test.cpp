@@ -93,6 +93,21 @@ TEST_CASE("points are answered with distance and gradient") {
     CHECK(shell(folder, "fathom eval param.sdf -Dradius=1.5 --at 3,0,0").out.starts_with("1.5 1"));
 }
 
+TEST_CASE("a large table goes into a buffer's file beside the shader, a loop's into neither") {
+    Scenes folder;
+    folder.write("data.sdf", "for q in shuffle([for i in 0..300 { hash(i) }], 1) {\n"
+                             "  sphere(0.1 + 0.1 * q).translate(x: 9 * q)\n}\n");
+    folder.write("loop.sdf", "for i in 0..300 { sphere(0.4).translate(x: i) }\n");
+    CHECK(shell(folder, "fathom compile data.sdf -o data.glsl").exit == 0);
+    CHECK(contains(folder.read("data.glsl"), "uniform samplerBuffer fathom_tables"));
+    CHECK(folder.read("data.glsl").size() < 15000);
+    CHECK(folder.read("data.glsl.tables").size() == 300 * 4 * sizeof(float));
+    CHECK(shell(folder, "fathom compile data.sdf").out.size() > 10000); // no file, no buffer
+    CHECK(shell(folder, "fathom compile loop.sdf -o loop.glsl").exit == 0);
+    CHECK(folder.read("loop.glsl").size() < 15000);
+    CHECK(folder.read("loop.glsl.tables").empty());
+}
+
 TEST_CASE("a failed command leaves the old file") {
     Scenes folder;
     folder.write("out.glsl", "old");

@@ -53,6 +53,18 @@ std::string number(double value) {
     return fmt::format("{:.6g}", value);
 }
 
+// A line for each name that the file declares.
+std::string types_text(const driver::Compilation &compilation) {
+    std::string text;
+    for (const typecheck::NameFact &fact : compilation.names) {
+        text += fmt::format("{}: {}, {}", fact.name, fact.type, typecheck::stage_name(fact.stage));
+        for (const ir::Param &param : compilation.scene.params)
+            if (param.name == fact.name) text += param.structural ? ", rebuilds" : ", uniform";
+        text += "\n";
+    }
+    return text;
+}
+
 std::string_view kind_name(ir::FieldKind kind) {
     switch (kind) {
     case ir::FieldKind::Exact: return "exact";
@@ -70,8 +82,8 @@ std::string bounds_text(const ir::Scene &scene) {
         std::string symmetric;
         for (std::size_t i = 0; i < 3; ++i)
             if (fact.symmetric[i]) symmetric += "xyz"[i];
-        text += fmt::format("L {} {} {}", number(fact.lipschitz_sup), driver::status_name(fact.status),
-                            kind_name(fact.kind));
+        text += fmt::format("L {} {} {}", number(fact.lipschitz_sup),
+                            driver::status_name(fact.status), kind_name(fact.kind));
         for (std::size_t i = 0; i < 3; ++i)
             text += fmt::format(" {}..{}", number(fact.bounds.lo[i]), number(fact.bounds.hi[i]));
         if (!symmetric.empty()) text += " symmetric " + symmetric;
@@ -93,7 +105,8 @@ std::string glsl_text(const ir::Scene &scene, const Sources &sources) {
     return diagnostics.has_errors() ? diagnostics_text(diagnostics, sources) : text;
 }
 
-// `//==== eval 0,0,0 1,2,3`: a line a point, as the command prints it but to six digits, which hold on every machine.
+// `//==== eval 0,0,0 1,2,3`: a line a point, as the command prints it but to six digits, which hold
+// on every machine.
 std::string eval_text(const ir::Scene &scene, const std::string &arguments) {
     cpu::Program program = cpu::compile(scene, scene.distance);
     cpu::GradientScratch scratch = cpu::make_gradient_scratch(program, cpu::inputs_of(scene, 0));
@@ -108,14 +121,15 @@ std::string eval_text(const ir::Scene &scene, const std::string &arguments) {
         std::array<float, 4> result{};
         std::array<float *, 4> out{&result[0], &result[1], &result[2], &result[3]};
         cpu::evaluate_gradient(program, scratch, in.data(), out.data(), 1);
-        text += fmt::format("{} -> {:.5g} {:.4f} {:.4f} {:.4f}\n", word, result[0], result[1] + 0.0f, result[2] + 0.0f,
-                            result[3] + 0.0f);
+        text += fmt::format("{} -> {:.5g} {:.4f} {:.4f} {:.4f}\n", word, result[0],
+                            result[1] + 0.0f, result[2] + 0.0f, result[3] + 0.0f);
     }
     return text;
 }
 
 std::string section_text(const Section &section, const driver::Compilation &compilation) {
-    if (section.stage == "diagnostics") return diagnostics_text(compilation.diagnostics, compilation.sources);
+    if (section.stage == "diagnostics")
+        return diagnostics_text(compilation.diagnostics, compilation.sources);
     if (section.stage == "json") return driver::verdict_json(compilation);
     if (section.stage == "ast" || section.stage == "format") {
         Diagnostics diagnostics;
@@ -123,6 +137,7 @@ std::string section_text(const Section &section, const driver::Compilation &comp
         return section.stage == "ast" ? lang::dump(ast) : lang::format(compilation.sources, ast);
     }
     if (!compilation.good()) return "(the program has an error)\n";
+    if (section.stage == "types") return types_text(compilation);
     if (section.stage == "bounds") return bounds_text(compilation.scene);
     if (section.stage == "ir") return ir_text(compilation.scene);
     if (section.stage == "glsl") return glsl_text(compilation.scene, compilation.sources);
@@ -165,21 +180,25 @@ Case read_case(const std::string &path) {
 }
 
 Outcome run_case(const Case &golden) {
-    driver::Compilation compilation = driver::compile_text(golden.file, golden.program, golden.folder, {});
+    driver::Compilation compilation =
+        driver::compile_text(golden.file, golden.program, golden.folder, {});
     Outcome outcome;
     outcome.has_errors = compilation.diagnostics.has_errors();
     for (const Diagnostic &diagnostic : compilation.diagnostics.items())
         outcome.codes.emplace_back(code_name(diagnostic.code));
     for (const Section &section : golden.sections)
-        outcome.actual.push_back({section.stage, section.arguments, section_text(section, compilation)});
+        outcome.actual.push_back(
+            {section.stage, section.arguments, section_text(section, compilation)});
     return outcome;
 }
 
 std::string write_case(const Case &golden, const std::vector<Section> &sections) {
     std::string text = golden.program;
     for (const Section &section : sections) {
-        text += fmt::format("{} {}{}{}\n", marker, section.stage, section.arguments.empty() ? "" : " ", section.arguments);
-        for (const std::string &line : lines_of(section.text)) text += line.empty() ? "//\n" : "// " + line + "\n";
+        text += fmt::format("{} {}{}{}\n", marker, section.stage,
+                            section.arguments.empty() ? "" : " ", section.arguments);
+        for (const std::string &line : lines_of(section.text))
+            text += line.empty() ? "//\n" : "// " + line + "\n";
     }
     return text;
 }
