@@ -254,8 +254,9 @@ void main() {
 )";
 
 constexpr const char *sweep = R"(#version 420 core
-// Gives up every cell of one field, or with -1 all. Draw one triangle over 2^fathom_cache_bits^3 pixels in all.
-uniform int fathom_cache_bits, fathom_cache_gone;
+// Gives up every cell of one field, with -1 of all, with -2 of none; and what is older than the
+// largest age, which no look-up finds any more. Draw one triangle over 2^fathom_cache_bits^3 pixels in all.
+uniform int fathom_cache_bits, fathom_cache_ages, fathom_cache_gone;
 uniform int fathom_cache_width; // of what is drawn over
 layout(r32ui) uniform uimage3D fathom_cache_hash;
 layout(rgba32i) uniform iimage3D fathom_cache_keys;
@@ -268,7 +269,8 @@ void main() {
     uint entry = imageLoad(fathom_cache_hash, slot).x;
     if (entry == $EMPTY) return;
     int field = imageLoad(fathom_cache_keys, fathom_cache_place(entry)).w & 255;
-    if (fathom_cache_gone >= 0 && field != fathom_cache_gone) return;
+    bool old = int(entry >> $PLACE_BITS & 7u) >= fathom_cache_ages;
+    if (fathom_cache_gone != -1 && field != fathom_cache_gone && !old) return;
     imageStore(fathom_cache_hash, slot, uvec4($EMPTY));
     fathom_give_back(entry);
     fathom_count($SWEPT);

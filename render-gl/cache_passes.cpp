@@ -199,8 +199,10 @@ void CachedView::set_fields(const Program &program) const {
 }
 
 // Gives up what was filled with other values of the params, or by what had the number before.
-void CachedView::renew(const std::vector<ir::Param> &params) {
-    bool swept = false;
+void CachedView::renew(const std::vector<ir::Param> &params, int ages) {
+    bool swept = ages < ages_;
+    ages_ = ages;
+    if (swept) sweep(-2);
     for (std::size_t i = 0; i < kept_.size(); ++i) {
         std::vector<double> now(1);
         std::memcpy(now.data(), &kept_[i].meaning, sizeof kept_[i].meaning);
@@ -252,6 +254,7 @@ void CachedView::publish() {
 void CachedView::sweep(int field) {
     sweep_->use();
     set(*sweep_, "fathom_cache_gone", field);
+    set(*sweep_, "fathom_cache_ages", ages_);
     bind_image(*sweep_, "fathom_cache_hash", 0, store_.hash(), GL_R32UI, GL_READ_WRITE);
     bind_image(*sweep_, "fathom_cache_keys", 1, store_.keys(), GL_RGBA32I, GL_READ_ONLY);
     bind_image(*sweep_, "fathom_cache_free", 2, store_.free(), GL_R32UI, GL_READ_WRITE);
@@ -270,7 +273,7 @@ bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &p
     const int ages = std::clamp(settings.max_age, 1, glsl::cache_ages);
     ++frame_;
     store_.begin_frame();
-    renew(params);
+    renew(params, ages);
 
     // 1: the picture, and each pixel's last miss
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);

@@ -60,7 +60,7 @@ class CachedView {
   private:
     bool resize(int width, int height);
     void release();
-    void renew(const std::vector<ir::Param> &params);
+    void renew(const std::vector<ir::Param> &params, int ages);
     void sweep(int field);
     void publish();
     void draw_cells(const Program &program);
@@ -72,7 +72,7 @@ class CachedView {
     std::vector<int> numbers_; // by kept_
     std::map<int, std::vector<double>>
         meanings_; // by number: the meaning and the params' values it was filled with
-    int first_unit_ = 0;
+    int first_unit_ = 0, ages_ = 0;
     std::uint32_t frame_ = 0;
     int width_ = 0, height_ = 0;
     unsigned framebuffer_ = 0, places_framebuffer_ = 0, sweep_framebuffer_ = 0;

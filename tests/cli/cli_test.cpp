@@ -18,6 +18,27 @@ struct Scenes : ScratchFolder {
 
 } // namespace
 
+TEST_CASE("the noise cache's passes are written beside the picture's shader") {
+    const ScratchFolder folder;
+    folder.write("rock.sdf",
+                 "sphere(1).displace(cached(p => 0.03 * fbm(2 * p, octaves: 6), cell: 0.05))\n");
+    folder.write("plain.sdf", "sphere(1)\n");
+    CHECK(shell(folder, "fathom compile rock.sdf --noise-cache").exit == 2);
+    CHECK(shell(folder, "fathom compile rock.sdf --noise-cache --target es300 -o a.frag").exit ==
+          2);
+    CHECK(shell(folder, "fathom compile rock.sdf --noise-cache --field-only -o a.frag").exit == 2);
+    CHECK(shell(folder, "fathom render rock.sdf --cache --backend cpu -o a.png").exit == 2);
+    CHECK(shell(folder, "fathom render rock.sdf --cache --samples 4 -o a.png").exit == 2);
+    CHECK(shell(folder, "fathom bench rock.sdf --noise-cache --cells 100").exit == 2);
+    CHECK(shell(folder, "fathom compile rock.sdf --noise-cache -o a.frag").exit == 0);
+    for (const char *name :
+         {"a.frag", "a.reserve.frag", "a.fill.frag", "a.publish.frag", "a.sweep.frag"})
+        CHECK(std::filesystem::exists(folder.path() / name));
+    CHECK(shell(folder, "fathom compile plain.sdf --noise-cache -o b.frag").exit == 0);
+    CHECK(std::filesystem::exists(folder.path() / "b.frag"));
+    CHECK(!std::filesystem::exists(folder.path() / "b.fill.frag"));
+}
+
 TEST_CASE("the exit status tells what went wrong") {
     Scenes folder;
     CHECK(shell(folder, "fathom check good.sdf").exit == 0);

@@ -109,6 +109,18 @@ TEST_CASE("old keys move on, and are given up at the largest age") {
     CHECK(there.ages[3] == 0);
 }
 
+TEST_CASE("a lower maximum age gives up what is older") {
+    if (!has_context()) return;
+    const driver::Compilation c = compiled(rock);
+    gl::CachedView view;
+    use(view, c.scene, {.bits = 3});
+    for (int frame = 0; frame < 24; ++frame) {
+        view.draw(frame_of(c.scene, 16, 0.05 * frame), c.scene.params,
+                  {.max_age = frame < 12 ? 7 : 1 + frame % 3});
+        REQUIRE(gl::check_cache(view.store().dump(false)) == "");
+    }
+}
+
 TEST_CASE("ten thousand frames", "[.soak]") {
     if (!has_context()) return;
     const driver::Compilation c = compiled(rock);
