@@ -736,10 +736,11 @@ Value eval_call(Evaluator &ev, const File &ast, lang::ExprId id, const lang::Cal
                        fmt::format("`{}` is {}, not a function", m->name.text, describe(ev, *f)));
                 return poison();
             }
+            std::string near = nearest_name(m->name.text, visible_names(ev, frame));
+            if (near.empty() && ev.modules[ev.current_module].lacks_names) return poison();
             Diagnostic &d = report(ev, Code::UnknownMember, m->name.span,
                                    fmt::format("there is no function `{}` for {}", m->name.text,
                                                describe(ev, object)));
-            std::string near = nearest_name(m->name.text, visible_names(ev, frame));
             if (!near.empty())
                 d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
             return poison();

@@ -96,6 +96,8 @@ struct Module {
     bool library = false;
     bool loaded = false;
     Span import_place; // the first import of it
+    bool lacks_names =
+        false; // an import into it failed, so that nobody knows what it would have brought
 };
 
 struct Setting {

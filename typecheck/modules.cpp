@@ -336,6 +336,7 @@ static Value bring(Evaluator &ev, const lang::Import &import, std::uint32_t modu
 
 static Value import_failed(Evaluator &ev, const lang::Import &import) {
     // the names it would have brought are unknown, so those that are asked of it stay quiet
+    if (!import.as) ev.modules[ev.current_module].lacks_names = true;
     if (import.as)
         declare(ev, ev.modules[ev.current_module].frame, intern(ev, import.as->text), poison(),
                 false, import.as->span);

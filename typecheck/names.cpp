@@ -143,14 +143,15 @@ static std::string_view name_from_elsewhere(std::string_view name) {
 }
 
 void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place) {
+    std::string near(name_from_elsewhere(name));
+    if (near.empty()) near = nearest_name(name, visible_names(ev, frame));
+    if (near.empty() && ev.modules[ev.current_module].lacks_names) return; // one cause, one report
     Diagnostic &d =
         report(ev, Code::UnknownName, place, fmt::format("nothing here is called `{}`", name));
     if (ev.in_field == 0 && (name == "p" || name == "pos" || name == "uv")) {
         d.help("the point is the argument of a function: `implicit(p => length(p) - 1)`");
         return;
     }
-    std::string near(name_from_elsewhere(name));
-    if (near.empty()) near = nearest_name(name, visible_names(ev, frame));
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});
 }
 

@@ -61,3 +61,12 @@ TEST_CASE("a library function first asked for inside a field is the same as else
     CHECK(compiled(inside).good());
     CHECK(compiled("let f = noise\n" + inside + "sphere(1).displace(f).translate(x: 4)\n").good());
 }
+
+TEST_CASE("names that a missing file would have brought are not reported one by one") {
+    CHECK(codes(compiled(
+              "import \"nowhere.sdf\"\nvault(2).translate(x: 1)\nsphere(1).gilded_leaf()\n")) ==
+          std::vector<std::string>{"import-not-found"});
+    // what is near to a name that is there is still a slip
+    CHECK(codes(compiled("import \"nowhere.sdf\"\nspere(1)\n")) ==
+          std::vector<std::string>{"import-not-found", "unknown-name"});
+}

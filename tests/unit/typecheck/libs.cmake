@@ -1,1 +1,0 @@
-set(libs fathom_driver fathom_base)
