@@ -141,6 +141,7 @@ struct Claims {
     FieldKind kind = FieldKind::Bound;
     NodeId lipschitz;            // invalid: to be proved
     NodeId lo, hi;               // vec3 (flat: vec2): a box that holds the solid; invalid: unknown
+    NodeId swell;                // {f < t} lies in that box grown by swell*t, t >= 0; invalid: 1 where exact, else unknown
     std::array<bool, 3> symmetric{}; // mirror symmetry across x = 0, y = 0, z = 0
     std::array<NodeId, 3> lever{};   // sup |(p x grad f)_axis| (lipschitz.md, 2 and 11); invalid: derived from the box
 };

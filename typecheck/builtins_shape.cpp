@@ -53,8 +53,8 @@ static void note_corners(Evaluator &ev, ir::ShapeId leaf, const Value &list) {
     ev.corners[leaf] = std::move(corners);
 }
 
-// _solid(f, exact, lipschitz, lo, hi, symmetric, lever) and _flat(…, corners): a field with the
-// library's claims.
+// _solid(f, exact, lipschitz, lo, hi, symmetric, lever, swell) and _flat(…, corners): a field with
+// the library's claims.
 template <int dims>
 static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     ir::Graph &g = ev.scene.graph;
@@ -65,7 +65,7 @@ static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     leaf.kind = ShapeKind::Leaf;
     leaf.args = {*field};
     Value body = added(ev, std::move(leaf), site, dims);
-    if (args.size() > 7 && given(args[7])) note_corners(ev, shape_of(body), args[7]);
+    if (args.size() > 8 && given(args[8])) note_corners(ev, shape_of(body), args[8]);
 
     ir::Library library;
     library.name = ev.calls.empty() ? site.name : ev.calls.back().name;
@@ -94,6 +94,10 @@ static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
         if (lever)
             for (int i = 0; i < 3; ++i)
                 c.lever[static_cast<std::size_t>(i)] = g.component(*lever, i);
+    }
+    if (given(args[7])) {
+        auto swell = want_scalar_node(ev, args[7], site.arg(7), "`swell`");
+        if (swell) c.swell = *swell;
     }
     return library_shape(ev, std::move(library), body, ev.scene.shapes[shape_of(body)].origin);
 }
@@ -417,9 +421,9 @@ void add_shape_builtins(std::vector<Builtin> &table) {
                    const char *doc = "") {
         table.push_back({name, std::move(parameters), false, name[0] == '_', call, "", doc});
     };
-    std::vector<BuiltinParameter> claims{{"f"},          {"exact", true}, {"lipschitz", true},
-                                         {"lo", true},   {"hi", true},    {"symmetric", true},
-                                         {"lever", true}};
+    std::vector<BuiltinParameter> claims{{"f"},           {"exact", true}, {"lipschitz", true},
+                                         {"lo", true},    {"hi", true},    {"symmetric", true},
+                                         {"lever", true}, {"swell", true}};
     add("_solid", claims, leaf_call<3>);
     claims.push_back({"corners", true});
     add("_flat", claims, leaf_call<2>);

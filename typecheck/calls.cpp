@@ -1,6 +1,6 @@
-// Calls: which argument goes to which parameter, overloads of the library, running a body, and
-// functions of the graph for calls with numbers that are known only at field time.
-#include "typecheck/evaluator.h"
+// Calls: overloads of the library, running a body, and functions of the graph for calls with
+// numbers that are known only at field time.
+#include "typecheck/binding.h"
 
 #include "base/suggest.h"
 
@@ -13,193 +13,6 @@
 namespace fathom::typecheck {
 
 using ir::Type;
-
-// -- binding -------------------------------------------------------------------------------------
-
-namespace {
-
-// What binding found for a parameter.
-struct Given {
-    Value value;
-    Span span; // of the callee where nothing was given
-    bool given = false;
-    bool plain_literal = false;
-};
-
-std::string signature_text(std::string_view name, std::span<const Formal> formals) {
-    std::string out = std::string(name) + "(";
-    for (std::size_t i = 0; i < formals.size(); ++i)
-        out += fmt::format("{}{}{}", i ? ", " : "", formals[i].name,
-                           formals[i].optional ? " = …" : "");
-    return out + ")";
-}
-
-} // namespace
-
-static std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view name,
-                                                        std::span<const Formal> formals,
-                                                        std::span<const Argument> args, Span call,
-                                                        Span callee) {
-    Given nothing;
-    nothing.span = callee;
-    std::vector<Given> bound(formals.size(), nothing);
-    bool ok = true;
-    std::optional<Span> first_named;
-    std::size_t next = 0;
-    std::vector<Value> rest;
-    Span rest_span = callee;
-    bool has_rest = !formals.empty() && formals.back().takes_rest;
-    auto give = [&](std::size_t i, const Argument &a) {
-        if (bound[i].given) {
-            Diagnostic &d = report(
-                ev, Code::DuplicateArgument, a.name ? a.name->span : a.span,
-                fmt::format("`{}` is given twice in this call of `{}`", formals[i].name, name));
-            d.label(bound[i].span, "given here");
-            ok = false;
-            return;
-        }
-        bound[i] = {a.value, a.span, true, a.plain_literal};
-    };
-    for (const Argument &a : args) {
-        if (a.trailing) {
-            if (formals.empty()) {
-                report(ev, Code::TooManyArguments, a.span,
-                       fmt::format("`{}` takes no block", name));
-                return std::nullopt;
-            }
-            if (!rest.empty()) { // shapes before the block join it
-                const std::vector<Value> &block = ev.lists[a.value.id];
-                rest.insert(rest.end(), block.begin(), block.end());
-            } else
-                give(formals.size() - 1, a);
-            continue;
-        }
-        if (a.name) {
-            first_named = a.name->span;
-            std::size_t i = 0;
-            while (i < formals.size() && formals[i].symbol != a.symbol) ++i;
-            if (i == formals.size() || a.name->text[0] == '_') {
-                std::vector<std::string> names;
-                for (const Formal &f : formals) names.emplace_back(f.name);
-                Diagnostic &d =
-                    report(ev, Code::UnknownArgument, a.name->span,
-                           fmt::format("`{}` has no argument `{}`", name, a.name->text));
-                std::string near = nearest_name(a.name->text, names);
-                if (near.empty()) near = shortest_begun_by(a.name->text, names); // `r` for `radius`
-                if (!near.empty())
-                    d.help(fmt::format("did you mean `{}`?", near), {{a.name->span, near}});
-                d.note(fmt::format("it is `{}`", signature_text(name, formals)));
-                ok = false;
-                continue;
-            }
-            give(i, a);
-            continue;
-        }
-        if (first_named) {
-            report(ev, Code::ArgumentOrder, a.span,
-                   "an argument without a name stands behind one with a name")
-                .label(*first_named, "named here")
-                .help("put it in front, or name it too");
-            ok = false;
-            continue;
-        }
-        if (has_rest && next + 1 >= formals.size()) {
-            rest.push_back(a.value);
-            rest_span = rest.size() == 1 ? a.span : join(rest_span, a.span);
-            continue;
-        }
-        while (next < formals.size() && bound[next].given) ++next;
-        if (next >= formals.size()) {
-            std::size_t given = 0;
-            for (const Argument &b : args) given += b.trailing ? 0 : 1;
-            report(ev, Code::TooManyArguments, a.span,
-                   fmt::format("`{}` takes {} argument{}, not {}", name, formals.size(),
-                               formals.size() == 1 ? "" : "s", given))
-                .note(fmt::format("it is `{}`", signature_text(name, formals)));
-            return std::nullopt;
-        }
-        give(next++, a);
-    }
-    if (!rest.empty()) {
-        Argument a;
-        a.value = rest.size() == 1 && rest[0].kind == ValueKind::List && formals.back().opens_list
-                      ? rest[0]
-                      : list_value(ev, std::move(rest));
-        a.span = rest_span;
-        give(formals.size() - 1, a);
-    }
-    for (std::size_t i = 0; i < formals.size(); ++i) {
-        if (bound[i].given || formals[i].optional) continue;
-        if (!ok) return std::nullopt;
-        Diagnostic &d = report(ev, Code::MissingArgument, call,
-                               fmt::format("`{}` wants an argument `{}`", name, formals[i].name));
-        d.note(fmt::format("it is `{}`", signature_text(name, formals)));
-        if (!is_library_place(ev, formals[i].declared))
-            d.label(formals[i].declared, "declared here");
-        return std::nullopt;
-    }
-    if (!ok) return std::nullopt;
-    return bound;
-}
-
-static bool is_shape_list(const lang::TypeExpr &type) {
-    return type.kind == lang::TypeExpr::Kind::List &&
-           (type.items[0].named == lang::TypeName::Shape ||
-            type.items[0].named == lang::TypeName::Shape2 ||
-            type.items[0].named == lang::TypeName::AnyShape);
-}
-
-static bool is_angle(std::string_view name) { return name == "angle" || name == "fov"; }
-
-static std::span<const Formal> formals_of(Evaluator &ev, const Closure &c) {
-    std::optional<std::vector<Formal>> &formals = ev.files[c.ast->place].formals[c.function.index];
-    if (formals) return *formals;
-    formals.emplace();
-    const lang::Function &f = c.ast->functions[c.function];
-    for (const lang::Parameter &p : f.parameters) {
-        Formal formal;
-        formal.symbol = symbol_of(*c.ast, p.name);
-        formal.name = p.name.text;
-        formal.optional = p.default_value.has_value();
-        formal.takes_rest = &p == &f.parameters.back() && p.type && is_shape_list(*p.type);
-        formal.is_angle = is_angle(p.name.text);
-        formal.declared = p.name.span;
-        formals->push_back(formal);
-    }
-    return *formals;
-}
-
-static std::span<const Formal> formals_of(Evaluator &ev, const Builtin &builtin) {
-    const std::size_t place = static_cast<std::size_t>(&builtin - builtins().data());
-    std::optional<std::vector<Formal>> &formals = ev.builtin_formals[place];
-    if (formals) return *formals;
-    formals.emplace();
-    for (const BuiltinParameter &p : builtin.parameters) {
-        Formal formal;
-        formal.symbol = intern(ev, p.name);
-        formal.name = p.name;
-        formal.optional = p.optional;
-        formal.is_angle = is_angle(p.name);
-        formals->push_back(formal);
-    }
-    if (builtin.variadic) {
-        formals->back().takes_rest = true;
-        formals->back().opens_list = builtin.name != "concat"; // whose rest are lists
-    }
-    return *formals;
-}
-
-// `rotate(90)`: a plain literal of more than a turn.
-static void warn_of_degrees(Evaluator &ev, const Formal &formal, const Given &given,
-                            const Value &v) {
-    if (!given.plain_literal || !formal.is_angle || !is_scalar(ev, v) || std::abs(v.num[0]) <= 6.5)
-        return;
-    report(ev, Code::Units, given.span,
-           fmt::format("`{}` is in radians, and {} of them are {:.0f} turns", formal.name, v.num[0],
-                       std::abs(v.num[0]) / 6.283185307179586))
-        .help(fmt::format("write `{}deg` if degrees are meant", v.num[0]),
-              {{given.span, fmt::format("{}deg", v.num[0])}});
-}
 
 // -- functions of the graph ----------------------------------------------------------------------
 
@@ -398,67 +211,7 @@ static std::optional<Value> specialized(Evaluator &ev, const Value &callee, std:
     return from_node(ev, g.call(s.function, nodes), s.shape_of_result.color);
 }
 
-// -- library shapes ------------------------------------------------------------------------------
-
-static std::string number_key(std::uint32_t i) { return std::to_string(i) + ","; }
-
-Value library_shape(Evaluator &ev, ir::Library library, const Value &body, Span origin) {
-    ir::ShapeId child = shape_of(body);
-    // a body that only makes claims is this very call: keep its claims under the call's numbers
-    const ir::Shape &inner = ev.scene.shapes[child];
-    if (inner.kind == ir::ShapeKind::Library &&
-        ev.scene.shapes.libraries[inner.payload].arguments.empty() &&
-        ev.scene.shapes.libraries[inner.payload].name == library.name) {
-        const ir::Library &claimed = ev.scene.shapes.libraries[inner.payload];
-        library.has_claims = claimed.has_claims;
-        library.claims = claimed.claims;
-        child = inner.children[0];
-    }
-    std::string key = "library:" + library.name + ":";
-    for (const auto &[name, node] : library.arguments) key += name + "=" + number_key(node.index);
-    if (library.has_claims) {
-        const ir::Claims &c = library.claims;
-        key += number_key(static_cast<std::uint32_t>(c.kind)) + number_key(c.lipschitz.index) +
-               number_key(c.lo.index) + number_key(c.hi.index);
-        for (bool b : c.symmetric) key += b ? "y" : "n";
-        for (ir::NodeId n : c.lever) key += number_key(n.index);
-    }
-    auto [it, added] = ev.interned_records.try_emplace(
-        key, static_cast<std::uint32_t>(ev.scene.shapes.libraries.size()));
-    if (added) ev.scene.shapes.libraries.push_back(std::move(library));
-    ir::Shape s;
-    s.kind = ir::ShapeKind::Library;
-    s.dims = body.size;
-    s.payload = it->second;
-    s.children = {child};
-    s.origin = origin;
-    return shape_value(ev.scene.shapes.add(std::move(s)), body.size);
-}
-
-static std::string region_key(const ir::Region &r) {
-    std::string key = number_key(static_cast<std::uint32_t>(r.kind)) + number_key(r.center.index) +
-                      number_key(r.size.index) + number_key(static_cast<std::uint32_t>(r.axis)) +
-                      "(";
-    for (const ir::Region &l : r.less) key += region_key(l);
-    return key + ")";
-}
-
-std::uint32_t intern_region(Evaluator &ev, const ir::Region &region) {
-    auto [it, added] = ev.interned_records.try_emplace(
-        "region:" + region_key(region), static_cast<std::uint32_t>(ev.scene.shapes.regions.size()));
-    if (added) ev.scene.shapes.regions.push_back(region);
-    return it->second;
-}
-
-std::uint32_t intern_material(Evaluator &ev, const ir::Material &m) {
-    std::string key = "material:" + number_key(m.diffuse.index) + number_key(m.specular.index) +
-                      number_key(m.exponent.index) + number_key(m.emission.index) +
-                      number_key(static_cast<std::uint32_t>(m.texture.image));
-    auto [it, added] = ev.interned_records.try_emplace(
-        key, static_cast<std::uint32_t>(ev.scene.shapes.materials.size()));
-    if (added) ev.scene.shapes.materials.push_back(m);
-    return it->second;
-}
+// -- the calls -----------------------------------------------------------------------------------
 
 static bool holds_shape(Evaluator &ev, const Value &v) {
     if (v.kind == ValueKind::Shape) return true;
@@ -493,8 +246,6 @@ static Value remembered(Evaluator &ev, const Value &callee, std::string_view nam
         ev.remembered.emplace(std::move(key), v);
     return v;
 }
-
-// -- the calls -----------------------------------------------------------------------------------
 
 static Value call_closure(Evaluator &ev, const Value &callee, std::string_view name,
                           std::span<const Argument> args, Span call, Span callee_span) {

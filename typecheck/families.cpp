@@ -85,7 +85,7 @@ struct Walk {
             skeleton.push_back(static_cast<std::uint64_t>(l.claims.kind) << 4 | l.has_claims << 3 |
                                l.claims.symmetric[0] << 2 | l.claims.symmetric[1] << 1 |
                                l.claims.symmetric[2]);
-            node(l.claims.lipschitz), node(l.claims.lo), node(l.claims.hi);
+            node(l.claims.lipschitz), node(l.claims.lo), node(l.claims.hi), node(l.claims.swell);
             for (NodeId lever : l.claims.lever) node(lever);
             in_statement = false;
             break;
@@ -160,7 +160,7 @@ struct Rebuild {
             ir::Library l = ev.scene.shapes.libraries[s.payload];
             for (auto &[name, argument] : l.arguments) argument = node(argument);
             l.claims.lipschitz = node(l.claims.lipschitz), l.claims.lo = node(l.claims.lo),
-            l.claims.hi = node(l.claims.hi);
+            l.claims.hi = node(l.claims.hi), l.claims.swell = node(l.claims.swell);
             for (NodeId &lever : l.claims.lever) lever = node(lever);
             s.payload = static_cast<std::uint32_t>(ev.scene.shapes.libraries.size());
             ev.scene.shapes.libraries.push_back(std::move(l));
@@ -325,7 +325,7 @@ void shape_nodes(const ir::Scene &scene, ShapeId id, std::vector<NodeId> &out) {
     if (s.kind == ShapeKind::Library) {
         const ir::Library &l = scene.shapes.libraries[s.payload];
         for (const auto &[name, argument] : l.arguments) out.push_back(argument);
-        out.insert(out.end(), {l.claims.lipschitz, l.claims.lo, l.claims.hi});
+        out.insert(out.end(), {l.claims.lipschitz, l.claims.lo, l.claims.hi, l.claims.swell});
         out.insert(out.end(), l.claims.lever.begin(), l.claims.lever.end());
     }
     out.insert(out.end(), s.args.begin(), s.args.end());

@@ -456,7 +456,7 @@ Known Prover::know_library(ShapeId id) {
             box.hi[i] = flat ? 0 : hi[i].hi;
         }
         k.fact.bounds = box;
-        k.swell = exact ? 1 : infinity;
+        k.swell = exact ? 1 : claims.swell ? number(claims.swell).magnitude() : infinity;
         k.outer = Box::everything();
         k.swell_out = 0;
     }

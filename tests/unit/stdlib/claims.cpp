@@ -1,5 +1,6 @@
-// Every entry that makes a solid against its independent definition: the sign everywhere, the distance where it claims to be
-// exact, the bound between pairs of points, and the claims of box, mirror planes and lever arm.
+// Every entry that makes a solid against its independent definition: the sign everywhere, the
+// distance where it claims to be exact, the bound between pairs of points, and the claims of box,
+// mirror planes and lever arm.
 #include "definitions.h"
 
 #include <catch2/catch.hpp>
@@ -14,7 +15,8 @@ namespace {
 
 std::vector<Solid> all_solids() {
     std::vector<Solid> all;
-    for (auto part : {round_solids(), straight_solids(), flat_solids(), combined_solids(), transformed_solids()})
+    for (auto part : {round_solids(), straight_solids(), flat_solids(), combined_solids(),
+                      transformed_solids()})
         all.insert(all.end(), part.begin(), part.end());
     return all;
 }
@@ -37,7 +39,8 @@ void check_sign(const Solid &solid, const Field &field) {
         bool inside = solid.inside(points[i]);
         in += inside;
         if (std::abs(d[i]) > band && (d[i] < 0) != inside && wrong++ == 0)
-            UNSCOPED_INFO("at " << points[i][0] << ", " << points[i][1] << ", " << points[i][2] << ": " << d[i] << (inside ? ", inside" : ", outside"));
+            UNSCOPED_INFO("at " << points[i][0] << ", " << points[i][1] << ", " << points[i][2]
+                                << ": " << d[i] << (inside ? ", inside" : ", outside"));
     }
     CHECK(wrong == 0);
     CHECK(in > 0); // else the definition tests nothing
@@ -60,7 +63,8 @@ void check_distance(const Solid &solid, const Field &field) {
     }
     CHECK(over < 1e-3);
     if (solid.exact && !solid.endless) {
-        INFO("at " << points[worst][0] << ", " << points[worst][1] << ", " << points[worst][2] << ": " << d[worst]);
+        INFO("at " << points[worst][0] << ", " << points[worst][1] << ", " << points[worst][2]
+                   << ": " << d[worst]);
         CHECK(under < 0.025); // what trying leaves of sharp tips
     }
 }
@@ -104,17 +108,34 @@ void check_claims(const Solid &solid, const Field &field) {
     std::vector<Point> points = places(4000, solid.reach, 4);
     if (claims.lo && claims.hi) {
         for (int axis = 0; axis < 3; ++axis) {
-            double lo = component(field.scene(), claims.lo, axis), hi = component(field.scene(), claims.hi, axis);
+            double lo = component(field.scene(), claims.lo, axis),
+                   hi = component(field.scene(), claims.hi, axis);
             for (const Point &p : points) {
                 double x = p[static_cast<std::size_t>(axis)];
                 if (solid.inside(p) && (x < lo - 1e-6 || x > hi + 1e-6)) {
-                    FAIL_CHECK("inside, but outside of the box: " << p[0] << ", " << p[1] << ", " << p[2]);
+                    FAIL_CHECK("inside, but outside of the box: " << p[0] << ", " << p[1] << ", "
+                                                                  << p[2]);
                     return;
                 }
             }
         }
     }
     std::vector<double> d = field.at(points);
+    if (claims.swell && claims.lo && claims.hi) {
+        const double swell = component(field.scene(), claims.swell, 0);
+        // the field at hand is the marched one, divided by its bound
+        const double slope = claims.lipschitz ? component(field.scene(), claims.lipschitz, 0) : 1;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            for (int axis = 0; axis < 3; ++axis) {
+                const double x = points[i][static_cast<std::size_t>(axis)],
+                             by = swell * slope * std::max(d[i], 0.0) + 1e-5;
+                if (x < component(field.scene(), claims.lo, axis) - by ||
+                    x > component(field.scene(), claims.hi, axis) + by) {
+                    FAIL_CHECK("the field is " << d[i] << " outside of the box grown by " << by);
+                    return;
+                }
+            }
+    }
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (!claims.symmetric[axis]) continue;
         std::vector<Point> mirrored = points;
@@ -130,9 +151,11 @@ void check_claims(const Solid &solid, const Field &field) {
         ir::NodeId lever = claims.lever[static_cast<std::size_t>(axis)];
         if (!lever) continue;
         double bound = component(field.scene(), lever, 0), most = 0;
-        // turned a little about the axis, the field changes by at most the lever arm times the angle
+        // turned a little about the axis, the field changes by at most the lever arm times the
+        // angle
         std::vector<Point> turned = points;
-        auto j = static_cast<std::size_t>((axis + 1) % 3), k = static_cast<std::size_t>((axis + 2) % 3);
+        auto j = static_cast<std::size_t>((axis + 1) % 3),
+             k = static_cast<std::size_t>((axis + 2) % 3);
         for (Point &p : turned) {
             double x = p[j], y = p[k];
             p[j] = std::cos(h) * x - std::sin(h) * y;
@@ -161,8 +184,8 @@ TEST_CASE("each solid is the one that its definition says", "[stdlib]") {
     }
 }
 
-// A profile's edge on the axis is inside of the solid; were it a surface, what is cut out with it would keep a needle there, and
-// rays past it would crawl.
+// A profile's edge on the axis is inside of the solid; were it a surface, what is cut out with it
+// would keep a needle there, and rays past it would crawl.
 TEST_CASE("nothing is left along the axis of what is turned", "[stdlib]") {
     Field cut("box(4) - rectangle([0.8, 1]).translate(x: 0.4).revolve()");
     REQUIRE(cut.good());
@@ -170,7 +193,8 @@ TEST_CASE("nothing is left along the axis of what is turned", "[stdlib]") {
         CHECK(cut.at({{1e-9, y, 0}})[0] == Approx(0.5 - std::abs(y)).margin(1e-6));
 }
 
-// By the orbits of z^8 + p, z as (radius, latitude, longitude): what never leaves is solid, what leaves at once is not.
+// By the orbits of z^8 + p, z as (radius, latitude, longitude): what never leaves is solid, what
+// leaves at once is not.
 TEST_CASE("the mandelbulb holds what stays bounded", "[stdlib]") {
     Field field("mandelbulb(8, 8)");
     REQUIRE(field.good());
@@ -181,8 +205,10 @@ TEST_CASE("the mandelbulb holds what stays bounded", "[stdlib]") {
         Point z = points[i];
         int turns = 0;
         while (turns < 60 && norm(z) < 2) {
-            const double r = norm(z), latitude = 8 * std::asin(z[1] / std::max(r, 1e-12)), longitude = 8 * std::atan2(z[2], z[0]);
-            z = points[i] + std::pow(r, 8) * Point{std::cos(latitude) * std::cos(longitude), std::sin(latitude),
+            const double r = norm(z), latitude = 8 * std::asin(z[1] / std::max(r, 1e-12)),
+                         longitude = 8 * std::atan2(z[2], z[0]);
+            z = points[i] + std::pow(r, 8) * Point{std::cos(latitude) * std::cos(longitude),
+                                                   std::sin(latitude),
                                                    std::cos(latitude) * std::sin(longitude)};
             ++turns;
         }
@@ -197,16 +223,21 @@ TEST_CASE("the mandelbulb holds what stays bounded", "[stdlib]") {
 TEST_CASE("every entry that makes or changes a solid has a definition of its own", "[stdlib]") {
     std::string all = " mandelbulb( "; // above; images and grids have their own tests
     for (const Solid &solid : all_solids()) all += " " + solid.text;
-    for (const typecheck::LibraryEntry &entry : typecheck::library_entries(driver::standard_library())) {
-        if (entry.file == "built in" || entry.file == "dfmodel" || entry.file == "fields.sdf" || entry.file == "looks.sdf" ||
-            entry.name == "displace_map" || entry.name == "distance_grid")
+    for (const typecheck::LibraryEntry &entry :
+         typecheck::library_entries(driver::standard_library())) {
+        if (entry.file == "built in" || entry.file == "dfmodel" || entry.file == "fields.sdf" ||
+            entry.file == "looks.sdf" || entry.name == "displace_map" ||
+            entry.name == "distance_grid")
             continue;
         INFO(entry.file << ": " << entry.signature);
         bool defined = false;
-        for (std::size_t at = all.find(entry.name); at != all.npos; at = all.find(entry.name, at + 1)) {
-            const char after = at + entry.name.size() < all.size() ? all[at + entry.name.size()] : ' ';
+        for (std::size_t at = all.find(entry.name); at != all.npos;
+             at = all.find(entry.name, at + 1)) {
+            const char after =
+                at + entry.name.size() < all.size() ? all[at + entry.name.size()] : ' ';
             const char before = all[at - 1];
-            defined = defined || ((after == '(' || after == ' ') && (before == ' ' || before == '.' || before == '('));
+            defined = defined || ((after == '(' || after == ' ') &&
+                                  (before == ' ' || before == '.' || before == '('));
         }
         CHECK(defined);
     }
