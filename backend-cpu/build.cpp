@@ -1,5 +1,6 @@
-// A graph's function as single values. Vectors fall apart into components, small functions and those called once are
-// built in place. Which kernels an operation is stands in select.cpp, what they compute in ir/semantics.h.
+// A graph's function as single values. Vectors fall apart into components, small functions and
+// those called once are built in place. Which kernels an operation is stands in select.cpp, what
+// they compute in ir/semantics.h.
 #include "backend-cpu/code.h"
 #include "backend-cpu/select.h"
 
@@ -39,8 +40,9 @@ std::vector<Type> scalar_types(Type type) {
 
 // The values that a function's nodes have, where it is built in place once more.
 struct Frame {
-    std::unordered_map<NodeId, Values> values;      // of a Fold: all its carried values
-    std::vector<std::pair<NodeId, std::uint16_t>> made; // what stands in a loop, to be forgotten when it closes
+    std::unordered_map<NodeId, Values> values; // of a Fold: all its carried values
+    std::vector<std::pair<NodeId, std::uint16_t>>
+        made; // what stands in a loop, to be forgotten when it closes
 };
 
 class FunctionBuilder {
@@ -62,7 +64,8 @@ class FunctionBuilder {
         }
         for (NodeId result : body.results) {
             const Values &values = value(frame, result);
-            code_.results.insert(code_.results.end(), values.begin(), values.begin() + components(graph_[result].type));
+            code_.results.insert(code_.results.end(), values.begin(),
+                                 values.begin() + components(graph_[result].type));
         }
     }
 
@@ -116,7 +119,8 @@ Values FunctionBuilder::node(Frame &frame, NodeId id) {
     for (NodeId arg : graph_.args(id)) types.push_back(graph_[arg].type);
 
     if (node.op != Op::FoldResult) // anywhere else a Fold stands for its first carried value
-        for (std::size_t k = 0; k < args.size(); ++k) args[k].resize(static_cast<std::size_t>(components(types[k])));
+        for (std::size_t k = 0; k < args.size(); ++k)
+            args[k].resize(static_cast<std::size_t>(components(types[k])));
     auto data = [&](InstructionKind kind) {
         return builder_.instruction(kind, node.payload, args[0], scalar_types(node.type));
     };
@@ -136,7 +140,8 @@ Values FunctionBuilder::node(Frame &frame, NodeId id) {
     if (node.op == Op::Param) {
         Values values;
         std::uint32_t component = 0;
-        for (Type type : scalar_types(node.type)) values.push_back(builder_.param(node.payload, component++, type));
+        for (Type type : scalar_types(node.type))
+            values.push_back(builder_.param(node.payload, component++, type));
         return values;
     }
     if (node.op == Op::TableRead) return data(InstructionKind::TableRead);
@@ -160,7 +165,8 @@ Values FunctionBuilder::call(FunctionId id, const std::vector<Values> &arguments
     const Function &function = graph_.function(id);
     if (calls_.inlined[id.index]) {
         Frame frame;
-        for (std::size_t k = 0; k < function.params.size(); ++k) frame.values[function.params[k]] = arguments[k];
+        for (std::size_t k = 0; k < function.params.size(); ++k)
+            frame.values[function.params[k]] = arguments[k];
         Values result = value(frame, function.result);
         result.resize(static_cast<std::size_t>(components(graph_[function.result].type)));
         return result;
@@ -168,11 +174,13 @@ Values FunctionBuilder::call(FunctionId id, const std::vector<Values> &arguments
     Values in;
     std::vector<bool> &shared = calls_.shared[calls_.body[id.index]];
     for (std::size_t k = 0; k < arguments.size(); ++k)
-        for (std::size_t c = 0; c < static_cast<std::size_t>(components(graph_[function.params[k]].type)); ++c) {
+        for (std::size_t c = 0;
+             c < static_cast<std::size_t>(components(graph_[function.params[k]].type)); ++c) {
             in.push_back(arguments[k][c]);
             if (!code_.values[in.back()].shared) shared[k] = false;
         }
-    return builder_.instruction(InstructionKind::Call, id.index, in, scalar_types(graph_[function.result].type));
+    return builder_.instruction(InstructionKind::Call, id.index, in,
+                                scalar_types(graph_[function.result].type));
 }
 
 Values FunctionBuilder::fold(Frame &frame, NodeId id) {
@@ -185,7 +193,8 @@ Values FunctionBuilder::fold(Frame &frame, NodeId id) {
     loop.index = builder_.variable(Type::Int, true, depth_);
     frame.values[fold.index] = {loop.index};
 
-    // A variable is shared if it begins so and no turn makes it differ; whether turns happen must not differ either.
+    // A variable is shared if it begins so and no turn makes it differ; whether turns happen must
+    // not differ either.
     std::size_t n = fold.vars.size();
     std::vector<bool> shared(n);
     std::vector<std::vector<NodeId>> reads(n);
@@ -195,7 +204,8 @@ Values FunctionBuilder::fold(Frame &frame, NodeId id) {
     for (std::size_t k = 0; k < n; ++k) {
         const Values &init = frame.values.at(graph_.arg(id, static_cast<int>(k)));
         shared[k] = true;
-        for (std::size_t c = 0; c < static_cast<std::size_t>(components(graph_[fold.vars[k]].type)); ++c) {
+        for (std::size_t c = 0; c < static_cast<std::size_t>(components(graph_[fold.vars[k]].type));
+             ++c) {
             loop.init.push_back(init[c]);
             shared[k] = shared[k] && code_.values[init[c]].shared;
         }
@@ -233,7 +243,8 @@ Values FunctionBuilder::fold(Frame &frame, NodeId id) {
     if (!turns_shared) loop.active = builder_.variable(Type::Bool, false, depth_);
     for (std::size_t k = 0; k < n; ++k) {
         Values next = value(frame, fold.next[k]);
-        for (std::size_t c = 0; c < static_cast<std::size_t>(components(graph_[fold.vars[k]].type)); ++c)
+        for (std::size_t c = 0; c < static_cast<std::size_t>(components(graph_[fold.vars[k]].type));
+             ++c)
             loop.next.push_back(moved(loop, next[c]));
     }
 
@@ -253,14 +264,16 @@ Values FunctionBuilder::fold(Frame &frame, NodeId id) {
     auto payload = static_cast<std::uint32_t>(code_.loops.size());
     code_.loops.push_back(std::move(loop));
     Values outs = builder_.instruction(InstructionKind::Loop, payload, in, types);
-    for (std::size_t k = 0; k < outs.size(); ++k) code_.values[outs[k]].shared = code_.values[vars[k]].shared;
+    for (std::size_t k = 0; k < outs.size(); ++k)
+        code_.values[outs[k]].shared = code_.values[vars[k]].shared;
     return outs;
 }
 
 // All variables move on at once: what takes another's value takes it from a copy.
 Value FunctionBuilder::moved(const LoopCode &loop, Value next) {
     if (std::ranges::find(loop.vars, next) == loop.vars.end()) return next;
-    return builder_.make(code_.values[next].type == Type::Float ? Kernel::CopyF : Kernel::CopyI, {next});
+    return builder_.make(code_.values[next].type == Type::Float ? Kernel::CopyF : Kernel::CopyI,
+                         {next});
 }
 
 // What a loop reads that is made before it.

@@ -1,5 +1,5 @@
-// Grows a Code: finds equal instructions, asks fuse.cpp for a shorter way, and spreads shared operands into registers
-// where no variant of the kernel takes them as they are.
+// Grows a Code: finds equal instructions, asks fuse.cpp for a shorter way, and spreads shared
+// operands into registers where no variant of the kernel takes them as they are.
 #include "backend-cpu/code.h"
 
 #include <algorithm>
@@ -80,7 +80,8 @@ std::optional<float> Builder::number_of(Value value) const {
     return std::bit_cast<float>(what.bits);
 }
 
-std::vector<Value> Builder::instruction(InstructionKind kind, std::uint32_t payload, std::span<const Value> in,
+std::vector<Value> Builder::instruction(InstructionKind kind, std::uint32_t payload,
+                                        std::span<const Value> in,
                                         std::span<const ir::Type> types) {
     Instruction made;
     made.kind = kind;
@@ -95,7 +96,8 @@ std::vector<Value> Builder::instruction(InstructionKind kind, std::uint32_t payl
     made.outs = static_cast<std::uint32_t>(types.size());
     std::vector<Value> outs;
     for (ir::Type type : types)
-        outs.push_back(code_.values.add({type, made.once, made.level, code_.instructions.next(), ValueInfo::no_source}));
+        outs.push_back(code_.values.add(
+            {type, made.once, made.level, code_.instructions.next(), ValueInfo::no_source}));
     code_.instructions.add(std::move(made));
     return outs;
 }
@@ -121,7 +123,8 @@ std::vector<Value> Builder::outputs(Kernel kernel, std::span<const Value> in) {
 std::vector<Value> Builder::emit(Kernel kernel, std::span<const Value> in, bool to_register) {
     auto outputs_of = [&](const Instruction &instruction) {
         std::vector<Value> outs;
-        for (std::uint32_t i = 0; i < instruction.outs; ++i) outs.push_back(Value{instruction.out.index + i});
+        for (std::uint32_t i = 0; i < instruction.outs; ++i)
+            outs.push_back(Value{instruction.out.index + i});
         return outs;
     };
     std::vector<Value> operands(in.begin(), in.end());
@@ -138,7 +141,9 @@ std::vector<Value> Builder::emit(Kernel kernel, std::span<const Value> in, bool 
     std::uint64_t key = hash_of(kernel, operands);
     for (auto [it, end] = known_.equal_range(key); it != end; ++it) {
         const Instruction &known = code_.instructions[it->second];
-        if (known.kernel == kernel && known.once == made.once && std::ranges::equal(known.in, operands)) return outputs_of(known);
+        if (known.kernel == kernel && known.once == made.once &&
+            std::ranges::equal(known.in, operands))
+            return outputs_of(known);
     }
     made.kernel = kernel;
     for (Value value : operands) made.level = std::max(made.level, code_.values[value].level);
@@ -147,7 +152,8 @@ std::vector<Value> Builder::emit(Kernel kernel, std::span<const Value> in, bool 
     made.in = std::move(operands);
     InstructionId id = code_.instructions.next();
     for (std::uint32_t i = 0; i < made.outs; ++i)
-        code_.values.add({kernel_output_type(kernel), made.once, made.level, id, ValueInfo::no_source});
+        code_.values.add(
+            {kernel_output_type(kernel), made.once, made.level, id, ValueInfo::no_source});
     code_.instructions.add(std::move(made));
     known_.emplace(key, id);
     return outputs_of(code_.instructions[id]);

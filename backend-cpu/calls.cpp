@@ -1,5 +1,5 @@
-// Which functions stay functions on the tape. What is called once or is tiny is built in place; the rest is called, so
-// that a tape is as long as the scene and no longer.
+// Which functions stay functions on the tape. What is called once or is tiny is built in place; the
+// rest is called, so that a tape is as long as the scene and no longer.
 #include "backend-cpu/code.h"
 
 #include <algorithm>
@@ -10,13 +10,13 @@ using namespace ir;
 
 namespace {
 
-constexpr std::size_t tiny = 24;         // nodes, with what is built in place in it
-constexpr std::size_t deepest = 64;      // in-place functions inside each other
+constexpr std::size_t tiny = 24;    // nodes, with what is built in place in it
+constexpr std::size_t deepest = 64; // in-place functions inside each other
 
 struct Use {
-    std::size_t calls = 0; // in the texts of the functions that are reached
-    std::size_t nodes = 0; // with in-place callees
-    std::size_t depth = 0; // of in-place callees
+    std::size_t calls = 0;           // in the texts of the functions that are reached
+    std::size_t nodes = 0;           // with in-place callees
+    std::size_t depth = 0;           // of in-place callees
     std::vector<FunctionId> callees; // one entry a call
     bool seen = false;
 };
@@ -104,9 +104,12 @@ static Program compile_body(const Scene &scene, const Body &root) {
     return lay_out(scene, calls, std::move(codes));
 }
 
-Program compile(const Scene &scene, FunctionId function) { return compile_body(scene, body_of(scene.graph, function)); }
+Program compile(const Scene &scene, FunctionId function) {
+    return compile_body(scene, body_of(scene.graph, function));
+}
 
-Program compile(const Scene &scene, std::span<const NodeId> params, std::span<const NodeId> results) {
+Program compile(const Scene &scene, std::span<const NodeId> params,
+                std::span<const NodeId> results) {
     return compile_body(scene, {{params.begin(), params.end()}, {results.begin(), results.end()}});
 }
 

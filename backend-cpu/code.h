@@ -1,6 +1,7 @@
-// A function between graph and tape: one value a number, in static single assignment and without an order. Values know
-// how deep in loops they stand, so that what does not change in a loop is computed before it. build.cpp makes it from the
-// graph, fuse.cpp joins kernels while it grows, layout.cpp orders it and gives it registers.
+// A function between graph and tape: one value a number, in static single assignment and without an
+// order. Values know how deep in loops they stand, so that what does not change in a loop is
+// computed before it. build.cpp makes it from the graph, fuse.cpp joins kernels while it grows,
+// layout.cpp orders it and gives it registers.
 #pragma once
 
 #include "backend-cpu/kernels.h"
@@ -16,10 +17,10 @@ struct Instruction;
 using InstructionId = Id<Instruction>;
 
 struct ValueInfo {
-    ir::Type type = ir::Type::Float; // Float, Int or Bool
-    bool shared = false;             // the same for every point
-    std::uint16_t level = 0;         // how many loops it stands in
-    InstructionId made_by;           // none: a parameter, a loop's variable, or a source
+    ir::Type type = ir::Type::Float;  // Float, Int or Bool
+    bool shared = false;              // the same for every point
+    std::uint16_t level = 0;          // how many loops it stands in
+    InstructionId made_by;            // none: a parameter, a loop's variable, or a source
     std::uint32_t source = no_source; // index into Code::sources
     static constexpr std::uint32_t no_source = std::numeric_limits<std::uint32_t>::max();
 };
@@ -28,13 +29,13 @@ enum class InstructionKind : std::uint8_t { Kernel, TableRead, Image, Grid, Call
 
 struct Instruction {
     InstructionKind kind = InstructionKind::Kernel;
-    Kernel kernel{};            // Kernel
-    Mask mask = 0;              // Kernel: the variant's
-    bool once = false;          // Kernel, TableRead: everything is shared
+    Kernel kernel{};   // Kernel
+    Mask mask = 0;     // Kernel: the variant's
+    bool once = false; // Kernel, TableRead: everything is shared
     std::uint16_t level = 0;
-    std::uint32_t payload = 0;  // the table slot, image, grid, function or loop
-    std::vector<Value> in;      // Loop: what its body reads from outside, filled by layout.cpp
-    Value out;                  // the first of `outs` in a row
+    std::uint32_t payload = 0; // the table slot, image, grid, function or loop
+    std::vector<Value> in;     // Loop: what its body reads from outside, filled by layout.cpp
+    Value out;                 // the first of `outs` in a row
     std::uint32_t outs = 0;
 };
 
@@ -45,11 +46,11 @@ struct SourceValue {
 };
 
 struct LoopCode {
-    Value count, index, condition; // condition: none when there is none
-    Value active;                  // where turns differ by point: which points still turn
+    Value count, index, condition;       // condition: none when there is none
+    Value active;                        // where turns differ by point: which points still turn
     std::vector<Value> vars, init, next; // one a component
     int max_count = 0;
-    std::uint16_t level = 0;       // of its body
+    std::uint16_t level = 0; // of its body
 };
 
 // One Function of the graph.
@@ -61,7 +62,8 @@ struct Code {
     std::vector<SourceValue> sources;
 };
 
-// Grows a Code, one kernel at a time: equal ones once, neighbours fused, operands brought to a variant that exists.
+// Grows a Code, one kernel at a time: equal ones once, neighbours fused, operands brought to a
+// variant that exists.
 class Builder {
   public:
     explicit Builder(Code &code) : code_(code) {}
@@ -75,8 +77,8 @@ class Builder {
     // Outputs stand in a row: the first's successors are the others.
     std::vector<Value> outputs(Kernel kernel, std::span<const Value> in);
     // Any other instruction; never merged with an equal one.
-    std::vector<Value> instruction(InstructionKind kind, std::uint32_t payload, std::span<const Value> in,
-                                   std::span<const ir::Type> types);
+    std::vector<Value> instruction(InstructionKind kind, std::uint32_t payload,
+                                   std::span<const Value> in, std::span<const ir::Type> types);
     Value spread(Value shared); // as a register
 
     const Code &code() const { return code_; }
@@ -90,7 +92,8 @@ class Builder {
     std::unordered_multimap<std::uint64_t, Value> known_sources_;
 };
 
-// A shorter way to the same value: `kernel` of `in`, or what it becomes together with what made its inputs.
+// A shorter way to the same value: `kernel` of `in`, or what it becomes together with what made its
+// inputs.
 struct Fused {
     Kernel kernel;
     std::vector<Value> in;
@@ -106,10 +109,11 @@ Body body_of(const ir::Graph &graph, ir::FunctionId function);
 
 // What of a graph's functions becomes what: reached from one body, callers before callees.
 struct Calls {
-    std::vector<Body> bodies;              // those that stay functions, callers first; the first is the root
-    std::vector<std::vector<bool>> shared; // by body: per parameter: the same for every point at every call
-    std::vector<bool> inlined;             // by FunctionId
-    std::vector<std::uint32_t> body;       // by FunctionId: index into `bodies`
+    std::vector<Body> bodies; // those that stay functions, callers first; the first is the root
+    std::vector<std::vector<bool>>
+        shared;                // by body: per parameter: the same for every point at every call
+    std::vector<bool> inlined; // by FunctionId
+    std::vector<std::uint32_t> body; // by FunctionId: index into `bodies`
 };
 Calls plan_calls(const ir::Scene &scene, const Body &root);
 

@@ -1,6 +1,7 @@
-// A number with its gradient by the three coordinates of a point: forward-mode differentiation of whatever template is
-// given it. At a kink the derivative is that of the side that the value takes, because choices compare values alone.
-// Derivatives that do not exist (sqrt at 0, say) are 0, so that gradients are always finite there.
+// A number with its gradient by the three coordinates of a point: forward-mode differentiation of
+// whatever template is given it. At a kink the derivative is that of the side that the value takes,
+// because choices compare values alone. Derivatives that do not exist (sqrt at 0, say) are 0, so
+// that gradients are always finite there.
 #pragma once
 
 #include "backend-cpu/kernels.h"
@@ -41,8 +42,12 @@ inline Dual chain(float v, Dual a, float by_a, Dual b, float by_b) {
 }
 
 inline Dual operator-(Dual a) { return {-a.value, -a.dx, -a.dy, -a.dz}; }
-inline Dual operator+(Dual a, Dual b) { return {a.value + b.value, a.dx + b.dx, a.dy + b.dy, a.dz + b.dz}; }
-inline Dual operator-(Dual a, Dual b) { return {a.value - b.value, a.dx - b.dx, a.dy - b.dy, a.dz - b.dz}; }
+inline Dual operator+(Dual a, Dual b) {
+    return {a.value + b.value, a.dx + b.dx, a.dy + b.dy, a.dz + b.dz};
+}
+inline Dual operator-(Dual a, Dual b) {
+    return {a.value - b.value, a.dx - b.dx, a.dy - b.dy, a.dz - b.dz};
+}
 inline Dual operator*(Dual a, Dual b) { return chain(a.value * b.value, a, b.value, b, a.value); }
 inline Dual operator/(Dual a, Dual b) {
     return chain(a.value / b.value, a, 1 / b.value, b, -a.value / (b.value * b.value));
@@ -71,8 +76,12 @@ inline Dual tan(Dual a) {
     float t = std::tan(a.value);
     return chain(t, a, 1 + t * t);
 }
-inline Dual asin(Dual a) { return chain(std::asin(a.value), a, 1 / std::sqrt(1 - a.value * a.value)); }
-inline Dual acos(Dual a) { return chain(std::acos(a.value), a, -1 / std::sqrt(1 - a.value * a.value)); }
+inline Dual asin(Dual a) {
+    return chain(std::asin(a.value), a, 1 / std::sqrt(1 - a.value * a.value));
+}
+inline Dual acos(Dual a) {
+    return chain(std::acos(a.value), a, -1 / std::sqrt(1 - a.value * a.value));
+}
 inline Dual atan(Dual a) { return chain(std::atan(a.value), a, 1 / (1 + a.value * a.value)); }
 inline Dual sinh(Dual a) { return chain(std::sinh(a.value), a, std::cosh(a.value)); }
 inline Dual cosh(Dual a) { return chain(std::cosh(a.value), a, std::sinh(a.value)); }
@@ -92,7 +101,8 @@ inline Dual pow(Dual a, Dual b) {
     return chain(power, a, by_a, b, by_b);
 }
 
-// How a cell holds it: ints and truths in the first word. Beside the type, where look-up by argument finds them.
+// How a cell holds it: ints and truths in the first word. Beside the type, where look-up by
+// argument finds them.
 template <class T> T load(const DualCell &cell) {
     if constexpr (std::is_same_v<T, Dual>)
         return std::bit_cast<Dual>(cell);

@@ -1,5 +1,5 @@
-// Runs a tape over batches of points: floats through point_loops, dual numbers through gradient_loops, by one
-// interpreter that knows cells and no numbers.
+// Runs a tape over batches of points: floats through point_loops, dual numbers through
+// gradient_loops, by one interpreter that knows cells and no numbers.
 #include "backend-cpu/dual.h"
 #include "backend-cpu/sample.h"
 #include "backend-cpu/tape.h"
@@ -42,7 +42,8 @@ template <class Cell> class Runner {
             case StepKind::Call: run(step.target); break;
             case StepKind::Loop: loop(program_.loops[step.target]); break;
             case StepKind::BreakUnless:
-                if (std::all_of(cells_ + *operands, cells_ + *operands + n, [](const Cell &c) { return !int_at(c); }))
+                if (std::all_of(cells_ + *operands, cells_ + *operands + n,
+                                [](const Cell &c) { return !int_at(c); }))
                     return false;
                 break;
             }
@@ -54,7 +55,8 @@ template <class Cell> class Runner {
     void loop(const Loop &loop) const {
         std::int32_t count = int_at(cells_[loop.count]);
         if (!loop.once)
-            for (std::size_t k = 1; k < n_; ++k) count = std::max(count, int_at(cells_[loop.count + k]));
+            for (std::size_t k = 1; k < n_; ++k)
+                count = std::max(count, int_at(cells_[loop.count + k]));
         count = std::min(count, loop.max_count);
         for (std::int32_t turn = 0; turn < count; ++turn) {
             store_word(cells_[loop.index], turn);
@@ -68,13 +70,15 @@ template <class Cell> class Runner {
         for (std::size_t k = 0; k < n; ++k) {
             int row = inside(int_at(rows[k]), read.rows);
             const float *from = data + static_cast<std::ptrdiff_t>(row) * read.stride;
-            for (int c = 0; c < read.columns; ++c) store_number(cells_[operands[c] + k], Number(from[c]));
+            for (int c = 0; c < read.columns; ++c)
+                store_number(cells_[operands[c] + k], Number(from[c]));
         }
     }
 
     void image(const ir::ImageData &image, const std::uint32_t *operands, std::size_t n) const {
         for (std::size_t k = 0; k < n; ++k) {
-            auto rgba = sample_image(image, number_at(cells_[operands[4] + k]), number_at(cells_[operands[5] + k]));
+            auto rgba = sample_image(image, number_at(cells_[operands[4] + k]),
+                                     number_at(cells_[operands[5] + k]));
             for (std::size_t c = 0; c < 4; ++c) store_number(cells_[operands[c] + k], rgba[c]);
         }
     }
@@ -82,7 +86,8 @@ template <class Cell> class Runner {
     void grid(const ir::GridData &grid, const std::uint32_t *operands, std::size_t n) const {
         for (std::size_t k = 0; k < n; ++k)
             store_number(cells_[operands[0] + k],
-                         sample_grid(grid, number_at(cells_[operands[1] + k]), number_at(cells_[operands[2] + k]),
+                         sample_grid(grid, number_at(cells_[operands[1] + k]),
+                                     number_at(cells_[operands[2] + k]),
                                      number_at(cells_[operands[3] + k])));
     }
 
@@ -143,7 +148,8 @@ GradientScratch make_gradient_scratch(const Program &program, const Inputs &inpu
     return make<DualCell, GradientScratch>(program, inputs);
 }
 
-void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out, std::size_t n) {
+void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out,
+              std::size_t n) {
     const Loops<Word> loops = point_loops();
     for (std::size_t first = 0; first < n; first += batch_size) {
         std::size_t count = std::min(batch_size, n - first), all = whole(count);
@@ -152,7 +158,8 @@ void evaluate(const Program &program, Scratch &scratch, const float *const *in, 
             std::memcpy(to, in[c] + first, count * sizeof(Word));
             std::fill(to + count, to + all, to[count - 1]);
         }
-        Runner<Word>(program, loops, scratch.cells, all).run(static_cast<std::uint32_t>(program.blocks.size() - 1));
+        Runner<Word>(program, loops, scratch.cells, all)
+            .run(static_cast<std::uint32_t>(program.blocks.size() - 1));
         for (std::size_t c = 0; c < program.results.size(); ++c) {
             const Word *from = scratch.cells + program.results[c].address;
             if (program.results[c].shared)
@@ -163,8 +170,8 @@ void evaluate(const Program &program, Scratch &scratch, const float *const *in, 
     }
 }
 
-void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in, float *const *out,
-                       std::size_t n) {
+void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in,
+                       float *const *out, std::size_t n) {
     DualCell *cells = scratch.cells;
     for (std::size_t first = 0; first < n; first += batch_size) {
         std::size_t count = std::min(batch_size, n - first);
@@ -173,7 +180,8 @@ void evaluate_gradient(const Program &program, GradientScratch &scratch, const f
             for (std::size_t k = 0; k < count; ++k) {
                 float x = in[c][first + k];
                 if (program.params[c].type == ir::Type::Float)
-                    store(to[k], Dual(x, c == 0 ? 1.0f : 0.0f, c == 1 ? 1.0f : 0.0f, c == 2 ? 1.0f : 0.0f));
+                    store(to[k], Dual(x, c == 0 ? 1.0f : 0.0f, c == 1 ? 1.0f : 0.0f,
+                                      c == 2 ? 1.0f : 0.0f));
                 else
                     store(to[k], std::bit_cast<std::int32_t>(x));
             }
@@ -209,14 +217,26 @@ std::string dump(const Program &program) {
                 text += "  table read";
                 operands = static_cast<std::size_t>(program.reads[step.target].columns) + 1;
                 break;
-            case StepKind::Image: text += "  image"; operands = 6; break;
-            case StepKind::Grid: text += "  grid"; operands = 4; break;
+            case StepKind::Image:
+                text += "  image";
+                operands = 6;
+                break;
+            case StepKind::Grid:
+                text += "  grid";
+                operands = 4;
+                break;
             case StepKind::Call: text += "  call " + std::to_string(step.target); break;
-            case StepKind::Loop: text += "  loop " + std::to_string(program.loops[step.target].block); break;
-            case StepKind::BreakUnless: text += "  break unless"; operands = 1; break;
+            case StepKind::Loop:
+                text += "  loop " + std::to_string(program.loops[step.target].block);
+                break;
+            case StepKind::BreakUnless:
+                text += "  break unless";
+                operands = 1;
+                break;
             }
             if (step.once) text += " once";
-            for (std::size_t o = 0; o < operands; ++o) text += " " + std::to_string(program.operands[step.operands + o]);
+            for (std::size_t o = 0; o < operands; ++o)
+                text += " " + std::to_string(program.operands[step.operands + o]);
             text += "\n";
         }
     }

@@ -1,5 +1,6 @@
-// Kernels that stand together in most scenes are run as one, which saves what lies between them a way through memory.
-// Only where nothing is computed more often for it: never into a deeper loop, never what all points share.
+// Kernels that stand together in most scenes are run as one, which saves what lies between them a
+// way through memory. Only where nothing is computed more often for it: never into a deeper loop,
+// never what all points share.
 #include "backend-cpu/code.h"
 
 #include <algorithm>
@@ -57,19 +58,24 @@ std::optional<Value> simplify(const Builder &builder, Kernel kernel, std::span<c
 std::optional<Fused> fuse(Builder &builder, Kernel kernel, std::span<const Value> in) {
     Matcher match(builder.code(), in);
     if (kernel == Kernel::SubF) {
-        if (auto d = match.made_by(in[0], Kernel::Distance3); !d.empty()) return Fused{Kernel::Ball, then(d, {in[1]})};
+        if (auto d = match.made_by(in[0], Kernel::Distance3); !d.empty())
+            return Fused{Kernel::Ball, then(d, {in[1]})};
         if (auto v = match.made_by(in[0], Kernel::Length3); !v.empty()) { // a ball about the origin
             Value zero = builder.number(0);
             return Fused{Kernel::Ball, then(v, {zero, zero, zero, in[1]})};
         }
-        if (auto a = match.made_by(in[0], Kernel::AbsF); !a.empty()) return Fused{Kernel::AbsSub, then(a, {in[1]})};
+        if (auto a = match.made_by(in[0], Kernel::AbsF); !a.empty())
+            return Fused{Kernel::AbsSub, then(a, {in[1]})};
     }
     if (kernel == Kernel::AddF) {
-        if (auto m = match.made_by(in[0], Kernel::MulF); !m.empty()) return Fused{Kernel::MulAdd, then(m, {in[1]})};
-        if (auto m = match.made_by(in[1], Kernel::MulF); !m.empty()) return Fused{Kernel::MulAdd, then(m, {in[0]})};
+        if (auto m = match.made_by(in[0], Kernel::MulF); !m.empty())
+            return Fused{Kernel::MulAdd, then(m, {in[1]})};
+        if (auto m = match.made_by(in[1], Kernel::MulF); !m.empty())
+            return Fused{Kernel::MulAdd, then(m, {in[0]})};
     }
     if (kernel == Kernel::AbsF)
-        if (auto s = match.made_by(in[0], Kernel::SubF); !s.empty()) return Fused{Kernel::SubAbs, then(s, {})};
+        if (auto s = match.made_by(in[0], Kernel::SubF); !s.empty())
+            return Fused{Kernel::SubAbs, then(s, {})};
     if (kernel == Kernel::MaxF) {
         auto a = match.made_by(in[0], Kernel::AbsF), b = match.made_by(in[1], Kernel::AbsF);
         if (!a.empty() && !b.empty()) return Fused{Kernel::MaxAbs, {a[0], b[0]}};
@@ -80,7 +86,9 @@ std::optional<Fused> fuse(Builder &builder, Kernel kernel, std::span<const Value
             sub[i] = match.made_by(in[i], Kernel::SubF);
             max[i] = match.made_by(in[i], Kernel::MaxF);
         }
-        if (std::ranges::any_of(sub, [](auto s) { return !s.empty(); })) { // a difference with 0 was simplified away
+        if (std::ranges::any_of(sub, [](auto s) {
+                return !s.empty();
+            })) { // a difference with 0 was simplified away
             std::vector<Value> both(6);
             for (std::size_t i = 0; i < 3; ++i) {
                 both[i] = sub[i].empty() ? in[i] : sub[i][0];

@@ -1,6 +1,6 @@
-// The kernels of kernels.def as functions of one point, over any number type. Instantiated by several files for
-// different processors; FATHOM_ISA names the file's own namespace, so that no linker can merge their instantiations
-// (CMakeLists.txt renames ir::sem alike).
+// The kernels of kernels.def as functions of one point, over any number type. Instantiated by
+// several files for different processors; FATHOM_ISA names the file's own namespace, so that no
+// linker can merge their instantiations (CMakeLists.txt renames ir::sem alike).
 #pragma once
 
 #include "backend-cpu/kernels.h"
@@ -66,7 +66,9 @@ template <class F, class... X> F hash(X... components) {
 template <class T> inline constexpr std::size_t outputs_of = 1;
 template <class T, std::size_t n> inline constexpr std::size_t outputs_of<std::array<T, n>> = n;
 
-template <class R, class... P> constexpr std::size_t inputs_of_run(R (*)(P...)) { return sizeof...(P); }
+template <class R, class... P> constexpr std::size_t inputs_of_run(R (*)(P...)) {
+    return sizeof...(P);
+}
 template <class Row> inline constexpr std::size_t inputs_of_row = inputs_of_run(&Row::run);
 
 // The masks of a row's variants, the one of registers first.
@@ -75,7 +77,8 @@ template <class Row> constexpr auto masks_of() {
     constexpr std::size_t own = inputs <= 3 ? (std::size_t{1} << inputs) - 1 : 1;
     std::array<Mask, own + Row::more_masks.size() - 1> masks{};
     for (std::size_t i = 0; i < own; ++i) masks[i] = static_cast<Mask>(i);
-    for (std::size_t i = 1; i < Row::more_masks.size(); ++i) masks[own + i - 1] = Row::more_masks[i];
+    for (std::size_t i = 1; i < Row::more_masks.size(); ++i)
+        masks[own + i - 1] = Row::more_masks[i];
     return masks;
 }
 

@@ -1,4 +1,5 @@
-// What is known of the kernels beside their loops: names, operands, variants; and which set of loops this processor runs.
+// What is known of the kernels beside their loops: names, operands, variants; and which set of
+// loops this processor runs.
 #include "backend-cpu/kernels.h"
 
 #include "backend-cpu/kernel_rows.h"
@@ -44,7 +45,8 @@ struct VariantInfo {
     Mask mask;
 };
 constexpr std::size_t variant_count = 0
-#define FATHOM_KERNEL(name, parameters, expression, ...) +base::masks_of<base::name##Row<float>>().size()
+#define FATHOM_KERNEL(name, parameters, expression, ...)                                           \
+    +base::masks_of<base::name##Row<float>>().size()
 #include "backend-cpu/kernels.def"
 #undef FATHOM_KERNEL
     ;
@@ -52,7 +54,8 @@ constexpr auto make_variants() {
     std::array<VariantInfo, variant_count> variants{};
     std::size_t at = 0;
 #define FATHOM_KERNEL(name, parameters, expression, ...)                                           \
-    for (Mask mask : base::masks_of<base::name##Row<float>>()) variants[at++] = {Kernel::name, mask};
+    for (Mask mask : base::masks_of<base::name##Row<float>>())                                     \
+        variants[at++] = {Kernel::name, mask};
 #include "backend-cpu/kernels.def"
 #undef FATHOM_KERNEL
     return variants;
@@ -71,17 +74,24 @@ ir::Type kernel_output_type(Kernel kernel) { return info(kernel).type; }
 Variant best_variant(Kernel kernel, Mask shared) {
     Variant best{info(kernel).first_variant, 0};
     for (std::uint32_t i = best.index; i < variants.size() && variants[i].kernel == kernel; ++i)
-        if ((variants[i].mask & ~shared) == 0 && std::popcount(variants[i].mask) > std::popcount(best.mask))
+        if ((variants[i].mask & ~shared) == 0 &&
+            std::popcount(variants[i].mask) > std::popcount(best.mask))
             best = {i, variants[i].mask};
     return best;
 }
 Kernel kernel_of_variant(std::uint32_t index) { return variants[index].kernel; }
 Mask mask_of_variant(std::uint32_t index) { return variants[index].mask; }
 
-namespace base { Loops<std::uint32_t> point_loops(); }
+namespace base {
+Loops<std::uint32_t> point_loops();
+}
 #ifdef FATHOM_WIDE
-namespace avx2 { Loops<std::uint32_t> point_loops(); }
-namespace avx512 { Loops<std::uint32_t> point_loops(); }
+namespace avx2 {
+Loops<std::uint32_t> point_loops();
+}
+namespace avx512 {
+Loops<std::uint32_t> point_loops();
+}
 #endif
 
 std::vector<LoopSet> point_loop_sets() {

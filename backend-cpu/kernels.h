@@ -1,6 +1,7 @@
-// The kernels that tapes are made of, and their compiled variants. A kernel's operand is either a register (one number a
-// point) or shared (one number for all points); a variant fixes which, so that its loop has nothing to decide.
-// Which shapes of the graph become which kernel is build.cpp's and fuse.cpp's business.
+// The kernels that tapes are made of, and their compiled variants. A kernel's operand is either a
+// register (one number a point) or shared (one number for all points); a variant fixes which, so
+// that its loop has nothing to decide. Which shapes of the graph become which kernel is build.cpp's
+// and fuse.cpp's business.
 #pragma once
 
 #include "backend-cpu/cells.h"
@@ -27,8 +28,8 @@ inline constexpr std::size_t kernel_count = 0
 
 using Mask = std::uint32_t; // bit i: input i is shared
 
-// Kernels of up to three inputs have a variant for every mask (but not all shared: such a step runs once, on the
-// variant of registers); longer ones have none shared and those that their row lists.
+// Kernels of up to three inputs have a variant for every mask (but not all shared: such a step runs
+// once, on the variant of registers); longer ones have none shared and those that their row lists.
 const char *kernel_name(Kernel kernel);
 int kernel_inputs(Kernel kernel);
 int kernel_outputs(Kernel kernel);
@@ -44,7 +45,8 @@ Kernel kernel_of_variant(std::uint32_t index);
 Mask mask_of_variant(std::uint32_t index);
 
 // One loop a variant: operands are addresses in cells, outputs first.
-template <class Cell> using Loops = std::span<void (*const)(Cell *cells, const std::uint32_t *operands, std::size_t n)>;
+template <class Cell> using Loops =
+    std::span<void (*const)(Cell *cells, const std::uint32_t *operands, std::size_t n)>;
 
 struct LoopSet {
     const char *name; // the instruction set

@@ -1,5 +1,6 @@
-// From values to a tape: an order that keeps few values alive at once, registers by how long each lives, addresses. As no
-// function calls itself, each has its registers at one fixed place, above those of all that may be calling it.
+// From values to a tape: an order that keeps few values alive at once, registers by how long each
+// lives, addresses. As no function calls itself, each has its registers at one fixed place, above
+// those of all that may be calling it.
 #include "backend-cpu/code.h"
 
 #include <algorithm>
@@ -22,9 +23,9 @@ struct Order {
 // Where a value lives: a register of its function, or a cell.
 struct Layout {
     Order body;
-    std::vector<Order> loops;             // by index into Code::loops
-    std::vector<std::uint32_t> slot;      // by Value; sources have none
-    std::vector<bool> stays;              // by loop variable: its next value is made in its own place
+    std::vector<Order> loops;        // by index into Code::loops
+    std::vector<std::uint32_t> slot; // by Value; sources have none
+    std::vector<bool> stays;         // by loop variable: its next value is made in its own place
     std::uint32_t registers = 0, cells = 0;
     std::uint32_t base = 0, first_cell = 0; // of the function, in the program's
 };
@@ -50,7 +51,8 @@ class LayoutMaker {
         layout_.slot.assign(code_.values.size(), nowhere);
         for (Value param : code_.params) place(param);
         allocate(layout_.body);
-        for (std::size_t v = 0; v < root_.size(); ++v) layout_.slot[v] = layout_.slot[root_[v].index];
+        for (std::size_t v = 0; v < root_.size(); ++v)
+            layout_.slot[v] = layout_.slot[root_[v].index];
         return std::move(layout_);
     }
 
@@ -69,7 +71,8 @@ class LayoutMaker {
             std::size_t before = stack.size();
             for (std::size_t i = instruction.in.size(); i-- > 0;) {
                 const ValueInfo &in = code_.values[instruction.in[i]];
-                if (in.made_by && in.level >= level && !done_[in.made_by.index]) stack.push_back(instruction.in[i]);
+                if (in.made_by && in.level >= level && !done_[in.made_by.index])
+                    stack.push_back(instruction.in[i]);
             }
             if (stack.size() > before) continue;
             done_[info.made_by.index] = true;
@@ -87,7 +90,8 @@ class LayoutMaker {
         }
     }
 
-    // Positions count instructions in the order of the tape; a loop has one before its body and one after.
+    // Positions count instructions in the order of the tape; a loop has one before its body and one
+    // after.
     struct Range {
         std::uint32_t begin = 0, end = 0;
         std::uint16_t level = 0;
@@ -105,7 +109,8 @@ class LayoutMaker {
         }
     }
 
-    // A use inside loops that the value does not stand in is a use until the outermost of them ends.
+    // A use inside loops that the value does not stand in is a use until the outermost of them
+    // ends.
     void use(Value value, std::uint32_t position) {
         const ValueInfo &info = code_.values[value];
         for (const Range &range : open_)
@@ -140,8 +145,8 @@ class LayoutMaker {
                 Value var = loop.vars[k], next = loop.next[k];
                 InstructionId maker = code_.values[next].made_by;
                 bool once = std::ranges::count(loop.next, next) == 1;
-                bool own = maker && code_.values[next].level == loop.level && !loop.active && once &&
-                           code_.values[next].shared == code_.values[var].shared &&
+                bool own = maker && code_.values[next].level == loop.level && !loop.active &&
+                           once && code_.values[next].shared == code_.values[var].shared &&
                            code_.instructions[maker].kind == InstructionKind::Kernel;
                 layout_.stays[var.index] = own && last_[var.index] <= first_[next.index];
             }
@@ -174,7 +179,8 @@ class LayoutMaker {
     void release(std::uint32_t until) {
         while (!ends_.empty() && ends_.begin()->first <= until) {
             for (Value value : ends_.begin()->second)
-                (code_.values[value].shared ? free_cells_ : free_registers_).push_back(layout_.slot[value.index]);
+                (code_.values[value].shared ? free_cells_ : free_registers_)
+                    .push_back(layout_.slot[value.index]);
             ends_.erase(ends_.begin());
         }
     }
@@ -186,7 +192,8 @@ class LayoutMaker {
             // A kernel may write where it reads; what copies in and out may not.
             release(instruction.kind == InstructionKind::Kernel ? here : here - 1);
             if (instruction.kind != InstructionKind::Loop) {
-                for (std::uint32_t k = 0; k < instruction.outs; ++k) place(Value{instruction.out.index + k});
+                for (std::uint32_t k = 0; k < instruction.outs; ++k)
+                    place(Value{instruction.out.index + k});
                 continue;
             }
             const LoopCode &loop = code_.loops[instruction.payload];
@@ -200,7 +207,7 @@ class LayoutMaker {
     const Code &code_;
     Layout layout_;
     std::vector<bool> done_;
-    std::vector<Value> root_;              // by Value: the value whose place it has
+    std::vector<Value> root_;                 // by Value: the value whose place it has
     std::vector<std::uint32_t> first_, last_; // by Value: positions
     std::unordered_map<InstructionId, std::uint32_t> at_;
     std::unordered_map<InstructionId, Range> ranges_;
@@ -285,8 +292,8 @@ class Encoder {
     }
 
     std::uint32_t address(Value value) const { return address(*code_, *layout_, *sources_, value); }
-    std::uint32_t address(const Code &code, const Layout &layout, const std::vector<std::uint32_t> &sources,
-                          Value value) const {
+    std::uint32_t address(const Code &code, const Layout &layout,
+                          const std::vector<std::uint32_t> &sources, Value value) const {
         const ValueInfo &info = code.values[value];
         if (info.source != ValueInfo::no_source) return sources[info.source];
         std::uint32_t slot = layout.slot[value.index];
@@ -295,8 +302,10 @@ class Encoder {
         return static_cast<std::uint32_t>(first_register_ + (layout.base + slot) * batch_size);
     }
 
-    void step(StepKind kind, std::uint32_t target, bool once, std::initializer_list<std::uint32_t> operands) {
-        program_.steps.push_back({kind, once, target, static_cast<std::uint32_t>(program_.operands.size())});
+    void step(StepKind kind, std::uint32_t target, bool once,
+              std::initializer_list<std::uint32_t> operands) {
+        program_.steps.push_back(
+            {kind, once, target, static_cast<std::uint32_t>(program_.operands.size())});
         program_.operands.insert(program_.operands.end(), operands);
     }
 
@@ -310,7 +319,8 @@ class Encoder {
         if (to.address == from.address) return;
         Kernel kernel = type == ir::Type::Float ? Kernel::CopyF : Kernel::CopyI;
         Mask mask = from.shared && !to.shared ? 1 : 0;
-        step(StepKind::Run, best_variant(kernel, mask).index, to.shared, {to.address, from.address});
+        step(StepKind::Run, best_variant(kernel, mask).index, to.shared,
+             {to.address, from.address});
     }
 
     void run(Kernel kernel, Place to, std::initializer_list<Place> from) {
@@ -329,7 +339,8 @@ class Encoder {
         std::swap(outer, program_.steps);
         for (std::size_t i = 0; i <= order.instructions.size(); ++i) {
             if (loop && i == order.break_at) break_unless(*loop);
-            if (i < order.instructions.size()) instruction(code_->instructions[order.instructions[i]]);
+            if (i < order.instructions.size())
+                instruction(code_->instructions[order.instructions[i]]);
         }
         if (loop) advance(*loop);
         std::swap(outer, program_.steps); // `outer` is now this block
@@ -355,7 +366,8 @@ class Encoder {
             ir::Type type = code_->values[var].type;
             if (loop.active) {
                 Kernel kernel = type == ir::Type::Float ? Kernel::SelectF : Kernel::SelectI;
-                if (var != next) run(kernel, place(var), {place(loop.active), place(next), place(var)});
+                if (var != next)
+                    run(kernel, place(var), {place(loop.active), place(next), place(var)});
             } else {
                 copy(place(var), place(next), type);
             }
@@ -369,10 +381,15 @@ class Encoder {
             break;
         case InstructionKind::TableRead:
             program_.reads.push_back(read(instruction));
-            step(StepKind::TableRead, static_cast<std::uint32_t>(program_.reads.size() - 1), instruction.once, {});
+            step(StepKind::TableRead, static_cast<std::uint32_t>(program_.reads.size() - 1),
+                 instruction.once, {});
             break;
-        case InstructionKind::Image: step(StepKind::Image, instruction.payload, instruction.once, {}); break;
-        case InstructionKind::Grid: step(StepKind::Grid, instruction.payload, instruction.once, {}); break;
+        case InstructionKind::Image:
+            step(StepKind::Image, instruction.payload, instruction.once, {});
+            break;
+        case InstructionKind::Grid:
+            step(StepKind::Grid, instruction.payload, instruction.once, {});
+            break;
         case InstructionKind::Call: call(instruction); return;
         case InstructionKind::Loop: loop(instruction); return;
         }
@@ -390,20 +407,25 @@ class Encoder {
     Read read(const Instruction &instruction) {
         ir::TableId id = ir::table_of(instruction.payload);
         const ir::Table &table = scene_.graph.table(id);
-        auto [it, fresh] = tables_.emplace(id, static_cast<std::uint32_t>(program_.table_data.size()));
-        if (fresh) program_.table_data.insert(program_.table_data.end(), table.data.begin(), table.data.end());
-        return {it->second + static_cast<std::uint32_t>(ir::column_of(instruction.payload)), table.rows, table.stride,
-                static_cast<int>(instruction.outs)};
+        auto [it, fresh] =
+            tables_.emplace(id, static_cast<std::uint32_t>(program_.table_data.size()));
+        if (fresh)
+            program_.table_data.insert(program_.table_data.end(), table.data.begin(),
+                                       table.data.end());
+        return {it->second + static_cast<std::uint32_t>(ir::column_of(instruction.payload)),
+                table.rows, table.stride, static_cast<int>(instruction.outs)};
     }
 
     void call(const Instruction &instruction) {
         std::uint32_t index = calls_.body[instruction.payload];
         const Code &callee = codes_[index];
         auto there = [&](Value v) {
-            return Place{address(callee, layouts_[index], source_cells_[index], v), callee.values[v].shared};
+            return Place{address(callee, layouts_[index], source_cells_[index], v),
+                         callee.values[v].shared};
         };
         for (std::size_t i = 0; i < instruction.in.size(); ++i)
-            copy(there(callee.params[i]), place(instruction.in[i]), callee.values[callee.params[i]].type);
+            copy(there(callee.params[i]), place(instruction.in[i]),
+                 callee.values[callee.params[i]].type);
         step(StepKind::Call, blocks_[index], false, {});
         for (std::uint32_t k = 0; k < instruction.outs; ++k)
             copy(place(Value{instruction.out.index + k}), there(callee.results[k]),
@@ -416,8 +438,8 @@ class Encoder {
             copy(place(loop.vars[k]), place(loop.init[k]), code_->values[loop.vars[k]].type);
         if (loop.active) copy(place(loop.active), {yes_, true}, ir::Type::Bool);
         std::uint32_t body = block(layout_->loops[instruction.payload], &loop);
-        program_.loops.push_back(
-            {body, address(loop.count), code_->values[loop.count].shared, address(loop.index), loop.max_count});
+        program_.loops.push_back({body, address(loop.count), code_->values[loop.count].shared,
+                                  address(loop.index), loop.max_count});
         step(StepKind::Loop, static_cast<std::uint32_t>(program_.loops.size() - 1), false, {});
     }
 
@@ -429,7 +451,8 @@ class Encoder {
     std::vector<Layout> layouts_;
     std::vector<std::uint32_t> blocks_; // by code
     std::vector<std::vector<std::uint32_t>> source_cells_;
-    std::map<std::tuple<Program::Shared::Kind, Word, std::uint32_t, std::uint32_t>, std::uint32_t> known_;
+    std::map<std::tuple<Program::Shared::Kind, Word, std::uint32_t, std::uint32_t>, std::uint32_t>
+        known_;
     std::unordered_map<ir::TableId, std::uint32_t> tables_;
     std::uint32_t cells_ = 0, yes_ = 0;
     std::size_t first_register_ = 0;

@@ -1,5 +1,5 @@
-// Every variant of every kernel as a loop over a batch, and the table of them. The loops are plain, so that the compiler
-// vectorises them for whatever processor the including file is compiled for.
+// Every variant of every kernel as a loop over a batch, and the table of them. The loops are plain,
+// so that the compiler vectorises them for whatever processor the including file is compiled for.
 #pragma once
 
 #include "backend-cpu/kernel_rows.h"
@@ -38,12 +38,15 @@ template <class Cell, class T> struct Operand<Cell, T, true> {
     T operator[](std::size_t) const { return value; }
 };
 
-// An output may stand in the register of an input that ends here, number by number: no turn depends on another.
+// An output may stand in the register of an input that ends here, number by number: no turn depends
+// on another.
 template <class Row, class Cell, Mask mask, class R, class... P, std::size_t... i>
-void loop_of(R (*)(P...), std::index_sequence<i...>, Cell *cells, const std::uint32_t *operands, std::size_t n) {
+void loop_of(R (*)(P...), std::index_sequence<i...>, Cell *cells, const std::uint32_t *operands,
+             std::size_t n) {
     constexpr std::size_t outs = outputs_of<R>;
     const std::tuple<Operand<Cell, P, (mask >> i & 1) != 0>...> in(cells + operands[outs + i]...);
-    if constexpr (std::is_same_v<R, float> || std::is_same_v<R, I> || std::is_same_v<R, bool> || outs == 1) {
+    if constexpr (std::is_same_v<R, float> || std::is_same_v<R, I> || std::is_same_v<R, bool> ||
+                  outs == 1) {
         Cell *out = cells + operands[0];
         FATHOM_INDEPENDENT
         for (std::size_t k = 0; k < n; ++k) store(out[k], Row::run(std::get<i>(in)[k]...));
@@ -61,12 +64,14 @@ void loop_of(R (*)(P...), std::index_sequence<i...>, Cell *cells, const std::uin
 // Flat: a call inside would keep the loop from being vectorised.
 template <class Row, class Cell, Mask mask>
 [[gnu::flatten]] void loop(Cell *cells, const std::uint32_t *operands, std::size_t n) {
-    loop_of<Row, Cell, mask>(&Row::run, std::make_index_sequence<inputs_of_row<Row>>{}, cells, operands, n);
+    loop_of<Row, Cell, mask>(&Row::run, std::make_index_sequence<inputs_of_row<Row>>{}, cells,
+                             operands, n);
 }
 
 template <class Cell> using LoopPointer = void (*)(Cell *, const std::uint32_t *, std::size_t);
 
-template <class Row, class Cell, std::size_t... m> constexpr auto loops_of_row(std::index_sequence<m...>) {
+template <class Row, class Cell, std::size_t... m>
+constexpr auto loops_of_row(std::index_sequence<m...>) {
     constexpr auto masks = masks_of<Row>();
     return std::array<LoopPointer<Cell>, sizeof...(m)>{&loop<Row, Cell, masks[m]>...};
 }

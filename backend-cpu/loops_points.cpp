@@ -1,5 +1,5 @@
-// The point kernels, compiled once for every instruction set (CMakeLists.txt, FATHOM_ISA). Its own function's name carries
-// the set; kernels.cpp chooses.
+// The point kernels, compiled once for every instruction set (CMakeLists.txt, FATHOM_ISA). Its own
+// function's name carries the set; kernels.cpp chooses.
 #include "backend-cpu/loops.h"
 
 namespace fathom::cpu::FATHOM_ISA {

@@ -1,5 +1,5 @@
-// Rays through the field, in batches from which those that are done drop out. Names and order follow ir/look.h and
-// backend-glsl/marcher.cpp.
+// Rays through the field, in batches from which those that are done drop out. Names and order
+// follow ir/look.h and backend-glsl/marcher.cpp.
 #include "backend-cpu/rays.h"
 
 #include "ir/look.h"
@@ -13,8 +13,10 @@ namespace look = ir::look;
 
 Lengths::Lengths(const Stage &stage)
     : slack(static_cast<float>(stage.frame.slack)), pixel(static_cast<float>(stage.frame.pixel)),
-      far(static_cast<float>(stage.frame.far)), base(static_cast<float>(stage.frame.tolerance_base)),
-      slope(static_cast<float>(stage.frame.tolerance_slope)), orthographic(stage.view.orthographic) {}
+      far(static_cast<float>(stage.frame.far)),
+      base(static_cast<float>(stage.frame.tolerance_base)),
+      slope(static_cast<float>(stage.frame.tolerance_slope)),
+      orthographic(stage.view.orthographic) {}
 
 float Lengths::arm(float t) const { return tolerance(t) + look::normal_slack * slack; }
 
@@ -55,14 +57,16 @@ void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std:
     for (std::size_t k = 0; k < n; ++k) out[k] = (0.75f / h[k]) * out[k];
 }
 
-void near(Worker &worker, const Vec *points, const float *d, const float *h, float *out, std::size_t n) {
+void near(Worker &worker, const Vec *points, const float *d, const float *h, float *out,
+          std::size_t n) {
     if (!worker.stage.frame.steep) {
         std::copy(d, d + n, out);
         return;
     }
     std::vector<Vec> slopes(n);
     gradients(worker, points, h, slopes.data(), n);
-    for (std::size_t k = 0; k < n; ++k) out[k] = d[k] / clamp(length(slopes[k]), look::least_slope, 1.0f);
+    for (std::size_t k = 0; k < n; ++k)
+        out[k] = d[k] / clamp(length(slopes[k]), look::least_slope, 1.0f);
 }
 
 namespace {
@@ -108,7 +112,8 @@ void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
 
 } // namespace
 
-void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings, bool brute) {
+void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings,
+           bool brute) {
     const Lengths lengths(worker.stage);
     const int max_steps = worker.stage.scene->render.max_steps * (brute ? 100 : 1);
     std::vector<Walk> walks(rays.size());
@@ -143,7 +148,8 @@ void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> la
                 walk.t += walk.before - walk.stride;
                 walk.stride = walk.before;
             } else if (walk.d <= lengths.tolerance(walk.t)) {
-                arrivals.add(active[k], ray.origin + walk.t * ray.direction, walk.d, lengths.arm(walk.t));
+                arrivals.add(active[k], ray.origin + walk.t * ray.direction, walk.d,
+                             lengths.arm(walk.t));
             } else {
                 advance(walk, ray.end, lengths, brute);
             }
@@ -190,7 +196,8 @@ void shadows(Worker &worker, std::span<const ShadowRay> rays, float angle, std::
         for (std::size_t k = 0; k < active.size(); ++k) {
             const State &state = states[active[k]];
             if (worker.values[k] < state.shadow * angle * state.s) {
-                close.push_back(k), points.push_back(worker.points.vec(0, k)), d.push_back(worker.values[k]);
+                close.push_back(k), points.push_back(worker.points.vec(0, k)),
+                    d.push_back(worker.values[k]);
                 arms.push_back(rays[active[k]].arm);
             }
         }

@@ -1,5 +1,5 @@
-// The CPU's pictures: ir/look.h over batches of rays, in float32 and in the order of backend-glsl/marcher.cpp, on all
-// cores. Opens and prints nothing.
+// The CPU's pictures: ir/look.h over batches of rays, in float32 and in the order of
+// backend-glsl/marcher.cpp, on all cores. Opens and prints nothing.
 #pragma once
 
 #include "backend-cpu/tape.h"
@@ -13,9 +13,9 @@ namespace fathom::cpu {
 
 // Work that was done, in numbers that do not depend on the machine.
 struct Work {
-    std::uint64_t rays = 0;        // from the eye
+    std::uint64_t rays = 0; // from the eye
     std::uint64_t hits = 0;
-    std::uint64_t steps = 0;       // of rays from the eye: evaluations on their way, looks.h's `steps`
+    std::uint64_t steps = 0; // of rays from the eye: evaluations on their way, looks.h's `steps`
     std::uint64_t shadow_steps = 0;
     std::uint64_t evaluations = 0; // of the distance, for whatever purpose
     Work &operator+=(const Work &other);
@@ -59,13 +59,15 @@ struct Tile {
     int x = 0, y = 0, width = 0, height = 0; // of the picture, whose pixels there are now final
 };
 
-// Called by one thread at a time, with the part that is done, 0 to 1, and the tile just finished; false cancels.
+// Called by one thread at a time, with the part that is done, 0 to 1, and the tile just finished;
+// false cancels.
 using Progress = std::function<bool(double done, const Tile &tile, const Picture &so_far)>;
 
 Picture render(const Stage &stage, const PictureOptions &options, const Progress &progress = {});
 
-// Rays alone, for tests: where each hits (negative: nowhere) and after how many steps. `brute` marches plainly, at a tenth
-// of the proved step and ten times as often, as a check on what the stepping may have jumped over.
+// Rays alone, for tests: where each hits (negative: nowhere) and after how many steps. `brute`
+// marches plainly, at a tenth of the proved step and ten times as often, as a check on what the
+// stepping may have jumped over.
 struct Ray {
     std::array<float, 3> origin, direction;
 };
@@ -74,6 +76,7 @@ struct Landing {
     int steps = 0;
 };
 std::vector<Landing> cast(const Stage &stage, std::span<const Ray> rays, bool brute = false);
-Ray eye_ray(const Stage &stage, float x, float y); // through a place of the picture, in pixels from its top left
+Ray eye_ray(const Stage &stage, float x,
+            float y); // through a place of the picture, in pixels from its top left
 
 } // namespace fathom::cpu

@@ -1,5 +1,6 @@
-// A picture as tiles over threads: eye rays in, sRGB out. Each thread takes the next tile that no one has; a finished one
-// is reported under a lock, so that the caller's function runs once at a time.
+// A picture as tiles over threads: eye rays in, sRGB out. Each thread takes the next tile that no
+// one has; a finished one is reported under a lock, so that the caller's function runs once at a
+// time.
 #include "backend-cpu/rays.h"
 
 #include "ir/look.h"
@@ -50,7 +51,8 @@ Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int heigh
     if (stage.has_background) stage.background = compile(scene, scene.background_function);
     for (const ir::Surface &surface : scene.surfaces) {
         const ir::NodeId params[] = {surface.point, surface.normal, surface.extra};
-        const ir::NodeId results[] = {surface.diffuse, surface.specular, surface.exponent, surface.emission};
+        const ir::NodeId results[] = {surface.diffuse, surface.specular, surface.exponent,
+                                      surface.emission};
         stage.surfaces.push_back(compile(scene, params, results));
         stage.local_normals = stage.local_normals || reads_normal(scene.graph, surface);
     }
@@ -93,12 +95,16 @@ float encoded(float linear) {
     return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f;
 }
 
-std::uint8_t byte(float x) { return static_cast<std::uint8_t>(clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f); }
+std::uint8_t byte(float x) {
+    return static_cast<std::uint8_t>(clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);
+}
 
 // Blue for few steps, through green and yellow to red for all that are allowed.
 Vec heat(int steps, int most) {
-    const float x = std::log2(1.0f + static_cast<float>(steps)) / std::log2(1.0f + static_cast<float>(most));
-    return {clamp(2.0f * x - 0.6f, 0, 1), clamp(1.6f - std::fabs(3.2f * x - 1.6f), 0, 1), clamp(1.0f - 2.2f * x, 0, 1)};
+    const float x =
+        std::log2(1.0f + static_cast<float>(steps)) / std::log2(1.0f + static_cast<float>(most));
+    return {clamp(2.0f * x - 0.6f, 0, 1), clamp(1.6f - std::fabs(3.2f * x - 1.6f), 0, 1),
+            clamp(1.0f - 2.2f * x, 0, 1)};
 }
 
 void draw(Worker &worker, const PictureOptions &options, const Tile &tile, Picture &picture) {
@@ -111,17 +117,22 @@ void draw(Worker &worker, const PictureOptions &options, const Tile &tile, Pictu
     for (int sample = 0; sample < samples; ++sample) {
         const auto offset = ir::sample_offset(sample);
         for (std::size_t i = 0; i < count; ++i) {
-            const int x = tile.x + static_cast<int>(i) % tile.width, y = tile.y + static_cast<int>(i) / tile.width;
-            rays[i] = eye(stage, static_cast<float>(x + offset[0]), static_cast<float>(y + offset[1]));
+            const int x = tile.x + static_cast<int>(i) % tile.width,
+                      y = tile.y + static_cast<int>(i) / tile.width;
+            rays[i] =
+                eye(stage, static_cast<float>(x + offset[0]), static_cast<float>(y + offset[1]));
         }
         march(worker, rays, landings, false);
         if (options.mode == PictureMode::Color) shade(worker, rays, landings, colors);
         for (std::size_t i = 0; i < count; ++i) sum[i] = sum[i] + colors[i];
     }
     for (std::size_t i = 0; i < count; ++i) {
-        const int x = tile.x + static_cast<int>(i) % tile.width, y = tile.y + static_cast<int>(i) / tile.width;
-        std::uint8_t *pixel = picture.rgba.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                                                         static_cast<std::size_t>(x));
+        const int x = tile.x + static_cast<int>(i) % tile.width,
+                  y = tile.y + static_cast<int>(i) / tile.width;
+        std::uint8_t *pixel =
+            picture.rgba.data() +
+            4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                 static_cast<std::size_t>(x));
         Vec c;
         if (options.mode == PictureMode::Steps) {
             c = heat(landings[i].steps, stage.scene->render.max_steps);
@@ -140,7 +151,8 @@ std::vector<Tile> tiles_of(int width, int height) {
     std::vector<Tile> tiles;
     for (int y = 0; y < height; y += tile_side)
         for (int x = 0; x < width; x += tile_side)
-            tiles.push_back({x, y, std::min(tile_side, width - x), std::min(tile_side, height - y)});
+            tiles.push_back(
+                {x, y, std::min(tile_side, width - x), std::min(tile_side, height - y)});
     return tiles;
 }
 
@@ -148,7 +160,8 @@ std::vector<Tile> tiles_of(int width, int height) {
 
 Ray eye_ray(const Stage &stage, float x, float y) {
     const RayState ray = eye(stage, x, y);
-    return {{ray.origin.x, ray.origin.y, ray.origin.z}, {ray.direction.x, ray.direction.y, ray.direction.z}};
+    return {{ray.origin.x, ray.origin.y, ray.origin.z},
+            {ray.direction.x, ray.direction.y, ray.direction.z}};
 }
 
 std::vector<Landing> cast(const Stage &stage, std::span<const Ray> rays, bool brute) {
@@ -160,7 +173,8 @@ std::vector<Landing> cast(const Stage &stage, std::span<const Ray> rays, bool br
                                  {ray.direction[0], ray.direction[1], ray.direction[2]}));
     for (std::size_t first = 0; first < rays.size(); first += most_rays) {
         const std::size_t count = std::min(most_rays, rays.size() - first);
-        march(worker, std::span(states).subspan(first, count), std::span(landings).subspan(first, count), brute);
+        march(worker, std::span(states).subspan(first, count),
+              std::span(landings).subspan(first, count), brute);
     }
     return landings;
 }
@@ -169,7 +183,8 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
     Picture picture;
     picture.width = stage.width;
     picture.height = stage.height;
-    picture.rgba.resize(4 * static_cast<std::size_t>(stage.width) * static_cast<std::size_t>(stage.height));
+    picture.rgba.resize(4 * static_cast<std::size_t>(stage.width) *
+                        static_cast<std::size_t>(stage.height));
     const std::vector<Tile> tiles = tiles_of(stage.width, stage.height);
     std::atomic<std::size_t> next{0};
     std::atomic<bool> cancelled{false};
@@ -190,9 +205,11 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
         const std::lock_guard lock(report);
         picture.work += worker.work;
     };
-    const unsigned jobs = options.jobs > 0 ? options.jobs : std::max(std::thread::hardware_concurrency(), 1u);
+    const unsigned jobs =
+        options.jobs > 0 ? options.jobs : std::max(std::thread::hardware_concurrency(), 1u);
     std::vector<std::thread> threads;
-    for (unsigned j = 1; j < std::min<std::size_t>(jobs, tiles.size()); ++j) threads.emplace_back(work);
+    for (unsigned j = 1; j < std::min<std::size_t>(jobs, tiles.size()); ++j)
+        threads.emplace_back(work);
     work();
     for (std::thread &thread : threads) thread.join();
     picture.complete = finished == tiles.size();

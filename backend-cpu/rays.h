@@ -1,4 +1,5 @@
-// What marching and shading share: points in structure-of-arrays form, and one thread's memory for evaluating them.
+// What marching and shading share: points in structure-of-arrays form, and one thread's memory for
+// evaluating them.
 #pragma once
 
 #include "backend-cpu/march.h"
@@ -83,17 +84,21 @@ struct Inside {
     float first, last;
 };
 Inside box(const ir::Frame &frame, Vec origin, Vec direction);
-RayState clipped(const Stage &stage, Vec origin, Vec direction); // between the eye and the end of everything
+RayState clipped(const Stage &stage, Vec origin,
+                 Vec direction); // between the eye and the end of everything
 
 void distances(Worker &worker, const Columns &points, float *out, std::size_t n);
 // The gradients of the distance at n points, with arms h.
 void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std::size_t n);
-// The true distances near n points where the field says d; d itself where nothing was divided by a bound.
-void near(Worker &worker, const Vec *points, const float *d, const float *h, float *out, std::size_t n);
+// The true distances near n points where the field says d; d itself where nothing was divided by a
+// bound.
+void near(Worker &worker, const Vec *points, const float *d, const float *h, float *out,
+          std::size_t n);
 
 void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings, bool brute);
 // Linear colours of the rays; those with t < 0 see the background.
-void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings, std::span<Vec> colors);
+void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings,
+           std::span<Vec> colors);
 
 struct ShadowRay {
     Vec from, towards;

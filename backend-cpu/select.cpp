@@ -1,5 +1,6 @@
-// One switch from operations to kernels. Componentwise ones go component by component; products of matrices leave out
-// what is multiplied by a constant 0, so that a turn about an axis costs what it would by hand.
+// One switch from operations to kernels. Componentwise ones go component by component; products of
+// matrices leave out what is multiplied by a constant 0, so that a turn about an axis costs what it
+// would by hand.
 #include "backend-cpu/select.h"
 
 #include <cassert>
@@ -71,7 +72,8 @@ Values multiply(Builder &builder, const Values &a, Type a_type, const Values &b,
         for (std::size_t c = 0; c < n; ++c) out.push_back(sum_of_products(builder, a, column(c)));
     else
         for (std::size_t c = 0; c < n; ++c)
-            for (std::size_t r = 0; r < n; ++r) out.push_back(sum_of_products(builder, row(r), column(c)));
+            for (std::size_t r = 0; r < n; ++r)
+                out.push_back(sum_of_products(builder, row(r), column(c)));
     return out;
 }
 
@@ -94,9 +96,11 @@ Value choose(Builder &builder, Value condition, Value yes, Value no, bool is_flo
 }
 
 // A hit's values: distance, paint, point, extra; the paint alone is an int.
-Values choose_hit(Builder &builder, Value condition, const Values &yes, const Values &no, std::size_t from) {
+Values choose_hit(Builder &builder, Value condition, const Values &yes, const Values &no,
+                  std::size_t from) {
     Values out(no.begin(), no.begin() + static_cast<std::ptrdiff_t>(from));
-    for (std::size_t i = from; i < no.size(); ++i) out.push_back(choose(builder, condition, yes[i], no[i], i != 1));
+    for (std::size_t i = from; i < no.size(); ++i)
+        out.push_back(choose(builder, condition, yes[i], no[i], i != 1));
     return out;
 }
 
@@ -123,13 +127,16 @@ Kernel for_size(std::size_t size, std::array<Kernel, 4> kernels) { return kernel
 
 } // namespace
 
-std::vector<Value> select(Builder &builder, const Node &node, Arguments args, std::span<const Type> types) {
+std::vector<Value> select(Builder &builder, const Node &node, Arguments args,
+                          std::span<const Type> types) {
     const bool whole = !types.empty() && (types.back() == Type::Int || types.back() == Type::Bool);
     auto each = [&](Kernel kernel) {
         assert(!whole);
         return by_component(builder, kernel, args);
     };
-    auto either = [&](Kernel floats, Kernel ints) { return by_component(builder, whole ? ints : floats, args); };
+    auto either = [&](Kernel floats, Kernel ints) {
+        return by_component(builder, whole ? ints : floats, args);
+    };
     auto together = [&](Kernel kernel) { return builder.outputs(kernel, joined(args)); };
     const std::size_t size = args.empty() ? 0 : args[0].size();
 
@@ -175,11 +182,13 @@ std::vector<Value> select(Builder &builder, const Node &node, Arguments args, st
         if (size == 1) return {builder.make(Kernel::MulF, {args[0][0], args[1][0]})};
         return together(for_size(size, {Kernel::MulF, Kernel::Dot2, Kernel::Dot3, Kernel::Dot4}));
     }
-    case Op::Length: return together(for_size(size, {Kernel::AbsF, Kernel::Length2, Kernel::Length3, Kernel::Length4}));
+    case Op::Length:
+        return together(
+            for_size(size, {Kernel::AbsF, Kernel::Length2, Kernel::Length3, Kernel::Length4}));
     case Op::Cross: return together(Kernel::Cross);
     case Op::Normalize:
-        return together(
-            for_size(size, {Kernel::Normalize1, Kernel::Normalize2, Kernel::Normalize3, Kernel::Normalize4}));
+        return together(for_size(size, {Kernel::Normalize1, Kernel::Normalize2, Kernel::Normalize3,
+                                        Kernel::Normalize4}));
 
     case Op::Less: return either(Kernel::LessF, Kernel::LessI);
     case Op::LessEqual: return either(Kernel::LessEqualF, Kernel::LessEqualI);
@@ -226,7 +235,8 @@ std::vector<Value> select(Builder &builder, const Node &node, Arguments args, st
 
     case Op::Hash:
         if (whole) return together(Kernel::HashI);
-        return together(for_size(size, {Kernel::Hash1, Kernel::Hash2, Kernel::Hash3, Kernel::Hash4}));
+        return together(
+            for_size(size, {Kernel::Hash1, Kernel::Hash2, Kernel::Hash3, Kernel::Hash4}));
     case Op::Perlin: return together(Kernel::Perlin);
     case Op::Simplex: return together(Kernel::Simplex);
     case Op::ValueNoise: return together(Kernel::ValueNoise);

@@ -1,5 +1,5 @@
-// The colours of rays, by ir/look.h: normals, surfaces grouped by paint, lights with their shadows, occlusion. Names and
-// order follow backend-glsl/marcher.cpp.
+// The colours of rays, by ir/look.h: normals, surfaces grouped by paint, lights with their shadows,
+// occlusion. Names and order follow backend-glsl/marcher.cpp.
 #include "backend-cpu/rays.h"
 
 #include "ir/look.h"
@@ -36,11 +36,13 @@ void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
     }
 }
 
-constexpr std::size_t paint_row = 1, point_row = 2, extra_row = 5; // of a hit: distance, paint, point, extra
+constexpr std::size_t paint_row = 1, point_row = 2,
+                      extra_row = 5; // of a hit: distance, paint, point, extra
 
 void ask_hits(Worker &worker, std::span<const Vec> points) {
     for (std::size_t k = 0; k < points.size(); ++k) worker.points.set(0, k, points[k]);
-    evaluate(worker.stage.hit, worker.hit, worker.points.pointers(), worker.hits.pointers(), points.size());
+    evaluate(worker.stage.hit, worker.hit, worker.points.pointers(), worker.hits.pointers(),
+             points.size());
 }
 
 void find_materials(Worker &worker, Points &at) {
@@ -76,7 +78,8 @@ void find_materials(Worker &worker, Points &at) {
             in.set(3, i, local[group[i]]);
             for (std::size_t c = 0; c < 4; ++c) in[6 + c][i] = worker.hits[extra_row + c][group[i]];
         }
-        evaluate(stage.surfaces[s], worker.surfaces[s], in.pointers(), out.pointers(), group.size());
+        evaluate(stage.surfaces[s], worker.surfaces[s], in.pointers(), out.pointers(),
+                 group.size());
         for (std::size_t i = 0; i < group.size(); ++i)
             at.material[group[i]] = {out.vec(0, i), out.vec(3, i), out.vec(7, i), out[6][i]};
     }
@@ -100,7 +103,8 @@ std::vector<float> find_occlusion(Worker &worker, const Points &at) {
         }
         distances(worker, worker.points, d.data(), count);
         near(worker, q.data(), d.data(), at.h.data(), truth.data(), count);
-        for (std::size_t k = 0; k < count; ++k) sum[k] += weight * clamp(1.0f - truth[k] / x, 0.0f, 1.0f);
+        for (std::size_t k = 0; k < count; ++k)
+            sum[k] += weight * clamp(1.0f - truth[k] / x, 0.0f, 1.0f);
     }
     for (float &s : sum) s /= total;
     return sum;
@@ -112,8 +116,8 @@ struct Facing {
     float facing;
 };
 
-void add_light(Worker &worker, std::span<const RayState> rays, const Points &at, const ir::LightValue &light,
-               std::span<Vec> colors) {
+void add_light(Worker &worker, std::span<const RayState> rays, const Points &at,
+               const ir::LightValue &light, std::span<Vec> colors) {
     const Stage &stage = worker.stage;
     const Lengths lengths(stage);
     const Stage::Look &lighting = stage.look;
@@ -128,14 +132,16 @@ void add_light(Worker &worker, std::span<const RayState> rays, const Points &at,
         const float facing = dot(at.n[k], l);
         if (!(facing > 0)) continue;
         lit.push_back({k, l, facing});
-        const float sun_reach = stage.frame.boxed ? std::max(box(stage.frame, q, l).last, 0.0f) : lengths.far;
+        const float sun_reach =
+            stage.frame.boxed ? std::max(box(stage.frame, q, l).last, 0.0f) : lengths.far;
         shadow_rays.push_back({q, l, light.directional ? sun_reach : away, margin, at.h[k]});
     }
     std::vector<float> seen(lit.size(), 1.0f);
     if (lighting.shadow_darkness > 0) {
         std::vector<float> shadow(lit.size());
         shadows(worker, shadow_rays, std::max(lighting.soft_shadows, look::least_angle), shadow);
-        for (std::size_t i = 0; i < lit.size(); ++i) seen[i] -= lighting.shadow_darkness * (1.0f - shadow[i]);
+        for (std::size_t i = 0; i < lit.size(); ++i)
+            seen[i] -= lighting.shadow_darkness * (1.0f - shadow[i]);
     }
     const Vec color = vec(light.color);
     for (std::size_t i = 0; i < lit.size(); ++i) {
@@ -149,24 +155,27 @@ void add_light(Worker &worker, std::span<const RayState> rays, const Points &at,
     }
 }
 
-void see_background(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings,
-                    std::span<Vec> colors) {
+void see_background(Worker &worker, std::span<const RayState> rays,
+                    std::span<const Landing> landings, std::span<Vec> colors) {
     std::vector<std::size_t> missed;
     for (std::size_t i = 0; i < rays.size(); ++i)
         if (landings[i].t < 0) missed.push_back(i);
     if (!worker.stage.has_background) {
-        for (std::size_t i : missed) colors[i] = {look::background[0], look::background[1], look::background[2]};
+        for (std::size_t i : missed)
+            colors[i] = {look::background[0], look::background[1], look::background[2]};
         return;
     }
-    for (std::size_t k = 0; k < missed.size(); ++k) worker.points.set(0, k, rays[missed[k]].direction);
-    evaluate(worker.stage.background, worker.background, worker.points.pointers(), worker.taps.pointers(),
-             missed.size());
+    for (std::size_t k = 0; k < missed.size(); ++k)
+        worker.points.set(0, k, rays[missed[k]].direction);
+    evaluate(worker.stage.background, worker.background, worker.points.pointers(),
+             worker.taps.pointers(), missed.size());
     for (std::size_t k = 0; k < missed.size(); ++k) colors[missed[k]] = worker.taps.vec(0, k);
 }
 
 } // namespace
 
-void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings, std::span<Vec> colors) {
+void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings,
+           std::span<Vec> colors) {
     see_background(worker, rays, landings, colors);
     const Stage &stage = worker.stage;
     const Lengths lengths(stage);
@@ -190,7 +199,8 @@ void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landi
     std::vector<float> open(at.size(), 1.0f);
     if (stage.look.ambient_occlusion > 0) {
         const std::vector<float> occlusion = find_occlusion(worker, at);
-        for (std::size_t k = 0; k < at.size(); ++k) open[k] -= stage.look.ambient_occlusion * occlusion[k];
+        for (std::size_t k = 0; k < at.size(); ++k)
+            open[k] -= stage.look.ambient_occlusion * occlusion[k];
     }
     const Vec ambient{stage.look.ambient[0], stage.look.ambient[1], stage.look.ambient[2]};
     for (std::size_t k = 0; k < at.size(); ++k) {

@@ -1,6 +1,7 @@
-// A lowered function as a tape: straight runs of kernels over batches of points in structure-of-arrays registers, with
-// real calls and real loops, so that its length is linear in the scene. Programs are values: compile once, share between
-// threads, give each thread a Scratch of its own. Knows nothing of rays and pictures.
+// A lowered function as a tape: straight runs of kernels over batches of points in
+// structure-of-arrays registers, with real calls and real loops, so that its length is linear in
+// the scene. Programs are values: compile once, share between threads, give each thread a Scratch
+// of its own. Knows nothing of rays and pictures.
 #pragma once
 
 #include "backend-cpu/cells.h"
@@ -32,12 +33,13 @@ enum class StepKind : std::uint8_t {
 
 struct Step {
     StepKind kind = StepKind::Run;
-    bool once = false;         // the operands are the same for every point: run for one
+    bool once = false; // the operands are the same for every point: run for one
     std::uint32_t target = 0;
     std::uint32_t operands = 0; // where its operands begin in Program::operands
 };
 
-// Addresses count cells of the scratch: a register is batch_size cells, a number that all points share is one.
+// Addresses count cells of the scratch: a register is batch_size cells, a number that all points
+// share is one.
 struct Loop {
     std::uint32_t block = 0;
     std::uint32_t count = 0; // address
@@ -63,9 +65,9 @@ struct Program {
     struct Shared { // cells filled once per Scratch
         enum class Kind : std::uint8_t { Float, Int, Time, Param } kind = Kind::Float;
         std::uint32_t address = 0;
-        Word bits = 0;                                // Float, Int
-        std::uint32_t param = 0, component = 0;       // Param
-        ir::Type type = ir::Type::Float;              // Param: Float, Int or Bool
+        Word bits = 0;                          // Float, Int
+        std::uint32_t param = 0, component = 0; // Param
+        ir::Type type = ir::Type::Float;        // Param: Float, Int or Bool
     };
 
     std::vector<Step> steps;
@@ -84,7 +86,8 @@ struct Program {
 
 Program compile(const ir::Scene &scene, ir::FunctionId function);
 // Expressions in `params` (Vars), all their results one after the other.
-Program compile(const ir::Scene &scene, std::span<const ir::NodeId> params, std::span<const ir::NodeId> results);
+Program compile(const ir::Scene &scene, std::span<const ir::NodeId> params,
+                std::span<const ir::NodeId> results);
 
 // The memory that one thread evaluates a program in: made once, used for any number of batches.
 struct Scratch {
@@ -96,12 +99,15 @@ struct Scratch {
 };
 Scratch make_scratch(const Program &program, const Inputs &inputs);
 
-// n points: in[c] and out[c] are the c-th component of the parameters and of the result, one number a point; of an Int
-// or Bool component the number's value as a float's bits (std::bit_cast<std::int32_t>). Allocates nothing.
-void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out, std::size_t n);
+// n points: in[c] and out[c] are the c-th component of the parameters and of the result, one number
+// a point; of an Int or Bool component the number's value as a float's bits
+// (std::bit_cast<std::int32_t>). Allocates nothing.
+void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out,
+              std::size_t n);
 
-// Value and gradient by the first three input components, from the same tape run over dual numbers. At a kink one of the
-// sides', the same that decides the value. The result is a float: out is value, d/dx, d/dy, d/dz.
+// Value and gradient by the first three input components, from the same tape run over dual numbers.
+// At a kink one of the sides', the same that decides the value. The result is a float: out is
+// value, d/dx, d/dy, d/dz.
 struct GradientScratch {
     GradientScratch() = default;
     GradientScratch(GradientScratch &&) = default; // never copied: `cells` points into `memory`
@@ -110,8 +116,8 @@ struct GradientScratch {
     DualCell *cells = nullptr;
 };
 GradientScratch make_gradient_scratch(const Program &program, const Inputs &inputs);
-void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in, float *const *out,
-                       std::size_t n);
+void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in,
+                       float *const *out, std::size_t n);
 
 std::string dump(const Program &program); // one line a step, for tests and for reading
 

@@ -50,11 +50,11 @@ class Emitter {
         : scene_(scene), options_(options),
           diagnostics_(diagnostics), module_{scene, options, {}, {}, {}, {}, {}, {}, {}, {}, {}} {}
 
-    // The fields that a text with the noise cache keeps, as a text of their own that ends in `tail`.
+    // The fields that a text with the noise cache keeps, as a text of their own that ends in
+    // `tail`.
     Output run_fields(const std::vector<std::uint32_t> &caches) {
         std::vector<ir::FunctionId> fields;
-        for (std::uint32_t id : caches)
-            fields.push_back(scene_.graph.cache(ir::CacheId{id}).field);
+        for (std::uint32_t id : caches) fields.push_back(scene_.graph.cache(ir::CacheId{id}).field);
         const SceneText scene = assemble_functions(module_, fields);
         std::vector<KeptText> kept;
         for (std::size_t i = 0; i < caches.size(); ++i)
@@ -70,8 +70,8 @@ class Emitter {
     }
 
     Output run() {
-        const SceneText scene = assemble(
-            module_, !options_.field_only && options_.instruments != Instruments::Probe);
+        const SceneText scene =
+            assemble(module_, !options_.field_only && options_.instruments != Instruments::Probe);
         Output output = gathered();
         for (const auto &[id, field] : module_.kept) output.kept.push_back(kept_field(id));
         const Target target = options_.target;
@@ -119,8 +119,8 @@ class Emitter {
         kept.meaning = 14695981039346656037u; // FNV-1a, 64 bits
         const auto mix = [&](const void *data, std::size_t size) {
             for (std::size_t i = 0; i < size; ++i)
-                kept.meaning = (kept.meaning ^ static_cast<const unsigned char *>(data)[i]) *
-                               1099511628211u;
+                kept.meaning =
+                    (kept.meaning ^ static_cast<const unsigned char *>(data)[i]) * 1099511628211u;
         };
         mix(text.tables.data(), text.tables.size());
         mix(text.functions.data(), text.functions.size());
@@ -168,14 +168,15 @@ class Emitter {
 
     std::string hit_function() const {
         if (scene_.hit && options_.part_stride > 0)
-            return fill("\nint fathom_part;\n\n"
-                        "// A marked hit's paint is code + stride * part; the last code is no paint.\n"
-                        "Hit fathom_hit(vec3 p) {\n    Hit s = fathom_marked_hit(p);\n"
-                        "    fathom_part = s.paint < 0 ? 0 : s.paint / $STRIDE;\n"
-                        "    s.paint = s.paint < 0 ? -1 : s.paint - fathom_part * $STRIDE;\n"
-                        "    if (s.paint == $STRIDE - 1) s.paint = -1;\n"
-                        "    return s;\n}\n",
-                        {{"STRIDE", std::to_string(options_.part_stride)}});
+            return fill(
+                "\nint fathom_part;\n\n"
+                "// A marked hit's paint is code + stride * part; the last code is no paint.\n"
+                "Hit fathom_hit(vec3 p) {\n    Hit s = fathom_marked_hit(p);\n"
+                "    fathom_part = s.paint < 0 ? 0 : s.paint / $STRIDE;\n"
+                "    s.paint = s.paint < 0 ? -1 : s.paint - fathom_part * $STRIDE;\n"
+                "    if (s.paint == $STRIDE - 1) s.paint = -1;\n"
+                "    return s;\n}\n",
+                {{"STRIDE", std::to_string(options_.part_stride)}});
         if (options_.instruments == Instruments::Pick && scene_.hit)
             return "\nconst int fathom_part = 0;\n";
         if (scene_.hit) return "";
@@ -367,7 +368,8 @@ class Emitter {
         }
         const bool kept = !module_.kept.empty();
         return std::string("\n") +
-               (options_.target == Target::Spirv || options_.instruments == Instruments::Pick || kept
+               (options_.target == Target::Spirv || options_.instruments == Instruments::Pick ||
+                        kept
                     ? "layout(location = 0) "
                     : "") +
                "out vec4 fathom_color;\n" + (kept ? cache_outputs() : "") +

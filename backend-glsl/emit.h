@@ -36,8 +36,9 @@ struct Options {
     bool buffers = false; // the host binds large tables as the texture buffer `fathom_tables`; else
                           // a formula stands for a table that has one, and all other data is text
     bool computed = false; // formulas first, also where there is a buffer
-    int table_text = 16;  // rows up to which data is text all the same
-    bool noise_cache = false; // GL 4.2: cached fields worth it are read through the noise cache (cache.h)
+    int table_text = 16;   // rows up to which data is text all the same
+    bool noise_cache =
+        false;       // GL 4.2: cached fields worth it are read through the noise cache (cache.h)
     double time = 0; // where a target has no host that sets a camera: the moment whose camera is
                      // the first view
     std::string title = "scene";              // html: the page's title
@@ -57,12 +58,13 @@ struct Sampler {
     std::uint32_t index = 0; // into Scene::images or Scene::grids
 };
 
-// A field that a text with `noise_cache` reads through the cache. The host sets fathom_cache_fields[i], i its place
-// in Output::kept, to a number of its own choice below cache_most_fields.
+// A field that a text with `noise_cache` reads through the cache. The host sets
+// fathom_cache_fields[i], i its place in Output::kept, to a number of its own choice below
+// cache_most_fields.
 struct KeptField {
-    std::uint32_t cache = 0;           // index into Graph::caches
-    bool wide = false;                 // vectors: its values lie in fathom_cache_wide
-    std::uint64_t meaning = 0;         // equal for fields that compute the same from the same params
+    std::uint32_t cache = 0;   // index into Graph::caches
+    bool wide = false;         // vectors: its values lie in fathom_cache_wide
+    std::uint64_t meaning = 0; // equal for fields that compute the same from the same params
     std::vector<std::uint32_t> params; // that it reads
 };
 
@@ -79,7 +81,8 @@ struct Output {
 
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics);
 
-// The passes that follow a picture drawn by a text with `noise_cache`. Empty where no field is kept.
+// The passes that follow a picture drawn by a text with `noise_cache`. Empty where no field is
+// kept.
 struct CachePasses {
     std::string reserve, publish, sweep; // the same for every scene
     Output fill;

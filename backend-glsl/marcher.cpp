@@ -225,10 +225,10 @@ constexpr const char *pick_ray = "    fathom_pick = vec4(0.0, t, float(fathom_st
 constexpr const char *pick_hit = "    fathom_pick.x = float(fathom_part);\n"
                                  "    fathom_pick.w = slope;\n";
 
-// A ray's march through the shell of a displacement reads kept values only, or computes all: where a value that it
-// wants is absent, it goes back to the last point at which no kept field was asked, and computes until the next. So the
-// field that it sees is continuous and not steeper than proved, whatever the cache holds (docs/noise-cache.md). The
-// points of one gradient do likewise.
+// A ray's march through the shell of a displacement reads kept values only, or computes all: where
+// a value that it wants is absent, it goes back to the last point at which no kept field was asked,
+// and computes until the next. So the field that it sees is continuous and not steeper than proved,
+// whatever the cache holds (docs/noise-cache.md). The points of one gradient do likewise.
 struct KeptMarch {
     const char *name, *text;
 };

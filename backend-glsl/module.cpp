@@ -128,13 +128,14 @@ class Gatherer {
     }
 
     void keep(ir::CacheId id) {
-        if (module_.kept.size() >= cache_most_fields || ir::kept(module_.scene, id) != ir::Kept::Yes)
+        if (module_.kept.size() >= cache_most_fields ||
+            ir::kept(module_.scene, id) != ir::Kept::Yes)
             return;
         const ir::Cache &cache = graph_.cache(id);
         const std::string &name = module_.functions.at(cache.field.index);
         module_.names.unique(name + "_kept");
-        module_.kept[id.index] = {name, graph_[graph_.function(cache.field).result].type, cache.cell,
-                                  module_.scene.caches[id.index].slope};
+        module_.kept[id.index] = {name, graph_[graph_.function(cache.field).result].type,
+                                  cache.cell, module_.scene.caches[id.index].slope};
     }
 
     void read(std::uint32_t slot, std::vector<NodeId> &todo) {

@@ -36,7 +36,7 @@ double rate(double amount, const std::function<void()> &run);
 
 double seconds(const std::function<void()> &run); // once
 double processor_seconds(); // of this process so far: what others take meanwhile does not count
-double seconds_now(); // of a steady clock
+double seconds_now();       // of a steady clock
 double median(std::vector<double> values);
 
 void print(const Table &table);

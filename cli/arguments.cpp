@@ -207,7 +207,9 @@ struct Reader {
 
         sub = command("compile", "write the scene's shader, validated", compile);
         add_scene(sub, compile.scene);
-        sub->add_option("-o", compile.out, "write here, not to standard output; for glsl450, large tables to OUT.tables")
+        sub->add_option(
+               "-o", compile.out,
+               "write here, not to standard output; for glsl450, large tables to OUT.tables")
             ->type_name("OUT");
         sub->add_option(
                "--target", compile.target,
@@ -217,8 +219,9 @@ struct Reader {
             ->type_name("TARGET");
         sub->add_flag("--field-only", compile.field_only,
                       "the field functions alone, for a renderer of your own");
-        sub->add_flag("--noise-cache", compile.noise_cache,
-                      "read cached fields through the noise cache; its passes are written beside OUT");
+        sub->add_flag(
+            "--noise-cache", compile.noise_cache,
+            "read cached fields through the noise cache; its passes are written beside OUT");
         sub->add_flag("--watch", compile.watch, "compile again after every save");
 
         sub = command("render", "make a picture, without a window", render);
@@ -251,7 +254,8 @@ struct Reader {
             ->check(quiet(CLI::Range(1, 256)))
             ->type_name("N");
 
-        sub->add_flag("--cache", render.cache, "read cached fields through the noise cache, as a moving view does");
+        sub->add_flag("--cache", render.cache,
+                      "read cached fields through the noise cache, as a moving view does");
 
         sub = command("eval", "print the field at points: distance gx gy gz", eval);
         add_scene(sub, eval.scene);
@@ -302,9 +306,11 @@ struct Reader {
         sub = command("bench", "measure the phases and a frame of a scene", bench);
         add_scene(sub, bench.scene);
         add_size(sub, bench.width, bench.height);
-        sub->add_flag("--noise-cache", bench.noise_cache, "measure the noise cache against exact frames");
+        sub->add_flag("--noise-cache", bench.noise_cache,
+                      "measure the noise cache against exact frames");
         option(
-            sub, "--cells", [this](const std::string &word) { return read_cells(word, bench.cache_bits); },
+            sub, "--cells",
+            [this](const std::string &word) { return read_cells(word, bench.cache_bits); },
             "cells of the noise cache along an axis: 4, 8, … 128; 64 unless said")
             ->type_name("N");
 
@@ -375,10 +381,12 @@ std::variant<Invocation, Answer> read_arguments(int count, const char *const *ar
     if (app.got_subcommand("compile") && reader.compile.noise_cache) {
         if (reader.compile.target != "glsl450" || reader.compile.field_only)
             return wrong("--noise-cache is for whole pictures by `--target glsl450`");
-        if (reader.compile.out.empty()) return wrong("--noise-cache writes several files: name the first by -o");
+        if (reader.compile.out.empty())
+            return wrong("--noise-cache writes several files: name the first by -o");
     }
     if (app.got_subcommand("render") && reader.render.cache) {
-        if (reader.render.backend == Backend::Cpu) return wrong("--cache needs GL, which --backend cpu leaves out");
+        if (reader.render.backend == Backend::Cpu)
+            return wrong("--cache needs GL, which --backend cpu leaves out");
         if (reader.render.samples > 1) return wrong("--cache takes one ray a pixel");
     }
     if (app.got_subcommand("eval") && reader.eval.at.empty() && !reader.eval.points)

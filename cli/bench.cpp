@@ -1,8 +1,8 @@
-// fathom bench: what a scene costs, phase by phase: medians of several runs on this machine, and counts that do not
-// depend on it.
+// fathom bench: what a scene costs, phase by phase: medians of several runs on this machine, and
+// counts that do not depend on it.
+#include "cli/bench.h"
 #include "backend-cpu/march.h"
 #include "backend-glsl/emit.h"
-#include "cli/bench.h"
 #include "cli/terminal.h"
 #include "render-gl/context.h"
 #include "render-gl/render.h"
@@ -22,7 +22,8 @@ double milliseconds_since(Clock::time_point start) {
 }
 
 double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    std::nth_element(values.begin(),
+                     values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
     return values[values.size() / 2];
 }
 
@@ -86,7 +87,8 @@ void bench_gl(const BenchCommand &command, const ir::Scene &scene, Terminal &ter
     terminal.put(fmt::format("{:<26} {}\n", "GL", std::get<gl::Context>(context).describe()));
     Clock::time_point start = Clock::now();
     auto program = gl::Program::build(output, scene);
-    row(terminal, "driver: compile and link", milliseconds_since(start), "ms"); // once: drivers keep what they compiled
+    row(terminal, "driver: compile and link", milliseconds_since(start),
+        "ms"); // once: drivers keep what they compiled
     if (!std::holds_alternative<gl::Program>(program)) return;
     gl::Request request;
     request.width = command.width;
@@ -102,13 +104,19 @@ void bench_cpu(const BenchCommand &command, const ir::Scene &scene, Terminal &te
     double aspect = static_cast<double>(command.width) / command.height;
     cpu::Work work;
     double time = measure([&] {
-        cpu::Stage stage = cpu::prepare(scene, ir::view_of(scene, 0, aspect), command.width, command.height, 0);
+        cpu::Stage stage =
+            cpu::prepare(scene, ir::view_of(scene, 0, aspect), command.width, command.height, 0);
         work = cpu::render(stage, {}).work;
     });
     row(terminal, "CPU frame", time, "ms");
-    row(terminal, "steps a ray", static_cast<double>(work.steps) / static_cast<double>(std::max<std::uint64_t>(work.rays, 1)), "");
+    row(terminal, "steps a ray",
+        static_cast<double>(work.steps) /
+            static_cast<double>(std::max<std::uint64_t>(work.rays, 1)),
+        "");
     row(terminal, "evaluations a pixel",
-        static_cast<double>(work.evaluations) / static_cast<double>(std::max<std::uint64_t>(work.rays, 1)), "");
+        static_cast<double>(work.evaluations) /
+            static_cast<double>(std::max<std::uint64_t>(work.rays, 1)),
+        "");
 }
 
 } // namespace
@@ -118,7 +126,8 @@ Exit run(const BenchCommand &command, Terminal &terminal) {
         terminal.say("fathom: bench reads its file many times; standard input can be read once");
         return usage_error;
     }
-    driver::Compilation compilation = driver::compile_file(command.scene.file, compile_options(command.scene));
+    driver::Compilation compilation =
+        driver::compile_file(command.scene.file, compile_options(command.scene));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     terminal.put(fmt::format("{} at {}x{}\n", command.scene.file, command.width, command.height));

@@ -12,15 +12,18 @@ namespace {
 std::string verdict_line(const driver::Compilation &compilation, const std::string &file) {
     driver::Verdict verdict = driver::judge(compilation.scene);
     return fmt::format("{}: ok, {}{}{}", file, driver::status_name(verdict.status),
-                       verdict.lipschitz ? fmt::format(", lipschitz {:.6g}", *verdict.lipschitz) : "",
+                       verdict.lipschitz ? fmt::format(", lipschitz {:.6g}", *verdict.lipschitz)
+                                         : "",
                        verdict.exact ? ", exact" : "");
 }
 
-// A line for an operation: what it is, the bound after it, what it does to its children's, and where it was written.
+// A line for an operation: what it is, the bound after it, what it does to its children's, and
+// where it was written.
 // `*` marks the chain of the steepest.
-void explain(const proof::Explanation &node, const Sources &sources, const std::string &lead, const std::string &below,
-             Terminal &terminal) {
-    std::string line = fmt::format("{}{} {}: {:.4g}", lead, node.worst ? "*" : " ", node.operation, node.lipschitz);
+void explain(const proof::Explanation &node, const Sources &sources, const std::string &lead,
+             const std::string &below, Terminal &terminal) {
+    std::string line = fmt::format("{}{} {}: {:.4g}", lead, node.worst ? "*" : " ", node.operation,
+                                   node.lipschitz);
     if (std::abs(node.factor - 1) > 1e-9) line += fmt::format(" (x {:.4g})", node.factor);
     if (node.share > 0.005) line += fmt::format(", {:.0f} % of the bound", 100 * node.share);
     if (!node.rule.empty()) line += ", " + node.rule;
@@ -32,15 +35,17 @@ void explain(const proof::Explanation &node, const Sources &sources, const std::
     terminal.put(line + "\n");
     for (std::size_t i = 0; i < node.children.size(); ++i) {
         bool last = i + 1 == node.children.size();
-        explain(node.children[i], sources, below + (last ? "`-" : "|-"), below + (last ? "  " : "| "), terminal);
+        explain(node.children[i], sources, below + (last ? "`-" : "|-"),
+                below + (last ? "  " : "| "), terminal);
     }
 }
 
 void explain_params(const ir::Scene &scene, Terminal &terminal) {
     for (const ir::Param &param : scene.params)
         terminal.put(fmt::format("param {}: {}\n", param.name,
-                                 param.structural ? "decides what there is: moving it builds the scene anew"
-                                                  : "a number of the shader: moving it costs nothing"));
+                                 param.structural
+                                     ? "decides what there is: moving it builds the scene anew"
+                                     : "a number of the shader: moving it costs nothing"));
 }
 
 Exit say(const CheckCommand &command, const driver::Compilation &compilation, Terminal &terminal) {
@@ -60,7 +65,9 @@ Exit say(const CheckCommand &command, const driver::Compilation &compilation, Te
 } // namespace
 
 Exit run(const CheckCommand &command, Terminal &terminal) {
-    auto act = [&](const driver::Compilation &compilation) { return say(command, compilation, terminal); };
+    auto act = [&](const driver::Compilation &compilation) {
+        return say(command, compilation, terminal);
+    };
     if (command.watch) return watch_scene(command.scene, terminal, act);
     return act(driver::compile_file(command.scene.file, compile_options(command.scene)));
 }

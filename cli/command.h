@@ -1,5 +1,5 @@
-// What the command line asks for, as values: one struct a command. Reading the line (arguments.cpp) knows nothing of
-// what the commands do, the commands nothing of how the line is written.
+// What the command line asks for, as values: one struct a command. Reading the line (arguments.cpp)
+// knows nothing of what the commands do, the commands nothing of how the line is written.
 #pragma once
 
 #include "typecheck/check.h"
@@ -16,16 +16,16 @@ namespace fathom::cli {
 // The exit statuses of every command.
 enum Exit {
     done = 0,
-    scene_error = 1,   // the scene (or the save file) has an error; diagnostics are printed
-    usage_error = 2,   // the command line is wrong
-    device_error = 3   // a file named on it, or the device, cannot be used
+    scene_error = 1, // the scene (or the save file) has an error; diagnostics are printed
+    usage_error = 2, // the command line is wrong
+    device_error = 3 // a file named on it, or the device, cannot be used
 };
 
 enum class ColorChoice { Auto, Always, Never };
 
 // What every command that reads a scene takes.
 struct SceneArguments {
-    std::string file; // `-` is standard input
+    std::string file;                                   // `-` is standard input
     std::vector<typecheck::Override> overrides;         // -D
     std::vector<std::filesystem::path> include_folders; // -I
 };
@@ -77,8 +77,12 @@ struct FmtCommand {
     std::vector<std::string> files;
     bool check = false;
 };
-struct DocCommand { std::string name; };     // empty: the list of all
-struct ExplainCommand { std::string code; }; // empty: the list of all
+struct DocCommand {
+    std::string name;
+}; // empty: the list of all
+struct ExplainCommand {
+    std::string code;
+}; // empty: the list of all
 struct BenchCommand {
     SceneArguments scene;
     int width = 400, height = 400;
@@ -86,8 +90,9 @@ struct BenchCommand {
     int cache_bits = 6; // 2^bits cells an axis
 };
 
-using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, EvalCommand, ViewCommand, ImportCommand,
-                             ExportCommand, FmtCommand, DocCommand, ExplainCommand, BenchCommand>;
+using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, EvalCommand, ViewCommand,
+                             ImportCommand, ExportCommand, FmtCommand, DocCommand, ExplainCommand,
+                             BenchCommand>;
 
 struct Invocation {
     ColorChoice color = ColorChoice::Auto;

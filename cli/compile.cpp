@@ -1,5 +1,5 @@
-// fathom compile: a scene's shader, for one of the targets, and the data of its buffer. Nothing is written unless all
-// went well.
+// fathom compile: a scene's shader, for one of the targets, and the data of its buffer. Nothing is
+// written unless all went well.
 #include "backend-glsl/emit.h"
 #include "cli/terminal.h"
 
@@ -9,7 +9,8 @@ namespace fathom::cli {
 namespace {
 
 // The noise cache's passes, beside the picture's shader: OUT.frag, OUT.reserve.frag, …
-Exit write_passes(const std::string &out, const ir::Scene &scene, const glsl::Options &options, Terminal &terminal) {
+Exit write_passes(const std::string &out, const ir::Scene &scene, const glsl::Options &options,
+                  Terminal &terminal) {
     Diagnostics diagnostics; // the picture's own text was good, and these are made of its parts
     const glsl::CachePasses passes = glsl::emit_cache_passes(scene, options, diagnostics);
     if (diagnostics.has_errors()) return scene_error;
@@ -23,20 +24,24 @@ Exit write_passes(const std::string &out, const ir::Scene &scene, const glsl::Op
                                                                   {"sweep", passes.sweep}};
     for (const auto &[pass, text] : files) {
         std::filesystem::path path(out);
-        path.replace_filename(fmt::format("{}.{}{}", path.stem().string(), pass, path.extension().string()));
-        if (const Exit exit = write_result(path.string(), text, terminal); exit != done) return exit;
+        path.replace_filename(
+            fmt::format("{}.{}{}", path.stem().string(), pass, path.extension().string()));
+        if (const Exit exit = write_result(path.string(), text, terminal); exit != done)
+            return exit;
     }
     return done;
 }
 
-Exit emit(const CompileCommand &command, const driver::Compilation &compilation, Terminal &terminal) {
+Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
+          Terminal &terminal) {
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     glsl::Options options;
     options.target = *glsl::target_by_name(command.target);
     options.field_only = command.field_only;
     // Only beside a file there is room for the data of a buffer.
-    options.buffers = options.target == glsl::Target::Glsl450 && !command.out.empty() && command.out != "-";
+    options.buffers =
+        options.target == glsl::Target::Glsl450 && !command.out.empty() && command.out != "-";
     options.computed = true;
     options.table_text = 256;
     options.title = std::filesystem::path(command.scene.file).stem().string();
@@ -67,7 +72,9 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
 } // namespace
 
 Exit run(const CompileCommand &command, Terminal &terminal) {
-    auto act = [&](const driver::Compilation &compilation) { return emit(command, compilation, terminal); };
+    auto act = [&](const driver::Compilation &compilation) {
+        return emit(command, compilation, terminal);
+    };
     if (command.watch) return watch_scene(command.scene, terminal, act);
     return act(driver::compile_file(command.scene.file, compile_options(command.scene)));
 }

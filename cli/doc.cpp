@@ -1,4 +1,5 @@
-// fathom doc: the library's entry of a name, as its doc comment says it; without a name the list of all.
+// fathom doc: the library's entry of a name, as its doc comment says it; without a name the list of
+// all.
 #include "base/suggest.h"
 #include "cli/terminal.h"
 
@@ -12,14 +13,16 @@ std::string first_line(std::string_view doc) { return std::string(doc.substr(0, 
 } // namespace
 
 Exit run(const DocCommand &command, Terminal &terminal) {
-    std::vector<typecheck::LibraryEntry> entries = typecheck::library_entries(driver::standard_library());
+    std::vector<typecheck::LibraryEntry> entries =
+        typecheck::library_entries(driver::standard_library());
     std::vector<std::string> names;
     bool found = false;
     for (const typecheck::LibraryEntry &entry : entries) {
         if (command.name.empty()) {
             terminal.put(fmt::format("{:<28} {}\n", entry.name, first_line(entry.doc)));
         } else if (entry.name == command.name) {
-            terminal.put(fmt::format("{}{}\n\n{}\n", found ? "\n" : "", entry.signature, entry.doc));
+            terminal.put(
+                fmt::format("{}{}\n\n{}\n", found ? "\n" : "", entry.signature, entry.doc));
             found = true;
         }
         names.push_back(entry.name);
@@ -27,7 +30,8 @@ Exit run(const DocCommand &command, Terminal &terminal) {
     if (command.name.empty() || found) return done;
     std::string near = nearest_name(command.name, names);
     terminal.say(fmt::format("fathom: the library has no `{}`{}", command.name,
-                             near.empty() ? "; `fathom doc` lists its names" : fmt::format("; did you mean `{}`?", near)));
+                             near.empty() ? "; `fathom doc` lists its names"
+                                          : fmt::format("; did you mean `{}`?", near)));
     return usage_error;
 }
 

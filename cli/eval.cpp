@@ -32,7 +32,8 @@ class Evaluator {
         }
         cpu::evaluate_gradient(program_, scratch_, in.data(), out.data(), count);
         for (std::size_t k = 0; k < count; ++k)
-            terminal.put(fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", out_[0][k], out_[1][k], out_[2][k], out_[3][k]));
+            terminal.put(fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", out_[0][k], out_[1][k],
+                                     out_[2][k], out_[3][k]));
         for (std::vector<float> &values : in_) values.clear();
     }
 
@@ -43,7 +44,8 @@ class Evaluator {
     std::array<std::vector<float>, 4> out_;
 };
 
-// Three numbers, separated by blanks; false where the line is something else. An empty line is no point.
+// Three numbers, separated by blanks; false where the line is something else. An empty line is no
+// point.
 bool read_point(std::string_view line, std::array<double, 3> &point, bool &empty) {
     constexpr std::string_view blanks = " \t\r";
     std::size_t count = 0;
@@ -61,7 +63,8 @@ bool read_point(std::string_view line, std::array<double, 3> &point, bool &empty
     return empty || count == 3;
 }
 
-// Answers each block of lines as it comes, so that a program may ask, read the answer, and ask again.
+// Answers each block of lines as it comes, so that a program may ask, read the answer, and ask
+// again.
 Exit answer_standard_input(Evaluator &evaluator, Terminal &terminal) {
     std::string pending;
     std::array<char, 1 << 16> block;
@@ -85,7 +88,8 @@ Exit answer_standard_input(Evaluator &evaluator, Terminal &terminal) {
             if (!read_point(rest.substr(0, end), point, empty)) {
                 evaluator.print(terminal);
                 terminal.flush();
-                terminal.say(fmt::format("fathom: line {} of the points is not `X Y Z`", line_number));
+                terminal.say(
+                    fmt::format("fathom: line {} of the points is not `X Y Z`", line_number));
                 return usage_error;
             }
             if (!empty) evaluator.add(point);
@@ -100,7 +104,8 @@ Exit answer_standard_input(Evaluator &evaluator, Terminal &terminal) {
 } // namespace
 
 Exit run(const EvalCommand &command, Terminal &terminal) {
-    driver::Compilation compilation = driver::compile_file(command.scene.file, compile_options(command.scene));
+    driver::Compilation compilation =
+        driver::compile_file(command.scene.file, compile_options(command.scene));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     Evaluator evaluator(compilation.scene, command.time);

@@ -7,7 +7,8 @@
 namespace fathom::cli {
 namespace {
 
-// The way from the folder of one file to that of another, with a slash at its end, or empty where they are the same.
+// The way from the folder of one file to that of another, with a slash at its end, or empty where
+// they are the same.
 std::string way(const std::filesystem::path &from_file, const std::filesystem::path &to_file) {
     std::error_code error;
     std::filesystem::path from = std::filesystem::absolute(from_file, error).parent_path();
@@ -21,9 +22,9 @@ std::string way(const std::filesystem::path &from_file, const std::filesystem::p
 Exit run(const ImportCommand &command, Terminal &terminal) {
     bool standard_input = command.file == "-";
     std::string error;
-    std::optional<std::string> text = standard_input
-                                          ? driver::read_standard_input(driver::max_asset_bytes, error)
-                                          : driver::read_file(command.file, driver::max_asset_bytes, error);
+    std::optional<std::string> text =
+        standard_input ? driver::read_standard_input(driver::max_asset_bytes, error)
+                       : driver::read_file(command.file, driver::max_asset_bytes, error);
     if (!text) {
         terminal.say(fmt::format("fathom: cannot read `{}`: {}", command.file, error));
         return device_error;
@@ -33,7 +34,8 @@ Exit run(const ImportCommand &command, Terminal &terminal) {
     SourceId source = sources.add(standard_input ? "<stdin>" : command.file, std::move(*text));
     save::ImportOptions options;
     options.strict = command.strict;
-    if (!standard_input && !command.out.empty() && command.out != "-") options.asset_prefix = way(command.out, command.file);
+    if (!standard_input && !command.out.empty() && command.out != "-")
+        options.asset_prefix = way(command.out, command.file);
     save::ImportResult result = save::import_yaml(sources, source, diagnostics, options);
     print_diagnostics(diagnostics, sources, terminal);
     bool write = !diagnostics.has_errors() || (command.partial && result.structural_error);
@@ -41,13 +43,16 @@ Exit run(const ImportCommand &command, Terminal &terminal) {
         Exit exit = write_result(command.out, result.sdf, terminal);
         if (exit != done) return exit;
     } else if (result.structural_error) {
-        terminal.say(fmt::format("fathom: nothing was written; --partial writes the {} nodes that were read", result.nodes));
+        terminal.say(
+            fmt::format("fathom: nothing was written; --partial writes the {} nodes that were read",
+                        result.nodes));
     }
     return diagnostics.has_errors() ? scene_error : done;
 }
 
 Exit run(const ExportCommand &command, Terminal &terminal) {
-    driver::Compilation compilation = driver::compile_file(command.scene.file, compile_options(command.scene));
+    driver::Compilation compilation =
+        driver::compile_file(command.scene.file, compile_options(command.scene));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     Diagnostics diagnostics;

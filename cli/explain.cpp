@@ -1,4 +1,5 @@
-// fathom explain: a diagnostic's page, embedded at build from docs/diagnostics; without a code the list of all.
+// fathom explain: a diagnostic's page, embedded at build from docs/diagnostics; without a code the
+// list of all.
 #include "base/suggest.h"
 #include "cli/terminal.h"
 
@@ -12,7 +13,8 @@ const std::vector<std::pair<std::string_view, std::string_view>> &diagnostic_pag
 
 Exit run(const ExplainCommand &command, Terminal &terminal) {
     if (command.code.empty()) {
-        for (Code code : all_codes()) terminal.put(fmt::format("{:<22} {}\n", code_name(code), code_summary(code)));
+        for (Code code : all_codes())
+            terminal.put(fmt::format("{:<22} {}\n", code_name(code), code_summary(code)));
         return done;
     }
     for (auto [file, text] : diagnostic_pages()) {
@@ -24,7 +26,8 @@ Exit run(const ExplainCommand &command, Terminal &terminal) {
     for (Code code : all_codes()) names.emplace_back(code_name(code));
     std::string near = nearest_name(command.code, names);
     terminal.say(fmt::format("fathom: there is no code `{}`{}", command.code,
-                             near.empty() ? "; `fathom explain` lists them" : fmt::format("; did you mean `{}`?", near)));
+                             near.empty() ? "; `fathom explain` lists them"
+                                          : fmt::format("; did you mean `{}`?", near)));
     return usage_error;
 }
 

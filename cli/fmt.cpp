@@ -12,9 +12,9 @@ namespace {
 Exit format_file(const std::string &file, bool check, Terminal &terminal) {
     bool standard_input = file == "-";
     std::string error;
-    std::optional<std::string> text = standard_input
-                                          ? driver::read_standard_input(driver::max_source_bytes, error)
-                                          : driver::read_file(file, driver::max_source_bytes, error);
+    std::optional<std::string> text =
+        standard_input ? driver::read_standard_input(driver::max_source_bytes, error)
+                       : driver::read_file(file, driver::max_source_bytes, error);
     if (!text) {
         terminal.say(fmt::format("fathom: cannot read `{}`: {}", file, error));
         return device_error;

@@ -16,7 +16,8 @@ int main(int count, char **arguments) {
     }
     const Invocation &invocation = std::get<Invocation>(line);
     Terminal terminal(invocation.color);
-    Exit exit = std::visit([&](const auto &command) { return run(command, terminal); }, invocation.command);
+    Exit exit =
+        std::visit([&](const auto &command) { return run(command, terminal); }, invocation.command);
     Exit flushed = terminal.flush();
     return flushed != done ? flushed : exit;
 }

@@ -1,10 +1,11 @@
-// fathom render: pictures without a window, by GL or by the CPU. Every picture is whole before its file appears.
+// fathom render: pictures without a window, by GL or by the CPU. Every picture is whole before its
+// file appears.
+#include "render-gl/render.h"
 #include "backend-cpu/march.h"
 #include "base/picture.h"
 #include "cli/terminal.h"
 #include "render-gl/cache_passes.h"
 #include "render-gl/context.h"
-#include "render-gl/render.h"
 
 #include <fmt/format.h>
 
@@ -21,7 +22,8 @@ struct Painter {
 // A still picture is drawn until the cache has nearly all that it asks for; so often at most.
 constexpr int most_learning_frames = 60;
 
-std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &scene, const RenderCommand &command, double time,
+std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &scene,
+                                      const RenderCommand &command, double time,
                                       const std::function<void(double)> &progress) {
     gl::FrameInputs inputs;
     const double aspect = static_cast<double>(command.width) / command.height;
@@ -34,7 +36,8 @@ std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &sce
     for (int frame = 0; frame < most_learning_frames; ++frame) {
         if (!view.draw(inputs, scene.params, {})) return std::nullopt;
         const gl::CacheTally tally = view.read_tally();
-        if (command.frames || 1000 * tally.misses <= tally.hits) break; // what is left shows nowhere
+        if (command.frames || 1000 * tally.misses <= tally.hits)
+            break; // what is left shows nowhere
         progress(static_cast<double>(frame) / most_learning_frames);
     }
     return view.read_pixels();
@@ -46,15 +49,17 @@ std::string frame_name(const std::string &out, int frame) {
     if (last != out.npos) {
         std::size_t before = out.find_last_not_of('#', last);
         std::size_t first = before == out.npos ? 0 : before + 1;
-        return fmt::format("{}{:0{}}{}", out.substr(0, first), frame, last + 1 - first, out.substr(last + 1));
+        return fmt::format("{}{:0{}}{}", out.substr(0, first), frame, last + 1 - first,
+                           out.substr(last + 1));
     }
     std::filesystem::path path(out);
-    path.replace_filename(fmt::format("{}_{:04}{}", path.stem().string(), frame, path.extension().string()));
+    path.replace_filename(
+        fmt::format("{}_{:04}{}", path.stem().string(), frame, path.extension().string()));
     return path.string();
 }
 
-Exit prepare_gl(Painter &painter, const driver::Compilation &compilation, const RenderCommand &command,
-                Terminal &terminal) {
+Exit prepare_gl(Painter &painter, const driver::Compilation &compilation,
+                const RenderCommand &command, Terminal &terminal) {
     auto context = gl::Context::make();
     if (const std::string *why = std::get_if<std::string>(&context)) {
         if (command.backend == Backend::Auto) return done;
@@ -67,8 +72,9 @@ Exit prepare_gl(Painter &painter, const driver::Compilation &compilation, const 
             painter.context.reset();
             return done;
         }
-        terminal.say(fmt::format("fathom: this GL draws at most {0}x{0} pixels; --backend cpu draws any size",
-                                 gl::largest_side()));
+        terminal.say(fmt::format(
+            "fathom: this GL draws at most {0}x{0} pixels; --backend cpu draws any size",
+            gl::largest_side()));
         return device_error;
     }
     Diagnostics diagnostics;
@@ -81,9 +87,11 @@ Exit prepare_gl(Painter &painter, const driver::Compilation &compilation, const 
     auto program = gl::Program::build(output, compilation.scene);
     if (const auto *error = std::get_if<gl::ProgramError>(&program)) {
         Diagnostics refused;
-        Diagnostic &diagnostic =
-            refused.add(Code::ShaderInvalid, {}, "the graphics driver refuses the shader: " + error->message);
-        if (error->line > 0) diagnostic.note(fmt::format("line {} of the shader: {}", error->line, error->source_line));
+        Diagnostic &diagnostic = refused.add(
+            Code::ShaderInvalid, {}, "the graphics driver refuses the shader: " + error->message);
+        if (error->line > 0)
+            diagnostic.note(
+                fmt::format("line {} of the shader: {}", error->line, error->source_line));
         print_diagnostics(refused, compilation.sources, terminal);
         return scene_error;
     }
@@ -99,10 +107,12 @@ Exit prepare_gl(Painter &painter, const driver::Compilation &compilation, const 
     return done;
 }
 
-std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene, const RenderCommand &command, double time,
+std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
+                             const RenderCommand &command, double time,
                              const std::function<void(double)> &progress) {
     if (painter.cache) {
-        std::optional<gl::Pixels> pixels = draw_cached(*painter.cache, scene, command, time, progress);
+        std::optional<gl::Pixels> pixels =
+            draw_cached(*painter.cache, scene, command, time, progress);
         if (!pixels) return std::nullopt;
         return picture_of_linear(pixels->width, pixels->height, pixels->rgba);
     }
@@ -113,7 +123,8 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene, con
         request.samples = command.samples;
         request.time = time;
         request.progress = [&](double share) { return progress(share), true; };
-        std::optional<gl::Pixels> pixels = gl::draw(*painter.program, scene, request, gl::Mode::Linear);
+        std::optional<gl::Pixels> pixels =
+            gl::draw(*painter.program, scene, request, gl::Mode::Linear);
         if (!pixels) return std::nullopt;
         return picture_of_linear(pixels->width, pixels->height, pixels->rgba);
     }
@@ -122,16 +133,18 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene, con
         cpu::prepare(scene, ir::view_of(scene, time, aspect), command.width, command.height, time);
     cpu::PictureOptions options;
     options.samples = command.samples;
-    cpu::Picture made = cpu::render(stage, options, [&](double share, const cpu::Tile &, const cpu::Picture &) {
-        return progress(share), true;
-    });
+    cpu::Picture made =
+        cpu::render(stage, options, [&](double share, const cpu::Tile &, const cpu::Picture &) {
+            return progress(share), true;
+        });
     return Picture{made.width, made.height, std::move(made.rgba)};
 }
 
 } // namespace
 
 Exit run(const RenderCommand &command, Terminal &terminal) {
-    driver::Compilation compilation = driver::compile_file(command.scene.file, compile_options(command.scene));
+    driver::Compilation compilation =
+        driver::compile_file(command.scene.file, compile_options(command.scene));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     Painter painter;
@@ -148,7 +161,8 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
                 terminal.progress(out, (frame - first + share) / (last - first));
             });
         if (!picture) {
-            terminal.say(fmt::format("fathom: there is no memory for a picture of {}x{}", command.width, command.height));
+            terminal.say(fmt::format("fathom: there is no memory for a picture of {}x{}",
+                                     command.width, command.height));
             return device_error;
         }
         exit = write_result(out, encode_png(*picture), terminal);

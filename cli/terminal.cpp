@@ -15,7 +15,8 @@ namespace {
 constexpr std::size_t buffer_size = 1 << 16;
 
 long long milliseconds_now() {
-    return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
+    return std::chrono::duration_cast<std::chrono::milliseconds>(
+               std::chrono::steady_clock::now().time_since_epoch())
         .count();
 }
 
@@ -45,7 +46,8 @@ Exit Terminal::flush() {
             gone_ = true;
         else if (error) {
             failure_ = error;
-            say(fmt::format("fathom: cannot write to standard output: {}", driver::error_words(error)));
+            say(fmt::format("fathom: cannot write to standard output: {}",
+                            driver::error_words(error)));
         }
     }
     buffer_.clear();
@@ -56,7 +58,8 @@ void Terminal::say(std::string_view words) {
     finish_progress();
     std::string line(words);
     if (line.empty() || line.back() != '\n') line += '\n';
-    (void)driver::write_all(STDERR_FILENO, line); // where words cannot be said, nothing can be said about it
+    (void)driver::write_all(STDERR_FILENO,
+                            line); // where words cannot be said, nothing can be said about it
 }
 
 void Terminal::progress(std::string_view what, double share) {
@@ -66,8 +69,9 @@ void Terminal::progress(std::string_view what, double share) {
     next_bar_ = now + 50;
     constexpr int width = 30;
     int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * width);
-    (void)driver::write_all(STDERR_FILENO, fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %", what, "", full, "",
-                                                       width - full, 100 * share));
+    (void)driver::write_all(STDERR_FILENO,
+                            fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %", what, "", full, "",
+                                        width - full, 100 * share));
     bar_shown_ = true;
 }
 
@@ -87,12 +91,15 @@ driver::CompileOptions compile_options(const SceneArguments &scene) {
 void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, Terminal &terminal) {
     for (const Diagnostic &diagnostic : diagnostics.sorted())
         terminal.say(to_text(diagnostic, sources, terminal.color()));
-    if (diagnostics.dropped() > 0) terminal.say(fmt::format("({} more are not shown)", diagnostics.dropped()));
+    if (diagnostics.dropped() > 0)
+        terminal.say(fmt::format("({} more are not shown)", diagnostics.dropped()));
 }
 
-Exit report(const driver::Compilation &compilation, const SceneArguments &scene, Terminal &terminal) {
+Exit report(const driver::Compilation &compilation, const SceneArguments &scene,
+            Terminal &terminal) {
     if (!compilation.unreadable.empty()) {
-        terminal.say(fmt::format("fathom: cannot read `{}`: {}", scene.file, compilation.unreadable));
+        terminal.say(
+            fmt::format("fathom: cannot read `{}`: {}", scene.file, compilation.unreadable));
         return device_error;
     }
     print_diagnostics(compilation.diagnostics, compilation.sources, terminal);
@@ -117,7 +124,8 @@ Exit watch_scene(const SceneArguments &scene, Terminal &terminal,
     driver::Watcher watcher;
     for (;;) {
         {
-            driver::Compilation compilation = driver::compile_file(scene.file, compile_options(scene));
+            driver::Compilation compilation =
+                driver::compile_file(scene.file, compile_options(scene));
             Exit exit = act(compilation);
             if (terminal.flush() != done || terminal.reader_gone()) return exit;
             watcher.watch(compilation.files);
@@ -126,7 +134,8 @@ Exit watch_scene(const SceneArguments &scene, Terminal &terminal,
             terminal.say("fathom: cannot watch: " + watcher.error());
             return device_error;
         }
-        while (!watcher.wait(std::chrono::hours(1))) {}
+        while (!watcher.wait(std::chrono::hours(1))) {
+        }
         terminal.say(fmt::format("-- {} was saved", scene.file));
     }
 }

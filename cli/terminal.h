@@ -1,5 +1,5 @@
-// Standard output for results, standard error for words; colours, the progress bar, and what the commands share in
-// saying. A reader that goes away (`| head`) ends the program quietly.
+// Standard output for results, standard error for words; colours, the progress bar, and what the
+// commands share in saying. A reader that goes away (`| head`) ends the program quietly.
 #pragma once
 
 #include "cli/command.h"
@@ -15,13 +15,14 @@ class Terminal {
 
     void put(std::string_view results); // buffered
     void say(std::string_view words);   // a line, at once
-    Exit flush();                       // of the results; device_error where they could not be written
+    Exit flush(); // of the results; device_error where they could not be written
 
     bool color() const { return color_; }             // on standard error
     bool interactive() const { return interactive_; } // standard error is a terminal
     bool reader_gone() const { return gone_; }        // nobody reads the results any more
 
-    // A bar on standard error, when that is a terminal; redrawn at most 20 times a second. `finish` wipes it.
+    // A bar on standard error, when that is a terminal; redrawn at most 20 times a second. `finish`
+    // wipes it.
     void progress(std::string_view what, double share);
     void finish_progress();
 
@@ -34,14 +35,17 @@ class Terminal {
 
 driver::CompileOptions compile_options(const SceneArguments &scene);
 
-// Prints all diagnostics, and what else keeps a compilation from being good, and says how the command ends.
-Exit report(const driver::Compilation &compilation, const SceneArguments &scene, Terminal &terminal);
+// Prints all diagnostics, and what else keeps a compilation from being good, and says how the
+// command ends.
+Exit report(const driver::Compilation &compilation, const SceneArguments &scene,
+            Terminal &terminal);
 void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, Terminal &terminal);
 
 // Writes a result to a file, or to standard output where `out` is empty or `-`.
 Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal);
 
-// Compiles, acts, and does both again after every save of a file that the scene read; ends by an interrupt alone.
+// Compiles, acts, and does both again after every save of a file that the scene read; ends by an
+// interrupt alone.
 Exit watch_scene(const SceneArguments &scene, Terminal &terminal,
                  const std::function<Exit(const driver::Compilation &)> &act);
 

@@ -12,9 +12,12 @@ Exit run(const ViewCommand &command, Terminal &terminal) {
         return usage_error;
     }
     {
-        // A wrong file name or -D is told at once; an error of the scene is shown in the window, until it is mended.
-        driver::Compilation first = driver::compile_file(command.scene.file, compile_options(command.scene));
-        if (!first.unreadable.empty() || !first.usage_errors.empty()) return report(first, command.scene, terminal);
+        // A wrong file name or -D is told at once; an error of the scene is shown in the window,
+        // until it is mended.
+        driver::Compilation first =
+            driver::compile_file(command.scene.file, compile_options(command.scene));
+        if (!first.unreadable.empty() || !first.usage_errors.empty())
+            return report(first, command.scene, terminal);
     }
     viewer::Settings settings;
     settings.file = command.scene.file;

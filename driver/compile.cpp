@@ -35,8 +35,8 @@ void enter(const CompileOptions &options, Phase phase) {
     if (options.entered) options.entered(phase);
 }
 
-// What the proof says of one shape while the scene is still being built (`lipschitz(s)`, `taper`). Its complaints are
-// not for now: the whole scene is proved afterwards, where it can say them once.
+// What the proof says of one shape while the scene is still being built (`lipschitz(s)`, `taper`).
+// Its complaints are not for now: the whole scene is proved afterwards, where it can say them once.
 std::optional<ir::ShapeFact> prove_one(ir::Scene &scene, ir::ShapeId shape) {
     Diagnostics unheard;
     proof::Options options;
@@ -62,7 +62,8 @@ typecheck::Options check_options(const CompileOptions &options) {
                        int axis) -> std::optional<std::pair<double, double>> {
         std::optional<ir::ShapeFact> fact = prove_one(scene, shape);
         std::size_t i = static_cast<std::size_t>(axis);
-        if (!fact || !std::isfinite(fact->bounds.lo[i]) || !std::isfinite(fact->bounds.hi[i])) return std::nullopt;
+        if (!fact || !std::isfinite(fact->bounds.lo[i]) || !std::isfinite(fact->bounds.hi[i]))
+            return std::nullopt;
         return std::pair(fact->bounds.lo[i], fact->bounds.hi[i]);
     };
     return result;
@@ -71,8 +72,9 @@ typecheck::Options check_options(const CompileOptions &options) {
 void run_phases(Compilation &out, SceneFiles &files, const std::string &identity, SourceId root,
                 const CompileOptions &options) {
     enter(options, Phase::Check);
-    typecheck::Checked checked = typecheck::check(out.sources, root, identity, standard_library(), files.loader(),
-                                                  check_options(options), out.diagnostics);
+    typecheck::Checked checked =
+        typecheck::check(out.sources, root, identity, standard_library(), files.loader(),
+                         check_options(options), out.diagnostics);
     out.scene = std::move(checked.scene);
     out.usage_errors = std::move(checked.usage_errors);
     out.names = std::move(checked.names);
@@ -91,15 +93,18 @@ void run_phases(Compilation &out, SceneFiles &files, const std::string &identity
         const double cost = ir::operations(graph, graph.function(out.scene.distance).result);
         if (cost > ir::most_operations)
             out.diagnostics
-                .add(Code::LoopLimit, out.scene.top_level.empty() ? Span{root, 0, 0} : out.scene.top_level[0].span,
+                .add(Code::LoopLimit,
+                     out.scene.top_level.empty() ? Span{root, 0, 0} : out.scene.top_level[0].span,
                      fmt::format("a point of this scene would take {:.0e} operations", cost))
-                .note(fmt::format("at most {:.0e} are allowed, so that every picture ends", ir::most_operations))
+                .note(fmt::format("at most {:.0e} are allowed, so that every picture ends",
+                                  ir::most_operations))
                 .help("look for copies of copies, or loops in loops");
     }
     enter(options, Phase::Done);
 }
 
-// A save file stands for the text that an import makes of it; what is to be said of the file itself joins the diagnostics.
+// A save file stands for the text that an import makes of it; what is to be said of the file itself
+// joins the diagnostics.
 bool is_save_file(const std::filesystem::path &file) {
     return file.extension() == ".yaml" || file.extension() == ".yml";
 }
@@ -129,8 +134,8 @@ Compilation compile_file(const std::filesystem::path &file, const CompileOptions
     std::string error;
     SceneFiles files(file.parent_path(), options.include_folders);
     if (!standard_input) files.touch(file);
-    std::optional<std::string> text =
-        standard_input ? read_standard_input(max_source_bytes, error) : read_file(file, max_source_bytes, error);
+    std::optional<std::string> text = standard_input ? read_standard_input(max_source_bytes, error)
+                                                     : read_file(file, max_source_bytes, error);
     if (!text) {
         out.unreadable = error;
     } else if (standard_input) {

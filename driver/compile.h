@@ -22,7 +22,8 @@ struct CompileOptions {
     std::vector<std::filesystem::path> include_folders; // -I
     std::vector<Override> overrides;                    // -D
     std::function<void(Phase)> entered;                 // may be empty
-    bool parts = false; // lower so that hits tell their parts (ir::lower_with_parts): for the viewer alone
+    bool parts =
+        false; // lower so that hits tell their parts (ir::lower_with_parts): for the viewer alone
 };
 
 struct Compilation {
@@ -32,14 +33,18 @@ struct Compilation {
     ir::Parts parts;                       // where they were asked for
     std::vector<std::string> usage_errors; // of the overrides: the command line is wrong
     std::string unreadable;                // why the scene's own file cannot be used, or empty
-    std::map<std::filesystem::path, FileStamp> files; // all that was read or looked for: what to watch
+    std::map<std::filesystem::path, FileStamp>
+        files;                              // all that was read or looked for: what to watch
     std::vector<typecheck::NameFact> names; // of the scene's own file: types and stages
     std::size_t evaluations = 0;
 
-    bool good() const { return unreadable.empty() && usage_errors.empty() && !diagnostics.has_errors(); }
+    bool good() const {
+        return unreadable.empty() && usage_errors.empty() && !diagnostics.has_errors();
+    }
 };
 
-// `file` as the user wrote it; `-` is standard input, whose imports are those of the current folder. A save file
+// `file` as the user wrote it; `-` is standard input, whose imports are those of the current
+// folder. A save file
 // (`.yaml`, `.yml`) is imported first.
 Compilation compile_file(const std::filesystem::path &file, const CompileOptions &options);
 

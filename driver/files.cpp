@@ -83,7 +83,7 @@ std::string error_words(int error) {
 }
 
 FileStamp stamp_of(const std::filesystem::path &file) {
-    struct stat status{};
+    struct stat status {};
     if (::stat(file.c_str(), &status) != 0) return {};
     return {true,
             static_cast<std::uint64_t>(status.st_dev),
@@ -101,7 +101,7 @@ std::optional<std::string> read_file(const std::filesystem::path &path, std::siz
         error = errno == ENOENT ? "no such file" : error_words(errno);
         return std::nullopt;
     }
-    struct stat status{};
+    struct stat status {};
     if (::fstat(file.get(), &status) != 0) {
         error = error_words(errno);
         return std::nullopt;
@@ -135,7 +135,7 @@ std::string write_file(const std::filesystem::path &named, std::string_view byte
         std::filesystem::path followed = std::filesystem::weakly_canonical(named, ignored);
         if (!ignored) target = followed;
     }
-    struct stat old{};
+    struct stat old {};
     bool exists = ::stat(target.c_str(), &old) == 0;
     if (exists && S_ISDIR(old.st_mode)) return "is a directory";
     if (exists && !S_ISREG(old.st_mode)) {

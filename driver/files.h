@@ -1,5 +1,5 @@
-// Files, whole: reading with a limit, writing so that a target is either the old file or the new one.
-// Knows nothing of what the bytes mean; reports failures as sentences, never by exceptions.
+// Files, whole: reading with a limit, writing so that a target is either the old file or the new
+// one. Knows nothing of what the bytes mean; reports failures as sentences, never by exceptions.
 #pragma once
 
 #include <cstddef>
@@ -29,14 +29,16 @@ std::optional<std::string> read_file(const std::filesystem::path &path, std::siz
                                      std::string &error);
 std::optional<std::string> read_standard_input(std::size_t limit, std::string &error);
 
-// Writes beside the target, then renames: on any failure, a full disk included, the old file stays as it was and
-// nothing is left behind. Interrupts wait until the rename is done. A target that is no regular file (a pipe,
-// /dev/null) is written in place. Returns an empty string, or the reason of the failure.
+// Writes beside the target, then renames: on any failure, a full disk included, the old file stays
+// as it was and nothing is left behind. Interrupts wait until the rename is done. A target that is
+// no regular file (a pipe, /dev/null) is written in place. Returns an empty string, or the reason
+// of the failure.
 std::string write_file(const std::filesystem::path &target, std::string_view bytes);
 
 // Writes all of `bytes` to a descriptor; 0, or the errno of the failure.
 int write_all(int descriptor, std::string_view bytes);
 
-std::string error_words(int error); // an errno in words, in lower case, without the C library's locale
+std::string
+error_words(int error); // an errno in words, in lower case, without the C library's locale
 
 } // namespace fathom::driver

@@ -19,15 +19,16 @@ const std::array<float, 256> &linear_table() {
         std::array<float, 256> values{};
         for (std::size_t i = 0; i < values.size(); ++i) {
             double c = static_cast<double>(i) / 255;
-            values[i] = static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+            values[i] =
+                static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
         }
         return values;
     }();
     return table;
 }
 
-ir::ImageData to_linear(std::size_t width, std::size_t height, const std::vector<std::uint8_t> &bytes,
-                        std::size_t channels) {
+ir::ImageData to_linear(std::size_t width, std::size_t height,
+                        const std::vector<std::uint8_t> &bytes, std::size_t channels) {
     ir::ImageData image;
     image.width = static_cast<int>(width);
     image.height = static_cast<int>(height);
@@ -35,7 +36,8 @@ ir::ImageData to_linear(std::size_t width, std::size_t height, const std::vector
     const std::array<float, 256> &table = linear_table();
     for (std::size_t i = 0; i < width * height; ++i) {
         for (std::size_t c = 0; c < 3; ++c) image.rgba[4 * i + c] = table[bytes[channels * i + c]];
-        image.rgba[4 * i + 3] = channels == 4 ? static_cast<float>(bytes[channels * i + 3]) / 255.0f : 1.0f;
+        image.rgba[4 * i + 3] =
+            channels == 4 ? static_cast<float>(bytes[channels * i + 3]) / 255.0f : 1.0f;
     }
     return image;
 }
@@ -65,7 +67,8 @@ std::optional<ir::ImageData> decode_png(std::string_view bytes, std::string &err
     return to_linear(image.width, image.height, pixels, 4);
 }
 
-// libjpeg ends an error by leaving the call that it was made in; no object with a destructor may be on that way.
+// libjpeg ends an error by leaving the call that it was made in; no object with a destructor may be
+// on that way.
 struct JpegErrors {
     jpeg_error_mgr base;
     std::jmp_buf leave;

@@ -1,4 +1,5 @@
-// What scenes read besides text: pictures (PNG, JPEG) as linear colours, grids of distances. Knows nothing of paths.
+// What scenes read besides text: pictures (PNG, JPEG) as linear colours, grids of distances. Knows
+// nothing of paths.
 #pragma once
 
 #include "ir/scene.h"

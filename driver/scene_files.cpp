@@ -31,11 +31,13 @@ std::string SceneFiles::add_root(const fs::path &file) {
 
 bool SceneFiles::allowed(const fs::path &canonical) const {
     return std::any_of(roots_.begin(), roots_.end(), [&](const fs::path &root) {
-        return std::mismatch(root.begin(), root.end(), canonical.begin(), canonical.end()).first == root.end();
+        return std::mismatch(root.begin(), root.end(), canonical.begin(), canonical.end()).first ==
+               root.end();
     });
 }
 
-std::variant<SceneFiles::Found, LoadError> SceneFiles::find(const std::string &path, const std::string &from) {
+std::variant<SceneFiles::Found, LoadError> SceneFiles::find(const std::string &path,
+                                                            const std::string &from) {
     std::vector<fs::path> folders;
     auto importer = printed_.find(from);
     folders.push_back(importer == printed_.end() ? scene_folder_ : importer->second.parent_path());
@@ -54,9 +56,12 @@ std::variant<SceneFiles::Found, LoadError> SceneFiles::find(const std::string &p
         }
         touch(printed);
         if (fs::is_regular_file(canonical, error)) return Found{canonical, printed};
-        if (fs::exists(canonical, error)) return LoadError{LoadError::Reason::Unreadable, "is not a regular file"};
+        if (fs::exists(canonical, error))
+            return LoadError{LoadError::Reason::Unreadable, "is not a regular file"};
     }
-    if (outside) return LoadError{LoadError::Reason::Outside, "leads out of the scene's folder and the -I folders"};
+    if (outside)
+        return LoadError{LoadError::Reason::Outside,
+                         "leads out of the scene's folder and the -I folders"};
     return LoadError{LoadError::Reason::NotFound, "no such file"};
 }
 
@@ -67,7 +72,8 @@ LoadError unreadable(std::string why) { return {LoadError::Reason::Unreadable, s
 } // namespace
 
 typecheck::Loader SceneFiles::loader() {
-    auto text = [this](const std::string &path, const std::string &from) -> std::variant<LoadedText, LoadError> {
+    auto text = [this](const std::string &path,
+                       const std::string &from) -> std::variant<LoadedText, LoadError> {
         auto found = find(path, from);
         if (auto *error = std::get_if<LoadError>(&found)) return *error;
         const Found &file = std::get<Found>(found);
@@ -79,19 +85,22 @@ typecheck::Loader SceneFiles::loader() {
         return LoadedText{identity, known->second.string(), std::move(*bytes)};
     };
     // Images and grids differ in the decoder alone.
-    auto asset = [this]<class Data>(std::optional<Data> (*decode)(std::string_view, std::string &)) {
-        return [this, decode](const std::string &path, const std::string &from) -> std::variant<Data, LoadError> {
-            auto found = find(path, from);
-            if (auto *error = std::get_if<LoadError>(&found)) return *error;
-            std::string error;
-            std::optional<std::string> bytes = read_file(std::get<Found>(found).file, max_asset_bytes, error);
-            if (!bytes) return unreadable(error);
-            std::optional<Data> data = decode(*bytes, error);
-            if (!data) return unreadable(error);
-            data->name = path;
-            return std::move(*data);
+    auto asset =
+        [this]<class Data>(std::optional<Data> (*decode)(std::string_view, std::string &)) {
+            return [this, decode](const std::string &path,
+                                  const std::string &from) -> std::variant<Data, LoadError> {
+                auto found = find(path, from);
+                if (auto *error = std::get_if<LoadError>(&found)) return *error;
+                std::string error;
+                std::optional<std::string> bytes =
+                    read_file(std::get<Found>(found).file, max_asset_bytes, error);
+                if (!bytes) return unreadable(error);
+                std::optional<Data> data = decode(*bytes, error);
+                if (!data) return unreadable(error);
+                data->name = path;
+                return std::move(*data);
+            };
         };
-    };
     return {text, asset(decode_image), asset(decode_grid)};
 }
 

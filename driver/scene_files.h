@@ -1,5 +1,5 @@
-// What a scene may read: files below its own folder and the -I folders, each found, checked, read and remembered.
-// A scene from a stranger reads nothing else, whatever `..` or symbolic links say.
+// What a scene may read: files below its own folder and the -I folders, each found, checked, read
+// and remembered. A scene from a stranger reads nothing else, whatever `..` or symbolic links say.
 #pragma once
 
 #include "driver/files.h"
@@ -15,15 +15,16 @@ namespace fathom::driver {
 class SceneFiles {
   public:
     // `scene_folder` as the user wrote it, for the names that are printed.
-    SceneFiles(std::filesystem::path scene_folder, std::vector<std::filesystem::path> include_folders);
+    SceneFiles(std::filesystem::path scene_folder,
+               std::vector<std::filesystem::path> include_folders);
 
     // The scene's own file: registers the identity that its imports come back with.
     std::string add_root(const std::filesystem::path &file);
 
     typecheck::Loader loader(); // good while this lives
 
-    // Every file that was asked for, with its state just before it was read; those that were not found too, at each
-    // place where they were looked for.
+    // Every file that was asked for, with its state just before it was read; those that were not
+    // found too, at each place where they were looked for.
     const std::map<std::filesystem::path, FileStamp> &touched() const { return touched_; }
     void touch(const std::filesystem::path &file) { touched_.try_emplace(file, stamp_of(file)); }
 
@@ -32,12 +33,13 @@ class SceneFiles {
         std::filesystem::path file;    // canonical
         std::filesystem::path printed; // as the user would write it
     };
-    std::variant<Found, typecheck::LoadError> find(const std::string &path, const std::string &from);
+    std::variant<Found, typecheck::LoadError> find(const std::string &path,
+                                                   const std::string &from);
     bool allowed(const std::filesystem::path &canonical) const;
 
     std::filesystem::path scene_folder_;
     std::vector<std::filesystem::path> include_folders_;
-    std::vector<std::filesystem::path> roots_; // canonical
+    std::vector<std::filesystem::path> roots_;             // canonical
     std::map<std::string, std::filesystem::path> printed_; // by identity: how that file is printed
     std::map<std::filesystem::path, FileStamp> touched_;
 };

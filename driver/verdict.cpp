@@ -38,12 +38,14 @@ std::string json_number(std::optional<double> number) {
 std::string json_span(Span span, const Sources &sources) {
     const Source &source = sources[span.source];
     Position begin = position(source, span.begin), end = position(source, span.end);
-    return fmt::format(R"({{"file": {}, "line": {}, "column": {}, "end_line": {}, "end_column": {}}})",
-                       json_string(source.name), begin.line, begin.column, end.line, end.column);
+    return fmt::format(
+        R"({{"file": {}, "line": {}, "column": {}, "end_line": {}, "end_column": {}}})",
+        json_string(source.name), begin.line, begin.column, end.line, end.column);
 }
 
 std::string json_point(const std::array<double, 3> &point) {
-    return fmt::format("[{}, {}, {}]", json_number(point[0]), json_number(point[1]), json_number(point[2]));
+    return fmt::format("[{}, {}, {}]", json_number(point[0]), json_number(point[1]),
+                       json_number(point[2]));
 }
 
 } // namespace
@@ -55,13 +57,15 @@ std::string verdict_json(const Compilation &compilation) {
         const ir::Scene &scene = compilation.scene;
         verdict = judge(scene);
         if (scene.bounds.finite())
-            bounds = fmt::format("[{}, {}]", json_point(scene.bounds.lo), json_point(scene.bounds.hi));
+            bounds =
+                fmt::format("[{}, {}]", json_point(scene.bounds.lo), json_point(scene.bounds.hi));
         for (const ir::TopLevel &top : scene.top_level) {
             const ir::ShapeFact &fact = scene.facts[top.shape.index];
-            shapes += fmt::format(R"({}{{"span": {}, "lipschitz": {}, "status": "{}", "exact": {}}})",
-                                  shapes.empty() ? "" : ", ", json_span(top.span, compilation.sources),
-                                  json_number(fact.lipschitz_sup), status_name(fact.status),
-                                  fact.kind == ir::FieldKind::Exact);
+            shapes +=
+                fmt::format(R"({}{{"span": {}, "lipschitz": {}, "status": "{}", "exact": {}}})",
+                            shapes.empty() ? "" : ", ", json_span(top.span, compilation.sources),
+                            json_number(fact.lipschitz_sup), status_name(fact.status),
+                            fact.kind == ir::FieldKind::Exact);
         }
     } else {
         verdict.exact = false;
@@ -72,8 +76,8 @@ std::string verdict_json(const Compilation &compilation) {
     return fmt::format(
         R"({{"ok": {}, "lipschitz": {}, "status": "{}", "exact": {}, "bounds": {}, "shapes": [{}], "diagnostics": [{}]}})"
         "\n",
-        compilation.good(), json_number(verdict.lipschitz), status_name(verdict.status), verdict.exact, bounds, shapes,
-        diagnostics);
+        compilation.good(), json_number(verdict.lipschitz), status_name(verdict.status),
+        verdict.exact, bounds, shapes, diagnostics);
 }
 
 } // namespace fathom::driver

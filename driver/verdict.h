@@ -1,5 +1,5 @@
-// What `check` says of a whole scene (semantics.md, 19), for people and as the JSON document of the command line.
-// Knows nothing of commands.
+// What `check` says of a whole scene (semantics.md, 19), for people and as the JSON document of the
+// command line. Knows nothing of commands.
 #pragma once
 
 #include "driver/compile.h"
@@ -11,7 +11,8 @@
 namespace fathom::driver {
 
 struct Verdict {
-    std::optional<double> lipschitz; // the largest before division among the top-level shapes; none: no shape, no bound
+    std::optional<double> lipschitz; // the largest before division among the top-level shapes;
+                                     // none: no shape, no bound
     ir::ProofStatus status = ir::ProofStatus::Proved; // the worst
     bool exact = true;                                // only if all are
 };

@@ -18,16 +18,19 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr std::uint32_t interesting = IN_CLOSE_WRITE | IN_MODIFY | IN_ATTRIB | IN_CREATE | IN_MOVED_TO |
-                                      IN_MOVED_FROM | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
+constexpr std::uint32_t interesting = IN_CLOSE_WRITE | IN_MODIFY | IN_ATTRIB | IN_CREATE |
+                                      IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE | IN_DELETE_SELF |
+                                      IN_MOVE_SELF | IN_ONLYDIR;
 
-// A complete save (closed after writing, renamed into place) is followed by no more than this of its own noise;
-// an incomplete one (created, truncated, deleted) is waited for, but not for ever: some programs keep a file open.
+// A complete save (closed after writing, renamed into place) is followed by no more than this of
+// its own noise; an incomplete one (created, truncated, deleted) is waited for, but not for ever:
+// some programs keep a file open.
 constexpr milliseconds quiet_after_complete{2};
 constexpr milliseconds quiet_after_incomplete{60};
 constexpr milliseconds longest_burst{400};
 
-// A file's folder and, where the name or a folder above is a symbolic link, every place on the way to what it means.
+// A file's folder and, where the name or a folder above is a symbolic link, every place on the way
+// to what it means.
 std::vector<fs::path> places(const fs::path &file) {
     std::error_code error;
     fs::path current = fs::absolute(file, error).lexically_normal();
@@ -45,7 +48,8 @@ std::vector<fs::path> places(const fs::path &file) {
 
 Watcher::Watcher() {
     inotify_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    if (inotify_ < 0) error_ = "the system has no more file watches to give (fs.inotify.max_user_instances)";
+    if (inotify_ < 0)
+        error_ = "the system has no more file watches to give (fs.inotify.max_user_instances)";
     wake_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
 }
 
@@ -69,7 +73,8 @@ void Watcher::rewatch_folders() {
     std::set<fs::path> wanted;
     for (const auto &[file, state] : files_) {
         for (const fs::path &place : places(file)) {
-            // A folder that does not exist (yet, or for a moment) is watched for at its nearest ancestor.
+            // A folder that does not exist (yet, or for a moment) is watched for at its nearest
+            // ancestor.
             fs::path name = place;
             std::error_code error;
             while (name.has_relative_path() && !fs::is_directory(name.parent_path(), error))
@@ -113,7 +118,8 @@ Watcher::Batch Watcher::read_events() {
             auto folder = folders_.find(event->wd);
             if (folder == folders_.end()) continue;
             if (event->mask & (IN_DELETE_SELF | IN_MOVE_SELF | IN_IGNORED)) {
-                // A moved folder is still watched, under its new name: what stands at the old one now is news.
+                // A moved folder is still watched, under its new name: what stands at the old one
+                // now is news.
                 if (event->mask & IN_MOVE_SELF) ::inotify_rm_watch(inotify_, event->wd);
                 folders_.erase(folder);
                 batch.relevant = batch.folders_changed = true;
@@ -124,13 +130,15 @@ Watcher::Batch Watcher::read_events() {
             auto names = names_.find(folder->second);
             if (names == names_.end()) continue;
             std::string_view name = event->name;
-            if (std::find(names->second.begin(), names->second.end(), name) == names->second.end()) continue;
+            if (std::find(names->second.begin(), names->second.end(), name) == names->second.end())
+                continue;
             batch.relevant = true;
             batch.complete = (event->mask & (IN_CLOSE_WRITE | IN_MOVED_TO)) != 0;
-            struct stat status{};
+            struct stat status {};
             // A folder on the way to a file, or a symbolic link, came or went: the places change.
             fs::path place = folder->second / name;
-            if ((event->mask & IN_ISDIR) || (::lstat(place.c_str(), &status) == 0 && S_ISLNK(status.st_mode)))
+            if ((event->mask & IN_ISDIR) ||
+                (::lstat(place.c_str(), &status) == 0 && S_ISLNK(status.st_mode)))
                 batch.folders_changed = true;
         }
     }
@@ -170,7 +178,8 @@ bool Watcher::wait(milliseconds timeout) {
     for (;;) {
         milliseconds left = std::chrono::ceil<milliseconds>(end - steady_clock::now());
         std::array<pollfd, 2> ready{pollfd{inotify_, POLLIN, 0}, pollfd{wake_, POLLIN, 0}};
-        int count = ::poll(ready.data(), ready.size(), static_cast<int>(std::max<std::int64_t>(0, left.count())));
+        int count = ::poll(ready.data(), ready.size(),
+                           static_cast<int>(std::max<std::int64_t>(0, left.count())));
         if (count <= 0) return false; // also on an interrupt: the caller may have to end
         if (ready[1].revents) {
             std::uint64_t value = 0;

@@ -1,5 +1,6 @@
-// Tells when a file, or any other that the scene read, was saved. Watches *directories*, so that an editor's
-// atomic renames, delete-and-create and backup dances are seen; joins bursts. Knows nothing of what the files hold.
+// Tells when a file, or any other that the scene read, was saved. Watches *directories*, so that an
+// editor's atomic renames, delete-and-create and backup dances are seen; joins bursts. Knows
+// nothing of what the files hold.
 #pragma once
 
 #include "driver/files.h"
@@ -19,16 +20,19 @@ class Watcher {
     Watcher(const Watcher &) = delete;
     Watcher &operator=(const Watcher &) = delete;
 
-    // False where the system gives no inotify instance or watch (its limits are reached); `error` says so.
+    // False where the system gives no inotify instance or watch (its limits are reached); `error`
+    // says so.
     bool good() const { return error_.empty(); }
     const std::string &error() const { return error_; }
 
-    // The files to watch from now on, in place of those before, each with its state when it was read: what was
-    // saved since then is news too, so nothing falls between reading and watching. Files that do not exist are fine.
+    // The files to watch from now on, in place of those before, each with its state when it was
+    // read: what was saved since then is news too, so nothing falls between reading and watching.
+    // Files that do not exist are fine.
     void watch(const std::map<std::filesystem::path, FileStamp> &files);
 
-    // Waits until a watched file has changed and the burst is over, or `timeout` has passed, or `wake` is
-    // called. True: something changed. A file that is being written is waited for, to a limit.
+    // Waits until a watched file has changed and the burst is over, or `timeout` has passed, or
+    // `wake` is called. True: something changed. A file that is being written is waited for, to a
+    // limit.
     bool wait(std::chrono::milliseconds timeout);
 
     // Ends a `wait` in another thread, now or the next one.
@@ -37,8 +41,8 @@ class Watcher {
   private:
     void rewatch_folders();
     void watch_folder(const std::filesystem::path &folder);
-    // Reads what the system has; says whether a watched name was among it and whether the last event on one
-    // left its file complete.
+    // Reads what the system has; says whether a watched name was among it and whether the last
+    // event on one left its file complete.
     struct Batch {
         bool relevant = false;
         bool complete = false;
@@ -53,8 +57,9 @@ class Watcher {
     std::string error_;
     std::map<std::filesystem::path, FileStamp> files_; // absolute; as last reported
     bool compare_first_ = false;
-    std::map<int, std::filesystem::path> folders_;         // by watch descriptor
-    std::map<std::filesystem::path, std::vector<std::string>> names_; // by folder: the names that matter there
+    std::map<int, std::filesystem::path> folders_; // by watch descriptor
+    std::map<std::filesystem::path, std::vector<std::string>>
+        names_; // by folder: the names that matter there
 };
 
 } // namespace fathom::driver

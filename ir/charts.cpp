@@ -44,7 +44,8 @@ Chart ball_chart(Graph &graph, NodeId lo, NodeId hi) {
     const NodeId x = graph.component(q, 0), y = graph.component(q, 1), z = graph.component(q, 2);
     const NodeId size = k.of(Op::Length, q), around = k.length(x, z), least = k.least_of(half);
     Chart chart;
-    chart.uv = k.pair(k.round_y(x, z), graph.mul(k.of(Op::Atan2, around, graph.neg(y)), k.n(1 / pi)));
+    chart.uv =
+        k.pair(k.round_y(x, z), graph.mul(k.of(Op::Atan2, around, graph.neg(y)), k.n(1 / pi)));
     chart.weight =
         k.saturated(k.least(graph.mul(around, k.n(4)), graph.sub(graph.mul(size, k.n(4)), k.n(1))));
     chart.slope_u = chart.slope_v = graph.div(k.n(2 / pi), least);
@@ -145,10 +146,10 @@ Chart ring_chart(Graph &graph, NodeId major, NodeId minor) {
                  z = graph.component(p, 2);
     const NodeId rho = k.length(x, z), out = graph.sub(rho, major);
     Chart chart;
-    // From the inside below to the outside, over the top and back: the image's middle lies on the outer rim.
-    chart.uv =
-        k.pair(k.round_y(x, z),
-               graph.add(k.n(0.5), graph.mul(k.of(Op::Atan2, y, out), k.n(0.5 / pi))));
+    // From the inside below to the outside, over the top and back: the image's middle lies on the
+    // outer rim.
+    chart.uv = k.pair(k.round_y(x, z),
+                      graph.add(k.n(0.5), graph.mul(k.of(Op::Atan2, y, out), k.n(0.5 / pi))));
     chart.weight = k.saturated(
         k.least(graph.mul(rho, graph.div(k.n(4), major)),
                 graph.sub(graph.mul(k.length(out, y), graph.div(k.n(4), minor)), k.n(1))));

@@ -1,17 +1,19 @@
-// What a field computes: a pure, hash-consed, folded DAG of operations. Arguments precede users and the array's
-// order is a schedule. Knows nothing of syntax; says nothing of shapes (ir/shape.h builds on this).
+// What a field computes: a pure, hash-consed, folded DAG of operations. Arguments precede users and
+// the array's order is a schedule. Knows nothing of syntax; says nothing of shapes (ir/shape.h
+// builds on this).
 //
-// A *closed* expression depends on inputs alone. `Point` is the point of the space in which an expression stands;
-// `Var`s are bound by functions, folds and the shapes Repeat and Many. A node's value is a function of those.
+// A *closed* expression depends on inputs alone. `Point` is the point of the space in which an
+// expression stands; `Var`s are bound by functions, folds and the shapes Repeat and Many. A node's
+// value is a function of those.
 #pragma once
 
 #include "base/ids.h"
 #include "base/source.h"
 
 #include <array>
+#include <cstdint>
 #include <initializer_list>
 #include <optional>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -21,11 +23,11 @@ namespace fathom::ir {
 
 enum class Type : std::uint8_t { Bool, Int, Float, Vec2, Vec3, Vec4, Mat2, Mat3, Mat4, Hit };
 
-int components(Type type);       // 1, 2, 3, 4, 4, 9, 16; of a Hit 9 (distance, paint, point 3, extra 4)
-Type vector_type(int size);      // 1 -> Float, 2 -> Vec2, …
-Type matrix_type(int size);      // 2 -> Mat2, …
-int side(Type matrix);           // Mat3 -> 3
-bool is_vector(Type type);       // Vec2, Vec3, Vec4
+int components(Type type);  // 1, 2, 3, 4, 4, 9, 16; of a Hit 9 (distance, paint, point 3, extra 4)
+Type vector_type(int size); // 1 -> Float, 2 -> Vec2, …
+Type matrix_type(int size); // 2 -> Mat2, …
+int side(Type matrix);      // Mat3 -> 3
+bool is_vector(Type type);  // Vec2, Vec3, Vec4
 bool is_matrix(Type type);
 const char *type_name(Type type); // the language's and GLSL's name: "vec3"
 
@@ -46,8 +48,8 @@ struct OpInfo {
 const OpInfo &info(Op op);
 std::size_t op_count();
 
-// The blend profiles of two distances a and b within r of the seam (lipschitz.md, 4); n: steps or columns.
-// Each is exactly min(a, b) outside its compact support.
+// The blend profiles of two distances a and b within r of the seam (lipschitz.md, 4); n: steps or
+// columns. Each is exactly min(a, b) outside its compact support.
 enum class Profile : std::uint8_t { Smooth, Round, Chamfer, Stairs, Columns };
 
 struct Node;
@@ -64,8 +66,8 @@ using CacheId = Id<Cache>;
 struct Node {
     Op op = Op::Const;
     Type type = Type::Float;
-    std::uint32_t payload = 0;     // by op, see ops.def
-    std::uint32_t first = 0;       // arguments: Graph::args(id)
+    std::uint32_t payload = 0; // by op, see ops.def
+    std::uint32_t first = 0;   // arguments: Graph::args(id)
     std::uint32_t count = 0;
 };
 
@@ -75,8 +77,9 @@ struct Constant {
     std::array<double, 16> value{};
 };
 
-// A function of its parameters and of the global inputs (Time, Param) alone; its body names no Point.
-// `name` is a suggestion for the emitted text, made unique there. Functions call only those before them.
+// A function of its parameters and of the global inputs (Time, Param) alone; its body names no
+// Point. `name` is a suggestion for the emitted text, made unique there. Functions call only those
+// before them.
 struct Function {
     std::string name;
     Span origin;                // where the user wrote it; no source for made ones
@@ -84,16 +87,17 @@ struct Function {
     NodeId result;
 };
 
-// A loop. vars[k] has value args[k] before the first turn and next[k] after each; `index` (Int) counts 0, 1, …
-// The loop ends after `count` turns (an Int node, evaluated once before), or before the first turn in which
-// `condition` (a Bool over index and vars, invalid id: always true) is false. Results are the vars' last values.
+// A loop. vars[k] has value args[k] before the first turn and next[k] after each; `index` (Int)
+// counts 0, 1, … The loop ends after `count` turns (an Int node, evaluated once before), or before
+// the first turn in which `condition` (a Bool over index and vars, invalid id: always true) is
+// false. Results are the vars' last values.
 struct Fold {
     NodeId count;
     NodeId index;             // Var, Int
     std::vector<NodeId> vars; // Vars
     std::vector<NodeId> next; // same types
     NodeId condition;
-    int max_count = 0;        // a constant upper bound of `count`
+    int max_count = 0; // a constant upper bound of `count`
 };
 
 // Scene-time data read at field time: `rows` rows of `stride` floats.
@@ -101,8 +105,9 @@ struct Table {
     int rows = 0;
     int stride = 0;
     std::vector<float> data;
-    // Where the rows follow from their number: the first column of what a formula gives, and that formula, a function
-    // (row: int) -> the numbers, which clamps the row itself. It gives the data to float precision; the data is what is true.
+    // Where the rows follow from their number: the first column of what a formula gives, and that
+    // formula, a function (row: int) -> the numbers, which clamps the row itself. It gives the data
+    // to float precision; the data is what is true.
     std::vector<std::pair<int, FunctionId>> computed{};
 };
 // TableRead's payload: which table and the first of components(type) columns.
@@ -129,9 +134,10 @@ class Graph {
     Type type(NodeId id) const { return nodes_[id].type; }
     std::size_t size() const { return nodes_.size(); }
 
-    // Makes a node, or finds the equal one; folds constants and a few identities (x+0, x*1, x*0, min(x,x), swizzle of
-    // Make, Select of a constant, …; ir/fold.cpp). Types of componentwise arguments must be equal (asserted).
-    NodeId make(Op op, std::span<const NodeId> args);                                // types by rule
+    // Makes a node, or finds the equal one; folds constants and a few identities (x+0, x*1, x*0,
+    // min(x,x), swizzle of Make, Select of a constant, …; ir/fold.cpp). Types of componentwise
+    // arguments must be equal (asserted).
+    NodeId make(Op op, std::span<const NodeId> args); // types by rule
     NodeId make(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload = 0);
     NodeId make(Op op, std::initializer_list<NodeId> args);
     NodeId make(Op op, Type type, std::initializer_list<NodeId> args, std::uint32_t payload = 0);
@@ -159,7 +165,7 @@ class Graph {
     NodeId call(FunctionId function, std::span<const NodeId> args);
 
     bool is_constant(NodeId id) const { return nodes_[id].op == Op::Const; }
-    const Constant &constant_of(NodeId id) const; // of a Const node
+    const Constant &constant_of(NodeId id) const;     // of a Const node
     std::optional<double> as_number(NodeId id) const; // a constant scalar's value
 
     FunctionId add_function(Function function);
@@ -186,8 +192,9 @@ class Graph {
     std::vector<NodeId> free_vars(NodeId id) const; // in order of payload; walks, so ask once
 
   private:
-    NodeId simplified(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload); // or none
-    NodeId folded(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload);     // or none
+    NodeId simplified(Op op, Type type, std::span<const NodeId> args,
+                      std::uint32_t payload);                                             // or none
+    NodeId folded(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload); // or none
     NodeId intern(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload);
     Reads reads_of(const Node &node) const;
     bool is_all(NodeId id, double value) const; // a constant with this number in every component
@@ -201,17 +208,18 @@ class Graph {
     Arena<Cache> caches_;
     std::uint32_t vars_ = 0;
     std::vector<Constant> folding_; // the arguments of the fold in hand
-    std::vector<NodeId> slots_; // open addressing by content; a power of two, at most half full
+    std::vector<NodeId> slots_;     // open addressing by content; a power of two, at most half full
     std::unordered_multimap<std::uint64_t, std::uint32_t> interned_constants_;
     std::unordered_multimap<std::uint64_t, TableId> interned_tables_;
 };
 
-// A copy of `root` in which every node that `map` names is replaced. Fold bodies are entered; calls are not (functions are closed).
-// A copied Fold gets variables of its own.
+// A copy of `root` in which every node that `map` names is replaced. Fold bodies are entered; calls
+// are not (functions are closed). A copied Fold gets variables of its own.
 using Substitution = std::unordered_map<NodeId, NodeId>;
 NodeId substitute(Graph &graph, NodeId root, const Substitution &map);
 
-// One line a node, numbered in the order of first use; folds and functions indented below; stable, for goldens.
+// One line a node, numbered in the order of first use; folds and functions indented below; stable,
+// for goldens.
 std::string dump(const Graph &graph, NodeId root);
 std::string dump(const Graph &graph, FunctionId function); // its parameters, then its body
 

@@ -27,8 +27,8 @@
 // 2014 for the fallback):
 //   t = begin, before = 0, stride = 0; at most max_steps times while t <= end + slack:
 //     d = f(o + t*dir)
-//     if stride > before + max(d, 0): the last two spheres do not overlap, something may lie between them:
-//     go back to the first
+//     if stride > before + max(d, 0): the last two spheres do not overlap, something may lie
+//     between them: go back to the first
 //       sphere's edge, t += before - stride, stride = before, and go on with the next turn
 //     if d <= tolerance(t) and (not steep or near(p, d, step(t)) <= tolerance(t)): a hit at t + d
 //     d = max(d, slack/4), never less than float32 can move

@@ -48,7 +48,8 @@ NodeId Lowering::painted(ShapeId id, Frame frame) {
     const ShapeId child = s.children.front();
     if (parts_below_[child.index])
         return painted_part(ask(Reading::Hit, child, frame),
-                            s.kind == ShapeKind::Repaint || !colored_[child.index], paint, point, extra);
+                            s.kind == ShapeKind::Repaint || !colored_[child.index], paint, point,
+                            extra);
     if (s.kind == ShapeKind::Repaint || !paint_[child.index])
         return graph_.make(Op::MakeHit, {ask(Reading::Marched, child, frame), paint, point, extra});
     return graph_.make(Op::FillPaint, {ask(Reading::Hit, child, frame), paint, point, extra});
@@ -202,8 +203,8 @@ std::int32_t Lowering::mixed_surface(ShapeId id) {
     using Look = std::array<NodeId, 4>; // diffuse, specular, exponent, emission
     const auto look_of = [&](NodeId hit) {
         Look look{g.vec3(0.448, 0.448, 0.448), g.vec3(1, 1, 1), g.number(32), g.vec3(0, 0, 0)};
-        const NodeId paint = code_of(g.make(Op::HitPaint, {hit})), point = g.make(Op::HitPoint, {hit}),
-                     extra = g.make(Op::HitExtra, {hit});
+        const NodeId paint = code_of(g.make(Op::HitPaint, {hit})),
+                     point = g.make(Op::HitPoint, {hit}), extra = g.make(Op::HitExtra, {hit});
         for (std::size_t i = 0; i < scene_.surfaces.size(); ++i) {
             const Surface &one = scene_.surfaces[i];
             const NodeId is = g.make(Op::Equal, {paint, g.integer(static_cast<int>(i))});

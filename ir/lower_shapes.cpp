@@ -122,15 +122,15 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Frame frame) {
             graph_.sub(ask(Reading::Raw, child, frame), graph_.number(fact(id).outward));
         const NodeId outer = divided(child, shell);
         marched = graph_.make(Op::Max, {marched, outer});
-        // Where (f + B)/L, B the most that it moves inward, is no more than the shell's bound, that is the
-        // greater one whatever the displacement is: a dear one is asked nearer only.
+        // Where (f + B)/L, B the most that it moves inward, is no more than the shell's bound, that
+        // is the greater one whatever the displacement is: a dear one is asked nearer only.
         const NodeId amount = shape(id).args.front();
         if (std::isfinite(fact(id).inward) && cost_of(graph_, amount) >= ask_first_from) {
             const NodeId most =
                 graph_.add(ask(Reading::Raw, child, frame), graph_.number(fact(id).inward));
-            marched = graph_.make(
-                Op::Select,
-                {graph_.make(Op::LessEqual, {divided(id, most), outer}), outer, marched});
+            marched =
+                graph_.make(Op::Select, {graph_.make(Op::LessEqual, {divided(id, most), outer}),
+                                         outer, marched});
         }
     }
     return guarded(reading, id, frame, marched);

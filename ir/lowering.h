@@ -40,7 +40,8 @@ class Lowering {
     NodeId ask(Reading reading, ShapeId id, Frame frame);
     NodeId answer(Reading reading, ShapeId id,
                   Frame frame); // without a function of its own, unless its children's
-    NodeId unmarked(Reading reading, ShapeId id, Frame frame); // the answer before its part is noted
+    NodeId unmarked(Reading reading, ShapeId id,
+                    Frame frame); // the answer before its part is noted
     NodeId structural(Reading reading, ShapeId id,
                       Frame frame);           // through the shape's own combination
     NodeId raw_only(ShapeId id, Frame frame); // kinds whose field consumes raw fields
@@ -96,7 +97,7 @@ class Lowering {
     NodeId marked(ShapeId id, NodeId hit);
     NodeId painted_part(NodeId hit, bool over, NodeId paint, NodeId point, NodeId extra);
     NodeId farthest_part(NodeId farthest, NodeId first);
-    NodeId code_of(NodeId paint); // without its part; -1 where nobody painted
+    NodeId code_of(NodeId paint);   // without its part; -1 where nobody painted
     NodeId part_only(NodeId paint); // stride times the part
 
     // -- looks
@@ -126,10 +127,10 @@ class Lowering {
     std::map<ShapeId, TableId> cell_tables_;
     std::vector<double> cost_, uses_; // by shape; saturating
     std::vector<char> paint_, reached_;
-    Parts parts_; // stride 0: nothing is marked
-    std::vector<std::uint32_t> part_;  // by shape, 0: none of its own
-    std::vector<char> colored_;        // by shape: something in it is painted; with parts only
-    std::vector<char> parts_below_;    // by shape: each of its hits is marked further down
+    Parts parts_;                     // stride 0: nothing is marked
+    std::vector<std::uint32_t> part_; // by shape, 0: none of its own
+    std::vector<char> colored_;       // by shape: something in it is painted; with parts only
+    std::vector<char> parts_below_;   // by shape: each of its hits is marked further down
     std::vector<std::string> names_;
     std::vector<std::vector<NodeId>> free_vars_;
 };

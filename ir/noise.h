@@ -200,18 +200,19 @@ template <class T> T worley(T px, T py, T pz) {
     const T x = px - T(fx), y = py - T(fy), z = pz - T(fz);
     T least(1);
     const auto cell = [&](int i, int j, int k) {
-        const V3<T> q =
-            worley_point<T>(hash_lattice(ix + std::uint32_t(i), iy + std::uint32_t(j),
-                                         iz + std::uint32_t(k), 0x1b56c4e9u));
+        const V3<T> q = worley_point<T>(hash_lattice(ix + std::uint32_t(i), iy + std::uint32_t(j),
+                                                     iz + std::uint32_t(k), 0x1b56c4e9u));
         const T dx = x - (T(float(i)) + q.x), dy = y - (T(float(j)) + q.y),
                 dz = z - (T(float(k)) + q.z);
         const T d = dx * dx + dy * dy + dz * dz;
         least = d < least ? d : least;
     };
-    // Written out, not looped over: loops over batches of points vectorise only where none is inside.
+    // Written out, not looped over: loops over batches of points vectorise only where none is
+    // inside.
     [&]<int... n>(std::integer_sequence<int, n...>) {
         (cell(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1), ...);
-    }(std::make_integer_sequence<int, 27>{});
+    }
+    (std::make_integer_sequence<int, 27>{});
     return sqrt(least);
 }
 

@@ -1,5 +1,6 @@
-// A whole scene, as the checker hands it to the back ends: the shapes, what was proved of each, and the lowered
-// functions that evaluators run. A verified scene always emits, and what is emitted always compiles.
+// A whole scene, as the checker hands it to the back ends: the shapes, what was proved of each, and
+// the lowered functions that evaluators run. A verified scene always emits, and what is emitted
+// always compiles.
 #pragma once
 
 #include "ir/shape.h"
@@ -8,14 +9,15 @@ namespace fathom::ir {
 
 // How many copies of a repetition have to be evaluated, per axis, for a valid and continuous bound.
 struct RepeatPlan {
-    std::array<int, 3> neighbors{0, 0, 0}; // copies evaluated along an axis: 0 does not repeat, 1 the own cell, 2 the
-                                           // nearer neighbour too, 3 both neighbours, 2n+1 more
-    bool guard = false;                    // also the distance to the slab of all cells not evaluated
-    Box copy;                              // the child's bounds, for the guard
+    std::array<int, 3> neighbors{
+        0, 0, 0};       // copies evaluated along an axis: 0 does not repeat, 1 the own cell, 2 the
+                        // nearer neighbour too, 3 both neighbours, 2n+1 more
+    bool guard = false; // also the distance to the slab of all cells not evaluated
+    Box copy;           // the child's bounds, for the guard
 };
 
-// A field's bound by cells of a box: one number a corner, x first, the largest of the cells that meet there. A mean of a
-// cell's corners holds within the cell grown by `margin`.
+// A field's bound by cells of a box: one number a corner, x first, the largest of the cells that
+// meet there. A mean of a cell's corners holds within the cell grown by `margin`.
 struct CellBounds {
     Box box;
     std::array<int, 3> count{};
@@ -27,24 +29,29 @@ struct CellBounds {
 struct ShapeFact {
     FieldKind kind = FieldKind::Bound;
     ProofStatus status = ProofStatus::Proved;
-    NodeId lipschitz;            // of the raw field: a float expression in params and time alone; >= the true constant
-    double lipschitz_sup = 1;    // its largest value over all params and times; infinity where the proof failed
+    NodeId lipschitz; // of the raw field: a float expression in params and time alone; >= the true
+                      // constant
+    double lipschitz_sup =
+        1; // its largest value over all params and times; infinity where the proof failed
     Box bounds = Box::everything(); // holds the solid, for all params and times
     std::array<bool, 3> symmetric{};
     std::array<double, 3> lever{}; // sup |(p x grad f)_axis| over space; infinity: unknown
-    double outward = std::numeric_limits<double>::infinity(); // Displace: the most by which it moves the surface outward
-    double inward = std::numeric_limits<double>::infinity(); // … and inward
-    bool local = false;          // the bound holds within `bounds` alone: the raw field is asked at the nearest point there, and
-                                 // joined with the way to it as Within's is
-    bool guard = false;          // when marched, take the max with the distance to `bounds` (cheap far away)
+    double outward = std::numeric_limits<double>::infinity(); // Displace: the most by which it
+                                                              // moves the surface outward
+    double inward = std::numeric_limits<double>::infinity();  // … and inward
+    bool local = false; // the bound holds within `bounds` alone: the raw field is asked at the
+                        // nearest point there, and joined with the way to it as Within's is
+    bool guard = false; // when marched, take the max with the distance to `bounds` (cheap far away)
     RepeatPlan repeat;
-    double detour = 1;           // Within: the ways round what its region leaves out, over the straight ones, at most
-    CellBounds cells;            // Within: its child's bounds cell by cell, where they differ much
+    double detour =
+        1; // Within: the ways round what its region leaves out, over the straight ones, at most
+    CellBounds cells; // Within: its child's bounds cell by cell, where they differ much
 };
 
 // What was proved of a cached field (Graph::caches) everywhere, for all params.
 struct CacheFact {
-    double slope = std::numeric_limits<double>::infinity(); // >= |grad f|; of a vector, of all components together
+    double slope = std::numeric_limits<double>::infinity(); // >= |grad f|; of a vector, of all
+                                                            // components together
     double span = std::numeric_limits<double>::infinity();  // >= the distance of any two values
 };
 
@@ -60,8 +67,8 @@ struct Param {
 
 struct Light {
     bool directional = true;
-    NodeId position;  // vec3: towards the sun (unit), or the light's place
-    NodeId color;     // vec3, linear, times the intensity
+    NodeId position; // vec3: towards the sun (unit), or the light's place
+    NodeId color;    // vec3, linear, times the intensity
 };
 
 struct Lighting {
@@ -70,26 +77,27 @@ struct Lighting {
     NodeId shadow_darkness;   // 0 none … 1 black
     NodeId soft_shadows;      // half the light's angular size, radians; 0 is hard
     NodeId specular_intensity;
-    bool skip = false;        // `Skip Shadows & Shading`
+    bool skip = false; // `Skip Shadows & Shading`
 };
 
 struct Camera {
-    NodeId at, look_at;       // vec3
-    NodeId fov;               // vertical, radians
+    NodeId at, look_at; // vec3
+    NodeId fov;         // vertical, radians
     bool orthographic = false;
-    bool given = false;       // false: framed by the rule of semantics.md, 23, from `bounds`
+    bool given = false; // false: framed by the rule of semantics.md, 23, from `bounds`
 };
 
 struct RenderSettings {
     int max_steps = 256;
-    double epsilon = 5e-4;    // hit tolerance at distance 1, grows with the distance
-    double far = 0;           // 0: by the rule of semantics.md, 23
-    double time_end = 3600;   // the span of time the proof covers starts at 0
+    double epsilon = 5e-4;  // hit tolerance at distance 1, grows with the distance
+    double far = 0;         // 0: by the rule of semantics.md, 23
+    double time_end = 3600; // the span of time the proof covers starts at 0
 };
 
-// How a painted point looks: the material as a function of (point: vec3, normal: vec3, extra: vec4). `point` and `extra`
-// are the hit's own; its point lies in the space where the paint stands, and so must `normal`. It is found from the world's
-// normal n without knowing the transforms between: normalize(hit(p + e*n).point - hit(p).point), for a small e.
+// How a painted point looks: the material as a function of (point: vec3, normal: vec3, extra:
+// vec4). `point` and `extra` are the hit's own; its point lies in the space where the paint stands,
+// and so must `normal`. It is found from the world's normal n without knowing the transforms
+// between: normalize(hit(p + e*n).point - hit(p).point), for a small e.
 struct Surface {
     NodeId point, normal, extra; // Vars
     bool reads_normal = false;   // else any normal will do
@@ -101,8 +109,13 @@ struct TopLevel {
     Span span;
 };
 
-struct ImageData { std::string name; int width = 0, height = 0; std::vector<float> rgba; }; // linear
-// Distances at the corners of a lattice: the first sample stands at `lo`, the last at `hi`, in the space of the shape.
+struct ImageData {
+    std::string name;
+    int width = 0, height = 0;
+    std::vector<float> rgba;
+}; // linear
+// Distances at the corners of a lattice: the first sample stands at `lo`, the last at `hi`, in the
+// space of the shape.
 struct GridData {
     std::string name;
     std::array<int, 3> size{};
@@ -113,28 +126,28 @@ struct GridData {
 struct Scene {
     Graph graph;
     Shapes shapes;
-    ShapeId root;                    // the union of the top-level shapes
+    ShapeId root; // the union of the top-level shapes
     std::vector<TopLevel> top_level;
-    std::vector<ShapeFact> facts;    // by ShapeId; filled by the analysis
-    std::vector<CacheFact> caches;   // by CacheId; filled by the analysis
+    std::vector<ShapeFact> facts;  // by ShapeId; filled by the analysis
+    std::vector<CacheFact> caches; // by CacheId; filled by the analysis
     std::vector<Param> params;
     std::vector<Light> lights;
     Lighting lighting;
     Camera camera;
     RenderSettings render;
-    NodeId background;               // vec3, linear, an expression in Direction
+    NodeId background; // vec3, linear, an expression in Direction
     std::vector<ImageData> images;
     std::vector<GridData> grids;
-    std::vector<std::string> kept;   // given to `dfmodel.keep`, in order: items of a save file that the language has
-                                     // no word for; only save-format reads them
+    std::vector<std::string> kept; // given to `dfmodel.keep`, in order: items of a save file that
+                                   // the language has no word for; only save-format reads them
 
     // Filled by ir::lower.
-    FunctionId distance;             // (vec3) -> float: marched: a step of its length never passes a surface
-    FunctionId hit;                  // (vec3) -> Hit: the same distance, with the surface that decides
-    std::vector<Surface> surfaces;   // by a hit's paint; the last is that of what nobody painted
-    FunctionId background_function;  // (vec3 direction) -> vec3
-    Box bounds;                      // of the finite top-level parts; empty when there are none
-    double far = 0;                  // a far limit for rays
+    FunctionId distance; // (vec3) -> float: marched: a step of its length never passes a surface
+    FunctionId hit;      // (vec3) -> Hit: the same distance, with the surface that decides
+    std::vector<Surface> surfaces;  // by a hit's paint; the last is that of what nobody painted
+    FunctionId background_function; // (vec3 direction) -> vec3
+    Box bounds;                     // of the finite top-level parts; empty when there are none
+    double far = 0;                 // a far limit for rays
 };
 
 } // namespace fathom::ir

@@ -85,8 +85,8 @@ void CachedView::release() {
     width_ = height_ = 0;
 }
 
-std::string CachedView::use(const ir::Scene &scene, const CacheSize &size,
-                            Diagnostics &diagnostics, int part_stride) {
+std::string CachedView::use(const ir::Scene &scene, const CacheSize &size, Diagnostics &diagnostics,
+                            int part_stride) {
     picture_.reset();
     if (std::string why = cache_unavailable(); !why.empty()) return why;
     glsl::Options options;

@@ -13,8 +13,8 @@ using ir::Type;
 
 namespace {
 
-// The folding of constants while a graph is made: what is left is a constant, of the canonical value, but where that has
-// a NaN, which may be left to whoever runs it.
+// The folding of constants while a graph is made: what is left is a constant, of the canonical
+// value, but where that has a NaN, which may be left to whoever runs it.
 std::vector<Constant> folded(const Question &question) {
     std::vector<Constant> answers;
     for (const auto &row : question.rows) {
@@ -23,14 +23,18 @@ std::vector<Constant> folded(const Question &question) {
         for (const Constant &arg : row) args.push_back(graph.constant(arg));
         const NodeId made = graph.make(question.c.op, question.c.result, args, question.payload);
         const Constant exact = canonical(question, row);
-        const bool left = !graph.is_constant(made) && std::ranges::any_of(exact.value, [](double x) { return x != x; });
-        answers.push_back(left ? exact : graph.is_constant(made) ? graph.constant_of(made) : Constant{});
+        const bool left = !graph.is_constant(made) &&
+                          std::ranges::any_of(exact.value, [](double x) { return x != x; });
+        answers.push_back(left                      ? exact
+                          : graph.is_constant(made) ? graph.constant_of(made)
+                                                    : Constant{});
     }
     return answers;
 }
 
 float as_cell(Type type, double value) {
-    if (type == Type::Int || type == Type::Bool) return std::bit_cast<float>(static_cast<std::int32_t>(value));
+    if (type == Type::Int || type == Type::Bool)
+        return std::bit_cast<float>(static_cast<std::int32_t>(value));
     return static_cast<float>(value);
 }
 double from_cell(Type type, float cell) {
@@ -51,7 +55,8 @@ std::vector<Constant> on_tape(const Question &question, std::size_t batch) {
             for (const auto &row : question.rows) column.push_back(as_cell(type, row[k].value[i]));
         }
     }
-    const NodeId result = scene.graph.make(question.c.op, question.c.result, params, question.payload);
+    const NodeId result =
+        scene.graph.make(question.c.op, question.c.result, params, question.payload);
     const cpu::Program program = cpu::compile(scene, params, std::span(&result, 1));
     cpu::Scratch scratch = cpu::make_scratch(program, {});
     const auto size = static_cast<std::size_t>(ir::components(question.c.result));
@@ -85,7 +90,8 @@ std::vector<Constant> on_duals(const Question &question) {
             for (const auto &row : question.rows) column.push_back(as_cell(type, row[k].value[i]));
         }
     }
-    const NodeId result = scene.graph.make(question.c.op, question.c.result, params, question.payload);
+    const NodeId result =
+        scene.graph.make(question.c.op, question.c.result, params, question.payload);
     const cpu::Program program = cpu::compile(scene, params, std::span(&result, 1));
     cpu::GradientScratch scratch = cpu::make_gradient_scratch(program, {});
     std::vector<const float *> from;

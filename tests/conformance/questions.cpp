@@ -12,31 +12,40 @@ using ir::Type;
 namespace {
 
 bool is_noise(Op op) {
-    return op == Op::Perlin || op == Op::Simplex || op == Op::ValueNoise || op == Op::Worley || op == Op::SpotNoise;
+    return op == Op::Perlin || op == Op::Simplex || op == Op::ValueNoise || op == Op::Worley ||
+           op == Op::SpotNoise;
 }
 bool is_angle(Op op) { return op == Op::Sin || op == Op::Cos || op == Op::Tan; }
 
 float nasty(Random &random, Op op) {
-    constexpr float usual[] = {0.0f,  -0.0f, 1.0f, -1.0f, 0.5f,  -0.5f, 2.0f,   -2.0f,  3.0f,    -3.0f,  1.5f,
-                               -1.5f, 2.5f,  0.1f, -0.1f, 1e-6f, -1e-6f, 0.75f, 100.0f, -100.0f, -7.25f, 3.14159274f};
-    constexpr float extreme[] = {1e9f, -1e9f, 3e38f, -3e38f, 1e-38f, -1e-38f, 1e-45f, 16777216.0f, -2147483648.0f,
-                                 HUGE_VALF, -HUGE_VALF};
+    constexpr float usual[] = {0.0f,   -0.0f, 1.0f,   -1.0f,   0.5f,   -0.5f,      2.0f,  -2.0f,
+                               3.0f,   -3.0f, 1.5f,   -1.5f,   2.5f,   0.1f,       -0.1f, 1e-6f,
+                               -1e-6f, 0.75f, 100.0f, -100.0f, -7.25f, 3.14159274f};
+    constexpr float extreme[] = {1e9f,   -1e9f,       3e38f,          -3e38f,    1e-38f,    -1e-38f,
+                                 1e-45f, 16777216.0f, -2147483648.0f, HUGE_VALF, -HUGE_VALF};
     const std::uint32_t kind = random.below(10);
     if (kind < 5) return usual[random.below(std::size(usual))];
-    if (kind == 5 && !is_noise(op) && !is_angle(op)) return extreme[random.below(std::size(extreme))];
+    if (kind == 5 && !is_noise(op) && !is_angle(op))
+        return extreme[random.below(std::size(extreme))];
     return static_cast<float>(random.between(-10, 10));
 }
 
 Constant argument(Random &random, Op op, Type type) {
-    constexpr double whole[] = {0, 1, -1, 2, -2, 3, -3, 7, -7, 100, 65537, -65537, 2147483647, -2147483648.0};
+    constexpr double whole[] = {0, 1,  -1,  2,     -2,     3,          -3,
+                                7, -7, 100, 65537, -65537, 2147483647, -2147483648.0};
     Constant constant{type, {}};
     for (int i = 0; i < ir::components(type); ++i) {
         double &value = constant.value[static_cast<std::size_t>(i)];
-        if (type == Type::Bool) value = random.below(2);
-        else if (type == Type::Int) value = whole[random.below(std::size(whole))];
-        // A spot's radius and density: below that the coordinates leave what float32 can tell apart.
-        else if (op == Op::SpotNoise && type == Type::Float) value = static_cast<float>(random.between(0.2, 9));
-        else value = nasty(random, op);
+        if (type == Type::Bool)
+            value = random.below(2);
+        else if (type == Type::Int)
+            value = whole[random.below(std::size(whole))];
+        // A spot's radius and density: below that the coordinates leave what float32 can tell
+        // apart.
+        else if (op == Op::SpotNoise && type == Type::Float)
+            value = static_cast<float>(random.between(0.2, 9));
+        else
+            value = nasty(random, op);
     }
     return constant;
 }
@@ -44,23 +53,94 @@ Constant argument(Random &random, Op op, Type type) {
 // Ops whose float32 result is the rounded true one, or chosen among the arguments.
 bool is_exact(Op op) {
     switch (op) {
-    case Op::Neg: case Op::Add: case Op::Sub: case Op::Mul: case Op::Div: case Op::Min: case Op::Max: case Op::Step:
-    case Op::Abs: case Op::Sign: case Op::Floor: case Op::Ceil: case Op::Trunc: case Op::Sqrt: case Op::Clamp:
-    case Op::Less: case Op::LessEqual: case Op::Equal: case Op::NotEqual: case Op::And: case Op::Or: case Op::Not:
-    case Op::Select: case Op::ToFloat: case Op::ToInt: case Op::Splat: case Op::Make: case Op::Swizzle:
-    case Op::Column: case Op::Transpose: case Op::Union: case Op::Intersection: case Op::Hash:
-        return true;
-    case Op::Mod: case Op::Pow: case Op::Atan2: case Op::Round: case Op::Fract: case Op::InverseSqrt: case Op::Exp:
-    case Op::Exp2: case Op::Log: case Op::Log2: case Op::Sin: case Op::Cos: case Op::Tan: case Op::Asin:
-    case Op::Acos: case Op::Atan: case Op::Sinh: case Op::Cosh: case Op::Tanh: case Op::Mix: case Op::Smoothstep:
-    case Op::Dot: case Op::Length: case Op::Cross: case Op::Normalize: case Op::MatMul: case Op::Perlin:
-    case Op::Simplex: case Op::ValueNoise: case Op::Worley: case Op::SpotNoise: case Op::Blend:
-        return false;
-    case Op::Const: case Op::Point: case Op::Normal: case Op::Direction: case Op::Time: case Op::Param: case Op::Var:
-    case Op::TableRead: case Op::Image: case Op::Grid: case Op::Call: case Op::Fold: case Op::FoldResult:
-    case Op::Cached: case Op::MakeHit: case Op::HitDistance: case Op::HitPaint: case Op::HitPoint: case Op::HitExtra:
-    case Op::NearestHit: case Op::FarthestHit: case Op::HitWith: case Op::FillPaint:
-        return true; // not asked
+    case Op::Neg:
+    case Op::Add:
+    case Op::Sub:
+    case Op::Mul:
+    case Op::Div:
+    case Op::Min:
+    case Op::Max:
+    case Op::Step:
+    case Op::Abs:
+    case Op::Sign:
+    case Op::Floor:
+    case Op::Ceil:
+    case Op::Trunc:
+    case Op::Sqrt:
+    case Op::Clamp:
+    case Op::Less:
+    case Op::LessEqual:
+    case Op::Equal:
+    case Op::NotEqual:
+    case Op::And:
+    case Op::Or:
+    case Op::Not:
+    case Op::Select:
+    case Op::ToFloat:
+    case Op::ToInt:
+    case Op::Splat:
+    case Op::Make:
+    case Op::Swizzle:
+    case Op::Column:
+    case Op::Transpose:
+    case Op::Union:
+    case Op::Intersection:
+    case Op::Hash: return true;
+    case Op::Mod:
+    case Op::Pow:
+    case Op::Atan2:
+    case Op::Round:
+    case Op::Fract:
+    case Op::InverseSqrt:
+    case Op::Exp:
+    case Op::Exp2:
+    case Op::Log:
+    case Op::Log2:
+    case Op::Sin:
+    case Op::Cos:
+    case Op::Tan:
+    case Op::Asin:
+    case Op::Acos:
+    case Op::Atan:
+    case Op::Sinh:
+    case Op::Cosh:
+    case Op::Tanh:
+    case Op::Mix:
+    case Op::Smoothstep:
+    case Op::Dot:
+    case Op::Length:
+    case Op::Cross:
+    case Op::Normalize:
+    case Op::MatMul:
+    case Op::Perlin:
+    case Op::Simplex:
+    case Op::ValueNoise:
+    case Op::Worley:
+    case Op::SpotNoise:
+    case Op::Blend: return false;
+    case Op::Const:
+    case Op::Point:
+    case Op::Normal:
+    case Op::Direction:
+    case Op::Time:
+    case Op::Param:
+    case Op::Var:
+    case Op::TableRead:
+    case Op::Image:
+    case Op::Grid:
+    case Op::Call:
+    case Op::Fold:
+    case Op::FoldResult:
+    case Op::Cached:
+    case Op::MakeHit:
+    case Op::HitDistance:
+    case Op::HitPaint:
+    case Op::HitPoint:
+    case Op::HitExtra:
+    case Op::NearestHit:
+    case Op::FarthestHit:
+    case Op::HitWith:
+    case Op::FillPaint: return true; // not asked
     }
     return true;
 }
@@ -112,23 +192,30 @@ std::string fault(const Question &question, std::size_t index, const Constant &a
         const bool is_float = question.c.result != Type::Int && question.c.result != Type::Bool;
         const double exact = want.value[i], w = is_float ? static_cast<float>(exact) : exact,
                      got = is_float ? static_cast<float>(answer.value[i]) : answer.value[i];
-        const std::string said = " of" + text + ": component " + std::to_string(i) + " is " + std::to_string(got) +
-                                 ", not " + std::to_string(w);
+        const std::string said = " of" + text + ": component " + std::to_string(i) + " is " +
+                                 std::to_string(got) + ", not " + std::to_string(w);
         if (std::isnan(w)) continue; // has no stated value
         if (w == got) continue;
-        if (op == Op::Div && std::isinf(w) && std::isinf(got)) continue; // the sign of a zero means nothing
-        if (is_exact(op) && std::abs(w) >= 1e-37) return said; // below, the processor may take tiny numbers for 0
+        if (op == Op::Div && std::isinf(w) && std::isinf(got))
+            continue; // the sign of a zero means nothing
+        if (is_exact(op) && std::abs(w) >= 1e-37)
+            return said;            // below, the processor may take tiny numbers for 0
         if (scale > 1e15) continue; // overflows float32 on the way
         if (op == Op::Mod) {
             const double y = std::abs(row[1].value[i]);
             if (std::abs(row[0].value[i]) / y > 1e30) continue;
-            if (std::abs(std::abs(got - w) - y) <= 1e-6 + 2e-6 * std::max(y, scale)) continue; // 0 and y are neighbours on the circle
+            if (std::abs(std::abs(got - w) - y) <= 1e-6 + 2e-6 * std::max(y, scale))
+                continue; // 0 and y are neighbours on the circle
         }
         const double relative = op == Op::Pow ? 1e-5 : 2e-6;
         const double absolute = is_noise(op) ? 2e-5 : 1e-6;
-        // What is lost in differences of the arguments is lost; functions of one argument lose nothing.
-        const bool cancels = row.size() > 1 || ir::components(row[0].type) > 1 || op == Op::Fract || op == Op::Round;
-        if (!(std::abs(got - w) <= absolute + relative * std::max(std::abs(w), cancels ? scale : 0))) return said;
+        // What is lost in differences of the arguments is lost; functions of one argument lose
+        // nothing.
+        const bool cancels =
+            row.size() > 1 || ir::components(row[0].type) > 1 || op == Op::Fract || op == Op::Round;
+        if (!(std::abs(got - w) <=
+              absolute + relative * std::max(std::abs(w), cancels ? scale : 0)))
+            return said;
     }
     return {};
 }

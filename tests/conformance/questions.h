@@ -1,5 +1,6 @@
-// What every evaluator is asked: an op with the types of tests/unit/glsl/op_cases.h and rows of arguments that break
-// careless code; and how far an answer in float32 may be from the canonical one in double.
+// What every evaluator is asked: an op with the types of tests/unit/glsl/op_cases.h and rows of
+// arguments that break careless code; and how far an answer in float32 may be from the canonical
+// one in double.
 #pragma once
 
 #include "ir/fold.h"

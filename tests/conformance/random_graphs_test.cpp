@@ -1,6 +1,6 @@
-// Random graphs with functions and loops: the tape against a plain walk that rounds every number to float32. Only ops
-// whose float32 result is the rounded true one, so that both must agree to the bit: what is tested is the order of
-// things, the registers, calls and loops.
+// Random graphs with functions and loops: the tape against a plain walk that rounds every number to
+// float32. Only ops whose float32 result is the rounded true one, so that both must agree to the
+// bit: what is tested is the order of things, the registers, calls and loops.
 #include "backend-cpu/tape.h"
 #include "tests/conformance/questions.h"
 
@@ -90,17 +90,33 @@ class Grower {
             case 1: floats.push_back(g_.make(Op::Max, {scalar(), constant()})); break;
             case 2: floats.push_back(g_.add(g_.mul(scalar(), constant()), scalar())); break;
             case 3: floats.push_back(g_.make(Op::Sqrt, {g_.make(Op::Abs, {scalar()})})); break;
-            case 4: floats.push_back(g_.component(vector(), static_cast<int>(random_.below(3)))); break;
-            case 5: vectors.push_back(g_.make(Op::Make, Type::Vec3, {scalar(), scalar(), constant()})); break;
-            case 6: vectors.push_back(g_.make(Op::Max, {g_.make(Op::Abs, {vector()}), vector()})); break;
+            case 4:
+                floats.push_back(g_.component(vector(), static_cast<int>(random_.below(3))));
+                break;
+            case 5:
+                vectors.push_back(g_.make(Op::Make, Type::Vec3, {scalar(), scalar(), constant()}));
+                break;
+            case 6:
+                vectors.push_back(g_.make(Op::Max, {g_.make(Op::Abs, {vector()}), vector()}));
+                break;
             case 7: vectors.push_back(g_.sub(vector(), vector())); break;
             case 8:
-                floats.push_back(g_.make(Op::Select, {g_.make(Op::Less, {scalar(), scalar()}), scalar(), scalar()}));
+                floats.push_back(g_.make(
+                    Op::Select, {g_.make(Op::Less, {scalar(), scalar()}), scalar(), scalar()}));
                 break;
-            case 9: vectors.push_back(g_.make(Op::Select, {g_.make(Op::Less, {scalar(), scalar()}), vector(), vector()})); break;
-            case 10: floats.push_back(g_.make(Op::Clamp, {scalar(), g_.number(-1), g_.number(1)})); break;
-            case 11: floats.push_back(g_.make(Op::Union, Type::Float, {scalar(), scalar(), scalar()})); break;
-            case 12: floats.push_back(g_.mul(g_.make(Op::Floor, {scalar()}), g_.number(0.25))); break;
+            case 9:
+                vectors.push_back(g_.make(
+                    Op::Select, {g_.make(Op::Less, {scalar(), scalar()}), vector(), vector()}));
+                break;
+            case 10:
+                floats.push_back(g_.make(Op::Clamp, {scalar(), g_.number(-1), g_.number(1)}));
+                break;
+            case 11:
+                floats.push_back(g_.make(Op::Union, Type::Float, {scalar(), scalar(), scalar()}));
+                break;
+            case 12:
+                floats.push_back(g_.mul(g_.make(Op::Floor, {scalar()}), g_.number(0.25)));
+                break;
             case 13:
             case 14: call(); break;
             case 15:
@@ -123,17 +139,23 @@ class Grower {
         ir::Fold fold;
         fold.max_count = static_cast<int>(random_.below(4)) + 1;
         // The same number of turns for all, or each its own.
-        fold.count = random_.below(2) ? g_.integer(fold.max_count)
-                                      : g_.make(Op::ToInt, Type::Int, {g_.make(Op::Clamp, {scalar(), g_.number(0), g_.number(3)})});
+        fold.count = random_.below(2)
+                         ? g_.integer(fold.max_count)
+                         : g_.make(Op::ToInt, Type::Int,
+                                   {g_.make(Op::Clamp, {scalar(), g_.number(0), g_.number(3)})});
         fold.index = g_.fresh_var(Type::Int);
-        fold.vars = {g_.fresh_var(Type::Float), g_.fresh_var(Type::Vec3), g_.fresh_var(Type::Float)};
+        fold.vars = {g_.fresh_var(Type::Float), g_.fresh_var(Type::Vec3),
+                     g_.fresh_var(Type::Float)};
         Grower inner(g_, random_);
         inner.functions = functions;
-        inner.floats = {fold.vars[0], fold.vars[2], scalar(), g_.make(Op::ToFloat, Type::Float, {fold.index})};
+        inner.floats = {fold.vars[0], fold.vars[2], scalar(),
+                        g_.make(Op::ToFloat, Type::Float, {fold.index})};
         inner.vectors = {fold.vars[1], vector()};
         inner.grow(static_cast<int>(random_.below(10)) + 2, depth + 1);
         // Halved and clamped, so that nothing runs away.
-        auto tame = [&](NodeId v) { return g_.make(Op::Clamp, {g_.mul(v, g_.number(0.5)), g_.number(-8), g_.number(8)}); };
+        auto tame = [&](NodeId v) {
+            return g_.make(Op::Clamp, {g_.mul(v, g_.number(0.5)), g_.number(-8), g_.number(8)});
+        };
         fold.next = {tame(inner.floats.back()), inner.vectors[random_.below(inner.vectors.size())],
                      random_.below(3) ? tame(inner.scalar()) : fold.vars[0]};
         if (random_.below(2)) fold.condition = g_.make(Op::Less, {inner.scalar(), g_.number(1.5)});
@@ -148,7 +170,9 @@ class Grower {
     Random &random_;
 };
 
-bool equal(double a, float b) { return static_cast<float>(a) == b || (std::isnan(a) && std::isnan(b)); }
+bool equal(double a, float b) {
+    return static_cast<float>(a) == b || (std::isnan(a) && std::isnan(b));
+}
 
 } // namespace
 
@@ -192,7 +216,8 @@ TEST_CASE("random graphs: the tape agrees with a plain walk to the bit") {
             walker.known[p] = {Type::Vec3, {in[0][k], in[1][k], in[2][k]}};
             CAPTURE(k);
             REQUIRE(equal(walker.value(results[0]).value[0], out[0][k]));
-            for (std::size_t c = 0; c < 3; ++c) REQUIRE(equal(walker.value(results[1]).value[c], out[1 + c][k]));
+            for (std::size_t c = 0; c < 3; ++c)
+                REQUIRE(equal(walker.value(results[1]).value[c], out[1 + c][k]));
         }
     }
 }

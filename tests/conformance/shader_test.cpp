@@ -1,5 +1,6 @@
-// The shader as an evaluator: every op by the GLSL that is written for it, run off screen. Drivers may be less exact than a
-// processor, so it has a measure of its own; where no GL context can be had it says so and skips.
+// The shader as an evaluator: every op by the GLSL that is written for it, run off screen. Drivers
+// may be less exact than a processor, so it has a measure of its own; where no GL context can be
+// had it says so and skips.
 #include "tests/conformance/questions.h"
 #include "tests/unit/glsl/scenes.h"
 #include "tests/unit/render_gl/harness.h"
@@ -54,12 +55,14 @@ std::vector<NodeId> numbers_of(ir::Graph &g, NodeId value) {
         const int n = ir::side(type);
         for (int i = 0; i < n * n; ++i)
             parts.push_back(g.component(
-                g.make(Op::Column, ir::vector_type(n), {value}, static_cast<std::uint32_t>(i / n)), i % n));
+                g.make(Op::Column, ir::vector_type(n), {value}, static_cast<std::uint32_t>(i / n)),
+                i % n));
     }
     return parts;
 }
 
-// One answer a row: sdf(vec3(row, number, 0)) picks the arguments by x and the number of the result by y.
+// One answer a row: sdf(vec3(row, number, 0)) picks the arguments by x and the number of the result
+// by y.
 std::vector<Constant> in_shader(const Question &question) {
     int count = 0;
     const ir::Scene scene = scenes::of_field([&](ir::Graph &g, NodeId p) {
@@ -71,9 +74,11 @@ std::vector<Constant> in_shader(const Question &question) {
         std::vector<NodeId> args;
         int column = 0;
         for (Type type : question.c.args) {
-            args.push_back(type == Type::Int ? g.make(Op::Add, {g.make(Op::Mul, {read(type, column), g.integer(65536)}),
-                                                                read(type, column + 1)})
-                                             : read(type, column));
+            args.push_back(
+                type == Type::Int
+                    ? g.make(Op::Add, {g.make(Op::Mul, {read(type, column), g.integer(65536)}),
+                                       read(type, column + 1)})
+                    : read(type, column));
             column += columns_of(type);
         }
         const std::vector<NodeId> parts =
@@ -86,8 +91,8 @@ std::vector<Constant> in_shader(const Question &question) {
         return chosen;
     });
     Diagnostics diagnostics;
-    const glsl::Output output =
-        glsl::emit(scene, {.target = glsl::Target::Glsl330, .field_only = true, .buffers = true}, diagnostics);
+    const glsl::Output output = glsl::emit(
+        scene, {.target = glsl::Target::Glsl330, .field_only = true, .buffers = true}, diagnostics);
     for (const Diagnostic &d : diagnostics.items()) UNSCOPED_INFO(d.message);
     REQUIRE_FALSE(diagnostics.has_errors());
     const std::size_t rows = question.rows.size();
@@ -96,8 +101,10 @@ std::vector<Constant> in_shader(const Question &question) {
     for (std::size_t row = 0; row < rows; ++row)
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
             const double number = found[i * rows + row];
-            if (question.c.result == Type::Int) answers[row].value[0] += i == 0 ? number * 65536 : number;
-            else answers[row].value[i] = number;
+            if (question.c.result == Type::Int)
+                answers[row].value[0] += i == 0 ? number * 65536 : number;
+            else
+                answers[row].value[i] = number;
         }
     return answers;
 }
@@ -108,12 +115,14 @@ struct Measure {
 
 // GLSL 4.60, 4.7.1 leaves most functions open; these are a few times what Mesa's fits are off by.
 Measure measure_of(Op op) {
-    if (op == Op::Perlin || op == Op::Simplex || op == Op::ValueNoise || op == Op::Worley || op == Op::SpotNoise)
+    if (op == Op::Perlin || op == Op::Simplex || op == Op::ValueNoise || op == Op::Worley ||
+        op == Op::SpotNoise)
         return {2e-5, 4e-6};
-    if (op == Op::Sin || op == Op::Cos || op == Op::Tan || op == Op::Asin || op == Op::Acos || op == Op::Atan ||
-        op == Op::Atan2 || op == Op::Tanh)
+    if (op == Op::Sin || op == Op::Cos || op == Op::Tan || op == Op::Asin || op == Op::Acos ||
+        op == Op::Atan || op == Op::Atan2 || op == Op::Tanh)
         return {1e-5, 1e-4};
-    if (op == Op::Pow || op == Op::Exp || op == Op::Exp2 || op == Op::Sinh || op == Op::Cosh) return {1e-6, 1e-4};
+    if (op == Op::Pow || op == Op::Exp || op == Op::Exp2 || op == Op::Sinh || op == Op::Cosh)
+        return {1e-6, 1e-4};
     return {1e-6, 4e-6};
 }
 
@@ -133,21 +142,26 @@ std::string fault_in_shader(const Question &question, std::size_t index, const C
             text += " " + std::to_string(v);
         }
     if (tiny) return {};
-    const bool cancels = row.size() > 1 || ir::components(row[0].type) > 1 || question.c.op == Op::Fract;
+    const bool cancels =
+        row.size() > 1 || ir::components(row[0].type) > 1 || question.c.op == Op::Fract;
     for (std::size_t i = 0; i < static_cast<std::size_t>(ir::components(question.c.result)); ++i) {
-        const double w = whole ? want.value[i] : static_cast<float>(want.value[i]), got = answer.value[i];
+        const double w = whole ? want.value[i] : static_cast<float>(want.value[i]),
+                     got = answer.value[i];
         if (std::isnan(w) || w == got) continue; // NaN: no stated value
-        if (!whole && scale > 1e15 && !(question.c.op == Op::Min || question.c.op == Op::Max)) continue; // overflows on the way
+        if (!whole && scale > 1e15 && !(question.c.op == Op::Min || question.c.op == Op::Max))
+            continue; // overflows on the way
         const double slack = absolute + relative * std::max(std::abs(w), cancels ? scale : 0);
         bool good = !whole && std::abs(got - w) <= slack;
         if (!whole && std::isinf(w)) // the sign of a zero that is divided by means nothing
-            good = std::abs(got) > 1e37 && (question.c.op == Op::Pow || question.c.op == Op::InverseSqrt ||
-                                         std::signbit(w) == std::signbit(got));
-        if (!whole && question.c.op == Op::Mod) // next to a multiple of the divisor, either end of a turn
+            good = std::abs(got) > 1e37 &&
+                   (question.c.op == Op::Pow || question.c.op == Op::InverseSqrt ||
+                    std::signbit(w) == std::signbit(got));
+        if (!whole &&
+            question.c.op == Op::Mod) // next to a multiple of the divisor, either end of a turn
             good |= std::abs(std::abs(got - w) - std::abs(row[1].value[i])) <= slack;
         if (!good)
-            return " of" + text + ": component " + std::to_string(i) + " is " + std::to_string(got) + ", not " +
-                   std::to_string(w);
+            return " of" + text + ": component " + std::to_string(i) + " is " +
+                   std::to_string(got) + ", not " + std::to_string(w);
     }
     return {};
 }

@@ -1,4 +1,5 @@
-// libFuzzer: whatever the bytes are, an import ends, gives text, and says a broken structure as an error.
+// libFuzzer: whatever the bytes are, an import ends, gives text, and says a broken structure as an
+// error.
 #include "save-format/save_format.h"
 
 #include <cstdlib>
@@ -6,7 +7,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char *data, std::size_t size) {
     using namespace fathom;
     Sources sources;
-    const SourceId id = sources.add("fuzz.yaml", std::string(reinterpret_cast<const char *>(data), size));
+    const SourceId id =
+        sources.add("fuzz.yaml", std::string(reinterpret_cast<const char *>(data), size));
     Diagnostics diagnostics;
     const save::ImportResult result = save::import_yaml(sources, id, diagnostics);
     if (result.structural_error != diagnostics.has_errors()) std::abort();

@@ -1,5 +1,6 @@
-// Runs every case below tests/golden/cases; FATHOM_UPDATE=1 rewrites what differs, and fails that run. And what each
-// code owes: a case that reports it, and a page whose wrong example reports it and whose mended one does not.
+// Runs every case below tests/golden/cases; FATHOM_UPDATE=1 rewrites what differs, and fails that
+// run. And what each code owes: a case that reports it, and a page whose wrong example reports it
+// and whose mended one does not.
 #include "base/diagnostic.h"
 #include "driver/compile.h"
 #include "golden/runner.h"
@@ -21,7 +22,8 @@ const fs::path root = FATHOM_SOURCE_DIR;
 
 std::vector<fs::path> case_files() {
     std::vector<fs::path> files;
-    for (const fs::directory_entry &entry : fs::recursive_directory_iterator(root / "tests/golden/cases"))
+    for (const fs::directory_entry &entry :
+         fs::recursive_directory_iterator(root / "tests/golden/cases"))
         // A folder `parts` holds what cases import.
         if (entry.path().extension() == ".sdf" && entry.path().parent_path().filename() != "parts")
             files.push_back(entry.path());
@@ -57,15 +59,17 @@ std::vector<std::string> examples(const std::string &page, const std::string &he
     return found;
 }
 
-// Codes that no text of a scene can raise: save files (their golden cases are those of the save format's tests), and
-// what only a bug of ours can raise.
-const std::set<std::string> without_scene{"yaml-structure", "yaml-value", "yaml-version", "shader-invalid", "unsupported"};
+// Codes that no text of a scene can raise: save files (their golden cases are those of the save
+// format's tests), and what only a bug of ours can raise.
+const std::set<std::string> without_scene{"yaml-structure", "yaml-value", "yaml-version",
+                                          "shader-invalid", "unsupported"};
 
 std::set<std::string> codes_of(const std::string &program) {
     driver::Compilation compilation =
         driver::compile_text("example.sdf", program, root / "tests/golden/cases", {});
     std::set<std::string> codes;
-    for (const Diagnostic &diagnostic : compilation.diagnostics.items()) codes.emplace(code_name(diagnostic.code));
+    for (const Diagnostic &diagnostic : compilation.diagnostics.items())
+        codes.emplace(code_name(diagnostic.code));
     return codes;
 }
 
@@ -87,10 +91,12 @@ TEST_CASE("golden cases") {
         for (std::size_t i = 0; i < golden.sections.size(); ++i) {
             if (golden.sections[i].text == outcome.actual[i].text) continue;
             differs = true;
-            FAIL_CHECK(golden.sections[i].stage << ": "
-                                                << golden::difference(golden.sections[i].text, outcome.actual[i].text));
+            FAIL_CHECK(golden.sections[i].stage
+                       << ": "
+                       << golden::difference(golden.sections[i].text, outcome.actual[i].text));
         }
-        if (differs && update) std::ofstream(file, std::ios::binary) << golden::write_case(golden, outcome.actual);
+        if (differs && update)
+            std::ofstream(file, std::ios::binary) << golden::write_case(golden, outcome.actual);
         INFO("a case reports an error if, and only if, its name begins with `fail_`");
         CHECK(outcome.has_errors == golden.file.starts_with("fail_"));
     }

@@ -1,5 +1,5 @@
-// One golden case: a legal program, then from the first line `//====` on its expectations, a section a stage.
-// Knows how sections are written and computed; not where cases lie.
+// One golden case: a legal program, then from the first line `//====` on its expectations, a
+// section a stage. Knows how sections are written and computed; not where cases lie.
 #pragma once
 
 #include <string>

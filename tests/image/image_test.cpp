@@ -1,7 +1,8 @@
 // Each example's picture by GL and by the CPU, compared. Small, so that a software GL is quick.
 //
-// Edges apart means: where a pixel of one picture lies beside an edge, float32 may put it on either side. So a pixel
-// agrees when each of its channels lies within 2/255 of the range that the other picture has in the 3 x 3 pixels around.
+// Edges apart means: where a pixel of one picture lies beside an edge, float32 may put it on either
+// side. So a pixel agrees when each of its channels lies within 2/255 of the range that the other
+// picture has in the 3 x 3 pixels around.
 #include "backend-cpu/march.h"
 #include "driver/compile.h"
 #include "render-gl/context.h"
@@ -52,7 +53,8 @@ TEST_CASE("GL and the CPU draw the same picture of each example") {
     INFO("this test needs EGL and Mesa (./fathom-test installs them)");
     REQUIRE(std::holds_alternative<gl::Context>(context));
     std::vector<fs::path> files;
-    for (const fs::directory_entry &entry : fs::directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "examples"))
+    for (const fs::directory_entry &entry :
+         fs::directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "examples"))
         if (entry.path().extension() == ".sdf") files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     CHECK(files.size() >= 10);
@@ -72,7 +74,8 @@ TEST_CASE("GL and the CPU draw the same picture of each example") {
         CHECK(by_gl);
         if (!by_gl) continue;
         ir::View view = ir::view_of(compilation.scene, 0, static_cast<double>(width) / height);
-        cpu::Picture by_cpu = cpu::render(cpu::prepare(compilation.scene, view, width, height, 0), {});
+        cpu::Picture by_cpu =
+            cpu::render(cpu::prepare(compilation.scene, view, width, height, 0), {});
         CHECK_FALSE(all_one_color(by_gl->rgba));
         constexpr int allowed = width * height / 1000; // fewer than 0.1 %
         CHECK(disagreeing(by_gl->rgba, by_cpu.rgba) < allowed);
@@ -80,16 +83,20 @@ TEST_CASE("GL and the CPU draw the same picture of each example") {
     }
 }
 
-// What is closed in sees less of the sky; a lamp that shines on it shines undimmed, so that contacts are not black.
+// What is closed in sees less of the sky; a lamp that shines on it shines undimmed, so that
+// contacts are not black.
 TEST_CASE("occlusion dims the ambient light alone") {
     const auto picture = [](const std::string &lighting) {
-        const std::string text = "sphere(1).translate(y: 1)\nplane(Y)\nsun([1, 3, 1])\ncamera([0, 2, 6])\nlighting(" + lighting +
-                                 ", shadow_darkness: 0.5)";
+        const std::string text =
+            "sphere(1).translate(y: 1)\nplane(Y)\nsun([1, 3, 1])\ncamera([0, 2, 6])\nlighting(" +
+            lighting + ", shadow_darkness: 0.5)";
         const driver::Compilation made = driver::compile_text("contact.sdf", text, "", {});
         REQUIRE(made.good());
         const ir::View view = ir::view_of(made.scene, 0, static_cast<double>(width) / height);
         return cpu::render(cpu::prepare(made.scene, view, width, height, 0), {}).rgba;
     };
-    CHECK(picture("ambient: 0, ambient_occlusion: 1") == picture("ambient: 0, ambient_occlusion: 0"));
-    CHECK(picture("ambient: 0.3, ambient_occlusion: 1") != picture("ambient: 0.3, ambient_occlusion: 0"));
+    CHECK(picture("ambient: 0, ambient_occlusion: 1") ==
+          picture("ambient: 0, ambient_occlusion: 0"));
+    CHECK(picture("ambient: 0.3, ambient_occlusion: 1") !=
+          picture("ambient: 0.3, ambient_occlusion: 0"));
 }

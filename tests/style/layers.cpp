@@ -1,5 +1,5 @@
-// Who may include whom (docs/architecture.md), read off every #include; and the few rules of style that a program can
-// see. Knows nothing of what the code does.
+// Who may include whom (docs/architecture.md), read off every #include; and the few rules of style
+// that a program can see. Knows nothing of what the code does.
 #include <catch2/catch.hpp>
 
 #include <filesystem>
@@ -28,25 +28,25 @@ const std::map<std::string, Names> sees{
     {"render-gl", {"base", "ir", "backend-glsl"}},
     {"viewer", {"base", "ir", "backend-glsl", "save-format", "driver", "render-gl"}},
     {"cli",
-     {"base", "lang", "ir", "typecheck", "backend-glsl", "backend-cpu", "save-format", "driver", "render-gl",
-      "viewer"}},
+     {"base", "lang", "ir", "typecheck", "backend-glsl", "backend-cpu", "save-format", "driver",
+      "render-gl", "viewer"}},
 };
 
 // Foreign headers, by how their names begin, and the only folder (or file) that may see them.
 const std::map<std::string, std::string> owners{
-    {"tao/", "lang/"},        {"yaml.h", "save-format/"}, {"GLFW/", "viewer/"},
-    {"imgui", "viewer/"},     {"epoxy/", "render-gl/"},   {"GL/", "render-gl/"},
-    {"EGL/", "render-gl/"},   {"glslang/", "backend-glsl/"}, {"spirv", "backend-glsl/"},
-    {"CLI/", "cli/"},         {"jpeglib.h", "driver/"},
-    {"sys/inotify.h", "driver/"},
+    {"tao/", "lang/"},      {"yaml.h", "save-format/"},    {"GLFW/", "viewer/"},
+    {"imgui", "viewer/"},   {"epoxy/", "render-gl/"},      {"GL/", "render-gl/"},
+    {"EGL/", "render-gl/"}, {"glslang/", "backend-glsl/"}, {"spirv", "backend-glsl/"},
+    {"CLI/", "cli/"},       {"jpeglib.h", "driver/"},      {"sys/inotify.h", "driver/"},
 };
 // Seen by one file alone.
 const Names lonely{"tao/", "CLI/", "sys/inotify.h"};
 
 // Below the driver nothing opens a file, prints, or reads a clock or a locale.
 const Names pure{"base", "lang", "ir", "typecheck", "backend-glsl", "backend-cpu", "save-format"};
-const Names impure_headers{"fstream", "iostream", "filesystem", "cstdio", "stdio.h", "chrono", "ctime",
-                           "time.h", "locale", "clocale", "locale.h", "unistd.h", "fcntl.h"};
+const Names impure_headers{"fstream",  "iostream", "filesystem", "cstdio", "stdio.h",
+                           "chrono",   "ctime",    "time.h",     "locale", "clocale",
+                           "locale.h", "unistd.h", "fcntl.h"};
 
 struct Include {
     std::string folder, file, name; // "lang", "lang/parse.cpp", "base/source.h"
@@ -83,9 +83,11 @@ std::vector<Include> includes_of(const SourceFile &file) {
         if (at == line.npos || line[at] != '#') continue;
         at = line.find_first_not_of(" \t", at + 1);
         if (at == line.npos || line.compare(at, 7, "include") != 0) continue;
-        std::size_t open = line.find_first_of("<\"", at), close = line.find_first_of(">\"", open + 1);
+        std::size_t open = line.find_first_of("<\"", at),
+                    close = line.find_first_of(">\"", open + 1);
         if (open == line.npos || close == line.npos) continue;
-        found.push_back({file.folder, file.file, line.substr(open + 1, close - open - 1), static_cast<int>(i + 1)});
+        found.push_back({file.folder, file.file, line.substr(open + 1, close - open - 1),
+                         static_cast<int>(i + 1)});
     }
     return found;
 }

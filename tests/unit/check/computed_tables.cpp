@@ -98,8 +98,8 @@ TEST_CASE("what a body may compute from its turn") {
                  "union { for i in range(5, #, 3) { ball(i) } }.rotate(20deg)"));
     CHECK(!grows("for t in range(0.5, #, 0.1) { sphere(0.3).translate([t, t * t, sin(t)]) }"));
     CHECK(!grows("for i in 0..# { sphere(0.3).translate(x: i) | box(0.2).translate([i, 1, 0]) }"));
-    CHECK(
-        !grows("smooth_union(0.1) { for i in 0..# { capsule([i + 1, 0.5, 0], [i, sin(i), 1], 0.2) } }"));
+    CHECK(!grows(
+        "smooth_union(0.1) { for i in 0..# { capsule([i + 1, 0.5, 0], [i, sin(i), 1], 0.2) } }"));
 }
 
 TEST_CASE("a formula that float32 would miss is not taken") {

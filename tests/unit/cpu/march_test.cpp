@@ -59,7 +59,8 @@ TEST_CASE("a ball is seen where it stands, and the background where it does not"
     for (int y = 0; y < 48; ++y)
         for (int x = 0; x < 64; ++x) {
             double r = std::hypot(x + 0.5 - 32, y + 0.5 - 24);
-            bool ball = picture.rgba[4 * static_cast<std::size_t>(y * 64 + x) + 2] < 120; // the sky is blue
+            bool ball =
+                picture.rgba[4 * static_cast<std::size_t>(y * 64 + x) + 2] < 120; // the sky is blue
             seen += ball;
             if (std::abs(r - radius) > 1) wrong += ball != (r < radius);
         }
@@ -74,17 +75,20 @@ TEST_CASE("rays land on the surface") {
     Stage stage = prepare(scene.scene, scene.view(), 64, 64, 0);
     std::vector<Ray> rays;
     for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) rays.push_back(eye_ray(stage, float(x) + 0.5f, float(y) + 0.5f));
+        for (int x = 0; x < 64; ++x)
+            rays.push_back(eye_ray(stage, float(x) + 0.5f, float(y) + 0.5f));
     for (bool brute : {false, true}) {
         std::vector<Landing> landings = cast(stage, rays, brute);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const auto &[o, d] = rays[i];
             double b = double(o[0]) * d[0] + double(o[1]) * d[1] + double(o[2]) * d[2], c = 16 - 1;
             double root = b * b - c;
-            if (std::abs(root) < 1e-2) continue; // grazing
+            if (std::abs(root) < 1e-2) continue;              // grazing
             double margin = 4e-3 / std::sqrt(std::abs(root)); // a tolerance, seen at a slant
-            if (root < 0) REQUIRE(landings[i].t < 0);
-            else REQUIRE(landings[i].t == Approx(-b - std::sqrt(root)).margin(margin));
+            if (root < 0)
+                REQUIRE(landings[i].t < 0);
+            else
+                REQUIRE(landings[i].t == Approx(-b - std::sqrt(root)).margin(margin));
         }
     }
 }

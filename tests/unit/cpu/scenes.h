@@ -48,7 +48,8 @@ inline Points spread(std::size_t n) {
 }
 
 // One float result.
-inline std::vector<float> values(const Program &program, const Points &points, const Inputs &inputs = {}) {
+inline std::vector<float> values(const Program &program, const Points &points,
+                                 const Inputs &inputs = {}) {
     Scratch scratch = make_scratch(program, inputs);
     std::vector<float> out(points.x.size());
     const float *in[] = {points.x.data(), points.y.data(), points.z.data()};

@@ -34,10 +34,12 @@ TEST_CASE("a union holds one running value, however many its operands") {
     for (std::size_t i = 0; i < out.size(); ++i) {
         float least = 1e9f;
         for (int b = 0; b < 100; ++b)
-            least = std::min(least, std::sqrt((points.x[i] - float(b % 10 - 5)) * (points.x[i] - float(b % 10 - 5)) +
-                                              (points.y[i] - float(b / 10 - 5)) * (points.y[i] - float(b / 10 - 5)) +
-                                              points.z[i] * points.z[i]) -
-                                        0.3f);
+            least = std::min(
+                least,
+                std::sqrt((points.x[i] - float(b % 10 - 5)) * (points.x[i] - float(b % 10 - 5)) +
+                          (points.y[i] - float(b / 10 - 5)) * (points.y[i] - float(b / 10 - 5)) +
+                          points.z[i] * points.z[i]) -
+                    0.3f);
         REQUIRE(out[i] == least);
     }
 }
@@ -71,7 +73,8 @@ static FunctionId table_loop(Fields &f, NodeId count, NodeId condition_on = {}) 
 static float least_of(int count, float x, float y, float z) {
     float least = 1e9f;
     for (int b = 0; b < count; ++b) {
-        float dx = x - (float(b % 10) - 5), dy = y - (float(b / 10) - 5), dz = z - 0.25f * float(b % 3);
+        float dx = x - (float(b % 10) - 5), dy = y - (float(b / 10) - 5),
+              dz = z - 0.25f * float(b % 3);
         least = std::min(least, std::sqrt(dx * dx + dy * dy + dz * dz) - 0.3f);
     }
     return least;
@@ -91,12 +94,14 @@ TEST_CASE("a loop over a table stays a loop, its rows shared by all points") {
 
 TEST_CASE("each point turns as often as it is told") {
     Fields f;
-    NodeId count = f.g.make(Op::ToInt, Type::Int, {f.g.mul(f.g.add(f.x(), f.g.number(2)), f.g.number(25))});
+    NodeId count =
+        f.g.make(Op::ToInt, Type::Int, {f.g.mul(f.g.add(f.x(), f.g.number(2)), f.g.number(25))});
     Program program = compile(f.scene, table_loop(f, count));
     Points points = spread(333);
     std::vector<float> out = values(program, points);
     for (std::size_t i = 0; i < out.size(); ++i)
-        REQUIRE(out[i] == least_of(int((points.x[i] + 2) * 25), points.x[i], points.y[i], points.z[i]));
+        REQUIRE(out[i] ==
+                least_of(int((points.x[i] + 2) * 25), points.x[i], points.y[i], points.z[i]));
 }
 
 TEST_CASE("a point that is done keeps its value while others go on") {
@@ -123,7 +128,8 @@ TEST_CASE("variables of a loop move on together") { // Fibonacci by (a, b) -> (b
     fold.vars = {a, b};
     fold.next = {b, g.add(a, b)};
     SECTION("the same for all points") {
-        NodeId loop = g.make(Op::Fold, Type::Float, {g.number(0), g.number(1)}, g.add_fold(fold).index);
+        NodeId loop =
+            g.make(Op::Fold, Type::Float, {g.number(0), g.number(1)}, g.add_fold(fold).index);
         NodeId second = g.make(Op::FoldResult, Type::Float, {loop}, 1);
         Program program = compile(f.scene, f.function(g.add(g.mul(loop, g.number(0.5)), second)));
         CHECK(program.registers <= 3); // nothing but the point
@@ -154,10 +160,12 @@ TEST_CASE("loops in loops, and what does not change in one is computed before it
     inner.max_count = 4;
     inner.index = g.fresh_var(Type::Int);
     NodeId part = g.fresh_var(Type::Float);
-    NodeId fixed = g.make(Op::Sin, {f.x()});                                                // outside both
-    NodeId turn = g.make(Op::Cos, {g.add(f.y(), g.make(Op::ToFloat, Type::Float, {outer.index}))}); // in the outer
+    NodeId fixed = g.make(Op::Sin, {f.x()}); // outside both
+    NodeId turn = g.make(
+        Op::Cos, {g.add(f.y(), g.make(Op::ToFloat, Type::Float, {outer.index}))}); // in the outer
     inner.vars = {part};
-    inner.next = {g.add(part, g.mul(g.add(fixed, turn), g.make(Op::ToFloat, Type::Float, {inner.index})))};
+    inner.next = {
+        g.add(part, g.mul(g.add(fixed, turn), g.make(Op::ToFloat, Type::Float, {inner.index})))};
     NodeId inner_loop = g.make(Op::Fold, Type::Float, {sum}, g.add_fold(inner).index);
     outer.vars = {sum};
     outer.next = {inner_loop};
@@ -181,7 +189,8 @@ TEST_CASE("loops in loops, and what does not change in one is computed before it
     CHECK(of_block(program.loops[0].block) <= 4); // neither sine nor cosine
 }
 
-TEST_CASE("functions that are called often stay functions: doubling twenty times is twenty functions") {
+TEST_CASE(
+    "functions that are called often stay functions: doubling twenty times is twenty functions") {
     Fields f;
     Graph &g = f.g;
     NodeId p = f.p;
@@ -194,14 +203,16 @@ TEST_CASE("functions that are called often stay functions: doubling twenty times
     for (int level = 0; level < 20; ++level) {
         NodeId q = g.fresh_var(Type::Vec3);
         NodeId shifted = g.add(q, g.vec3(0.5, 0, 0));
-        NodeId twice = g.make(Op::Min, {g.call(last, std::span(&q, 1)), g.call(last, std::span(&shifted, 1))});
+        NodeId twice =
+            g.make(Op::Min, {g.call(last, std::span(&q, 1)), g.call(last, std::span(&shifted, 1))});
         last = f.function({q}, body(twice));
     }
     Program program = compile(f.scene, last);
     CHECK(program.steps.size() < 4000);
 }
 
-TEST_CASE("a called function sees its arguments, shared or not, and keeps out of its caller's registers") {
+TEST_CASE("a called function sees its arguments, shared or not, and keeps out of its caller's "
+          "registers") {
     Fields f;
     Graph &g = f.g;
     NodeId a = g.fresh_var(Type::Float), k = g.fresh_var(Type::Float);
@@ -245,8 +256,9 @@ TEST_CASE("the nearest hit carries its paint; the first wins a tie; unpainted is
     auto hit = [&](NodeId d, int paint) {
         return g.make(Op::MakeHit, Type::Hit, {d, g.integer(paint), f.p, zero4});
     };
-    NodeId near = g.make(Op::NearestHit, Type::Hit,
-                         {hit(f.ball(0, 0, 0, 1), 3), hit(f.ball(0, 0, 0, 1), 4), hit(f.ball(1, 0, 0, 1), -1)});
+    NodeId near = g.make(
+        Op::NearestHit, Type::Hit,
+        {hit(f.ball(0, 0, 0, 1), 3), hit(f.ball(0, 0, 0, 1), 4), hit(f.ball(1, 0, 0, 1), -1)});
     NodeId filled = g.make(Op::FillPaint, Type::Hit, {near, g.integer(7), f.p, zero4});
     Program program = compile(f.scene, f.function(filled));
     Points points = spread(100);
@@ -256,12 +268,14 @@ TEST_CASE("the nearest hit carries its paint; the first wins a tie; unpainted is
     for (std::size_t c = 0; c < 9; ++c) to[c] = out[c].data();
     const float *in[] = {points.x.data(), points.y.data(), points.z.data()};
     evaluate(program, scratch, in, to, 100);
-    for (std::size_t i = 0; i < 100; ++i) CHECK(std::bit_cast<std::int32_t>(out[1][i]) == (points.x[i] > 0.5f ? 7 : 3));
+    for (std::size_t i = 0; i < 100; ++i)
+        CHECK(std::bit_cast<std::int32_t>(out[1][i]) == (points.x[i] > 0.5f ? 7 : 3));
 }
 
 TEST_CASE("the gradient is that of the operand that decides") {
     Fields f;
-    Program program = compile(f.scene, f.function(f.g.make(Op::Union, {f.ball(-1, 0, 0, 0.5), f.ball(1, 0, 0, 0.25)})));
+    Program program = compile(
+        f.scene, f.function(f.g.make(Op::Union, {f.ball(-1, 0, 0, 0.5), f.ball(1, 0, 0, 0.25)})));
     GradientScratch scratch = make_gradient_scratch(program, {});
     Points points = spread(100);
     std::vector<std::vector<float>> out(4, std::vector<float>(100));
@@ -271,7 +285,8 @@ TEST_CASE("the gradient is that of the operand that decides") {
     std::vector<float> value = values(program, points);
     for (std::size_t i = 0; i < 100; ++i) {
         CHECK(out[0][i] == value[i]);
-        float a = std::hypot(points.x[i] + 1, points.y[i], points.z[i]), b = std::hypot(points.x[i] - 1, points.y[i], points.z[i]);
+        float a = std::hypot(points.x[i] + 1, points.y[i], points.z[i]),
+              b = std::hypot(points.x[i] - 1, points.y[i], points.z[i]);
         float cx = a - 0.5f <= b - 0.25f ? -1.0f : 1.0f, d = cx < 0 ? a : b;
         CHECK(out[1][i] == Approx((points.x[i] - cx) / d).margin(1e-5));
         CHECK(out[2][i] == Approx(points.y[i] / d).margin(1e-5));

@@ -38,7 +38,8 @@ TEST_CASE("the programs on the pages of docs/ work") {
     for (const char *page : {"docs/language.md", "docs/tutorial.md"}) {
         for (const std::string &program : programs(file_text(root / page))) {
             INFO(page << ":\n" << program);
-            driver::Compilation c = driver::compile_text("example.sdf", program, root / "examples", {});
+            driver::Compilation c =
+                driver::compile_text("example.sdf", program, root / "examples", {});
             std::string report;
             for (const Diagnostic &d : c.diagnostics.sorted())
                 if (d.severity == Severity::Error) report += to_text(d, c.sources, false);

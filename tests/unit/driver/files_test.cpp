@@ -71,7 +71,7 @@ TEST_CASE("a target's rights and a symbolic link stay") {
     CHECK(write_file(folder / "link.txt", "new") == "");
     CHECK(fs::is_symlink(folder / "link.txt"));
     CHECK(folder.read("real.txt") == "new");
-    struct stat status{};
+    struct stat status {};
     ::stat((folder / "real.txt").c_str(), &status);
     CHECK((status.st_mode & 0777) == 0640);
 }

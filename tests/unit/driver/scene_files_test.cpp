@@ -1,4 +1,5 @@
-// What a scene may read: its own folder and the -I folders, and nothing else, whatever its paths say.
+// What a scene may read: its own folder and the -I folders, and nothing else, whatever its paths
+// say.
 #include "base/picture.h"
 #include "driver/image.h"
 #include "driver/scene_files.h"
@@ -41,7 +42,8 @@ TEST_CASE("an import is found beside its importer, then in the -I folders") {
     Answer a = ask(files, "parts/a.sdf", root);
     CHECK(a.text == "a");
     CHECK(a.name == (folder / "scene/parts/a.sdf").string());
-    CHECK(ask(files, "b.sdf", a.identity).text == "b"); // relative to the importer, not to the scene
+    CHECK(ask(files, "b.sdf", a.identity).text ==
+          "b"); // relative to the importer, not to the scene
     CHECK(ask(files, "b.sdf", root).error == "no such file");
     CHECK(ask(files, "c.sdf", a.identity).text == "c");
     // One file, however it is named, has one identity.
@@ -65,7 +67,8 @@ TEST_CASE("nothing outside is read, nor told whether it exists") {
     // A neighbour whose name begins alike is outside too.
     folder.write("scene-other/x.sdf", "x");
     CHECK(ask(files, "../scene-other/x.sdf", root).outside);
-    for (const auto &[file, state] : files.touched()) CHECK(file.string().find("secret") == std::string::npos);
+    for (const auto &[file, state] : files.touched())
+        CHECK(file.string().find("secret") == std::string::npos);
 }
 
 TEST_CASE("a missing file beside a scene that is named without a folder is missing, not outside") {
@@ -109,7 +112,8 @@ TEST_CASE("a picture goes through PNG and comes back linear") {
     CHECK(image->rgba[2] == Approx(0.21586f).epsilon(1e-4)); // sRGB 128/255
     CHECK(image->rgba[3] == 1.0f);
     CHECK(image->rgba[6] == Approx(10 / 255.0 / 12.92).epsilon(1e-4));
-    for (std::size_t size = 0; size < png.size() - 12; ++size) // cut off anywhere before the end mark
+    for (std::size_t size = 0; size < png.size() - 12;
+         ++size) // cut off anywhere before the end mark
         CHECK_FALSE(driver::decode_image(png.substr(0, size), error));
     CHECK_FALSE(driver::decode_image("\xff\xd8 and no JPEG", error));
     CHECK_FALSE(driver::decode_image("GIF89a", error));
@@ -119,7 +123,8 @@ TEST_CASE("a picture goes through PNG and comes back linear") {
 TEST_CASE("a grid is read from raw and from ascii, and a broken one is refused") {
     std::string header = "NRRD0004\n# a comment\ntype: float\ndimension: 3\nsizes: 2 2 3\n";
     std::string error;
-    auto ascii = driver::decode_grid(header + "encoding: ascii\n\n0 1 2 3 4 5 6 7 8 9 10 11\n", error);
+    auto ascii =
+        driver::decode_grid(header + "encoding: ascii\n\n0 1 2 3 4 5 6 7 8 9 10 11\n", error);
     REQUIRE(ascii);
     CHECK(ascii->size == std::array<int, 3>{2, 2, 3});
     CHECK(ascii->values[11] == 11.0f);
@@ -133,7 +138,8 @@ TEST_CASE("a grid is read from raw and from ascii, and a broken one is refused")
     CHECK(binary->values == ascii->values);
     CHECK_FALSE(driver::decode_grid(header + "encoding: raw\n\n" + raw.substr(1), error));
     CHECK_FALSE(driver::decode_grid(header + "encoding: ascii\n\n0 1 nan", error));
-    CHECK_FALSE(driver::decode_grid("NRRD0004\ntype: float\ndimension: 3\nsizes: 4096 4096 4096\n\n", error));
+    CHECK_FALSE(driver::decode_grid(
+        "NRRD0004\ntype: float\ndimension: 3\nsizes: 4096 4096 4096\n\n", error));
     CHECK_FALSE(driver::decode_grid("NRRD0004\ntype: float", error));
     CHECK_FALSE(driver::decode_grid("", error));
 }

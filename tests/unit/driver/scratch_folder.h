@@ -35,7 +35,8 @@ class ScratchFolder {
     }
     std::size_t count() const {
         std::size_t files = 0;
-        for ([[maybe_unused]] const auto &entry : std::filesystem::directory_iterator(path_)) ++files;
+        for ([[maybe_unused]] const auto &entry : std::filesystem::directory_iterator(path_))
+            ++files;
         return files;
     }
 

@@ -139,34 +139,45 @@ TEST_CASE("textures and displacement maps come back, on materials and on nodes",
 }
 
 TEST_CASE("long lists of like shapes keep their order, doubles and digits", "[save]") {
-    std::string nodes = "[Difference, Difference 1, {Children: [[Box, Box 1, {Size: {X: 9, Y: 9, Z: 9}}]";
+    std::string nodes =
+        "[Difference, Difference 1, {Children: [[Box, Box 1, {Size: {X: 9, Y: 9, Z: 9}}]";
     for (int i = 0; i < 20; ++i) {
         const std::string x = "0." + std::to_string(123456789012345 + i % 7);
-        nodes += i % 3 == 0 ? ", [Sphere, s, {Radius: " + x + "}]" : ", [Translation, t, {Vector: {X: " + x + ", Y: 0, Z: 1}, Children: [[Sphere, s, {Radius: 0.25}]]}]";
+        nodes += i % 3 == 0 ? ", [Sphere, s, {Radius: " + x + "}]"
+                            : ", [Translation, t, {Vector: {X: " + x +
+                                  ", Y: 0, Z: 1}, Children: [[Sphere, s, {Radius: 0.25}]]}]";
     }
     CHECK(lost(file_of(nodes + "]}]")) == "");
 }
 
 TEST_CASE("powers of space come back as powers, to the last digit", "[save]") {
     std::string nodes;
-    for (const char *exponent : {"0.1", "0.5", "1.3", "2", "2.3", "2.3000000000000003", "3", "4", "5", "17.25"})
-        nodes += std::string(nodes.empty() ? "" : ", ") + "[Hyperize, h, {Exponent: " + exponent + ", Children: [[Box, b, {}]]}]";
+    for (const char *exponent :
+         {"0.1", "0.5", "1.3", "2", "2.3", "2.3000000000000003", "3", "4", "5", "17.25"})
+        nodes += std::string(nodes.empty() ? "" : ", ") + "[Hyperize, h, {Exponent: " + exponent +
+                 ", Children: [[Box, b, {}]]}]";
     CHECK(lost(file_of(nodes)) == "");
 }
 
 TEST_CASE("the version and a lighting node among the shapes come back", "[save]") {
-    CHECK(lost("- 0.9\n- {}\n- []\n- [Generic, Distance field, {Children: [[Sphere, Sphere 1, {Radius: 1}], "
+    CHECK(lost("- 0.9\n- {}\n- []\n- [Generic, Distance field, {Children: [[Sphere, Sphere 1, "
+               "{Radius: 1}], "
                "[LightingNode, Lighting, {Ambient R: 0.5, Children: []}]]}]\n- 100\n") == "");
 }
 
 TEST_CASE("generated trees come back whole", "[save]") {
     std::mt19937 random(1);
     const auto pick = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
-    const auto number = [&] { return std::to_string(1 + pick(9)) + "." + std::to_string(pick(1000)); };
-    const auto xyz = [&] { return "{X: " + number() + ", Y: " + number() + ", Z: -" + number() + "}"; };
+    const auto number = [&] {
+        return std::to_string(1 + pick(9)) + "." + std::to_string(pick(1000));
+    };
+    const auto xyz = [&] {
+        return "{X: " + number() + ", Y: " + number() + ", Z: -" + number() + "}";
+    };
     int names = 0;
     const std::function<std::string(int)> node = [&](int depth) -> std::string {
-        const std::string name = pick(2) == 0 ? "node " + std::to_string(++names) : "Sphere " + std::to_string(1 + pick(4));
+        const std::string name = pick(2) == 0 ? "node " + std::to_string(++names)
+                                              : "Sphere " + std::to_string(1 + pick(4));
         std::string children;
         const auto kids = [&](int least, int most) {
             const int count = least + pick(most - least + 1);
@@ -177,29 +188,52 @@ TEST_CASE("generated trees come back whole", "[save]") {
         case 0: return "[Sphere, " + name + ", {Radius: " + number() + "}]";
         case 1: return "[Box, " + name + ", {Size: {X: 1, Y: " + number() + ", Z: 2}}]";
         case 2: return "[Torus, " + name + ", {Major Radius: 12, Minor Radius: " + number() + "}]";
-        case 3: return "[Cylinder, " + name + ", {Radius: 1, Height: " + number() + ", Exact: True}]";
+        case 3:
+            return "[Cylinder, " + name + ", {Radius: 1, Height: " + number() + ", Exact: True}]";
         case 4: return "[Mystery, " + name + ", {Value: " + number() + "}]";
-        case 14: return "[Generalized Distance Function, " + name + ", {Shape: Dodecahedron, Radius: " + number() + ", Exponent: 9}]";
-        case 15: return "[Blobby Objects, " + name + ", {Balls: 3, Size: {X: 1, Y: " + number() + ", Z: 1}, Radius: 0.1, Seed: " + std::to_string(pick(9)) + "}]";
-        case 16: return "[Menger Sponge, " + name + ", {Size: " + number() + ", Iterations: " + std::to_string(pick(4)) + "}]";
-        case 17: return "[Twist, " + name + ", {Rate: " + number() + ", Tightness: {X: [1, 2]}, " + kids(1, 2);
+        case 14:
+            return "[Generalized Distance Function, " + name +
+                   ", {Shape: Dodecahedron, Radius: " + number() + ", Exponent: 9}]";
+        case 15:
+            return "[Blobby Objects, " + name + ", {Balls: 3, Size: {X: 1, Y: " + number() +
+                   ", Z: 1}, Radius: 0.1, Seed: " + std::to_string(pick(9)) + "}]";
+        case 16:
+            return "[Menger Sponge, " + name + ", {Size: " + number() +
+                   ", Iterations: " + std::to_string(pick(4)) + "}]";
+        case 17:
+            return "[Twist, " + name + ", {Rate: " + number() + ", Tightness: {X: [1, 2]}, " +
+                   kids(1, 2);
         case 18: return "[Turnaround, " + name + ", {" + kids(1, 2);
-        case 19: return "[Repetition, " + name + ", {Cell: {X: " + number() + ", Y: 0, Z: " + number() + "}, " + kids(1, 2);
+        case 19:
+            return "[Repetition, " + name + ", {Cell: {X: " + number() + ", Y: 0, Z: " + number() +
+                   "}, " + kids(1, 2);
         case 20: return "[Hyperize, " + name + ", {Exponent: " + number() + ", " + kids(1, 2);
         case 21: return "[Offset, " + name + ", {Distance: " + number() + ", " + kids(1, 3);
-        case 22: return "[Pseudo-norm Blend, " + name + ", {Exponent: " + number() + ", " + kids(2, 3);
-        case 23: return "[Seam, " + name + ", {Profile: Groove, Radius: 0.1, Depth: " + number() + ", " + kids(2, 3);
-        case 8: return "[Cone, " + name + ", {Radius: " + number() + ", Height: 2, Steepness: high}]";
-        case 7: return "[Library Shape, " + name + ", {Function: octahedron, Arguments: {radius: " + number() + "}}]";
-        case 6: return "[Sphere, " + name + ", {Radius: -1, Colour: [red, {a: \"b\"}]}, behind, {it: all}]";
+        case 22:
+            return "[Pseudo-norm Blend, " + name + ", {Exponent: " + number() + ", " + kids(2, 3);
+        case 23:
+            return "[Seam, " + name + ", {Profile: Groove, Radius: 0.1, Depth: " + number() + ", " +
+                   kids(2, 3);
+        case 8:
+            return "[Cone, " + name + ", {Radius: " + number() + ", Height: 2, Steepness: high}]";
+        case 7:
+            return "[Library Shape, " + name +
+                   ", {Function: octahedron, Arguments: {radius: " + number() + "}}]";
+        case 6:
+            return "[Sphere, " + name +
+                   ", {Radius: -1, Colour: [red, {a: \"b\"}]}, behind, {it: all}]";
         case 5: return "just a word";
         case 9: return "[Union, " + name + ", {" + kids(0, 4);
         case 10: return "[Generic, " + name + ", {" + kids(0, 4);
         case 11: return "[Intersection, " + name + ", {" + kids(0, 3);
         case 12: return "[Difference, " + name + ", {" + kids(0, 3);
         case 13: return "[Translation, " + name + ", {Vector: " + xyz() + ", " + kids(0, 3);
-        case 24: return "[Rotation, " + name + ", {Angles: {X: " + number() + ", Y: 0, Z: " + number() + "}, " + kids(1, 2);
-        case 25: return "[Scaling, " + name + ", {Factors: {X: 2, Y: " + number() + ", Z: 3}, " + kids(1, 2);
+        case 24:
+            return "[Rotation, " + name + ", {Angles: {X: " + number() + ", Y: 0, Z: " + number() +
+                   "}, " + kids(1, 2);
+        case 25:
+            return "[Scaling, " + name + ", {Factors: {X: 2, Y: " + number() + ", Z: 3}, " +
+                   kids(1, 2);
         case 26: return "[Blend, " + name + ", {Factor: 0.25, " + kids(0, 3);
         default: return "[Mystery, " + name + ", {Rate: 1, " + kids(0, 3);
         }

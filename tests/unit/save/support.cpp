@@ -35,7 +35,8 @@ std::string lines(const Diagnostics &diagnostics, const Sources &sources, bool e
             const Position at = position(sources[d.primary.span.source], d.primary.span.begin);
             text += std::to_string(at.line) + ":" + std::to_string(at.column) + " ";
         }
-        text += std::string(d.severity == Severity::Error ? "error " : "") + std::string(code_name(d.code)) + " " + d.message + "\n";
+        text += std::string(d.severity == Severity::Error ? "error " : "") +
+                std::string(code_name(d.code)) + " " + d.message + "\n";
     }
     return text;
 }
@@ -56,10 +57,17 @@ CheckedText check_text(std::string sdf) {
     CheckedText made;
     const SourceId id = made.sources->add("a.sdf", std::move(sdf));
     typecheck::Loader loader;
-    loader.text = [](const std::string &, const std::string &) { return typecheck::LoadError{typecheck::LoadError::Reason::NotFound, "no such file"}; };
-    loader.image = [](const std::string &name, const std::string &) { return ir::ImageData{name, 1, 1, {1, 1, 1, 1}}; };
-    loader.grid = [](const std::string &name, const std::string &) { return ir::GridData{name, {2, 2, 2}, {1, 1, 1, 1, 1, 1, 1, 1}}; };
-    made.checked = typecheck::check(*made.sources, id, "a.sdf", library(), loader, {}, made.diagnostics);
+    loader.text = [](const std::string &, const std::string &) {
+        return typecheck::LoadError{typecheck::LoadError::Reason::NotFound, "no such file"};
+    };
+    loader.image = [](const std::string &name, const std::string &) {
+        return ir::ImageData{name, 1, 1, {1, 1, 1, 1}};
+    };
+    loader.grid = [](const std::string &name, const std::string &) {
+        return ir::GridData{name, {2, 2, 2}, {1, 1, 1, 1, 1, 1, 1, 1}};
+    };
+    made.checked =
+        typecheck::check(*made.sources, id, "a.sdf", library(), loader, {}, made.diagnostics);
     return made;
 }
 
@@ -76,7 +84,9 @@ std::string difference(const save::Value &a, const save::Value &b, const std::st
         if (x && y) return *x == *y ? "" : place + ": " + a.text + " became " + b.text;
         return a.text == b.text ? "" : place + ": " + a.text + " became " + b.text;
     }
-    if (a.items.size() != b.items.size()) return place + ": " + std::to_string(a.items.size()) + " items became " + std::to_string(b.items.size());
+    if (a.items.size() != b.items.size())
+        return place + ": " + std::to_string(a.items.size()) + " items became " +
+               std::to_string(b.items.size());
     for (std::size_t i = 0; i < a.items.size(); ++i) {
         std::string found = difference(a.items[i], b.items[i], place + "/" + std::to_string(i));
         if (!found.empty()) return found;
@@ -92,7 +102,8 @@ std::string difference(const save::Value &a, const save::Value &b, const std::st
 }
 
 std::string file_of(const std::string &nodes, const std::string &materials) {
-    return "- 0.3\n- {}\n- " + materials + "\n- [Generic, Distance field, {Children: [\n" + nodes + "]}]\n- [LightingNode, Lighting, {}]\n- 100\n";
+    return "- 0.3\n- {}\n- " + materials + "\n- [Generic, Distance field, {Children: [\n" + nodes +
+           "]}]\n- [LightingNode, Lighting, {}]\n- 100\n";
 }
 
 } // namespace save_test

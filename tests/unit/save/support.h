@@ -1,4 +1,5 @@
-// What the tests of the save format share: import and check of text in memory, and values compared as data.
+// What the tests of the save format share: import and check of text in memory, and values compared
+// as data.
 #pragma once
 
 #include "base/diagnostic.h"
@@ -31,7 +32,8 @@ CheckedText check_text(std::string sdf); // with the whole library; images are 1
 
 std::string export_text(const ir::Scene &scene);
 
-// The first place where two files differ as data ("1.0" is 1, a key's order in its mapping is nothing); empty for none.
+// The first place where two files differ as data ("1.0" is 1, a key's order in its mapping is
+// nothing); empty for none.
 std::string difference(const save::Value &a, const save::Value &b, const std::string &place = "");
 
 // A file around a list of nodes, one a line, each in flow form.

@@ -1,5 +1,6 @@
-// Each solid of the library once more, as a question: is this point inside? Written from what docs say the solid is, in
-// double, with no distance functions where another way is at hand. Knows nothing of the library's text.
+// Each solid of the library once more, as a question: is this point inside? Written from what docs
+// say the solid is, in double, with no distance functions where another way is at hand. Knows
+// nothing of the library's text.
 #pragma once
 
 #include "field.h"
@@ -7,10 +8,10 @@
 namespace fathom::test {
 
 struct Solid {
-    std::string text;  // a scene of one library call
+    std::string text; // a scene of one library call
     Inside inside;
-    double reach = 1.5; // all of the solid lies within this cube's half side, with room
-    bool exact = false; // the field claims to be the distance
+    double reach = 1.5;   // all of the solid lies within this cube's half side, with room
+    bool exact = false;   // the field claims to be the distance
     bool endless = false; // the surface goes on beyond `reach`
 };
 
@@ -22,7 +23,9 @@ std::vector<Solid> transformed_solids();
 
 // -- parts of definitions
 double to_segment(Point p, Point a, Point b);
-bool in_convex(Point p, const std::vector<Point> &corners, const std::vector<Point> &normals); // below each normal's farthest corner
-bool in_polygon(double x, double y, const std::vector<std::array<double, 2>> &corners);         // by the winding of angles
+bool in_convex(Point p, const std::vector<Point> &corners,
+               const std::vector<Point> &normals); // below each normal's farthest corner
+bool in_polygon(double x, double y,
+                const std::vector<std::array<double, 2>> &corners); // by the winding of angles
 
 } // namespace fathom::test

@@ -22,7 +22,8 @@ double Numbers::next() {
 
 std::string said(const driver::Compilation &compilation) {
     std::string out = compilation.unreadable;
-    for (const Diagnostic &d : compilation.diagnostics.sorted()) out += std::string(code_name(d.code)) + ": " + d.message + "\n";
+    for (const Diagnostic &d : compilation.diagnostics.sorted())
+        out += std::string(code_name(d.code)) + ": " + d.message + "\n";
     return out;
 }
 
@@ -50,10 +51,13 @@ std::vector<Point> border(const Inside &inside, double reach, int n) {
     const auto side = static_cast<std::size_t>(n + 1);
     auto place = [&](std::size_t i) { return -reach + step * static_cast<double>(i); };
     std::vector<bool> solid(side * side * side);
-    auto at = [&](std::size_t i, std::size_t j, std::size_t k) { return (i * side + j) * side + k; };
+    auto at = [&](std::size_t i, std::size_t j, std::size_t k) {
+        return (i * side + j) * side + k;
+    };
     for (std::size_t i = 0; i < side; ++i)
         for (std::size_t j = 0; j < side; ++j)
-            for (std::size_t k = 0; k < side; ++k) solid[at(i, j, k)] = inside({place(i), place(j), place(k)});
+            for (std::size_t k = 0; k < side; ++k)
+                solid[at(i, j, k)] = inside({place(i), place(j), place(k)});
     std::vector<Point> found;
     auto bisect = [&](Point in, Point out) {
         for (int turn = 0; turn < 30; ++turn) {
@@ -70,13 +74,15 @@ std::vector<Point> border(const Inside &inside, double reach, int n) {
                     if (++next[axis] == side) continue;
                     bool here = solid[at(i, j, k)], there = solid[at(next[0], next[1], next[2])];
                     if (here == there) continue;
-                    Point a{place(i), place(j), place(k)}, b{place(next[0]), place(next[1]), place(next[2])};
+                    Point a{place(i), place(j), place(k)},
+                        b{place(next[0]), place(next[1]), place(next[2])};
                     here ? bisect(a, b) : bisect(b, a);
                 }
     return found;
 }
 
-double way_to_border(const Inside &inside, const std::vector<Point> &border, Point p, Numbers &numbers) {
+double way_to_border(const Inside &inside, const std::vector<Point> &border, Point p,
+                     Numbers &numbers) {
     double best = std::numeric_limits<double>::infinity();
     Point towards{};
     for (const Point &q : border) {

@@ -1,5 +1,5 @@
-// A scene's text as a function of points, for tests that compare the library's fields with definitions of their own.
-// Knows nothing of the library's text.
+// A scene's text as a function of points, for tests that compare the library's fields with
+// definitions of their own. Knows nothing of the library's text.
 #pragma once
 
 #include "backend-cpu/tape.h"
@@ -27,13 +27,16 @@ class Numbers {
   public:
     explicit Numbers(std::uint64_t seed) : state_(seed * 2 + 1) {}
     double next();
-    Point in(double lo, double hi) { return {lo + (hi - lo) * next(), lo + (hi - lo) * next(), lo + (hi - lo) * next()}; }
+    Point in(double lo, double hi) {
+        return {lo + (hi - lo) * next(), lo + (hi - lo) * next(), lo + (hi - lo) * next()};
+    }
 
   private:
     std::uint64_t state_;
 };
 
-std::string said(const driver::Compilation &compilation); // its diagnostics, one a line: code and message
+std::string
+said(const driver::Compilation &compilation); // its diagnostics, one a line: code and message
 
 // The marched field (divided by its bound) of a scene that has to compile.
 class Field {
@@ -49,9 +52,12 @@ class Field {
     cpu::Program program_;
 };
 
-// Points on the border of a solid, found by bisection between the corners of a grid of n^3 cells over -reach..reach.
+// Points on the border of a solid, found by bisection between the corners of a grid of n^3 cells
+// over -reach..reach.
 std::vector<Point> border(const Inside &inside, double reach, int n);
-// The way from p to the border: to the nearest of its points, then nearer ones that are found by trying.
-double way_to_border(const Inside &inside, const std::vector<Point> &border, Point p, Numbers &numbers);
+// The way from p to the border: to the nearest of its points, then nearer ones that are found by
+// trying.
+double way_to_border(const Inside &inside, const std::vector<Point> &border, Point p,
+                     Numbers &numbers);
 
 } // namespace fathom::test
