@@ -70,3 +70,20 @@ TEST_CASE("names that a missing file would have brought are not reported one by 
     CHECK(codes(compiled("import \"nowhere.sdf\"\nspere(1)\n")) ==
           std::vector<std::string>{"import-not-found", "unknown-name"});
 }
+
+TEST_CASE("a count says nothing where the cell is 0") {
+    CHECK(compiled("sphere(0.3).repeat([1, 0, 1], [3, 0, 3])\n").good());
+    CHECK(codes(compiled("sphere(0.3).repeat([1, 0, 0], [0, 1, 1])\n")) ==
+          std::vector<std::string>{"bad-argument"});
+}
+
+TEST_CASE("a block whose only statement cannot be read is reported once") {
+    CHECK(codes(compiled("smooth_difference(0.2) { sphere(1) box(1.2) }\n")) ==
+          std::vector<std::string>{"syntax-error"});
+}
+
+TEST_CASE("a displaced polyhedron of distances along normals has a box") {
+    const auto c = compiled("gdf_icosahedron(1).displace(p => 0.1 * sin(p.x))\n");
+    REQUIRE(c.good());
+    CHECK(c.scene.facts[c.scene.root.index].bounds.finite());
+}
