@@ -19,6 +19,7 @@ constexpr const char *lengths = R"(
 
 float fathom_slack, fathom_pixel, fathom_far, fathom_tolerance_base, fathom_tolerance_slope;
 int fathom_steps = 0;
+int fathom_paint = -2; // of what the ray hit
 
 void fathom_lengths() {
     fathom_slack = $FLOAT_SLACK * (length(fathom_origin) + $RADIUS);
@@ -36,22 +37,32 @@ float fathom_tolerance(float t) {
 float fathom_arm(float t) {
     return fathom_tolerance(t) + $NORMAL_SLACK * fathom_slack;
 }
+)";
 
-// A loop whose bound the compiler cannot see, so that sdf is inlined once and not four times.
-vec3 fathom_gradient(vec3 p, float h) {
-$KEPT_BEFORE    vec3 sum = vec3(0.0);
-    for (int i = $ZERO; i < 4; ++i) {
-        vec3 e = 0.577350269 * (2.0 * vec3(float(((i + 3) >> 1) & 1), float((i >> 1) & 1), float(i & 1)) - 1.0);
-        sum += e * sdf(p + h * e);
-$KEPT_TAP    }
-$KEPT_AFTER    return 0.75 / h * sum;
+// Drivers write a function out at each of its calls. So the points of a gradient are asked in one
+// loop, whose bound the compiler cannot see, and what goes with them in the same.
+constexpr const char *corner = R"(
+vec3 fathom_corner(int i) {
+    return 0.577350269 * (2.0 * vec3(float(((i + 3) >> 1) & 1), float((i >> 1) & 1), float(i & 1)) - 1.0);
 }
 )";
 
 constexpr const char *near_steep = R"(
-// The true distance, where the field was divided by a bound: |f| / |grad f|.
-float fathom_near(vec3 p, float d, float h) {
-    return d / clamp(length(fathom_gradient(p, h)), $LEAST_SLOPE, 1.0);
+// The field at p in d; and, where that is at most `limit`, the true distance |f| / |grad f|, since
+// the field was divided by a bound; else d again.
+float fathom_near(vec3 p, float h, float limit, out float d) {
+    vec3 sum = vec3(0.0);
+$NEAR_BEFORE    for (int i = $ZERO; i < 5; ++i) {
+        vec3 e = i == 0 ? vec3(0.0) : fathom_corner(i - 1);
+        float f = sdf(p + h * e);
+        if (i == 0) {
+            d = f;
+            if (!(d <= limit)) return d;
+$NEAR_FIRST            continue;
+        }
+$NEAR_TAP        sum += e * f;
+    }
+$NEAR_AFTER    return d / clamp(length(0.75 / h * sum), $LEAST_SLOPE, 1.0);
 }
 )";
 
@@ -77,13 +88,13 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     int steps = 0;
 $KEPT_START    for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
         vec3 p = origin + t * direction;
-$KEPT_ASK        d = sdf(p);
+$KEPT_ASK        $SAMPLE_MARCH;
 $KEPT_AGAIN        if (stride > before + max(d, 0.0)) {
             t += before - stride;
             stride = before;
             continue;
         }
-$KEPT_SAFE        if (d <= fathom_tolerance(t)$AND_NEAR) {
+$KEPT_SAFE        if ($REACHED) {
             fathom_steps = steps + 1;
             return t + d;
         }
@@ -103,22 +114,7 @@ $KEPT_SAFE        if (d <= fathom_tolerance(t)$AND_NEAR) {
 }
 )";
 
-constexpr const char *occlusion = R"(
-// How much of the surroundings five samples along the normal find closed (thesis, 4.2.1).
-float fathom_occlusion(vec3 p, vec3 n, float h) {
-    float sum = 0.0;
-    float weight = 1.0;
-    float total = 0.0;
-    for (int i = $ZERO; i < $OCCLUSION_SAMPLES; ++i) {
-        float x = $OCCLUSION_REACH * float(i + 1);
-        vec3 q = p + x * n;
-        weight *= 0.5;
-        total += weight;
-        sum += weight * clamp(1.0 - $NEAR_Q / x, 0.0, 1.0);
-    }
-    return sum / total;
-}
-
+constexpr const char *shadow = R"(
 // How much of a light arrives: marched from the light towards the point (thesis, 4.2.1).
 float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, float h) {
     float s = reach;
@@ -126,10 +122,8 @@ float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, floa
     float shadow = 1.0;
 $SHADOW_START    for (int i = $ZERO; i < $SHADOW_STEPS && s > margin; ++i) {
         vec3 p = q + s * l;
-$KEPT_ASK        float d = sdf(p);
-$SHADOW_AGAIN        float near = d;
-        if (d < shadow * angle * s) near = $NEAR_P;
-        float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
+$KEPT_ASK        $SAMPLE_SHADOW;
+$SHADOW_AGAIN        float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
         float c = sqrt(max(near * near - y * y, 0.0));
         shadow = min(shadow, c / (angle * (s + y)));
         if (near <= 0.0 || shadow < 0.00390625) return 0.0;
@@ -140,25 +134,63 @@ $SHADOW_AGAIN        float near = d;
 }
 )";
 
+// The gradient's four points and, along the normal that they give, the occlusion's five.
 constexpr const char *shade_head = R"(
 vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
     vec3 p = origin + t * direction;
     float h = fathom_arm(t);
-    vec3 g = fathom_gradient(p, h);
-    float slope = length(g);
-    vec3 n = slope > 0.0 ? g / slope : -direction;
-    Hit s = fathom_hit(p);
-$PICK_HIT)";
+    vec3 g = vec3(0.0);
+    vec3 n = -direction;
+    float slope = 0.0;
+$OPEN$KEPT_BEFORE    for (int i = $ZERO; i < $TAPS; ++i) {
+        vec3 e = fathom_corner(i);
+$SAMPLE_SHADE$KEPT_TAP$CLOSED        g += e * f;
+        if (i < 3) continue;
+        g *= 0.75 / h;
+        slope = length(g);
+        if (slope > 0.0) n = g / slope;
+$KEPT_AFTER    }
+)";
 
-constexpr const char *local_normal = R"(    vec3 turned = fathom_hit(p + h * n).point - s.point;
+// The weights of the occlusion's samples are 1/2, 1/4, …
+constexpr const char *shade_open = R"(    fathom_Lighting look = fathom_lighting();
+    int taps = look.ambient_occlusion > 0.0 ? $ALL_TAPS : 4;
+    float open = 1.0;
+    float weight = look.ambient_occlusion / $OCCLUSION_TOTAL;
+)";
+constexpr const char *sample_plain = R"(        float x = $OCCLUSION_REACH * float(i - 3);
+        float f = sdf(p + (i < 4 ? h * e : x * n));
+)";
+constexpr const char *sample_near = R"(        float x = $OCCLUSION_REACH * float(i - 3), d;
+        float f = fathom_near(p + (i < 4 ? h * e : x * n), h, i < 4 ? -1e30 : x, d);
+)";
+constexpr const char *shade_closed = R"(        if (i >= 4) {
+            weight *= 0.5;
+            open -= weight * clamp(1.0 - f / x, 0.0, 1.0);
+            continue;
+        }
+)";
+
+constexpr const char *one_hit = R"(    Hit s = fathom_hit(p);
+    fathom_paint = s.paint;
+$PICK_HIT    fathom_Material m = fathom_material(s, n);
+)";
+
+// The normal in the paint's own space.
+constexpr const char *two_hits = R"(    Hit s;
+    vec3 ahead = vec3(0.0);
+    for (int i = $ZERO + 1; i >= 0; --i) {
+        s = fathom_hit(p + float(i) * h * n);
+        if (i == 1) ahead = s.point;
+    }
+    fathom_paint = s.paint;
+$PICK_HIT    vec3 turned = ahead - s.point;
     float size = length(turned);
     fathom_Material m = fathom_material(s, size > 0.0 ? turned / size : n);
 )";
 
-constexpr const char *shade_phong = R"(    fathom_Lighting look = fathom_lighting();
-    float open = 1.0;
-    if (look.ambient_occlusion > 0.0) open -= look.ambient_occlusion * fathom_occlusion(p, n, h);
-    vec3 color = open * m.diffuse * look.ambient + m.emission;
+constexpr const char *shade_phong =
+    R"(    vec3 color = open * m.diffuse * look.ambient + m.emission;
     float margin = $SHADOW_BIAS * fathom_tolerance(t);
     vec3 q = p + margin * n;
     float angle = max(look.soft_shadows, $LEAST_ANGLE);
@@ -199,9 +231,8 @@ vec3 fathom_heat(int steps) {
 vec4 fathom_picture(vec2 place) {
 $RAY    float t = end < begin ? -1.0 : fathom_march(origin, direction, begin, end);
 $PICK_RAY    if (fathom_mode == 1) return vec4(fathom_heat(fathom_steps), 1.0);
-    if (fathom_mode == 2)
-        return vec4(float(fathom_steps), t, t < 0.0 ? -2.0 : float(fathom_hit(origin + t * direction).paint), t < 0.0 ? 0.0 : 1.0);
     vec3 color = t < 0.0 ? fathom_background(direction) : fathom_shade(origin, direction, t);
+    if (fathom_mode == 2) return vec4(float(fathom_steps), t, float(fathom_paint), t < 0.0 ? 0.0 : 1.0);
     return vec4(fathom_mode == 3 ? color : fathom_encode(color), 1.0);
 }
 )";
@@ -233,17 +264,33 @@ struct KeptMarch {
     const char *name, *text;
 };
 constexpr KeptMarch kept_march[] = {
+    {"NEAR_BEFORE", "    bool absent = false, computing = false;\n"},
+    {"NEAR_FIRST", R"(            absent = fathom_absent;
+            computing = fathom_computing;
+            fathom_absent = false;
+)"},
+    {"NEAR_TAP", R"(        if (fathom_absent && !fathom_computing) {
+            fathom_computing = true;
+            sum = vec3(0.0);
+            i = 0;
+            continue;
+        }
+)"},
+    {"NEAR_AFTER", R"(    fathom_absent = absent;
+    fathom_computing = computing;
+)"},
     {"KEPT_BEFORE", R"(    bool absent = fathom_absent, computing = fathom_computing;
     fathom_absent = false;
 )"},
-    {"KEPT_TAP", R"(        if (fathom_absent && !fathom_computing) {
+    {"KEPT_TAP", R"(        if (i < 4 && fathom_absent && !fathom_computing) {
             fathom_computing = true;
-            sum = vec3(0.0);
+            g = vec3(0.0);
             i = -1;
+            continue;
         }
 )"},
-    {"KEPT_AFTER", R"(    fathom_absent = absent;
-    fathom_computing = computing;
+    {"KEPT_AFTER", R"(        fathom_absent = absent;
+        fathom_computing = computing;
 )"},
     {"KEPT_START", R"(    float safe = begin, absent = begin;
     int since = 0;
@@ -299,12 +346,16 @@ Values values_of(const MarcherOptions &options) {
                              "    end = min(end, inside.y);\n";
     const std::string far = "100.0 * max(" + number(options.radius) + ", length(fathom_origin - " +
                             options.center + "))";
+    const bool steep = options.steep;
     Values values{
-        {"AND_NEAR",
-         options.steep ? " && fathom_near(p, d, fathom_arm(t)) <= fathom_tolerance(t)" : ""},
-        {"NEAR_Q", options.steep ? "fathom_near(q, sdf(q), h)" : "sdf(q)"},
-        {"NEAR_P", options.steep ? "fathom_near(p, d, h)" : "d"},
+        {"SAMPLE_MARCH", steep
+                             ? "float near = fathom_near(p, fathom_arm(t), fathom_tolerance(t), d)"
+                             : "d = sdf(p)"},
+        {"REACHED", std::string(steep ? "near" : "d") + " <= fathom_tolerance(t)"},
+        {"SAMPLE_SHADOW", steep ? "float d, near = fathom_near(p, h, shadow * angle * s, d)"
+                                : "float d = sdf(p), near = d"},
         {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
+        {"RAY", ray},
         {"CLIP", options.boxed ? clip : ""},
         {"FAR", options.far > 0 ? number(options.far) : far},
         {"RADIUS", number(options.radius)},
@@ -320,7 +371,14 @@ Values values_of(const MarcherOptions &options) {
         {"LEAST_SLOPE", number(look::least_slope)},
         {"RELAXATION", number(look::relaxation)},
         {"FLATTEST", number(look::flattest)},
-        {"OCCLUSION_SAMPLES", std::to_string(look::occlusion_samples)},
+        {"OPEN", options.skip_shading ? "" : shade_open},
+        {"TAPS", options.skip_shading ? "4" : "taps"},
+        {"SAMPLE_SHADE", options.skip_shading ? "        float f = sdf(p + h * e);\n"
+                         : steep              ? sample_near
+                                              : sample_plain},
+        {"CLOSED", options.skip_shading ? "" : shade_closed},
+        {"ALL_TAPS", std::to_string(4 + look::occlusion_samples)},
+        {"OCCLUSION_TOTAL", number(1 - std::ldexp(1.0, -look::occlusion_samples))},
         {"OCCLUSION_REACH",
          number(look::occlusion_reach * options.radius / look::occlusion_samples)},
         {"PICK_RAY", options.pick ? pick_ray : ""},
@@ -329,14 +387,15 @@ Values values_of(const MarcherOptions &options) {
         {"SHADOW_BIAS", number(look::shadow_bias)},
         {"LEAST_ANGLE", number(look::least_angle)},
     };
-    values["RAY"] = fill(ray, values);
+    for (const char *part : {"RAY", "OPEN", "SAMPLE_SHADE", "CLOSED"})
+        values[part] = fill(values[part], values);
     for (const KeptMarch &part : kept_march) values[part.name] = options.kept ? part.text : "";
     return values;
 }
 
 std::string march_form(const MarcherOptions &options) {
     std::string text = lengths;
-    if (options.steep) text += near_steep;
+    if (options.steep) text += std::string(corner) + near_steep;
     if (options.boxed) text += box;
     return text + march;
 }
@@ -345,10 +404,10 @@ std::string march_form(const MarcherOptions &options) {
 
 std::string marcher_text(const MarcherOptions &options) {
     std::string text = march_form(options);
-    if (!options.skip_shading) text += occlusion;
+    if (!options.steep) text += corner;
+    if (!options.skip_shading) text += shadow;
     text += shade_head;
-    text +=
-        options.local_normals ? local_normal : "    fathom_Material m = fathom_material(s, n);\n";
+    text += options.local_normals ? two_hits : one_hit;
     text += options.skip_shading ? "    return m.diffuse + m.emission;\n}\n" : shade_phong;
     text += output;
     return (options.pick ? pick_output : "") + fill(text, values_of(options));
