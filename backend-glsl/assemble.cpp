@@ -28,7 +28,7 @@ class Assembler {
         const auto want_function = [&](FunctionId id, const char *name) {
             if (!id) return;
             module_.functions[id.index] = name;
-            want(graph_.function(id).result);
+            want(module_.result_of(id));
         };
         want_function(scene_.distance, "sdf");
         if (scene_.hit != scene_.distance)
@@ -75,7 +75,7 @@ class Assembler {
         std::vector<NodeId> roots;
         for (FunctionId id : wanted) {
             module_.functions[id.index] = module_.names.unique(graph_.function(id).name);
-            roots.push_back(graph_.function(id).result);
+            roots.push_back(module_.result_of(id));
         }
         gather(module_, roots);
         std::string functions;
@@ -112,7 +112,7 @@ class Assembler {
         for (std::size_t i = 0; i < f.params.size(); ++i)
             bound.push_back(
                 {f.params[i], i < std::size(names) ? names[i] : "x" + std::to_string(i)});
-        const NodeId root = f.result;
+        const NodeId root = module_.result_of(id);
         Body text = body(module_, bound, {&root, 1});
         std::string head =
             "\n" + place(f) + std::string(glsl_type(graph_[root].type)) + " " + name + "(";

@@ -6,6 +6,7 @@
 #include "backend-glsl/html.h"
 #include "backend-glsl/marcher.h"
 #include "backend-glsl/probe.h"
+#include "backend-glsl/roll.h"
 #include "backend-glsl/validate.h"
 #include "base/text.h"
 #include "ir/view.h"
@@ -46,9 +47,12 @@ std::string param_value(const ir::Param &param) {
 
 class Emitter {
   public:
-    Emitter(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics)
-        : scene_(scene), options_(options),
-          diagnostics_(diagnostics), module_{scene, options, {}, {}, {}, {}, {}, {}, {}, {}, {}} {}
+    Emitter(const ir::Scene &scene, const std::optional<Rolled> &loops, const Options &options,
+            Diagnostics &diagnostics)
+        : scene_(loops ? loops->scene : scene), options_(options),
+          diagnostics_(diagnostics), module_{scene_, options, {}, {}, {}, {}, {}, {}, {}, {}, {}} {
+        if (loops) module_.results = loops->results;
+    }
 
     // The fields that a text with the noise cache keeps, as a text of their own that ends in
     // `tail`.
@@ -111,6 +115,7 @@ class Emitter {
     KeptField kept_field(std::uint32_t id) const {
         Options plain;
         Module alone{scene_, plain, {}, {}, {}, {}, {}, {}, {}, {}};
+        alone.results = module_.results;
         const ir::FunctionId field = scene_.graph.cache(ir::CacheId{id}).field;
         const SceneText text = assemble_functions(alone, {&field, 1});
         KeptField kept;
@@ -472,12 +477,14 @@ CachePasses emit_cache_passes(const ir::Scene &scene, const Options &options,
     if (caches.empty()) return {};
     Options direct = options;
     direct.noise_cache = false;
+    const std::optional<Rolled> loops = rolled(scene);
     return {cache_reserve(), cache_publish(), cache_sweep(),
-            Emitter(scene, direct, diagnostics).run_fields(caches)};
+            Emitter(scene, loops, direct, diagnostics).run_fields(caches)};
 }
 
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics) {
-    return Emitter(scene, options, diagnostics).run();
+    const std::optional<Rolled> loops = rolled(scene);
+    return Emitter(scene, loops, options, diagnostics).run();
 }
 
 } // namespace fathom::glsl

@@ -124,7 +124,7 @@ class Gatherer {
   private:
     void function(std::uint32_t index, std::vector<NodeId> &todo) {
         if (functions_.insert(index).second)
-            todo.push_back(graph_.function(ir::FunctionId{index}).result);
+            todo.push_back(module_.result_of(ir::FunctionId{index}));
     }
 
     void keep(ir::CacheId id) {

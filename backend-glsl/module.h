@@ -37,6 +37,12 @@ struct Module {
     bool reads_time = false;
     bool hits = false;                        // the struct Hit is used
     std::map<std::uint32_t, KeptText> kept{}; // by CacheId: the fields read through the noise cache
+    std::map<std::uint32_t, ir::NodeId> results{}; // by FunctionId: as loops (roll.h)
+
+    ir::NodeId result_of(ir::FunctionId id) const {
+        const auto it = results.find(id.index);
+        return it == results.end() ? scene.graph.function(id).result : it->second;
+    }
 };
 
 const char *glsl_type(ir::Type type);
