@@ -33,31 +33,31 @@ ivec3 fathom_cache_place(uint index) {
 )";
 
 constexpr const char *look_up = R"(
-uniform int fathom_cache_on = 0;   // 0: every field is computed, and nothing below need be bound
-uniform int fathom_cache_show = 0; // 1: misses are red
+// Defined by a host that runs the passes of the noise cache: then this text reads kept values alone, and a pixel that
+// wants one which is absent is left to the text without the definition, which computes every field.
+#ifdef FATHOM_CACHE
 uniform int fathom_cache_bits = 0, fathom_cache_ages = 4;
+uniform float fathom_cache_least = 1.0; // cells that are narrower than so many pixels are not looked for
 uniform int fathom_cache_fields[$COUNT];
 uniform usampler3D fathom_cache_index;
 uniform sampler3D fathom_cache_pool;
 uniform sampler3D fathom_cache_wide;
 
-// What one evaluation of the scene did: asked a field that may be kept; found a value absent. While `computing`, kept
-// values are looked for, so that what is absent is asked for, but not read.
-bool fathom_asked = false, fathom_absent = false, fathom_computing = false;
-ivec4 fathom_miss = ivec4(0, 0, 0, -1); // the pixel's last miss
-uvec2 fathom_tally = uvec2(0u);         // hits, misses
+bool fathom_absent = false;             // a value was absent: this pixel is not finished
+float fathom_width = 0.0;               // of a pixel, where the ray is
+ivec4 fathom_miss = ivec4(0, 0, 0, -1); // the key that was absent
+uint fathom_hits = 0u;
 )";
 
 constexpr const char *kept = R"(
 // Whether the field's value at p is in the cache, and where in the pool.
 bool fathom_kept(vec3 p, float cell, int field, out vec3 at) {
     at = vec3(0.0);
-    if (fathom_cache_on == 0) return false;
-    fathom_asked = true;
     vec3 q = p / cell;
     vec3 corner = floor(q);
     // Further out a cell's numbers do not fit, and float32 has few steps within a cell.
-    if (!all(lessThan(abs(q), vec3(float($HIGHEST << fathom_cache_bits))))) {
+    bool counts = all(lessThan(abs(q), vec3(float($HIGHEST << fathom_cache_bits))));
+    if (!counts || cell < fathom_cache_least * fathom_width) {
         fathom_absent = true;
         return false;
     }
@@ -71,16 +71,18 @@ bool fathom_kept(vec3 p, float cell, int field, out vec3 at) {
             fathom_absent = true;
             return false;
         }
-        ++fathom_tally.x;
-        if (fathom_computing) return false;
+        ++fathom_hits;
         at = (vec3(2 * fathom_cache_place(found.y)) + 0.5 + (q - corner)) / float(2 << fathom_cache_bits);
         return true;
     }
-    ++fathom_tally.y;
     fathom_absent = true;
     fathom_miss = key;
     return false;
 }
+#else
+const bool fathom_absent = false;
+float fathom_width = 0.0;
+#endif
 )";
 
 constexpr const char *counts = R"(
@@ -95,7 +97,8 @@ void fathom_give_back(uint entry) {
 )";
 
 constexpr const char *reserve = R"(#version 420 core
-// The second pass: for every pixel that missed a cell, a place is reserved. Draw one triangle over the picture.
+// For every pixel that missed a cell, a place is reserved. Draw one triangle over the picture. What it discards
+// changed nothing; where it discards all, no pass has to follow.
 uniform int fathom_cache_bits, fathom_cache_ages;
 uniform uint fathom_cache_frame; // counts the frames
 uniform isampler2D fathom_cache_misses;
@@ -166,12 +169,14 @@ void fathom_carry(uint entry) {
 void main() {
     fathom_reserved = $NOWHERE;
     ivec4 key = texelFetch(fathom_cache_misses, ivec2(gl_FragCoord.xy), 0);
-    if (key.w < 0) return;
-    for (int age = 0; age < fathom_cache_ages; ++age) {
+    if (key.w < 0) discard;
+    bool there = false;
+    for (int age = 0; age < fathom_cache_ages && !there; ++age) {
         uint entry = imageLoad(fathom_cache_hash, fathom_cache_slot(key, age)).x;
         if (!fathom_fresh(entry)) break;
-        if (fathom_is(entry, key)) return;
+        there = fathom_is(entry, key);
     }
+    if (there) discard;
     uint place = fathom_take(key);
     if (place == $NOWHERE) {
         fathom_count($FULL);
@@ -205,11 +210,11 @@ void main() {
 )";
 
 constexpr const char *fill_pass = R"(
-// The third pass: computes and stores the corners of every cell that got a place. Draw one triangle over the picture.
+// Computes and stores the corners of every cell that got a place. Draw one triangle over the picture.
 uniform int fathom_cache_bits;
 uniform int fathom_cache_fields[$COUNT];
 uniform isampler2D fathom_cache_misses;
-uniform usampler2D fathom_cache_places; // what the second pass reserved
+uniform usampler2D fathom_cache_places; // what the pass before reserved
 layout(rgba32i) writeonly uniform iimage3D fathom_cache_keys;
 layout(r32f) writeonly uniform image3D fathom_cache_pool;
 layout(rgba32f) writeonly uniform image3D fathom_cache_wide;
@@ -240,16 +245,14 @@ void main() {
         if ($WIDE[which]) imageStore(fathom_cache_wide, 2 * place + corner, corners[i]);
         else imageStore(fathom_cache_pool, 2 * place + corner, corners[i]);
     }
-    // Between its corners the kept field is at most as steep as its steepest edges along the axes together say. Where
-    // that is more than what is proved of the field, steps could be too long: it is computed there.
-    vec3 steep = vec3(0.0);
-    for (int i = 0; i < 4; ++i) {
-        int y = (i & 1) | (i & 2) << 1;
-        steep = max(steep, vec3(distance(corners[2 * i], corners[2 * i + 1]),
-                                distance(corners[y], corners[y + 2]),
-                                distance(corners[i], corners[i + 4])));
-    }
-    if (!(length(steep) <= cell * $SLOPES[which])) imageStore(fathom_cache_keys, place, ivec4(key.xyz, key.w | $REFUSED));
+    // Between its corners the kept field's slope along x does not depend on x, and so on: the square of its steepness
+    // is convex in each of x, y and z and so greatest at a corner, where it is that of the three edges that meet there.
+    // Where that is more than what is proved of the field, steps could be too long: it is computed there.
+    float steep = 0.0;
+    for (int i = 0; i < 8; ++i)
+        steep = max(steep, length(vec3(distance(corners[i], corners[i ^ 1]), distance(corners[i], corners[i ^ 2]),
+                                       distance(corners[i], corners[i ^ 4]))));
+    if (!(steep <= cell * $SLOPES[which])) imageStore(fathom_cache_keys, place, ivec4(key.xyz, key.w | $REFUSED));
 }
 )";
 
@@ -287,7 +290,8 @@ layout(r32ui) readonly uniform uimageBuffer fathom_cache_counts;
 layout(rg32ui) writeonly uniform uimage3D fathom_cache_index;
 $HASHING
 void main() {
-    if (imageLoad(fathom_cache_counts, $INSERTED).x + imageLoad(fathom_cache_counts, $SWEPT).x == 0u) return;
+    if (imageLoad(fathom_cache_counts, $INSERTED).x + imageLoad(fathom_cache_counts, $DELETED).x +
+            imageLoad(fathom_cache_counts, $SWEPT).x == 0u) return;
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     ivec3 slot = fathom_cache_place(uint(pixel.x + fathom_cache_width * pixel.y));
     uint entry = texelFetch(fathom_cache_hash, slot, 0).x;
@@ -300,6 +304,16 @@ void main() {
         index.y = (entry & $PLACES) | uint(key.w & 255) << $PLACE_BITS | (entry >> $PLACE_BITS & 7u) << 29u;
     }
     imageStore(fathom_cache_index, slot, uvec4(index, 0u, 0u));
+}
+)";
+
+constexpr const char *tint = R"(#version 420 core
+// Misses in red, to be blended over the picture by its alpha.
+uniform isampler2D fathom_cache_misses;
+layout(location = 0) out vec4 fathom_color;
+void main() {
+    if (texelFetch(fathom_cache_misses, ivec2(gl_FragCoord.xy), 0).w < 0) discard;
+    fathom_color = vec4(1.0, 0.0, 0.0, 0.8);
 }
 )";
 
@@ -360,23 +374,35 @@ std::string cache_look_up(std::span<const KeptText> fields) {
 
 std::string cache_reader(const KeptText &field, std::size_t number) {
     const bool wide = field.type != ir::Type::Float;
-    return std::string("\n") + glsl_type(field.type) + " " + field.function +
-           "_kept(vec3 p) {\n    vec3 at;\n    if (fathom_kept(p, " +
+    const std::string type = glsl_type(field.type);
+    return "\n" + type + " " + field.function +
+           "_kept(vec3 p) {\n#ifdef FATHOM_CACHE\n    vec3 at;\n    if (fathom_kept(p, " +
            float_literal(static_cast<float>(field.cell)) + ", fathom_cache_fields[" +
            std::to_string(number) + "], at)) return textureLod(" +
            (wide ? "fathom_cache_wide" : "fathom_cache_pool") + ", at, 0.0)" +
-           components_of(field.type) + ";\n    return " + field.function + "(p);\n}\n";
+           components_of(field.type) + ";\n    return " + type + "(0.0);\n#else\n    return " +
+           field.function + "(p);\n#endif\n}\n";
 }
 
 std::string cache_outputs() {
-    return "layout(location = 2) out ivec4 fathom_missed;\n"
-           "layout(location = 3) out uvec2 fathom_counted;\n";
+    return "#ifdef FATHOM_CACHE\n"
+           "layout(location = 2) out ivec4 fathom_missed;\n"
+           "layout(location = 3) out uvec2 fathom_counted;\n"
+           "#endif\n";
 }
 
 std::string cache_output() {
-    return "    fathom_missed = fathom_miss;\n    fathom_counted = fathom_tally;\n"
-           "    if (fathom_cache_show != 0 && fathom_miss.w >= 0) fathom_color.rgb = "
-           "mix(fathom_color.rgb, vec3(1.0, 0.0, 0.0), 0.8);\n";
+    return "#ifdef FATHOM_CACHE\n"
+           "    fathom_missed = fathom_miss;\n"
+           "    fathom_counted = uvec2(fathom_hits, fathom_miss.w >= 0 ? 1u : fathom_absent ? 2u : "
+           "0u);\n"
+           "    gl_FragDepth = fathom_absent ? 1.0 : 0.0;\n"
+           "#endif\n";
+}
+
+std::string with_cache(const std::string &text) {
+    const std::size_t line = text.find('\n') + 1; // after the version
+    return text.substr(0, line) + "#define " + cache_defined + "\n" + text.substr(line);
 }
 
 std::string cache_fill(std::span<const KeptText> fields) {
@@ -406,5 +432,6 @@ std::string cache_fill(std::span<const KeptText> fields) {
 std::string cache_reserve() { return filled(reserve); }
 std::string cache_publish() { return filled(publish); }
 std::string cache_sweep() { return filled(sweep); }
+std::string cache_tint() { return tint; }
 
 } // namespace fathom::glsl

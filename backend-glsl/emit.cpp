@@ -89,6 +89,7 @@ class Emitter {
 
         std::string text = options_.field_only ? field_text(scene) : picture_text(scene);
         if (!check(text, output)) return {};
+        if (!module_.kept.empty() && !check(with_cache(text), output)) return {};
         if (target == Target::Spirv) {
             output.text.clear();
         } else if (target == Target::Html && !options_.field_only) {
@@ -478,7 +479,7 @@ CachePasses emit_cache_passes(const ir::Scene &scene, const Options &options,
     Options direct = options;
     direct.noise_cache = false;
     const std::optional<Rolled> loops = rolled(scene);
-    return {cache_reserve(), cache_publish(), cache_sweep(),
+    return {cache_reserve(), cache_publish(), cache_sweep(), cache_tint(),
             Emitter(scene, loops, direct, diagnostics).run_fields(caches)};
 }
 

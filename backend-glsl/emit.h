@@ -84,7 +84,7 @@ Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnos
 // The passes that follow a picture drawn by a text with `noise_cache`. Empty where no field is
 // kept.
 struct CachePasses {
-    std::string reserve, publish, sweep; // the same for every scene
+    std::string reserve, publish, sweep, tint; // the same for every scene
     Output fill;
 };
 CachePasses emit_cache_passes(const ir::Scene &scene, const Options &options,

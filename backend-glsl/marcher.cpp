@@ -52,17 +52,17 @@ constexpr const char *near_steep = R"(
 // the field was divided by a bound; else d again.
 float fathom_near(vec3 p, float h, float limit, out float d) {
     vec3 sum = vec3(0.0);
-$NEAR_BEFORE    for (int i = $ZERO; i < 5; ++i) {
+    for (int i = $ZERO; i < 5$AND_PRESENT; ++i) {
         vec3 e = i == 0 ? vec3(0.0) : fathom_corner(i - 1);
         float f = sdf(p + h * e);
         if (i == 0) {
             d = f;
             if (!(d <= limit)) return d;
-$NEAR_FIRST            continue;
+            continue;
         }
-$NEAR_TAP        sum += e * f;
+        sum += e * f;
     }
-$NEAR_AFTER    return d / clamp(length(0.75 / h * sum), $LEAST_SLOPE, 1.0);
+    return d / clamp(length(0.75 / h * sum), $LEAST_SLOPE, 1.0);
 }
 )";
 
@@ -86,15 +86,15 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     float stride = 0.0;
     float d = 0.0;
     int steps = 0;
-$KEPT_START    for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
+    for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
         vec3 p = origin + t * direction;
-$KEPT_ASK        $SAMPLE_MARCH;
-$KEPT_AGAIN        if (stride > before + max(d, 0.0)) {
+$KEPT_WIDTH        $SAMPLE_MARCH;
+$KEPT_STOP        if (stride > before + max(d, 0.0)) {
             t += before - stride;
             stride = before;
             continue;
         }
-$KEPT_SAFE        if ($REACHED) {
+        if ($REACHED) {
             fathom_steps = steps + 1;
             return t + d;
         }
@@ -120,10 +120,10 @@ float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, floa
     float s = reach;
     float before = 0.0;
     float shadow = 1.0;
-$SHADOW_START    for (int i = $ZERO; i < $SHADOW_STEPS && s > margin; ++i) {
+    for (int i = $ZERO; i < $SHADOW_STEPS && s > margin; ++i) {
         vec3 p = q + s * l;
-$KEPT_ASK        $SAMPLE_SHADOW;
-$SHADOW_AGAIN        float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
+        $SAMPLE_SHADOW;
+$KEPT_STOP        float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
         float c = sqrt(max(near * near - y * y, 0.0));
         shadow = min(shadow, c / (angle * (s + y)));
         if (near <= 0.0 || shadow < 0.00390625) return 0.0;
@@ -142,14 +142,14 @@ vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
     vec3 g = vec3(0.0);
     vec3 n = -direction;
     float slope = 0.0;
-$OPEN$KEPT_BEFORE    for (int i = $ZERO; i < $TAPS; ++i) {
+$OPEN    for (int i = $ZERO; i < $TAPS$AND_PRESENT; ++i) {
         vec3 e = fathom_corner(i);
-$SAMPLE_SHADE$KEPT_TAP$CLOSED        g += e * f;
+$SAMPLE_SHADE$CLOSED        g += e * f;
         if (i < 3) continue;
         g *= 0.75 / h;
         slope = length(g);
         if (slope > 0.0) n = g / slope;
-$KEPT_AFTER    }
+    }
 )";
 
 // The weights of the occlusion's samples are 1/2, 1/4, …
@@ -256,84 +256,11 @@ constexpr const char *pick_ray = "    fathom_pick = vec4(0.0, t, float(fathom_st
 constexpr const char *pick_hit = "    fathom_pick.x = float(fathom_part);\n"
                                  "    fathom_pick.w = slope;\n";
 
-// A ray's march through the shell of a displacement reads kept values only, or computes all: where
-// a value that it wants is absent, it goes back to the last point at which no kept field was asked,
-// and computes until the next. So the field that it sees is continuous and not steeper than proved,
-// whatever the cache holds (docs/noise-cache.md). The points of one gradient do likewise.
-struct KeptMarch {
-    const char *name, *text;
-};
-constexpr KeptMarch kept_march[] = {
-    {"NEAR_BEFORE", "    bool absent = false, computing = false;\n"},
-    {"NEAR_FIRST", R"(            absent = fathom_absent;
-            computing = fathom_computing;
-            fathom_absent = false;
-)"},
-    {"NEAR_TAP", R"(        if (fathom_absent && !fathom_computing) {
-            fathom_computing = true;
-            sum = vec3(0.0);
-            i = 0;
-            continue;
-        }
-)"},
-    {"NEAR_AFTER", R"(    fathom_absent = absent;
-    fathom_computing = computing;
-)"},
-    {"KEPT_BEFORE", R"(    bool absent = fathom_absent, computing = fathom_computing;
-    fathom_absent = false;
-)"},
-    {"KEPT_TAP", R"(        if (i < 4 && fathom_absent && !fathom_computing) {
-            fathom_computing = true;
-            g = vec3(0.0);
-            i = -1;
-            continue;
-        }
-)"},
-    {"KEPT_AFTER", R"(        fathom_absent = absent;
-        fathom_computing = computing;
-)"},
-    {"KEPT_START", R"(    float safe = begin, absent = begin;
-    int since = 0;
-    fathom_computing = false;
-)"},
-    {"KEPT_ASK", "        fathom_asked = fathom_absent = false;\n"},
-    {"KEPT_AGAIN", R"(        if (fathom_absent && !fathom_computing) {
-            fathom_computing = true;
-            absent = t;
-            t = safe;
-            steps = since;
-            before = stride = 0.0;
-            continue;
-        }
-)"},
-    {"KEPT_SAFE", R"(        if (!fathom_asked) {
-            fathom_computing = fathom_computing && t <= absent;
-            safe = t;
-            since = steps;
-        }
-)"},
-    {"SHADOW_START", R"(    float safe = s, absent = s, before_safe = 0.0, shadow_safe = 1.0;
-    int since = 0;
-    fathom_computing = false;
-)"},
-    {"SHADOW_AGAIN", R"(        if (fathom_absent && !fathom_computing) {
-            fathom_computing = true;
-            absent = s;
-            s = safe;
-            i = since;
-            before = before_safe;
-            shadow = shadow_safe;
-            continue;
-        }
-        if (!fathom_asked) {
-            fathom_computing = fathom_computing && s >= absent;
-            safe = s;
-            since = i;
-            before_safe = before;
-            shadow_safe = shadow;
-        }
-)"},
-};
+// Where a kept value is absent the pixel is left to the text that computes all, so that what the
+// ray sees is one field (docs/noise-cache.md): its loops end at once.
+constexpr const char *kept_width =
+    "        fathom_width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;\n";
+constexpr const char *kept_stop = "        if (fathom_absent) break;\n";
 
 std::string number(double value) { return float_literal(static_cast<float>(value)); }
 
@@ -387,9 +314,11 @@ Values values_of(const MarcherOptions &options) {
         {"SHADOW_BIAS", number(look::shadow_bias)},
         {"LEAST_ANGLE", number(look::least_angle)},
     };
+    values["KEPT_WIDTH"] = options.kept ? kept_width : "";
+    values["KEPT_STOP"] = options.kept ? kept_stop : "";
+    values["AND_PRESENT"] = options.kept ? " && !fathom_absent" : "";
     for (const char *part : {"RAY", "OPEN", "SAMPLE_SHADE", "CLOSED"})
         values[part] = fill(values[part], values);
-    for (const KeptMarch &part : kept_march) values[part.name] = options.kept ? part.text : "";
     return values;
 }
 

@@ -21,7 +21,6 @@ struct Bench {
     const ir::Scene &scene;
     int width, height;
     bool software; // the CPU draws
-    gl::Program exact;
     Terminal &terminal;
 
     double now() const {
@@ -74,16 +73,11 @@ gl::FrameInputs inputs_of(const Bench &bench, double angle, gl::Mode mode = gl::
 }
 
 struct Motion {
-    double cached = 0, exact = 0;                                           // medians of a frame
-    double misses = 0, missing = 0, inserted = 0, evicted = 0, deleted = 0; // means of a frame
+    double cached = 0, exact = 0;                                            // medians of a frame
+    double misses = 0, computed = 0, inserted = 0, evicted = 0, deleted = 0; // means of a frame
     double hits = 0;
     gl::CacheOccupancy occupancy;
 };
-
-void draw_exactly(const Bench &bench, gl::CachedView &view, const gl::FrameInputs &inputs,
-                  const std::vector<ir::Param> &params) {
-    view.draw_exactly(bench.exact, inputs, params);
-}
 
 struct Move {
     double speed = 0; // radians a second; of a param: of the sine that moves it
@@ -113,12 +107,11 @@ Motion move(const Bench &bench, gl::CachedView &view, const Move &how) {
         cached.push_back(one);
         add(motion.hits, static_cast<double>(tally.hits));
         add(motion.misses, static_cast<double>(tally.misses));
-        add(motion.missing, static_cast<double>(tally.missing_pixels));
+        add(motion.computed, static_cast<double>(tally.computed));
         add(motion.inserted, counts.inserted);
         add(motion.evicted, counts.evicted);
         add(motion.deleted, counts.deleted);
-        if (frame % 2 == 0)
-            exact.push_back(bench.time([&] { draw_exactly(bench, view, inputs, params); }));
+        if (frame % 2 == 0) exact.push_back(bench.time([&] { view.draw_exactly(inputs, params); }));
     }
     motion.cached = median(cached);
     motion.exact = median(exact);
@@ -155,7 +148,7 @@ void print_difference(const Bench &bench, gl::CachedView &view) {
         misses.push_back(view.read_tally().misses);
     } while (misses.back() > 0 && ++frames < 100);
     const gl::Pixels kept = view.read_pixels();
-    draw_exactly(bench, view, inputs, bench.scene.params);
+    view.draw_exactly(inputs, bench.scene.params);
     const gl::Pixels exact = view.read_pixels();
     double most = 0, sum = 0;
     std::size_t both = 0, one = 0;
@@ -195,9 +188,9 @@ void print_speeds(const Bench &bench, gl::CachedView &view, int frames) {
         // share of misses.
         if (speed == 0) learn(bench, view);
         const Motion m = move(bench, view, {.speed = speed, .settle = frames, .frames = frames});
-        bench.terminal.put(
-            fmt::format("  {:<5g} {:>11.1f} {:>10.1f} {:>10.2f} {:>16.0f} {:>18.0f} {:>14.0f}\n",
-                        speed, m.cached, m.exact, m.exact / m.cached, m.misses, m.missing, m.hits));
+        bench.terminal.put(fmt::format(
+            "  {:<5g} {:>11.1f} {:>10.1f} {:>10.2f} {:>16.0f} {:>18.0f} {:>14.0f}\n", speed,
+            m.cached, m.exact, m.exact / m.cached, m.misses, m.computed, m.hits));
         bench.terminal.flush();
     }
 }
@@ -239,7 +232,7 @@ void measure_all(const Bench &bench, gl::CachedView &view) {
     print_difference(bench, view);
     // As many frames as take about a minute in all.
     const gl::FrameInputs inputs = inputs_of(bench, 0);
-    const double one = bench.time([&] { draw_exactly(bench, view, inputs, bench.scene.params); });
+    const double one = bench.time([&] { view.draw_exactly(inputs, bench.scene.params); });
     const int frames = std::clamp(static_cast<int>(1000 / std::max(one, 1.0)), 4, 24);
     print_speeds(bench, view, frames);
     print_ages(bench, view, frames);
@@ -256,19 +249,7 @@ Exit bench_noise_cache(const BenchCommand &command, const ir::Scene &scene, Term
     }
     const std::string driver = std::get<gl::Context>(context).describe();
     Diagnostics diagnostics;
-    const glsl::Output plain =
-        glsl::emit(scene, {.target = glsl::Target::Glsl330, .buffers = true}, diagnostics);
-    auto program = gl::Program::build(plain, scene);
-    if (const auto *error = std::get_if<gl::ProgramError>(&program)) {
-        terminal.say(
-            fmt::format("fathom: the graphics driver refuses the shader: {}", error->message));
-        return device_error;
-    }
-    Bench bench{scene,
-                command.width,
-                command.height,
-                driver.find("llvmpipe") != driver.npos,
-                std::move(std::get<gl::Program>(program)),
+    Bench bench{scene, command.width, command.height, driver.find("llvmpipe") != driver.npos,
                 terminal};
     terminal.put(fmt::format("GL {}; times are {}\n", driver,
                              bench.software ? "the processor's" : "on the clock"));

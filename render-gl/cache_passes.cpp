@@ -4,13 +4,19 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace fathom::gl {
 
 namespace {
 
-constexpr GLenum cached_outputs[] = {GL_COLOR_ATTACHMENT0, GL_NONE, GL_COLOR_ATTACHMENT2,
-                                     GL_COLOR_ATTACHMENT3}; // backend-glsl/cache.h
+// What of the framebuffer is drawn into (backend-glsl/cache.h says what is where).
+void draw_into(bool pick, bool counted) {
+    const GLenum targets[] = {GL_COLOR_ATTACHMENT0,
+                              static_cast<GLenum>(pick ? GL_COLOR_ATTACHMENT1 : GL_NONE),
+                              GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3};
+    glDrawBuffers(counted ? 4 : 2, targets);
+}
 
 void set(const Program &program, const char *name, int value) {
     glUniform1i(glGetUniformLocation(program.name(), name), value);
@@ -48,13 +54,8 @@ GLuint target_2d(GLint format, int width, int height, GLuint framebuffer, GLenum
     return name;
 }
 
-// Takes the program over, or says why the driver does not.
-std::string take(std::optional<Program> &into, const glsl::Output &output, const ir::Scene &scene) {
-    auto built = Program::build(output, scene);
-    if (const auto *error = std::get_if<ProgramError>(&built))
-        return "the graphics driver refuses the noise cache's shader: " + error->message;
-    into.emplace(std::move(std::get<Program>(built)));
-    return "";
+std::string refusal(const ProgramError &error) {
+    return "the graphics driver refuses the noise cache's shader: " + error.message;
 }
 
 } // namespace
@@ -71,74 +72,91 @@ std::string cache_unavailable() {
     return "";
 }
 
-CachedView::~CachedView() { release(); }
+std::variant<CachePrograms, std::string> build_cache_programs(const ir::Scene &scene,
+                                                              const CacheOptions &options,
+                                                              Diagnostics &diagnostics) {
+    if (std::string why = cache_unavailable(); !why.empty()) return why;
+    glsl::Options target;
+    target.target = glsl::Target::Glsl450;
+    target.buffers = true;
+    target.noise_cache = true;
+    target.part_stride = options.part_stride;
+    if (options.pick) target.instruments = glsl::Instruments::Pick;
+    const glsl::Output picture = glsl::emit(scene, target, diagnostics);
+    if (picture.text.empty()) return "the shader with the noise cache cannot be made";
+    if (picture.kept.empty()) return "no field of this scene is worth keeping";
+    target.instruments = glsl::Instruments::None;
+    const glsl::CachePasses passes = glsl::emit_cache_passes(scene, target, diagnostics);
+    if (passes.fill.text.empty()) return "the noise cache's shaders cannot be made";
+    GLint units = 16;
+    glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
+    if (static_cast<int>(1 + picture.images.size() + picture.grids.size()) > units - 3)
+        return "the scene has too many images to leave room for the noise cache";
+
+    glsl::Output kept = picture;
+    kept.text = glsl::with_cache(picture.text);
+    std::vector<Program> built;
+    for (const glsl::Output *output : {&std::as_const(kept), &picture, &passes.fill}) {
+        auto program = Program::build(*output, scene);
+        if (const auto *error = std::get_if<ProgramError>(&program)) return refusal(*error);
+        built.push_back(std::move(std::get<Program>(program)));
+    }
+    return CachePrograms{std::move(built[0]), std::move(built[1]), std::move(built[2]),
+                         picture.kept, options.pick};
+}
+
+CachedView::~CachedView() {
+    release();
+    if (sweep_framebuffer_) glDeleteFramebuffers(1, &sweep_framebuffer_);
+    if (sweep_target_) glDeleteTextures(1, &sweep_target_);
+    if (changed_) glDeleteQueries(1, &changed_);
+}
 
 void CachedView::release() {
-    for (GLuint *framebuffer : {&framebuffer_, &places_framebuffer_, &sweep_framebuffer_}) {
+    for (GLuint *framebuffer : {&framebuffer_, &places_framebuffer_}) {
         if (*framebuffer) glDeleteFramebuffers(1, framebuffer);
         *framebuffer = 0;
     }
-    for (GLuint *texture : {&color_, &misses_, &tally_, &places_, &sweep_target_}) {
+    for (GLuint *texture : {&color_, &picks_, &misses_, &tally_, &places_}) {
         if (*texture) glDeleteTextures(1, texture);
         *texture = 0;
     }
+    if (depth_) glDeleteRenderbuffers(1, &depth_);
+    depth_ = 0;
     width_ = height_ = 0;
 }
 
-std::string CachedView::use(const ir::Scene &scene, const CacheSize &size, Diagnostics &diagnostics,
-                            int part_stride) {
-    picture_.reset();
-    if (std::string why = cache_unavailable(); !why.empty()) return why;
-    glsl::Options options;
-    options.target = glsl::Target::Glsl450;
-    options.buffers = true;
-    options.noise_cache = true;
-    options.part_stride = part_stride;
-    const glsl::Output output = glsl::emit(scene, options, diagnostics);
-    if (output.text.empty()) return "the shader with the noise cache cannot be made";
-    if (output.kept.empty()) return "no field of this scene is worth keeping";
-    const glsl::CachePasses passes = glsl::emit_cache_passes(scene, options, diagnostics);
-    if (passes.fill.text.empty()) return "the noise cache's shaders cannot be made";
-
-    GLint units = 16;
-    glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
-    first_unit_ = units - 3;
-    if (static_cast<int>(1 + output.images.size() + output.grids.size()) > first_unit_)
-        return "the scene has too many images to leave room for the noise cache";
-
-    CacheSize wanted = size;
-    for (const glsl::KeptField &field : output.kept) wanted.wide |= field.wide;
-    if (!store_.hash() || store_.size().bits != wanted.bits ||
-        (wanted.wide && !store_.size().wide)) {
-        meanings_.clear();
-        if (!store_.make(wanted)) return "the graphics card has no memory for the noise cache";
+// The programs that are the same for every scene.
+std::string CachedView::build_passes() {
+    const std::pair<std::optional<Program> *, std::string> passes[] = {
+        {&reserve_, glsl::cache_reserve()},
+        {&publish_, glsl::cache_publish()},
+        {&sweep_, glsl::cache_sweep()},
+        {&tint_, glsl::cache_tint()}};
+    for (const auto &[into, text] : passes) {
+        if (*into) continue;
+        glsl::Output alone;
+        alone.text = text;
+        auto program = Program::build(alone, {});
+        if (const auto *error = std::get_if<ProgramError>(&program)) return refusal(*error);
+        into->emplace(std::move(std::get<Program>(program)));
     }
-    std::optional<Program> picture;
-    if (std::string why = take(picture, output, scene); !why.empty()) return why;
-    if (std::string why = take(fill_, passes.fill, scene); !why.empty()) return why;
-    glsl::Output alone;
-    alone.text = passes.reserve;
-    if (!reserve_)
-        if (std::string why = take(reserve_, alone, scene); !why.empty()) return why;
-    alone.text = passes.publish;
-    if (!publish_)
-        if (std::string why = take(publish_, alone, scene); !why.empty()) return why;
-    alone.text = passes.sweep;
-    if (!sweep_)
-        if (std::string why = take(sweep_, alone, scene); !why.empty()) return why;
+    return "";
+}
 
-    // A field that the cache knows keeps its number; others get one that nobody has.
-    kept_ = output.kept;
-    numbers_.assign(kept_.size(), -1);
+// A field that the cache knows keeps its number; others get one that nobody has.
+void CachedView::number_fields() {
+    const std::vector<glsl::KeptField> &fields = programs_->fields;
+    numbers_.assign(fields.size(), -1);
     const auto means = [](const std::vector<double> &known, std::uint64_t meaning) {
         std::uint64_t first = 0;
         std::memcpy(&first, known.data(), sizeof first);
         return first == meaning;
     };
     std::vector<bool> taken(glsl::cache_most_fields, false);
-    for (std::size_t i = 0; i < kept_.size(); ++i)
+    for (std::size_t i = 0; i < fields.size(); ++i)
         for (const auto &[number, known] : meanings_)
-            if (!taken[static_cast<std::size_t>(number)] && means(known, kept_[i].meaning)) {
+            if (!taken[static_cast<std::size_t>(number)] && means(known, fields[i].meaning)) {
                 numbers_[i] = number;
                 taken[static_cast<std::size_t>(number)] = true;
                 break;
@@ -157,19 +175,44 @@ std::string CachedView::use(const ir::Scene &scene, const CacheSize &size, Diagn
             if (number < 0) number = unused(false);
             taken[static_cast<std::size_t>(number)] = true;
         }
-    picture_ = std::move(picture);
+}
+
+std::string CachedView::use(CachePrograms programs, const CacheSize &size) {
+    programs_.reset();
+    GLint units = 16;
+    glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
+    first_unit_ = units - 3;
+    CacheSize wanted = size;
+    for (const glsl::KeptField &field : programs.fields) wanted.wide |= field.wide;
+    if (!store_.hash() || store_.size().bits != wanted.bits ||
+        (wanted.wide && !store_.size().wide)) {
+        meanings_.clear();
+        if (!store_.make(wanted)) return "the graphics card has no memory for the noise cache";
+    }
+    if (std::string why = build_passes(); !why.empty()) return why;
+    programs_ = std::move(programs);
+    number_fields();
     return "";
 }
 
+std::string CachedView::use(const ir::Scene &scene, const CacheSize &size, Diagnostics &diagnostics,
+                            const CacheOptions &options) {
+    programs_.reset();
+    auto built = build_cache_programs(scene, options, diagnostics);
+    if (std::string *why = std::get_if<std::string>(&built)) return *why;
+    return use(std::move(std::get<CachePrograms>(built)), size);
+}
+
 int CachedView::number_of(std::uint32_t cache) const {
-    for (std::size_t i = 0; i < kept_.size(); ++i)
-        if (kept_[i].cache == cache) return numbers_[i];
+    for (std::size_t i = 0; programs_ && i < programs_->fields.size(); ++i)
+        if (programs_->fields[i].cache == cache) return numbers_[i];
     return -1;
 }
 
 bool CachedView::resize(int width, int height) {
-    if (width == width_ && height == height_) return true;
+    if (width == width_ && height == height_ && pick_ == programs_->pick) return true;
     release();
+    pick_ = programs_->pick;
     while (glGetError() != GL_NO_ERROR) {
     }
     glGenFramebuffers(1, &framebuffer_);
@@ -177,7 +220,12 @@ bool CachedView::resize(int width, int height) {
     color_ = target_2d(GL_RGBA32F, width, height, framebuffer_, GL_COLOR_ATTACHMENT0);
     misses_ = target_2d(GL_RGBA32I, width, height, framebuffer_, GL_COLOR_ATTACHMENT2);
     tally_ = target_2d(GL_RG32UI, width, height, framebuffer_, GL_COLOR_ATTACHMENT3);
-    glDrawBuffers(4, cached_outputs);
+    if (pick_) picks_ = target_2d(GL_RGBA32F, width, height, framebuffer_, GL_COLOR_ATTACHMENT1);
+    glGenRenderbuffers(1, &depth_);
+    glBindRenderbuffer(GL_RENDERBUFFER, depth_);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
+    draw_into(pick_, true);
     bool good = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
     places_ = target_2d(GL_R32UI, width, height, places_framebuffer_, GL_COLOR_ATTACHMENT0);
     good &= glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
@@ -203,10 +251,11 @@ void CachedView::renew(const std::vector<ir::Param> &params, int ages) {
     bool swept = ages < ages_;
     ages_ = ages;
     if (swept) sweep(-2);
-    for (std::size_t i = 0; i < kept_.size(); ++i) {
+    for (std::size_t i = 0; i < programs_->fields.size(); ++i) {
+        const glsl::KeptField &field = programs_->fields[i];
         std::vector<double> now(1);
-        std::memcpy(now.data(), &kept_[i].meaning, sizeof kept_[i].meaning);
-        for (std::uint32_t param : kept_[i].params)
+        std::memcpy(now.data(), &field.meaning, sizeof field.meaning);
+        for (std::uint32_t param : field.params)
             now.insert(now.end(), params[param].value.begin(), params[param].value.end());
         const auto known = meanings_.find(numbers_[i]);
         const bool same =
@@ -226,8 +275,10 @@ void CachedView::renew(const std::vector<ir::Param> &params, int ages) {
 void CachedView::draw_cells(const Program &program) {
     const int width = 1 << (3 * store_.size().bits + 1) / 2,
               height = static_cast<int>(store_.cells()) / width;
-    if (!sweep_framebuffer_) {
-        glGenFramebuffers(1, &sweep_framebuffer_);
+    if (sweep_cells_ != store_.cells()) {
+        if (!sweep_framebuffer_) glGenFramebuffers(1, &sweep_framebuffer_);
+        if (sweep_target_) glDeleteTextures(1, &sweep_target_);
+        sweep_cells_ = store_.cells();
         sweep_target_ = target_2d(GL_R8, width, height, sweep_framebuffer_, GL_COLOR_ATTACHMENT0);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, sweep_framebuffer_);
@@ -263,33 +314,49 @@ void CachedView::sweep(int field) {
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
-bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &params,
-                      const CacheSettings &settings) {
-    if (!picture_ || !resize(inputs.width, inputs.height)) return false;
-    glDisable(GL_DEPTH_TEST);
+void CachedView::begin_picture() const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glViewport(0, 0, width_, height_);
     glDisable(GL_BLEND);
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_CULL_FACE);
-    const int ages = std::clamp(settings.max_age, 1, glsl::cache_ages);
-    ++frame_;
-    store_.begin_frame();
-    renew(params, ages);
+    glDisable(GL_DEPTH_TEST);
+}
 
-    // 1: the picture, and each pixel's last miss
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    glViewport(0, 0, width_, height_);
-    picture_->use();
-    set_fields(*picture_);
-    set(*picture_, "fathom_cache_on", 1);
-    set(*picture_, "fathom_cache_show", settings.show_misses ? 1 : 0);
-    set(*picture_, "fathom_cache_ages", ages);
+// The picture from kept values alone; a pixel that wants an absent one keeps its depth of 1. Those
+// are drawn by computing all: the card skips the others before it shades them.
+void CachedView::draw_kept(const FrameInputs &inputs, const std::vector<ir::Param> &params,
+                           const CacheSettings &settings) {
+    const Program &kept = programs_->kept;
+    begin_picture();
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    glDepthMask(GL_TRUE);
+    kept.use();
+    set_fields(kept);
+    set(kept, "fathom_cache_ages", ages_);
+    glUniform1f(glGetUniformLocation(kept.name(), "fathom_cache_least"),
+                static_cast<float>(settings.least_pixels));
     const char *const samplers[] = {"fathom_cache_index", "fathom_cache_pool", "fathom_cache_wide"};
-    for (int i = 0; i < 3; ++i) set(*picture_, samplers[i], first_unit_ + i);
+    for (int i = 0; i < 3; ++i) set(kept, samplers[i], first_unit_ + i);
     store_.bind_textures(first_unit_);
-    picture_->draw(inputs, params);
+    kept.draw(inputs, params);
 
-    // 2: a place for each cell that was missed
+    glDepthFunc(GL_LESS); // the triangle lies at 0.5
+    glDepthMask(GL_FALSE);
+    draw_into(pick_, false);
+    programs_->exact.draw(inputs, params);
+    draw_into(pick_, true);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_DEPTH_TEST);
+}
+
+// A place for each cell that was missed; the query tells the card whether there was any.
+void CachedView::reserve(int ages) {
+    if (!changed_) glGenQueries(1, &changed_);
     glBindFramebuffer(GL_FRAMEBUFFER, places_framebuffer_);
+    const GLuint nowhere[] = {glsl::cache_nowhere, 0, 0, 0};
+    glClearBufferuiv(GL_COLOR, 0, nowhere);
     reserve_->use();
     set(*reserve_, "fathom_cache_bits", store_.size().bits);
     set(*reserve_, "fathom_cache_ages", ages);
@@ -301,50 +368,75 @@ bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &p
     bind_image(*reserve_, "fathom_cache_keys", 1, store_.keys(), GL_RGBA32I, GL_READ_WRITE);
     bind_image(*reserve_, "fathom_cache_free", 2, store_.free(), GL_R32UI, GL_READ_WRITE);
     bind_image(*reserve_, "fathom_cache_counts", 3, store_.counts(), GL_R32UI, GL_READ_WRITE);
+    glBeginQuery(GL_ANY_SAMPLES_PASSED, changed_);
     draw_triangle();
+    glEndQuery(GL_ANY_SAMPLES_PASSED);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
 
-    // 3: its corners. Nothing is drawn; the framebuffer is any of the size.
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+// The corners of what was reserved. Nothing is drawn; the framebuffer is any of the size.
+void CachedView::fill(const FrameInputs &inputs, const std::vector<ir::Param> &params) {
+    const Program &program = programs_->fill;
+    begin_picture();
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    const GLenum color[] = {GL_COLOR_ATTACHMENT0};
-    glDrawBuffers(1, color); // the misses are read, so they cannot be a target
-    fill_->use();
-    set_fields(*fill_);
-    set(*fill_, "fathom_cache_misses", first_unit_);
-    set(*fill_, "fathom_cache_places", first_unit_ + 1);
+    draw_into(false, false); // the misses are read, so they cannot be a target
+    program.use();
+    set_fields(program);
+    set(program, "fathom_cache_misses", first_unit_);
+    set(program, "fathom_cache_places", first_unit_ + 1);
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_unit_));
     glBindTexture(GL_TEXTURE_2D, misses_);
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_unit_) + 1);
     glBindTexture(GL_TEXTURE_2D, places_);
-    bind_image(*fill_, "fathom_cache_keys", 0, store_.keys(), GL_RGBA32I, GL_WRITE_ONLY);
-    bind_image(*fill_, "fathom_cache_pool", 1, store_.pool(), GL_R32F, GL_WRITE_ONLY);
+    bind_image(program, "fathom_cache_keys", 0, store_.keys(), GL_RGBA32I, GL_WRITE_ONLY);
+    bind_image(program, "fathom_cache_pool", 1, store_.pool(), GL_R32F, GL_WRITE_ONLY);
     if (store_.wide())
-        bind_image(*fill_, "fathom_cache_wide", 2, store_.wide(), GL_RGBA32F, GL_WRITE_ONLY);
-    fill_->draw(inputs, params);
+        bind_image(program, "fathom_cache_wide", 2, store_.wide(), GL_RGBA32F, GL_WRITE_ONLY);
+    program.draw(inputs, params);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glDrawBuffers(4, cached_outputs);
+    draw_into(pick_, true);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+}
 
-    // 4: the index that the next frame looks up in
-    publish();
+void CachedView::tint() {
+    begin_picture();
+    draw_into(false, false);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    tint_->use();
+    set(*tint_, "fathom_cache_misses", 0);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, misses_);
+    draw_triangle();
+    glDisable(GL_BLEND);
+    draw_into(pick_, true);
+}
+
+bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &params,
+                      const CacheSettings &settings) {
+    if (!programs_ || !resize(inputs.width, inputs.height)) return false;
+    const int ages = std::clamp(settings.max_age, 1, glsl::cache_ages);
+    ++frame_;
+    store_.begin_frame();
+    begin_picture();
+    renew(params, ages);
+    draw_kept(inputs, params, settings);
+    reserve(ages);
+    glBeginConditionalRender(changed_, GL_QUERY_WAIT); // the card waits, not this program
+    fill(inputs, params);
+    publish(); // the index that the next frame looks up in
+    glEndConditionalRender();
+    if (settings.show_misses) tint();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return true;
 }
 
-bool CachedView::draw_exactly(const Program &program, const FrameInputs &inputs,
-                              const std::vector<ir::Param> &params) {
-    if (!resize(inputs.width, inputs.height)) return false;
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
-    glDisable(GL_SCISSOR_TEST);
-    glDisable(GL_CULL_FACE);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    glViewport(0, 0, width_, height_);
-    const GLenum color[] = {GL_COLOR_ATTACHMENT0};
-    glDrawBuffers(1, color);
-    program.draw(inputs, params);
-    glDrawBuffers(4, cached_outputs);
+bool CachedView::draw_exactly(const FrameInputs &inputs, const std::vector<ir::Param> &params) {
+    if (!programs_ || !resize(inputs.width, inputs.height)) return false;
+    begin_picture();
+    draw_into(pick_, false);
+    programs_->exact.draw(inputs, params);
+    draw_into(pick_, true);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return true;
 }
@@ -381,8 +473,8 @@ CacheTally CachedView::read_tally() const {
     CacheTally tally;
     for (std::size_t i = 0; i < words.size(); i += 2) {
         tally.hits += words[i];
-        tally.misses += words[i + 1];
-        tally.missing_pixels += words[i + 1] != 0;
+        tally.misses += words[i + 1] == static_cast<unsigned>(glsl::PixelState::Missed);
+        tally.computed += words[i + 1] != static_cast<unsigned>(glsl::PixelState::Finished);
     }
     return tally;
 }

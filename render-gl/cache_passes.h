@@ -1,5 +1,5 @@
-// Pictures drawn through the noise cache: the three passes of a frame (thesis, 7.3), and which
-// fields the cache holds. One CachedView keeps its cache over frames, views, params and reloads of
+// Pictures drawn through the noise cache: the passes of a frame (thesis, 7.3), and which fields the
+// cache holds. One CachedView keeps its cache over frames, views, params and reloads of
 // a scene: only what a field computes itself makes its values stale. Needs a current context of
 // GL 4.2.
 #pragma once
@@ -19,14 +19,34 @@ std::string cache_unavailable();
 
 struct CacheSettings {
     int max_age = 4; // 1 to cache_ages
-    bool show_misses = false;
+    // Pixels whose cells would be narrower than so many of them are computed: what no two pixels
+    // share is found by no later frame either, unless nothing moves at all.
+    double least_pixels = 1;
+    bool show_misses = false; // in red
 };
 
-// One frame's pixels that found and that missed.
+// One frame: look-ups that found their value; pixels whose value was absent; pixels that were
+// computed, those among them.
 struct CacheTally {
-    std::uint64_t hits = 0, misses = 0;
-    std::uint64_t missing_pixels = 0;
+    std::uint64_t hits = 0, misses = 0, computed = 0;
 };
+
+struct CacheOptions {
+    int part_stride = 0; // of a scene that was lowered with its parts
+    bool pick = false;   // the programs write what each pixel shows, too (emit.h)
+};
+
+// All that depends on the scene. Programs belong to every context that shares with the one that
+// made them.
+struct CachePrograms {
+    Program kept, exact,
+        fill; // the picture by kept values alone, by computing all; a cell's corners
+    std::vector<glsl::KeptField> fields;
+    bool pick = false;
+};
+// Or why there are none, in words.
+std::variant<CachePrograms, std::string>
+build_cache_programs(const ir::Scene &scene, const CacheOptions &options, Diagnostics &diagnostics);
 
 class CachedView {
   public:
@@ -36,19 +56,22 @@ class CachedView {
     CachedView &operator=(const CachedView &) = delete;
 
     // Takes a scene's programs. What the cache already holds of the same fields stays. An empty
-    // text where all went well and some field is kept; else why the scene is drawn exactly.
+    // text where all went well; else why the scene is drawn exactly.
+    std::string use(CachePrograms programs, const CacheSize &size);
     std::string use(const ir::Scene &scene, const CacheSize &size, Diagnostics &diagnostics,
-                    int part_stride = 0); // of a scene that was lowered with its parts
-    bool ready() const { return picture_.has_value(); }
+                    const CacheOptions &options = {}); // builds them, too
+    bool ready() const { return programs_.has_value(); }
+    void drop() { programs_.reset(); } // the scene is another now; the cells stay
 
     // Draws a frame, and lets the cache learn what it missed. False where there is no memory.
     bool draw(const FrameInputs &inputs, const std::vector<ir::Param> &params,
               const CacheSettings &settings);
-    // The same picture by another program, into the same place; the cache learns nothing.
-    bool draw_exactly(const Program &program, const FrameInputs &inputs,
-                      const std::vector<ir::Param> &params);
+    // The same picture into the same place without the cache, which learns nothing.
+    bool draw_exactly(const FrameInputs &inputs, const std::vector<ir::Param> &params);
     void forget();                                        // empties the cache
     unsigned framebuffer() const { return framebuffer_; } // colour 0: RGBA32F, as the mode says
+    int width() const { return width_; }
+    int height() const { return height_; }
     Pixels read_pixels() const;
     CacheTally read_tally() const;
 
@@ -60,23 +83,35 @@ class CachedView {
   private:
     bool resize(int width, int height);
     void release();
+    std::string build_passes();
+    void number_fields();
     void renew(const std::vector<ir::Param> &params, int ages);
     void sweep(int field);
     void publish();
     void draw_cells(const Program &program);
     void set_fields(const Program &program) const;
+    void begin_picture() const;
+    void draw_kept(const FrameInputs &inputs, const std::vector<ir::Param> &params,
+                   const CacheSettings &settings);
+    void reserve(int ages);
+    void fill(const FrameInputs &inputs, const std::vector<ir::Param> &params);
+    void tint();
 
     CacheStore store_;
-    std::optional<Program> picture_, fill_, reserve_, publish_, sweep_;
-    std::vector<glsl::KeptField> kept_;
-    std::vector<int> numbers_; // by kept_
+    std::optional<CachePrograms> programs_;
+    std::optional<Program> reserve_, publish_, sweep_, tint_;
+    std::vector<int> numbers_; // by the programs' fields
     std::map<int, std::vector<double>>
         meanings_; // by number: the meaning and the params' values it was filled with
     int first_unit_ = 0, ages_ = 0;
     std::uint32_t frame_ = 0;
+    std::size_t sweep_cells_ = 0; // that the target of `draw_cells` is made for
     int width_ = 0, height_ = 0;
+    bool pick_ = false; // the framebuffer has a place for it
     unsigned framebuffer_ = 0, places_framebuffer_ = 0, sweep_framebuffer_ = 0;
-    unsigned color_ = 0, misses_ = 0, tally_ = 0, places_ = 0, sweep_target_ = 0;
+    unsigned color_ = 0, picks_ = 0, misses_ = 0, tally_ = 0, depth_ = 0, places_ = 0,
+             sweep_target_ = 0;
+    unsigned changed_ = 0; // a query: whether the frame's reserving changed anything
 };
 
 } // namespace fathom::gl

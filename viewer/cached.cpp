@@ -8,7 +8,9 @@ std::string Cached::draw(const ir::Scene &scene, int part_stride, const gl::Fram
                          const std::vector<ir::Param> &params) {
     if (!taken_) {
         Diagnostics unheard; // the worker has told them
-        if (std::string why = view_.use(scene, {}, unheard, part_stride); !why.empty()) return why;
+        if (std::string why = view_.use(scene, {}, unheard, {.part_stride = part_stride});
+            !why.empty())
+            return why;
         taken_ = true;
         frames_ = 0;
     }
@@ -23,7 +25,7 @@ std::string Cached::draw(const ir::Scene &scene, int part_stride, const gl::Fram
 
 std::string Cached::words() const {
     return fmt::format("noise cache: {} found, {} missed (red) in {} pixels", tally_.hits,
-                       tally_.misses, tally_.missing_pixels);
+                       tally_.misses, tally_.computed);
 }
 
 } // namespace fathom::viewer

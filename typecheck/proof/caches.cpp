@@ -1,11 +1,14 @@
 // What is proved of the fields that the noise cache may keep: how steep they are and how far their
-// values lie apart, wherever they are asked. So the error of interpolation has a bound, and a kept
-// field is not steeper than the field that it stands for (docs/noise-cache.md).
+// values lie apart, wherever they are asked. So the error of interpolation has a bound. The shapes
+// that read such a field are proved with what is known of it everywhere and not with what its text
+// says where they lie: the kept field, which is interpolated, is as steep as the former allows and
+// may be steeper than the latter (docs/noise-cache.md).
 #include "typecheck/proof/prover.h"
 
 #include "ir/cost.h"
 
 #include <cmath>
+#include <unordered_set>
 
 namespace fathom::proof {
 
@@ -31,13 +34,44 @@ void Prover::report_not_kept(ir::CacheId id) {
     }
 }
 
+// Between the corners of a cell a field is at most sqrt(3) times as steep as it is: where it has a
+// ridge, the edges along x, y and z may each be as steep as the field. A cell that is steeper than
+// what is stated of the field is not kept. Of most noise that is none, since what is proved of it
+// is far more than it has; but Worley noise is the distance to a point and nearly everywhere as
+// steep as proved, so cells by its ridges would all go: what reads it is allowed this much more.
+constexpr double ridge_allowance = 1.15;
+
+static bool reads_worley(const ir::Graph &graph, NodeId root) {
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!id || !seen.insert(id).second) continue;
+        const ir::Node &node = graph[id];
+        if (node.op == Op::Worley) return true;
+        if (node.op == Op::Call)
+            todo.push_back(graph.function(ir::FunctionId{node.payload}).result);
+        if (node.op == Op::Cached)
+            todo.push_back(graph.function(graph.cache(ir::CacheId{node.payload}).field).result);
+        if (node.op == Op::Fold)
+            for (NodeId next : graph.fold(ir::FoldId{node.payload}).next) todo.push_back(next);
+        for (NodeId arg : graph.args(id)) todo.push_back(arg);
+    }
+    return false;
+}
+
 void Prover::know_caches() {
     scene.caches.assign(graph.cache_count(), {});
+    ranges.caches.assign(graph.cache_count(), {});
+    flattening.kept.assign(graph.cache_count(), false);
     for (std::size_t i = 0; i < graph.cache_count(); ++i) {
         const ir::FunctionId field = graph.cache(ir::CacheId{i}).field;
-        const ir::Type type = graph[graph.function(field).result].type;
+        const NodeId result = graph.function(field).result;
+        const ir::Type type = graph[result].type;
         const NodeId whole =
             graph.make(Op::Cached, type, {graph.point()}, static_cast<std::uint32_t>(i));
+        Ranges::Cached &known = ranges.caches[i];
         double slopes = 0, spans = 0; // squared
         for (int c = 0; c < ir::components(type); ++c) {
             Budget budget;
@@ -49,8 +83,13 @@ void Prover::know_caches() {
                 bound.value.finite() ? bound.value.hi - bound.value.lo : ir::rounding::infinity;
             slopes = up(slopes + up(bound.lipschitz * bound.lipschitz));
             spans = up(spans + up(span * span));
+            known.values[static_cast<std::size_t>(c)] = bound.value;
         }
-        scene.caches[i] = {up(std::sqrt(slopes)), up(std::sqrt(spans))};
+        known.slope = up(std::sqrt(slopes));
+        if (reads_worley(graph, result)) known.slope = up(known.slope * ridge_allowance);
+        scene.caches[i] = {known.slope, up(std::sqrt(spans))};
+        known.kept = ir::kept(scene, ir::CacheId{i}) == ir::Kept::Yes;
+        flattening.kept[i] = known.kept;
         report_not_kept(ir::CacheId{i});
     }
 }

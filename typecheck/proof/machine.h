@@ -26,6 +26,14 @@ struct Ranges {
         double slope = 0;
     };
     std::vector<Sampled> images, grids;
+    // By cached field, where its values may be kept: what holds of the kept ones, too (caches.cpp).
+    // Else nothing, and its own text is looked at.
+    struct Cached {
+        bool kept = false;
+        std::array<Interval, 4> values{};
+        double slope = 0; // of all components together
+    };
+    std::vector<Cached> caches;
 };
 Ranges ranges_of(const ir::Scene &scene);
 

@@ -641,8 +641,13 @@ void Step::run() {
         for (int c = 0; c < n; ++c) set(c, data.values, through(data.slope, 0));
         return finish(up(times(data.slope * std::sqrt(double(n)), norm(0)), 4), any_odd);
     }
+    case Op::Cached: { // only where it may be kept
+        const Ranges::Cached &kept = machine.ranges_.caches[in.payload];
+        for (int c = 0; c < n; ++c)
+            set(c, kept.values[static_cast<std::size_t>(c)], through(kept.slope, 0));
+        return finish(times(kept.slope, norm(0)), any_odd);
+    }
     case Op::Call:
-    case Op::Cached:
     case Op::Fold:
     case Op::FoldResult: break; // flattened away
     case Op::MakeHit:

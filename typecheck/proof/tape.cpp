@@ -263,7 +263,9 @@ struct Flattener {
         switch (node.op) {
         case Op::Point: out.varies = true; return emit(scope, out);
         case Op::Call: return call(scope, id, ir::FunctionId{node.payload});
-        case Op::Cached: return call(scope, id, graph.cache(ir::CacheId{node.payload}).field);
+        case Op::Cached:
+            if (node.payload < context.kept.size() && context.kept[node.payload]) break;
+            return call(scope, id, graph.cache(ir::CacheId{node.payload}).field);
         case Op::Fold: return loop(scope, id);
         case Op::FoldResult: {
             slot(scope, graph.arg(id, 0));

@@ -66,6 +66,7 @@ struct Tape {
 struct Flattening {
     ir::Graph &graph;
     std::unordered_map<NodeId, bool> joined; // by Select, remembered over fields
+    std::vector<bool> kept{}; // by cached field: known by its bounds alone (Ranges::caches)
 };
 
 Tape flatten(Flattening &context, NodeId root);

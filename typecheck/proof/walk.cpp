@@ -53,6 +53,7 @@ void Prover::run() {
         }
     }
     find_places();
+    know_caches(); // before the shapes that read them
     for (std::size_t i = 0; i < count; ++i) {
         const Shape &shape = scene.shapes[ShapeId{i}];
         deformed += shape.kind == ShapeKind::Map &&
@@ -78,7 +79,6 @@ void Prover::run() {
         scene.facts[i].bounds = padded(k.fact.bounds);
         scene.facts[i].repeat.copy = padded(k.fact.repeat.copy);
     }
-    know_caches();
     scene.bounds = {};
     double radius = 0;
     for (const ir::TopLevel &top : scene.top_level) {

@@ -63,7 +63,7 @@ TEST_CASE(
     gl::CachedView view;
     use(view, c.scene);
     for (int frame = 0; frame < 30; ++frame) {
-        view.draw(inputs, c.scene.params, {});
+        view.draw(inputs, c.scene.params, all_cells);
         const Error error = error_of(view, c.scene, inputs, wanted);
         INFO("frame " << frame);
         CHECK(error.hits > 300);

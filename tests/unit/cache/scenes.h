@@ -39,6 +39,9 @@ inline gl::FrameInputs frame_of(const ir::Scene &scene, int side, double turn = 
     return inputs;
 }
 
+// In pictures of a few pixels each is wider than a cell.
+constexpr gl::CacheSettings all_cells{.least_pixels = 0};
+
 inline void use(gl::CachedView &view, const ir::Scene &scene, const gl::CacheSize &size = {}) {
     Diagnostics diagnostics;
     const std::string why = view.use(scene, size, diagnostics);
@@ -47,7 +50,7 @@ inline void use(gl::CachedView &view, const ir::Scene &scene, const gl::CacheSiz
 
 // Frames of the same view until nothing is missed, at most so many. How many it took.
 inline int warm(gl::CachedView &view, const gl::FrameInputs &inputs, const ir::Scene &scene,
-                int most = 60, const gl::CacheSettings &settings = {}) {
+                int most = 60, const gl::CacheSettings &settings = all_cells) {
     for (int frame = 0; frame < most; ++frame) {
         if (!view.draw(inputs, scene.params, settings)) FAIL("no memory");
         if (view.read_tally().misses == 0) return frame;
