@@ -9,6 +9,7 @@
 #include "backend-glsl/roll.h"
 #include "backend-glsl/validate.h"
 #include "base/text.h"
+#include "ir/lower.h"
 #include "ir/view.h"
 
 #include <algorithm>
@@ -26,6 +27,8 @@ constexpr std::array<std::pair<Target, const char *>, 7> targets{
      {Target::GlslViewer, "glslviewer"},
      {Target::Spirv, "spirv"},
      {Target::Html, "html"}}};
+
+constexpr double cheap_field = 150; // operations
 
 bool is_es(Target t) { return t == Target::Es300 || t == Target::Html || t == Target::Shadertoy; }
 
@@ -154,6 +157,9 @@ class Emitter {
         MarcherOptions marcher;
         marcher.boxed = frame.boxed;
         marcher.steep = frame.steep;
+        marcher.cheap =
+            scene_.distance &&
+            ir::operations(scene_.graph, module_.result_of(scene_.distance)) <= cheap_field;
         marcher.skip_shading = scene_.lighting.skip;
         marcher.local_normals = scene.local_normals;
         marcher.lights = scene.lights;

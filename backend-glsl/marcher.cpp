@@ -47,6 +47,22 @@ vec3 fathom_corner(int i) {
 }
 )";
 
+// Of a field that costs little, two copies are quicker than the loop round one.
+constexpr const char *near_cheap = R"(
+// The field at p in d; and, where that is at most `limit`, the true distance |f| / |grad f|, since
+// the field was divided by a bound; else d again.
+float fathom_near(vec3 p, float h, float limit, out float d) {
+    d = sdf(p);
+    if (!(d <= limit)) return d;
+    vec3 sum = vec3(0.0);
+    for (int i = $ZERO; i < 4; ++i) {
+        vec3 e = fathom_corner(i);
+        sum += e * sdf(p + h * e);
+    }
+    return d / clamp(length(0.75 / h * sum), $LEAST_SLOPE, 1.0);
+}
+)";
+
 constexpr const char *near_steep = R"(
 // The field at p in d; and, where that is at most `limit`, the true distance |f| / |grad f|, since
 // the field was divided by a bound; else d again.
@@ -135,14 +151,7 @@ $KEPT_STOP        float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
 )";
 
 // The gradient's four points and, along the normal that they give, the occlusion's five.
-constexpr const char *shade_head = R"(
-vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
-    vec3 p = origin + t * direction;
-    float h = fathom_arm(t);
-    vec3 g = vec3(0.0);
-    vec3 n = -direction;
-    float slope = 0.0;
-$OPEN    for (int i = $ZERO; i < $TAPS$AND_PRESENT; ++i) {
+constexpr const char *together = R"(    for (int i = $ZERO; i < $TAPS$AND_PRESENT; ++i) {
         vec3 e = fathom_corner(i);
 $SAMPLE_SHADE$CLOSED        g += e * f;
         if (i < 3) continue;
@@ -151,6 +160,31 @@ $SAMPLE_SHADE$CLOSED        g += e * f;
         if (slope > 0.0) n = g / slope;
     }
 )";
+
+// The same in two loops: quicker where two copies of the field cost little.
+constexpr const char *gradient_apart = R"(    for (int i = $ZERO; i < 4; ++i) {
+        vec3 e = fathom_corner(i);
+        g += e * sdf(p + h * e);
+    }
+    g *= 0.75 / h;
+    slope = length(g);
+    if (slope > 0.0) n = g / slope;
+)";
+constexpr const char *occlusion_apart = R"(    for (int i = $ZERO + 4; i < taps; ++i) {
+        float x = $OCCLUSION_REACH * float(i - 3)$AND_D;
+        weight *= 0.5;
+        open -= weight * clamp(1.0 - $NEAR_X / x, 0.0, 1.0);
+    }
+)";
+
+constexpr const char *shade_head = R"(
+vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
+    vec3 p = origin + t * direction;
+    float h = fathom_arm(t);
+    vec3 g = vec3(0.0);
+    vec3 n = -direction;
+    float slope = 0.0;
+$OPEN$SURROUNDINGS)";
 
 // The weights of the occlusion's samples are 1/2, 1/4, …
 constexpr const char *shade_open = R"(    fathom_Lighting look = fathom_lighting();
@@ -273,7 +307,7 @@ Values values_of(const MarcherOptions &options) {
                              "    end = min(end, inside.y);\n";
     const std::string far = "100.0 * max(" + number(options.radius) + ", length(fathom_origin - " +
                             options.center + "))";
-    const bool steep = options.steep;
+    const bool steep = options.steep, apart = options.cheap && !options.kept;
     Values values{
         {"SAMPLE_MARCH", steep
                              ? "float near = fathom_near(p, fathom_arm(t), fathom_tolerance(t), d)"
@@ -304,6 +338,11 @@ Values values_of(const MarcherOptions &options) {
                          : steep              ? sample_near
                                               : sample_plain},
         {"CLOSED", options.skip_shading ? "" : shade_closed},
+        {"SURROUNDINGS",
+         apart ? std::string(gradient_apart) + (options.skip_shading ? "" : occlusion_apart)
+               : together},
+        {"AND_D", steep ? ", d" : ""},
+        {"NEAR_X", steep ? "fathom_near(p + x * n, h, x, d)" : "sdf(p + x * n)"},
         {"ALL_TAPS", std::to_string(4 + look::occlusion_samples)},
         {"OCCLUSION_TOTAL", number(1 - std::ldexp(1.0, -look::occlusion_samples))},
         {"OCCLUSION_REACH",
@@ -317,14 +356,15 @@ Values values_of(const MarcherOptions &options) {
     values["KEPT_WIDTH"] = options.kept ? kept_width : "";
     values["KEPT_STOP"] = options.kept ? kept_stop : "";
     values["AND_PRESENT"] = options.kept ? " && !fathom_absent" : "";
-    for (const char *part : {"RAY", "OPEN", "SAMPLE_SHADE", "CLOSED"})
+    for (const char *part : {"RAY", "OPEN", "SAMPLE_SHADE", "CLOSED", "SURROUNDINGS"})
         values[part] = fill(values[part], values);
     return values;
 }
 
 std::string march_form(const MarcherOptions &options) {
     std::string text = lengths;
-    if (options.steep) text += std::string(corner) + near_steep;
+    if (options.steep)
+        text += std::string(corner) + (options.cheap && !options.kept ? near_cheap : near_steep);
     if (options.boxed) text += box;
     return text + march;
 }

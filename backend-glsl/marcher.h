@@ -19,6 +19,7 @@ namespace fathom::glsl {
 struct MarcherOptions {
     bool boxed = false; // rays live between FATHOM_LO and FATHOM_HI
     bool steep = false; // ir::steep
+    bool cheap = false; // the field is a few operations
     bool skip_shading = false;
     bool local_normals = false; // some material reads its normal
     bool default_sun = false;

@@ -11,9 +11,11 @@ int main(int argc, char **argv) {
         const char *name;
         void (*measure)(Table &);
     };
-    constexpr Group groups[] = {{"process", measure_process}, {"front-end", measure_front_end},
-                                {"reload", measure_reload},   {"shader", measure_shader},
-                                {"steps", measure_steps},     {"interpreter", measure_interpreter}};
+    constexpr Group groups[] = {
+        {"process", measure_process},        {"front-end", measure_front_end},
+        {"reload", measure_reload},          {"shader", measure_shader},
+        {"by-hand", measure_hand_written},   {"steps", measure_steps},
+        {"interpreter", measure_interpreter}};
     const std::vector<std::string> wanted(argv + 1, argv + argc);
     for (const std::string &name : wanted)
         if (std::none_of(std::begin(groups), std::end(groups),
@@ -21,7 +23,7 @@ int main(int argc, char **argv) {
             std::fprintf(
                 stderr,
                 "fathom-bench: no group `%s`; there are process, front-end, reload, shader, "
-                "steps, interpreter\n",
+                "by-hand, steps, interpreter\n",
                 name.c_str());
             return 2;
         }

@@ -54,11 +54,12 @@ driver::Compilation compiled_text(const std::string &name, std::string text,
 std::string
 complaint(const driver::Compilation &compilation); // its first error in words, or an empty text
 
-void measure_interpreter(Table &table); // interpreter.cpp
-void measure_process(Table &table);     // process.cpp
-void measure_front_end(Table &table);   // front_end.cpp
-void measure_reload(Table &table);      // reload.cpp
-void measure_shader(Table &table);      // shader.cpp
-void measure_steps(Table &table);       // steps.cpp
+void measure_interpreter(Table &table);  // interpreter.cpp
+void measure_process(Table &table);      // process.cpp
+void measure_front_end(Table &table);    // front_end.cpp
+void measure_reload(Table &table);       // reload.cpp
+void measure_shader(Table &table);       // shader.cpp
+void measure_hand_written(Table &table); // hand_written.cpp
+void measure_steps(Table &table);        // steps.cpp
 
 } // namespace fathom::bench
