@@ -93,10 +93,13 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
         if (next >= formals.size()) {
             std::size_t given = 0;
             for (const Argument &b : args) given += b.trailing ? 0 : 1;
-            report(ev, Code::TooManyArguments, a.span,
-                   fmt::format("`{}` takes {} argument{}, not {}", name, formals.size(),
-                               formals.size() == 1 ? "" : "s", given))
-                .note(fmt::format("it is `{}`", signature_text(name, formals)));
+            Diagnostic &d =
+                report(ev, Code::TooManyArguments, a.span,
+                       fmt::format("`{}` takes {} argument{}, not {}", name, formals.size(),
+                                   formals.size() == 1 ? "" : "s", given))
+                    .note(fmt::format("it is `{}`", signature_text(name, formals)));
+            const std::string_view way = way_for_shapes(name);
+            if (args[0].value.kind == ValueKind::Shape && !way.empty()) d.help(std::string(way));
             return std::nullopt;
         }
         give(next++, a);

@@ -1,5 +1,6 @@
 // GLSL's numeric functions by their names, constructors, and the library's noise primitives: names
 // for ops of the graph.
+#include "typecheck/binding.h"
 #include "typecheck/evaluator.h"
 
 #include "ir/maps.h"
@@ -13,6 +14,22 @@ namespace fathom::typecheck {
 using ir::Op;
 using ir::Type;
 
+std::string_view way_for_shapes(std::string_view name) {
+    constexpr std::pair<std::string_view, std::string_view> ways[] = {
+        {"min", "shapes are united with `|`"},
+        {"max", "shapes are intersected with `&`"},
+        {"mix", "shapes are mixed by `blend(a, b, t)`"},
+        {"smoothstep", "shapes flow together in `smooth_union(r) { … }`"},
+        {"abs", "a shape's skin is `.shell(thickness)`"},
+        {"round", "`.offset(r)` rounds what is convex and grows by r; boxes have `rounded_box`"},
+        {"mod", "a shape is repeated by `.repeat(cell)`"},
+        {"fract", "a shape is repeated by `.repeat(cell)`"},
+    };
+    for (const auto &[known, way] : ways)
+        if (name == known) return way;
+    return {};
+}
+
 template <Op op>
 static Value componentwise(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     for (Value &a : args) {
@@ -25,9 +42,11 @@ static Value componentwise(Evaluator &ev, const CallSite &site, std::vector<Valu
     }
     for (std::size_t i = 0; i < args.size(); ++i)
         if (!is_numeric(args[i]) || numeric_type(ev, args[i]) == Type::Bool) {
-            report(ev, Code::TypeMismatch, site.arg(i),
-                   fmt::format("`{}` wants a number or a vector, this is {}", site.name,
-                               describe(ev, args[i])));
+            Diagnostic &d = report(ev, Code::TypeMismatch, site.arg(i),
+                                   fmt::format("`{}` wants a number or a vector, this is {}",
+                                               site.name, describe(ev, args[i])));
+            const std::string_view way = way_for_shapes(site.name);
+            if (args[i].kind == ValueKind::Shape && !way.empty()) d.help(std::string(way));
             return poison();
         }
     return apply_op(ev, op, args, site.call, site.name);

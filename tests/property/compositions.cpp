@@ -46,7 +46,7 @@ struct Verdict {
 };
 
 driver::Compilation compiled(const std::string &text) {
-    return driver::compile_text("random.sdf", text, {}, {});
+    return driver::compile_text("random.sdf", text, FATHOM_SOURCE_DIR "/examples/parts", {});
 }
 
 void set_params(ir::Scene &scene, int end) {

@@ -93,7 +93,7 @@ class RandomScene {
     }
 
     TermPtr primitive() {
-        switch (dice_.below(27)) {
+        switch (dice_.below(36)) {
         case 0: return term("sphere(" + slider(0.2, 1) + ")");
         case 1: return term("box(" + vec(0.2, 1.6) + ")");
         case 2: return term("rounded_box(" + vec(0.6, 1.6) + ", " + n(0.02, 0.25) + ")");
@@ -135,6 +135,31 @@ class RandomScene {
             return term(
                 "implicit(p => p.x^4 + p.y^4 + p.z^2 * p.x^2 - " + n(0.05, 0.3) + ", within: " +
                 (dice_.chance(0.5) ? "ball(2)" : "aabb([-2, -1, -1.5], [1.5, 1.8, 1])") + ")");
+        case 26: return term("octahedron(" + n(0.5, 1.2) + ")");
+        case 27: return term("dodecahedron(" + n(0.5, 1.2) + ")");
+        case 28: {
+            static const char *solids[] = {"tetrahedron",          "cube",
+                                           "dodecahedron",         "icosahedron",
+                                           "truncated_octahedron", "truncated_icosahedron"};
+            return term("gdf_" + std::string(solids[dice_.below(6)]) + "(" + n(0.4, 1) +
+                        (dice_.chance(0.5) ? ", " + n(2, 12) : "") + ")");
+        }
+        case 29: return term("distance_grid(\"rock.nrrd\").scale(" + n(0.5, 1.2) + ")");
+        case 30:
+            return term("sphere(" + n(0.4, 1) + ").displace_map(image(\"pebbles.png\"), " +
+                        n(0.02, 0.15) + ", scale: " + n(0.3, 2) + ")");
+        case 31:
+            return term("cylinder(" + n(0.3, 0.8) + ", " + n(0.4, 1.5) +
+                        ").displace_map(image(\"pebbles.png\"), " + n(0.02, 0.1) + ")");
+        case 32:
+            return term("tubes([" + vec(-1, 1) + ", " + vec(-1, 1) + ", " + vec(-1, 1) + "], " +
+                        n(0.05, 0.2) + ")");
+        case 33:
+            return term("heightfield(q => 0.2 * sin(" + n(1, 4) + " * q.x) + 0.1 * noise(2 * q), " +
+                        vec2(0.8, 2) + ", depth: " + n(0.2, 0.8) + ")");
+        case 34:
+            return term(std::string(dice_.chance(0.5) ? "gyroid(" : "schwarz_p(") + n(0.6, 1.5) +
+                        ", " + n(0.05, 0.3) + ").within(ball(" + n(0.6, 1.3) + "))");
         default: return term("sphere(0.5).translate(" + vec(-1, 1) + ")");
         }
     }
@@ -260,7 +285,12 @@ class RandomScene {
         case 18:
             return one("$.displace(p => " + slider(0, 0.15) + " * sin(" + n(2, 9) +
                        " * p.x) * sin(6 * p.y))");
-        case 19: return one("$.displace(p => 0.1 * fbm(2 * p, 2))");
+        case 19: {
+            static const char *fields[] = {"fbm(2 * p, 2)",  "ridged(1.5 * p, 3)",
+                                           "worley(2 * p)",  "turbulence(2 * p, 3)",
+                                           "simplex(3 * p)", "value_noise(3 * p)"};
+            return one("$.displace(p => 0.1 * " + std::string(fields[dice_.below(6)]) + ")");
+        }
         case 20: return one("$.distort(p => [p.x + 0.2 * sin(2 * p.y), p.y, p.z - 0.1 * p.x])");
         case 21:
         case 22: return one("$.repeat(" + cell() + counts + ")");

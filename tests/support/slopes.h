@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace fathom::test {
@@ -84,10 +85,12 @@ class Sampler {
     std::uint64_t state_ = 7;
 };
 
-// float32 loses some units in the last place of the coordinates and of the field; `rounding` is
-// that, absolutely.
-inline Slopes measure(const ir::Scene &scene, Point3 lo, Point3 hi, int count, double time = 0) {
-    Sampler sampler(scene, time);
+// `count` balls, of whose centres the first `sloped` are asked for their gradients too. float32
+// loses some units in the last place of the coordinates and of the field; `rounding` is that,
+// absolutely.
+inline Slopes measure(const ir::Scene &scene, Point3 lo, Point3 hi, int count,
+                      int sloped = std::numeric_limits<int>::max()) {
+    Sampler sampler(scene);
     Slopes out;
     double size = 0;
     for (std::size_t i = 0; i < 3; ++i)
@@ -98,15 +101,17 @@ inline Slopes measure(const ir::Scene &scene, Point3 lo, Point3 hi, int count, d
     for (int done = 0; done < count; done += batch) {
         std::vector<Point3> p, q;
         for (int i = 0; i < batch; ++i) p.push_back(sampler.in_box(lo, hi));
-        std::vector<float> d = sampler.values(p), g = sampler.steepness(p);
-        for (std::size_t i = 0; i < p.size(); ++i) {
-            best.emplace_back(g[i], p[i]);
+        std::vector<float> d = sampler.values(p);
+        for (std::size_t i = 0; i < p.size(); ++i)
             q.push_back(sampler.in_ball(p[i], std::min<double>(std::fabs(d[i]), 4 * size)));
+        if (done < sloped) {
+            const std::vector<float> g = sampler.steepness(p);
+            for (std::size_t i = 0; i < p.size(); ++i) best.emplace_back(g[i], p[i]);
+            std::partial_sort(
+                best.begin(), best.begin() + std::min<std::ptrdiff_t>(32, std::ssize(best)),
+                best.end(), [](const auto &a, const auto &b) { return a.first > b.first; });
+            best.resize(std::min<std::size_t>(best.size(), 32));
         }
-        std::partial_sort(best.begin(),
-                          best.begin() + std::min<std::ptrdiff_t>(32, std::ssize(best)), best.end(),
-                          [](const auto &a, const auto &b) { return a.first > b.first; });
-        best.resize(std::min<std::size_t>(best.size(), 32));
         std::vector<float> e = sampler.values(q);
         for (std::size_t i = 0; i < p.size(); ++i) {
             double run = 0;
