@@ -274,6 +274,22 @@ TEST_CASE("kinds that must not lengthen, in float32") {
                          return s.add(
                              tapered(s.g, s.box(1.2, 5, 1.2), s.n(0.3), s.n(-2.5), s.n(2.5), 1));
                      }});
+    for (double off : {0.955, 0.3})
+        plain.push_back(
+            {"a bend of what turns about an axis " + std::to_string(off) + " away",
+             [off](Scenery &s) {
+                 auto flat = [&](double x, double y) {
+                     return s.g.make(Op::Make, Type::Vec2, {s.n(x), s.n(y)});
+                 };
+                 NodeId q = s.g.sub(s.call(Op::Abs, s.g.point(Type::Vec2)), flat(0.8, 0.5));
+                 NodeId field = s.g.add(s.length(s.g.make(Op::Max, {q, flat(0, 0)})),
+                                        s.g.make(Op::Min, {s.g.make(Op::Max, {s.g.component(q, 0),
+                                                                              s.g.component(q, 1)}),
+                                                           s.n(0)}));
+                 ShapeId rectangle = s.claimed("rectangle", field, flat(-0.8, -0.5), flat(0.8, 0.5),
+                                               {NodeId{}, NodeId{}, s.n(0.8)}, 2);
+                 return s.add(bent(s.g, s.add(revolved(s.g, rectangle, s.n(off))), s.n(1.2), 1, 2));
+             }});
     plain.push_back({"a bend of what only bounds", [](Scenery &s) {
                          ShapeId flat = s.add(scaled(s.g, s.sphere(1), s.g.vec3(1, 0.3, 0.5)));
                          return s.add(bent(s.g, flat, s.n(0.7), 0, 1));

@@ -249,6 +249,12 @@ Known Prover::know_leaf(ShapeId id) {
     k.fact.kind = FieldKind::Bound;
     k.fact.lever = {infinity, infinity, infinity};
     if (shape.dims == 2) k.fact.bounds.lo[2] = k.fact.bounds.hi[2] = 0;
+    if (const Tape &tape = tape_of(shape.args[0]); !tape.too_large)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            std::array<bool, 3> across{};
+            across[axis] = true;
+            k.fact.symmetric[axis] = reflected(tape, across) == Reflected::Same;
+        }
     if (shape.assumed > 0 || shape.estimate > 0) {
         bool assumed = shape.assumed > 0;
         set_lipschitz(k, assumed ? shape.assumed : shape.estimate);
@@ -273,7 +279,7 @@ Known Prover::know_leaf(ShapeId id) {
 void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate) {
     const Place &here = place(id);
     if (!here.audible || !options.test_assumptions) return;
-    Tape tape = flatten(flattening, field);
+    const Tape &tape = tape_of(field);
     if (tape.too_large) return;
     Machine machine(tape, ranges);
     Dice dice{0xa55e55};

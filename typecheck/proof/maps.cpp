@@ -138,15 +138,16 @@ Known Prover::know_map(ShapeId id) {
     case MapKind::Revolve: {
         Interval offset = number(shape.args[2]);
         const Box flat_box = k.fact.bounds;
-        auto spin = [&](const Box &box) {
+        auto spin = [&](const Box &box, bool beyond) { // beyond: what lies across the axis too
             if (box.empty() || everywhere(box)) return box;
             double r = std::max((Interval(box.hi[0]) + offset).hi, 0.0);
+            if (beyond) r = std::max(r, -(Interval(box.lo[0]) + offset).lo);
             Box out;
             out.lo = {-r, box.lo[1], -r};
             out.hi = {r, box.hi[1], r};
             return out;
         };
-        k.fact.bounds = spin(k.fact.bounds);
+        k.fact.bounds = spin(k.fact.bounds, false);
         k.outer = Box::everything(), k.swell_out = 0;
         bool clear = !flat_box.empty() && (Interval(flat_box.lo[0]) + offset).lo >= 0;
         bool mirrored = k.fact.symmetric[0] && offset == Interval(0.0);
@@ -154,11 +155,14 @@ Known Prover::know_map(ShapeId id) {
             !mirrored) { // parts beyond the axis pull the field down: a bound, not the distance
             if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
             k.exact_outside = k.parts_exact = false;
-            forget_levers(k);
-        } else {
-            k.parts = spin(k.parts);
-            cap_levers(k);
         }
+        // In the plane through p and the axis the gradient g is the profile's, and s its nearest
+        // point, as far as o further from the axis: |s x g| there is at most M + |o|, M the
+        // profile's own lever arm. About x and z it counts by the same share of that plane's
+        // tilt as |g| does.
+        k.parts = spin(k.parts, true);
+        k.fact.lever[0] = k.fact.lever[2] = up(k.fact.lever[2] + offset.magnitude());
+        cap_levers(k);
         k.fact.symmetric = {true, k.fact.symmetric[1], true};
         k.fact.lever[1] = 0; // every profile is its own turn about y
         break;

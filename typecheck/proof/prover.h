@@ -92,9 +92,14 @@ struct Prover {
     std::optional<Vec> whole_shift(ir::NodeId q); // the interval of p - q, where limited
     Interval number_anywhere(ir::NodeId id);
 
+    const Tape &tape_of(ir::NodeId field); // flattened once
+    std::map<ir::NodeId, Tape> tapes;
+
     // What values the raw field may have in a box of its own space; and how far from 0 they are.
     Interval values(ir::ShapeId id, const Cell &cell, int depth = 0);
     double magnitude(ir::ShapeId id, const Box &box);
+    Box extent(ir::ShapeId id); // holds the solid, wherever its field's values say so
+    void find_extent(ir::ShapeId id, Known &k); // sets the box of what has none
 
     // The raw field as one expression in Point, where the shape is made of leaves, maps, min and
     // max; else nothing.

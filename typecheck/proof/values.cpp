@@ -20,14 +20,24 @@ Interval joined_values(Interval x, Interval y) {
 }
 } // namespace
 
+const Tape &Prover::tape_of(ir::NodeId field) {
+    const auto found = tapes.find(field);
+    return found != tapes.end() ? found->second
+                                : tapes.emplace(field, flatten(flattening, field)).first->second;
+}
+
 Interval Prover::values(ShapeId id, const Cell &cell, int depth) {
     const Shape shape = scene.shapes[id];
     if (depth > 64) return Interval::everything();
     auto inner = [&](std::size_t i, const Cell &there) {
         return values(shape.children[i], there, depth + 1);
     };
-    auto read = [&](ir::NodeId node, int i = 0) {
-        return range_of(flattening, ranges, node, cell)[static_cast<std::size_t>(i)];
+    auto read = [&](ir::NodeId node) {
+        const Tape &tape = tape_of(node);
+        if (tape.too_large) return Interval::everything();
+        Machine machine(tape, ranges);
+        machine.run(cell);
+        return machine.value(0);
     };
     switch (shape.kind) {
     case ShapeKind::Empty: return Interval(1e9);

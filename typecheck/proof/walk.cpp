@@ -68,6 +68,7 @@ void Prover::run() {
             outward = inward = infinity;
             k = know(ShapeId{i});
             if (!is_field(ShapeId{i})) k.leaf = {};
+            find_extent(ShapeId{i}, k);
             keep_in_ball(ShapeId{i}, k);
             k.fact.local = local;
             k.fact.outward = outward;
