@@ -32,26 +32,47 @@ template <class Cell> class Runner {
         const Program::Block range = program_.blocks[block];
         for (std::uint32_t i = range.first; i < range.last; ++i) {
             const Step &step = program_.steps[i];
-            const std::uint32_t *operands = program_.operands.data() + step.operands;
-            const std::size_t n = step.once ? 1 : n_;
-            switch (step.kind) {
-            case StepKind::Run: loops_[step.target](cells_, operands, n); break;
-            case StepKind::TableRead: read(program_.reads[step.target], operands, n); break;
-            case StepKind::Image: image(program_.images[step.target], operands, n); break;
-            case StepKind::Grid: grid(program_.grids[step.target], operands, n); break;
-            case StepKind::Call: run(step.target); break;
-            case StepKind::Loop: loop(program_.loops[step.target]); break;
-            case StepKind::BreakUnless:
-                if (std::all_of(cells_ + *operands, cells_ + *operands + n,
-                                [](const Cell &c) { return !int_at(c); }))
-                    return false;
-                break;
-            }
+            if (!one(step, program_.operands.data() + step.operands)) return false;
         }
         return true;
     }
 
+    void run(const Selection &selection) const {
+        const Selection::Rows *rows = selection.loops.data();
+        for (std::uint32_t id : selection.steps) {
+            const Step &step = selection.table[id];
+            if (step.kind == StepKind::Loop && !rows->all)
+                turns(program_.loops[step.target], selection.rows + rows->first, rows->count);
+            else
+                one(step, selection.operands + step.operands);
+            rows += step.kind == StepKind::Loop;
+        }
+    }
+
   private:
+    bool one(const Step &step, const std::uint32_t *operands) const {
+        const std::size_t n = step.once ? 1 : n_;
+        switch (step.kind) {
+        case StepKind::Run: loops_[step.target](cells_, operands, n); break;
+        case StepKind::TableRead: read(program_.reads[step.target], operands, n); break;
+        case StepKind::Image: image(program_.images[step.target], operands, n); break;
+        case StepKind::Grid: grid(program_.grids[step.target], operands, n); break;
+        case StepKind::Call: run(step.target); break;
+        case StepKind::Loop: loop(program_.loops[step.target]); break;
+        case StepKind::BreakUnless:
+            return !std::all_of(cells_ + *operands, cells_ + *operands + n,
+                                [](const Cell &c) { return !int_at(c); });
+        }
+        return true;
+    }
+
+    void turns(const Loop &loop, const std::uint32_t *rows, std::size_t count) const {
+        for (std::size_t i = 0; i < count; ++i) {
+            store_word(cells_[loop.index], static_cast<std::int32_t>(rows[i]));
+            run(loop.block);
+        }
+    }
+
     void loop(const Loop &loop) const {
         std::int32_t count = int_at(cells_[loop.count]);
         if (!loop.once)
@@ -148,8 +169,11 @@ GradientScratch make_gradient_scratch(const Program &program, const Inputs &inpu
     return make<DualCell, GradientScratch>(program, inputs);
 }
 
-void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out,
-              std::size_t n) {
+namespace {
+
+template <class Run> void in_batches(const Program &program, Scratch &scratch,
+                                     const float *const *in, float *const *out, std::size_t n,
+                                     Run &&run) {
     const Loops<Word> loops = point_loops();
     for (std::size_t first = 0; first < n; first += batch_size) {
         std::size_t count = std::min(batch_size, n - first), all = whole(count);
@@ -158,8 +182,7 @@ void evaluate(const Program &program, Scratch &scratch, const float *const *in, 
             std::memcpy(to, in[c] + first, count * sizeof(Word));
             std::fill(to + count, to + all, to[count - 1]);
         }
-        Runner<Word>(program, loops, scratch.cells, all)
-            .run(static_cast<std::uint32_t>(program.blocks.size() - 1));
+        run(Runner<Word>(program, loops, scratch.cells, all));
         for (std::size_t c = 0; c < program.results.size(); ++c) {
             const Word *from = scratch.cells + program.results[c].address;
             if (program.results[c].shared)
@@ -168,6 +191,21 @@ void evaluate(const Program &program, Scratch &scratch, const float *const *in, 
                 std::memcpy(out[c] + first, from, count * sizeof(Word));
         }
     }
+}
+
+} // namespace
+
+void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out,
+              std::size_t n) {
+    const auto root = static_cast<std::uint32_t>(program.blocks.size() - 1);
+    in_batches(program, scratch, in, out, n,
+               [root](const Runner<Word> &runner) { runner.run(root); });
+}
+
+void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out,
+              std::size_t n, const Selection &selection) {
+    in_batches(program, scratch, in, out, n,
+               [&](const Runner<Word> &runner) { runner.run(selection); });
 }
 
 void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in,

@@ -84,26 +84,52 @@ Mask mask_of_variant(std::uint32_t index) { return variants[index].mask; }
 
 namespace base {
 Loops<std::uint32_t> point_loops();
-}
+RangeLoops range_loops();
+} // namespace base
 #ifdef FATHOM_WIDE
 namespace avx2 {
 Loops<std::uint32_t> point_loops();
-}
+RangeLoops range_loops();
+} // namespace avx2
 namespace avx512 {
 Loops<std::uint32_t> point_loops();
+RangeLoops range_loops();
+} // namespace avx512
+#endif
+
+#ifdef FATHOM_WIDE
+static bool has_avx2() {
+    __builtin_cpu_init();
+    return __builtin_cpu_supports("avx2");
+}
+static bool has_avx512() {
+    __builtin_cpu_init();
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
 }
 #endif
 
 std::vector<LoopSet> point_loop_sets() {
     std::vector<LoopSet> sets{{"base", base::point_loops()}};
 #ifdef FATHOM_WIDE
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx2")) sets.push_back({"avx2", avx2::point_loops()});
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw"))
-        sets.push_back({"avx512", avx512::point_loops()});
+    if (has_avx2()) sets.push_back({"avx2", avx2::point_loops()});
+    if (has_avx512()) sets.push_back({"avx512", avx512::point_loops()});
 #endif
     return sets;
+}
+
+std::vector<RangeLoops> range_loop_sets() {
+    std::vector<RangeLoops> sets{base::range_loops()};
+#ifdef FATHOM_WIDE
+    if (has_avx2()) sets.push_back(avx2::range_loops());
+    if (has_avx512()) sets.push_back(avx512::range_loops());
+#endif
+    return sets;
+}
+
+RangeLoops range_loops() {
+    static const RangeLoops fastest = range_loop_sets().back();
+    return fastest;
 }
 
 Loops<std::uint32_t> point_loops() {

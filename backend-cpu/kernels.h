@@ -56,4 +56,18 @@ std::vector<LoopSet> point_loop_sets(); // those that this processor runs, the f
 Loops<std::uint32_t> point_loops();     // the fastest
 Loops<DualCell> gradient_loops();
 
+// The same over ranges (ranges.h): two floats a cell, for up to 64 boxes of points at once.
+struct RangeCells {
+    float *lo = nullptr, *hi = nullptr;
+};
+using RangeLoop = void (*)(const RangeCells &cells, const std::uint32_t *operands, std::size_t n);
+struct RangeLoops {
+    std::span<const RangeLoop> loops; // by variant
+    // Bit k: a + margin <= b and a < b all over box k; shared ones have one number for all boxes.
+    std::uint64_t (*below)(const float *a_hi, bool a_shared, const float *b_lo, bool b_shared,
+                           const float *margin_hi, bool margin_shared, std::size_t n) = nullptr;
+};
+std::vector<RangeLoops> range_loop_sets(); // in the order of point_loop_sets
+RangeLoops range_loops();                  // the fastest
+
 } // namespace fathom::cpu

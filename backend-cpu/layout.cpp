@@ -238,6 +238,7 @@ class Encoder {
         source_cells(cells);
         yes_ = constant(1);
         first_register_ = (cells_ + 63) / 64 * 64;
+        program_.first_register = first_register_;
         program_.registers = registers;
         program_.cells = first_register_ + registers * batch_size;
         blocks_.resize(codes_.size());
@@ -438,8 +439,16 @@ class Encoder {
             copy(place(loop.vars[k]), place(loop.init[k]), code_->values[loop.vars[k]].type);
         if (loop.active) copy(place(loop.active), {yes_, true}, ir::Type::Bool);
         std::uint32_t body = block(layout_->loops[instruction.payload], &loop);
-        program_.loops.push_back({body, address(loop.count), code_->values[loop.count].shared,
-                                  address(loop.index), loop.max_count});
+        Loop made{body,
+                  address(loop.count),
+                  code_->values[loop.count].shared,
+                  address(loop.index),
+                  loop.max_count,
+                  static_cast<bool>(loop.condition),
+                  {}};
+        for (std::size_t k = 0; k < loop.vars.size(); ++k)
+            made.carried.push_back({address(loop.vars[k]), address(loop.next[k])});
+        program_.loops.push_back(std::move(made));
         step(StepKind::Loop, static_cast<std::uint32_t>(program_.loops.size() - 1), false, {});
     }
 

@@ -40,9 +40,23 @@ RayState clipped(const Stage &stage, Vec origin, Vec direction) {
     return ray;
 }
 
-void distances(Worker &worker, const Columns &points, float *out, std::size_t n) {
+void distances(Worker &worker, const Columns &points, float *out, std::size_t n,
+               const float *limits) {
     worker.work.evaluations += n;
-    evaluate(worker.stage.distance, worker.distance, points.pointers(), &out, n);
+    if (worker.asker)
+        ask(*worker.stage.pruning, *worker.asker, points.pointers(), &out, n, limits);
+    else
+        evaluate(worker.stage.distance, worker.distance, points.pointers(), &out, n);
+}
+bool is_bound(const Worker &worker, std::size_t k) {
+    return worker.asker && worker.asker->bounded[k] != 0;
+}
+void hits(Worker &worker, std::size_t n) {
+    if (worker.hit_asker)
+        ask(*worker.stage.hit_pruning, *worker.hit_asker, worker.points.pointers(),
+            worker.hits.pointers(), n);
+    else
+        evaluate(worker.stage.hit, worker.hit, worker.points.pointers(), worker.hits.pointers(), n);
 }
 
 void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std::size_t n) {
@@ -129,15 +143,20 @@ void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> la
         std::erase_if(active, [&](std::size_t i) {
             const Walk &walk = walks[i];
             if (walk.steps < max_steps && walk.t <= rays[i].end + lengths.slack) return false;
-            const float pixel = lengths.orthographic ? lengths.pixel : lengths.pixel * walk.t;
-            landings[i] = {walk.steps >= max_steps && walk.d <= pixel ? walk.t : -1.0f, walk.steps};
+            landings[i] = {walk.steps >= max_steps && walk.d <= lengths.width(walk.t) ? walk.t
+                                                                                      : -1.0f,
+                           walk.steps};
             return true;
         });
         for (std::size_t k = 0; k < active.size(); ++k) {
             const RayState &ray = rays[active[k]];
-            worker.points.set(0, k, ray.origin + walks[active[k]].t * ray.direction);
+            const float t = walks[active[k]].t;
+            worker.points.set(0, k, ray.origin + t * ray.direction);
+            // below it, whether the ray has arrived is decided
+            worker.limits[k] = 2 * std::max(lengths.tolerance(t), lengths.width(t));
         }
-        distances(worker, worker.points, worker.values.data(), active.size());
+        distances(worker, worker.points, worker.values.data(), active.size(),
+                  brute ? nullptr : worker.limits.data());
         arrivals.clear();
         for (std::size_t k = 0; k < active.size(); ++k) {
             Walk &walk = walks[active[k]];
@@ -181,14 +200,19 @@ void shadows(Worker &worker, std::span<const ShadowRay> rays, float angle, std::
     std::iota(active.begin(), active.end(), std::size_t{0});
     std::vector<Vec> points;
     std::vector<float> d, arms, truth;
+    std::vector<char> bounds;
     for (std::size_t i = 0; i < rays.size(); ++i) states[i].s = rays[i].reach;
     for (int turn = 0; turn < look::shadow_steps && !active.empty(); ++turn) {
         std::erase_if(active, [&](std::size_t i) { return !(states[i].s > rays[i].margin); });
         for (std::size_t k = 0; k < active.size(); ++k) {
             const ShadowRay &ray = rays[active[k]];
-            worker.points.set(0, k, ray.from + states[active[k]].s * ray.towards);
+            const State &state = states[active[k]];
+            worker.points.set(0, k, ray.from + state.s * ray.towards);
+            worker.limits[k] = state.shadow * angle * state.s;
         }
-        distances(worker, worker.points, worker.values.data(), active.size());
+        distances(worker, worker.points, worker.values.data(), active.size(), worker.limits.data());
+        bounds.clear();
+        for (std::size_t k = 0; k < active.size(); ++k) bounds.push_back(is_bound(worker, k));
         worker.work.shadow_steps += active.size();
 
         // Where an edge of the shadow may be, the true distance decides.
@@ -217,7 +241,7 @@ void shadows(Worker &worker, std::span<const ShadowRay> rays, float angle, std::
                 state.s = 0; // done
                 continue;
             }
-            state.before = d;
+            state.before = bounds[k] ? 0 : d; // a bound's ball touches nothing
             state.s -= std::max(d, 0.25f * lengths.slack);
         }
     }

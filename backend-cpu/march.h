@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 
 namespace fathom::cpu {
@@ -18,8 +19,18 @@ struct Work {
     std::uint64_t steps = 0; // of rays from the eye: evaluations on their way, looks.h's `steps`
     std::uint64_t shadow_steps = 0;
     std::uint64_t evaluations = 0; // of the distance, for whatever purpose
+    // With pruning: of those, how many a far cell answered; what cells near the surface keep of the
+    // shapes, all told; and how many evaluations that were.
+    std::uint64_t far = 0, near = 0;
+    double near_shapes = 0;
     Work &operator+=(const Work &other);
 };
+
+struct Pruning;
+// Whether the shapes that cannot matter are left out, cell by cell (pruning.h). By itself from so
+// many shapes on.
+enum class Prune : std::uint8_t { Auto, Never, Always };
+inline constexpr float prune_from = 24;
 
 // A scene made ready to be looked at from one place. Constant while any number of threads use it.
 struct Stage {
@@ -29,6 +40,7 @@ struct Stage {
     ir::Frame frame;
     Inputs inputs;
     Program distance, hit, background;
+    std::shared_ptr<const Pruning> pruning, hit_pruning; // none: not worth it
     std::vector<Program> surfaces;
     std::vector<ir::LightValue> lights;
     bool has_background = false;
@@ -38,7 +50,10 @@ struct Stage {
         float ambient_occlusion = 0, shadow_darkness = 0, soft_shadows = 0, specular_intensity = 0;
     } look;
 };
-Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int height, double time);
+Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int height, double time,
+              Prune prune = Prune::Auto);
+// How many operands of unions, blends and other choices, and rows of tables, the whole tape has.
+float shapes_of(const Program &distance);
 
 enum class PictureMode : std::uint8_t { Color, Steps };
 

@@ -18,6 +18,9 @@ Work &Work::operator+=(const Work &other) {
     steps += other.steps;
     shadow_steps += other.shadow_steps;
     evaluations += other.evaluations;
+    far += other.far;
+    near += other.near;
+    near_shapes += other.near_shapes;
     return *this;
 }
 
@@ -37,7 +40,44 @@ bool reads_normal(const ir::Graph &graph, const ir::Surface &surface) {
 
 } // namespace
 
-Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int height, double time) {
+namespace {
+
+// Smaller cells have shorter tapes, but fewer points of a tile fall into each: measured.
+constexpr double cell_pixels = 16;
+
+// What holds all that rays can come to.
+void prune(Stage &stage, Prune how) {
+    const Parts parts = parts_of(stage.distance, stage.inputs);
+    if (how == Prune::Never || (how == Prune::Auto && whole_tape(parts).shapes < prune_from))
+        return;
+    const ir::Frame &frame = stage.frame;
+    Cube cube;
+    double side = 2.1 * frame.far;
+    ir::Triple middle = frame.center;
+    if (frame.boxed) {
+        side = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            side = std::max(side, 1.001 * (frame.hi[i] - frame.lo[i]));
+            middle[i] = (frame.hi[i] + frame.lo[i]) / 2;
+        }
+    }
+    cube.side = static_cast<float>(side);
+    for (std::size_t i = 0; i < 3; ++i) cube.lo[i] = static_cast<float>(middle[i] - side / 2);
+    const double pixel = frame.pixel * (stage.view.orthographic ? 1 : stage.view.focus);
+    PruneSettings settings;
+    settings.depth = std::clamp(
+        static_cast<int>(std::lround(std::log2(side / (cell_pixels * pixel)) / 2)), 1, 10);
+    stage.pruning = std::make_shared<Pruning>(stage.distance, stage.inputs, cube, settings);
+    settings.far_cells = false;
+    stage.hit_pruning = std::make_shared<Pruning>(stage.hit, stage.inputs, cube, settings);
+}
+
+} // namespace
+
+float shapes_of(const Program &distance) { return whole_tape(parts_of(distance, {})).shapes; }
+
+Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int height, double time,
+              Prune how) {
     Stage stage;
     stage.scene = &scene;
     stage.width = width;
@@ -47,6 +87,7 @@ Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int heigh
     stage.inputs = inputs_of(scene, time);
     stage.distance = compile(scene, scene.distance);
     stage.hit = compile(scene, scene.hit);
+    prune(stage, how);
     stage.has_background = static_cast<bool>(scene.background_function);
     if (stage.has_background) stage.background = compile(scene, scene.background_function);
     for (const ir::Surface &surface : scene.surfaces) {
@@ -71,6 +112,8 @@ Worker::Worker(const Stage &s)
     : stage(s), distance(make_scratch(s.distance, s.inputs)), hit(make_scratch(s.hit, s.inputs)) {
     if (s.has_background) background = make_scratch(s.background, s.inputs);
     for (const Program &surface : s.surfaces) surfaces.push_back(make_scratch(surface, s.inputs));
+    if (s.pruning) asker.emplace(*s.pruning, s.inputs);
+    if (s.hit_pruning) hit_asker.emplace(*s.hit_pruning, s.inputs);
 }
 
 namespace {
@@ -203,6 +246,12 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
             if (progress && !cancelled && !progress(done, tiles[i], picture)) cancelled = true;
         }
         const std::lock_guard lock(report);
+        if (worker.asker) {
+            const Asker::Tally &tally = worker.asker->tally;
+            worker.work.far = tally.far;
+            worker.work.near = tally.near;
+            worker.work.near_shapes = tally.shapes;
+        }
         picture.work += worker.work;
     };
     const unsigned jobs =

@@ -3,8 +3,10 @@
 #pragma once
 
 #include "backend-cpu/march.h"
+#include "backend-cpu/pruning.h"
 
 #include <cmath>
+#include <optional>
 
 namespace fathom::cpu {
 
@@ -58,6 +60,8 @@ struct Worker {
     explicit Worker(const Stage &stage);
     const Stage &stage;
     Scratch distance, hit, background;
+    std::optional<Asker> asker, hit_asker;
+    std::vector<float> limits = std::vector<float>(most_rays);
     std::vector<Scratch> surfaces;
     Columns points{3, most_rays};
     std::vector<float> values = std::vector<float>(most_rays);
@@ -74,6 +78,7 @@ struct Lengths {
     explicit Lengths(const Stage &stage);
     float tolerance(float t) const { return base + slope * t; }
     float arm(float t) const;
+    float width(float t) const { return orthographic ? pixel : pixel * t; } // of a pixel
 };
 
 struct RayState {
@@ -87,7 +92,12 @@ Inside box(const ir::Frame &frame, Vec origin, Vec direction);
 RayState clipped(const Stage &stage, Vec origin,
                  Vec direction); // between the eye and the end of everything
 
-void distances(Worker &worker, const Columns &points, float *out, std::size_t n);
+// limits: from what value on a lower bound of the distance will do, by point; without them all are
+// exact.
+void distances(Worker &worker, const Columns &points, float *out, std::size_t n,
+               const float *limits = nullptr);
+bool is_bound(const Worker &worker, std::size_t k); // of the last distances'
+void hits(Worker &worker, std::size_t n);           // at worker.points, into worker.hits
 // The gradients of the distance at n points, with arms h.
 void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std::size_t n);
 // The true distances near n points where the field says d; d itself where nothing was divided by a

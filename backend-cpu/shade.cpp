@@ -41,8 +41,7 @@ constexpr std::size_t paint_row = 1, point_row = 2,
 
 void ask_hits(Worker &worker, std::span<const Vec> points) {
     for (std::size_t k = 0; k < points.size(); ++k) worker.points.set(0, k, points[k]);
-    evaluate(worker.stage.hit, worker.hit, worker.points.pointers(), worker.hits.pointers(),
-             points.size());
+    hits(worker, points.size());
 }
 
 void find_materials(Worker &worker, Points &at) {
@@ -88,23 +87,31 @@ void find_materials(Worker &worker, Points &at) {
 // How much of the surroundings five samples along the normal find closed (thesis, 4.2.1).
 std::vector<float> find_occlusion(Worker &worker, const Points &at) {
     const std::size_t count = at.size();
-    std::vector<float> sum(count, 0.0f), d(count), truth(count);
-    std::vector<Vec> q(count);
+    std::vector<float> sum(count, 0.0f), d(count), dq, h, truth;
+    std::vector<std::size_t> close;
+    std::vector<Vec> q;
     const float reach = look::occlusion_reach * static_cast<float>(worker.stage.frame.radius) /
                         static_cast<float>(look::occlusion_samples);
     float weight = 1, total = 0;
-    for (int i = 0; i < look::occlusion_samples; ++i) {
-        const float x = reach * static_cast<float>(i + 1);
+    for (int sample = 0; sample < look::occlusion_samples; ++sample) {
+        const float x = reach * static_cast<float>(sample + 1);
         weight *= 0.5f;
         total += weight;
         for (std::size_t k = 0; k < count; ++k) {
-            q[k] = at.p[k] + x * at.n[k];
-            worker.points.set(0, k, q[k]);
+            worker.points.set(0, k, at.p[k] + x * at.n[k]);
+            worker.limits[k] = x;
         }
-        distances(worker, worker.points, d.data(), count);
-        near(worker, q.data(), d.data(), at.h.data(), truth.data(), count);
-        for (std::size_t k = 0; k < count; ++k)
-            sum[k] += weight * clamp(1.0f - truth[k] / x, 0.0f, 1.0f);
+        distances(worker, worker.points, d.data(), count, worker.limits.data());
+        close.clear(), q.clear(), dq.clear(), h.clear();
+        for (std::size_t k = 0; k < count; ++k) // the true distance is no less than d
+            if (!(d[k] >= x)) {
+                close.push_back(k), q.push_back(worker.points.vec(0, k));
+                dq.push_back(d[k]), h.push_back(at.h[k]);
+            }
+        truth.resize(close.size());
+        near(worker, q.data(), dq.data(), h.data(), truth.data(), close.size());
+        for (std::size_t i = 0; i < close.size(); ++i)
+            sum[close[i]] += weight * clamp(1.0f - truth[i] / x, 0.0f, 1.0f);
     }
     for (float &s : sum) s /= total;
     return sum;

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,11 @@ struct Loop {
     bool once = false;       // the count is the same for every point
     std::uint32_t index = 0; // address of one cell
     int max_count = 0;
+    bool breaks = false; // it may end before its count
+    struct Carried {
+        std::uint32_t var = 0, next = 0; // addresses; may be the same
+    };
+    std::vector<Carried> carried;
 };
 
 struct Read {
@@ -80,6 +86,7 @@ struct Program {
     std::vector<ir::GridData> grids;
     std::vector<Shared> shared;
     std::vector<Slot> params, results; // one a component
+    std::size_t first_register = 0;    // addresses below are of numbers that all points share
     std::size_t registers = 0;         // of batch_size cells
     std::size_t cells = 0;             // of a scratch, all told
 };
@@ -104,6 +111,23 @@ Scratch make_scratch(const Program &program, const Inputs &inputs);
 // (std::bit_cast<std::int32_t>). Allocates nothing.
 void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out,
               std::size_t n);
+
+// Some steps of a program's last block, in an order of their own, calls spliced in: what is left of
+// it where parts are known not to matter (shorten.h). Of each loop among them the turns that
+// matter.
+struct Selection {
+    struct Rows {
+        std::uint32_t first = 0, count = 0;
+        bool all = false;
+    };
+    const Step *table = nullptr;             // what `steps` counts
+    const std::uint32_t *operands = nullptr; // of the table
+    std::span<const std::uint32_t> steps;
+    std::span<const Rows> loops; // of the Loop steps among them, in order
+    const std::uint32_t *rows = nullptr;
+};
+void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out,
+              std::size_t n, const Selection &selection);
 
 // Value and gradient by the first three input components, from the same tape run over dual numbers.
 // At a kink one of the sides', the same that decides the value. The result is a float: out is

@@ -1,0 +1,221 @@
+// The cells: made by the first who asks, 64 at once, each from its parent's tape. And points
+// gathered by cell, so that each tape runs over a batch.
+#include "backend-cpu/pruning.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace fathom::cpu {
+
+// 64 cells and their tapes, one after the other.
+struct PruneBlock {
+    std::array<PruneCell, most_boxes> cells;
+    std::vector<std::uint32_t> steps, rows;
+    std::vector<Selection::Rows> loops;
+};
+
+namespace {
+
+// Along each axis a cell is four of the next level: two bits of a point's place.
+constexpr int bits_a_level = 2;
+
+struct Place {
+    std::array<std::int32_t, 3> at; // in cells of the finest level
+};
+
+void remove(PruneBlock *block) {
+    if (!block) return;
+    for (PruneCell &cell : block->cells) remove(cell.below.load());
+    delete block;
+}
+
+// The boxes of the cells inside the cell of `level` that holds a place, x first.
+Boxes boxes_inside(const Pruning &pruning, const Place &place, int level) {
+    Boxes boxes;
+    boxes.count = most_boxes;
+    const float side = std::ldexp(pruning.cube.side, -bits_a_level * (level + 1));
+    const int shift = bits_a_level * (pruning.settings.depth - level);
+    for (std::size_t k = 0; k < most_boxes; ++k)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::int32_t first = (place.at[axis] >> shift) << bits_a_level;
+            const auto at =
+                static_cast<float>(first + static_cast<std::int32_t>(k >> (2 * axis) & 3));
+            boxes.lo[axis][k] = pruning.cube.lo[axis] + at * side - pruning.slack;
+            boxes.hi[axis][k] = pruning.cube.lo[axis] + (at + 1) * side + pruning.slack;
+        }
+    return boxes;
+}
+
+PruneBlock *make_block(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+                       const Place &place, int level) {
+    const Boxes boxes = boxes_inside(pruning, place, level);
+    run_over(pruning.parts, asker.shortener, cell.tape, boxes);
+    const float half_diagonal =
+        0.8660254f * std::ldexp(pruning.cube.side, -bits_a_level * (level + 1));
+    auto block = std::make_unique<PruneBlock>();
+    struct Piece {
+        std::size_t steps, loops;
+    };
+    std::array<Piece, most_boxes> pieces{};
+    ShortTape tape;
+    for (std::size_t k = 0; k < most_boxes; ++k) {
+        PruneCell &made = block->cells[k];
+        pieces[k] = {block->steps.size(), block->loops.size()};
+        const float least = asker.shortener.result_lo[k];
+        if (pruning.settings.far_cells && least >= pruning.settings.far * half_diagonal)
+            made.far = least;
+        tape.steps.clear(), tape.loops.clear(), tape.rows.clear();
+        tape.cost = 0, tape.shapes = 1;
+        shorten(pruning.parts, asker.shortener, cell.tape, k, tape);
+        for (Selection::Rows &rows : tape.loops)
+            rows.first += static_cast<std::uint32_t>(block->rows.size());
+        block->steps.insert(block->steps.end(), tape.steps.begin(), tape.steps.end());
+        block->loops.insert(block->loops.end(), tape.loops.begin(), tape.loops.end());
+        block->rows.insert(block->rows.end(), tape.rows.begin(), tape.rows.end());
+        made.cost = tape.cost;
+        made.shapes = tape.shapes;
+        // where cells get smaller and tapes hardly shorter, the shapes are closer than their blends
+        made.splits = made.far == 0 && level + 1 < pruning.settings.depth &&
+                      tape.cost > pruning.settings.enough &&
+                      (level < 1 || tape.cost < 0.8f * cell.cost);
+        ++asker.tally.cells;
+    }
+    for (std::size_t k = 0; k < most_boxes; ++k) {
+        const bool last = k + 1 == most_boxes;
+        const std::size_t steps_end = last ? block->steps.size() : pieces[k + 1].steps,
+                          loops_end = last ? block->loops.size() : pieces[k + 1].loops;
+        block->cells[k].tape = {
+            pruning.parts.table.data(), pruning.parts.operands.data(),
+            std::span(block->steps).subspan(pieces[k].steps, steps_end - pieces[k].steps),
+            std::span(block->loops).subspan(pieces[k].loops, loops_end - pieces[k].loops),
+            block->rows.data()};
+    }
+    return block.release();
+}
+
+const PruneBlock &below(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+                        const Place &place, int level) {
+    if (const PruneBlock *there = cell.below.load(std::memory_order_acquire)) return *there;
+    if (!cell.claimed.exchange(true)) {
+        cell.below.store(make_block(pruning, asker, cell, place, level), std::memory_order_release);
+        cell.below.notify_all();
+    } else {
+        cell.below.wait(nullptr, std::memory_order_acquire);
+    }
+    return *cell.below.load(std::memory_order_acquire);
+}
+
+// The cell whose tape, or whose one number, answers at a place.
+const PruneCell *find(const Pruning &pruning, Asker &asker, const Place &place) {
+    const PruneCell *cell = &pruning.root;
+    for (int level = 0; cell->splits; ++level) {
+        const int shift = bits_a_level * (pruning.settings.depth - 1 - level);
+        const auto index =
+            static_cast<std::size_t>((place.at[0] >> shift & 3) | (place.at[1] >> shift & 3) << 2 |
+                                     (place.at[2] >> shift & 3) << 4);
+        cell = &below(pruning, asker, *cell, place, level).cells[index];
+    }
+    return cell;
+}
+
+std::uint32_t group_of(Asker &asker, const PruneCell *cell) {
+    const std::size_t mask = asker.seen.size() - 1;
+    std::size_t at = (reinterpret_cast<std::uintptr_t>(cell) / sizeof(PruneCell)) & mask;
+    while (asker.seen[at].turn == asker.turn && asker.seen[at].cell != cell) at = (at + 1) & mask;
+    Asker::Seen &seen = asker.seen[at];
+    if (seen.turn != asker.turn) {
+        seen = {cell, asker.turn, static_cast<std::uint32_t>(asker.groups.size())};
+        asker.groups.push_back(cell);
+        asker.counts.push_back(0);
+    }
+    return seen.group;
+}
+
+} // namespace
+
+Pruning::Pruning(const Program &p, const Inputs &inputs, const Cube &c, const PruneSettings &wanted)
+    : program(p), parts(parts_of(program, inputs)), cube(c), settings(wanted),
+      whole(whole_tape(parts)) {
+    float most = 0;
+    for (float x : cube.lo) most = std::max({most, std::fabs(x), std::fabs(x + cube.side)});
+    slack = 4e-7f * (cube.side + most);
+    root.tape = whole.selection(parts);
+    root.cost = whole.cost;
+    root.shapes = whole.shapes;
+    root.splits = settings.depth > 0 && whole.cost > settings.enough;
+}
+Pruning::~Pruning() { remove(root.below.load()); }
+
+Asker::Asker(const Pruning &pruning, const Inputs &inputs)
+    : shortener(pruning.parts), scratch(make_scratch(pruning.program, inputs)), in(3),
+      out(pruning.program.results.size()) {}
+
+void ask(const Pruning &pruning, Asker &asker, const float *const *in, float *const *out,
+         std::size_t n, const float *limits) {
+    const auto cells = static_cast<float>(std::int32_t{1} << bits_a_level * pruning.settings.depth);
+    const float scale = cells / pruning.cube.side;
+    ++asker.turn;
+    if (asker.seen.size() < 4 * n) asker.seen.assign(std::bit_ceil(4 * n), {});
+    asker.groups.clear(), asker.counts.clear();
+    asker.order.clear(), asker.group_of.clear();
+    asker.bounded.assign(n, 0);
+    const PruneCell *last = nullptr;
+    std::uint32_t last_group = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        Place place{};
+        bool inside = true;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float x = (in[axis][k] - pruning.cube.lo[axis]) * scale;
+            inside = inside && x >= 0 && x < cells;
+            place.at[axis] = inside ? static_cast<std::int32_t>(x) : 0;
+        }
+        const PruneCell *cell = inside ? find(pruning, asker, place) : &pruning.root;
+        if (limits && cell->far > 0 && cell->far >= limits[k]) {
+            out[0][k] = cell->far;
+            asker.bounded[k] = 1;
+            ++asker.tally.far;
+            continue;
+        }
+        if (cell != last) {
+            last = cell;
+            last_group = group_of(asker, cell);
+        }
+        ++asker.counts[last_group];
+        asker.order.push_back(static_cast<std::uint32_t>(k));
+        asker.group_of.push_back(last_group);
+    }
+    const std::size_t left = asker.order.size();
+    if (left == 0) return;
+    for (auto *columns : {&asker.in, &asker.out})
+        for (std::vector<float> &column : *columns)
+            if (column.size() < left) column.resize(left);
+    asker.firsts.assign(1, 0);
+    for (std::uint32_t count : asker.counts) asker.firsts.push_back(asker.firsts.back() + count);
+    asker.next = asker.firsts;
+    asker.place.resize(left);
+    for (std::size_t i = 0; i < left; ++i) {
+        asker.place[i] = asker.next[asker.group_of[i]]++;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            asker.in[axis][asker.place[i]] = in[axis][asker.order[i]];
+    }
+    std::vector<float *> results(asker.out.size());
+    for (std::size_t g = 0; g < asker.groups.size(); ++g) {
+        const PruneCell *cell = asker.groups[g];
+        const std::uint32_t first = asker.firsts[g], count = asker.counts[g];
+        const float *points[] = {asker.in[0].data() + first, asker.in[1].data() + first,
+                                 asker.in[2].data() + first};
+        for (std::size_t c = 0; c < results.size(); ++c) results[c] = asker.out[c].data() + first;
+        evaluate(pruning.program, asker.scratch, points, results.data(), count, cell->tape);
+        ++asker.tally.groups;
+        (cell == &pruning.root ? asker.tally.outside : asker.tally.near) += count;
+        if (cell == &pruning.root) continue;
+        asker.tally.kernels += double(cell->cost) * count;
+        asker.tally.shapes += double(cell->shapes) * count;
+    }
+    for (std::size_t c = 0; c < results.size(); ++c)
+        for (std::size_t i = 0; i < left; ++i)
+            out[c][asker.order[i]] = asker.out[c][asker.place[i]];
+}
+
+} // namespace fathom::cpu
