@@ -90,6 +90,14 @@ void fathom_count(int which) {
     imageAtomicAdd(fathom_cache_counts, which, 1u);
 }
 
+// A slot got another entry: publish it. Where there are more than the list has room for, all are.
+void fathom_changed(ivec3 slot) {
+    uint at = imageAtomicAdd(fathom_cache_counts, $CHANGED, 1u);
+    if (at >> (3 * fathom_cache_bits) != 0u) return;
+    int index = slot.x | slot.y << fathom_cache_bits | slot.z << (2 * fathom_cache_bits);
+    imageStore(fathom_cache_changed, fathom_cache_place(at), uvec4(uint(index)));
+}
+
 void fathom_give_back(uint entry) {
     uint at = imageAtomicAdd(fathom_cache_counts, $TAIL, 1u);
     imageStore(fathom_cache_free, fathom_cache_place(at), uvec4(entry & $PLACES));
@@ -105,6 +113,7 @@ uniform isampler2D fathom_cache_misses;
 layout(r32ui) coherent uniform uimage3D fathom_cache_hash;
 layout(rgba32i) coherent uniform iimage3D fathom_cache_keys;
 layout(r32ui) coherent uniform uimage3D fathom_cache_free;
+layout(r32ui) writeonly uniform uimage3D fathom_cache_changed;
 layout(r32ui) coherent uniform uimageBuffer fathom_cache_counts;
 layout(location = 0) out uint fathom_reserved;
 $HASHING$COUNTS
@@ -137,6 +146,7 @@ uint fathom_take(ivec4 key) {
         uint entry = imageLoad(fathom_cache_hash, slot).x;
         if (entry == $EMPTY || fathom_fresh(entry)) continue;
         if (imageAtomicCompSwap(fathom_cache_hash, slot, entry, $EMPTY) != entry) continue;
+        fathom_changed(slot);
         fathom_count($DELETED);
         return entry & $PLACES;
     }
@@ -158,6 +168,7 @@ void fathom_carry(uint entry) {
             continue;
         }
         if (imageAtomicCompSwap(fathom_cache_hash, slot, there, moved) != there) continue;
+        fathom_changed(slot);
         fathom_count($EVICTED);
         entry = there;
     }
@@ -199,6 +210,7 @@ void main() {
         }
         uint entry = fathom_entry(place, age, fathom_cache_frame);
         if (imageAtomicCompSwap(fathom_cache_hash, slot, there, entry) != there) continue;
+        fathom_changed(slot);
         fathom_count($INSERTED);
         fathom_reserved = place;
         fathom_carry(there);
@@ -264,6 +276,7 @@ uniform int fathom_cache_width; // of what is drawn over
 layout(r32ui) uniform uimage3D fathom_cache_hash;
 layout(rgba32i) uniform iimage3D fathom_cache_keys;
 layout(r32ui) uniform uimage3D fathom_cache_free;
+layout(r32ui) writeonly uniform uimage3D fathom_cache_changed;
 layout(r32ui) coherent uniform uimageBuffer fathom_cache_counts;
 $HASHING$COUNTS
 void main() {
@@ -275,25 +288,24 @@ void main() {
     bool old = int(entry >> $PLACE_BITS & 7u) >= fathom_cache_ages;
     if (fathom_cache_gone != -1 && field != fathom_cache_gone && !old) return;
     imageStore(fathom_cache_hash, slot, uvec4($EMPTY));
+    fathom_changed(slot);
     fathom_give_back(entry);
     fathom_count($SWEPT);
 }
 )";
 
 constexpr const char *publish = R"(#version 420 core
-// The last pass: what a look-up reads, from hash and keys. Draw one triangle over 2^fathom_cache_bits^3 pixels in all.
+// The last pass: what a look-up reads, from hash and keys, of the slots that changed. Draw one triangle over anything;
+// its pixels share the work.
 uniform int fathom_cache_bits;
-uniform int fathom_cache_width; // of what is drawn over
+uniform int fathom_cache_width, fathom_cache_height; // of what is drawn over
 uniform usampler3D fathom_cache_hash;
 uniform isampler3D fathom_cache_keys;
+uniform usampler3D fathom_cache_changed;
 layout(r32ui) readonly uniform uimageBuffer fathom_cache_counts;
 layout(rg32ui) writeonly uniform uimage3D fathom_cache_index;
 $HASHING
-void main() {
-    if (imageLoad(fathom_cache_counts, $INSERTED).x + imageLoad(fathom_cache_counts, $DELETED).x +
-            imageLoad(fathom_cache_counts, $SWEPT).x == 0u) return;
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    ivec3 slot = fathom_cache_place(uint(pixel.x + fathom_cache_width * pixel.y));
+void fathom_publish(ivec3 slot) {
     uint entry = texelFetch(fathom_cache_hash, slot, 0).x;
     uvec2 index = uvec2($EMPTY);
     if (entry != $EMPTY) {
@@ -304,6 +316,18 @@ void main() {
         index.y = (entry & $PLACES) | uint(key.w & 255) << $PLACE_BITS | (entry >> $PLACE_BITS & 7u) << 29u;
     }
     imageStore(fathom_cache_index, slot, uvec4(index, 0u, 0u));
+}
+
+void main() {
+    uint changed = imageLoad(fathom_cache_counts, $CHANGED).x;
+    uint cells = 1u << (3 * fathom_cache_bits);
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    uint stride = uint(fathom_cache_width * fathom_cache_height);
+    for (uint i = uint(pixel.x + fathom_cache_width * pixel.y); i < min(changed, cells); i += stride) {
+        uint slot = i;
+        if (changed <= cells) slot = texelFetch(fathom_cache_changed, fathom_cache_place(i), 0).x;
+        fathom_publish(fathom_cache_place(slot));
+    }
 }
 )";
 
@@ -349,7 +373,8 @@ Values numbers() {
             {"DELETED", at(Count::Deleted)},
             {"CROWDED", at(Count::Crowded)},
             {"FULL", at(Count::Full)},
-            {"SWEPT", at(Count::Swept)}};
+            {"SWEPT", at(Count::Swept)},
+            {"CHANGED", at(Count::Changed)}};
 }
 
 std::string filled(std::string_view form) {

@@ -10,6 +10,7 @@
 //   at each corner of the cell fathom_cache_wide   rgba32f, (2N)^3  the same, for vectors and
 //   colours fathom_cache_index  rg32ui,  N^3     hash and keys in one, by slot: what a look-up
 //   reads fathom_cache_free   r32ui,   N^3     a ring of the places that nobody has
+//   fathom_cache_changed r32ui,  N^3     the slots that changed in this frame
 //   fathom_cache_counts r32ui, a buffer  see Count
 #pragma once
 
@@ -48,7 +49,20 @@ constexpr int cache_most_fields = 256;
 // The words of fathom_cache_counts. Places are taken from the ring at `Head` and given back at
 // `Tail`; what is given back in a frame is taken in the next one at the earliest, from before
 // `Limit`.
-enum class Count { Head, Tail, Limit, Inserted, Evicted, Deleted, Crowded, Full, Swept, Total };
+// `Changed` counts the entries of fathom_cache_changed: slots whose index is to be written anew.
+enum class Count {
+    Head,
+    Tail,
+    Limit,
+    Inserted,
+    Evicted,
+    Deleted,
+    Crowded,
+    Full,
+    Swept,
+    Changed,
+    Total
+};
 
 struct KeptText {
     std::string function; // what computes it

@@ -61,5 +61,6 @@ void measure_reload(Table &table);       // reload.cpp
 void measure_shader(Table &table);       // shader.cpp
 void measure_hand_written(Table &table); // hand_written.cpp
 void measure_steps(Table &table);        // steps.cpp
+void measure_noise_cache(Table &table);  // noise_cache.cpp
 
 } // namespace fathom::bench

@@ -93,10 +93,10 @@ double own_cost(const Node &node) {
     case Op::TableRead: return 0.5;
     case Op::Hash: return 0.4;
     case Op::Perlin:
-    case Op::Simplex: return 2.6;
+    case Op::Simplex: return octave_cost;
     case Op::ValueNoise: return 1.8;
-    case Op::Worley: return 14;
-    case Op::SpotNoise: return 30;
+    case Op::Worley: return worley_cost;
+    case Op::SpotNoise: return spot_cost;
     case Op::Image:
     case Op::Grid: return 3;
     case Op::Call:

@@ -271,8 +271,40 @@ void CachedView::renew(const std::vector<ir::Param> &params, int ages) {
     if (swept) publish();
 }
 
+void CachedView::publish() {
+    publish_->use();
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_3D, store_.hash());
+    set(*publish_, "fathom_cache_hash", 0);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_3D, store_.keys());
+    set(*publish_, "fathom_cache_keys", 1);
+    glActiveTexture(GL_TEXTURE2);
+    glBindTexture(GL_TEXTURE_3D, store_.changed());
+    set(*publish_, "fathom_cache_changed", 2);
+    set(*publish_, "fathom_cache_bits", store_.size().bits);
+    set(*publish_, "fathom_cache_width", width_);
+    set(*publish_, "fathom_cache_height", height_);
+    bind_image(*publish_, "fathom_cache_counts", 0, store_.counts(), GL_R32UI, GL_READ_ONLY);
+    bind_image(*publish_, "fathom_cache_index", 1, store_.index(), GL_RG32UI, GL_WRITE_ONLY);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_); // any; nothing is drawn
+    glViewport(0, 0, width_, height_);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    draw_triangle();
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
 // One invocation a cell of the cache.
-void CachedView::draw_cells(const Program &program) {
+void CachedView::sweep(int field) {
+    sweep_->use();
+    set(*sweep_, "fathom_cache_gone", field);
+    set(*sweep_, "fathom_cache_ages", ages_);
+    bind_image(*sweep_, "fathom_cache_hash", 0, store_.hash(), GL_R32UI, GL_READ_WRITE);
+    bind_image(*sweep_, "fathom_cache_keys", 1, store_.keys(), GL_RGBA32I, GL_READ_ONLY);
+    bind_image(*sweep_, "fathom_cache_free", 2, store_.free(), GL_R32UI, GL_READ_WRITE);
+    bind_image(*sweep_, "fathom_cache_counts", 3, store_.counts(), GL_R32UI, GL_READ_WRITE);
+    bind_image(*sweep_, "fathom_cache_changed", 4, store_.changed(), GL_R32UI, GL_WRITE_ONLY);
     const int width = 1 << (3 * store_.size().bits + 1) / 2,
               height = static_cast<int>(store_.cells()) / width;
     if (sweep_cells_ != store_.cells()) {
@@ -283,34 +315,9 @@ void CachedView::draw_cells(const Program &program) {
     }
     glBindFramebuffer(GL_FRAMEBUFFER, sweep_framebuffer_);
     glViewport(0, 0, width, height);
-    set(program, "fathom_cache_bits", store_.size().bits);
-    set(program, "fathom_cache_width", width);
+    set(*sweep_, "fathom_cache_bits", store_.size().bits);
+    set(*sweep_, "fathom_cache_width", width);
     draw_triangle();
-}
-
-void CachedView::publish() {
-    publish_->use();
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_3D, store_.hash());
-    set(*publish_, "fathom_cache_hash", 0);
-    glActiveTexture(GL_TEXTURE1);
-    glBindTexture(GL_TEXTURE_3D, store_.keys());
-    set(*publish_, "fathom_cache_keys", 1);
-    bind_image(*publish_, "fathom_cache_counts", 0, store_.counts(), GL_R32UI, GL_READ_ONLY);
-    bind_image(*publish_, "fathom_cache_index", 1, store_.index(), GL_RG32UI, GL_WRITE_ONLY);
-    draw_cells(*publish_);
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-}
-
-void CachedView::sweep(int field) {
-    sweep_->use();
-    set(*sweep_, "fathom_cache_gone", field);
-    set(*sweep_, "fathom_cache_ages", ages_);
-    bind_image(*sweep_, "fathom_cache_hash", 0, store_.hash(), GL_R32UI, GL_READ_WRITE);
-    bind_image(*sweep_, "fathom_cache_keys", 1, store_.keys(), GL_RGBA32I, GL_READ_ONLY);
-    bind_image(*sweep_, "fathom_cache_free", 2, store_.free(), GL_R32UI, GL_READ_WRITE);
-    bind_image(*sweep_, "fathom_cache_counts", 3, store_.counts(), GL_R32UI, GL_READ_WRITE);
-    draw_cells(*sweep_);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
@@ -368,10 +375,11 @@ void CachedView::reserve(int ages) {
     bind_image(*reserve_, "fathom_cache_keys", 1, store_.keys(), GL_RGBA32I, GL_READ_WRITE);
     bind_image(*reserve_, "fathom_cache_free", 2, store_.free(), GL_R32UI, GL_READ_WRITE);
     bind_image(*reserve_, "fathom_cache_counts", 3, store_.counts(), GL_R32UI, GL_READ_WRITE);
+    bind_image(*reserve_, "fathom_cache_changed", 4, store_.changed(), GL_R32UI, GL_WRITE_ONLY);
     glBeginQuery(GL_ANY_SAMPLES_PASSED, changed_);
     draw_triangle();
     glEndQuery(GL_ANY_SAMPLES_PASSED);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 // The corners of what was reserved. Nothing is drawn; the framebuffer is any of the size.

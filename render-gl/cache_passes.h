@@ -88,7 +88,6 @@ class CachedView {
     void renew(const std::vector<ir::Param> &params, int ages);
     void sweep(int field);
     void publish();
-    void draw_cells(const Program &program);
     void set_fields(const Program &program) const;
     void begin_picture() const;
     void draw_kept(const FrameInputs &inputs, const std::vector<ir::Param> &params,
@@ -105,7 +104,7 @@ class CachedView {
         meanings_; // by number: the meaning and the params' values it was filled with
     int first_unit_ = 0, ages_ = 0;
     std::uint32_t frame_ = 0;
-    std::size_t sweep_cells_ = 0; // that the target of `draw_cells` is made for
+    std::size_t sweep_cells_ = 0; // that the target of sweep() is made for
     int width_ = 0, height_ = 0;
     bool pick_ = false; // the framebuffer has a place for it
     unsigned framebuffer_ = 0, places_framebuffer_ = 0, sweep_framebuffer_ = 0;

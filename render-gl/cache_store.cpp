@@ -58,7 +58,7 @@ int age_of(std::uint32_t entry) { return static_cast<int>(entry >> glsl::cache_p
 } // namespace
 
 std::uint64_t CacheSize::bytes() const {
-    return (std::uint64_t{1} << (3 * bits)) * (4 + 16 + 8 + 4 + 8 * 4 + (wide ? 8 * 16 : 0));
+    return (std::uint64_t{1} << (3 * bits)) * (4 + 16 + 8 + 4 + 4 + 8 * 4 + (wide ? 8 * 16 : 0));
 }
 
 std::array<int, 3> cache_slot(const std::array<int, 4> &key, int age, int bits) {
@@ -77,7 +77,8 @@ std::array<int, 3> cache_slot(const std::array<int, 4> &key, int age, int bits) 
 CacheStore::~CacheStore() { release(); }
 
 void CacheStore::release() {
-    for (GLuint *texture : {&hash_, &keys_, &index_, &pool_, &wide_, &free_, &counts_texture_}) {
+    for (GLuint *texture :
+         {&hash_, &keys_, &index_, &pool_, &wide_, &free_, &changed_, &counts_texture_}) {
         if (*texture) glDeleteTextures(1, texture);
         *texture = 0;
     }
@@ -94,6 +95,7 @@ bool CacheStore::make(const CacheSize &size) {
     keys_ = texture_3d(GL_RGBA32I, side(), false);
     index_ = texture_3d(GL_RG32UI, side(), false);
     free_ = texture_3d(GL_R32UI, side(), false);
+    changed_ = texture_3d(GL_R32UI, side(), false);
     pool_ = texture_3d(GL_R32F, 2 * side(), true);
     if (size.wide) wide_ = texture_3d(GL_RGBA32F, 2 * side(), true);
     glGenBuffers(1, &counts_);

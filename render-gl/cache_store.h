@@ -51,6 +51,7 @@ class CacheStore {
     unsigned wide() const { return wide_; }
     unsigned index() const { return index_; }
     unsigned free() const { return free_; }
+    unsigned changed() const { return changed_; }
     unsigned counts() const { return counts_texture_; }
 
     CacheCounts read_counts() const;
@@ -69,7 +70,7 @@ class CacheStore {
   private:
     void release();
     CacheSize size_;
-    unsigned hash_ = 0, keys_ = 0, index_ = 0, pool_ = 0, wide_ = 0, free_ = 0;
+    unsigned hash_ = 0, keys_ = 0, index_ = 0, pool_ = 0, wide_ = 0, free_ = 0, changed_ = 0;
     unsigned counts_ = 0, counts_texture_ = 0;
 };
 

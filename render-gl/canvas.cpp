@@ -67,10 +67,10 @@ std::string lost_context() {
 }
 
 Canvas::~Canvas() {
-    for (GLuint framebuffer :
-         {framebuffer_, picks_framebuffer_, probe_framebuffer_, shown_framebuffer_})
+    for (GLuint framebuffer : {framebuffer_, picks_framebuffer_, probe_framebuffer_,
+                               shown_framebuffer_, before_framebuffer_})
         if (framebuffer) glDeleteFramebuffers(1, &framebuffer);
-    for (GLuint texture : {sum_, picks_, probe_, shown_})
+    for (GLuint texture : {sum_, picks_, probe_, shown_, before_})
         if (texture) glDeleteTextures(1, &texture);
 }
 
@@ -151,6 +151,56 @@ bool Canvas::draw(const Program &program, int width, int height, std::span<const
     return true;
 }
 
+bool Canvas::take(unsigned framebuffer, int width, int height) {
+    if (!resize(width, height)) return false;
+    glDisable(GL_SCISSOR_TEST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_);
+    for (GLenum attachment : {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1}) {
+        const GLenum targets[] = {
+            static_cast<GLenum>(attachment == GL_COLOR_ATTACHMENT0 ? attachment : GL_NONE),
+            static_cast<GLenum>(attachment == GL_COLOR_ATTACHMENT1 ? attachment : GL_NONE)};
+        glReadBuffer(attachment);
+        glDrawBuffers(2, targets);
+        glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
+                          GL_NEAREST);
+    }
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glDrawBuffers(2, both);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    samples_ = 1;
+    return true;
+}
+
+void Canvas::keep_before() {
+    if (empty()) return;
+    if (!before_framebuffer_) glGenFramebuffers(1, &before_framebuffer_);
+    attach(before_, GL_RGBA8, shown_width_, shown_height_, before_framebuffer_,
+           GL_COLOR_ATTACHMENT0);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_framebuffer_);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, before_framebuffer_);
+    glDisable(GL_SCISSOR_TEST);
+    glBlitFramebuffer(0, 0, shown_width_, shown_height_, 0, 0, shown_width_, shown_height_,
+                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    if (fade_) return;
+    glsl::Output text;
+    text.text = R"(#version 330 core
+uniform sampler2D before;
+uniform vec2 size;
+uniform float share;
+out vec4 color;
+void main() {
+    color = vec4(texture(before, gl_FragCoord.xy / size).rgb, share);
+}
+)";
+    auto built = Program::build(text, {});
+    if (Program *program = std::get_if<Program>(&built)) fade_ = std::move(*program);
+}
+
 bool Canvas::probe(const Program &program, std::span<const TileView> views,
                    const std::vector<ir::Param> &params) {
     if (!probed_) {
@@ -210,7 +260,7 @@ Picture Canvas::read_picture() const {
     return read_bytes(shown_framebuffer_, shown_width_, shown_height_);
 }
 
-void Canvas::show(int window_width, int window_height) const {
+void Canvas::show(int window_width, int window_height, double before) const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_framebuffer_);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     glDisable(GL_SCISSOR_TEST);
@@ -218,6 +268,21 @@ void Canvas::show(int window_width, int window_height) const {
     glBlitFramebuffer(0, 0, shown_width_, shown_height_, 0, 0, window_width, window_height,
                       GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    if (before <= 0 || !before_ || !fade_) return;
+    glViewport(0, 0, window_width, window_height);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    fade_->use();
+    glUniform1i(glGetUniformLocation(fade_->name(), "before"), 0);
+    glUniform2f(glGetUniformLocation(fade_->name(), "size"), static_cast<float>(window_width),
+                static_cast<float>(window_height));
+    glUniform1f(glGetUniformLocation(fade_->name(), "share"), static_cast<float>(before));
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, before_);
+    draw_triangle();
+    glDisable(GL_BLEND);
 }
 
 void show_in_window(unsigned framebuffer, int width, int height) {

@@ -7,6 +7,7 @@
 #include "render-gl/post.h"
 #include "render-gl/program.h"
 
+#include <optional>
 #include <span>
 
 namespace fathom::gl {
@@ -51,8 +52,12 @@ class Canvas {
     // The same of a program with Instruments::Probe, at the size that was drawn last.
     bool probe(const Program &program, std::span<const TileView> views,
                const std::vector<ir::Param> &params);
+    // Takes another framebuffer's colours (0) and picks (1), both RGBA32F, as the first sample.
+    bool take(unsigned framebuffer, int width, int height);
     // Makes of it what is shown.
     void finish(const PostSettings &settings);
+    // What is shown now is to be faded from, by show()'s share of it.
+    void keep_before();
 
     bool empty() const { return shown_width_ == 0; }
     int width() const { return width_; }
@@ -67,7 +72,7 @@ class Canvas {
     Picture read_picture() const; // what is shown, without a window
 
     // Fills the window's framebuffer with it, whatever the sizes.
-    void show(int window_width, int window_height) const;
+    void show(int window_width, int window_height, double before = 0) const;
 
   private:
     bool resize(int width, int height);
@@ -79,6 +84,8 @@ class Canvas {
     unsigned sum_ = 0, picks_ = 0, probe_ = 0, shown_ = 0; // textures
     unsigned framebuffer_ = 0, picks_framebuffer_ = 0, probe_framebuffer_ = 0,
              shown_framebuffer_ = 0;
+    unsigned before_ = 0, before_framebuffer_ = 0; // faded from
+    std::optional<Program> fade_;
     int width_ = 0, height_ = 0, samples_ = 0; // samples: whole ones
     int shown_width_ = 0, shown_height_ = 0;
     bool probed_ = false; // the probe is of this size

@@ -3,6 +3,8 @@
 #include "viewer/panels.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -76,6 +78,34 @@ void show_look(Controls &controls, const Shown &shown, Asked &asked) {
     }
 }
 
+// What the noise cache did in its last frame, and how old its keys are (thesis, figure 8.3).
+void show_cache(Controls &controls, const CacheFigures &cache) {
+    ImGui::Separator();
+    ImGui::Checkbox("noise cache while moving", &controls.keep);
+    ImGui::SameLine();
+    ImGui::Checkbox("misses red", &controls.cache);
+    const auto line = [](const std::string &text) { ImGui::TextUnformatted(text.c_str()); };
+    const gl::CacheOccupancy &there = cache.occupancy;
+    line(fmt::format("{} keys in {} cells, {:.1f} %", there.keys, there.cells,
+                     100.0 * static_cast<double>(there.keys) /
+                         static_cast<double>(std::max<std::size_t>(there.cells, 1))));
+    line(fmt::format("last frame: {} hits, {} misses, {} pixels computed", cache.tally.hits,
+                     cache.tally.misses, cache.tally.computed));
+    line(fmt::format("{} inserted, {} evicted, {} deleted, {} without room", cache.counts.inserted,
+                     cache.counts.evicted, cache.counts.deleted,
+                     cache.counts.crowded + cache.counts.full));
+    line(fmt::format("kept {:.1f} ms, exact {:.1f} ms: {}", cache.choice.kept_ms,
+                     cache.choice.exact_ms,
+                     cache.choice.state == gl::CacheChoice::State::Exact      ? "drawn exactly"
+                     : cache.choice.state == gl::CacheChoice::State::Learning ? "learning"
+                                                                              : "kept"));
+    std::array<float, glsl::cache_ages> ages{};
+    for (std::size_t i = 0; i < ages.size(); ++i)
+        ages[i] = std::log2(1 + static_cast<float>(there.ages[i]));
+    ImGui::PlotHistogram("keys by age, log", ages.data(), static_cast<int>(ages.size()), 0, nullptr,
+                         0, 21, {ImGui::GetFontSize() * 12, ImGui::GetFontSize() * 3});
+}
+
 } // namespace
 
 void show_analysis(Controls &controls, const Shown &shown, Asked &asked) {
@@ -116,6 +146,7 @@ void show_analysis(Controls &controls, const Shown &shown, Asked &asked) {
         ImGui::PopItemWidth();
         show_times("frame to frame", shown.frame_times);
         show_times("graphics card", shown.gpu_times);
+        if (shown.cache) show_cache(controls, *shown.cache);
     }
     ImGui::End();
 }

@@ -106,7 +106,7 @@ void App::take(std::unique_ptr<Build> build) {
 
 void App::param_changed(const ir::Param &param) {
     stale = true;
-    cached.view_changed();
+    cached.view_changed(); // fields that read it are given up by the cache itself
     touched = Clock::now();
     frames_due = 3;
     if (param.structural) rebuild(structural_values(params));

@@ -45,6 +45,9 @@ struct App {
     gl::Timer timer;
     Cached cached;
     std::optional<Shot> cached_shot;
+    bool drawn_kept = false;        // what is drawn came through the noise cache
+    int kept_frames = 0;            // since it was at rest
+    Clock::time_point fade_begin{}; // from the last such picture to the exact one
     std::optional<Shot> drawn;
     bool stale = true;     // the program or a value changed since `drawn`
     bool drew_now = false; // in this turn of the loop
@@ -109,8 +112,12 @@ struct App {
     void draw(double seconds);
     void draw_scene(int width, int height, bool moving, bool drew_before);
     bool draw_rows(bool whole);
+    void finish_picture(double scale);
     void draw_probe();
     bool draw_cached(int width, int height); // false where there is nothing to show
+    bool draw_kept(const Shot &shot, double scale);
+    bool keeps(bool by_hand) const; // whether the next picture may come through the noise cache
+    double fading() const;          // the share of the picture before, 0 where it is gone
     void draw_panels(int width, int height);
     void save_pictures(int width, int height, bool moving);
     bool save_window(const std::filesystem::path &file, int width, int height);

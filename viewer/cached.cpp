@@ -4,28 +4,47 @@
 
 namespace fathom::viewer {
 
-std::string Cached::draw(const ir::Scene &scene, int part_stride, const gl::FrameInputs &inputs,
-                         const std::vector<ir::Param> &params) {
-    if (!taken_) {
-        Diagnostics unheard; // the worker has told them
-        if (std::string why = view_.use(scene, {}, unheard, {.part_stride = part_stride});
-            !why.empty())
-            return why;
-        taken_ = true;
-        frames_ = 0;
-    }
+void Cached::scene_changed() {
+    view_.drop();
+    why_not_.clear();
+    asked_ = false;
+    frames_ = 0;
+    gl::start_again(choice);
+}
+
+void Cached::take(std::variant<gl::CachePrograms, std::string> programs) {
+    asked_ = true;
+    if (std::string *why = std::get_if<std::string>(&programs))
+        why_not_ = std::move(*why);
+    else
+        why_not_ = view_.use(std::move(std::get<gl::CachePrograms>(programs)), {});
+}
+
+void Cached::build(const ir::Scene &scene, int part_stride) {
+    Diagnostics unheard; // the worker has told them
+    take(gl::build_cache_programs(scene, {.part_stride = part_stride, .pick = true}, unheard));
+}
+
+bool Cached::draw(const gl::FrameInputs &inputs, const std::vector<ir::Param> &params,
+                  bool show_misses) {
     gl::CacheSettings settings;
-    settings.show_misses = true;
-    if (!view_.draw(inputs, params, settings))
-        return "the graphics card has no memory for the noise cache";
-    tally_ = view_.read_tally();
+    settings.show_misses = show_misses;
+    if (!view_.draw(inputs, params, settings)) return false;
     ++frames_;
-    return "";
+    return true;
+}
+
+void Cached::count() {
+    figures_.tally = view_.read_tally();
+    figures_.counts = view_.store().read_counts();
+    figures_.choice = choice;
+    if (counted_++ % count_cells_every == 0 || settled())
+        figures_.occupancy = gl::occupancy(view_.store().dump(false));
 }
 
 std::string Cached::words() const {
-    return fmt::format("noise cache: {} found, {} missed (red) in {} pixels", tally_.hits,
-                       tally_.misses, tally_.computed);
+    return fmt::format("noise cache: {} found, {} missed (red)", figures_.tally.hits,
+                       figures_.tally.misses);
 }
 
 } // namespace fathom::viewer

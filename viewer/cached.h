@@ -1,8 +1,9 @@
-// The scene through the noise cache, its misses in red: the first view, drawn anew until the cache
-// knows all that it shows. Draws and counts; knows no window. Needs a current context of GL 4.2,
-// and says so where there is none.
+// The scene through the noise cache, while it is moved: the first view, by kept values where they
+// are, and what the cache did. Draws, counts and chooses; knows no window. Needs a current context
+// of GL 4.2, and says so where there is none.
 #pragma once
 
+#include "render-gl/cache_choice.h"
 #include "render-gl/cache_passes.h"
 
 #include <optional>
@@ -10,27 +11,51 @@
 
 namespace fathom::viewer {
 
+// What the panel shows of the last frame, and of the cells.
+struct CacheFigures {
+    gl::CacheTally tally;
+    gl::CacheCounts counts;
+    gl::CacheOccupancy occupancy;
+    gl::CacheChoice choice;
+};
+
 class Cached {
   public:
-    // The scene or a value changed: what is known of it stays where it is still right.
-    void scene_changed() { taken_ = false; }
+    // Another scene is shown: cells stay where they are still right, programs are another's.
+    void scene_changed();
     void view_changed() { frames_ = 0; }
 
-    // One frame. An empty text, or why the scene is drawn exactly.
-    std::string draw(const ir::Scene &scene, int part_stride, const gl::FrameInputs &inputs,
-                     const std::vector<ir::Param> &params);
-    bool settled() const {
-        return frames_ > 0 && (1000 * tally_.misses <= tally_.hits || frames_ >= most_frames);
+    // Takes programs that the worker built for the scene that is shown, or why there are none.
+    void take(std::variant<gl::CachePrograms, std::string> programs);
+    // Builds them here, where no worker can.
+    void build(const ir::Scene &scene, int part_stride);
+    bool asked() const { return asked_; } // there are programs, or it is known why not
+    bool ready() const { return view_.ready(); }
+    const std::string &why_not() const { return why_not_; }
+
+    // One frame. False where the card has no memory for it.
+    bool draw(const gl::FrameInputs &inputs, const std::vector<ir::Param> &params,
+              bool show_misses);
+    bool settled() const { // nothing is missed any more, or there is no room for it
+        return frames_ > 0 &&
+               (1000 * figures_.tally.misses <= figures_.tally.hits || frames_ >= most_frames);
     }
+    // What the last frame did; the cells are counted now and then, since all of them are read back.
+    void count();
+    const CacheFigures &figures() const { return figures_; }
     std::string words() const; // "noise cache: 12000 found, 31 missed"
     unsigned framebuffer() const { return view_.framebuffer(); }
+    gl::CacheChoice choice;
 
   private:
-    static constexpr int most_frames = 256; // what is missed then has no room
+    static constexpr int most_frames = 256;
+    static constexpr int count_cells_every = 16;
     gl::CachedView view_;
-    gl::CacheTally tally_;
+    CacheFigures figures_;
+    std::string why_not_;
     int frames_ = 0; // since something changed
-    bool taken_ = false;
+    int counted_ = 0;
+    bool asked_ = false;
 };
 
 } // namespace fathom::viewer

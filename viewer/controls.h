@@ -12,6 +12,7 @@ struct Controls {
     bool accumulate = true; // four samples a pixel when nothing moves
     bool always = false;    // draws as fast as the card can
     bool rotate = false;
+    bool keep = true;   // while it is moved, cached fields are read from the noise cache
     bool cache = false; // the noise cache at work, in place of the picture
     int slice_axis = 2;
     double slice_offset = 0;

@@ -20,6 +20,7 @@ namespace {
 
 constexpr int samples_at_rest = 4;
 constexpr double turns_a_second = 0.1; // auto-rotate
+constexpr double fade_ms = 250;        // from kept values to exact ones, when it comes to rest
 
 std::filesystem::path free_name(const std::filesystem::path &scene, const char *form) {
     for (int i = 1;; ++i) {
@@ -107,6 +108,7 @@ std::vector<gl::TileView> App::tile_views(int width, int height) const {
 
 bool App::pending() const {
     if (!program || controls.cache) return false;
+    if (drawn_kept) return true; // the exact picture comes when nothing moves any more
     if (stale || !drawn || drawing || !finished) return true;
     return controls.accumulate && controls.look == gl::Look::Picture && !animated() &&
            !controls.always && !controls.rotate && samples_drawn < samples_at_rest;
@@ -152,14 +154,43 @@ bool App::draw_rows(bool whole) {
 void App::draw_scene(int width, int height, bool moving, bool drew_before) {
     constexpr double wanted_ms = 30;
     double scale = 1;
-    if (moving && status.frame_ms > wanted_ms)
-        scale = std::clamp(std::sqrt(wanted_ms / status.frame_ms), 0.125, 1.0);
+    if (moving && controls.keep && !cached.asked() && !worker->lent() &&
+        scene->compilation.scene.graph.cache_count() > 0)
+        cached.build(scene->compilation.scene, scene->compilation.parts.stride);
+    const double expected_ms = drawn_kept && cached.choice.state == gl::CacheChoice::State::Kept
+                                   ? cached.choice.kept_ms
+                                   : status.frame_ms;
+    if (moving && expected_ms > wanted_ms)
+        scale = std::clamp(std::sqrt(wanted_ms / expected_ms), 0.125, 1.0);
     const Shot shot{views, time, std::max(1, static_cast<int>(width * scale)),
                     std::max(1, static_cast<int>(height * scale))};
-    const bool anew = stale || drawn != shot || (controls.always && !drawing);
+    const bool kept = keeps(moving);
+    const bool anew =
+        stale || drawn != shot || (controls.always && !drawing) || (drawn_kept && !kept);
     if (anew) {
         drawn = shot;
         stale = probed = false;
+        const bool before = std::exchange(drawn_kept, false);
+        if (kept && gl::keeps_next(cached.choice) && draw_kept(shot, scale)) {
+            drawn_kept = true;
+            ++kept_frames;
+            drawing = false;
+            fade_begin = {};
+            if (drew_before) frame_times.add(milliseconds_since(last_draw));
+            last_draw = Clock::now();
+            drew_now = true;
+            return;
+        }
+        if (kept_frames > 0 && !kept && settings.tell)
+            settings.tell(
+                fmt::format("moved: {} frames through the noise cache, the last {:.1f} ms, "
+                            "exact {:.1f} ms",
+                            kept_frames, cached.choice.kept_ms, cached.choice.exact_ms));
+        if (!kept) kept_frames = 0;
+        if (before && !kept) {
+            canvas.keep_before();
+            fade_begin = Clock::time_point::max(); // begins when the exact picture is there
+        }
     }
     const bool more = !anew && !drawing && finished && pending() && !moving;
     if (anew || more) {
@@ -177,12 +208,23 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
         samples_drawn = next_sample + 1;
         // What a full frame would take: the measure that decides how coarse the next may be.
         status.frame_ms = sample_ms / (scale * scale);
+        if (first) gl::took(cached.choice, false, status.frame_ms);
         // Frames that follow one another; what came after a rest says nothing of speed.
         if (drew_before) frame_times.add(milliseconds_since(last_draw));
         last_draw = Clock::now();
     }
     draw_probe();
+    finish_picture(scale);
+    if (fade_begin == Clock::time_point::max()) fade_begin = Clock::now();
+    if (first && (!moving || frames_drawn++ % 32 == 0)) {
+        double sum = 0;
+        const std::vector<float> picks = canvas.read_picks();
+        for (std::size_t i = 2; i < picks.size(); i += 4) sum += picks[i];
+        status.mean_steps = picks.empty() ? 0 : sum / (static_cast<double>(picks.size()) / 4);
+    }
+}
 
+void App::finish_picture(double scale) {
     gl::PostSettings post;
     post.look = controls.look;
     post.fxaa = controls.fxaa;
@@ -193,12 +235,35 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
     post.isolines = isoline_step(views.cameras[0]);
     canvas.finish(post);
     finished = true;
-    if (first && (!moving || frames_drawn++ % 32 == 0)) {
-        double sum = 0;
-        const std::vector<float> picks = canvas.read_picks();
-        for (std::size_t i = 2; i < picks.size(); i += 4) sum += picks[i];
-        status.mean_steps = picks.empty() ? 0 : sum / (static_cast<double>(picks.size()) / 4);
-    }
+}
+
+// A picture that is recorded, looked at in other colours or drawn for its time is exact; so are
+// several views.
+bool App::keeps(bool moving) const {
+    return (moving || controls.rotate) && controls.keep && cached.ready() && views.count == 1 &&
+           controls.look == gl::Look::Picture && !controls.always && sequence == 0;
+}
+
+bool App::draw_kept(const Shot &shot, double scale) {
+    gl::FrameInputs inputs = tile_views(shot.width, shot.height)[0].inputs;
+    inputs.width = shot.width;
+    inputs.height = shot.height;
+    inputs.mode = gl::Mode::Linear;
+    gl::finish();
+    const Clock::time_point start = Clock::now();
+    if (!cached.draw(inputs, params, false)) return false;
+    gl::finish();
+    gl::took(cached.choice, true, milliseconds_since(start) / (scale * scale));
+    if (controls.analysis) cached.count();
+    if (!canvas.take(cached.framebuffer(), shot.width, shot.height)) return false;
+    samples_drawn = 1;
+    finish_picture(scale);
+    return true;
+}
+
+double App::fading() const {
+    if (fade_begin == Clock::time_point{} || fade_begin == Clock::time_point::max()) return 0;
+    return std::max(0.0, 1 - milliseconds_since(fade_begin) / fade_ms);
 }
 
 bool App::draw_cached(int width, int height) {
@@ -206,18 +271,25 @@ bool App::draw_cached(int width, int height) {
     const Shot shot{views, time, width, height};
     if (cached_shot != shot) cached.view_changed();
     cached_shot = shot;
+    if (!cached.asked() && !worker->lent())
+        cached.build(scene->compilation.scene, scene->compilation.parts.stride);
+    if (!cached.asked()) return false; // the worker is at it
+    if (!cached.ready()) {
+        controls.cache = false;
+        note("no noise cache: " + cached.why_not());
+        return false;
+    }
     if (!cached.settled()) {
         gl::FrameInputs inputs = tile_views(width, height)[0].inputs;
         inputs.width = width;
         inputs.height = height;
         inputs.mode = gl::Mode::Picture;
-        const std::string why =
-            cached.draw(scene->compilation.scene, scene->compilation.parts.stride, inputs, params);
-        if (!why.empty()) {
+        if (!cached.draw(inputs, params, true)) {
             controls.cache = false;
-            note("no noise cache: " + why);
+            note("no noise cache: the graphics card has no memory for it");
             return false;
         }
+        cached.count();
         note(cached.words());
     }
     gl::show_in_window(cached.framebuffer(), width, height);
@@ -253,7 +325,8 @@ bool App::save_window(const std::filesystem::path &file, int width, int height) 
 
 // The panels have settled and the picture is the full one: that is what a record shows.
 void App::save_pictures(int width, int height, bool moving) {
-    if (picture_asked && (animated() || (!moving && !pending()))) { // the full picture
+    if (picture_asked &&
+        (animated() || (!moving && !pending() && fading() == 0))) { // the full picture
         picture_asked = false;
         const std::filesystem::path name = free_name(settings.file, "{}-{}.png");
         if (save_window(name, width, height)) note("saved " + name.string());
@@ -267,6 +340,7 @@ void App::save_pictures(int width, int height, bool moving) {
             note(fmt::format("cannot write {}: {}", (sequence_folder / name).string(), error));
         }
     }
+    if (fading() > 0) return;
     if (record_next && frames_due <= 1 && (!moving || animated()) && !pending() &&
         !settings.record.empty()) {
         save_window(settings.record / fmt::format("{:04}.png", ++recorded), width, height);
@@ -281,19 +355,13 @@ void App::draw_panels(int width, int height) {
         width > 0 ? static_cast<float>(window_width) / static_cast<float>(width) : 1;
     status.width = width;
     status.height = height;
-    Shown shown{status,
-                settings.file.string(),
-                errors,
-                remarks,
-                {},
-                {},
-                {},
-                labels,
-                frame_times,
-                gpu_times,
-                verdicts,
-                256,
-                1};
+    Shown shown{status,      settings.file.string(),
+                errors,      remarks,
+                {},          {},
+                {},          labels,
+                frame_times, gpu_times,
+                verdicts,    cached.ready() ? &cached.figures() : nullptr,
+                256,         1};
     if (selected.number) shown.selected = part_line(selected);
     if (hovered.number) {
         const gl::Pick pick = pick_at_cursor();
@@ -351,7 +419,7 @@ void App::draw(double seconds) {
     } else if (canvas.empty())
         gl::clear_window(width, height, 0.12f);
     else
-        canvas.show(width, height);
+        canvas.show(width, height, fading());
 
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();

@@ -154,6 +154,10 @@ void App::key(int key, int mods) {
         cached.view_changed();
         note("");
         break;
+    case GLFW_KEY_4:
+        controls.keep = !controls.keep;
+        note(controls.keep ? "moved by the noise cache" : "moved exactly");
+        break;
     case GLFW_KEY_X:
         controls.fxaa = !controls.fxaa;
         finished = false;

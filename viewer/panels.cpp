@@ -122,6 +122,7 @@ void show_keys(bool &open) {
         Row{"Backspace", "all params back to the text's values"},
         Row{"H B L K", "colours: steps, bound, slice, check of steps"},
         Row{"2", "the noise cache at work: misses red"},
+        Row{"4", "the noise cache, or none, while it is moved"},
         Row{"G", "the analysis panel"},
         Row{"X, J", "FXAA, four samples at rest"},
         Row{"T, U", "turn by itself, draw as fast as it can"},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ir/scene.h"
+#include "viewer/cached.h"
 #include "viewer/controls.h"
 #include "viewer/frame_times.h"
 
@@ -37,6 +38,7 @@ struct Shown {
     const std::vector<IsolineLabel> &labels;
     const FrameTimes &frame_times, &gpu_times;
     const std::array<std::size_t, 4> &verdicts;
+    const CacheFigures *cache = nullptr; // where the scene has kept fields
     int max_steps = 256;
     double reach = 1; // how far a slice can be moved
 };

@@ -88,7 +88,8 @@ std::string loop(App &app) {
             milliseconds_since(app.touched) < 200; // until the full picture is there again
         const bool busy = app.animated() || app.controls.always || app.controls.rotate ||
                           app.sequence > 0 || app.frames_due > 0 || app.pending() ||
-                          (app.controls.cache && !app.cached.settled());
+                          app.fading() > 0 ||
+                          (app.controls.cache && app.cached.ready() && !app.cached.settled());
         if (busy && !hidden)
             glfwPollEvents();
         else if (settling && !hidden)
@@ -98,6 +99,11 @@ std::string loop(App &app) {
         const double seconds = milliseconds_since(before) / 1000;
         before = Clock::now();
         if (std::unique_ptr<Build> build = app.worker->take()) app.take(std::move(build));
+        if (app.scene && !app.cached.asked())
+            if (auto kept = app.worker->take_kept(app.scene->number)) {
+                app.cached.take(std::move(*kept));
+                app.frames_due = 3;
+            }
         if (app.frames_due > 0) --app.frames_due;
         if (!hidden)
             app.draw(std::min(seconds, 0.25)); // after a sleep time goes on, it does not jump

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace fathom::viewer {
 namespace {
@@ -45,6 +46,28 @@ Worker::~Worker() {
 std::unique_ptr<Build> Worker::take() {
     std::lock_guard lock(mutex_);
     return std::move(finished_);
+}
+
+std::optional<Worker::Kept> Worker::take_kept(std::size_t number) {
+    std::lock_guard lock(mutex_);
+    if (!kept_ || kept_number_ != number) return std::nullopt;
+    return std::exchange(kept_, std::nullopt);
+}
+
+// The window does not wait for these: until they are there it draws exactly.
+void Worker::build_kept(const ir::Scene &scene, int part_stride, std::size_t number) {
+    Diagnostics unheard; // the build has told them
+    Kept made =
+        gl::build_cache_programs(scene, {.part_stride = part_stride, .pick = true}, unheard);
+    if (gl::CachePrograms *programs = std::get_if<gl::CachePrograms>(&made))
+        for (const gl::Program *program : {&programs->kept, &programs->exact, &programs->fill})
+            program->warm_up(scene.params);
+    {
+        std::lock_guard lock(mutex_);
+        kept_ = std::move(made);
+        kept_number_ = number;
+    }
+    hooks_.ready();
 }
 
 std::string Worker::complaint() {
@@ -110,8 +133,10 @@ std::unique_ptr<Build> Worker::build() {
 
 void Worker::run() {
     const bool lent = hooks_.take_context && hooks_.take_context();
+    lent_ = lent;
     {
         Linkers linkers;
+        std::size_t number = 0;
         while (!ending_) {
             asked_ = false;
             std::unique_ptr<Build> made = build();
@@ -120,6 +145,11 @@ void Worker::run() {
                 linkers.link(*made);
                 made->linked = true;
             }
+            made->number = ++number;
+            std::optional<ir::Scene> scene; // the build itself is the window's from here on
+            const int part_stride = made->compilation.parts.stride;
+            if (lent && made->good() && made->compilation.scene.graph.cache_count() > 0)
+                scene = made->compilation.scene;
             {
                 std::lock_guard lock(mutex_);
                 if (finished_ && made->good()) {
@@ -132,6 +162,7 @@ void Worker::run() {
                 if (!watcher_.good()) complaint_ = watcher_.error();
             }
             hooks_.ready();
+            if (scene && !ending_ && !asked_) build_kept(*scene, part_stride, number);
             while (!ending_ && !asked_ && !watcher_.wait(std::chrono::hours(1))) {
             }
         }

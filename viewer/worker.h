@@ -6,6 +6,7 @@
 #include "backend-glsl/emit.h"
 #include "driver/compile.h"
 #include "driver/watch.h"
+#include "render-gl/cache_passes.h"
 #include "viewer/linker.h"
 
 #include <atomic>
@@ -23,6 +24,7 @@ struct Build {
     glsl::Output probe;            // where it was asked for
     Link picture_link, probe_link; // where `linked`
     bool linked = false;           // else whoever takes it links
+    std::size_t number = 0;        // of this build
     std::vector<std::string>
         errors; // as printed, without colours; the good picture stays while there are any
     std::vector<std::string> remarks; // warnings and notes
@@ -53,11 +55,20 @@ class Worker {
     // The newest build that was not taken yet, or nothing.
     std::unique_ptr<Build> take();
 
+    // The noise cache's programs for the build of that number, or why there are none, once they are
+    // made; by a worker that has a context, after the build was handed over.
+    using Kept = std::variant<gl::CachePrograms, std::string>;
+    std::optional<Kept> take_kept(std::size_t number);
+
     // Builds again with these values of structural params, over those of the command line.
     void rebuild(std::vector<driver::Override> overrides);
 
     // From now on builds hold the probe too; one is made at once.
     void want_probe();
+
+    // Whether it has a context of its own; else who takes a build links it. Known once there is
+    // one.
+    bool lent() const { return lent_; }
 
     // Why saves are not followed (no watches left), or nothing.
     std::string complaint();
@@ -65,16 +76,20 @@ class Worker {
   private:
     void run();
     std::unique_ptr<Build> build();
+    void build_kept(const ir::Scene &scene, int part_stride, std::size_t number);
     void again();
 
     std::filesystem::path file_;
     driver::CompileOptions options_;
     Hooks hooks_;
     driver::Watcher watcher_;
-    std::mutex mutex_; // over the three below
+    std::mutex mutex_; // over the five below
     std::unique_ptr<Build> finished_;
+    std::optional<Kept> kept_;
+    std::size_t kept_number_ = 0; // of the build that `kept_` is for
     std::vector<driver::Override> overrides_;
     std::string complaint_;
+    std::atomic<bool> lent_ = false;
     std::atomic<bool> asked_ = false, ending_ = false, probe_ = false;
     std::thread thread_; // last: starts when all else is there
 };

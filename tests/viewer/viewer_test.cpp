@@ -336,6 +336,58 @@ TEST_CASE("the noise cache's misses are red, and grow fewer") {
     CHECK(reds(window.picture()) == 0);
 }
 
+TEST_CASE("moved through the noise cache, it comes to rest exactly") {
+    // Cells so coarse that kept values show.
+    const std::string text =
+        "let bumps = cached(p => 0.15 * fbm(2.5 * p, octaves: 6), cell: 0.25)\n"
+        "sphere(1).displace(bumps).paint(white)\n" +
+        camera;
+    const Picture cold = cold_picture(text);
+    Window window(text);
+    CHECK(difference(window.picture(), cold) == 0);
+    window.key("2"); // once the cache is there, and has learnt
+    CHECK(waited([&] { return difference(window.picture(), cold, 0, 0.02f) > 0.02; }));
+    window.key("2");
+    window.key("Escape");
+    CHECK(difference(window.picture(), cold) == 0); // as if there were none
+    // Moved there and back, while the cache is in use: the exact picture again.
+    const auto moved = [&] {
+        return window.folder.read("errors.txt").find("frames through the noise cache") !=
+               std::string::npos;
+    };
+    CHECK_FALSE(moved());
+    CHECK(waited([&] {
+        window.hands("mousemove 240 60 mousedown 1 mousemove 270 60 mousemove 250 60 mouseup 1");
+        return moved();
+    }));
+    window.key("r");
+    window.key("Escape");
+    CHECK(difference(window.picture(), cold, 0, 0.004f) == 0);
+}
+
+TEST_CASE("a driver without images draws exactly, and says so") {
+    ::setenv("MESA_GL_VERSION_OVERRIDE", "4.1FC", 1);
+    ::setenv("MESA_EXTENSION_OVERRIDE", "-GL_ARB_shader_image_load_store", 1);
+    const std::string text = "let bumps = cached(p => 0.1 * fbm(3 * p, octaves: 6), cell: 0.05)\n"
+                             "sphere(1).displace(bumps).paint(white)\n" +
+                             camera;
+    {
+        Window window(text);
+        const Picture exact = window.picture();
+        window.key("2"); // its word stands in the status line
+        const Picture told = window.picture();
+        CHECK(difference(exact, told, 0, 0.02f) == 0);
+        bool words = false;
+        for (int y = told.height - status_height; y < told.height; ++y)
+            for (int x = 0; x < told.width; ++x) words |= pixel(exact, x, y) != pixel(told, x, y);
+        CHECK(words);
+        window.hands("mousemove 240 160 mousedown 1 mousemove 270 160 mousemove 240 160 mouseup 1");
+        CHECK(window.process().runs());
+    }
+    ::unsetenv("MESA_GL_VERSION_OVERRIDE");
+    ::unsetenv("MESA_EXTENSION_OVERRIDE");
+}
+
 TEST_CASE("a still scene costs less than a hundredth of a core") {
     Window window("sphere(1).paint(orange)\n" + camera);
     window.picture();

@@ -79,7 +79,9 @@ TEST_CASE("halving the cell of a smooth field divides its error by about four") 
     std::vector<double> means;
     for (const char *cell : {"0.2", "0.1", "0.05"}) {
         const driver::Compilation c = compiled(
-            "let f = cached(p => 0.1 * fbm(1.2 * p, octaves: 3), cell: " + std::string(cell) +
+            "let f = cached(p => 0.06 * fbm(1.2 * p, octaves: 3) + 0.05 * fbm(1.3 * p + 7, "
+            "octaves: 2), cell: " +
+            std::string(cell) +
             ")\nsphere(1).displace(f)\ncamera(at: [0, 0, 4], look_at: [0, 0, 0])\nrender(epsilon: "
             "1e-5)\n");
         gl::CachedView view;
