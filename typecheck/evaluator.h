@@ -354,6 +354,8 @@ bool contribute_block(Evaluator &ev, const File &ast, lang::BlockId block, std::
 // Statements that declare or act the same wherever they stand: let, var, assignment, fn. False for
 // all others.
 bool run_simple(Evaluator &ev, const File &ast, const lang::Stmt &stmt, std::uint32_t frame);
+void run_assign(Evaluator &ev, const File &ast, const lang::Assign &node, Span place,
+                std::uint32_t frame); // assignment.cpp, as is the journal
 Outcome run_if(Evaluator &ev, const File &ast, const lang::If &node, std::uint32_t frame,
                Span place);
 void hoist_functions(Evaluator &ev, const File &ast, lang::BlockId block, std::uint32_t frame);

@@ -1,0 +1,249 @@
+// Assignments: to a variable, a component, an element; and the journal of what they overwrote, so
+// that a trial can be undone.
+#include "typecheck/evaluator.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace fathom::typecheck {
+
+// -- the journal ---------------------------------------------------------------------------------
+
+JournalMark journal_mark(Evaluator &ev) {
+    ++ev.journaling;
+    return {ev.journal.size(), ev.frame_count};
+}
+
+std::vector<Change> journal_take(Evaluator &ev, JournalMark mark) {
+    std::vector<Change> changes;
+    for (std::size_t i = ev.journal.size(); i-- > mark.entries;) {
+        JournalEntry &entry = ev.journal[i];
+        if (entry.frame >= mark.frames) continue; // a block inside: gone by now
+        Binding &binding = ev.frames[entry.frame].bindings[entry.slot];
+        Change *known = nullptr;
+        for (Change &c : changes)
+            if (c.frame == entry.frame && c.slot == entry.slot) known = &c;
+        if (known)
+            known->before = entry.old;
+        else
+            changes.push_back({entry.frame, entry.slot, entry.old, binding.value});
+        binding.value = entry.old;
+    }
+    ev.journal.resize(mark.entries);
+    --ev.journaling;
+    return changes;
+}
+
+void assign(Evaluator &ev, std::uint32_t frame, std::uint32_t slot, Value value) {
+    Value &stored = ev.frames[frame].bindings[slot].value;
+    if (ev.journaling > 0) ev.journal.push_back({frame, slot, stored});
+    stored = value;
+}
+
+// -- assignment ----------------------------------------------------------------------------------
+
+namespace {
+
+// One step from a variable into a part of it.
+struct Accessor {
+    bool is_index = false;
+    std::string letters;
+    Value index;
+    Span span;
+};
+
+} // namespace
+
+static Value store(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+                   std::size_t k, const Value &value, Span place);
+
+static Value store_components(Evaluator &ev, const Value &old, const std::vector<int> &indices,
+                              const Value &value, Span place) {
+    int size = ir::components(numeric_type(ev, old));
+    std::vector<Value> parts;
+    for (int i = 0; i < size; ++i)
+        parts.push_back(swizzle(ev, old, std::string(1, "xyzw"[i]), place));
+    Value source = value;
+    if (is_scalar(ev, value))
+        source = make_vector(ev, {to_float(ev, value)},
+                             static_cast<int>(std::max<std::size_t>(indices.size(), 2)), place);
+    for (std::size_t i = 0; i < indices.size(); ++i)
+        parts[static_cast<std::size_t>(indices[i])] =
+            swizzle(ev, source, std::string(1, "xyzw"[i]), place);
+    Value out = make_vector(ev, parts, size, place);
+    out.color = old.color;
+    return out;
+}
+
+static Value store_member(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+                          std::size_t k, const Value &value, Span place) {
+    const Accessor &step = path[k];
+    auto indices = is_numeric(old) && ir::is_vector(numeric_type(ev, old))
+                       ? swizzle_indices(step.letters, ir::components(numeric_type(ev, old)))
+                       : std::nullopt;
+    if (!indices) {
+        report(ev, Code::UnknownMember, step.span,
+               fmt::format("{} has no component `{}`", describe(ev, old), step.letters));
+        return poison();
+    }
+    Value part = k + 1 == path.size() ? value
+                                      : store(ev, swizzle(ev, old, step.letters, step.span), path,
+                                              k + 1, value, place);
+    if (is_poison(part)) return part;
+    bool fits =
+        is_numeric(part) &&
+        (is_scalar(ev, part) || (numeric_type(ev, part) == ir::vector_type(int(indices->size()))));
+    if (!fits) {
+        report(ev, Code::TypeMismatch, place,
+               fmt::format("`.{}` holds {} numbers, this is {}", step.letters, indices->size(),
+                           describe(ev, part)));
+        return poison();
+    }
+    return store_components(ev, old, *indices, part, place);
+}
+
+static Value store_index(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+                         std::size_t k, const Value &value, Span place) {
+    const Accessor &step = path[k];
+    bool vector = is_numeric(old) && ir::is_vector(numeric_type(ev, old));
+    if (old.kind != ValueKind::List && !vector) {
+        report(ev, Code::TypeMismatch, step.span,
+               fmt::format("only elements of lists and vectors can be set, this is {}",
+                           describe(ev, old)));
+        return poison();
+    }
+    auto i = want_known_int(ev, step.index, step.span, "an index that is assigned to");
+    if (!i) return poison();
+    int size =
+        vector ? ir::components(numeric_type(ev, old)) : static_cast<int>(ev.lists[old.id].size());
+    if (*i < 0 || *i >= size) {
+        report(ev, Code::BadIndex, step.span, fmt::format("index {} of {} elements", *i, size));
+        return poison();
+    }
+    if (vector) {
+        Value part = k + 1 == path.size() ? value : poison();
+        return store_components(ev, old, {*i}, part, place);
+    }
+    std::vector<Value> items = ev.lists[old.id];
+    Value &item = items[static_cast<std::size_t>(*i)];
+    item = k + 1 == path.size() ? value : store(ev, item, path, k + 1, value, place);
+    return list_value(ev, std::move(items));
+}
+
+static Value store(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+                   std::size_t k, const Value &value, Span place) {
+    if (k == path.size()) return value;
+    return path[k].is_index ? store_index(ev, old, path, k, value, place)
+                            : store_member(ev, old, path, k, value, place);
+}
+
+// A variable keeps its type, except that a whole number may become a float.
+static bool same_type(Evaluator &ev, Value &old, Value &value) {
+    if (is_poison(old) || is_poison(value) || old.kind == ValueKind::None) return true;
+    if (is_numeric(old) && is_numeric(value)) {
+        ir::Type a = numeric_type(ev, old), b = numeric_type(ev, value);
+        if (a == b || (a == ir::Type::Int && b == ir::Type::Float)) return true;
+        if (a == ir::Type::Float && b == ir::Type::Int) {
+            value = to_float(ev, value);
+            return true;
+        }
+        if (ir::is_vector(a) && (b == ir::Type::Float || b == ir::Type::Int)) {
+            value = make_vector(ev, {to_float(ev, value)}, ir::components(a), {});
+            return true;
+        }
+        return false;
+    }
+    if (is_function(old) && is_function(value)) return true;
+    if (old.kind == ValueKind::List || value.kind == ValueKind::List)
+        return (old.kind == ValueKind::List ||
+                (is_numeric(old) && ir::is_vector(numeric_type(ev, old)))) &&
+               (value.kind == ValueKind::List ||
+                (is_numeric(value) && ir::is_vector(numeric_type(ev, value))));
+    return old.kind == value.kind;
+}
+
+void run_assign(Evaluator &ev, const File &ast, const lang::Assign &node, Span place,
+                std::uint32_t frame) {
+    std::vector<Accessor> path;
+    lang::ExprId target = node.target;
+    for (;;) {
+        const lang::Expr &e = ast.exprs[target];
+        if (auto *m = std::get_if<lang::Member>(&e.kind)) {
+            path.push_back({false, m->name.text, {}, m->name.span});
+            target = m->object;
+        } else if (auto *i = std::get_if<lang::Index>(&e.kind)) {
+            path.push_back({true, "", eval(ev, ast, i->index, frame), ast.exprs[i->index].span});
+            target = i->object;
+        } else
+            break;
+    }
+    std::reverse(path.begin(), path.end());
+    Value value = eval(ev, ast, node.value, frame);
+    const lang::Expr &base = ast.exprs[target];
+    auto *name = std::get_if<lang::Name>(&base.kind);
+    if (!name) {
+        if (!std::holds_alternative<lang::Poison>(base.kind))
+            report(ev, Code::NotAssignable, base.span,
+                   "only a `var`, or a part of one, can be assigned to");
+        return;
+    }
+    auto found = find_name(ev, frame, symbol_of(ast, *name));
+    if (!found) {
+        Diagnostic &d = report(ev, Code::UnknownName, base.span,
+                               fmt::format("nothing here is called `{}`", name->text));
+        if (!node.op && path.empty())
+            d.help(fmt::format("declare it: `let {} = …`, or `var {} = …` where it changes",
+                               name->text, name->text));
+        return;
+    }
+    const Binding binding = ev.frames[found->frame].bindings[found->slot];
+    if (!binding.is_var) {
+        Diagnostic &d =
+            report(ev, Code::NotAssignable, base.span,
+                   fmt::format("`{}` was declared with `let` and does not change", name->text));
+        if (binding.declared.source) d.label(binding.declared, "declared here");
+        if (ev.calls.empty() && ev.in_field == 0)
+            d.help("a scene's names keep their value: give the new value a name of its own");
+        else
+            d.help("declare it with `var` inside the function");
+        return;
+    }
+    Value old = binding.value;
+    if (is_poison(value)) {
+        assign(ev, found->frame, found->slot, poison());
+        return;
+    }
+    if (node.op) {
+        Value current = old;
+        for (const Accessor &step : path) {
+            if (is_poison(current)) break;
+            if (!step.is_index)
+                current =
+                    is_numeric(current) ? swizzle(ev, current, step.letters, step.span) : poison();
+            else {
+                auto items = want_list(ev, current, step.span, "an index");
+                auto i = want_known_int(ev, step.index, step.span, "an index that is assigned to");
+                current = items && i && *i >= 0 && *i < int(items->size())
+                              ? (*items)[std::size_t(*i)]
+                              : poison();
+            }
+        }
+        value = arithmetic(ev, *node.op, current, value, place, ast.exprs[node.target].span,
+                           ast.exprs[node.value].span);
+        if (is_poison(value)) return;
+    }
+    if (!path.empty()) value = store(ev, old, path, 0, value, ast.exprs[node.value].span);
+    if (is_poison(value)) return;
+    if (!same_type(ev, old, value)) {
+        Diagnostic &d = report(ev, Code::TypeMismatch, ast.exprs[node.value].span,
+                               fmt::format("`{}` holds {}, this is {}", name->text,
+                                           describe(ev, old), describe(ev, value)));
+        if (binding.declared.source) d.label(binding.declared, "declared here");
+        return;
+    }
+    value.ints = false;
+    assign(ev, found->frame, found->slot, value);
+}
+
+} // namespace fathom::typecheck
