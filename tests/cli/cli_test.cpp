@@ -39,6 +39,25 @@ TEST_CASE("the noise cache's passes are written beside the picture's shader") {
     CHECK(!std::filesystem::exists(folder.path() / "b.fill.frag"));
 }
 
+TEST_CASE("without images on the card the noise cache's commands draw exactly and say so") {
+    const ScratchFolder folder;
+    folder.write("rock.sdf",
+                 "sphere(1).displace(cached(p => 0.03 * fbm(2 * p, octaves: 6), cell: 0.05))\n");
+    const std::string old = "MESA_GL_VERSION_OVERRIDE=4.1FC "
+                            "MESA_EXTENSION_OVERRIDE=-GL_ARB_shader_image_load_store ";
+    const auto program = [](const std::string &words) { return "'" FATHOM_PROGRAM "' " + words; };
+    const std::string size = " --size 32x32 ", gl = " --backend gl ";
+    REQUIRE(shell(folder, program("render rock.sdf" + size + gl + "-o exact.png")).exit == 0);
+    const Result cached =
+        shell(folder, old + program("render rock.sdf --cache" + size + gl + "-o cached.png"));
+    CHECK(cached.exit == 0);
+    CHECK(contains(cached.err, "drawn exactly: the noise cache needs OpenGL 4.2"));
+    CHECK(folder.read("cached.png") == folder.read("exact.png"));
+    const Result bench = shell(folder, old + program("bench rock.sdf --noise-cache" + size));
+    CHECK(bench.exit == 0);
+    CHECK(contains(bench.err, "drawn exactly: the noise cache needs OpenGL 4.2"));
+}
+
 TEST_CASE("the exit status tells what went wrong") {
     Scenes folder;
     CHECK(shell(folder, "fathom check good.sdf").exit == 0);
