@@ -82,6 +82,33 @@ bool fathom_kept(vec3 p, float cell, int field, out vec3 at) {
 #else
 const bool fathom_absent = false;
 float fathom_width = 0.0;
+#ifdef FATHOM_CACHE_LEARN
+// Defined where every field is computed of what the kept values left over: of all that such a pixel asks, one by chance
+// is asked for. So the pixels of a frame together ask for what lies all along their rays, not for the next cell alone.
+uniform int fathom_cache_bits = 0;
+uniform float fathom_cache_least = 1.0;
+uniform uint fathom_cache_frame = 0u;
+uniform int fathom_cache_fields[$COUNT];
+
+ivec4 fathom_wish = ivec4(0, 0, 0, -1);
+uint fathom_asks = 0u, fathom_random = 0u;
+
+void fathom_ask(vec3 p, float cell, int field) {
+    vec3 q = p / cell;
+    if (!all(lessThan(abs(q), vec3(float($HIGHEST << fathom_cache_bits))))) return;
+    if (cell < fathom_cache_least * fathom_width) return;
+    if (fathom_asks == 0u) {
+        uvec2 pixel = uvec2(gl_FragCoord.xy);
+        fathom_random = pixel.x * 0x9e3779b1u ^ pixel.y * 0x85ebca77u ^ fathom_cache_frame * 0xc2b2ae3du;
+        fathom_random = (fathom_random ^ fathom_random >> 16u) * 0x7feb352du;
+        fathom_random ^= fathom_random >> 15u;
+    }
+    ++fathom_asks;
+    fathom_random = fathom_random * 1664525u + 1013904223u;
+    // The n-th takes the place of the one before with a chance of 1/n: then all are as likely.
+    if (float(fathom_random >> 8u) * float(fathom_asks) < 16777216.0) fathom_wish = ivec4(ivec3(floor(q)), field);
+}
+#endif
 #endif
 )";
 
@@ -110,6 +137,8 @@ constexpr const char *reserve = R"(#version 420 core
 uniform int fathom_cache_bits, fathom_cache_ages;
 uniform uint fathom_cache_frame; // counts the frames
 uniform isampler2D fathom_cache_misses;
+uniform isampler2D fathom_cache_wishes;
+uniform usampler3D fathom_cache_index; // of the frame before: while places change hands the hash does not tell all
 layout(r32ui) coherent uniform uimage3D fathom_cache_hash;
 layout(rgba32i) coherent uniform iimage3D fathom_cache_keys;
 layout(r32ui) coherent uniform uimage3D fathom_cache_free;
@@ -133,6 +162,17 @@ bool fathom_fresh(uint entry) {
 bool fathom_is(uint entry, ivec4 key) {
     ivec4 found = imageLoad(fathom_cache_keys, fathom_cache_place(entry));
     return found.xyz == key.xyz && (found.w & 255) == key.w;
+}
+
+// Whether the key had a place before this frame.
+bool fathom_known(ivec4 key) {
+    ivec3 high = key.xyz >> fathom_cache_bits & $HIGH_MASK;
+    uint tag = uint(high.x | high.y << $HIGH_BITS | high.z << (2 * $HIGH_BITS));
+    for (int age = 0; age < fathom_cache_ages; ++age) {
+        uvec2 found = texelFetch(fathom_cache_index, fathom_cache_slot(key, age), 0).xy;
+        if ((found.x & 0x7fffffffu) == tag && found.y >> $PLACE_BITS == uint(key.w | age << 8)) return true;
+    }
+    return false;
 }
 
 // A free place; where there is none, that of a key which lies where this one may.
@@ -179,8 +219,10 @@ void fathom_carry(uint entry) {
 
 void main() {
     fathom_reserved = $NOWHERE;
-    ivec4 key = texelFetch(fathom_cache_misses, ivec2(gl_FragCoord.xy), 0);
-    if (key.w < 0) discard;
+    ivec4 missed = texelFetch(fathom_cache_misses, ivec2(gl_FragCoord.xy), 0);
+    if (missed.w < 0) discard;
+    ivec4 key = texelFetch(fathom_cache_wishes, ivec2(gl_FragCoord.xy), 0);
+    if (key.w < 0 || fathom_known(key)) key = missed;
     bool there = false;
     for (int age = 0; age < fathom_cache_ages && !there; ++age) {
         uint entry = imageLoad(fathom_cache_hash, fathom_cache_slot(key, age)).x;
@@ -225,9 +267,8 @@ constexpr const char *fill_pass = R"(
 // Computes and stores the corners of every cell that got a place. Draw one triangle over the picture.
 uniform int fathom_cache_bits;
 uniform int fathom_cache_fields[$COUNT];
-uniform isampler2D fathom_cache_misses;
 uniform usampler2D fathom_cache_places; // what the pass before reserved
-layout(rgba32i) writeonly uniform iimage3D fathom_cache_keys;
+layout(rgba32i) uniform iimage3D fathom_cache_keys;
 layout(r32f) writeonly uniform image3D fathom_cache_pool;
 layout(rgba32f) writeonly uniform image3D fathom_cache_wide;
 
@@ -244,12 +285,12 @@ $VALUES    return vec4(0.0);
 void main() {
     uint index = texelFetch(fathom_cache_places, ivec2(gl_FragCoord.xy), 0).x;
     if (index == $NOWHERE) return;
-    ivec4 key = texelFetch(fathom_cache_misses, ivec2(gl_FragCoord.xy), 0);
+    ivec3 place = fathom_cache_place(index);
+    ivec4 key = imageLoad(fathom_cache_keys, place);
     int which = 0;
     for (int i = 0; i < $COUNT; ++i)
         if (fathom_cache_fields[i] == key.w) which = i;
     float cell = $CELLS[which];
-    ivec3 place = fathom_cache_place(index);
     vec4 corners[8];
     for (int i = 0; i < 8; ++i) {
         ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2);
@@ -405,14 +446,19 @@ std::string cache_reader(const KeptText &field, std::size_t number) {
            float_literal(static_cast<float>(field.cell)) + ", fathom_cache_fields[" +
            std::to_string(number) + "], at)) return textureLod(" +
            (wide ? "fathom_cache_wide" : "fathom_cache_pool") + ", at, 0.0)" +
-           components_of(field.type) + ";\n    return " + type + "(0.0);\n#else\n    return " +
-           field.function + "(p);\n#endif\n}\n";
+           components_of(field.type) + ";\n    return " + type +
+           "(0.0);\n#else\n#ifdef FATHOM_CACHE_LEARN\n    fathom_ask(p, " +
+           float_literal(static_cast<float>(field.cell)) + ", fathom_cache_fields[" +
+           std::to_string(number) + "]);\n#endif\n    return " + field.function +
+           "(p);\n#endif\n}\n";
 }
 
 std::string cache_outputs() {
     return "#ifdef FATHOM_CACHE\n"
            "layout(location = 2) out ivec4 fathom_missed;\n"
            "layout(location = 3) out uvec2 fathom_counted;\n"
+           "#elif defined(FATHOM_CACHE_LEARN)\n"
+           "layout(location = 2) out ivec4 fathom_wished;\n"
            "#endif\n";
 }
 
@@ -422,12 +468,14 @@ std::string cache_output() {
            "    fathom_counted = uvec2(fathom_hits, fathom_miss.w >= 0 ? 1u : fathom_absent ? 2u : "
            "0u);\n"
            "    gl_FragDepth = fathom_absent ? 1.0 : 0.0;\n"
+           "#elif defined(FATHOM_CACHE_LEARN)\n"
+           "    fathom_wished = fathom_wish;\n"
            "#endif\n";
 }
 
-std::string with_cache(const std::string &text) {
+std::string with_cache(const std::string &text, const char *defined) {
     const std::size_t line = text.find('\n') + 1; // after the version
-    return text.substr(0, line) + "#define " + cache_defined + "\n" + text.substr(line);
+    return text.substr(0, line) + "#define " + defined + "\n" + text.substr(line);
 }
 
 std::string cache_fill(std::span<const KeptText> fields) {

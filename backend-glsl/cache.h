@@ -70,17 +70,18 @@ struct KeptText {
     double cell = 1, slope = 0;
 };
 
-// A picture's text stands for two: with `cache_defined` as a macro it reads kept values alone,
+// A picture's text stands for three: with `cache_defined` as a macro it reads kept values alone,
 // counts and says by its depth, 0 or 1, whether the pixel is finished; without it computes every
-// field.
-constexpr const char *cache_defined = "FATHOM_CACHE";
+// field. With `cache_learns` it computes, too, and asks for one of the cells that it would have
+// read.
+constexpr const char *cache_defined = "FATHOM_CACHE", *cache_learns = "FATHOM_CACHE_LEARN";
 // What fathom_counted says of a pixel beside its hits.
 enum class PixelState { Finished, Missed, Computed }; // Computed: what it wants cannot be kept
 std::string cache_look_up(std::span<const KeptText> fields); // inputs, state and fathom_kept
 std::string cache_reader(const KeptText &field, std::size_t number); // FUNCTION_kept(vec3)
-std::string cache_outputs();                     // declares what main gives beside the colour
-std::string cache_output();                      // and sets it
-std::string with_cache(const std::string &text); // the text with the macro defined
+std::string cache_outputs(); // declares what main gives beside the colour
+std::string cache_output();  // and sets it
+std::string with_cache(const std::string &text, const char *defined = cache_defined);
 std::string cache_fill(std::span<const KeptText> fields); // follows the fields' own functions
 std::string cache_reserve();                              // whole texts
 std::string cache_sweep();

@@ -92,7 +92,9 @@ class Emitter {
 
         std::string text = options_.field_only ? field_text(scene) : picture_text(scene);
         if (!check(text, output)) return {};
-        if (!module_.kept.empty() && !check(with_cache(text), output)) return {};
+        if (!module_.kept.empty() &&
+            (!check(with_cache(text), output) || !check(with_cache(text, cache_learns), output)))
+            return {};
         if (target == Target::Spirv) {
             output.text.clear();
         } else if (target == Target::Html && !options_.field_only) {

@@ -93,16 +93,18 @@ std::variant<CachePrograms, std::string> build_cache_programs(const ir::Scene &s
     if (static_cast<int>(1 + picture.images.size() + picture.grids.size()) > units - 3)
         return "the scene has too many images to leave room for the noise cache";
 
-    glsl::Output kept = picture;
+    glsl::Output kept = picture, rest = picture;
     kept.text = glsl::with_cache(picture.text);
+    rest.text = glsl::with_cache(picture.text, glsl::cache_learns);
     std::vector<Program> built;
-    for (const glsl::Output *output : {&std::as_const(kept), &picture, &passes.fill}) {
+    for (const glsl::Output *output :
+         {&std::as_const(kept), &std::as_const(rest), &picture, &passes.fill}) {
         auto program = Program::build(*output, scene);
         if (const auto *error = std::get_if<ProgramError>(&program)) return refusal(*error);
         built.push_back(std::move(std::get<Program>(program)));
     }
     return CachePrograms{std::move(built[0]), std::move(built[1]), std::move(built[2]),
-                         picture.kept, options.pick};
+                         std::move(built[3]), picture.kept,        options.pick};
 }
 
 CachedView::~CachedView() {
@@ -117,7 +119,7 @@ void CachedView::release() {
         if (*framebuffer) glDeleteFramebuffers(1, framebuffer);
         *framebuffer = 0;
     }
-    for (GLuint *texture : {&color_, &picks_, &misses_, &tally_, &places_}) {
+    for (GLuint *texture : {&color_, &picks_, &misses_, &wishes_, &tally_, &places_}) {
         if (*texture) glDeleteTextures(1, texture);
         *texture = 0;
     }
@@ -220,6 +222,7 @@ bool CachedView::resize(int width, int height) {
     color_ = target_2d(GL_RGBA32F, width, height, framebuffer_, GL_COLOR_ATTACHMENT0);
     misses_ = target_2d(GL_RGBA32I, width, height, framebuffer_, GL_COLOR_ATTACHMENT2);
     tally_ = target_2d(GL_RG32UI, width, height, framebuffer_, GL_COLOR_ATTACHMENT3);
+    wishes_ = target_2d(GL_RGBA32I, width, height, framebuffer_, GL_COLOR_ATTACHMENT4);
     if (pick_) picks_ = target_2d(GL_RGBA32F, width, height, framebuffer_, GL_COLOR_ATTACHMENT1);
     glGenRenderbuffers(1, &depth_);
     glBindRenderbuffer(GL_RENDERBUFFER, depth_);
@@ -351,8 +354,17 @@ void CachedView::draw_kept(const FrameInputs &inputs, const std::vector<ir::Para
 
     glDepthFunc(GL_LESS); // the triangle lies at 0.5
     glDepthMask(GL_FALSE);
-    draw_into(pick_, false);
-    programs_->exact.draw(inputs, params);
+    const Program &rest = programs_->rest;
+    const GLenum targets[] = {GL_COLOR_ATTACHMENT0,
+                              static_cast<GLenum>(pick_ ? GL_COLOR_ATTACHMENT1 : GL_NONE),
+                              GL_COLOR_ATTACHMENT4};
+    glDrawBuffers(3, targets);
+    rest.use();
+    set_fields(rest);
+    set_unsigned(rest, "fathom_cache_frame", frame_);
+    glUniform1f(glGetUniformLocation(rest.name(), "fathom_cache_least"),
+                static_cast<float>(settings.least_pixels));
+    rest.draw(inputs, params);
     draw_into(pick_, true);
     glDepthMask(GL_TRUE);
     glDisable(GL_DEPTH_TEST);
@@ -369,8 +381,14 @@ void CachedView::reserve(int ages) {
     set(*reserve_, "fathom_cache_ages", ages);
     set_unsigned(*reserve_, "fathom_cache_frame", frame_);
     set(*reserve_, "fathom_cache_misses", 0);
+    set(*reserve_, "fathom_cache_wishes", 1);
+    set(*reserve_, "fathom_cache_index", 2);
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, misses_);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_2D, wishes_);
+    glActiveTexture(GL_TEXTURE2);
+    glBindTexture(GL_TEXTURE_3D, store_.index());
     bind_image(*reserve_, "fathom_cache_hash", 0, store_.hash(), GL_R32UI, GL_READ_WRITE);
     bind_image(*reserve_, "fathom_cache_keys", 1, store_.keys(), GL_RGBA32I, GL_READ_WRITE);
     bind_image(*reserve_, "fathom_cache_free", 2, store_.free(), GL_R32UI, GL_READ_WRITE);
@@ -387,16 +405,13 @@ void CachedView::fill(const FrameInputs &inputs, const std::vector<ir::Param> &p
     const Program &program = programs_->fill;
     begin_picture();
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    draw_into(false, false); // the misses are read, so they cannot be a target
+    draw_into(false, false);
     program.use();
     set_fields(program);
-    set(program, "fathom_cache_misses", first_unit_);
-    set(program, "fathom_cache_places", first_unit_ + 1);
+    set(program, "fathom_cache_places", first_unit_);
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_unit_));
-    glBindTexture(GL_TEXTURE_2D, misses_);
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_unit_) + 1);
     glBindTexture(GL_TEXTURE_2D, places_);
-    bind_image(program, "fathom_cache_keys", 0, store_.keys(), GL_RGBA32I, GL_WRITE_ONLY);
+    bind_image(program, "fathom_cache_keys", 0, store_.keys(), GL_RGBA32I, GL_READ_WRITE);
     bind_image(program, "fathom_cache_pool", 1, store_.pool(), GL_R32F, GL_WRITE_ONLY);
     if (store_.wide())
         bind_image(program, "fathom_cache_wide", 2, store_.wide(), GL_RGBA32F, GL_WRITE_ONLY);

@@ -39,8 +39,9 @@ struct CacheOptions {
 // All that depends on the scene. Programs belong to every context that shares with the one that
 // made them.
 struct CachePrograms {
-    Program kept, exact,
-        fill; // the picture by kept values alone, by computing all; a cell's corners
+    Program kept, rest, exact; // the picture by kept values alone, by computing what these left
+                               // over, by computing all
+    Program fill;              // a cell's corners
     std::vector<glsl::KeptField> fields;
     bool pick = false;
 };
@@ -108,7 +109,7 @@ class CachedView {
     int width_ = 0, height_ = 0;
     bool pick_ = false; // the framebuffer has a place for it
     unsigned framebuffer_ = 0, places_framebuffer_ = 0, sweep_framebuffer_ = 0;
-    unsigned color_ = 0, picks_ = 0, misses_ = 0, tally_ = 0, depth_ = 0, places_ = 0,
+    unsigned color_ = 0, picks_ = 0, misses_ = 0, wishes_ = 0, tally_ = 0, depth_ = 0, places_ = 0,
              sweep_target_ = 0;
     unsigned changed_ = 0; // a query: whether the frame's reserving changed anything
 };

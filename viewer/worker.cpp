@@ -60,7 +60,8 @@ void Worker::build_kept(const ir::Scene &scene, int part_stride, std::size_t num
     Kept made =
         gl::build_cache_programs(scene, {.part_stride = part_stride, .pick = true}, unheard);
     if (gl::CachePrograms *programs = std::get_if<gl::CachePrograms>(&made))
-        for (const gl::Program *program : {&programs->kept, &programs->exact, &programs->fill})
+        for (const gl::Program *program :
+             {&programs->kept, &programs->rest, &programs->exact, &programs->fill})
             program->warm_up(scene.params);
     {
         std::lock_guard lock(mutex_);

@@ -68,16 +68,17 @@ void image(GLuint program, const char *name, GLuint unit, GLuint texture, GLenum
 }
 
 struct Host {
-    GLuint exact, kept, reserve, fill, publish;
+    GLuint rest, kept, reserve, fill, publish;
     GLuint hash, keys, pool, wide, index, ring, changed, buffer, counts;
-    GLuint color, misses, hits, places, depth, picture, reserved, vertices;
+    GLuint color, misses, wishes, hits, places, depth, picture, reserved, vertices;
     unsigned frame = 0;
 
     Host(const std::string &text, const glsl::CachePasses &passes)
-        : exact(program(text)), reserve(program(passes.reserve)), fill(program(passes.fill.text)),
+        : reserve(program(passes.reserve)), fill(program(passes.fill.text)),
           publish(program(passes.publish)) {
         const std::size_t line = text.find('\n') + 1;
         kept = program(text.substr(0, line) + "#define FATHOM_CACHE\n" + text.substr(line));
+        rest = program(text.substr(0, line) + "#define FATHOM_CACHE_LEARN\n" + text.substr(line));
         const std::vector<std::uint32_t> ones(2 * cells, 0xffffffffu);
         std::vector<std::uint32_t> numbers(cells);
         std::iota(numbers.begin(), numbers.end(), 0u);
@@ -102,6 +103,7 @@ struct Host {
 
         color = texture(GL_TEXTURE_2D, GL_RGBA32F, size, GL_RGBA, GL_FLOAT);
         misses = texture(GL_TEXTURE_2D, GL_RGBA32I, size, GL_RGBA_INTEGER, GL_INT);
+        wishes = texture(GL_TEXTURE_2D, GL_RGBA32I, size, GL_RGBA_INTEGER, GL_INT);
         hits = texture(GL_TEXTURE_2D, GL_RG32UI, size, GL_RG_INTEGER, GL_UNSIGNED_INT);
         places = texture(GL_TEXTURE_2D, GL_R32UI, size, GL_RED_INTEGER, GL_UNSIGNED_INT);
         glGenRenderbuffers(1, &depth);
@@ -111,6 +113,7 @@ struct Host {
         glBindFramebuffer(GL_FRAMEBUFFER, picture);
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color, 0);
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT2, GL_TEXTURE_2D, misses, 0);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT4, GL_TEXTURE_2D, wishes, 0);
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT3, GL_TEXTURE_2D, hits, 0);
         glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
         glGenFramebuffers(1, &reserved);
@@ -119,9 +122,9 @@ struct Host {
         glGenVertexArrays(1, &vertices);
     }
     ~Host() {
-        for (GLuint name : {exact, kept, reserve, fill, publish}) glDeleteProgram(name);
-        for (GLuint name :
-             {hash, keys, pool, wide, index, ring, changed, counts, color, misses, hits, places})
+        for (GLuint name : {rest, kept, reserve, fill, publish}) glDeleteProgram(name);
+        for (GLuint name : {hash, keys, pool, wide, index, ring, changed, counts, color, misses,
+                            wishes, hits, places})
             glDeleteTextures(1, &name);
         for (GLuint name : {picture, reserved}) glDeleteFramebuffers(1, &name);
         glDeleteRenderbuffers(1, &depth);
@@ -169,10 +172,13 @@ struct Host {
         sampler(kept, "fathom_cache_wide", 2, GL_TEXTURE_3D, wide);
         triangle();
 
-        targets(false);
+        const GLenum learning[] = {GL_COLOR_ATTACHMENT0, GL_NONE, GL_COLOR_ATTACHMENT4};
+        glDrawBuffers(3, learning);
         glDepthMask(GL_FALSE);
         glDepthFunc(GL_LESS);
-        use(exact);
+        use(rest);
+        glUniform1f(at(rest, "fathom_cache_least"), 0.0f);
+        glUniform1ui(at(rest, "fathom_cache_frame"), frame);
         triangle();
         glDisable(GL_DEPTH_TEST);
         glDepthMask(GL_TRUE);
@@ -183,6 +189,8 @@ struct Host {
         use(reserve);
         glUniform1ui(at(reserve, "fathom_cache_frame"), ++frame);
         sampler(reserve, "fathom_cache_misses", 0, GL_TEXTURE_2D, misses);
+        sampler(reserve, "fathom_cache_wishes", 1, GL_TEXTURE_2D, wishes);
+        sampler(reserve, "fathom_cache_index", 2, GL_TEXTURE_3D, index);
         image(reserve, "fathom_cache_hash", 0, hash, GL_R32UI);
         image(reserve, "fathom_cache_keys", 1, keys, GL_RGBA32I);
         image(reserve, "fathom_cache_free", 2, ring, GL_R32UI);
@@ -195,8 +203,7 @@ struct Host {
         targets(false);
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
         use(fill);
-        sampler(fill, "fathom_cache_misses", 0, GL_TEXTURE_2D, misses);
-        sampler(fill, "fathom_cache_places", 1, GL_TEXTURE_2D, places);
+        sampler(fill, "fathom_cache_places", 0, GL_TEXTURE_2D, places);
         image(fill, "fathom_cache_keys", 0, keys, GL_RGBA32I);
         image(fill, "fathom_cache_pool", 1, pool, GL_R32F);
         image(fill, "fathom_cache_wide", 2, wide, GL_RGBA32F);
