@@ -137,15 +137,18 @@ void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> la
         landings[i] = {};
         if (rays[i].end >= rays[i].begin) active.push_back(i);
     }
+    // How small the distance is at a hit; in the last turn a pixel's width will do.
+    auto reach = [&](const Walk &walk) {
+        const float usual = lengths.tolerance(walk.t);
+        return walk.steps == max_steps ? std::max(usual, lengths.width(walk.t)) : usual;
+    };
     Arrivals arrivals;
     while (!active.empty()) {
         // Who has run out of steps or of way is done.
         std::erase_if(active, [&](std::size_t i) {
             const Walk &walk = walks[i];
             if (walk.steps < max_steps && walk.t <= rays[i].end + lengths.slack) return false;
-            landings[i] = {walk.steps >= max_steps && walk.d <= lengths.width(walk.t) ? walk.t
-                                                                                      : -1.0f,
-                           walk.steps};
+            landings[i] = {-1.0f, walk.steps};
             return true;
         });
         for (std::size_t k = 0; k < active.size(); ++k) {
@@ -163,10 +166,11 @@ void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> la
             const RayState &ray = rays[active[k]];
             walk.d = worker.values[k];
             ++walk.steps;
-            if (!brute && walk.stride > walk.before + std::max(walk.d, 0.0f)) {
+            if (!brute && walk.steps < max_steps &&
+                walk.stride > walk.before + std::max(walk.d, 0.0f)) {
                 walk.t += walk.before - walk.stride;
                 walk.stride = walk.before;
-            } else if (walk.d <= lengths.tolerance(walk.t)) {
+            } else if (walk.d <= reach(walk)) {
                 arrivals.add(active[k], ray.origin + walk.t * ray.direction, walk.d,
                              lengths.arm(walk.t));
             } else {
@@ -175,7 +179,7 @@ void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> la
         }
         arrivals.each(worker, [&](std::size_t i, float distance) {
             Walk &walk = walks[i];
-            if (distance <= lengths.tolerance(walk.t))
+            if (distance <= reach(walk))
                 landings[i] = {walk.t + walk.d, walk.steps};
             else
                 advance(walk, rays[i].end, lengths, brute);

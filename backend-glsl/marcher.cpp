@@ -104,8 +104,11 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     int steps = 0;
     for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
         vec3 p = origin + t * direction;
+        bool last = steps == $MAX_STEPS - 1;
+        float reach = fathom_tolerance(t);
+        if (last) reach = max(reach, fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t);
 $KEPT_WIDTH        $SAMPLE_MARCH;
-$KEPT_STOP        if (stride > before + max(d, 0.0)) {
+$KEPT_STOP        if (!last && stride > before + max(d, 0.0)) {
             t += before - stride;
             stride = before;
             continue;
@@ -125,8 +128,7 @@ $KEPT_STOP        if (stride > before + max(d, 0.0)) {
         t = min(t + next, proved);
     }
     fathom_steps = steps;
-    float pixel = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
-    return steps >= $MAX_STEPS && d <= pixel ? t : -1.0;
+    return -1.0;
 }
 )";
 
@@ -310,9 +312,9 @@ Values values_of(const MarcherOptions &options) {
     const bool steep = options.steep, apart = options.cheap && !options.kept;
     Values values{
         {"SAMPLE_MARCH", steep
-                             ? "float near = fathom_near(p, fathom_arm(t), fathom_tolerance(t), d)"
+                             ? "float near = fathom_near(p, fathom_arm(t), reach, d)"
                              : "d = sdf(p)"},
-        {"REACHED", std::string(steep ? "near" : "d") + " <= fathom_tolerance(t)"},
+        {"REACHED", std::string(steep ? "near" : "d") + " <= reach"},
         {"SAMPLE_SHADOW", steep ? "float d, near = fathom_near(p, h, shadow * angle * s, d)"
                                 : "float d = sdf(p), near = d"},
         {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},

@@ -27,10 +27,11 @@
 // 2014 for the fallback):
 //   t = begin, before = 0, stride = 0; at most max_steps times while t <= end + slack:
 //     d = f(o + t*dir)
-//     if stride > before + max(d, 0): the last two spheres do not overlap, something may lie
-//     between them: go back to the first
-//       sphere's edge, t += before - stride, stride = before, and go on with the next turn
-//     if d <= tolerance(t) and (not steep or near(p, d, step(t)) <= tolerance(t)): a hit at t + d
+//     reach = tolerance(t); in the last of the turns the pixel's width there, if that is more
+//     if stride > before + max(d, 0) and it is not the last turn: the last two spheres do not
+//     overlap, something may lie between them: go back to the first sphere's edge, t += before -
+//       stride, stride = before, and go on with the next turn
+//     if d <= reach and (not steep or near(p, d, step(t)) <= reach): a hit at t + d
 //     d = max(d, slack/4), never less than float32 can move
 //     next = d; if stride > 0: assume that f goes on along the ray as straight as over the last
 //     stride; the sphere that
@@ -38,8 +39,8 @@
 //       relaxation times that (numerator at least 0, denominator at least flattest*stride)
 //     never past the end unproved, rounding or not: proved = max(end, t + d),
 //     next = min(next, proved - t), before = d, stride = next, t = min(t + next, proved)
-//   Out of steps: a hit at t if the last d is at most the pixel's width there (pixel*t, or pixel),
-//   else a miss. `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to
+//   Out of steps or of way: a miss.
+//   `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to
 //   0..far; else 0..far.
 //
 // SHADING at hit point p = o + t*dir, h = step(t), n = normal(p, h), v = -dir:

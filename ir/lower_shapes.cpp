@@ -1,6 +1,7 @@
 // What each kind of shape computes, in the three readings.
 #include "ir/cost.h"
 #include "ir/lowering.h"
+#include "ir/maps.h"
 
 #include <cassert>
 
@@ -113,27 +114,54 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Frame frame) {
     if (reading == Reading::Hit)
         return graph_.make(Op::HitWith, {colored(id, frame), ask(Reading::Marched, id, frame)});
     NodeId marched = divided(id, ask(Reading::Raw, id, frame));
-    // The range shell: a displaced solid lies where f <= A, the most that it moves outward; further
-    // out the smooth field, less A, is the better bound, with its own slope. Inside, where f - a <
-    // 0, f - A is lower still: so signs agree.
-    if (shape(id).kind == ShapeKind::Displace && std::isfinite(fact(id).outward)) {
-        const ShapeId child = shape(id).children.front();
-        const NodeId shell =
-            graph_.sub(ask(Reading::Raw, child, frame), graph_.number(fact(id).outward));
-        const NodeId outer = divided(child, shell);
-        marched = graph_.make(Op::Max, {marched, outer});
-        // Where (f + B)/L, B the most that it moves inward, is no more than the shell's bound, that
-        // is the greater one whatever the displacement is: a dear one is asked nearer only.
-        const NodeId amount = shape(id).args.front();
-        if (std::isfinite(fact(id).inward) && cost_of(graph_, amount) >= ask_first_from) {
-            const NodeId most =
-                graph_.add(ask(Reading::Raw, child, frame), graph_.number(fact(id).inward));
-            marched =
-                graph_.make(Op::Select, {graph_.make(Op::LessEqual, {divided(id, most), outer}),
-                                         outer, marched});
-        }
-    }
+    if (shape(id).kind == ShapeKind::Displace && std::isfinite(fact(id).outward))
+        marched = displaced(id, frame, marched);
     return guarded(reading, id, frame, marched);
+}
+
+// The range shell: a displaced solid lies where f <= A, the most that it moves outward; further
+// out the smooth field, less A, is the better bound, with its own slope. Inside, where f - a < 0,
+// f - A is lower still: so signs agree. The same with the first terms of a sum, and the most that
+// the others can add. The greatest of all of these is the marched field; what is left of a dear sum
+// is asked only where it can be greater than what is known already.
+NodeId Lowering::displaced(ShapeId id, Frame frame, NodeId whole) {
+    const ShapeFact &known = fact(id);
+    const ShapeId child = shape(id).children.front();
+    const NodeId base = ask(Reading::Raw, child, frame), amount = shape(id).args.front();
+    struct Known {
+        NodeId best;  // a lower bound of the distance
+        NodeId field; // the base less the terms so far
+        double least; // of the other terms
+        double cost;  // of the terms so far
+    };
+    std::vector<Known> steps{
+        {divided(child, graph_.sub(base, graph_.number(known.outward))), base, -known.inward, 0}};
+    const auto slope_with = [&](double slope) { // of the base and so much of the sum
+        return graph_.add(fact(child).lipschitz, graph_.number(slope));
+    };
+    const std::size_t nested = known.partial.empty() ? 0 : known.partial.size() - 1;
+    if (nested > 0) whole = divided(id, graph_.sub(base, read(known.partial.back().terms, frame)));
+    for (std::size_t i = 0; i < nested; ++i) {
+        const PartialSum &partial = known.partial[i];
+        const NodeId field = graph_.sub(base, read(partial.terms, frame));
+        const NodeId bound =
+            graph_.div(graph_.sub(field, graph_.number(partial.most)), slope_with(partial.slope));
+        steps.push_back({graph_.make(Op::Max, {steps.back().best, bound}), field, partial.least,
+                         cost_of(graph_, partial.terms)});
+    }
+    NodeId result = graph_.make(Op::Max, {whole, steps.back().best});
+    // The field is at most f - least, which is divided by the next bound at least.
+    for (std::size_t i = steps.size(); i-- > 0;) {
+        const Known &step = steps[i];
+        if (!std::isfinite(step.least) || cost_of(graph_, amount) - step.cost < ask_first_from)
+            continue;
+        const NodeId most = graph_.sub(step.field, graph_.number(step.least));
+        const NodeId reach =
+            i < nested ? graph_.div(most, slope_with(known.partial[i].slope)) : divided(id, most);
+        result = graph_.make(Op::Select,
+                             {graph_.make(Op::LessEqual, {reach, step.best}), step.best, result});
+    }
+    return result;
 }
 
 // raw / (L * times). A bound below 1 lengthens the step, as it may.
@@ -151,7 +179,11 @@ NodeId Lowering::divided(ShapeId id, NodeId raw, double times) {
 
 NodeId Lowering::guarded(Reading reading, ShapeId id, Frame frame, NodeId value) {
     if (!fact(id).guard) return value;
-    const NodeId box = box_distance(graph_, fact(id).bounds, frame.p);
+    const ShapeFact &known = fact(id);
+    const NodeId box =
+        std::isfinite(known.round)
+            ? cylinder_distance(graph_, known.bounds, turning_axis(shape(id)), known.round, frame.p)
+            : box_distance(graph_, known.bounds, frame.p);
     return at_distance(reading, value, graph_.make(Op::Max, {distance_of(reading, value), box}));
 }
 

@@ -48,6 +48,7 @@ class Lowering {
     NodeId colored(ShapeId id, Frame frame); // whose surface shows on a leaf: a Hit, distance aside
     bool passes_through(ShapeId id) const;
     NodeId divided(ShapeId id, NodeId raw, double times = 1);
+    NodeId displaced(ShapeId id, Frame frame, NodeId whole);
     NodeId guarded(Reading reading, ShapeId id, Frame frame, NodeId value);
 
     // -- per kind
@@ -144,6 +145,8 @@ WayOut region_way_out(Graph &graph, const Region &hole, NodeId p);
 std::array<NodeId, 2> region_opposites(Graph &graph, const Region &hole, NodeId p);
 NodeId region_between_caps(Graph &graph, const Region &region, NodeId q);
 NodeId box_distance(Graph &graph, const Box &box, NodeId p);
+// To the cylinder about an axis that is as long as the box.
+NodeId cylinder_distance(Graph &graph, const Box &box, int axis, double radius, NodeId p);
 
 // repeat.cpp: how many copies are evaluated one by one, before a loop does it
 constexpr int most_unrolled = 8;

@@ -29,6 +29,10 @@ Shape twisted(Graph &graph, ShapeId child, NodeId rate, int axis);
 // The stretch along `axis` curves towards +`towards` on both sides of the origin: q is p turned by
 // rate*(p along axis) in the (towards, axis) plane. axis != towards.
 Shape bent(Graph &graph, ShapeId child, NodeId rate, int axis, int towards);
+// The axis that a twist or bend turns points about.
+inline int turning_axis(const Shape &shape) {
+    return shape.map == MapKind::Bend ? 3 - shape.axis - shape.towards : int(shape.axis);
+}
 
 // The cross-section is scaled by c(h), 1 at h = from and `ratio` at h = to, linear between,
 // constant beyond: c * f(p / c across the axis, p along it). ratio >= 0; c is kept above

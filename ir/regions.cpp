@@ -191,4 +191,14 @@ NodeId box_distance(Graph &graph, const Box &box, NodeId p) {
     return d.empty() ? graph.number(-nowhere) : joined_distance(graph, d);
 }
 
+NodeId cylinder_distance(Graph &graph, const Box &box, int axis, double radius, NodeId p) {
+    const double lo = box.lo[static_cast<std::size_t>(axis)],
+                 hi = box.hi[static_cast<std::size_t>(axis)];
+    const NodeId side =
+        graph.sub(graph.make(Op::Length, {across(graph, p, axis)}), graph.number(radius));
+    const NodeId along = graph.sub(graph.component(p, axis), graph.number((lo + hi) / 2));
+    return joined_distance(graph, std::array{side, graph.sub(graph.make(Op::Abs, {along}),
+                                                             graph.number((hi - lo) / 2))});
+}
+
 } // namespace fathom::ir

@@ -25,6 +25,14 @@ struct CellBounds {
     std::vector<double> lipschitz; // empty: none
 };
 
+// Of a displacement that is a sum: what its first terms say before the others are asked.
+struct PartialSum {
+    NodeId terms;     // their sum, an expression in Point
+    double slope = 0; // of the sum
+    double most = 0;  // all other terms together, at most
+    double least = 0; // … and at least
+};
+
 // What the analysis proved of one shape, in the shape's own space.
 struct ShapeFact {
     FieldKind kind = FieldKind::Bound;
@@ -39,9 +47,13 @@ struct ShapeFact {
     double outward = std::numeric_limits<double>::infinity(); // Displace: the most by which it
                                                               // moves the surface outward
     double inward = std::numeric_limits<double>::infinity();  // … and inward
+    std::vector<PartialSum> partial; // Displace: shorter sums first, all of it last; or none
     bool local = false; // the bound holds within `bounds` alone: the raw field is asked at the
                         // nearest point there, and joined with the way to it as Within's is
     bool guard = false; // when marched, take the max with the distance to `bounds` (cheap far away)
+    double round = std::numeric_limits<double>::infinity(); // Twist, Bend: the solid lies as near
+                                                            // to the axis that it turns about; the
+                                                            // guard is that cylinder in `bounds`
     RepeatPlan repeat;
     double detour =
         1; // Within: the ways round what its region leaves out, over the straight ones, at most

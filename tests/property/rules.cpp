@@ -21,6 +21,8 @@ struct Case {
     std::function<ShapeId(Scenery &)> build;
     double attained; // sampled over proved, at least
     double reach = 3;
+    bool tighten = false; // the rule is how a bound is made less
+    double x = 0;         // of the middle of what is sampled
 };
 
 Slopes run(const Case &test, double factor, double &proved) {
@@ -29,7 +31,7 @@ Slopes run(const Case &test, double factor, double &proved) {
     Diagnostics diagnostics;
     proof::Options options;
     options.rules.factor[static_cast<std::size_t>(test.rule)] = factor;
-    options.tighten = false;
+    options.tighten = test.tighten;
     proved = s.prove(shape, diagnostics, options).lipschitz_sup;
     INFO(said(diagnostics));
     REQUIRE(!diagnostics.has_errors());
@@ -130,6 +132,32 @@ std::vector<Case> cases() {
                                     static_cast<std::uint32_t>(Profile::Chamfer));
                    },
                    0.9});
+    out.push_back({"x*|x|^c", Rule::Field,
+                   [](Scenery &s) {
+                       NodeId root = s.g.make(Op::Pow, {s.call(Op::Abs, s.x), s.n(0.5)});
+                       return s.within(s.leaf(s.g.sub(s.g.mul(s.x, root), s.n(0.2))), s.ball(2));
+                   },
+                   0.95});
+    out.push_back({"a blend by a clamped distance", Rule::LerpVarying,
+                   [](Scenery &s) {
+                       NodeId t = s.g.make(Op::Clamp, {s.length(s.p), s.n(0), s.n(1)});
+                       return s.add(
+                           ShapeKind::Lerp,
+                           {s.add(translated(s.g, s.sphere(1), s.g.vec3(2, 0, 0))), s.sphere(1)},
+                           {t});
+                   },
+                   0.9});
+    out.push_back({"a taper measured whole", Rule::Tightened,
+                   [](Scenery &s) {
+                       return s.add(tapered(s.g, s.box(2, 1, 2), s.n(0.3), s.n(-0.5), s.n(0.5), 1));
+                   },
+                   0.75, 3, true});
+    out.push_back({"a twist measured whole", Rule::Tightened,
+                   [](Scenery &s) {
+                       ShapeId tall = s.add(scaled(s.g, s.box(1, 1, 1), s.g.vec3(1, 2, 1)));
+                       return s.add(twisted(s.g, tall, s.n(3), 1));
+                   },
+                   0.8, 3, true});
     // Half the angle from the x axis: near the poles as steep across a ball's border as along it.
     // Its bound in the region is stated, so that the rule for the hole is alone.
     out.push_back({"a raw field in a hole", Rule::Holes,
@@ -175,9 +203,110 @@ TEST_CASE("no rule is exceeded, each is nearly attained, and none can be halved"
     }
 }
 
+// What the marched field takes from elsewhere than the shape's own field: no point of the solid may
+// be cut off by it. Against the field itself, which these rules leave as it is.
+namespace {
+
+std::vector<Case> cuts() {
+    std::vector<Case> out;
+    const auto waves = [](Scenery &s, double high, double often) {
+        return s.g.mul(s.n(high), s.sin(s.g.mul(s.n(often), s.x)));
+    };
+    out.push_back({"the range shell", Rule::Shell,
+                   [waves](Scenery &s) {
+                       return s.add(ShapeKind::Displace, {s.sphere(1)}, {waves(s, 0.3, 5)});
+                   },
+                   0, 2});
+    out.push_back({"nested octaves", Rule::Octaves,
+                   [waves](Scenery &s) {
+                       NodeId sum = s.g.add(waves(s, 0.2, 5), waves(s, 0.2, 11));
+                       return s.add(ShapeKind::Displace, {s.sphere(1)},
+                                    {s.g.mul(s.n(0.9), s.g.add(sum, waves(s, 0.1, 50)))});
+                   },
+                   0, 2});
+    out.push_back({"the cylinder about a twist", Rule::Round,
+                   [](Scenery &s) { return s.add(twisted(s.g, off_axis(s, 0.8), s.n(2), 1)); }, 0});
+    // The surface lies across a hole: asked from the other side, the straight way is the shortest
+    // against the one round it.
+    out.push_back({"a detour round a hole", Rule::Detour,
+                   [](Scenery &s) {
+                       NodeId off = s.length(s.g.swizzle(s.p, std::array{1, 2}));
+                       NodeId angle = s.g.make(Op::Atan2, {off, s.x});
+                       Shape leaf;
+                       leaf.kind = ShapeKind::Leaf;
+                       leaf.args = {s.g.sub(s.n(1.4), s.g.mul(s.n(0.5), angle))};
+                       leaf.assumed = 1.01;
+                       Region region = s.ball(1);
+                       region.less = {s.ball(0.5)};
+                       return s.within(s.add(leaf), region);
+                   },
+                   0, 0.1, true, 0.55});
+    out.push_back({"the cylinder about a bend", Rule::Round,
+                   [](Scenery &s) { return s.add(bent(s.g, s.box(0.4, 2, 1), s.n(0.5), 1, 0)); }, 0,
+                   2});
+    return out;
+}
+
+// How many of random balls hold a point of the solid.
+int balls_cut(const Case &test, double factor) {
+    const auto lowered = [&](Scenery &s, bool plain) {
+        ShapeId shape = test.build(s);
+        Diagnostics diagnostics;
+        proof::Options options;
+        options.rules.factor[static_cast<std::size_t>(test.rule)] = factor;
+        s.prove(shape, diagnostics, options);
+        REQUIRE(!diagnostics.has_errors());
+        if (plain)
+            for (ShapeFact &fact : s.scene.facts)
+                fact.guard = false, fact.outward = std::numeric_limits<double>::infinity();
+        lower(s.scene);
+        REQUIRE(verify(s.scene).empty());
+    };
+    Scenery marched, plain;
+    lowered(marched, false), lowered(plain, true);
+    Sampler distance(marched.scene), field(plain.scene);
+    std::vector<Point3> centers, inside;
+    const double r = test.reach;
+    for (int i = 0; i < 300'000; ++i)
+        centers.push_back(distance.in_box({test.x - r, -r, -r}, {test.x + r, r, r}));
+    const std::vector<float> radii = distance.values(centers);
+    for (std::size_t i = 0; i < centers.size(); ++i)
+        inside.push_back(distance.in_ball(centers[i], std::max(radii[i], 0.0f) * 0.9999));
+    const std::vector<float> found = field.values(inside);
+    int cut = 0;
+    for (std::size_t i = 0; i < centers.size(); ++i) cut += radii[i] > 1e-5f && found[i] < -1e-5f;
+    return cut;
+}
+
+} // namespace
+
+TEST_CASE("nothing of a solid is cut off, and half of what is left for it is too little") {
+    for (const Case &test : cuts()) {
+        SECTION(test.name) {
+            CHECK(balls_cut(test, 1) == 0);
+            CHECK(balls_cut(test, 0.5) > 0);
+        }
+    }
+}
+
+TEST_CASE("half of an assumed bound is found out") {
+    for (double part : {1.0, 0.5}) {
+        Scenery s;
+        Shape leaf;
+        leaf.kind = ShapeKind::Leaf;
+        leaf.args = {s.g.mul(s.n(2), s.sin(s.g.mul(s.n(3), s.x)))}; // as steep as 6, in places
+        leaf.assumed = 6 * part;
+        Diagnostics diagnostics;
+        s.prove(s.add(leaf), diagnostics);
+        CHECK(diagnostics.has_errors() == (part < 1));
+    }
+}
+
 TEST_CASE("each rule has a case of its own") {
     for (std::size_t rule = 0; rule < std::size_t(Rule::Count); ++rule) {
-        const std::vector<Case> all = cases();
+        std::vector<Case> all = cases();
+        const std::vector<Case> more = cuts();
+        all.insert(all.end(), more.begin(), more.end());
         INFO("rule " << rule);
         CHECK(std::any_of(all.begin(), all.end(),
                           [&](const Case &one) { return std::size_t(one.rule) == rule; }));
@@ -290,6 +419,39 @@ TEST_CASE("kinds that must not lengthen, in float32") {
                                                {NodeId{}, NodeId{}, s.n(0.8)}, 2);
                  return s.add(bent(s.g, s.add(revolved(s.g, rectangle, s.n(off))), s.n(1.2), 1, 2));
              }});
+    plain.push_back({"a taper that widens", [](Scenery &s) {
+                         return s.add(
+                             tapered(s.g, s.box(0.8, 2, 0.8), s.n(1.8), s.n(-1), s.n(1), 1));
+                     }});
+    plain.push_back({"a taper of a union, longer than its stretch", [](Scenery &s) {
+                         ShapeId both =
+                             s.add(ShapeKind::Union,
+                                   {s.add(translated(s.g, s.sphere(0.5), s.g.vec3(0.6, 1, 0))),
+                                    s.box(0.5, 3, 0.9)});
+                         return s.add(tapered(s.g, both, s.n(0.4), s.n(-0.5), s.n(1), 1));
+                     }});
+    plain.push_back(
+        {"a taper of a twist of what is extruded", [](Scenery &s) {
+             NodeId flat = s.g.point(Type::Vec2);
+             ShapeId disc = s.claimed("disc", s.g.sub(s.length(flat), s.n(0.5)),
+                                      s.g.vec3(-0.5, -0.5, 0), s.g.vec3(0.5, 0.5, 0), {}, 2);
+             Shape extruded;
+             extruded.kind = ShapeKind::Extrude;
+             extruded.dims = 3;
+             extruded.children = {s.add(translated(s.g, disc, s.g.vec(std::array{0.2, 0.0})))};
+             extruded.args = {s.n(2)};
+             ShapeId turned = s.add(twisted(s.g, s.add(extruded), s.n(1), 2));
+             return s.add(tapered(s.g, turned, s.n(0.5), s.n(-1), s.n(1), 2));
+         }});
+    plain.push_back({"octaves of noise on a sphere", [](Scenery &s) {
+                         NodeId sum = s.n(0);
+                         for (int i = 0; i < 4; ++i) {
+                             const double often = std::pow(2.0, i);
+                             NodeId noise = s.call(Op::Perlin, s.g.mul(s.p, s.n(2 * often)));
+                             sum = s.g.add(sum, s.g.div(noise, s.n(often)));
+                         }
+                         return s.add(ShapeKind::Displace, {s.sphere(1)}, {s.g.mul(s.n(0.1), sum)});
+                     }});
     plain.push_back({"a bend of what only bounds", [](Scenery &s) {
                          ShapeId flat = s.add(scaled(s.g, s.sphere(1), s.g.vec3(1, 0.3, 0.5)));
                          return s.add(bent(s.g, flat, s.n(0.7), 0, 1));

@@ -99,7 +99,8 @@ FieldBound Prover::bound(ShapeId id, NodeId field, const std::string &what, bool
 
 std::optional<NodeId> Prover::expression(ShapeId id, int depth) {
     const Shape shape = scene.shapes[id];
-    if (depth > 16) return {};
+    // What is proved in its own box alone is another field: joined with the way to the box.
+    if (depth > 16 || of(id).fact.local) return {};
     auto inner = [&](std::size_t i) { return expression(shape.children[i], depth + 1); };
     switch (shape.kind) {
     case ShapeKind::Leaf: return shape.args[0];
@@ -132,6 +133,20 @@ std::optional<NodeId> Prover::expression(ShapeId id, int depth) {
     case ShapeKind::Displace:
         if (auto f = inner(0)) return graph.sub(*f, shape.args[0]);
         return {};
+    case ShapeKind::Extrude: { // the distance to a corner in the plane of f(p.xy) and |z| - h
+        auto f = inner(0);
+        if (!f) return {};
+        const NodeId p = graph.point();
+        const NodeId flat = ir::substitute(
+            graph, *f, {{graph.point(ir::Type::Vec2), graph.swizzle(p, std::array{0, 1})}});
+        const NodeId half = graph.mul(shape.args[0], graph.number(0.5));
+        const NodeId cap = graph.sub(graph.make(Op::Abs, {graph.component(p, 2)}), half);
+        const NodeId zero = graph.number(0);
+        const NodeId both = graph.make(Op::Make, ir::Type::Vec2, {flat, cap});
+        const NodeId out = graph.make(
+            Op::Length, {graph.make(Op::Max, {both, graph.constant({ir::Type::Vec2, {}})})});
+        return graph.add(out, graph.make(Op::Min, {graph.make(Op::Max, {flat, cap}), zero}));
+    }
     case ShapeKind::Empty:
     case ShapeKind::Xor:
     case ShapeKind::Blend:
@@ -139,7 +154,6 @@ std::optional<NodeId> Prover::expression(ShapeId id, int depth) {
     case ShapeKind::Lerp:
     case ShapeKind::PseudoNorm:
     case ShapeKind::Shell:
-    case ShapeKind::Extrude:
     case ShapeKind::Repeat:
     case ShapeKind::Within:
     case ShapeKind::Many: break;

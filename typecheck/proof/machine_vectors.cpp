@@ -69,18 +69,35 @@ void Step::corner() {
     const int m = size(0);
     double greatest = -infinity; // some component is at least this
     for (int c = 0; c < m; ++c) greatest = std::max(greatest, value(0, c).lo);
-    Interval outside, most(-infinity);
+    Interval outside, most(-infinity), squares[4];
     Row rows[4], g{};
     int used = 0;
     for (int c = 0; c < m; ++c) {
         const Interval v = value(0, c);
-        outside += square(max(v, zero_at));
+        squares[c] = square(max(v, zero_at));
+        outside += squares[c];
         most = c == 0 ? v : max(most, v);
-        if (v.hi < std::min(greatest, 0.0)) continue; // below 0, and another is greater
-        rows[used++] = grad(0, c);
     }
-    for (int c = 0; c < used; ++c)
-        g = used == 1 ? rows[0] : sum(g, scaled(Interval(0, 1), rows[c]));
+    // Outside, the rows are weighed by a unit vector, max(v, 0) over its length: each weight grows
+    // with its component and falls with the others. Inside, one row or, where two are greatest, a
+    // mean of theirs.
+    for (int c = 0; c < m; ++c) {
+        const Interval v = value(0, c);
+        if (v.hi < std::min(greatest, 0.0)) continue; // below 0, and another is greater
+        Interval weight(0, 1);
+        if (greatest > 0) {
+            Interval others;
+            for (int o = 0; o < m; ++o)
+                if (o != c) others += squares[o];
+            const Interval own = squares[c];
+            if (own.lo > 0)
+                weight.lo = ir::rounding::down(std::sqrt(own.lo / (own.lo + others.hi)), 8);
+            if (others.lo > 0) weight.hi = up(std::sqrt(own.hi / (own.hi + others.lo)), 8);
+        }
+        rows[used++] = grad(0, c);
+        g = sum(g, scaled(weight, grad(0, c)));
+    }
+    if (used == 1) g = rows[0];
     set(0, sqrt(outside) + min(most, zero_at), g);
     finish(std::min(norm(0), spectral_norm(rows, used)), any_odd);
 }

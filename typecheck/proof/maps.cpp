@@ -1,5 +1,7 @@
 // The rules for maps: rigid motions, scales, folds, and the deformations with their lever arms.
 // Proofs: docs/lipschitz.md.
+#include "ir/maps.h"
+#include "typecheck/proof/deformed.h"
 #include "typecheck/proof/prover.h"
 
 #include "typecheck/proof/continuity.h"
@@ -312,6 +314,7 @@ Known Prover::know_deformed(ShapeId id) {
         if (!everywhere(k.fact.bounds) && !k.fact.bounds.empty())
             for (std::size_t i = 0; i < 3; ++i)
                 if (int(i) != axis) k.fact.bounds.lo[i] = -r, k.fact.bounds.hi[i] = r;
+        round = radius_about(padded(inner.fact.bounds), axis) * options.rules[Rule::Round];
         k.swell *= std::sqrt(2.0);
         forget_levers(k);
         k.fact.lever[a] = lever; // turning about the axis commutes with the twist
@@ -349,6 +352,7 @@ Known Prover::know_deformed(ShapeId id) {
         if (!everywhere(k.fact.bounds) && !k.fact.bounds.empty())
             for (std::size_t i = 0; i < 3; ++i)
                 if (int(i) != third) k.fact.bounds.lo[i] = -r, k.fact.bounds.hi[i] = r;
+        round = radius_about(padded(inner.fact.bounds), third) * options.rules[Rule::Round];
         k.swell *= std::sqrt(2.0);
         forget_levers(k);
         bool still = rate == Interval(0.0);
@@ -505,21 +509,37 @@ Known Prover::know_deformed(ShapeId id) {
 // Rules that hold for every shape count its farthest point and its steepest gradient as one. Where
 // the field can be written as one expression, its slope in the shape's own box is measured whole.
 void Prover::tighten(ShapeId id, Known &k) {
+    const Shape shape = scene.shapes[id];
     const double rule = k.fact.lipschitz_sup;
-    if (!options.tighten || rule <= 1.25 || !graph.is_constant(k.fact.lipschitz) ||
+    if (!options.tighten || rule <= 1.1 || !graph.is_constant(k.fact.lipschitz) ||
         !place(id).audible)
         return;
-    const auto field = expression(id);
-    if (!field) return;
     Budget budget;
     // Few deformed shapes share what many would.
     budget.instructions = options.field_instructions / std::clamp<std::size_t>(deformed, 1, 25);
-    budget.tolerance = 1.1;
+    budget.tolerance = 1.03;
     budget.hopeless = 0.9 * rule;
-    const FieldBound b =
-        bound_field(flattening, ranges, *field, {to_cell(padded(k.fact.bounds)), nullptr}, budget);
+    const Cell box = to_cell(padded(k.fact.bounds));
+    const auto measured = [&]() -> double {
+        const auto field = expression(shape.map == MapKind::Distort ? id : shape.children[0]);
+        if (!field) return infinity;
+        if (shape.map == MapKind::Distort)
+            return bound_field(flattening, ranges, *field, {box, nullptr}, budget).lipschitz;
+        Deformation how;
+        how.map = shape.map;
+        how.box = box;
+        how.axis = ir::turning_axis(shape);
+        if (shape.map == MapKind::Taper)
+            how.ratio = number(shape.args[2]), how.from = number(shape.args[3]),
+            how.to = number(shape.args[4]);
+        else
+            how.rate = number(shape.args[2]);
+        return bound_deformed(flattening, ranges, *field, how, budget).lipschitz;
+    };
+    const double found = measured();
+    const double bound = 1 + (found - 1) * (found > 1 ? options.rules[Rule::Tightened] : 1);
     // Joined with the way to the box, it is as steep as a distance at least.
-    if (b.lipschitz < budget.hopeless) keep_local(k, b.lipschitz, graph.number(b.lipschitz));
+    if (bound < budget.hopeless) keep_local(k, bound, graph.number(bound));
 }
 
 } // namespace fathom::proof

@@ -30,11 +30,13 @@ struct Prover {
     Ranges ranges;
     std::vector<Known> known;
     std::vector<Place> places;
-    std::deque<Zone> zones;   // stable addresses
-    double outward = 0;       // ShapeFact::outward of the shape at hand
-    double inward = 0;        // ShapeFact::inward
-    std::size_t deformed = 0; // how many shapes are twisted, bent, tapered or distorted
-    bool local = false;       // the shape at hand is proved in its own box alone (ShapeFact::local)
+    std::deque<Zone> zones;              // stable addresses
+    double outward = 0;                  // ShapeFact::outward of the shape at hand
+    double inward = 0;                   // ShapeFact::inward
+    double round = 0;                    // ShapeFact::round
+    std::vector<ir::PartialSum> partial; // ShapeFact::partial
+    std::size_t deformed = 0;            // how many shapes are twisted, bent, tapered or distorted
+    bool local = false; // the shape at hand is proved in its own box alone (ShapeFact::local)
 
     Prover(ir::Scene &s, Diagnostics &d, const Options &o)
         : scene(s), diagnostics(d), options(o), graph(s.graph), flattening{s.graph, {}},
@@ -80,6 +82,7 @@ struct Prover {
     Ball ball_of(ir::ShapeId id, const Known &k); // from the children's balls, where that says more
     void keep_in_ball(ir::ShapeId id, Known &k);  // sets the ball, and cuts the box to it
 
+    std::vector<ir::PartialSum> partial_sums(ir::ShapeId displaced, double slope); // octaves.cpp
     void tighten(ir::ShapeId id, Known &k); // a deformed shape's bound, by its own expression
     double region_radius(ir::ShapeId id, int axis) const;
 

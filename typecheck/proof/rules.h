@@ -23,6 +23,11 @@ enum class Rule : std::size_t {
     Holes,
     RepeatNeighbors,
     Sectors,
+    Tightened,
+    Octaves,
+    Shell,
+    Round,
+    Detour,
     Count
 };
 

@@ -359,7 +359,7 @@ Known Prover::know_displaced(ShapeId id) {
         // What moves inward only is still below the child's field: the shell begins at the surface
         // itself.
         if (shape.kind == ShapeKind::Displace && !k.failed) {
-            outward = std::max(amount.hi, 0.0) * (1 + slack);
+            outward = std::max(amount.hi, 0.0) * (1 + slack) * options.rules[Rule::Shell];
             inward = up(std::max(-amount.lo, 0.0) + 1e-5 * amount.magnitude());
         }
     }
@@ -369,11 +369,9 @@ Known Prover::know_displaced(ShapeId id) {
         fail(k);
         return k;
     }
-    // Beyond this the marched field is the smooth one (the range shell); float32's noise may pass
-    // the range by a little.
-    k.fact.outward =
-        shape.kind == ShapeKind::Displace ? up(amount.hi + 1e-5 * amount.magnitude()) : infinity;
     slope *= options.rules[Rule::Displace];
+    if (shape.kind == ShapeKind::Displace && varies && shape.args.size() <= 3)
+        partial = partial_sums(id, slope);
     double sup = up(k.fact.lipschitz_sup + slope);
     set_lipschitz(
         k, slope == 0 ? k.fact.lipschitz : graph.add(k.fact.lipschitz, graph.number(slope)), sup);

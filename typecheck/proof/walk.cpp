@@ -2,10 +2,12 @@
 // end. The rules themselves stand by group beside it.
 #include "typecheck/proof/prover.h"
 
+#include "ir/maps.h"
 #include "ir/view.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace fathom::proof {
 
@@ -65,7 +67,8 @@ void Prover::run() {
         set_lipschitz(k, 1);
         if (places[i].reached) { // what no one asks keeps facts that say nothing
             local = false;
-            outward = inward = infinity;
+            outward = inward = round = infinity;
+            partial.clear();
             k = know(ShapeId{i});
             if (!is_field(ShapeId{i})) k.leaf = {};
             find_extent(ShapeId{i}, k);
@@ -73,6 +76,8 @@ void Prover::run() {
             k.fact.local = local;
             k.fact.outward = outward;
             k.fact.inward = inward;
+            k.fact.round = round;
+            k.fact.partial = partial;
             finish(ShapeId{i}, k);
         }
         known[i] = k;
@@ -346,6 +351,13 @@ void Prover::finish(ShapeId id, Known &k) {
     k.fact.guard = !k.failed && everywhere_valid && k.fact.bounds.finite() &&
                    !k.fact.bounds.empty() && shape.dims == 3 &&
                    (k.fact.lipschitz_sup > 1.3 || deformed) && shape.kind != ShapeKind::Within;
+    if (k.fact.guard && std::isfinite(k.fact.round)) { // where the box says more, it is the guard
+        const auto a = static_cast<std::size_t>(ir::turning_axis(shape));
+        double section = 1;
+        for (std::size_t i = 0; i < 3; ++i)
+            if (i != a) section *= k.fact.bounds.hi[i] - k.fact.bounds.lo[i];
+        if (std::numbers::pi * k.fact.round * k.fact.round >= section) k.fact.round = infinity;
+    }
     if (k.failed || !std::isfinite(k.fact.lipschitz_sup)) return;
     double below = 1;
     for (ShapeId c : shape.children) below = std::max(below, of(c).fact.lipschitz_sup);

@@ -143,7 +143,7 @@ Known Prover::know_within(ShapeId id) {
         fail(k);
         return k;
     }
-    k.fact.detour = detour;
+    k.fact.detour = 1 + (detour - 1) * options.rules[Rule::Detour];
     const Known &inner = child(shape);
     if (inner.leaf && zone.less.empty() && shape.dims == 3 && place(id).audible &&
         graph.is_constant(inner.fact.lipschitz) && inner.fact.status == ProofStatus::Proved) {
