@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 namespace fathom::proof {
 
@@ -199,6 +200,30 @@ std::string cause_text(const ir::Graph &graph, NodeId cause) {
 
 } // namespace
 
+namespace {
+
+// Whether a list is read at a place that follows from the point.
+bool reads_list_by_point(const ir::Graph &graph, const std::vector<NodeId> &roots) {
+    std::vector<NodeId> todo = roots;
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!id || !seen.insert(id).second) continue;
+        const ir::Node node = graph[id];
+        if (node.op == Op::TableRead) {
+            const ir::Graph::Reads reads = graph.reads(graph.arg(id, 0));
+            if (reads.point || reads.free_vars) return true;
+        }
+        if (node.op == Op::Call)
+            todo.push_back(graph.function(ir::FunctionId{node.payload}).result);
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    return false;
+}
+
+} // namespace
+
 void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &what) {
     int dims = scene.shapes[id].dims;
     const std::string assume =
@@ -223,6 +248,11 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     }
     switch (b.trouble) {
     case Trouble::Jump: {
+        const bool by_list = reads_list_by_point(graph, scene.shapes[id].args);
+        const std::string between =
+            "go from one entry of a list to the next without a jump, with the place limited before "
+            "`floor`: `let x = clamp(…, 0, last)`, then `mix(list[int(floor(x))], "
+            "list[int(floor(x)) + 1], fract(x))`; ";
         bool seen = std::fabs(b.value_a - b.value_b) >
                     1e-4 * std::max({1.0, std::fabs(b.value_a), std::fabs(b.value_b)});
         if (seen) {
@@ -231,7 +261,8 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                 d->note("it is " + number_text(b.value_a) + " at " + point_text(b.side_a, dims) +
                         " and " + number_text(b.value_b) + " at " + point_text(b.side_b, dims) +
                         ": " + cause)
-                    .help("make both sides agree there, keep the jump out of the region with "
+                    .help((by_list ? between : "make both sides agree there, ") +
+                          "keep the jump out of the region with "
                           "`within:`, " +
                           assume);
         } else if (Diagnostic *d = report(id, Code::LipschitzUnbounded,
@@ -240,7 +271,9 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             d->note(cause + " chooses there; its sides meet where they were tried (" +
                     number_text(b.value_a) + " and " + number_text(b.value_b) +
                     "), but that they meet everywhere is not seen")
-                .help("write it with `min`, `max`, `clamp` or `abs`, whose continuity is known, " +
+                .help((by_list ? between
+                               : "write it with `min`, `max`, `clamp` or `abs`, whose continuity "
+                                 "is known, ") +
                       assume);
         return;
     }
