@@ -516,7 +516,7 @@ void Prover::tighten(ShapeId id, Known &k) {
         return;
     Budget budget;
     // Few deformed shapes share what many would.
-    budget.instructions = options.field_instructions / std::clamp<std::size_t>(deformed, 1, 25);
+    budget.instructions = options.field_instructions / std::clamp<std::size_t>(deformed, 1, 40);
     budget.tolerance = 1.03;
     budget.hopeless = 0.9 * rule;
     const Cell box = to_cell(padded(k.fact.bounds));
