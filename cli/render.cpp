@@ -19,7 +19,7 @@ struct Painter {
     std::unique_ptr<gl::CachedView> cache; // with --cache, where it can be had
 };
 
-// A still picture is drawn until the cache has nearly all that it asks for; so often at most.
+// A still picture is drawn until the cache has all that it asks for; so often at most.
 constexpr int most_learning_frames = 60;
 
 std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &scene,
@@ -36,8 +36,7 @@ std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &sce
     for (int frame = 0; frame < most_learning_frames; ++frame) {
         if (!view.draw(inputs, scene.params, {})) return std::nullopt;
         const gl::CacheTally tally = view.read_tally();
-        if (command.frames || 1000 * tally.misses <= tally.hits)
-            break; // what is left shows nowhere
+        if (command.frames || tally.misses == 0) break;
         progress(static_cast<double>(frame) / most_learning_frames);
     }
     return view.read_pixels();

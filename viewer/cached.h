@@ -37,8 +37,7 @@ class Cached {
     bool draw(const gl::FrameInputs &inputs, const std::vector<ir::Param> &params,
               bool show_misses);
     bool settled() const { // nothing is missed any more, or there is no room for it
-        return frames_ > 0 &&
-               (1000 * figures_.tally.misses <= figures_.tally.hits || frames_ >= most_frames);
+        return frames_ > 0 && (figures_.tally.misses == 0 || frames_ >= most_frames);
     }
     // What the last frame did; the cells are counted now and then, since all of them are read back.
     void count();

@@ -307,6 +307,29 @@ sphere(1).displace(f)
     CHECK(c.scene.facts[c.scene.top_level[0].shape.index].lipschitz_sup >= 1 + 0.999 * slope);
 }
 
+TEST_CASE("misses are shown in red, and nothing else is") {
+    if (!has_context()) return;
+    const driver::Compilation c = compiled(rock);
+    gl::CachedView view;
+    use(view, c.scene);
+    const gl::FrameInputs inputs = frame_of(c.scene, 32);
+    const auto red = [&] {
+        const gl::Pixels pixels = view.read_pixels();
+        std::uint64_t count = 0;
+        for (std::size_t i = 0; i < pixels.rgba.size(); i += 4)
+            count += pixels.rgba[i] > 0.8f && pixels.rgba[i] > 2 * pixels.rgba[i + 2];
+        return count;
+    };
+    const gl::CacheSettings shown{.least_pixels = 0, .show_misses = true};
+    for (int frame = 0; frame < 4; ++frame) {
+        view.draw(inputs, c.scene.params, shown);
+        CHECK(red() == view.read_tally().misses);
+        if (frame == 0) CHECK(red() > 400);
+    }
+    warm(view, inputs, c.scene, 60, shown);
+    CHECK(red() == 0);
+}
+
 TEST_CASE("cells that are narrower than a pixel are not looked for") {
     if (!has_context()) return;
     const driver::Compilation c = compiled(rock); // cells of 0.05, pixels of about 0.1
