@@ -39,14 +39,24 @@ template <class Cell> class Runner {
 
     void run(const Selection &selection) const {
         const Selection::Rows *rows = selection.loops.data();
-        for (std::uint32_t id : selection.steps) {
-            const Step &step = selection.table[id];
-            if (step.kind == StepKind::Loop && !rows->all)
-                turns(program_.loops[step.target], selection.rows + rows->first, rows->count);
-            else
-                one(step, selection.operands + step.operands);
-            rows += step.kind == StepKind::Loop;
-        }
+        const auto run_step = [&](const Step &step, const std::uint32_t *operands) {
+            if (step.kind == StepKind::Run) {
+                loops_[step.target](cells_, operands, step.once ? 1 : n_);
+            } else if (step.kind == StepKind::Loop) {
+                if (rows->all)
+                    loop(program_.loops[step.target]);
+                else
+                    turns(program_.loops[step.target], selection.rows + rows->first, rows->count);
+                ++rows;
+            } else {
+                one(step, operands);
+            }
+        };
+        for (const Step &step : selection.packed)
+            run_step(step, selection.packed_operands + step.operands);
+        if (selection.packed.empty())
+            for (std::uint32_t id : selection.steps)
+                run_step(selection.table[id], selection.operands + selection.table[id].operands);
     }
 
   private:

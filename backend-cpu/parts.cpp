@@ -75,7 +75,8 @@ class PartMaker {
         const auto take = [&](std::size_t outs, std::size_t ins) {
             for (std::size_t k = 0; k < outs; ++k) writes.push_back(slot(operands[k]));
             for (std::size_t k = 0; k < ins; ++k) reads.push_back(slot(operands[outs + k]));
-            made.surely = static_cast<std::uint32_t>(outs);
+            made.surely = made.operands = static_cast<std::uint32_t>(outs);
+            made.operands += static_cast<std::uint32_t>(ins);
         };
         switch (step.kind) {
         case StepKind::Run: {

@@ -61,12 +61,13 @@ void prune(Stage &stage, Prune how) {
             middle[i] = (frame.hi[i] + frame.lo[i]) / 2;
         }
     }
+    const double pixel = frame.pixel * (stage.view.orthographic ? 1 : stage.view.focus);
+    const double cell = cell_pixels * pixel;
+    PruneSettings settings;
+    settings.depth = std::clamp(static_cast<int>(std::ceil(std::log2(side / cell) / 2)), 1, 10);
+    side = std::max(side, std::ldexp(cell, 2 * settings.depth));
     cube.side = static_cast<float>(side);
     for (std::size_t i = 0; i < 3; ++i) cube.lo[i] = static_cast<float>(middle[i] - side / 2);
-    const double pixel = frame.pixel * (stage.view.orthographic ? 1 : stage.view.focus);
-    PruneSettings settings;
-    settings.depth = std::clamp(
-        static_cast<int>(std::lround(std::log2(side / (cell_pixels * pixel)) / 2)), 1, 10);
     stage.pruning = std::make_shared<Pruning>(stage.distance, stage.inputs, cube, settings);
     settings.far_cells = false;
     stage.hit_pruning = std::make_shared<Pruning>(stage.hit, stage.inputs, cube, settings);

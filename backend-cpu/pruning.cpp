@@ -13,6 +13,8 @@ struct PruneBlock {
     std::array<PruneCell, most_boxes> cells;
     std::vector<std::uint32_t> steps, rows;
     std::vector<Selection::Rows> loops;
+    std::vector<Step> packed; // of those that are not split further
+    std::vector<std::uint32_t> operands;
 };
 
 namespace {
@@ -47,6 +49,16 @@ Boxes boxes_inside(const Pruning &pruning, const Place &place, int level) {
     return boxes;
 }
 
+void pack(const Parts &parts, const ShortTape &tape, PruneBlock &block) {
+    for (std::uint32_t id : tape.steps) {
+        Step step = parts.table[id];
+        const std::uint32_t *operands = parts.operands.data() + step.operands;
+        step.operands = static_cast<std::uint32_t>(block.operands.size());
+        block.operands.insert(block.operands.end(), operands, operands + parts.parts[id].operands);
+        block.packed.push_back(step);
+    }
+}
+
 PruneBlock *make_block(const Pruning &pruning, Asker &asker, const PruneCell &cell,
                        const Place &place, int level) {
     const Boxes boxes = boxes_inside(pruning, place, level);
@@ -55,13 +67,13 @@ PruneBlock *make_block(const Pruning &pruning, Asker &asker, const PruneCell &ce
         0.8660254f * std::ldexp(pruning.cube.side, -bits_a_level * (level + 1));
     auto block = std::make_unique<PruneBlock>();
     struct Piece {
-        std::size_t steps, loops;
+        std::size_t steps, loops, packed;
     };
     std::array<Piece, most_boxes> pieces{};
     ShortTape tape;
     for (std::size_t k = 0; k < most_boxes; ++k) {
         PruneCell &made = block->cells[k];
-        pieces[k] = {block->steps.size(), block->loops.size()};
+        pieces[k] = {block->steps.size(), block->loops.size(), block->packed.size()};
         const float least = asker.shortener.result_lo[k];
         if (pruning.settings.far_cells && least >= pruning.settings.far * half_diagonal)
             made.far = least;
@@ -79,17 +91,23 @@ PruneBlock *make_block(const Pruning &pruning, Asker &asker, const PruneCell &ce
         made.splits = made.far == 0 && level + 1 < pruning.settings.depth &&
                       tape.cost > pruning.settings.enough &&
                       (level < 1 || tape.cost < 0.8f * cell.cost);
+        if (!made.splits) pack(pruning.parts, tape, *block);
         ++asker.tally.cells;
     }
     for (std::size_t k = 0; k < most_boxes; ++k) {
         const bool last = k + 1 == most_boxes;
-        const std::size_t steps_end = last ? block->steps.size() : pieces[k + 1].steps,
-                          loops_end = last ? block->loops.size() : pieces[k + 1].loops;
-        block->cells[k].tape = {
-            pruning.parts.table.data(), pruning.parts.operands.data(),
-            std::span(block->steps).subspan(pieces[k].steps, steps_end - pieces[k].steps),
-            std::span(block->loops).subspan(pieces[k].loops, loops_end - pieces[k].loops),
-            block->rows.data()};
+        const Piece &first = pieces[k],
+                    &end =
+                        last ? Piece{block->steps.size(), block->loops.size(), block->packed.size()}
+                             : pieces[k + 1];
+        Selection &tape_of = block->cells[k].tape;
+        tape_of.table = pruning.parts.table.data();
+        tape_of.operands = pruning.parts.operands.data();
+        tape_of.steps = std::span(block->steps).subspan(first.steps, end.steps - first.steps);
+        tape_of.loops = std::span(block->loops).subspan(first.loops, end.loops - first.loops);
+        tape_of.rows = block->rows.data();
+        tape_of.packed = std::span(block->packed).subspan(first.packed, end.packed - first.packed);
+        tape_of.packed_operands = block->operands.data();
     }
     return block.release();
 }

@@ -189,8 +189,19 @@ class RangeRunner {
             const Loop::Carried &least = loop.carried[static_cast<std::size_t>(known.least)];
             run.ends = static_cast<std::uint32_t>(memory_.ends.size());
             copy_ends(cells_.hi, least.var, memory_.ends.emplace_back().hi);
+            above(run, rows.count);
         }
         memory_.loop_runs.push_back(run);
+    }
+
+    // Of a minimum nothing is changed either by a row that is above it in the end.
+    void above(const Shortener::LoopRun &run, std::uint32_t rows) {
+        static constexpr float nothing = 0;
+        const float *least = memory_.ends[run.ends].hi.data();
+        for (std::uint32_t i = 0; i < rows; ++i)
+            memory_.turns[run.first_turn + i].neutral |=
+                loops_.below(least, false, memory_.lows.data() + run.first_low + i * n_, false,
+                             &nothing, true, n_);
     }
 
     void row(const Loop &loop, const RowLoop &known) {
@@ -383,13 +394,12 @@ class Backward {
         Selection::Rows kept{static_cast<std::uint32_t>(tape.rows.size()), 0, from.all};
         bool renewed = false;
         if (!from.all) {
-            if (known.least >= 0) cutoff = std::min(cutoff, memory_.ends[run.ends].hi[box_]);
+            const bool cuts = known.least >= 0 && cutoff < memory_.ends[run.ends].hi[box_];
             const std::size_t boxes = memory_.boxes;
             for (std::uint32_t i = from.count; i-- > 0 && !renewed;) {
                 const Shortener::Turn &turn = memory_.turns[run.first_turn + i];
                 if (turn.neutral & bit_) continue;
-                if (known.least >= 0 && memory_.lows[run.first_low + i * boxes + box_] > cutoff)
-                    continue;
+                if (cuts && memory_.lows[run.first_low + i * boxes + box_] > cutoff) continue;
                 tape.rows.push_back(from_.rows[from.first + i]);
                 renewed = (turn.renewed & bit_) != 0;
             }

@@ -24,6 +24,7 @@ enum class Choice : std::uint8_t { None, Least, Greatest, Blend, Select };
 struct Part {
     std::uint32_t first_slot = 0; // in Parts::slots: those written, then those read
     std::uint32_t writes = 0, reads = 0;
+    std::uint32_t operands = 0; // how many stand in the table's
     std::uint32_t surely = 0;   // the first of those written: whatever happens
     float cost = 1;             // kernels
     std::int32_t decision = -1; // of a RowLoop's: which
@@ -40,8 +41,8 @@ struct Part {
 // the turn adds.
 struct RowLoop {
     bool droppable = false;
-    bool renewable = false; // what a turn adds does not depend on what was before, and where it
-                            // wins over that, it wins over what the loop began with
+    bool renewable = false;  // what a turn adds does not depend on what was before, and where it
+                             // wins over that, it wins over what the loop began with
     std::int32_t least = -1; // renewable, and the rest goes with the minimum that this decision
                              // keeps: then order is nothing; -1: not so
     std::int32_t turns = 0;

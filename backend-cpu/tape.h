@@ -125,6 +125,9 @@ struct Selection {
     std::span<const std::uint32_t> steps;
     std::span<const Rows> loops; // of the Loop steps among them, in order
     const std::uint32_t *rows = nullptr;
+    // The same steps once more, one after the other with their operands, where they are run often.
+    std::span<const Step> packed{};
+    const std::uint32_t *packed_operands = nullptr;
 };
 void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out,
               std::size_t n, const Selection &selection);

@@ -15,7 +15,8 @@ int main(int argc, char **argv) {
         {"process", measure_process},         {"front-end", measure_front_end},
         {"reload", measure_reload},           {"shader", measure_shader},
         {"by-hand", measure_hand_written},    {"steps", measure_steps},
-        {"noise-cache", measure_noise_cache}, {"interpreter", measure_interpreter}};
+        {"noise-cache", measure_noise_cache}, {"interpreter", measure_interpreter},
+        {"pruning", measure_pruning}};
     const std::vector<std::string> wanted(argv + 1, argv + argc);
     for (const std::string &name : wanted)
         if (std::none_of(std::begin(groups), std::end(groups),
@@ -23,7 +24,7 @@ int main(int argc, char **argv) {
             std::fprintf(
                 stderr,
                 "fathom-bench: no group `%s`; there are process, front-end, reload, shader, "
-                "by-hand, steps, noise-cache, interpreter\n",
+                "by-hand, steps, noise-cache, interpreter, pruning\n",
                 name.c_str());
             return 2;
         }

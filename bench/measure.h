@@ -56,6 +56,7 @@ complaint(const driver::Compilation &compilation); // its first error in words, 
 
 void measure_interpreter(Table &table);  // interpreter.cpp
 void measure_process(Table &table);      // process.cpp
+void measure_pruning(Table &table);      // pruning.cpp
 void measure_front_end(Table &table);    // front_end.cpp
 void measure_reload(Table &table);       // reload.cpp
 void measure_shader(Table &table);       // shader.cpp

@@ -1,4 +1,5 @@
 // fathom check: parses, types, proves; says what it found to people, or to editors as JSON.
+#include "backend-cpu/march.h"
 #include "cli/terminal.h"
 #include "driver/verdict.h"
 #include "typecheck/proof/prove.h"
@@ -48,6 +49,16 @@ void explain_params(const ir::Scene &scene, Terminal &terminal) {
                                      : "a number of the shader: moving it costs nothing"));
 }
 
+// Which cells hold which shapes is found while a picture is drawn; whether it will be is known now.
+void explain_pruning(const ir::Scene &scene, Terminal &terminal) {
+    const float shapes = cpu::shapes_of(cpu::compile(scene, scene.distance));
+    terminal.put(fmt::format("pruning: {}, with {:.0f} shapes to choose from\n",
+                             shapes >= cpu::prune_from
+                                 ? "the processor asks in each cell of space what can matter there"
+                                 : "not worth it",
+                             shapes));
+}
+
 Exit say(const CheckCommand &command, const driver::Compilation &compilation, Terminal &terminal) {
     if (!command.json || !compilation.unreadable.empty() || !compilation.usage_errors.empty()) {
         Exit exit = report(compilation, command.scene, terminal);
@@ -55,6 +66,7 @@ Exit say(const CheckCommand &command, const driver::Compilation &compilation, Te
         if (command.explain) {
             explain(proof::explain(compilation.scene), compilation.sources, "", "", terminal);
             explain_params(compilation.scene, terminal);
+            explain_pruning(compilation.scene, terminal);
         }
         if (!command.json) terminal.say(verdict_line(compilation, command.scene.file));
     }

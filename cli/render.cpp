@@ -108,7 +108,7 @@ Exit prepare_gl(Painter &painter, const driver::Compilation &compilation,
 
 std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
                              const RenderCommand &command, double time,
-                             const std::function<void(double)> &progress) {
+                             const std::function<void(double)> &progress, std::string &status) {
     if (painter.cache) {
         std::optional<gl::Pixels> pixels =
             draw_cached(*painter.cache, scene, command, time, progress);
@@ -136,6 +136,10 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
         cpu::render(stage, options, [&](double share, const cpu::Tile &, const cpu::Picture &) {
             return progress(share), true;
         });
+    if (stage.pruning && made.work.near > 0)
+        status =
+            fmt::format("pruned: {:.0f} shapes to {:.0f} a cell", cpu::shapes_of(stage.distance),
+                        made.work.near_shapes / static_cast<double>(made.work.near));
     return Picture{made.width, made.height, std::move(made.rgba)};
 }
 
@@ -155,10 +159,12 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
     for (int frame = first; frame < last; ++frame) {
         std::string out = command.frames ? frame_name(command.out, frame) : command.out;
         double time = command.time + (command.frames ? frame / command.frame_rate : 0);
-        std::optional<Picture> picture =
-            paint(painter, compilation.scene, command, time, [&](double share) {
-                terminal.progress(out, (frame - first + share) / (last - first));
-            });
+        std::string status; // what is worth knowing of how it was drawn
+        std::optional<Picture> picture = paint(
+            painter, compilation.scene, command, time,
+            [&](double share) { terminal.progress(out, (frame - first + share) / (last - first)); },
+            status);
+        if (!status.empty() && terminal.interactive()) terminal.say(out + ": " + status);
         if (!picture) {
             terminal.say(fmt::format("fathom: there is no memory for a picture of {}x{}",
                                      command.width, command.height));

@@ -182,6 +182,15 @@ TEST_CASE("colours are for terminals, or for those who ask") {
     CHECK_FALSE(contains(shell(folder, "NO_COLOR=1 fathom check bad.sdf").err, "\x1b["));
 }
 
+TEST_CASE("explaining says whether shapes are left out where they cannot matter") {
+    Scenes folder;
+    folder.write("many.sdf", "for i in 0..500 { sphere(0.1).translate([0.5 * i, 0, 0]) }\n");
+    CHECK(contains(shell(folder, "fathom check --explain good.sdf").out, "pruning: not worth it"));
+    CHECK(contains(shell(folder, "fathom check --explain many.sdf").out,
+                   "pruning: the processor asks in each cell"));
+    CHECK_FALSE(contains(shell(folder, "fathom check many.sdf").out, "pruning"));
+}
+
 TEST_CASE("the formatter changes files, or only names them") {
     Scenes folder;
     folder.write("messy.sdf", "sphere( 1 )\n");

@@ -1,0 +1,136 @@
+// What cells save on scenes of many shapes: rays from the eye with cells, made on the way, against
+// the same rays with the whole tape, a sample of them where all would take minutes; on one thread.
+#include "bench/measure.h"
+
+#include "backend-cpu/march.h"
+#include "backend-cpu/pruning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::bench {
+
+namespace {
+
+constexpr int side = 1024;
+
+// Evenly over a sphere (a Fibonacci lattice), about as wide as the gaps between them.
+std::string shell(int n) {
+    return fmt::format(R"(smooth_union({0}) {{
+  for i in 0..{1} {{
+    let y = 1 - (2 * i + 1) / {1}
+    let ring = sqrt(1 - y * y)
+    let angle = 2.39996323 * i
+    sphere({2} + {3} * (i % 20)).translate([ring * cos(angle), y, ring * sin(angle)])
+  }}
+}}
+camera(at: [2, 1.6, 3], fov: 45deg)
+)",
+                       1 / std::sqrt(double(n)), n, 1 / std::sqrt(double(n)),
+                       0.02 / std::sqrt(double(n)));
+}
+
+// In no order, spread over the ground.
+std::string field(int n) {
+    return fmt::format(R"(for i in 0..{0} {{
+  let u = fract(0.7548776662 * i)
+  let v = fract(0.5698402910 * i)
+  sphere(0.2 + 0.2 * fract(0.31 * i)).translate([{1} * (u - 0.5), sin({1} * 0.3 * u), {1} * (v - 0.5)])
+}}
+camera(at: [{2}, {2}, {2}], fov: 45deg)
+)",
+                       n, std::sqrt(double(n)), 0.6 * std::sqrt(double(n)));
+}
+
+std::vector<cpu::Ray> rays_of(const cpu::Stage &stage, int every) {
+    std::vector<cpu::Ray> rays;
+    // by tiles of 32, as pictures are drawn
+    for (int tile = 0; tile < side * side / 1024; tile += every)
+        for (int i = 0; i < 1024; ++i)
+            rays.push_back(
+                cpu::eye_ray(stage, static_cast<float>(tile % (side / 32) * 32 + i % 32) + 0.5f,
+                             static_cast<float>(tile / (side / 32) * 32 + i / 32) + 0.5f));
+    return rays;
+}
+
+void add(Table &table, const std::string &what, const std::string &text, int every, double goal) {
+    const driver::Compilation made = compiled_text("pruning.sdf", text);
+    if (!made.good()) {
+        table.push_back({.what = what, .missing = complaint(made)});
+        return;
+    }
+    const ir::View view = ir::view_of(made.scene, 0, 1);
+    const cpu::Stage whole = cpu::prepare(made.scene, view, side, side, 0, cpu::Prune::Never);
+    double pruned_seconds = 0, whole_seconds = 0;
+    {
+        const double begin = processor_seconds();
+        const cpu::Stage pruned = cpu::prepare(made.scene, view, side, side, 0, cpu::Prune::Always);
+        cpu::cast(pruned, rays_of(pruned, 1));
+        pruned_seconds = processor_seconds() - begin;
+    }
+    const std::vector<cpu::Ray> sample = rays_of(whole, every);
+    const double begin = processor_seconds();
+    cpu::cast(whole, sample);
+    whole_seconds = (processor_seconds() - begin) * side * side / double(sample.size());
+    table.push_back({.what = what,
+                     .value = 1 / pruned_seconds,
+                     .unit = "pictures/s",
+                     .baseline = "the whole tape",
+                     .baseline_value = 1 / whole_seconds,
+                     .least = goal});
+}
+
+// What cells about the surface keep of a scene's kernels, 64 along an axis.
+void add_share(Table &table, const std::string &name) {
+    const driver::Compilation made = compiled(name);
+    if (!made.good()) {
+        table.push_back({.what = name, .missing = complaint(made)});
+        return;
+    }
+    const cpu::Inputs inputs = cpu::inputs_of(made.scene, 0);
+    const cpu::Program program = cpu::compile(made.scene, made.scene.distance);
+    double width = 0;
+    cpu::Cube cube;
+    for (std::size_t i = 0; i < 3; ++i)
+        width = std::max(width, made.scene.bounds.hi[i] - made.scene.bounds.lo[i]);
+    cube.side = static_cast<float>(width);
+    for (std::size_t i = 0; i < 3; ++i)
+        cube.lo[i] =
+            static_cast<float>((made.scene.bounds.hi[i] + made.scene.bounds.lo[i] - width) / 2);
+    cpu::PruneSettings settings;
+    settings.depth = 3;
+    settings.enough = 0;
+    const cpu::Pruning pruning(program, inputs, cube, settings);
+    cpu::Asker asker(pruning, inputs);
+    std::vector<float> x, y, z, out, limits;
+    const float step = cube.side / 64;
+    for (int i = 0; i < 64 * 64 * 64; ++i) {
+        x.push_back(cube.lo[0] + step * (static_cast<float>(i % 64) + 0.5f));
+        y.push_back(cube.lo[1] + step * (static_cast<float>(i / 64 % 64) + 0.5f));
+        z.push_back(cube.lo[2] + step * (static_cast<float>(i / 4096) + 0.5f));
+    }
+    out.resize(x.size());
+    limits.assign(x.size(), 0);
+    const float *in[] = {x.data(), y.data(), z.data()};
+    float *to[] = {out.data()};
+    cpu::ask(pruning, asker, in, to, x.size(), limits.data());
+    const double left = asker.tally.kernels / double(asker.tally.near) / pruning.whole.cost;
+    table.push_back({.what = name + ": kernels left in a cell near the surface, of 64^3",
+                     .value = 100 * left,
+                     .unit = "%",
+                     .most = 11});
+}
+
+} // namespace
+
+void measure_pruning(Table &table) {
+    add(table, "shell of 1,000 blended spheres, rays from the eye", shell(1000), 17, 50);
+    add(table, "shell of 10,000 blended spheres", shell(10000), 131, 100);
+    add(table, "100,000 spheres in no order", field(100000), 331, 100);
+    add_share(table, "spheres_100.sdf");
+    add_share(table, "colored_spheres_256.sdf");
+}
+
+} // namespace fathom::bench
