@@ -235,6 +235,11 @@ void shadows(Worker &worker, std::span<const ShadowRay> rays, float angle, std::
         for (std::size_t k = 0; k < active.size(); ++k) {
             State &state = states[active[k]];
             const float d = worker.values[k];
+            if (bounds[k]) { // it shades nothing, and its ball touches nothing
+                state.before = 0;
+                state.s -= d;
+                continue;
+            }
             const bool is_close = next_close < close.size() && close[next_close] == k;
             const float near = is_close ? truth[next_close++] : d;
             const float y = state.before > 0 ? 0.5f * near * d / state.before : 0.0f;
@@ -245,7 +250,7 @@ void shadows(Worker &worker, std::span<const ShadowRay> rays, float angle, std::
                 state.s = 0; // done
                 continue;
             }
-            state.before = bounds[k] ? 0 : d; // a bound's ball touches nothing
+            state.before = d;
             state.s -= std::max(d, 0.25f * lengths.slack);
         }
     }
