@@ -30,7 +30,7 @@ struct Pruning;
 // Whether the shapes that cannot matter are left out, cell by cell (pruning.h). By itself from so
 // many shapes on.
 enum class Prune : std::uint8_t { Auto, Never, Always };
-inline constexpr float prune_from = 128;
+inline constexpr float prune_from = 256;
 
 // A scene made ready to be looked at from one place. Constant while any number of threads use it.
 struct Stage {
