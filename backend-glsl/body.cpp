@@ -185,7 +185,16 @@ class Writer {
         }
         const std::string i = names_.numbered('i');
         const int stride = turns_together(fold);
-        if (stride > 1) {
+        if (const auto pruned = module_.pruned.find(graph_[id].payload);
+            pruned != module_.pruned.end()) {
+            const std::string list = names_.numbered('n'), entry = names_.numbered('i');
+            line(indent, "uvec2 " + list + " = fathom_list(" + value(pruned->second.point) + ", " +
+                             std::to_string(pruned->second.grid) + ", " +
+                             std::to_string(pruned->second.rows) + "u);");
+            line(indent, "for (uint " + entry + " = " + list + ".x; " + entry + " < " + list +
+                             ".y; ++" + entry + ") {");
+            line(indent + 1, "int " + i + " = int(fathom_rows[" + entry + "]);");
+        } else if (stride > 1) {
             const std::string group = names_.numbered('i'), turn = names_.numbered('i');
             line(indent, "for (int " + group + " = 0; " + group + " < " +
                              expression(fold.count).text + "; " + group +

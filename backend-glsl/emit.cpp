@@ -6,6 +6,7 @@
 #include "backend-glsl/html.h"
 #include "backend-glsl/marcher.h"
 #include "backend-glsl/probe.h"
+#include "backend-glsl/prune.h"
 #include "backend-glsl/roll.h"
 #include "backend-glsl/validate.h"
 #include "base/text.h"
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace fathom::glsl {
 
@@ -55,6 +57,30 @@ class Emitter {
         : scene_(loops ? loops->scene : scene), options_(options),
           diagnostics_(diagnostics), module_{scene_, options, {}, {}, {}, {}, {}, {}, {}, {}, {}} {
         if (loops) module_.results = loops->results;
+    }
+
+    Emitter(const ir::Scene &scene, const std::map<std::uint32_t, ir::NodeId> &results,
+            const Options &options, Diagnostics &diagnostics)
+        : Emitter(scene, std::nullopt, options, diagnostics) {
+        module_.results = results;
+    }
+
+    void use(const PrunePlan &plan) { module_.pruned = plan.loops; }
+
+    // What lists the rows of one grid's cells.
+    PruneKernel run_kernel(const PrunedLoop &loop) {
+        const std::vector<ir::FunctionId> wanted{loop.value, loop.start, loop.joined, loop.radius};
+        const SceneText scene = assemble_functions(module_, wanted);
+        const auto name = [&](ir::FunctionId id) { return module_.functions.at(id.index); };
+        Output output = gathered();
+        PruneKernel kernel{"", output.tables, output.uniforms, loop.rows};
+        const std::string text = "#version 430 core\n// " + options_.title +
+                                 ": written by fathom.\n\n" + scene_inputs() + scene.tables +
+                                 scene.functions +
+                                 prune_kernel(loop, {name(loop.value), name(loop.start),
+                                                     name(loop.joined), name(loop.radius)});
+        if (check(text, output, Stage::Compute)) kernel.text = text;
+        return kernel;
     }
 
     // The fields that a text with the noise cache keeps, as a text of their own that ends in
@@ -175,7 +201,9 @@ class Emitter {
         marcher.zero = zero();
         marcher.pick = options_.instruments == Instruments::Pick;
         marcher.kept = !module_.kept.empty();
-        const std::string before = head() + inputs(view) + scene.tables + scene.functions;
+        const std::string before = head() + inputs(view) +
+                                   (module_.pruned.empty() ? "" : prune_look_up()) + scene.tables +
+                                   scene.functions;
         if (options_.instruments == Instruments::Probe) return before + probe_text(marcher);
         return before + hit_function() + scene.looks + marcher_text(marcher) + entry(view);
     }
@@ -219,7 +247,9 @@ class Emitter {
         case Target::Glsl450:
         case Target::Glsl330:
         case Target::GlslViewer:
-            text = module_.kept.empty() ? "#version 330 core\n" : "#version 420 core\n";
+            text = !module_.pruned.empty() ? "#version 430 core\n"
+                   : module_.kept.empty()  ? "#version 330 core\n"
+                                           : "#version 420 core\n";
             break;
         case Target::Es300:
         case Target::Html: text = "#version 300 es\n"; break;
@@ -416,7 +446,7 @@ class Emitter {
     // -- the check
     // -------------------------------------------------------------------------------------------------------
 
-    bool check(const std::string &text, Output &output) {
+    bool check(const std::string &text, Output &output, Stage stage = Stage::Fragment) {
         std::string before, after;
         if (options_.target == Target::Shadertoy)
             before = "#version 300 es\nprecision highp float;\nprecision highp int;\nuniform vec3 "
@@ -437,7 +467,7 @@ class Emitter {
             output.words = std::move(spirv.words);
             complaint = spirv.complaint;
         } else {
-            complaint = validate(whole);
+            complaint = validate(whole, stage);
         }
         if (!complaint) return true;
         Diagnostic &d = diagnostics_.add(Code::ShaderInvalid, {},
@@ -463,6 +493,21 @@ class Emitter {
     Module module_;
     int location_ = 0, binding_ = 0;
 };
+
+// The box of a scene's cells: larger than its bounds by what shading looks around.
+Pruning grid_of(const ir::Scene &scene) {
+    Pruning grid;
+    double diagonal = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        diagonal +=
+            (scene.bounds.hi[i] - scene.bounds.lo[i]) * (scene.bounds.hi[i] - scene.bounds.lo[i]);
+    const double by = 0.05 * std::sqrt(diagonal); // occlusion: 0.08 of half the diagonal
+    for (std::size_t i = 0; i < 3; ++i) {
+        grid.lo[i] = scene.bounds.lo[i] - by;
+        grid.hi[i] = scene.bounds.hi[i] + by;
+    }
+    return grid;
+}
 
 } // namespace
 
@@ -491,9 +536,35 @@ CachePasses emit_cache_passes(const ir::Scene &scene, const Options &options,
             Emitter(scene, loops, direct, diagnostics).run_fields(caches)};
 }
 
+std::vector<int> prunable_rows(const ir::Scene &scene) {
+    const std::optional<Rolled> loops = rolled(scene);
+    const auto plan = loops ? plan_pruning(loops->scene, loops->results) : plan_pruning(scene, {});
+    std::vector<int> rows;
+    if (plan)
+        for (const PrunedLoop &loop : plan->grids) rows.push_back(loop.rows);
+    return rows;
+}
+
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics) {
     const std::optional<Rolled> loops = rolled(scene);
-    return Emitter(scene, loops, options, diagnostics).run();
+    const std::map<std::uint32_t, ir::NodeId> results =
+        loops ? loops->results : std::map<std::uint32_t, ir::NodeId>{};
+    const std::optional<PrunePlan> plan =
+        options.pruning ? plan_pruning(loops ? loops->scene : scene, results) : std::nullopt;
+    if (!plan) return Emitter(scene, loops, options, diagnostics).run();
+    Emitter picture(plan->scene, results, options, diagnostics);
+    picture.use(*plan);
+    Output output = picture.run();
+    if (output.text.empty()) return output;
+    output.pruning = grid_of(scene);
+    for (const PrunedLoop &loop : plan->grids) {
+        Options direct = options;
+        direct.noise_cache = false;
+        output.pruning.kernels.push_back(
+            Emitter(plan->scene, results, direct, diagnostics).run_kernel(loop));
+        if (output.pruning.kernels.back().text.empty()) return {};
+    }
+    return output;
 }
 
 } // namespace fathom::glsl

@@ -6,6 +6,7 @@
 #include "base/diagnostic.h"
 #include "ir/scene.h"
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -38,7 +39,9 @@ struct Options {
     bool computed = false; // formulas first, also where there is a buffer
     int table_text = 16;   // rows up to which data is text all the same
     bool noise_cache =
-        false;       // GL 4.2: cached fields worth it are read through the noise cache (cache.h)
+        false; // GL 4.2: cached fields worth it are read through the noise cache (cache.h)
+    bool pruning =
+        false;       // GL 4.3: long loops run over the rows that can matter in a cell (prune.h)
     double time = 0; // where a target has no host that sets a camera: the moment whose camera is
                      // the first view
     std::string title = "scene";              // html: the page's title
@@ -68,6 +71,20 @@ struct KeptField {
     std::vector<std::uint32_t> params; // that it reads
 };
 
+// A compute shader that makes the lists of one grid, and its own data.
+struct PruneKernel {
+    std::string text;
+    std::vector<float> tables;
+    std::vector<Uniform> uniforms;
+    int rows = 0;
+};
+
+// What a text with `pruning` runs by: cells that fill this box, as many grids of them as kernels.
+struct Pruning {
+    std::array<double, 3> lo{}, hi{};
+    std::vector<PruneKernel> kernels;
+};
+
 struct Output {
     std::string text;                 // empty where an error was reported
     std::vector<std::uint32_t> words; // spirv
@@ -76,10 +93,14 @@ struct Output {
         tables; // RGBA32F texels of `fathom_tables`; empty where the text holds the data
     std::vector<Sampler> images, grids;
     std::vector<KeptField> kept;
+    Pruning pruning;
     bool reads_time = false;
 };
 
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics);
+
+// By loop that `pruning` would make lists for: its rows.
+std::vector<int> prunable_rows(const ir::Scene &scene);
 
 // The passes that follow a picture drawn by a text with `noise_cache`. Empty where no field is
 // kept.

@@ -5,6 +5,7 @@
 #include "backend-glsl/cache.h"
 #include "backend-glsl/emit.h"
 #include "backend-glsl/names.h"
+#include "backend-glsl/prune.h"
 
 #include <map>
 #include <set>
@@ -38,6 +39,8 @@ struct Module {
     bool hits = false;                        // the struct Hit is used
     std::map<std::uint32_t, KeptText> kept{}; // by CacheId: the fields read through the noise cache
     std::map<std::uint32_t, ir::NodeId> results{}; // by FunctionId: as loops (roll.h)
+
+    std::map<std::uint32_t, PrunePlan::Use> pruned{}; // by FoldId: loops over a cell's rows
 
     ir::NodeId result_of(ir::FunctionId id) const {
         const auto it = results.find(id.index);

@@ -251,4 +251,10 @@ std::optional<Rolled> rolled(const ir::Scene &scene) {
     return result;
 }
 
+NodeId without_calls(Graph &graph, NodeId id) {
+    std::map<NodeId, NodeId> done;
+    std::size_t left = largest_operand;
+    return without_calls(graph, id, done, left);
+}
+
 } // namespace fathom::glsl

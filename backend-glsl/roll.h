@@ -12,12 +12,15 @@
 namespace fathom::glsl {
 
 struct Rolled {
-    ir::Scene scene;                         // a copy with the loops and tables added
+    ir::Scene scene;                             // a copy with the loops and tables added
     std::map<std::uint32_t, ir::NodeId> results; // by FunctionId: what it is to hand back instead
 };
 
 // Such lists as Folds whose turn i computes, to the bit, what operand i did. Nothing where there is
 // no such list.
 std::optional<Rolled> rolled(const ir::Scene &scene);
+
+// The expression without calls, loops' bodies apart; unchanged below where it would be very large.
+ir::NodeId without_calls(ir::Graph &graph, ir::NodeId id);
 
 } // namespace fathom::glsl

@@ -46,9 +46,9 @@ Complaint first_complaint(std::string_view log) {
 
 } // namespace
 
-std::optional<Complaint> validate(const std::string &text) {
+std::optional<Complaint> validate(const std::string &text, Stage stage) {
     start_glslang();
-    glslang::TShader shader(EShLangFragment);
+    glslang::TShader shader(stage == Stage::Compute ? EShLangCompute : EShLangFragment);
     const char *texts[] = {text.c_str()};
     const int lengths[] = {static_cast<int>(text.size())};
     shader.setStringsWithLengths(texts, lengths, 1);

@@ -14,8 +14,10 @@ struct Complaint {
     std::string message;
 };
 
-// A whole fragment shader with its #version line. Nothing where it is valid.
-std::optional<Complaint> validate(const std::string &text);
+enum class Stage { Fragment, Compute };
+
+// A whole shader with its #version line. Nothing where it is valid.
+std::optional<Complaint> validate(const std::string &text, Stage stage = Stage::Fragment);
 
 // The same text as SPIR-V for OpenGL 4.5 (GL_ARB_gl_spirv), or what is wrong with it.
 struct SpirV {

@@ -5,6 +5,7 @@
 #include "backend-glsl/emit.h"
 #include "cli/terminal.h"
 #include "render-gl/context.h"
+#include "render-gl/pruning.h"
 #include "render-gl/render.h"
 
 #include <algorithm>
@@ -70,16 +71,17 @@ void bench_front_end(const BenchCommand &command, Terminal &terminal) {
 }
 
 void bench_gl(const BenchCommand &command, const ir::Scene &scene, Terminal &terminal) {
+    auto context = gl::Context::make();
     Diagnostics diagnostics;
     glsl::Options options;
     options.target = glsl::Target::Glsl330;
     options.buffers = true;
+    options.pruning = std::holds_alternative<gl::Context>(context) && gl::can_prune();
     glsl::Output output;
     double emitting = measure([&] { output = glsl::emit(scene, options, diagnostics); });
     row(terminal, "emit and validate", emitting, "ms");
     row(terminal, "shader", static_cast<double>(output.text.size()) / 1024, "KB");
     if (diagnostics.has_errors()) return;
-    auto context = gl::Context::make();
     if (const std::string *why = std::get_if<std::string>(&context)) {
         terminal.say(fmt::format("fathom: nothing is measured by GL: {}", *why));
         return;
@@ -98,6 +100,16 @@ void bench_gl(const BenchCommand &command, const ir::Scene &scene, Terminal &ter
     draw();
     row(terminal, "first frame", milliseconds_since(start), "ms");
     row(terminal, "frame", measure(draw), "ms");
+    gl::Pruning *pruning = std::get<gl::Program>(program).pruning();
+    if (!pruning) return;
+    row(terminal, "  rows in a cell, mean", pruning->tally().rows, "");
+    row(terminal, "  rows in all", pruning->tally().all, "");
+    row(terminal, "  cells along an axis", pruning->tally().side, "");
+    row(terminal, "  making the lists", measure([&] {
+            pruning->remake(scene.params);
+            gl::finish();
+        }),
+        "ms");
 }
 
 void bench_cpu(const BenchCommand &command, const ir::Scene &scene, Terminal &terminal) {

@@ -1,5 +1,6 @@
 // fathom check: parses, types, proves; says what it found to people, or to editors as JSON.
 #include "backend-cpu/march.h"
+#include "backend-glsl/emit.h"
 #include "cli/terminal.h"
 #include "driver/verdict.h"
 #include "typecheck/proof/prove.h"
@@ -67,6 +68,10 @@ Exit say(const CheckCommand &command, const driver::Compilation &compilation, Te
             explain(proof::explain(compilation.scene), compilation.sources, "", "", terminal);
             explain_params(compilation.scene, terminal);
             explain_pruning(compilation.scene, terminal);
+            for (int rows : glsl::prunable_rows(compilation.scene))
+                terminal.put(fmt::format("a loop over {} rows: where GL 4.3 draws, each cell of "
+                                         "space has a list of those that can matter in it\n",
+                                         rows));
         }
         if (!command.json) terminal.say(verdict_line(compilation, command.scene.file));
     }

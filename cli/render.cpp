@@ -6,6 +6,7 @@
 #include "cli/terminal.h"
 #include "render-gl/cache_passes.h"
 #include "render-gl/context.h"
+#include "render-gl/pruning.h"
 
 #include <fmt/format.h>
 
@@ -80,6 +81,7 @@ Exit prepare_gl(Painter &painter, const driver::Compilation &compilation,
     glsl::Options options;
     options.target = glsl::Target::Glsl330;
     options.buffers = true;
+    options.pruning = gl::can_prune();
     glsl::Output output = glsl::emit(compilation.scene, options, diagnostics);
     print_diagnostics(diagnostics, compilation.sources, terminal);
     if (diagnostics.has_errors()) return scene_error;

@@ -1,6 +1,7 @@
 #include "render-gl/program.h"
 
-#include "base/text.h"
+#include "render-gl/pruning.h"
+#include "render-gl/shaders.h"
 
 #include <epoxy/gl.h>
 
@@ -19,58 +20,6 @@ void main() {
 }
 )";
 
-std::string nth_line(const std::string &text, int n) {
-    std::size_t begin = 0;
-    for (int i = 1; i < n; ++i) {
-        begin = text.find('\n', begin);
-        if (begin == std::string::npos) return "";
-        ++begin;
-    }
-    return text.substr(begin, text.find('\n', begin) - begin);
-}
-
-// Drivers write "0:12(5): error: …" (Mesa), "0(12) : error …" (NVIDIA) or "ERROR: 0:12: …"
-// (others): the line is the first number that follows "0:" or "0(".
-ProgramError read_log(const std::string &log, const std::string &text) {
-    ProgramError error;
-    error.message = log.substr(0, log.find('\n'));
-    for (std::size_t at = 0; at + 1 < log.size(); ++at) {
-        const bool starts = at == 0 || !(log[at - 1] >= '0' && log[at - 1] <= '9');
-        if (!starts || log[at] != '0' || (log[at + 1] != ':' && log[at + 1] != '(')) continue;
-        std::size_t end = at + 2;
-        while (end < log.size() && log[end] >= '0' && log[end] <= '9') ++end;
-        if (const auto line = parse_number(log.substr(at + 2, end - at - 2))) {
-            error.line = static_cast<int>(*line);
-            error.source_line = nth_line(text, error.line);
-            break;
-        }
-    }
-    if (error.message.empty()) error.message = "the driver refuses the shader without saying why";
-    return error;
-}
-
-struct Shader {
-    GLuint name;
-    explicit Shader(GLenum kind) : name(glCreateShader(kind)) {}
-    ~Shader() { glDeleteShader(name); }
-    Shader(const Shader &) = delete;
-    Shader &operator=(const Shader &) = delete;
-};
-
-std::optional<ProgramError> compile(GLuint shader, const std::string &text) {
-    const char *data = text.c_str();
-    const auto size = static_cast<GLint>(text.size());
-    glShaderSource(shader, 1, &data, &size);
-    glCompileShader(shader);
-    GLint good = 0, length = 0;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-    if (good) return std::nullopt;
-    glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
-    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-    glGetShaderInfoLog(shader, length, nullptr, log.data());
-    return read_log(log, text);
-}
-
 void unfiltered(GLenum target) {
     glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
@@ -83,37 +32,13 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
                                                    const ir::Scene &scene) {
     Program result;
     result.uniforms_ = output.uniforms;
-    Shader vertex(GL_VERTEX_SHADER), fragment(GL_FRAGMENT_SHADER);
-    if (auto error = compile(vertex.name, vertex_text)) return *error;
-    if (auto error = compile(fragment.name, output.text)) return *error;
-    result.program_ = glCreateProgram();
-    glAttachShader(result.program_, vertex.name);
-    glAttachShader(result.program_, fragment.name);
-    glLinkProgram(result.program_);
-    glDetachShader(result.program_, vertex.name);
-    glDetachShader(result.program_, fragment.name);
-    GLint good = 0;
-    glGetProgramiv(result.program_, GL_LINK_STATUS, &good);
-    if (!good) {
-        GLint length = 0;
-        glGetProgramiv(result.program_, GL_INFO_LOG_LENGTH, &length);
-        std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-        glGetProgramInfoLog(result.program_, length, nullptr, log.data());
-        return read_log(log, output.text);
-    }
+    if (auto error = link(result.program_,
+                          {{GL_VERTEX_SHADER, vertex_text}, {GL_FRAGMENT_SHADER, output.text}}))
+        return *error;
     glUseProgram(result.program_);
 
-    if (!output.tables.empty()) {
-        glGenBuffers(1, &result.table_buffer_);
-        glBindBuffer(GL_TEXTURE_BUFFER, result.table_buffer_);
-        glBufferData(GL_TEXTURE_BUFFER,
-                     static_cast<GLsizeiptr>(output.tables.size() * sizeof(float)),
-                     output.tables.data(), GL_DYNAMIC_DRAW);
-        glGenTextures(1, &result.table_texture_);
-        glBindTexture(GL_TEXTURE_BUFFER, result.table_texture_);
-        glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, result.table_buffer_);
-        glUniform1i(result.location("fathom_tables"), 0);
-    }
+    if (auto error = result.tables_.fill(output.tables)) return *error;
+    if (!output.tables.empty()) glUniform1i(result.location("fathom_tables"), 0);
     GLint unit = 1;
     for (const glsl::Sampler &sampler : output.images) {
         const ir::ImageData &image = scene.images[sampler.index];
@@ -138,12 +63,18 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
         result.textures_.emplace_back(GL_TEXTURE_3D, texture);
         glUniform1i(result.location(sampler.name.c_str()), unit++);
     }
+    if (!output.pruning.kernels.empty()) {
+        auto pruning = Pruning::build(output.pruning);
+        if (const auto *error = std::get_if<ProgramError>(&pruning)) return *error;
+        result.pruning_ = std::move(std::get<std::unique_ptr<Pruning>>(pruning));
+    }
     return result;
 }
 
 int Program::location(const char *name) const { return glGetUniformLocation(program_, name); }
 
 void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) const {
+    if (pruning_) pruning_->prepare(params);
     glUseProgram(program_);
     const auto vector = [&](const char *name, const ir::Triple &v) {
         glUniform3f(location(name), static_cast<float>(v[0]), static_cast<float>(v[1]),
@@ -170,34 +101,17 @@ void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) 
         glUniform1fv(location("fathom_edited"), static_cast<GLsizei>(edited_.size()),
                      edited_.data());
 
-    for (const glsl::Uniform &uniform : uniforms_) {
-        const std::array<double, 4> &v = params[uniform.param].value;
-        const std::array<float, 4> f{static_cast<float>(v[0]), static_cast<float>(v[1]),
-                                     static_cast<float>(v[2]), static_cast<float>(v[3])};
-        const int at = location(uniform.name.c_str());
-        switch (uniform.type) {
-        case ir::Type::Bool:
-        case ir::Type::Int: glUniform1i(at, static_cast<GLint>(v[0])); break;
-        case ir::Type::Float: glUniform1fv(at, 1, f.data()); break;
-        case ir::Type::Vec2: glUniform2fv(at, 1, f.data()); break;
-        case ir::Type::Vec3: glUniform3fv(at, 1, f.data()); break;
-        case ir::Type::Vec4: glUniform4fv(at, 1, f.data()); break;
-        case ir::Type::Mat2:
-        case ir::Type::Mat3:
-        case ir::Type::Mat4:
-        case ir::Type::Hit: break; // no such params
-        }
-    }
-    if (table_texture_) {
-        glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_BUFFER, table_texture_);
-    }
+    set_params(program_, uniforms_, params);
+    tables_.bind();
+    if (pruning_) pruning_->bind(program_);
     for (std::size_t i = 0; i < textures_.size(); ++i) {
         glActiveTexture(GL_TEXTURE1 + static_cast<GLenum>(i));
         glBindTexture(textures_[i].first, textures_[i].second);
     }
     draw_triangle();
 }
+
+Pruning *Program::pruning() const { return pruning_.get(); }
 
 void Program::use() const { glUseProgram(program_); }
 
@@ -240,33 +154,26 @@ void Program::warm_up(const std::vector<ir::Param> &params) const {
     glDeleteTextures(2, textures);
 }
 
-void Program::upload_tables(const std::vector<float> &texels) const {
-    if (!table_buffer_) return;
-    glBindBuffer(GL_TEXTURE_BUFFER, table_buffer_);
-    glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(texels.size() * sizeof(float)),
-                    texels.data());
-}
-
 void Program::adopt(const glsl::Output &output) {
     uniforms_ = output.uniforms;
-    upload_tables(output.tables);
+    tables_.replace(output.tables);
+    if (pruning_) pruning_->adopt(output.pruning);
 }
 
 void Program::release() {
     for (const auto &[target, name] : textures_) glDeleteTextures(1, &name);
-    if (table_texture_) glDeleteTextures(1, &table_texture_);
-    if (table_buffer_) glDeleteBuffers(1, &table_buffer_);
     if (program_) glDeleteProgram(program_);
     textures_.clear();
-    program_ = table_buffer_ = table_texture_ = 0;
+    program_ = 0;
 }
 
+Program::Program() = default;
 Program::Program(Program &&other) noexcept { *this = std::move(other); }
 
 Program &Program::operator=(Program &&other) noexcept {
     std::swap(program_, other.program_);
-    std::swap(table_buffer_, other.table_buffer_);
-    std::swap(table_texture_, other.table_texture_);
+    std::swap(tables_, other.tables_);
+    std::swap(pruning_, other.pruning_);
     std::swap(textures_, other.textures_);
     std::swap(uniforms_, other.uniforms_);
     std::swap(edited_, other.edited_);

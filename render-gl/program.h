@@ -4,19 +4,17 @@
 
 #include "backend-glsl/emit.h"
 #include "ir/view.h"
+#include "render-gl/shaders.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace fathom::gl {
 
-// What the driver says against a shader, with the line of our text.
-struct ProgramError {
-    int line = 0; // 0: of no line
-    std::string message, source_line;
-};
+class Pruning;
 
 enum class Mode { Picture = 0, Heat = 1, Numbers = 2, Linear = 3, Slice = 4, Check = 5 };
 
@@ -41,12 +39,11 @@ class Program {
     // params' values of `params`.
     void draw(const FrameInputs &inputs, const std::vector<ir::Param> &params) const;
 
+    Pruning *pruning() const; // nothing where all rows are computed everywhere
+
     // For passes that set uniforms of their own: the GL program, and how to make it current.
     unsigned name() const { return program_; }
     void use() const;
-
-    // Replaces the tables' numbers where only these changed. Their size must be the same.
-    void upload_tables(const std::vector<float> &texels) const;
 
     // A fresh output of the same text, literals apart: its params may stand elsewhere, its tables
     // hold other numbers.
@@ -63,11 +60,13 @@ class Program {
     ~Program();
 
   private:
-    Program() = default;
+    Program();
     void release();
     int location(const char *name) const;
 
-    unsigned program_ = 0, table_buffer_ = 0, table_texture_ = 0;
+    unsigned program_ = 0;
+    TableData tables_;
+    std::unique_ptr<Pruning> pruning_;                    // where the text runs over lists by cell
     std::vector<std::pair<unsigned, unsigned>> textures_; // target, name; bound to units 1, 2, …
     std::vector<glsl::Uniform> uniforms_;
     std::vector<float> edited_;

@@ -1,5 +1,7 @@
 #include "render-gl/render.h"
 
+#include "render-gl/pruning.h"
+
 #include <epoxy/gl.h>
 
 #include <algorithm>
@@ -118,8 +120,9 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
 
 std::optional<Picture> render(const ir::Scene &scene, const Request &request,
                               Diagnostics &diagnostics) {
-    const glsl::Output output =
-        glsl::emit(scene, {.target = glsl::Target::Glsl330, .buffers = true}, diagnostics);
+    const glsl::Output output = glsl::emit(
+        scene, {.target = glsl::Target::Glsl330, .buffers = true, .pruning = can_prune()},
+        diagnostics);
     if (output.text.empty()) return std::nullopt;
     const auto built = Program::build(output, scene);
     if (const auto *error = std::get_if<ProgramError>(&built)) {

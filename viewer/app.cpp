@@ -3,6 +3,7 @@
 
 #include "driver/edit.h"
 #include "driver/verdict.h"
+#include "render-gl/pruning.h"
 #include "viewer/params.h"
 
 #include <algorithm>
@@ -46,6 +47,10 @@ bool App::adopt(Build &build) {
     status.linked_anew = build.picture_link.program.has_value();
     if (status.linked_anew) status.driver_ms = build.picture_link.driver_ms;
     use(program, build.picture_link, build.picture);
+    status.lists.clear();
+    if (const gl::Pruning *pruning = program ? program->pruning() : nullptr)
+        status.lists = fmt::format("{:.0f} of {:.0f} rows a cell", pruning->tally().rows,
+                                   pruning->tally().all);
     if (build.probe.text.empty())
         probe.reset();
     else

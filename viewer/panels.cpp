@@ -72,6 +72,7 @@ float show_status(const Shown &shown) {
         fmt::format("{:.1f} steps a ray", status.mean_steps),
         fmt::format("{}x{}", status.width, status.height),
         "? keys"};
+    if (!status.lists.empty()) parts.insert(parts.end() - 2, status.lists);
     if (remarks)
         parts.insert(parts.begin() + 2,
                      fmt::format("{} remark{} (N)", remarks, remarks == 1 ? "" : "s"));

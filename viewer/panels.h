@@ -19,6 +19,7 @@ struct Status {
     std::string bound;     // "L 1.25 proved"
     std::string note;      // the last thing done: "camera line copied"
     double mean_steps = 0; // a ray
+    std::string lists;     // how many rows a cell has, where loops are pruned
     bool linked_anew = false;
     int width = 0, height = 0; // of the viewport, in pixels
 };

@@ -1,6 +1,7 @@
 #include "viewer/worker.h"
 
 #include "driver/edit.h"
+#include "render-gl/pruning.h"
 
 #include <algorithm>
 #include <chrono>
@@ -118,6 +119,7 @@ std::unique_ptr<Build> Worker::build() {
         target.buffers =
             true; // no places in the text: a moved line changes nothing for the graphics driver
         target.part_stride = compilation.parts.stride;
+        target.pruning = pruning_;
         target.instruments = glsl::Instruments::Pick;
         Diagnostics emission;
         result->picture = glsl::emit(compilation.scene, target, emission);
@@ -135,6 +137,8 @@ std::unique_ptr<Build> Worker::build() {
 void Worker::run() {
     const bool lent = hooks_.take_context && hooks_.take_context();
     lent_ = lent;
+    // On the processor making the lists would hold up every edit.
+    pruning_ = lent && gl::can_prune() && !gl::is_software();
     {
         Linkers linkers;
         std::size_t number = 0;

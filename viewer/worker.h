@@ -91,7 +91,8 @@ class Worker {
     std::string complaint_;
     std::atomic<bool> lent_ = false;
     std::atomic<bool> asked_ = false, ending_ = false, probe_ = false;
-    std::thread thread_; // last: starts when all else is there
+    bool pruning_ = false; // of the thread's own
+    std::thread thread_;   // last: starts when all else is there
 };
 
 } // namespace fathom::viewer

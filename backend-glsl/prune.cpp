@@ -1,0 +1,271 @@
+#include "backend-glsl/prune.h"
+
+#include "backend-glsl/fill.h"
+#include "backend-glsl/module.h"
+#include "backend-glsl/roll.h"
+#include "backend-glsl/slope.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <unordered_set>
+
+namespace fathom::glsl {
+
+using ir::Graph;
+using ir::NodeId;
+using ir::Op;
+using ir::Type;
+
+namespace {
+
+// The distance of a hit's expression; none where it is not plain.
+NodeId distance_of(Graph &graph, NodeId id) {
+    const ir::Node node = graph[id];
+    if (node.type == Type::Float) return id;
+    const std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
+    if (node.op == Op::MakeHit) return args[0];
+    if (node.op == Op::HitWith) return args[1];
+    if (node.op == Op::FillPaint) return distance_of(graph, args[0]);
+    if (node.op == Op::Select) {
+        const NodeId yes = distance_of(graph, args[1]), no = distance_of(graph, args[2]);
+        return yes && no ? graph.make(Op::Select, {args[0], yes, no}) : NodeId{};
+    }
+    return {};
+}
+
+class Planner {
+  public:
+    Planner(const ir::Scene &scene, const std::map<std::uint32_t, NodeId> &results)
+        : plan_{scene, {}, {}}, graph_(plan_.scene.graph), results_(results) {
+        point_ = graph_.fresh_var(Type::Vec3);
+        row_ = graph_.fresh_var(Type::Int);
+        acc_ = graph_.fresh_var(Type::Float);
+    }
+
+    PrunePlan run() {
+        for (ir::FunctionId id : {plan_.scene.distance, plan_.scene.hit})
+            if (id) look_through(id);
+        return std::move(plan_);
+    }
+
+  private:
+    // The loops of a function's own body, those apart whose record two of them share.
+    void look_through(ir::FunctionId id) {
+        const ir::Function &function = graph_.function(id);
+        const auto other = results_.find(id.index);
+        std::vector<NodeId> todo{other == results_.end() ? function.result : other->second}, loops;
+        const NodeId point = function.params[0];
+        std::unordered_set<NodeId> seen;
+        std::map<std::uint32_t, int> uses;
+        while (!todo.empty()) {
+            const NodeId node = todo.back();
+            todo.pop_back();
+            if (!seen.insert(node).second) continue;
+            todo.insert(todo.end(), graph_.args(node).begin(), graph_.args(node).end());
+            if (graph_[node].op != Op::Fold) continue;
+            loops.push_back(node);
+            ++uses[graph_[node].payload];
+        }
+        std::ranges::sort(loops);
+        for (NodeId loop : loops)
+            if (uses[graph_[loop].payload] == 1) add(loop, point);
+    }
+
+    void add(NodeId loop, NodeId point) {
+        const std::uint32_t record = graph_[loop].payload;
+        const ir::Fold fold = graph_.fold(ir::FoldId{record});
+        const auto count = graph_.as_number(fold.count);
+        if (fold.vars.size() != 1 || fold.condition || !count || *count < least_pruned ||
+            *count != fold.max_count)
+            return;
+        const NodeId next = fold.next[0];
+        const Op op = graph_[next].op;
+        const std::size_t first = op == Op::Blend ? 2 : 0;
+        if (op != Op::Blend && op != Op::Union && op != Op::NearestHit) return;
+        // Other profiles may be steeper than what they join.
+        if (op == Op::Blend &&
+            graph_[next].payload != static_cast<std::uint32_t>(ir::Profile::Smooth))
+            return;
+        const std::vector<NodeId> args(graph_.args(next).begin(), graph_.args(next).end());
+        if (args.size() != first + 2 || args[first] != fold.vars[0]) return;
+
+        const ir::Substitution plain{{point, point_}, {fold.index, row_}, {fold.vars[0], acc_}};
+        const auto renamed = [&](NodeId id) { return id ? ir::substitute(graph_, id, plain) : id; };
+        const NodeId value = renamed(distance_of(graph_, args[first + 1])),
+                     start = renamed(distance_of(graph_, graph_.arg(loop, 0)));
+        const NodeId radius = op == Op::Blend ? args[0] : graph_.number(0);
+        if (!value || !start || !reads_only(value, {point_, row_}) ||
+            !reads_only(start, {point_}) || !reads_only(radius, {}))
+            return;
+        NodeId joined = graph_.make(Op::Union, {acc_, value});
+        if (op == Op::Blend) joined = renamed(next);
+        if (!reads_only(joined, {point_, row_, acc_})) return;
+
+        const auto key = std::make_tuple(value, start, joined);
+        const auto [it, fresh] = known_.try_emplace(key, static_cast<int>(plan_.grids.size()));
+        if (fresh) {
+            PrunedLoop made;
+            made.slope = slope(value);
+            made.acc_slope = std::max(made.slope, slope(start));
+            if (!(made.acc_slope <= steepest_pruned) || plan_.grids.size() >= most_grids) {
+                it->second = -1;
+                return;
+            }
+            made.blended = op == Op::Blend;
+            made.rows = fold.max_count;
+            made.value = graph_.add_function({"value", {}, {point_, row_}, value});
+            made.start = graph_.add_function({"start", {}, {point_}, start});
+            made.joined = graph_.add_function({"joined", {}, {acc_, point_, row_}, joined});
+            made.radius = graph_.add_function({"radius", {}, {point_}, radius});
+            plan_.grids.push_back(made);
+        }
+        if (it->second >= 0) plan_.loops[record] = {it->second, fold.max_count, point};
+    }
+
+    bool reads_only(NodeId id, std::initializer_list<NodeId> vars) const {
+        const Graph::Reads reads = graph_.reads(id);
+        if (reads.time || reads.point || reads.normal || reads.direction) return false;
+        return std::ranges::all_of(graph_.free_vars(id), [&](NodeId var) {
+            return std::ranges::find(vars, var) != vars.end();
+        });
+    }
+
+    double slope(NodeId id) { return slope_of(graph_, without_calls(graph_, id), point_); }
+
+    PrunePlan plan_;
+    Graph &graph_;
+    const std::map<std::uint32_t, NodeId> &results_;
+    NodeId point_, row_, acc_;
+    std::map<std::tuple<NodeId, NodeId, NodeId>, int> known_; // -1: cannot be pruned
+};
+
+constexpr const char *look_up = R"(
+// Which rows of a long loop can matter in which cell (docs/performance.md).
+layout(std430, binding = 0) readonly buffer fathom_Cells { uvec2 fathom_cells[]; };
+layout(std430, binding = 1) readonly buffer fathom_Rows { uint fathom_rows[]; };
+uniform vec3 fathom_grid_lo, fathom_grid_size;
+uniform int fathom_grid_side;
+
+uvec2 fathom_list(vec3 p, int grid, uint rows) {
+    float side = float(fathom_grid_side);
+    vec3 place = (p - fathom_grid_lo) * (side / fathom_grid_size);
+    bool inside = all(greaterThanEqual(place, vec3(0.0))) && all(lessThan(place, vec3(side)));
+    if (!inside) return uvec2(0u, rows);
+    ivec3 c = ivec3(place);
+    return fathom_cells[((grid * fathom_grid_side + c.z) * fathom_grid_side + c.y) * fathom_grid_side + c.x];
+}
+)";
+
+constexpr const char *kernel_head = R"(
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer fathom_Parents { uvec2 fathom_parents[]; };
+layout(std430, binding = 1) readonly buffer fathom_Before { uint fathom_before[]; };
+layout(std430, binding = 2) writeonly buffer fathom_Cells { uvec2 fathom_cells[]; };
+layout(std430, binding = 3) writeonly buffer fathom_Rows { uint fathom_rows[]; };
+layout(std430, binding = 4) buffer fathom_Total { uint fathom_total; };
+uniform vec3 fathom_grid_lo, fathom_grid_size;
+uniform int fathom_grid; // which of the scene's
+uniform int fathom_grid_side, fathom_parent_side; // cells along an axis; 0: no parents, all rows
+uniform uint fathom_room; // entries of fathom_rows
+
+void main() {
+    int side = fathom_grid_side;
+    int cell = int(gl_GlobalInvocationID.x);
+    if (cell >= side * side * side) return;
+    ivec3 c = ivec3(cell % side, cell / side % side, cell / (side * side));
+    vec3 size = fathom_grid_size / float(side);
+    vec3 center = fathom_grid_lo + (vec3(c) + 0.5) * size;
+    float extent = length(max(abs(fathom_grid_lo), abs(fathom_grid_lo + fathom_grid_size)));
+    float reach = 0.501 * length(size) + 1e-6 * extent;
+    uvec2 from = uvec2(0u, uint($ROWS));
+    if (fathom_parent_side > 0) {
+        ivec3 b = c * fathom_parent_side / side;
+        from = fathom_parents[((fathom_grid * fathom_parent_side + b.z) * fathom_parent_side + b.y) *
+                                  fathom_parent_side + b.x];
+    }
+    float margin = $SLOPES * reach + 1e-5 * extent;
+    uint count = 0u;
+)";
+
+constexpr const char *kernel_least = R"(
+    float least = $START(center);
+    for (uint k = from.x; k < from.y; ++k) least = min(least, $VALUE(center, int(fathom_before[k])));
+    float limit = least + margin + 1e-5 * abs(least);
+    for (uint k = from.x; k < from.y; ++k) count += $VALUE(center, int(fathom_before[k])) > limit ? 0u : 1u;
+    uint at = atomicAdd(fathom_total, count);
+    fathom_cells[fathom_grid * side * side * side + cell] = uvec2(at, at + count);
+    if (at + count < at || at + count > fathom_room) return;
+    for (uint k = from.x; k < from.y; ++k) {
+        uint row = fathom_before[k];
+        if ($VALUE(center, int(row)) > limit) continue;
+        fathom_rows[at] = row;
+        ++at;
+    }
+}
+)";
+
+// The second time it begins with the last row before which nothing matters.
+constexpr const char *kernel_blended = R"(
+    margin += max($RADIUS(center), 0.0);
+    uint begin = from.x, at = 0u, end = 0u;
+    for (int turn = 0; turn < 2; ++turn) {
+        float acc = $START(center);
+        uint last = begin;
+        for (uint k = begin; k < from.y; ++k) {
+            uint row = fathom_before[k];
+            float v = $VALUE(center, int(row));
+            float apart = margin + 1e-5 * (abs(acc) + abs(v));
+            if (v - acc >= apart) continue;
+            if (turn == 0 && acc - v >= apart) {
+                count = 0u;
+                last = k;
+            }
+            acc = $JOINED(acc, center, int(row));
+            if (turn == 0) {
+                ++count;
+                continue;
+            }
+            if (at < end) fathom_rows[at] = row;
+            ++at;
+        }
+        if (turn == 1) break;
+        begin = last;
+        at = atomicAdd(fathom_total, count);
+        end = at + count;
+        fathom_cells[fathom_grid * side * side * side + cell] = uvec2(at, end);
+        if (end < at || end > fathom_room) return;
+    }
+}
+)";
+
+} // namespace
+
+std::optional<PrunePlan> plan_pruning(const ir::Scene &scene,
+                                      const std::map<std::uint32_t, NodeId> &results) {
+    if (scene.bounds.empty() || !scene.bounds.finite()) return std::nullopt;
+    const auto long_loop = [&](ir::FoldId id) {
+        return scene.graph.fold(id).max_count >= least_pruned;
+    };
+    bool any = false;
+    for (std::size_t i = 0; i < scene.graph.fold_count(); ++i) any |= long_loop(ir::FoldId{i});
+    if (!any) return std::nullopt;
+    PrunePlan plan = Planner(scene, results).run();
+    if (plan.grids.empty()) return std::nullopt;
+    return plan;
+}
+
+std::string prune_look_up() { return look_up; }
+
+std::string prune_kernel(const PrunedLoop &loop, const PruneNames &names) {
+    const std::map<std::string, std::string, std::less<>> values{
+        {"ROWS", std::to_string(loop.rows)},
+        {"SLOPES", float_literal(static_cast<float>((loop.slope + loop.acc_slope) * 1.000001))},
+        {"VALUE", names.value},
+        {"START", names.start},
+        {"JOINED", names.joined},
+        {"RADIUS", names.radius}};
+    return fill(std::string(kernel_head) + (loop.blended ? kernel_blended : kernel_least), values);
+}
+
+} // namespace fathom::glsl
