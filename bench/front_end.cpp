@@ -120,9 +120,9 @@ void measure_front_end(Table &table) {
     const std::string fields = text_of(scene_path("fields_3.sdf"));
     measure_proof(table, "proof of 100 deformed parts, 3 fields", deformed + displaced + fields,
                   50);
-    measure_proof(table, "  75 twisted, bent, tapered, alone", deformed, 0);
-    measure_proof(table, "  25 displaced, each by its own field, alone", displaced, 0);
-    measure_proof(table, "  3 fields, alone", fields, 0);
+    measure_proof(table, "  75 twisted, bent, tapered parts alone", deformed, 0);
+    measure_proof(table, "  25 spheres alone, each displaced by another formula", displaced, 0);
+    measure_proof(table, "  3 implicit fields alone", fields, 0);
 }
 
 } // namespace fathom::bench

@@ -11,12 +11,16 @@ int main(int argc, char **argv) {
         const char *name;
         void (*measure)(Table &);
     };
-    constexpr Group groups[] = {
-        {"process", measure_process},         {"front-end", measure_front_end},
-        {"reload", measure_reload},           {"shader", measure_shader},
-        {"by-hand", measure_hand_written},    {"steps", measure_steps},
-        {"noise-cache", measure_noise_cache}, {"interpreter", measure_interpreter},
-        {"pruning", measure_pruning}};
+    constexpr Group groups[] = {{"process", measure_process},
+                                {"front-end", measure_front_end},
+                                {"reload", measure_reload},
+                                {"shader", measure_shader},
+                                {"by-hand", measure_hand_written},
+                                {"many", measure_many},
+                                {"steps", measure_steps},
+                                {"noise-cache", measure_noise_cache},
+                                {"interpreter", measure_interpreter},
+                                {"pruning", measure_pruning}};
     const std::vector<std::string> wanted(argv + 1, argv + argc);
     for (const std::string &name : wanted)
         if (std::none_of(std::begin(groups), std::end(groups),

@@ -71,15 +71,15 @@ std::string machine() {
 }
 
 void print(const Table &table) {
-    std::printf("%-46s %10s %-15s %7s %9s  %s\n", "what", "value", "unit", "ratio", "goal", "to");
+    std::printf("%-54s %10s %-15s %7s %9s  %s\n", "what", "value", "unit", "ratio", "goal", "to");
     for (const Row &row : table) {
         if (!row.missing.empty()) {
-            std::printf("%-46s %10s %s\n", row.what.c_str(), "-", row.missing.c_str());
+            std::printf("%-54s %10s %s\n", row.what.c_str(), "-", row.missing.c_str());
             continue;
         }
         const bool compared = !row.baseline.empty();
         const double judged = compared ? row.value / row.baseline_value : row.value;
-        std::printf("%-46s %10.4g %-15s ", row.what.c_str(), row.value, row.unit.c_str());
+        std::printf("%-54s %10.4g %-15s ", row.what.c_str(), row.value, row.unit.c_str());
         if (compared)
             std::printf("%7.3f ", judged);
         else
