@@ -185,15 +185,10 @@ class Writer {
         }
         const std::string i = names_.numbered('i');
         const int stride = turns_together(fold);
+        std::string turn_end; // a turn's last line
         if (const auto pruned = module_.pruned.find(graph_[id].payload);
             pruned != module_.pruned.end()) {
-            const std::string list = names_.numbered('n'), entry = names_.numbered('i');
-            line(indent, "uvec2 " + list + " = fathom_list(" + value(pruned->second.point) + ", " +
-                             std::to_string(pruned->second.grid) + ", " +
-                             std::to_string(pruned->second.rows) + "u);");
-            line(indent, "for (uint " + entry + " = " + list + ".x; " + entry + " < " + list +
-                             ".y; ++" + entry + ") {");
-            line(indent + 1, "int " + i + " = int(fathom_rows[" + entry + "]);");
+            turn_end = listed_loop(pruned->second, fold, i, indent);
         } else if (stride > 1) {
             const std::string group = names_.numbered('i'), turn = names_.numbered('i');
             line(indent, "for (int " + group + " = 0; " + group + " < " +
@@ -238,8 +233,29 @@ class Writer {
             moves.emplace_back(target, name);
         }
         for (const auto &[target, name] : moves) line(indent + 1, target + " = " + name + ";");
+        if (!turn_end.empty()) line(indent + 1, turn_end);
         line(indent, "}");
         name_[id] = name_[fold.vars[0]];
+    }
+
+    // The head of a loop over the rows of a cell's list, in groups for the reason below; what a
+    // group's last turns compute beyond the list's end is taken back, by the line handed back.
+    std::string listed_loop(const PrunePlan::Use &use, const ir::Fold &fold, const std::string &i,
+                            int indent) {
+        const std::string list = names_.numbered('n'), group = names_.numbered('i'),
+                          turn = names_.numbered('i'), &carried = name_[fold.vars[0]];
+        const Type type = graph_[fold.vars[0]].type;
+        const std::string before = names_.numbered(prefix_of(type));
+        line(indent, "uvec2 " + list + " = fathom_list(" + value(use.point) + ", " +
+                         std::to_string(use.grid) + ", " + std::to_string(use.rows) + "u);");
+        line(indent, "for (uint " + group + " = " + list + ".x; " + group + " < " + list + ".y; " +
+                         group + " += 4u) for (uint " + turn + " = 0u; " + turn + " < 4u; ++" +
+                         turn + ") {");
+        line(indent + 1, "int " + i + " = int(fathom_rows[min(" + group + " + " + turn + ", " +
+                             list + ".y - 1u)]);");
+        line(indent + 1, std::string(glsl_type(type)) + " " + before + " = " + carried + ";");
+        return "if (" + group + " + " + turn + " >= " + list + ".y) " + carried + " = " + before +
+               ";";
     }
 
     // A long loop runs in groups of a few turns. Drivers write such a short inner loop out, which
