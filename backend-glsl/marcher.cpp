@@ -311,9 +311,8 @@ Values values_of(const MarcherOptions &options) {
                             options.center + "))";
     const bool steep = options.steep, apart = options.cheap && !options.kept;
     Values values{
-        {"SAMPLE_MARCH", steep
-                             ? "float near = fathom_near(p, fathom_arm(t), reach, d)"
-                             : "d = sdf(p)"},
+        {"SAMPLE_MARCH",
+         steep ? "float near = fathom_near(p, fathom_arm(t), reach, d)" : "d = sdf(p)"},
         {"REACHED", std::string(steep ? "near" : "d") + " <= reach"},
         {"SAMPLE_SHADOW", steep ? "float d, near = fathom_near(p, h, shadow * angle * s, d)"
                                 : "float d = sdf(p), near = d"},

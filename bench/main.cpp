@@ -28,7 +28,7 @@ int main(int argc, char **argv) {
             std::fprintf(
                 stderr,
                 "fathom-bench: no group `%s`; there are process, front-end, reload, shader, "
-                "by-hand, steps, noise-cache, interpreter, pruning\n",
+                "by-hand, many, steps, noise-cache, interpreter, pruning\n",
                 name.c_str());
             return 2;
         }
