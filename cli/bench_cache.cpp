@@ -129,6 +129,7 @@ void print_fields(const Bench &bench) {
         case ir::Kept::Yes: break;
         case ir::Kept::Cheap: verdict = "computed: cheaper than a look-up"; break;
         case ir::Kept::Moving: verdict = "computed: it moves with time"; break;
+        case ir::Kept::Ridged: verdict = "computed: Worley noise alone, too few cells"; break;
         case ir::Kept::Steep: verdict = "computed: its slope has no bound"; break;
         }
         bench.terminal.put(fmt::format("field {}: cell {:g}, about {:.3g} ns against {:g} for a "

@@ -133,10 +133,31 @@ double cost_of(const Graph &graph, NodeId root) {
     return cost;
 }
 
+bool reads_worley(const Graph &graph, NodeId root) {
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!id || !seen.insert(id).second) continue;
+        const Node &node = graph[id];
+        if (node.op == Op::Worley) return true;
+        if (node.op == Op::Call) todo.push_back(graph.function(FunctionId{node.payload}).result);
+        if (node.op == Op::Cached)
+            todo.push_back(graph.function(graph.cache(CacheId{node.payload}).field).result);
+        if (node.op == Op::Fold)
+            for (NodeId next : graph.fold(FoldId{node.payload}).next) todo.push_back(next);
+        for (NodeId arg : graph.args(id)) todo.push_back(arg);
+    }
+    return false;
+}
+
 Kept kept(const Scene &scene, CacheId cache) {
     const NodeId field = scene.graph.function(scene.graph.cache(cache).field).result;
     if (scene.graph.reads(field).time) return Kept::Moving;
-    if (cost_of(scene.graph, field) < look_up_cost) return Kept::Cheap;
+    const double cost = cost_of(scene.graph, field);
+    if (cost < look_up_cost) return Kept::Cheap;
+    if (reads_worley(scene.graph, field) && ridged_share * cost < look_up_cost) return Kept::Ridged;
     if (cache.index >= scene.caches.size() || !std::isfinite(scene.caches[cache.index].slope))
         return Kept::Steep;
     return Kept::Yes;

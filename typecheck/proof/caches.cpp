@@ -27,6 +27,12 @@ void Prover::report_not_kept(ir::CacheId id) {
         say("that takes about " + number_text(ir::cost_of(graph, field.result)) +
             " ns a point, a look-up in the noise cache " + number_text(ir::look_up_cost));
         return;
+    case ir::Kept::Ridged:
+        say("at the ridges of Worley noise cells are steeper than the noise and are not kept; "
+            "alone, at " +
+            number_text(ir::cost_of(graph, field.result)) +
+            " ns a point, it is too cheap for the others to pay");
+        return;
     case ir::Kept::Moving: say("it moves with `time`, so that no value stays right"); return;
     case ir::Kept::Steep:
         say("no bound of its slope holds everywhere, so a kept value could be off by anything");
@@ -40,26 +46,6 @@ void Prover::report_not_kept(ir::CacheId id) {
 // is far more than it has; but Worley noise is the distance to a point and nearly everywhere as
 // steep as proved, so cells by its ridges would all go: what reads it is allowed this much more.
 constexpr double ridge_allowance = 1.15;
-
-static bool reads_worley(const ir::Graph &graph, NodeId root) {
-    std::vector<NodeId> todo{root};
-    std::unordered_set<NodeId> seen;
-    while (!todo.empty()) {
-        const NodeId id = todo.back();
-        todo.pop_back();
-        if (!id || !seen.insert(id).second) continue;
-        const ir::Node &node = graph[id];
-        if (node.op == Op::Worley) return true;
-        if (node.op == Op::Call)
-            todo.push_back(graph.function(ir::FunctionId{node.payload}).result);
-        if (node.op == Op::Cached)
-            todo.push_back(graph.function(graph.cache(ir::CacheId{node.payload}).field).result);
-        if (node.op == Op::Fold)
-            for (NodeId next : graph.fold(ir::FoldId{node.payload}).next) todo.push_back(next);
-        for (NodeId arg : graph.args(id)) todo.push_back(arg);
-    }
-    return false;
-}
 
 void Prover::know_caches() {
     scene.caches.assign(graph.cache_count(), {});
@@ -86,7 +72,7 @@ void Prover::know_caches() {
             known.values[static_cast<std::size_t>(c)] = bound.value;
         }
         known.slope = up(std::sqrt(slopes));
-        if (reads_worley(graph, result)) known.slope = up(known.slope * ridge_allowance);
+        if (ir::reads_worley(graph, result)) known.slope = up(known.slope * ridge_allowance);
         scene.caches[i] = {known.slope, up(std::sqrt(spans))};
         known.kept = ir::kept(scene, ir::CacheId{i}) == ir::Kept::Yes;
         flattening.kept[i] = known.kept;
