@@ -48,6 +48,11 @@ void distances(Worker &worker, const Columns &points, float *out, std::size_t n,
     else
         evaluate(worker.stage.distance, worker.distance, points.pointers(), &out, n);
 }
+void reaches(Worker &worker, const Columns &points, float *out, float *spans, std::size_t n) {
+    worker.work.evaluations += n;
+    float *const both[] = {out, spans};
+    evaluate(worker.stage.reach, worker.reach, points.pointers(), both, n);
+}
 bool is_bound(const Worker &worker, std::size_t k) {
     return worker.asker && worker.asker->bounded[k] != 0;
 }
@@ -87,6 +92,7 @@ namespace {
 
 struct Walk {
     float t, before = 0, stride = 0, d = 0;
+    float span = 0, reached = 0; // how far d reaches, and `before`; where that is more than they
     int steps = 0;
 };
 
@@ -109,10 +115,34 @@ class Arrivals {
     std::vector<float> d_, h_, true_;
 };
 
+bool apart(const Walk &walk) {
+    if (walk.stride <= walk.before + std::max(walk.d, 0.0f)) return false;
+    return !(walk.d > 0 && walk.stride <= walk.reached + walk.span);
+}
+
+// How far beyond the last sample to look next, where what lies between is not known to be free.
+float nearer(const Walk &walk, const Lengths &lengths, bool reaching) {
+    if (!reaching) return walk.before;
+    const float to =
+        walk.d > 0 ? walk.reached + look::nearer * std::min(walk.span, walk.reached)
+                   : std::min(walk.reached, walk.stride * walk.before / (walk.before - walk.d) -
+                                                0.5f * lengths.tolerance(walk.t));
+    return std::max(walk.before, std::min(to, walk.stride));
+}
+
 void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
     const float d = std::max(walk.d, 0.25f * lengths.slack);
+    const float span = std::max(walk.span, d);
     float next = brute ? 0.1f * d : d;
-    if (!brute && walk.stride > 0)
+    if (!brute && span > d) {
+        next = span;
+        if (walk.stride > 0) {
+            const float change = (span * span - walk.reached * walk.reached) / walk.stride;
+            next = change < -span ? span * span / -change - 0.5f * lengths.tolerance(walk.t)
+                                  : span + look::bent_relaxation * (span + change);
+            next = std::max(next, d);
+        }
+    } else if (!brute && walk.stride > 0)
         next += look::relaxation * d * std::max(walk.stride + d - walk.before, 0.0f) /
                 std::max(walk.stride - d + walk.before, look::flattest * walk.stride);
     // what is not proved yet ends at the end exactly, rounding or not, so that it is still checked
@@ -120,6 +150,7 @@ void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
     next = std::min(next, proved - walk.t);
     walk.d = d;
     walk.before = d;
+    walk.reached = span;
     walk.stride = next;
     walk.t = std::min(walk.t + next, proved);
 }
@@ -129,6 +160,7 @@ void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
 void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings,
            bool brute) {
     const Lengths lengths(worker.stage);
+    const bool reaching = worker.stage.reaches && !brute;
     const int max_steps = worker.stage.scene->render.max_steps * (brute ? 100 : 1);
     std::vector<Walk> walks(rays.size());
     std::vector<std::size_t> active;
@@ -158,18 +190,23 @@ void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> la
             // below it, whether the ray has arrived is decided
             worker.limits[k] = 2 * std::max(lengths.tolerance(t), lengths.width(t));
         }
-        distances(worker, worker.points, worker.values.data(), active.size(),
-                  brute ? nullptr : worker.limits.data());
+        if (reaching)
+            reaches(worker, worker.points, worker.values.data(), worker.spans.data(),
+                    active.size());
+        else
+            distances(worker, worker.points, worker.values.data(), active.size(),
+                      brute ? nullptr : worker.limits.data());
         arrivals.clear();
         for (std::size_t k = 0; k < active.size(); ++k) {
             Walk &walk = walks[active[k]];
             const RayState &ray = rays[active[k]];
             walk.d = worker.values[k];
+            if (reaching) walk.span = worker.spans[k];
             ++walk.steps;
-            if (!brute && walk.steps < max_steps &&
-                walk.stride > walk.before + std::max(walk.d, 0.0f)) {
-                walk.t += walk.before - walk.stride;
-                walk.stride = walk.before;
+            if (!brute && walk.steps < max_steps && apart(walk)) {
+                const float stride = nearer(walk, lengths, reaching);
+                walk.t += stride - walk.stride;
+                walk.stride = stride;
             } else if (walk.d <= reach(walk)) {
                 arrivals.add(active[k], ray.origin + walk.t * ray.direction, walk.d,
                              lengths.arm(walk.t));

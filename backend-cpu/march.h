@@ -40,10 +40,11 @@ struct Stage {
     ir::Frame frame;
     Inputs inputs;
     Program distance, hit, background;
+    Program reach; // Scene::reach, where `reaches`: not with pruning
     std::shared_ptr<const Pruning> pruning, hit_pruning; // none: not worth it
     std::vector<Program> surfaces;
     std::vector<ir::LightValue> lights;
-    bool has_background = false;
+    bool has_background = false, reaches = false;
     bool local_normals = false; // some surface reads its normal
     struct Look {
         float ambient[3] = {};

@@ -89,6 +89,8 @@ Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int heigh
     stage.distance = compile(scene, scene.distance);
     stage.hit = compile(scene, scene.hit);
     prune(stage, how);
+    stage.reaches = scene.reach && !stage.pruning;
+    if (stage.reaches) stage.reach = compile(scene, scene.reach);
     stage.has_background = static_cast<bool>(scene.background_function);
     if (stage.has_background) stage.background = compile(scene, scene.background_function);
     for (const ir::Surface &surface : scene.surfaces) {
@@ -111,6 +113,7 @@ Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int heigh
 
 Worker::Worker(const Stage &s)
     : stage(s), distance(make_scratch(s.distance, s.inputs)), hit(make_scratch(s.hit, s.inputs)) {
+    if (s.reaches) reach = make_scratch(s.reach, s.inputs);
     if (s.has_background) background = make_scratch(s.background, s.inputs);
     for (const Program &surface : s.surfaces) surfaces.push_back(make_scratch(surface, s.inputs));
     if (s.pruning) asker.emplace(*s.pruning, s.inputs);

@@ -59,12 +59,13 @@ inline constexpr std::size_t most_rays = tile_side * tile_side;
 struct Worker {
     explicit Worker(const Stage &stage);
     const Stage &stage;
-    Scratch distance, hit, background;
+    Scratch distance, reach, hit, background;
     std::optional<Asker> asker, hit_asker;
     std::vector<float> limits = std::vector<float>(most_rays);
     std::vector<Scratch> surfaces;
     Columns points{3, most_rays};
     std::vector<float> values = std::vector<float>(most_rays);
+    std::vector<float> spans = std::vector<float>(most_rays);
     Columns taps{3, most_rays};
     std::vector<float> tap_values = std::vector<float>(most_rays);
     Columns hits{9, most_rays};
@@ -96,6 +97,8 @@ RayState clipped(const Stage &stage, Vec origin,
 // exact.
 void distances(Worker &worker, const Columns &points, float *out, std::size_t n,
                const float *limits = nullptr);
+// The distances, and how far they reach (Scene::reach).
+void reaches(Worker &worker, const Columns &points, float *out, float *spans, std::size_t n);
 bool is_bound(const Worker &worker, std::size_t k); // of the last distances'
 void hits(Worker &worker, std::size_t n);           // at worker.points, into worker.hits
 // The gradients of the distance at n points, with arms h.

@@ -31,6 +31,7 @@ class Assembler {
             want(module_.result_of(id));
         };
         want_function(scene_.distance, "sdf");
+        if (!module_.options.field_only) want_function(scene_.reach, "fathom_reach");
         if (scene_.hit != scene_.distance)
             want_function(scene_.hit,
                           module_.options.part_stride > 0 ? "fathom_marked_hit" : "fathom_hit");

@@ -185,6 +185,7 @@ class Emitter {
         MarcherOptions marcher;
         marcher.boxed = frame.boxed;
         marcher.steep = frame.steep;
+        marcher.reaches = frame.steep && scene_.reach;
         marcher.cheap =
             scene_.distance &&
             ir::operations(scene_.graph, module_.result_of(scene_.distance)) <= cheap_field;
@@ -546,11 +547,13 @@ std::vector<int> prunable_rows(const ir::Scene &scene) {
 }
 
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics) {
-    const std::optional<Rolled> loops = rolled(scene);
+    std::optional<Rolled> loops = rolled(scene);
+    if (loops) loops->scene.reach = {}; // it would have the lists in full
     const std::map<std::uint32_t, ir::NodeId> results =
         loops ? loops->results : std::map<std::uint32_t, ir::NodeId>{};
-    const std::optional<PrunePlan> plan =
+    std::optional<PrunePlan> plan =
         options.pruning ? plan_pruning(loops ? loops->scene : scene, results) : std::nullopt;
+    if (plan) plan->scene.reach = {};
     if (!plan) return Emitter(scene, loops, options, diagnostics).run();
     Emitter picture(plan->scene, results, options, diagnostics);
     picture.use(*plan);

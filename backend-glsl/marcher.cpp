@@ -52,8 +52,7 @@ constexpr const char *near_cheap = R"(
 // The field at p in d; and, where that is at most `limit`, the true distance |f| / |grad f|, since
 // the field was divided by a bound; else d again.
 float fathom_near(vec3 p, float h, float limit, out float d) {
-    d = sdf(p);
-    if (!(d <= limit)) return d;
+$ASK_CHEAP    if (!(d <= limit)) return d;
     vec3 sum = vec3(0.0);
     for (int i = $ZERO; i < 4; ++i) {
         vec3 e = fathom_corner(i);
@@ -70,10 +69,9 @@ float fathom_near(vec3 p, float h, float limit, out float d) {
     vec3 sum = vec3(0.0);
     for (int i = $ZERO; i < 5$AND_PRESENT; ++i) {
         vec3 e = i == 0 ? vec3(0.0) : fathom_corner(i - 1);
-        float f = sdf(p + h * e);
-        if (i == 0) {
+$ASK_NEAR        if (i == 0) {
             d = f;
-            if (!(d <= limit)) return d;
+$KEEP_SPAN            if (!(d <= limit)) return d;
             continue;
         }
         sum += e * f;
@@ -101,17 +99,15 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     float before = 0.0;
     float stride = 0.0;
     float d = 0.0;
-    int steps = 0;
+$REACHED_BEFORE    int steps = 0;
     for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
         vec3 p = origin + t * direction;
         bool last = steps == $MAX_STEPS - 1;
         float reach = fathom_tolerance(t);
         if (last) reach = max(reach, fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t);
 $KEPT_WIDTH        $SAMPLE_MARCH;
-$KEPT_STOP        if (!last && stride > before + max(d, 0.0)) {
-            t += before - stride;
-            stride = before;
-            continue;
+$KEPT_STOP        if (!last && stride > before + max(d, 0.0)$NOT_REACHED) {
+$NEARER            continue;
         }
         if ($REACHED) {
             fathom_steps = steps + 1;
@@ -119,12 +115,12 @@ $KEPT_STOP        if (!last && stride > before + max(d, 0.0)) {
         }
         d = max(d, 0.25 * fathom_slack);
         float next = d;
-        if (stride > 0.0)
+$BENT        if (stride > 0.0)
             next += $RELAXATION * d * max(stride + d - before, 0.0) / max(stride - d + before, $FLATTEST * stride);
         float proved = max(end, t + d);
         next = min(next, proved - t);
         before = d;
-        stride = next;
+$KEEP_REACHED        stride = next;
         t = min(t + next, proved);
     }
     fathom_steps = steps;
@@ -292,6 +288,30 @@ constexpr const char *pick_ray = "    fathom_pick = vec4(0.0, t, float(fathom_st
 constexpr const char *pick_hit = "    fathom_pick.x = float(fathom_part);\n"
                                  "    fathom_pick.w = slope;\n";
 
+// Where the field says how far it reaches by curvature (look.h).
+constexpr const char *span_global =
+    "\nfloat fathom_span; // how far the last of the distances reaches\n";
+constexpr const char *nearer_by_ball = "            t += before - stride;\n"
+                                       "            stride = before;\n";
+constexpr const char *nearer_by_reach =
+    R"(            float to = reached + $NEARER_PART * min(fathom_span, reached);
+            if (!(d > 0.0)) to = min(reached, stride * before / (before - d) - 0.5 * fathom_tolerance(t));
+            to = max(before, min(to, stride));
+            t += to - stride;
+            stride = to;
+)";
+constexpr const char *bent_step = R"(        float span = max(fathom_span, d);
+        if (span > d) {
+            next = span;
+            if (stride > 0.0) {
+                float change = (span * span - reached * reached) / stride;
+                next = change < -span ? span * span / -change - 0.5 * fathom_tolerance(t)
+                                      : span + $BENT_RELAXATION * (span + change);
+                next = max(next, d);
+            }
+        } else
+)";
+
 // Where a kept value is absent the pixel is left to the text that computes all, so that what the
 // ray sees is one field (docs/noise-cache.md): its loops end at once.
 constexpr const char *kept_width =
@@ -309,6 +329,7 @@ Values values_of(const MarcherOptions &options) {
                              "    end = min(end, inside.y);\n";
     const std::string far = "100.0 * max(" + number(options.radius) + ", length(fathom_origin - " +
                             options.center + "))";
+    // A field that reaches is asked in fathom_near alone, so that there is one copy of it.
     const bool steep = options.steep, apart = options.cheap && !options.kept;
     Values values{
         {"SAMPLE_MARCH",
@@ -354,6 +375,22 @@ Values values_of(const MarcherOptions &options) {
         {"SHADOW_BIAS", number(look::shadow_bias)},
         {"LEAST_ANGLE", number(look::least_angle)},
     };
+    const bool reach = options.reaches;
+    values["ASK_CHEAP"] =
+        reach ? "    vec2 f = fathom_reach(p);\n    d = f.x;\n    fathom_span = f.y;\n"
+              : "    d = sdf(p);\n";
+    values["ASK_NEAR"] =
+        reach ? "        vec2 both = fathom_reach(p + h * e);\n        float f = both.x;\n"
+              : "        float f = sdf(p + h * e);\n";
+    values["KEEP_SPAN"] = reach ? "            fathom_span = both.y;\n" : "";
+    values["REACHED_BEFORE"] = reach ? "    float reached = 0.0;\n" : "";
+    values["NOT_REACHED"] = reach ? " && !(d > 0.0 && stride <= reached + fathom_span)" : "";
+    values["NEARER"] = reach ? nearer_by_reach : nearer_by_ball;
+    values["NEARER_PART"] = number(look::nearer);
+    values["BENT"] = reach ? bent_step : "";
+    values["BENT_RELAXATION"] = number(look::bent_relaxation);
+    values["KEEP_REACHED"] = reach ? "        reached = span;\n" : "";
+    for (const char *part : {"NEARER", "BENT"}) values[part] = fill(values[part], values);
     values["KEPT_WIDTH"] = options.kept ? kept_width : "";
     values["KEPT_STOP"] = options.kept ? kept_stop : "";
     values["AND_PRESENT"] = options.kept ? " && !fathom_absent" : "";
@@ -364,6 +401,7 @@ Values values_of(const MarcherOptions &options) {
 
 std::string march_form(const MarcherOptions &options) {
     std::string text = lengths;
+    if (options.reaches) text += span_global;
     if (options.steep)
         text += std::string(corner) + (options.cheap && !options.kept ? near_cheap : near_steep);
     if (options.boxed) text += box;

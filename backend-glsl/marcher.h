@@ -1,7 +1,8 @@
 // The frame code in GLSL: camera ray, march, shading, output; ir/look.h line by line. Knows the
 // scene only as the functions
-//   float sdf(vec3), Hit fathom_hit(vec3), fathom_Material fathom_material(Hit, vec3 local normal),
-//   fathom_Lighting fathom_lighting(), fathom_Light fathom_light(int), vec3 fathom_background(vec3)
+//   float sdf(vec3), where it reaches farther than its ball vec2 fathom_reach(vec3), Hit
+//   fathom_hit(vec3), fathom_Material fathom_material(Hit, vec3 local normal), fathom_Lighting
+//   fathom_lighting(), fathom_Light fathom_light(int), vec3 fathom_background(vec3)
 // and the host as these inputs (uniforms; where a target has no host of ours, globals that its main
 // sets):
 //   vec2 fathom_resolution          the whole picture's size in pixels
@@ -17,9 +18,10 @@
 namespace fathom::glsl {
 
 struct MarcherOptions {
-    bool boxed = false; // rays live between FATHOM_LO and FATHOM_HI
-    bool steep = false; // ir::steep
-    bool cheap = false; // the field is a few operations
+    bool boxed = false;   // rays live between FATHOM_LO and FATHOM_HI
+    bool steep = false;   // ir::steep
+    bool reaches = false; // the field says how far it reaches; only where it is steep
+    bool cheap = false;   // the field is a few operations
     bool skip_shading = false;
     bool local_normals = false; // some material reads its normal
     bool default_sun = false;

@@ -40,6 +40,22 @@
 //     never past the end unproved, rounding or not: proved = max(end, t + d),
 //     next = min(next, proved - t), before = d, stride = next, t = min(t + next, proved)
 //   Out of steps or of way: a miss.
+//
+//   BY CURVATURE, where the scene has Scene::reach, which gives d and a span >= d (lipschitz.md,
+//   curvature): between two samples outside nothing lies where the stride is at most the sum of
+//   their spans, though the balls do not touch. `reached` is the span of `before`, 0 at first.
+//     The last two spheres do not overlap: where d > 0 and stride <= reached + span, no matter;
+//     else
+//       go back to where the next sample, that in between being likely, will do:
+//       back = d > 0: reached + nearer*min(span, reached); d <= 0: where the chord from before to d
+//       is 0, less tolerance(t)/2, and never beyond `reached`; from before to stride.
+//       t += back - stride, stride = back
+//     next, where span > d: span; if stride > 0, span^2 (2/M times the field) goes on as straight
+//     as
+//       over the last stride, change = (span^2 - reached^2)/stride a unit: the next sample will do
+//       at span + bent_relaxation*(span + change); where change < -span the surface comes first,
+//       and what leads to it is free: -span^2/change - tolerance(t)/2. Never less than d.
+//     span = max(span, d); reached = span with before = d
 //   `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to
 //   0..far; else 0..far.
 //
@@ -90,6 +106,8 @@ inline constexpr float least_slope = 1.0f / 1024;
 inline constexpr float relaxation =
     0.9f; // performance.md, 3: best of those measured on scenes with L = 1
 inline constexpr float flattest = 1e-3f;
+inline constexpr float bent_relaxation = 0.7f; // measured on displaced spheres, as these
+inline constexpr float nearer = 0.9f;
 inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.08f;
 inline constexpr int shadow_steps = 128;

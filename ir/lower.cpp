@@ -19,6 +19,7 @@ const char *suffix(Reading reading) {
     case Reading::Raw: return "";
     case Reading::Marched: return "_marched";
     case Reading::Hit: return "_hit";
+    case Reading::Reach: return "_reach";
     }
     return "";
 }
@@ -94,11 +95,17 @@ void Lowering::run() {
     count_uses();
     find_names();
     find_free_vars();
+    find_curved();
     const Frame frame{p3_, 0};
     const NodeId distance = ask(Reading::Marched, scene_.root, frame);
     scene_.distance = graph_.add_function({"scene_distance", {}, {p3_}, distance});
     const NodeId hit = ask(Reading::Hit, scene_.root, frame);
     scene_.hit = graph_.add_function({"scene_hit", {}, {p3_}, hit});
+    scene_.reach = {};
+    if (curved_[scene_.root.index]) {
+        const NodeId reach = ask(Reading::Reach, scene_.root, frame);
+        scene_.reach = graph_.add_function({"scene_reach", {}, {p3_}, reach});
+    }
 
     Surface plain =
         blank_surface(); // what nobody painted: the gray of sRGB 0.7, with a white highlight
@@ -256,6 +263,7 @@ void Lowering::find_free_vars() {
 // would only call that.
 bool Lowering::is_wrapper(Reading reading, ShapeId id) const {
     if (reading == Reading::Raw) return false;
+    if (reading == Reading::Reach) return !curved_[id.index];
     if (fact(id).guard && reading == Reading::Marched) return false;
     if (reading == Reading::Hit && !paint_[id.index]) return true;
     return !passes_through(id) && shape(id).kind != ShapeKind::Within &&

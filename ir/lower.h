@@ -1,7 +1,7 @@
 // Shapes to functions. The one place that knows what each ShapeKind computes; after it a back end
 // sees only expressions, functions and folds.
 //
-// Three readings of a shape (semantics.md, 10 and 11); looks (normals, occlusion, |f|/|grad f|) use
+// Four readings of a shape (semantics.md, 10 and 11); looks (normals, occlusion, |f|/|grad f|) use
 // the marched one, normalised by its gradient:
 //   raw      the field itself, which offsets, blends and displacements consume
 //   marched  through the outermost min/max tree (Union, Intersection, Complement, Xor, Paint,
@@ -11,6 +11,8 @@
 //            Within answers by its region, with its child's bound, which is to hold in the region;
 //            `guard`ed shapes by max with their box's distance
 //   hit      marched, carrying which surface decides
+//   reach    marched, and how far that reaches by curvature (look.h); only where some displacement
+//            has it, and through what lower_reach.cpp names
 // A shape asked at more than one point becomes a function of its own (named after its library call
 // or place); so the lowered scene is linear in the shapes. Complete only after the analysis has
 // filled `facts`.

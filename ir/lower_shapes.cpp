@@ -1,4 +1,4 @@
-// What each kind of shape computes, in the three readings.
+// What each kind of shape computes, in the readings.
 #include "ir/cost.h"
 #include "ir/lowering.h"
 #include "ir/maps.h"
@@ -37,7 +37,7 @@ NodeId Lowering::far_away(Reading reading) {
     return reading == Reading::Hit ? unpainted(far) : far;
 }
 
-// -- the three readings
+// -- the readings
 
 // Whether marched and hit go on to the children: min, max and negation, and what maps points
 // without lengthening. For such a map q with q(result) inside the child's surface, |f(q(p))| <=
@@ -106,6 +106,7 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Frame frame) {
                                                   structural(reading, id, at(frame, q))});
     }
     if (reading == Reading::Raw) return structural(reading, id, frame);
+    if (reading == Reading::Reach) return reach(id, frame);
     if (reading == Reading::Hit && !paint_[id.index])
         return unpainted(ask(Reading::Marched, id, frame));
     if (passes_through(id)) return guarded(reading, id, frame, structural(reading, id, frame));
@@ -113,19 +114,23 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Frame frame) {
         return guarded(reading, id, frame, within(reading, id, frame));
     if (reading == Reading::Hit)
         return graph_.make(Op::HitWith, {colored(id, frame), ask(Reading::Marched, id, frame)});
-    NodeId marched = divided(id, ask(Reading::Raw, id, frame));
-    if (shape(id).kind == ShapeKind::Displace && std::isfinite(fact(id).outward))
-        marched = displaced(id, frame, marched);
-    return guarded(reading, id, frame, marched);
+    if (shape(id).kind == ShapeKind::Displace)
+        return guarded(reading, id, frame, displaced(reading, id, frame));
+    return guarded(reading, id, frame, divided(id, ask(Reading::Raw, id, frame)));
 }
 
 // The range shell: a displaced solid lies where f <= A, the most that it moves outward; further
 // out the smooth field, less A, is the better bound, with its own slope. Inside, where f - a < 0,
 // f - A is lower still: so signs agree. The same with the first terms of a sum, and the most that
 // the others can add. The greatest of all of these is the marched field; what is left of a dear sum
-// is asked only where it can be greater than what is known already.
-NodeId Lowering::displaced(ShapeId id, Frame frame, NodeId whole) {
+// is asked only where it can be greater than what is known already. The reach is more than that
+// where all of the field is asked: sqrt(2 f/M), with no rounding of f worth counting
+// (lipschitz.md).
+NodeId Lowering::displaced(Reading reading, ShapeId id, Frame frame) {
     const ShapeFact &known = fact(id);
+    const bool reaches = reading == Reading::Reach;
+    NodeId raw = ask(Reading::Raw, id, frame);
+    if (!std::isfinite(known.outward)) return divided(id, raw);
     const ShapeId child = shape(id).children.front();
     const NodeId base = ask(Reading::Raw, child, frame), amount = shape(id).args.front();
     struct Known {
@@ -140,7 +145,8 @@ NodeId Lowering::displaced(ShapeId id, Frame frame, NodeId whole) {
         return graph_.add(fact(child).lipschitz, graph_.number(slope));
     };
     const std::size_t nested = known.partial.empty() ? 0 : known.partial.size() - 1;
-    if (nested > 0) whole = divided(id, graph_.sub(base, read(known.partial.back().terms, frame)));
+    if (nested > 0) raw = graph_.sub(base, read(known.partial.back().terms, frame));
+    const NodeId whole = divided(id, raw);
     for (std::size_t i = 0; i < nested; ++i) {
         const PartialSum &partial = known.partial[i];
         const NodeId field = graph_.sub(base, read(partial.terms, frame));
@@ -150,6 +156,11 @@ NodeId Lowering::displaced(ShapeId id, Frame frame, NodeId whole) {
                          cost_of(graph_, partial.terms)});
     }
     NodeId result = graph_.make(Op::Max, {whole, steps.back().best});
+    if (reaches) {
+        const NodeId bent =
+            graph_.make(Op::Sqrt, {graph_.mul(raw, graph_.number(2 / known.curvature))});
+        result = graph_.make(Op::Make, Type::Vec2, {result, graph_.make(Op::Max, {result, bent})});
+    }
     // The field is at most f - least, which is divided by the next bound at least.
     for (std::size_t i = steps.size(); i-- > 0;) {
         const Known &step = steps[i];
@@ -158,8 +169,8 @@ NodeId Lowering::displaced(ShapeId id, Frame frame, NodeId whole) {
         const NodeId most = graph_.sub(step.field, graph_.number(step.least));
         const NodeId reach =
             i < nested ? graph_.div(most, slope_with(known.partial[i].slope)) : divided(id, most);
-        result = graph_.make(Op::Select,
-                             {graph_.make(Op::LessEqual, {reach, step.best}), step.best, result});
+        result = graph_.make(Op::Select, {graph_.make(Op::LessEqual, {reach, step.best}),
+                                          reaches ? both(step.best) : step.best, result});
     }
     return result;
 }
@@ -179,12 +190,14 @@ NodeId Lowering::divided(ShapeId id, NodeId raw, double times) {
 
 NodeId Lowering::guarded(Reading reading, ShapeId id, Frame frame, NodeId value) {
     if (!fact(id).guard) return value;
+    return at_distance(reading, value,
+                       graph_.make(Op::Max, {distance_of(reading, value), guard(id, frame)}));
+}
+
+NodeId Lowering::guard(ShapeId id, Frame frame) {
     const ShapeFact &known = fact(id);
-    const NodeId box =
-        std::isfinite(known.round)
-            ? cylinder_distance(graph_, known.bounds, turning_axis(shape(id)), known.round, frame.p)
-            : box_distance(graph_, known.bounds, frame.p);
-    return at_distance(reading, value, graph_.make(Op::Max, {distance_of(reading, value), box}));
+    if (!std::isfinite(known.round)) return box_distance(graph_, known.bounds, frame.p);
+    return cylinder_distance(graph_, known.bounds, turning_axis(shape(id)), known.round, frame.p);
 }
 
 NodeId Lowering::structural(Reading reading, ShapeId id, Frame frame) {

@@ -1,7 +1,7 @@
 // The lowering's own parts, shared by lower*.cpp and regions.cpp only. Knows shapes, not the
 // language.
 //
-// A shape is asked in one of three readings (lower.h) at a frame: a point, and values for the
+// A shape is asked in one of four readings (lower.h) at a frame: a point, and values for the
 // variables that shapes above bind. Every answer is made once; a shape that would be written out in
 // several places becomes a function.
 #pragma once
@@ -16,7 +16,7 @@ namespace fathom::ir {
 
 constexpr double nowhere = 1e9; // the distance to what is not there
 
-enum class Reading : std::uint8_t { Raw, Marched, Hit };
+enum class Reading : std::uint8_t { Raw, Marched, Hit, Reach };
 
 struct Frame {
     NodeId p;
@@ -48,8 +48,15 @@ class Lowering {
     NodeId colored(ShapeId id, Frame frame); // whose surface shows on a leaf: a Hit, distance aside
     bool passes_through(ShapeId id) const;
     NodeId divided(ShapeId id, NodeId raw, double times = 1);
-    NodeId displaced(ShapeId id, Frame frame, NodeId whole);
+    NodeId displaced(Reading reading, ShapeId id, Frame frame);
+    NodeId guard(ShapeId id, Frame frame);
     NodeId guarded(Reading reading, ShapeId id, Frame frame, NodeId value);
+
+    // -- reach (lower_reach.cpp)
+    bool hands_reach_on(const Shape &shape) const;
+    void find_curved();
+    NodeId both(NodeId distance);
+    NodeId reach(ShapeId id, Frame frame);
 
     // -- per kind
     NodeId within(Reading reading, ShapeId id, Frame frame);
@@ -128,6 +135,7 @@ class Lowering {
     std::map<ShapeId, TableId> cell_tables_;
     std::vector<double> cost_, uses_; // by shape; saturating
     std::vector<char> paint_, reached_;
+    std::vector<char> curved_;        // by shape: something in it reaches farther than its ball
     Parts parts_;                     // stride 0: nothing is marked
     std::vector<std::uint32_t> part_; // by shape, 0: none of its own
     std::vector<char> colored_;       // by shape: something in it is painted; with parts only

@@ -48,6 +48,9 @@ struct ShapeFact {
                                                               // moves the surface outward
     double inward = std::numeric_limits<double>::infinity();  // … and inward
     std::vector<PartialSum> partial; // Displace: shorter sums first, all of it last; or none
+    // Displace: M, an upper bound of the raw field's second derivative along any line, down to the
+    // depth that the reach sqrt(2 f/M) asks for (look.h); infinity: none of use.
+    double curvature = std::numeric_limits<double>::infinity();
     bool local = false; // the bound holds within `bounds` alone: the raw field is asked at the
                         // nearest point there, and joined with the way to it as Within's is
     bool guard = false; // when marched, take the max with the distance to `bounds` (cheap far away)
@@ -155,7 +158,9 @@ struct Scene {
 
     // Filled by ir::lower.
     FunctionId distance; // (vec3) -> float: marched: a step of its length never passes a surface
-    FunctionId hit;      // (vec3) -> Hit: the same distance, with the surface that decides
+    FunctionId reach; // (vec3) -> vec2, or none: the same distance, and how far it reaches beside
+                      // another sample (look.h, MARCH), at least as far
+    FunctionId hit;   // (vec3) -> Hit: the same distance, with the surface that decides
     std::vector<Surface> surfaces;  // by a hit's paint; the last is that of what nobody painted
     FunctionId background_function; // (vec3 direction) -> vec3
     Box bounds;                     // of the finite top-level parts; empty when there are none

@@ -18,6 +18,7 @@ class Verifier {
         callable_ = graph_.function_count();
         signature(scene_.distance, "distance", Type::Float);
         signature(scene_.hit, "hit", Type::Hit);
+        if (scene_.reach) signature(scene_.reach, "reach", Type::Vec2);
         signature(scene_.background_function, "background", Type::Vec3);
         if (scene_.surfaces.empty()) fail("there is no surface for what is not painted");
         for (const Light &light : scene_.lights) {

@@ -3,6 +3,7 @@
 #include "build.h"
 #include "ir/lower.h"
 #include "tests/support/slopes.h"
+#include "tests/support/spans.h"
 
 #include <catch2/catch.hpp>
 
@@ -289,6 +290,100 @@ TEST_CASE("nothing of a solid is cut off, and half of what is left for it is too
     }
 }
 
+// What the rule of curvature adds to the balls: segments that are free by it.
+namespace {
+
+std::vector<Case> bends() {
+    std::vector<Case> out;
+    const auto waves = [](Scenery &s, double high, double often) {
+        return s.g.mul(s.n(high), s.sin(s.g.mul(s.n(often), s.x)));
+    };
+    out.push_back({"waves on a sphere", Rule::Curvature,
+                   [waves](Scenery &s) {
+                       return s.add(ShapeKind::Displace, {s.sphere(2)}, {waves(s, 0.1, 12)});
+                   },
+                   0, 2.3});
+    // The sphere's own, which a displacement by its own height adds little to.
+    out.push_back({"a small sphere, hardly displaced", Rule::Curvature,
+                   [waves](Scenery &s) {
+                       return s.add(ShapeKind::Displace, {s.sphere(0.5)}, {waves(s, 0.005, 6)});
+                   },
+                   0, 0.9});
+    out.push_back({"noise on a rounded box", Rule::Curvature,
+                   [](Scenery &s) {
+                       NodeId noise = s.call(Op::Perlin, s.g.mul(s.p, s.n(2)));
+                       ShapeId box = s.add(ShapeKind::Offset, {s.box(1, 1, 1)}, {s.n(0.5)});
+                       return s.add(ShapeKind::Displace, {box}, {s.g.mul(s.n(0.1), noise)});
+                   },
+                   0, 1.3});
+    out.push_back({"waves on what is moved, in a union", Rule::Curvature,
+                   [waves](Scenery &s) {
+                       ShapeId moved = s.add(translated(s.g, s.sphere(1), s.g.vec3(0.5, 0.2, 0)));
+                       ShapeId rough = s.add(ShapeKind::Displace, {moved}, {waves(s, 0.05, 14)});
+                       ShapeId turned =
+                           s.add(rotated(s.g, rough, rotation(s.g, s.g.vec3(1, 1, 0), s.n(0.7))));
+                       return s.add(ShapeKind::Union, {turned, s.box(1, 3, 1)});
+                   },
+                   0, 2});
+    return out;
+}
+
+Spans spans_of(const Case &test, double factor) {
+    Scenery s;
+    ShapeId shape = test.build(s);
+    Diagnostics diagnostics;
+    proof::Options options;
+    options.rules.factor[static_cast<std::size_t>(test.rule)] = factor;
+    s.prove(shape, diagnostics, options);
+    REQUIRE(!diagnostics.has_errors());
+    lower(s.scene);
+    REQUIRE(verify(s.scene).empty());
+    REQUIRE(s.scene.reach);
+    const double r = test.reach;
+    return measure_spans(s.scene, {-r, -r, -r}, {r, r, r}, 1'000'000);
+}
+
+} // namespace
+
+TEST_CASE("between two samples that reach each other nothing lies, and half a bend is too little") {
+    for (const Case &test : bends()) {
+        SECTION(test.name) {
+            const Spans truth = spans_of(test, 1);
+            std::cout << test.name << ": " << truth.tried << " segments by curvature\n";
+            CHECK(truth.tried > 1000);
+            CHECK(truth.cut == 0);
+            CHECK(truth.shorter == 0);
+            // noise is nowhere near its bound, which holds for all of its lattices
+            if (test.name.find("noise") == std::string::npos) CHECK(spans_of(test, 0.5).cut > 0);
+        }
+    }
+}
+
+// What mirrors, cuts or repeats a field may bend it upward without limit: no reach beyond the ball.
+TEST_CASE("nothing reaches by curvature through folds and cuts") {
+    const auto rough = [](Scenery &s) {
+        return s.add(ShapeKind::Displace, {s.sphere(1)},
+                     {s.g.mul(s.n(0.1), s.sin(s.g.mul(s.n(9), s.x)))});
+    };
+    const auto reaches = [](Scenery &s, ShapeId shape) {
+        Diagnostics diagnostics;
+        s.prove(shape, diagnostics);
+        lower(s.scene);
+        return static_cast<bool>(s.scene.reach);
+    };
+    Scenery alone, cut, inverted, sharp, thin;
+    CHECK(reaches(alone, rough(alone)));
+    CHECK_FALSE(reaches(cut, cut.add(ShapeKind::Intersection, {rough(cut), cut.box(1, 1, 1)})));
+    CHECK_FALSE(reaches(inverted, inverted.add(ShapeKind::Complement, {rough(inverted)})));
+    // edges that are as sharp as the surface comes, and a middle that it may reach
+    const auto waves = [](Scenery &s, ShapeId shape) {
+        return s.add(ShapeKind::Displace, {shape},
+                     {s.g.mul(s.n(0.1), s.sin(s.g.mul(s.n(9), s.x)))});
+    };
+    CHECK_FALSE(reaches(sharp, waves(sharp, sharp.box(1, 1, 1))));
+    CHECK_FALSE(reaches(thin, waves(thin, thin.sphere(0.1))));
+}
+
 TEST_CASE("half of an assumed bound is found out") {
     for (double part : {1.0, 0.5}) {
         Scenery s;
@@ -305,8 +400,8 @@ TEST_CASE("half of an assumed bound is found out") {
 TEST_CASE("each rule has a case of its own") {
     for (std::size_t rule = 0; rule < std::size_t(Rule::Count); ++rule) {
         std::vector<Case> all = cases();
-        const std::vector<Case> more = cuts();
-        all.insert(all.end(), more.begin(), more.end());
+        for (const std::vector<Case> &more : {cuts(), bends()})
+            all.insert(all.end(), more.begin(), more.end());
         INFO("rule " << rule);
         CHECK(std::any_of(all.begin(), all.end(),
                           [&](const Case &one) { return std::size_t(one.rule) == rule; }));

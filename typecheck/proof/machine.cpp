@@ -123,10 +123,10 @@ double spectral_norm(const Row *rows, int count) {
     return up(std::min(norm, std::sqrt(frobenius)), 8);
 }
 
-Machine::Machine(const Tape &tape, const Ranges &ranges)
+Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
     : tape_(tape), ranges_(ranges), value_(tape.components), grad_(tape.components),
-      odd_(tape.components), norm_(tape.first.size()), trouble_(tape.first.size(), Trouble::None),
-      cause_(tape.first.size()) {
+      odd_(tape.components), norm_(tape.first.size()), bend_(bends ? tape.first.size() : 0),
+      trouble_(tape.first.size(), Trouble::None), cause_(tape.first.size()) {
     run(tape.once);
 }
 
@@ -160,6 +160,7 @@ void Machine::copy(Slot from, Slot to) {
         odd_[b + i] = odd_[a + i];
     }
     norm_[to] = norm_[from];
+    if (!bend_.empty()) bend_[to] = bend_[from];
     trouble_[to] = trouble_[from];
     cause_[to] = cause_[from];
 }
@@ -178,6 +179,7 @@ void Machine::join(Slot into, Slot other, bool jump, NodeId cause) {
         trouble_[into] = trouble_[other];
         cause_[into] = cause_[other];
     }
+    if (!bend_.empty()) bend_[into] = jump ? infinity : std::max(bend_[into], bend_[other]);
     if (jump && norm_[into] != infinity) {
         for (std::uint32_t i = 0; i < tape_.size[into]; ++i)
             grad_[a + i] = {Interval::everything(), Interval::everything(), Interval::everything()};

@@ -51,7 +51,8 @@ double spectral_norm(const Row *rows, int count);
 
 class Machine {
   public:
-    Machine(const Tape &tape, const Ranges &ranges);
+    // bends: bounds second derivatives too (machine_bend.cpp).
+    Machine(const Tape &tape, const Ranges &ranges, bool bends = false);
     void run(const Cell &cell);
 
     int size() const { return tape_.size[tape_.result]; }
@@ -64,11 +65,15 @@ class Machine {
     double norm() const {
         return result_norm_;
     } // infinity where the field may jump or be infinitely steep here
+    // Of second derivatives along straight lines, all components together; infinity where the slope
+    // may jump, or nothing is known.
+    double bend() const { return result_norm_ == infinity_ ? infinity_ : bend_[tape_.result]; }
     Trouble trouble() const { return trouble_[tape_.result]; }
     NodeId cause() const { return cause_[tape_.result]; } // the first node that is in trouble
     std::size_t work() const { return work_; }            // instructions run so far
 
   private:
+    static constexpr double infinity_ = ir::rounding::infinity;
     friend struct Step; // the rules of one instruction (machine_step.h)
     void run(const std::vector<Instruction> &block);
     void run_loop(const Instruction &instruction);
@@ -86,6 +91,7 @@ class Machine {
     std::vector<Row> grad_;
     std::vector<std::uint8_t> odd_; // by component: may jump, but only from x to -x
     std::vector<double> norm_;      // by slot
+    std::vector<double> bend_;      // by slot, or none
     std::vector<Trouble> trouble_;
     std::vector<NodeId> cause_;
     double result_norm_ = 0;

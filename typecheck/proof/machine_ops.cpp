@@ -53,7 +53,11 @@ Step::Step(Machine &of, const Instruction &instruction)
             for (int c = 0; c < size(a); ++c) any_odd = any_odd || odd(a, c);
 }
 
-void Machine::step(const Instruction &instruction) { Step(*this, instruction).run(); }
+void Machine::step(const Instruction &instruction) {
+    Step step(*this, instruction);
+    step.run();
+    if (!bend_.empty()) bend_[instruction.out] = step.bend();
+}
 
 void Step::run() {
     if (in.form == Form::Wave) {

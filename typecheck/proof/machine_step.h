@@ -38,6 +38,7 @@ struct Step {
 
     Step(Machine &of, const Instruction &instruction);
     void run();
+    double bend() const; // machine_bend.cpp
 
     // -- what mixes components (machine_vectors.cpp)
     void splat();

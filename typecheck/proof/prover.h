@@ -82,6 +82,11 @@ struct Prover {
     Ball ball_of(ir::ShapeId id, const Known &k); // from the children's balls, where that says more
     void keep_in_ball(ir::ShapeId id, Known &k);  // sets the ball, and cuts the box to it
 
+    double bend(ir::NodeId field, const Box &box); // curvature.cpp
+    double core_of_leaf(ir::NodeId field);
+    double core_of(ir::ShapeId id);                      // Known::core
+    double curvature_of(ir::ShapeId id, const Known &k); // ShapeFact::curvature
+
     std::vector<ir::PartialSum> partial_sums(ir::ShapeId displaced, double slope); // octaves.cpp
     void tighten(ir::ShapeId id, Known &k); // a deformed shape's bound, by its own expression
     double region_radius(ir::ShapeId id, int axis) const;

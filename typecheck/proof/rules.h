@@ -28,6 +28,7 @@ enum class Rule : std::size_t {
     Shell,
     Round,
     Detour,
+    Curvature,
     Count
 };
 

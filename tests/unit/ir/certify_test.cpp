@@ -1,6 +1,6 @@
 // Proofs by branch and bound of the constants in noise.h that no one else has published: those of
-// simplex noise and of spot noise. Coarse enough to take a moment; each bound holds for every
-// choice of gradients, weights and places.
+// simplex noise and of spot noise, and all bends. Coarse enough to take a moment; each bound holds
+// for every choice of gradients, weights and places.
 #include "ir/noise.h"
 
 #include <catch2/catch.hpp>
@@ -139,4 +139,116 @@ TEST_CASE("spot noise's slope and range") {
         }
     }
     CHECK(rest.empty());
+}
+
+namespace {
+
+// Values and first two derivatives of the quintic and of 1 less it, each least and greatest.
+struct Range {
+    double lo = 0, hi = 0;
+    double magnitude() const { return std::max(std::abs(lo), std::abs(hi)); }
+};
+Range operator+(Range a, Range b) { return {a.lo + b.lo, a.hi + b.hi}; }
+Range operator*(Range a, Range b) {
+    const double p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
+    return {std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s))};
+}
+Range operator*(double s, Range a) {
+    return s < 0 ? Range{s * a.hi, s * a.lo} : Range{s * a.lo, s * a.hi};
+}
+using Fades = std::array<std::array<std::array<Range, 3>, 2>, 3>; // by axis, corner, derivative
+
+// Over the cube about c, in 0..1/2 along each axis: there all three grow, but for the second, which
+// falls from 1/2 - sqrt(3)/6 on.
+Fades fades(V c, double half) {
+    const auto second = [](double t) { return 60 * t * (1 - t) * (1 - 2 * t); };
+    const auto first = [](double t) { return 30 * t * t * (1 - t) * (1 - t); };
+    const double top = 0.5 - std::sqrt(3.0) / 6;
+    Fades out;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double a = c[i] - half, b = c[i] + half;
+        const Range value{sem::fade(a), sem::fade(b)}, slope{first(a), first(b)},
+            bend{std::min(second(a), second(b)),
+                 a <= top && top <= b ? second(top) : std::max(second(a), second(b))};
+        out[i][1] = {value, slope, bend};
+        out[i][0] = {Range{1, 1} + -1 * value, -1 * slope, -1 * bend};
+    }
+    return out;
+}
+
+// The most that the second derivative along u can be in the cube, whatever the corners hold. With w
+// a corner's weight, along u w' and w'': of a gradient g there the part w (g.d) has the second
+// derivative g.(w'' d + 2 w' u); of a value v in 0..1 the part is w'' v, and as all w'' add up to
+// 0, the most is half of the sum of their sizes.
+double bend_along(V u, V c, double half, bool gradients) {
+    const Fades f = fades(c, half);
+    double all = 0;
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        const std::array<std::size_t, 3> at{corner & 1, corner >> 1 & 1, corner >> 2};
+        const auto &x = f[0][at[0]], &y = f[1][at[1]], &z = f[2][at[2]];
+        const Range flat = x[0] * y[0];
+        const Range slope =
+            u[0] * (x[1] * y[0] * z[0]) + u[1] * (x[0] * y[1] * z[0]) + u[2] * (flat * z[1]);
+        const Range bend = u[0] * u[0] * (x[2] * y[0] * z[0]) + u[1] * u[1] * (x[0] * y[2] * z[0]) +
+                           u[2] * u[2] * (flat * z[2]) + 2 * u[0] * u[1] * (x[1] * y[1] * z[0]) +
+                           2 * u[0] * u[2] * (x[1] * y[0] * z[1]) +
+                           2 * u[1] * u[2] * (x[0] * y[1] * z[1]);
+        if (!gradients) {
+            all += bend.magnitude() / 2;
+            continue;
+        }
+        V g{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double d = c[i] - double(at[i]);
+            g[i] = (bend * Range{d - half, d + half} + 2 * u[i] * slope).magnitude();
+        }
+        all += by_gradients(g);
+    }
+    return all;
+}
+
+// For the symmetric matrix H of second derivatives and a unit u at an angle a from the direction in
+// which |u.Hu| is greatest, |u.Hu| >= cos(2a) times that. So directions that lie everywhere within
+// a of one another, and each below limit*cos(2a), prove the limit. By mirrors a corner's eighth of
+// the cell and half of the directions do; by permutations those with |ux| >= |uy| >= |uz|.
+bool bends_less(double limit, int grid, long most, bool gradients) {
+    for (int j = 0; j < grid; ++j)
+        for (int k = -j - 1; k <= j; ++k)
+            for (double sign : {1.0, -1.0}) {
+                const double y = (j + 0.5) / grid, z = (k + 0.5) / grid;
+                const V u = times(1 / size({1, y, z}), {1, sign * y, z});
+                double angle = 0;
+                for (int c = 0; c < 4; ++c) {
+                    const V v{1, sign * (y + (c & 1 ? 0.5 : -0.5) / grid),
+                              z + (c & 2 ? 0.5 : -0.5) / grid};
+                    angle = std::max(angle, std::acos(std::min(dot(u, v) / size(v), 1.0)));
+                }
+                const double along = limit * std::cos(2 * angle) * (1 - 1e-9);
+                std::vector<std::pair<V, double>> rest{{{0.25, 0.25, 0.25}, 0.25}};
+                while (!rest.empty()) {
+                    const auto [p, half] = rest.back();
+                    rest.pop_back();
+                    if (--most < 0) return false;
+                    if (bend_along(u, p, half, gradients) <= along) continue;
+                    for (int c = 0; c < 8; ++c) {
+                        const double h = half / 2;
+                        rest.push_back(
+                            {sum(p, {c & 1 ? h : -h, c & 2 ? h : -h, c & 4 ? h : -h}), h});
+                    }
+                }
+            }
+    return true;
+}
+
+} // namespace
+
+// What is seen: the gradients and values that make it are among those that corners have.
+TEST_CASE("gradient noise's second derivatives along lines") {
+    const V steepest = times(1 / size({1, 1, 0.978}), {-1, 1, 0.978});
+    CHECK(bend_along(steepest, {0.3992, 0.3992, 0.5}, 0, true) > 14.46);
+    CHECK(bends_less(sem::perlin_bend, 9, 8'000'000, true));
+}
+TEST_CASE("value noise's second derivatives along lines") {
+    CHECK(bend_along({std::sqrt(0.5), -std::sqrt(0.5), 0}, {0.5, 0.5, 0.145}, 0, false) > 7.03);
+    CHECK(bends_less(sem::value_noise_bend, 9, 2'000'000, false));
 }
