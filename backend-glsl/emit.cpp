@@ -44,8 +44,6 @@ std::string vector_text(const ir::Triple &v) {
     return text + ")";
 }
 
-std::string number(double value) { return float_literal(static_cast<float>(value)); }
-
 std::string param_value(const ir::Param &param) {
     return literal({param.type, {param.value[0], param.value[1], param.value[2], param.value[3]}});
 }
@@ -298,7 +296,7 @@ class Emitter {
                 text += std::string("#define fathom_time ") +
                         (options_.target == Target::Shadertoy ? "iTime\n" : "u_time\n");
         } else if (module_.reads_time || !options_.field_only) {
-            text += uniform("float", "fathom_time", number(options_.time));
+            text += uniform("float", "fathom_time", float_literal(options_.time));
         }
         for (const auto &[index, name] : module_.params) {
             const ir::Param &param = scene_.params[index];
@@ -339,8 +337,8 @@ class Emitter {
                              {"vec3", "fathom_right", vector_text(view.right)},
                              {"vec3", "fathom_up", vector_text(view.up)},
                              {"vec3", "fathom_forward", vector_text(view.forward)},
-                             {"float", "fathom_extent", number(view.extent)},
-                             {"float", "fathom_focus", number(view.focus)},
+                             {"float", "fathom_extent", float_literal(view.extent)},
+                             {"float", "fathom_focus", float_literal(view.focus)},
                              {"int", "fathom_orthographic", view.orthographic ? "1" : "0"},
                              {"vec3", "fathom_sun", vector_text(sun)},
                              {"int", "fathom_mode", "0"}};
@@ -392,7 +390,7 @@ class Emitter {
                    "    if (iMouse.x > 0.0) {\n"
                    "    vec2 turn = (iMouse.xy / iResolution.xy - 0.5) * vec2(6.2831853, 3.0);\n"
                    "    float around = atan(" +
-                   number(away[0]) + ", " + number(away[2]) +
+                   float_literal(away[0]) + ", " + float_literal(away[2]) +
                    ") - turn.x;\n"
                    "    float above = clamp(-turn.y, -1.5, 1.5);\n" +
                    turned_camera(
@@ -436,7 +434,7 @@ class Emitter {
         text += "\n// The largest slope of a shape's field before it was divided by it; that of "
                 "sdf is at most 1.\n"
                 "const float sdf_lipschitz = " +
-                number(bound > 0 ? bound : 1) + ";\n";
+                float_literal(bound > 0 ? bound : 1) + ";\n";
         text += scene.tables + scene.functions + hit_function() + scene.looks;
         text += "\n// What p, on or near a surface with that normal, is made of.\n"
                 "fathom_Material material(vec3 p, vec3 normal) {\n    return "

@@ -318,8 +318,6 @@ constexpr const char *kept_width =
     "        fathom_width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;\n";
 constexpr const char *kept_stop = "        if (fathom_absent) break;\n";
 
-std::string number(double value) { return float_literal(static_cast<float>(value)); }
-
 using Values = std::map<std::string, std::string, std::less<>>;
 
 Values values_of(const MarcherOptions &options) {
@@ -327,8 +325,8 @@ Values values_of(const MarcherOptions &options) {
     const std::string clip = "    vec2 inside = fathom_box(origin, direction);\n"
                              "    begin = max(begin, inside.x);\n"
                              "    end = min(end, inside.y);\n";
-    const std::string far = "100.0 * max(" + number(options.radius) + ", length(fathom_origin - " +
-                            options.center + "))";
+    const std::string far = "100.0 * max(" + float_literal(options.radius) +
+                            ", length(fathom_origin - " + options.center + "))";
     // A field that reaches is asked in fathom_near alone, so that there is one copy of it.
     const bool steep = options.steep, apart = options.cheap && !options.kept;
     Values values{
@@ -340,20 +338,20 @@ Values values_of(const MarcherOptions &options) {
         {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
         {"RAY", ray},
         {"CLIP", options.boxed ? clip : ""},
-        {"FAR", options.far > 0 ? number(options.far) : far},
-        {"RADIUS", number(options.radius)},
+        {"FAR", options.far > 0 ? float_literal(options.far) : far},
+        {"RADIUS", float_literal(options.radius)},
         {"CENTER", options.center},
         {"LO", options.lo},
         {"HI", options.hi},
-        {"EPSILON", number(options.epsilon)},
+        {"EPSILON", float_literal(options.epsilon)},
         {"MAX_STEPS", std::to_string(options.max_steps)},
         {"ZERO", options.zero},
         {"LIGHTS", std::to_string(options.lights)},
-        {"FLOAT_SLACK", number(look::float_slack)},
-        {"NORMAL_SLACK", number(look::normal_slack)},
-        {"LEAST_SLOPE", number(look::least_slope)},
-        {"RELAXATION", number(look::relaxation)},
-        {"FLATTEST", number(look::flattest)},
+        {"FLOAT_SLACK", float_literal(look::float_slack)},
+        {"NORMAL_SLACK", float_literal(look::normal_slack)},
+        {"LEAST_SLOPE", float_literal(look::least_slope)},
+        {"RELAXATION", float_literal(look::relaxation)},
+        {"FLATTEST", float_literal(look::flattest)},
         {"OPEN", options.skip_shading ? "" : shade_open},
         {"TAPS", options.skip_shading ? "4" : "taps"},
         {"SAMPLE_SHADE", options.skip_shading ? "        float f = sdf(p + h * e);\n"
@@ -366,14 +364,14 @@ Values values_of(const MarcherOptions &options) {
         {"AND_D", steep ? ", d" : ""},
         {"NEAR_X", steep ? "fathom_near(p + x * n, h, x, d)" : "sdf(p + x * n)"},
         {"ALL_TAPS", std::to_string(4 + look::occlusion_samples)},
-        {"OCCLUSION_TOTAL", number(1 - std::ldexp(1.0, -look::occlusion_samples))},
+        {"OCCLUSION_TOTAL", float_literal(1 - std::ldexp(1.0, -look::occlusion_samples))},
         {"OCCLUSION_REACH",
-         number(look::occlusion_reach * options.radius / look::occlusion_samples)},
+         float_literal(look::occlusion_reach * options.radius / look::occlusion_samples)},
         {"PICK_RAY", options.pick ? pick_ray : ""},
         {"PICK_HIT", options.pick ? pick_hit : ""},
         {"SHADOW_STEPS", std::to_string(look::shadow_steps)},
-        {"SHADOW_BIAS", number(look::shadow_bias)},
-        {"LEAST_ANGLE", number(look::least_angle)},
+        {"SHADOW_BIAS", float_literal(look::shadow_bias)},
+        {"LEAST_ANGLE", float_literal(look::least_angle)},
     };
     const bool reach = options.reaches;
     values["ASK_CHEAP"] =
@@ -386,9 +384,9 @@ Values values_of(const MarcherOptions &options) {
     values["REACHED_BEFORE"] = reach ? "    float reached = 0.0;\n" : "";
     values["NOT_REACHED"] = reach ? " && !(d > 0.0 && stride <= reached + fathom_span)" : "";
     values["NEARER"] = reach ? nearer_by_reach : nearer_by_ball;
-    values["NEARER_PART"] = number(look::nearer);
+    values["NEARER_PART"] = float_literal(look::nearer);
     values["BENT"] = reach ? bent_step : "";
-    values["BENT_RELAXATION"] = number(look::bent_relaxation);
+    values["BENT_RELAXATION"] = float_literal(look::bent_relaxation);
     values["KEEP_REACHED"] = reach ? "        reached = span;\n" : "";
     for (const char *part : {"NEARER", "BENT"}) values[part] = fill(values[part], values);
     values["KEPT_WIDTH"] = options.kept ? kept_width : "";

@@ -3,7 +3,11 @@
 
 #include "cli/terminal.h"
 
+#include <vector>
+
 namespace fathom::cli {
+
+double median(std::vector<double> values); // 0 of none
 
 Exit bench_noise_cache(const BenchCommand &command, const ir::Scene &scene,
                        Terminal &terminal); // bench_cache.cpp

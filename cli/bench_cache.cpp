@@ -36,12 +36,6 @@ struct Bench {
     }
 };
 
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(),
-                     values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values.empty() ? 0 : values[values.size() / 2];
-}
-
 // The scene's own view, turned about the height through what it looks at: as if the scene turned.
 ir::View turned(const ir::Scene &scene, double aspect, double angle) {
     ir::View view = ir::view_of(scene, 0, aspect);

@@ -54,13 +54,6 @@ constexpr BinaryRow binary_rows[] = {{Tok::Bar, BinaryOp::Union, UnionLevel},
                                      {Tok::Percent, BinaryOp::Mod, MulLevel},
                                      {Tok::Caret, BinaryOp::Pow, PowLevel}};
 
-template <class T> T take_back(std::vector<T> &stack) {
-    assert(!stack.empty());
-    T top = std::move(stack.back());
-    stack.pop_back();
-    return top;
-}
-
 } // namespace
 
 Builder::Builder(const Source &source, SourceId id, const Tokens &tokens, Diagnostics &diagnostics)

@@ -5,10 +5,12 @@
 #include "lang/ast.h"
 #include "lang/token.h"
 
+#include <cassert>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 namespace fathom::lang {
@@ -48,6 +50,13 @@ enum class Wanted {
     TernaryColon,
     StatementEnd
 };
+
+template <class T> T take_back(std::vector<T> &stack) {
+    assert(!stack.empty());
+    T top = std::move(stack.back());
+    stack.pop_back();
+    return top;
+}
 
 class Builder {
   public:

@@ -11,13 +11,6 @@ namespace fathom::lang {
 
 namespace {
 
-template <class T> T take_back(std::vector<T> &stack) {
-    assert(!stack.empty());
-    T top = std::move(stack.back());
-    stack.pop_back();
-    return top;
-}
-
 bool opens(Tok kind) {
     switch (kind) {
     case Tok::Open:

@@ -2,6 +2,7 @@
 
 #include "render-gl/fxaa.h"
 #include "render-gl/program.h"
+#include "render-gl/shaders.h"
 
 #include <epoxy/gl.h>
 
@@ -11,12 +12,6 @@
 namespace fathom::gl {
 
 namespace {
-
-constexpr const char *vertex_text = R"(#version 330 core
-void main() {
-    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}
-)";
 
 // The colours of a ramp are those of the marcher's heat map: blue, green, yellow, red.
 constexpr const char *resolve_text = R"(#version 330 core
@@ -122,7 +117,7 @@ GLuint compiled(GLenum kind, const char *text) {
 
 // Our own fixed texts: that they build is for the tests to see.
 GLuint linked(const std::string &fragment) {
-    const GLuint shaders[] = {compiled(GL_VERTEX_SHADER, vertex_text),
+    const GLuint shaders[] = {compiled(GL_VERTEX_SHADER, covering_triangle),
                               compiled(GL_FRAGMENT_SHADER, fragment.c_str())};
     const GLuint program = glCreateProgram();
     for (GLuint shader : shaders) glAttachShader(program, shader);

@@ -13,13 +13,6 @@ namespace fathom::gl {
 
 namespace {
 
-// One triangle that covers the picture, without any vertex data.
-constexpr const char *vertex_text = R"(#version 330 core
-void main() {
-    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}
-)";
-
 void unfiltered(GLenum target) {
     glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
@@ -32,8 +25,8 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
                                                    const ir::Scene &scene) {
     Program result;
     result.uniforms_ = output.uniforms;
-    if (auto error = link(result.program_,
-                          {{GL_VERTEX_SHADER, vertex_text}, {GL_FRAGMENT_SHADER, output.text}}))
+    if (auto error = link(result.program_, {{GL_VERTEX_SHADER, covering_triangle},
+                                            {GL_FRAGMENT_SHADER, output.text}}))
         return *error;
     glUseProgram(result.program_);
 

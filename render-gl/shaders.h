@@ -21,6 +21,13 @@ struct ProgramError {
 std::optional<ProgramError> link(unsigned &program,
                                  const std::vector<std::pair<unsigned, std::string>> &shaders);
 
+// The vertex shader of every pass: one triangle that covers the picture, without any vertex data.
+constexpr const char *covering_triangle = R"(#version 330 core
+void main() {
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)";
+
 // Of the current program.
 void set_params(unsigned program, const std::vector<glsl::Uniform> &uniforms,
                 const std::vector<ir::Param> &params);

@@ -1,9 +1,9 @@
 #!/bin/sh
 # Builds a libFuzzer target with clang++ in build-fuzz/ and runs it for a minute: scripts/fuzz.sh TARGET [SECONDS]
-# Targets: parse_fuzz (text to tree), compile_fuzz (text to shader), yaml_fuzz (save files). What it finds is left in
+# Targets: parse_fuzz (text to tree), compile_fuzz (text to shader), yaml_fuzz (save files); `all` only builds them. What it finds is left in
 # build-fuzz/ as crash-…; what it learns is kept in build-fuzz/TARGET_corpus.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
-target=${1:?which target: parse_fuzz, compile_fuzz or yaml_fuzz}
+target=${1:?which target: parse_fuzz, compile_fuzz, yaml_fuzz or all}
 seconds=${2:-60}
 build=$root/build-fuzz
 fuzz=$root/tests/fuzz
@@ -11,13 +11,17 @@ case $target in
 parse_fuzz) length=4096 words=fathom.dict seeds="$fuzz/seeds $root/examples $root/stdlib" ;;
 compile_fuzz) length=2048 words=fathom.dict seeds="$fuzz/seeds $root/tests/golden/cases $root/examples" ;;
 yaml_fuzz) length=4096 words=yaml.dict seeds=$fuzz/yaml_seeds ;;
+all) ;;
 *) echo "there is no target $target" >&2; exit 2 ;;
 esac
 launcher=""
 command -v ccache >/dev/null && launcher=-DCMAKE_CXX_COMPILER_LAUNCHER=ccache
 [ -e "$build/build.ninja" ] ||
-    cmake -G Ninja -S "$root" -B "$build" -DCMAKE_CXX_COMPILER=clang++ -DFATHOM_FUZZ=ON $launcher || exit 3
-ninja -C "$build" "$target" || exit 3
+    cmake -G Ninja -S "$root" -B "$build" -DCMAKE_CXX_COMPILER=clang++ -DFATHOM_FUZZ=ON -DCMAKE_UNITY_BUILD=ON $launcher || exit 3
+if [ "$target" = all ]; then
+    exec flock "$build" ninja -C "$build" parse_fuzz compile_fuzz yaml_fuzz
+fi
+flock "$build" ninja -C "$build" "$target" || exit 3
 mkdir -p "$build/${target}_corpus"
 cd "$build" && exec "./$target" -max_total_time="$seconds" -max_len=$length -timeout=60 -rss_limit_mb=2048 -seed=1 \
     -dict="$fuzz/$words" -print_final_stats=1 "${target}_corpus" $seeds

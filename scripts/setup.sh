@@ -54,7 +54,7 @@ build() {
         say "configuring (into build/)"
         launcher=""
         command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
-        cmake -G Ninja -S "$root" -B "$root/build" $launcher >"$root/build/configure.log" 2>&1 || {
+        cmake -G Ninja -S "$root" -B "$root/build" -DCMAKE_UNITY_BUILD=ON $launcher >"$root/build/configure.log" 2>&1 || {
             cat "$root/build/configure.log" >&2
             rm -f "$root/build/build.ninja"
             return 1

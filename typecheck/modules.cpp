@@ -365,6 +365,11 @@ Value import_module(Evaluator &ev, const lang::Import &import, Span, std::uint32
             report(ev, code, import.path_span, fmt::format("`{}`: {}", import.path, error->why));
         if (error->reason == LoadError::Reason::NotFound)
             d.note("paths are relative to the importing file, then to the -I folders");
+        for (const LibraryFile &file : ev.library)
+            if (!file.prelude && import.path == fmt::format("{}.sdf", file.name))
+                d.help(fmt::format("the library's own module goes by its name: `import \"{}\"`",
+                                   file.name),
+                       {{import.path_span, fmt::format("\"{}\"", file.name)}});
         return import_failed(ev, import);
     }
     LoadedText text = std::get<LoadedText>(std::move(loaded));

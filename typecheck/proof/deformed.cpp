@@ -109,10 +109,10 @@ bool misses(const Deformation &d, double radius, const Cell &q) {
     return false;
 }
 
-struct Candidate {
+struct Undivided {
     double bound;
     std::uint32_t at;
-    bool operator<(const Candidate &other) const { return bound < other.bound; }
+    bool operator<(const Undivided &other) const { return bound < other.bound; }
 };
 
 } // namespace
@@ -144,7 +144,7 @@ FieldBound bound_deformed(Flattening &context, const Ranges &ranges, NodeId fiel
         const double slope = slope_in(machine, d, point);
         if (slope != infinity) out.sampled = std::max(out.sampled, slope * (1 - 1e-9));
     };
-    std::priority_queue<Candidate> queue;
+    std::priority_queue<Undivided> queue;
     std::vector<Cell> cells;
     auto push = [&](const Cell &cell) {
         if (misses(d, radius, cell)) return;
@@ -155,7 +155,7 @@ FieldBound bound_deformed(Flattening &context, const Ranges &ranges, NodeId fiel
     push(whole);
     double settled = 0; // of cells that cannot be cut any more
     while (!queue.empty()) {
-        const Candidate top = queue.top();
+        const Undivided top = queue.top();
         if (top.bound <= std::max(out.sampled * budget.tolerance, settled)) break;
         if (out.sampled > budget.hopeless || machine.work() > budget.instructions) break;
         queue.pop();

@@ -12,7 +12,7 @@ using namespace fathom;
 
 namespace {
 
-driver::Compilation compiled(const std::string &text) {
+driver::Compilation good(const std::string &text) {
     driver::Compilation c = driver::compile_text("loop.sdf", text, "", {});
     for (const Diagnostic &d : c.diagnostics.items()) UNSCOPED_INFO(d.message);
     REQUIRE(c.good());
@@ -62,8 +62,8 @@ int checked_formulas(const ir::Scene &scene) {
 
 // Whether the text for a thousand turns is longer than that for three hundred.
 bool grows(const std::string &text) {
-    return length_of(compiled(with(text, 1000)), glsl::Target::Es300) >
-           length_of(compiled(with(text, 300)), glsl::Target::Es300) + 1000;
+    return length_of(good(with(text, 1000)), glsl::Target::Es300) >
+           length_of(good(with(text, 300)), glsl::Target::Es300) + 1000;
 }
 
 } // namespace
@@ -75,7 +75,7 @@ TEST_CASE("the text of a loop over ten thousand spheres does not grow with their
         "  sphere(0.1 + 0.05 * sin(i)).translate([cos(a) * a, 0.01 * i, sin(a) * a])\n"
         "    .paint(hsv(i / #, 0.5, 1))\n"
         "}";
-    const driver::Compilation few = compiled(with(loop, 100)), many = compiled(with(loop, 10000));
+    const driver::Compilation few = good(with(loop, 100)), many = good(with(loop, 10000));
     CHECK(checked_formulas(many.scene) >= 3);
     for (glsl::Target target : {glsl::Target::Glsl450, glsl::Target::Glsl330, glsl::Target::Es300,
                                 glsl::Target::Shadertoy, glsl::Target::GlslViewer,
@@ -114,9 +114,9 @@ TEST_CASE("a formula that float32 would miss is not taken") {
 
 TEST_CASE("equal data is one table") {
     const driver::Compilation c =
-        compiled("let a = [for i in 0..30 { 0.1 + 0.2 * hash(i) }]\n"
-                 "fn f(p: vec3) { var d = 9.0; for x in a { d = min(d, length(p) - x) }; d }\n"
-                 "fn g(p: vec3) { var d = 9.0; for x in a { d = min(d, length(p.xy) - x) }; d }\n"
-                 "implicit(p => f(p), within: ball(2))\nimplicit(p => g(p), within: ball(2))");
+        good("let a = [for i in 0..30 { 0.1 + 0.2 * hash(i) }]\n"
+             "fn f(p: vec3) { var d = 9.0; for x in a { d = min(d, length(p) - x) }; d }\n"
+             "fn g(p: vec3) { var d = 9.0; for x in a { d = min(d, length(p.xy) - x) }; d }\n"
+             "implicit(p => f(p), within: ball(2))\nimplicit(p => g(p), within: ball(2))");
     CHECK(c.scene.graph.table_count() == 1);
 }

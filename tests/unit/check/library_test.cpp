@@ -1,18 +1,15 @@
 // The embedded library as a scene meets it: read where it is asked for, its calls run once, and
 // neither to be noticed but by the work that is saved.
-#include "driver/compile.h"
+#include "compiled.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 
 using namespace fathom;
+using test::compiled;
 
 namespace {
-
-driver::Compilation compiled(const std::string &text) {
-    return driver::compile_text("scene.sdf", text, ".", {});
-}
 
 std::vector<std::string> codes(const driver::Compilation &c) {
     std::vector<std::string> out;
@@ -69,6 +66,15 @@ TEST_CASE("names that a missing file would have brought are not reported one by 
     // what is near to a name that is there is still a slip
     CHECK(codes(compiled("import \"nowhere.sdf\"\nspere(1)\n")) ==
           std::vector<std::string>{"import-not-found", "unknown-name"});
+}
+
+TEST_CASE("the library's own module is offered to whom asks for its file") {
+    const auto c = compiled("import \"dfmodel.sdf\" as thesis\nthesis.sphere(1)\n");
+    REQUIRE(codes(c) == std::vector<std::string>{"import-not-found"});
+    const auto &fix = c.diagnostics.items()[0].fix;
+    REQUIRE(fix);
+    REQUIRE(fix->edits.size() == 1);
+    CHECK(fix->edits[0].replacement == "\"dfmodel\"");
 }
 
 TEST_CASE("a count says nothing where the cell is 0") {

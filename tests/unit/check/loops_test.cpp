@@ -1,15 +1,12 @@
 // Loops of field time whose turns can be counted when the scene is read.
-#include "driver/compile.h"
+#include "compiled.h"
 
 #include <catch2/catch.hpp>
 
 using namespace fathom;
+using test::compiled;
 
 namespace {
-
-driver::Compilation compiled(const std::string &text) {
-    return driver::compile_text("scene.sdf", text, ".", {});
-}
 
 std::string folding(const std::string &head, const std::string &tail) {
     return "fn f(p: vec3) -> float {\n  var q = p\n  var k = 0\n  " + head +

@@ -13,7 +13,7 @@ using namespace fathom::scenes;
 
 namespace {
 
-struct Case {
+struct Sloped {
     const char *name;
     double slope; // expected
     std::function<NodeId(Graph &, NodeId p)> field;
@@ -35,7 +35,7 @@ NodeId ring(Graph &g, NodeId p) {
     return g.sub(g.make(Op::Length, {g.make(Op::Make, Type::Vec2, args)}), g.number(0.25));
 }
 
-const std::vector<Case> cases{
+const std::vector<Sloped> cases{
     {"sphere", 1,
      [](Graph &g, NodeId p) { return sphere_distance(g, p, g.vec3(1, 2, 3), g.number(1)); }},
     {"box", 1, box},
@@ -72,7 +72,7 @@ const std::vector<Case> cases{
 TEST_CASE("slopes are as expected, and no difference is steeper") {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> place(-3, 3);
-    for (const Case &c : cases) {
+    for (const Sloped &c : cases) {
         CAPTURE(c.name);
         const Scene scene = of_field(c.field);
         const Function &f = scene.graph.function(scene.distance);

@@ -125,6 +125,11 @@ struct Scenery {
     }
 };
 
+inline proof::Cell cube(double r) {
+    using ir::Interval;
+    return {{Interval(-r, r), Interval(-r, r), Interval(-r, r)}};
+}
+
 inline bool has(const Diagnostics &diagnostics, Code code) {
     for (const Diagnostic &d : diagnostics.items())
         if (d.code == code) return true;

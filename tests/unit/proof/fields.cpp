@@ -7,10 +7,6 @@ using namespace fathom;
 using namespace fathom::test;
 using proof::Cell;
 
-namespace {
-Cell cube(double r) { return {{Interval(-r, r), Interval(-r, r), Interval(-r, r)}}; }
-} // namespace
-
 TEST_CASE("a length has slope 1 everywhere, also at 0") {
     Scenery s;
     auto b = s.bound(s.g.sub(s.length(s.p), s.n(1)));

@@ -11,8 +11,6 @@ using proof::Cell;
 
 namespace {
 
-Cell cube(double r) { return {{Interval(-r, r), Interval(-r, r), Interval(-r, r)}}; }
-
 // mix(hash(i), hash(i + 1), f) with i = floor(x) and the fraction given.
 NodeId lattice_noise(Scenery &s, NodeId fraction, double next = 1) {
     NodeId i = s.call(Op::Floor, s.x);

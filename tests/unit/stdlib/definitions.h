@@ -22,6 +22,8 @@ std::vector<Solid> combined_solids();
 std::vector<Solid> transformed_solids();
 
 // -- parts of definitions
+constexpr double pi = 3.14159265358979323846;
+bool in_box(Point p, double x, double y, double z); // of these sides, about the origin
 double to_segment(Point p, Point a, Point b);
 bool in_convex(Point p, const std::vector<Point> &corners,
                const std::vector<Point> &normals); // below each normal's farthest corner

@@ -8,7 +8,6 @@ namespace fathom::test {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 using Flat = std::function<bool(double, double)>;
 using Corners = std::vector<std::array<double, 2>>;
 

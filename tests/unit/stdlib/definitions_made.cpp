@@ -8,12 +8,7 @@ namespace fathom::test {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 bool in_ball(Point p, Point at, double r) { return norm(p - at) < r; }
-bool in_box(Point p, double x, double y, double z) {
-    return std::abs(p[0]) < x / 2 && std::abs(p[1]) < y / 2 && std::abs(p[2]) < z / 2;
-}
 double box_field(Point p, double size) { // the distance to a cube
     double out = 0, in = -1e9;
     for (double x : p) {

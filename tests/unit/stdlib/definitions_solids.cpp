@@ -8,14 +8,10 @@ namespace fathom::test {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 const double golden = (1 + std::sqrt(5.0)) / 2;
 
 double around_y(Point p) { return std::hypot(p[0], p[2]); }
 bool within(double x, double lo, double hi) { return lo < x && x < hi; }
-bool in_box(Point p, double x, double y, double z) {
-    return std::abs(p[0]) < x / 2 && std::abs(p[1]) < y / 2 && std::abs(p[2]) < z / 2;
-}
 // The way from p to a box about the origin, both by their definition: the box's point with the
 // nearest coordinates.
 double to_box(Point p, double x, double y, double z) {

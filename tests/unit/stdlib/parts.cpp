@@ -6,6 +6,10 @@
 
 namespace fathom::test {
 
+bool in_box(Point p, double x, double y, double z) {
+    return std::abs(p[0]) < x / 2 && std::abs(p[1]) < y / 2 && std::abs(p[2]) < z / 2;
+}
+
 double to_segment(Point p, Point a, Point b) {
     Point d = b - a;
     double length2 = dot(d, d);
