@@ -45,11 +45,16 @@ constexpr int cache_refused = 256; // in a key's field
 // the age from bit 29.
 constexpr int cache_high_bits = 10;
 constexpr int cache_most_fields = 256;
+constexpr int cache_wishes = 4;  // cells that a pixel may ask for in one frame: a uvec4 of places
+constexpr int cache_many = 8;    // hits from which on a pixel asks only for what is not there
+constexpr int cache_sampled = 4; // one pixel in a square of that side is weighed
 
 // The words of fathom_cache_counts. Places are taken from the ring at `Head` and given back at
 // `Tail`; what is given back in a frame is taken in the next one at the earliest, from before
 // `Limit`.
-// `Changed` counts the entries of fathom_cache_changed: slots whose index is to be written anew.
+// `Changed` counts the entries of fathom_cache_changed: slots whose index is to be written anew. Of
+// the pixels that are weighed, `Paid` counts the look-ups of those that were finished, `Wasted`
+// those of others, and `Left` these; `Steps` those of all their marches.
 enum class Count {
     Head,
     Tail,
@@ -61,6 +66,10 @@ enum class Count {
     Full,
     Swept,
     Changed,
+    Paid,
+    Wasted,
+    Left,
+    Steps,
     Total
 };
 
@@ -71,11 +80,12 @@ struct KeptText {
 };
 
 // A picture's text stands for three: with `cache_defined` as a macro it reads kept values alone,
-// counts and says by its depth, 0 or 1, whether the pixel is finished; without it computes every
-// field. With `cache_learns` it computes, too, and asks for one of the cells that it would have
-// read.
+// counts and says by its depth, 0 or 1, whether the pixel is finished, and where its march first
+// asked for a value; without it computes every field. With `cache_learns` it computes, too, from
+// there on, and asks for some of the cells that it would have read.
 constexpr const char *cache_defined = "FATHOM_CACHE", *cache_learns = "FATHOM_CACHE_LEARN";
-// What fathom_counted says of a pixel beside its hits.
+// What fathom_counted says of a pixel beside its hits, in its two lowest bits; above them its
+// steps.
 enum class PixelState { Finished, Missed, Computed }; // Computed: what it wants cannot be kept
 std::string cache_look_up(std::span<const KeptText> fields); // inputs, state and fathom_kept
 std::string cache_reader(const KeptText &field, std::size_t number); // FUNCTION_kept(vec3)

@@ -100,7 +100,7 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     float stride = 0.0;
     float d = 0.0;
 $REACHED_BEFORE    int steps = 0;
-    for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
+$KEPT_RESUME    for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
         vec3 p = origin + t * direction;
         bool last = steps == $MAX_STEPS - 1;
         float reach = fathom_tolerance(t);
@@ -315,7 +315,10 @@ constexpr const char *bent_step = R"(        float span = max(fathom_span, d);
 // Where a kept value is absent the pixel is left to the text that computes all, so that what the
 // ray sees is one field (docs/noise-cache.md): its loops end at once.
 constexpr const char *kept_width =
-    "        fathom_width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;\n";
+    "        fathom_width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;\n"
+    "        fathom_step(t, before, stride, steps);\n";
+// What was reached by curvature is not remembered: 0 proves less, and costs a step.
+constexpr const char *kept_resume = "    fathom_resume(t, before, stride, steps);\n";
 constexpr const char *kept_stop = "        if (fathom_absent) break;\n";
 
 using Values = std::map<std::string, std::string, std::less<>>;
@@ -390,6 +393,7 @@ Values values_of(const MarcherOptions &options) {
     values["KEEP_REACHED"] = reach ? "        reached = span;\n" : "";
     for (const char *part : {"NEARER", "BENT"}) values[part] = fill(values[part], values);
     values["KEPT_WIDTH"] = options.kept ? kept_width : "";
+    values["KEPT_RESUME"] = options.kept ? kept_resume : "";
     values["KEPT_STOP"] = options.kept ? kept_stop : "";
     values["AND_PRESENT"] = options.kept ? " && !fathom_absent" : "";
     for (const char *part : {"RAY", "OPEN", "SAMPLE_SHADE", "CLOSED", "SURROUNDINGS"})

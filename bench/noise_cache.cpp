@@ -2,7 +2,7 @@
 // bench
 // --noise-cache` tells more of one scene); and what ir/cost.cpp takes as measured: look-ups and
 // kinds of noise, a point each. Where the CPU draws, its own time counts.
-#include "bench/measure.h"
+#include "bench/noise_cache.h"
 
 #include "ir/cost.h"
 #include "render-gl/cache_passes.h"
@@ -15,7 +15,7 @@
 namespace fathom::bench {
 namespace {
 
-constexpr int side = 64, turns = 32; // pixels; evaluations a pixel
+constexpr int side = 48, turns = 32; // pixels; evaluations a pixel
 constexpr double whole = 800;        // what is drawn is the middle of a picture of that size
 
 driver::Compilation scene_of(const std::string &field, double cell) {
@@ -25,36 +25,6 @@ driver::Compilation scene_of(const std::string &field, double cell) {
                              "camera(at: [0, 0.6, 2.6], look_at: [0, 0, 0], fov: 30deg)\n");
 }
 
-gl::FrameInputs inputs_of(const ir::Scene &scene) {
-    gl::FrameInputs inputs;
-    inputs.view = ir::view_of(scene, 0, 1);
-    inputs.view.extent *= side / whole;
-    inputs.sun = ir::lights_of(scene, 0, inputs.view)[0].position;
-    inputs.width = inputs.height = side;
-    return inputs;
-}
-
-// The median of a few, each between two others' so that what slows the machine slows both.
-struct Pair {
-    double kept = 0, exact = 0;
-};
-Pair milliseconds(gl::CachedView &view, const ir::Scene &scene) {
-    const gl::FrameInputs inputs = inputs_of(scene);
-    const auto time = [](const auto &draw) {
-        gl::finish();
-        const double begin = processor_seconds();
-        draw();
-        gl::finish();
-        return 1e3 * (processor_seconds() - begin);
-    };
-    std::vector<double> kept, exact;
-    for (int turn = 0; turn < 7; ++turn) {
-        kept.push_back(time([&] { view.draw(inputs, scene.params, {}); }));
-        exact.push_back(time([&] { view.draw_exactly(inputs, scene.params); }));
-    }
-    return {median(kept), median(exact)};
-}
-
 void measure_scene(Table &table, const std::string &what, const driver::Compilation &c,
                    double least) {
     if (!c.good()) return table.push_back({.what = what, .missing = complaint(c)});
@@ -62,11 +32,12 @@ void measure_scene(Table &table, const std::string &what, const driver::Compilat
     Diagnostics diagnostics;
     if (const std::string why = view.use(c.scene, {}, diagnostics); !why.empty())
         return table.push_back({.what = what, .missing = why});
-    for (int frame = 0; frame < 100; ++frame) {
-        view.draw(inputs_of(c.scene), c.scene.params, {});
+    const gl::FrameInputs inputs = middle_of(c.scene, 1);
+    for (int frame = 0; frame < 60; ++frame) {
+        view.draw(inputs, c.scene.params, {});
         if (view.read_tally().misses == 0) break;
     }
-    const Pair times = milliseconds(view, c.scene);
+    const FrameTimes times = frame_times(view, c.scene, inputs);
     table.push_back({.what = what,
                      .value = 1e3 / times.kept,
                      .unit = "frames/s",
@@ -179,6 +150,43 @@ void measure_costs(Table &table) {
 
 } // namespace
 
+driver::Compilation icosahedron() { return scene_of("0.12 * fbm(2.5 * p, octaves: 6)", 0.02); }
+driver::Compilation worley_sums() {
+    return scene_of("0.08 * worley(2.5 * p) + 0.04 * worley(5 * p) + 0.02 * worley(10 * p)", 0.02);
+}
+driver::Compilation spot_noise() {
+    return scene_of("0.06 * spot_noise(p, radius: 0.25, density: 4)", 0.02);
+}
+
+gl::FrameInputs middle_of(const ir::Scene &scene, double times_as_far) {
+    gl::FrameInputs inputs;
+    inputs.view = ir::view_of(scene, 0, 1);
+    for (std::size_t i = 0; i < 3; ++i)
+        inputs.view.origin[i] += (1 - times_as_far) * inputs.view.focus * inputs.view.forward[i];
+    inputs.view.focus *= times_as_far;
+    inputs.view.extent *= side / whole;
+    inputs.sun = ir::lights_of(scene, 0, inputs.view)[0].position;
+    inputs.width = inputs.height = side;
+    return inputs;
+}
+
+FrameTimes frame_times(gl::CachedView &view, const ir::Scene &scene,
+                       const gl::FrameInputs &inputs) {
+    const auto time = [](const auto &draw) {
+        gl::finish();
+        const double begin = processor_seconds();
+        draw();
+        gl::finish();
+        return 1e3 * (processor_seconds() - begin);
+    };
+    std::vector<double> kept, exact;
+    for (int turn = 0; turn < 7; ++turn) {
+        kept.push_back(time([&] { view.draw(inputs, scene.params, {}); }));
+        exact.push_back(time([&] { view.draw_exactly(inputs, scene.params); }));
+    }
+    return {median(kept), median(exact)};
+}
+
 void measure_noise_cache(Table &table) {
     auto context = gl::Context::make();
     if (const std::string *why = std::get_if<std::string>(&context))
@@ -186,15 +194,12 @@ void measure_noise_cache(Table &table) {
     if (const std::string why = gl::cache_unavailable(); !why.empty())
         return table.push_back({.what = "noise cache, still", .missing = why});
     measure_costs(table);
-    measure_scene(table, "noise cache, still: icosahedron, 6 octaves",
-                  scene_of("0.12 * fbm(2.5 * p, octaves: 6)", 0.02), 1.5);
-    measure_scene(
-        table, "  Worley sums",
-        scene_of("0.08 * worley(2.5 * p) + 0.04 * worley(5 * p) + 0.02 * worley(10 * p)", 0.02), 3);
-    measure_scene(table, "  spot noise",
-                  scene_of("0.06 * spot_noise(p, radius: 0.25, density: 4)", 0.02), 3);
+    measure_scene(table, "noise cache, still: icosahedron, 6 octaves", icosahedron(), 1.5);
+    measure_scene(table, "  Worley sums", worley_sums(), 3);
+    measure_scene(table, "  spot noise", spot_noise(), 3);
     measure_scene(table, "  stone well",
                   driver::compile_file(FATHOM_SOURCE_DIR "/examples/11_well.sdf", {}), 1.5);
+    measure_cache_views(table);
 }
 
 } // namespace fathom::bench

@@ -20,12 +20,31 @@ struct Painter {
     std::unique_ptr<gl::CachedView> cache; // with --cache, where it can be had
 };
 
-// A still picture is drawn until the cache has all that it asks for; so often at most.
-constexpr int most_learning_frames = 60;
+// A still picture is drawn anew until less than a hundredth of it misses, or a frame learnt less
+// than a quarter of what was missing, or look-ups do not pay: what it misses then is computed.
+constexpr int most_learning_frames = 6;
+
+bool learn(gl::CachedView &view, const ir::Scene &scene, const gl::FrameInputs &inputs,
+           const std::function<void(double)> &progress) {
+    const auto pixels =
+        static_cast<std::uint64_t>(inputs.width) * static_cast<std::uint64_t>(inputs.height);
+    std::uint64_t before = 0;
+    for (int frame = 0; frame < most_learning_frames; ++frame) {
+        if (!view.draw(inputs, scene.params, {})) return false;
+        const std::uint64_t misses = view.read_tally().misses;
+        progress((frame + 1.0) / (most_learning_frames + 1));
+        if (!view.looked_up() || 100 * misses <= pixels) break;
+        // The first frame misses everything, the second all that needs more than a few cells.
+        if (frame > 1 && 4 * misses > 3 * before) break;
+        before = misses;
+    }
+    return true;
+}
 
 std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &scene,
                                       const RenderCommand &command, double time,
-                                      const std::function<void(double)> &progress) {
+                                      const std::function<void(double)> &progress,
+                                      std::string &status) {
     gl::FrameInputs inputs;
     const double aspect = static_cast<double>(command.width) / command.height;
     inputs.view = ir::view_of(scene, time, aspect);
@@ -34,13 +53,25 @@ std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &sce
     inputs.height = command.height;
     inputs.time = time;
     inputs.mode = gl::Mode::Linear;
-    for (int frame = 0; frame < most_learning_frames; ++frame) {
+    if (!command.frames && !learn(view, scene, inputs, progress)) return std::nullopt;
+    std::optional<gl::Pixels> sum;
+    for (int k = 0; k < command.samples; ++k) {
+        inputs.offset = ir::sample_offset(k);
         if (!view.draw(inputs, scene.params, {})) return std::nullopt;
-        const gl::CacheTally tally = view.read_tally();
-        if (command.frames || tally.misses == 0) break;
-        progress(static_cast<double>(frame) / most_learning_frames);
+        gl::Pixels pixels = view.read_pixels();
+        if (sum)
+            for (std::size_t i = 0; i < sum->rgba.size(); ++i) sum->rgba[i] += pixels.rgba[i];
+        else
+            sum = std::move(pixels);
     }
-    return view.read_pixels();
+    if (command.samples > 1)
+        for (float &value : sum->rgba) value /= static_cast<float>(command.samples);
+    const double all = static_cast<double>(command.width) * command.height;
+    status = view.looked_up()
+                 ? fmt::format("{:.1f} % by kept values",
+                               100 - 100 * static_cast<double>(view.read_tally().computed) / all)
+                 : std::string("drawn exactly: kept values do not pay in this view");
+    return sum;
 }
 
 // `out` with the frame's number in place of its `#`s, or before its extension where it has none.
@@ -113,7 +144,7 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
                              const std::function<void(double)> &progress, std::string &status) {
     if (painter.cache) {
         std::optional<gl::Pixels> pixels =
-            draw_cached(*painter.cache, scene, command, time, progress);
+            draw_cached(*painter.cache, scene, command, time, progress, status);
         if (!pixels) return std::nullopt;
         return picture_of_linear(pixels->width, pixels->height, pixels->rgba);
     }

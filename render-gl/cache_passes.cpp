@@ -1,5 +1,8 @@
 #include "render-gl/cache_passes.h"
 
+#include "ir/cost.h"
+#include "render-gl/pruning.h"
+
 #include <epoxy/gl.h>
 
 #include <algorithm>
@@ -9,14 +12,6 @@
 namespace fathom::gl {
 
 namespace {
-
-// What of the framebuffer is drawn into (backend-glsl/cache.h says what is where).
-void draw_into(bool pick, bool counted) {
-    const GLenum targets[] = {GL_COLOR_ATTACHMENT0,
-                              static_cast<GLenum>(pick ? GL_COLOR_ATTACHMENT1 : GL_NONE),
-                              GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3};
-    glDrawBuffers(counted ? 4 : 2, targets);
-}
 
 void set(const Program &program, const char *name, int value) {
     glUniform1i(glGetUniformLocation(program.name(), name), value);
@@ -32,30 +27,28 @@ void bind_image(const Program &program, const char *name, int unit, GLuint textu
     set(program, name, unit);
 }
 
-GLuint target_2d(GLint format, int width, int height, GLuint framebuffer, GLenum attachment) {
-    const GLenum layout = format == GL_RGBA32F   ? GL_RGBA
-                          : format == GL_R8      ? GL_RED
-                          : format == GL_RGBA32I ? GL_RGBA_INTEGER
-                          : format == GL_RG32UI  ? GL_RG_INTEGER
-                                                 : GL_RED_INTEGER;
-    const GLenum type = format == GL_RGBA32F || format == GL_R8 ? GL_FLOAT
-                        : format == GL_RGBA32I                  ? GL_INT
-                                                                : GL_UNSIGNED_INT;
-    GLuint name = 0;
-    glGenTextures(1, &name);
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, name);
-    glTexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, layout, type, nullptr);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, name, 0);
-    return name;
+void bind_2d(int unit, GLuint texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, texture);
 }
 
 std::string refusal(const ProgramError &error) {
     return "the graphics driver refuses the noise cache's shader: " + error.message;
+}
+
+CachePrices prices_of(const ir::Scene &scene, const std::vector<glsl::KeptField> &fields) {
+    const ir::Graph &graph = scene.graph;
+    const auto cost = [&](ir::FunctionId f) {
+        return ir::cost_of(graph, graph.function(f).result);
+    };
+    CachePrices prices;
+    for (const glsl::KeptField &field : fields) {
+        const double own = cost(graph.cache(ir::CacheId{field.cache}).field);
+        prices.field = prices.field > 0 ? std::min(prices.field, own) : own;
+    }
+    if (scene.distance) prices.whole = cost(scene.distance);
+    prices.whole = std::max(prices.whole, prices.field);
+    return prices;
 }
 
 } // namespace
@@ -80,11 +73,16 @@ std::variant<CachePrograms, std::string> build_cache_programs(const ir::Scene &s
     target.target = glsl::Target::Glsl450;
     target.buffers = true;
     target.noise_cache = true;
+    target.pruning = can_prune();
     target.part_stride = options.part_stride;
     if (options.pick) target.instruments = glsl::Instruments::Pick;
     const glsl::Output picture = glsl::emit(scene, target, diagnostics);
     if (picture.text.empty()) return "the shader with the noise cache cannot be made";
     if (picture.kept.empty()) return "no field of this scene is worth keeping";
+    glsl::Options direct = target;
+    direct.noise_cache = false;
+    const glsl::Output exact = glsl::emit(scene, direct, diagnostics);
+    if (exact.text.empty()) return "the shader cannot be made";
     target.instruments = glsl::Instruments::None;
     const glsl::CachePasses passes = glsl::emit_cache_passes(scene, target, diagnostics);
     if (passes.fill.text.empty()) return "the noise cache's shaders cannot be made";
@@ -98,34 +96,20 @@ std::variant<CachePrograms, std::string> build_cache_programs(const ir::Scene &s
     rest.text = glsl::with_cache(picture.text, glsl::cache_learns);
     std::vector<Program> built;
     for (const glsl::Output *output :
-         {&std::as_const(kept), &std::as_const(rest), &picture, &passes.fill}) {
+         {&std::as_const(kept), &std::as_const(rest), &exact, &passes.fill}) {
         auto program = Program::build(*output, scene);
         if (const auto *error = std::get_if<ProgramError>(&program)) return refusal(*error);
         built.push_back(std::move(std::get<Program>(program)));
     }
     return CachePrograms{std::move(built[0]), std::move(built[1]), std::move(built[2]),
-                         std::move(built[3]), picture.kept,        options.pick};
+                         std::move(built[3]), picture.kept,        prices_of(scene, picture.kept),
+                         options.pick};
 }
 
 CachedView::~CachedView() {
-    release();
     if (sweep_framebuffer_) glDeleteFramebuffers(1, &sweep_framebuffer_);
     if (sweep_target_) glDeleteTextures(1, &sweep_target_);
     if (changed_) glDeleteQueries(1, &changed_);
-}
-
-void CachedView::release() {
-    for (GLuint *framebuffer : {&framebuffer_, &places_framebuffer_}) {
-        if (*framebuffer) glDeleteFramebuffers(1, framebuffer);
-        *framebuffer = 0;
-    }
-    for (GLuint *texture : {&color_, &picks_, &misses_, &wishes_, &tally_, &places_}) {
-        if (*texture) glDeleteTextures(1, texture);
-        *texture = 0;
-    }
-    if (depth_) glDeleteRenderbuffers(1, &depth_);
-    depth_ = 0;
-    width_ = height_ = 0;
 }
 
 // The programs that are the same for every scene.
@@ -194,6 +178,7 @@ std::string CachedView::use(CachePrograms programs, const CacheSize &size) {
     if (std::string why = build_passes(); !why.empty()) return why;
     programs_ = std::move(programs);
     number_fields();
+    weigh_anew();
     return "";
 }
 
@@ -209,38 +194,6 @@ int CachedView::number_of(std::uint32_t cache) const {
     for (std::size_t i = 0; programs_ && i < programs_->fields.size(); ++i)
         if (programs_->fields[i].cache == cache) return numbers_[i];
     return -1;
-}
-
-bool CachedView::resize(int width, int height) {
-    if (width == width_ && height == height_ && pick_ == programs_->pick) return true;
-    release();
-    pick_ = programs_->pick;
-    while (glGetError() != GL_NO_ERROR) {
-    }
-    glGenFramebuffers(1, &framebuffer_);
-    glGenFramebuffers(1, &places_framebuffer_);
-    color_ = target_2d(GL_RGBA32F, width, height, framebuffer_, GL_COLOR_ATTACHMENT0);
-    misses_ = target_2d(GL_RGBA32I, width, height, framebuffer_, GL_COLOR_ATTACHMENT2);
-    tally_ = target_2d(GL_RG32UI, width, height, framebuffer_, GL_COLOR_ATTACHMENT3);
-    wishes_ = target_2d(GL_RGBA32I, width, height, framebuffer_, GL_COLOR_ATTACHMENT4);
-    if (pick_) picks_ = target_2d(GL_RGBA32F, width, height, framebuffer_, GL_COLOR_ATTACHMENT1);
-    glGenRenderbuffers(1, &depth_);
-    glBindRenderbuffer(GL_RENDERBUFFER, depth_);
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
-    draw_into(pick_, true);
-    bool good = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-    places_ = target_2d(GL_R32UI, width, height, places_framebuffer_, GL_COLOR_ATTACHMENT0);
-    good &= glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    good &= glGetError() == GL_NO_ERROR;
-    if (!good) {
-        release();
-        return false;
-    }
-    width_ = width;
-    height_ = height;
-    return true;
 }
 
 void CachedView::set_fields(const Program &program) const {
@@ -286,12 +239,12 @@ void CachedView::publish() {
     glBindTexture(GL_TEXTURE_3D, store_.changed());
     set(*publish_, "fathom_cache_changed", 2);
     set(*publish_, "fathom_cache_bits", store_.size().bits);
-    set(*publish_, "fathom_cache_width", width_);
-    set(*publish_, "fathom_cache_height", height_);
+    set(*publish_, "fathom_cache_width", targets_.width);
+    set(*publish_, "fathom_cache_height", targets_.height);
     bind_image(*publish_, "fathom_cache_counts", 0, store_.counts(), GL_R32UI, GL_READ_ONLY);
     bind_image(*publish_, "fathom_cache_index", 1, store_.index(), GL_RG32UI, GL_WRITE_ONLY);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_); // any; nothing is drawn
-    glViewport(0, 0, width_, height_);
+    glBindFramebuffer(GL_FRAMEBUFFER, targets_.picture); // any; nothing is drawn
+    glViewport(0, 0, targets_.width, targets_.height);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     draw_triangle();
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -325,8 +278,8 @@ void CachedView::sweep(int field) {
 }
 
 void CachedView::begin_picture() const {
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    glViewport(0, 0, width_, height_);
+    glBindFramebuffer(GL_FRAMEBUFFER, targets_.picture);
+    glViewport(0, 0, targets_.width, targets_.height);
     glDisable(GL_BLEND);
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_CULL_FACE);
@@ -352,20 +305,20 @@ void CachedView::draw_kept(const FrameInputs &inputs, const std::vector<ir::Para
     store_.bind_textures(first_unit_);
     kept.draw(inputs, params);
 
+    glBindFramebuffer(GL_FRAMEBUFFER, targets_.rest);
     glDepthFunc(GL_LESS); // the triangle lies at 0.5
     glDepthMask(GL_FALSE);
     const Program &rest = programs_->rest;
-    const GLenum targets[] = {GL_COLOR_ATTACHMENT0,
-                              static_cast<GLenum>(pick_ ? GL_COLOR_ATTACHMENT1 : GL_NONE),
-                              GL_COLOR_ATTACHMENT4};
-    glDrawBuffers(3, targets);
     rest.use();
     set_fields(rest);
     set_unsigned(rest, "fathom_cache_frame", frame_);
     glUniform1f(glGetUniformLocation(rest.name(), "fathom_cache_least"),
                 static_cast<float>(settings.least_pixels));
+    set(rest, "fathom_cache_ages", ages_);
+    set(rest, "fathom_cache_index", first_unit_); // still bound there
+    set(rest, "fathom_cache_starts", first_unit_ + 1);
+    bind_2d(first_unit_ + 1, targets_.starts);
     rest.draw(inputs, params);
-    draw_into(pick_, true);
     glDepthMask(GL_TRUE);
     glDisable(GL_DEPTH_TEST);
 }
@@ -373,8 +326,9 @@ void CachedView::draw_kept(const FrameInputs &inputs, const std::vector<ir::Para
 // A place for each cell that was missed; the query tells the card whether there was any.
 void CachedView::reserve(int ages) {
     if (!changed_) glGenQueries(1, &changed_);
-    glBindFramebuffer(GL_FRAMEBUFFER, places_framebuffer_);
-    const GLuint nowhere[] = {glsl::cache_nowhere, 0, 0, 0};
+    glBindFramebuffer(GL_FRAMEBUFFER, targets_.reserved);
+    constexpr GLuint none = glsl::cache_nowhere;
+    const GLuint nowhere[] = {none, none, none, none};
     glClearBufferuiv(GL_COLOR, 0, nowhere);
     reserve_->use();
     set(*reserve_, "fathom_cache_bits", store_.size().bits);
@@ -382,12 +336,13 @@ void CachedView::reserve(int ages) {
     set_unsigned(*reserve_, "fathom_cache_frame", frame_);
     set(*reserve_, "fathom_cache_misses", 0);
     set(*reserve_, "fathom_cache_wishes", 1);
-    set(*reserve_, "fathom_cache_index", 2);
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, misses_);
+    set(*reserve_, "fathom_cache_tally", 2);
+    set(*reserve_, "fathom_cache_index", 3);
+    bind_2d(0, targets_.misses);
     glActiveTexture(GL_TEXTURE1);
-    glBindTexture(GL_TEXTURE_2D, wishes_);
-    glActiveTexture(GL_TEXTURE2);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, targets_.wishes);
+    bind_2d(2, targets_.tally);
+    glActiveTexture(GL_TEXTURE3);
     glBindTexture(GL_TEXTURE_3D, store_.index());
     bind_image(*reserve_, "fathom_cache_hash", 0, store_.hash(), GL_R32UI, GL_READ_WRITE);
     bind_image(*reserve_, "fathom_cache_keys", 1, store_.keys(), GL_RGBA32I, GL_READ_WRITE);
@@ -405,39 +360,55 @@ void CachedView::fill(const FrameInputs &inputs, const std::vector<ir::Param> &p
     const Program &program = programs_->fill;
     begin_picture();
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    draw_into(false, false);
+    targets_.draw_into(false);
     program.use();
     set_fields(program);
     set(program, "fathom_cache_places", first_unit_);
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_unit_));
-    glBindTexture(GL_TEXTURE_2D, places_);
+    bind_2d(first_unit_, targets_.places);
     bind_image(program, "fathom_cache_keys", 0, store_.keys(), GL_RGBA32I, GL_READ_WRITE);
     bind_image(program, "fathom_cache_pool", 1, store_.pool(), GL_R32F, GL_WRITE_ONLY);
     if (store_.wide())
         bind_image(program, "fathom_cache_wide", 2, store_.wide(), GL_RGBA32F, GL_WRITE_ONLY);
     program.draw(inputs, params);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    draw_into(pick_, true);
+    targets_.draw_into(true);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void CachedView::tint() {
     begin_picture();
-    draw_into(false, false);
+    targets_.draw_into(false);
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     tint_->use();
     set(*tint_, "fathom_cache_misses", 0);
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, misses_);
+    bind_2d(0, targets_.misses);
     draw_triangle();
     glDisable(GL_BLEND);
-    draw_into(pick_, true);
+    targets_.draw_into(true);
+}
+
+// What the frame before the last one says of the next.
+void CachedView::judge() {
+    const std::optional<CacheCounts> counts = store_.counts_before();
+    if (!counts) return;
+    judged(worth_,
+           {static_cast<double>(counts->paid), static_cast<double>(counts->wasted),
+            static_cast<double>(counts->left), static_cast<double>(counts->steps),
+            counts->inserted > 0},
+           programs_->prices);
 }
 
 bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &params,
                       const CacheSettings &settings) {
-    if (!programs_ || !resize(inputs.width, inputs.height)) return false;
+    if (!programs_ || !targets_.resize(inputs.width, inputs.height, programs_->pick)) return false;
+    looked_up_ = !settings.weigh || looks_up_next(worth_);
+    if (!looked_up_) {
+        drew_exactly(worth_);
+        targets_.clear_counts();
+        store_.begin_frame();
+        return draw_exactly(inputs, params);
+    }
     const int ages = std::clamp(settings.max_age, 1, glsl::cache_ages);
     ++frame_;
     store_.begin_frame();
@@ -449,17 +420,23 @@ bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &p
     fill(inputs, params);
     publish(); // the index that the next frame looks up in
     glEndConditionalRender();
+    if (settings.weigh) {
+        drew_kept(worth_);
+        store_.set_counts_aside();
+        judge();
+        if (worth_.exact) store_.forget_counts(); // what the frames since then counted is of no use
+    }
     if (settings.show_misses) tint();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return true;
 }
 
 bool CachedView::draw_exactly(const FrameInputs &inputs, const std::vector<ir::Param> &params) {
-    if (!programs_ || !resize(inputs.width, inputs.height)) return false;
+    if (!programs_ || !targets_.resize(inputs.width, inputs.height, programs_->pick)) return false;
     begin_picture();
-    draw_into(pick_, false);
+    targets_.draw_into(false);
     programs_->exact.draw(inputs, params);
-    draw_into(pick_, true);
+    targets_.draw_into(true);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return true;
 }
@@ -467,39 +444,6 @@ bool CachedView::draw_exactly(const FrameInputs &inputs, const std::vector<ir::P
 void CachedView::forget() {
     if (store_.hash()) store_.clear();
     meanings_.clear();
-}
-
-Pixels CachedView::read_pixels() const {
-    Pixels pixels{width_, height_, {}};
-    const std::size_t row = static_cast<std::size_t>(width_) * 4;
-    std::vector<float> upward(row * static_cast<std::size_t>(height_));
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
-    glReadBuffer(GL_COLOR_ATTACHMENT0);
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, upward.data());
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-    for (int y = height_; y-- > 0;)
-        pixels.rgba.insert(pixels.rgba.end(), upward.begin() + static_cast<std::ptrdiff_t>(row) * y,
-                           upward.begin() + static_cast<std::ptrdiff_t>(row) * (y + 1));
-    return pixels;
-}
-
-CacheTally CachedView::read_tally() const {
-    std::vector<std::uint32_t> words(static_cast<std::size_t>(width_) *
-                                     static_cast<std::size_t>(height_) * 2);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
-    glReadBuffer(GL_COLOR_ATTACHMENT3);
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    glReadPixels(0, 0, width_, height_, GL_RG_INTEGER, GL_UNSIGNED_INT, words.data());
-    glReadBuffer(GL_COLOR_ATTACHMENT0);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-    CacheTally tally;
-    for (std::size_t i = 0; i < words.size(); i += 2) {
-        tally.hits += words[i];
-        tally.misses += words[i + 1] == static_cast<unsigned>(glsl::PixelState::Missed);
-        tally.computed += words[i + 1] != static_cast<unsigned>(glsl::PixelState::Finished);
-    }
-    return tally;
 }
 
 } // namespace fathom::gl

@@ -6,6 +6,8 @@
 
 #include "base/diagnostic.h"
 #include "render-gl/cache_store.h"
+#include "render-gl/cache_targets.h"
+#include "render-gl/cache_worth.h"
 #include "render-gl/program.h"
 #include "render-gl/render.h"
 
@@ -23,7 +25,10 @@ struct CacheSettings {
     // share is found by no later frame either, unless nothing moves at all.
     double least_pixels = 1;
     bool show_misses = false; // in red
+    bool weigh = true;        // draws exactly where counted work says that look-ups do not pay
 };
+
+using glsl::PixelState;
 
 // One frame: look-ups that found their value; pixels whose value was absent; pixels that were
 // computed, those among them.
@@ -43,6 +48,7 @@ struct CachePrograms {
                                // over, by computing all
     Program fill;              // a cell's corners
     std::vector<glsl::KeptField> fields;
+    CachePrices prices;
     bool pick = false;
 };
 // Or why there are none, in words.
@@ -64,17 +70,21 @@ class CachedView {
     bool ready() const { return programs_.has_value(); }
     void drop() { programs_.reset(); } // the scene is another now; the cells stay
 
-    // Draws a frame, and lets the cache learn what it missed. False where there is no memory.
+    // Draws a frame, and lets the cache learn what it missed; or exactly, see CacheSettings::weigh.
+    // False where there is no memory.
     bool draw(const FrameInputs &inputs, const std::vector<ir::Param> &params,
               const CacheSettings &settings);
     // The same picture into the same place without the cache, which learns nothing.
     bool draw_exactly(const FrameInputs &inputs, const std::vector<ir::Param> &params);
-    void forget();                                        // empties the cache
-    unsigned framebuffer() const { return framebuffer_; } // colour 0: RGBA32F, as the mode says
-    int width() const { return width_; }
-    int height() const { return height_; }
+    void forget();                                // empties the cache
+    bool looked_up() const { return looked_up_; } // the last frame was not drawn exactly
+    void weigh_anew() { worth_ = {}, store_.forget_counts(); }
+    unsigned framebuffer() const { return targets_.picture; } // colour 0: RGBA32F, as the mode says
+    int width() const { return targets_.width; }
+    int height() const { return targets_.height; }
     Pixels read_pixels() const;
     CacheTally read_tally() const;
+    std::vector<PixelState> read_states() const; // rows from the top
 
     CacheStore &store() { return store_; }
     const CacheStore &store() const { return store_; }
@@ -82,8 +92,6 @@ class CachedView {
     int number_of(std::uint32_t cache) const;
 
   private:
-    bool resize(int width, int height);
-    void release();
     std::string build_passes();
     void number_fields();
     void renew(const std::vector<ir::Param> &params, int ages);
@@ -96,8 +104,12 @@ class CachedView {
     void reserve(int ages);
     void fill(const FrameInputs &inputs, const std::vector<ir::Param> &params);
     void tint();
+    void judge();
+    std::vector<std::uint32_t> read_counted() const;
 
     CacheStore store_;
+    CacheWorth worth_;
+    bool looked_up_ = false;
     std::optional<CachePrograms> programs_;
     std::optional<Program> reserve_, publish_, sweep_, tint_;
     std::vector<int> numbers_; // by the programs' fields
@@ -106,11 +118,8 @@ class CachedView {
     int first_unit_ = 0, ages_ = 0;
     std::uint32_t frame_ = 0;
     std::size_t sweep_cells_ = 0; // that the target of sweep() is made for
-    int width_ = 0, height_ = 0;
-    bool pick_ = false; // the framebuffer has a place for it
-    unsigned framebuffer_ = 0, places_framebuffer_ = 0, sweep_framebuffer_ = 0;
-    unsigned color_ = 0, picks_ = 0, misses_ = 0, wishes_ = 0, tally_ = 0, depth_ = 0, places_ = 0,
-             sweep_target_ = 0;
+    CacheTargets targets_;
+    unsigned sweep_framebuffer_ = 0, sweep_target_ = 0;
     unsigned changed_ = 0; // a query: whether the frame's reserving changed anything
 };
 

@@ -52,6 +52,23 @@ std::vector<T> read_3d(GLuint texture, std::size_t size, GLenum layout, GLenum t
     return values;
 }
 
+CacheCounts counts_in(GLuint buffer) {
+    std::array<std::uint32_t, count_words> words{};
+    glBindBuffer(GL_COPY_READ_BUFFER, buffer);
+    glGetBufferSubData(GL_COPY_READ_BUFFER, 0, sizeof words, words.data());
+    const auto at = [&](glsl::Count count) { return words[static_cast<std::size_t>(count)]; };
+    return {.inserted = at(glsl::Count::Inserted),
+            .evicted = at(glsl::Count::Evicted),
+            .deleted = at(glsl::Count::Deleted),
+            .crowded = at(glsl::Count::Crowded),
+            .full = at(glsl::Count::Full),
+            .swept = at(glsl::Count::Swept),
+            .paid = at(glsl::Count::Paid),
+            .wasted = at(glsl::Count::Wasted),
+            .left = at(glsl::Count::Left),
+            .steps = at(glsl::Count::Steps)};
+}
+
 std::uint32_t place_of(std::uint32_t entry) { return entry & ((1u << glsl::cache_place_bits) - 1); }
 int age_of(std::uint32_t entry) { return static_cast<int>(entry >> glsl::cache_place_bits & 7u); }
 
@@ -83,7 +100,10 @@ void CacheStore::release() {
         *texture = 0;
     }
     if (counts_) glDeleteBuffers(1, &counts_);
+    if (aside_[0]) glDeleteBuffers(static_cast<GLsizei>(aside_.size()), aside_.data());
     counts_ = 0;
+    aside_ = {};
+    set_aside_ = 0;
 }
 
 bool CacheStore::make(const CacheSize &size) {
@@ -104,6 +124,11 @@ bool CacheStore::make(const CacheSize &size) {
     glGenTextures(1, &counts_texture_);
     glBindTexture(GL_TEXTURE_BUFFER, counts_texture_);
     glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, counts_);
+    glGenBuffers(static_cast<GLsizei>(aside_.size()), aside_.data());
+    for (GLuint buffer : aside_) {
+        glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);
+        glBufferData(GL_COPY_WRITE_BUFFER, count_words * 4, nullptr, GL_STREAM_READ);
+    }
     if (glGetError() != GL_NO_ERROR) {
         release();
         return false;
@@ -149,13 +174,20 @@ void CacheStore::bind_textures(int first_unit) const {
 }
 
 CacheCounts CacheStore::read_counts() const {
-    std::array<std::uint32_t, count_words> words{};
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    return counts_in(counts_);
+}
+
+void CacheStore::set_counts_aside() {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_COPY_READ_BUFFER, counts_);
-    glGetBufferSubData(GL_COPY_READ_BUFFER, 0, sizeof words, words.data());
-    const auto at = [&](glsl::Count count) { return words[static_cast<std::size_t>(count)]; };
-    return {at(glsl::Count::Inserted), at(glsl::Count::Evicted), at(glsl::Count::Deleted),
-            at(glsl::Count::Crowded),  at(glsl::Count::Full),    at(glsl::Count::Swept)};
+    glBindBuffer(GL_COPY_WRITE_BUFFER, aside_[set_aside_++ % aside_.size()]);
+    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, count_words * 4);
+}
+
+std::optional<CacheCounts> CacheStore::counts_before() const {
+    if (set_aside_ < 3) return std::nullopt;
+    return counts_in(aside_[set_aside_ % aside_.size()]);
 }
 
 CacheStore::Dump CacheStore::dump(bool with_pool) const {

@@ -25,6 +25,7 @@ struct CacheCounts {
     std::uint32_t crowded = 0; // not inserted: all their slots were taken in the same frame
     std::uint32_t full = 0;    // not inserted: nothing was free, or could be freed
     std::uint32_t swept = 0;   // of fields that changed
+    std::uint32_t paid = 0, wasted = 0, left = 0, steps = 0; // of the pixels that are weighed
 };
 
 // Where a key of that age lies: the CPU's reading of thesis, 7.1.
@@ -55,6 +56,11 @@ class CacheStore {
     unsigned counts() const { return counts_texture_; }
 
     CacheCounts read_counts() const;
+    // The same without waiting for the frame: they are set aside at its end, and read two frames
+    // later, when the card has long been done.
+    void set_counts_aside();
+    std::optional<CacheCounts> counts_before() const;
+    void forget_counts() { set_aside_ = 0; }
 
     // Everything, as it lies there: for statistics and tests.
     struct Dump {
@@ -72,6 +78,8 @@ class CacheStore {
     CacheSize size_;
     unsigned hash_ = 0, keys_ = 0, index_ = 0, pool_ = 0, wide_ = 0, free_ = 0, changed_ = 0;
     unsigned counts_ = 0, counts_texture_ = 0;
+    std::array<unsigned, 3> aside_{}; // buffers, used in turn
+    std::size_t set_aside_ = 0;       // how often
 };
 
 // How many keys there are, of each age and each field.

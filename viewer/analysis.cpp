@@ -96,7 +96,8 @@ void show_cache(Controls &controls, const CacheFigures &cache) {
                      cache.counts.crowded + cache.counts.full));
     line(fmt::format("kept {:.1f} ms, exact {:.1f} ms: {}", cache.choice.kept_ms,
                      cache.choice.exact_ms,
-                     cache.choice.state == gl::CacheChoice::State::Exact      ? "drawn exactly"
+                     !cache.looked_up ? "look-ups do not pay here"
+                     : cache.choice.state == gl::CacheChoice::State::Exact    ? "drawn exactly"
                      : cache.choice.state == gl::CacheChoice::State::Learning ? "learning"
                                                                               : "kept"));
     std::array<float, glsl::cache_ages> ages{};

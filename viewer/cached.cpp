@@ -29,6 +29,7 @@ bool Cached::draw(const gl::FrameInputs &inputs, const std::vector<ir::Param> &p
                   bool show_misses) {
     gl::CacheSettings settings;
     settings.show_misses = show_misses;
+    settings.weigh = !show_misses; // who looks at the misses wants to see the cache at work
     if (!view_.draw(inputs, params, settings)) return false;
     ++frames_;
     return true;
@@ -38,6 +39,7 @@ void Cached::count() {
     figures_.tally = view_.read_tally();
     figures_.counts = view_.store().read_counts();
     figures_.choice = choice;
+    figures_.looked_up = view_.looked_up();
     if (counted_++ % count_cells_every == 0 || settled())
         figures_.occupancy = gl::occupancy(view_.store().dump(false));
 }

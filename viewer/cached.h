@@ -17,6 +17,7 @@ struct CacheFigures {
     gl::CacheCounts counts;
     gl::CacheOccupancy occupancy;
     gl::CacheChoice choice;
+    bool looked_up = false;
 };
 
 class Cached {
@@ -31,6 +32,9 @@ class Cached {
     void build(const ir::Scene &scene, int part_stride);
     bool asked() const { return asked_; } // there are programs, or it is known why not
     bool ready() const { return view_.ready(); }
+    bool looked_up() const {
+        return view_.looked_up();
+    } // the last frame; else it was drawn exactly
     const std::string &why_not() const { return why_not_; }
 
     // One frame. False where the card has no memory for it.

@@ -253,7 +253,7 @@ bool App::draw_kept(const Shot &shot, double scale) {
     const Clock::time_point start = Clock::now();
     if (!cached.draw(inputs, params, false)) return false;
     gl::finish();
-    gl::took(cached.choice, true, milliseconds_since(start) / (scale * scale));
+    gl::took(cached.choice, cached.looked_up(), milliseconds_since(start) / (scale * scale));
     if (controls.analysis) cached.count();
     if (!canvas.take(cached.framebuffer(), shot.width, shot.height)) return false;
     samples_drawn = 1;

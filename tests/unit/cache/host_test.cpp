@@ -70,7 +70,8 @@ void image(GLuint program, const char *name, GLuint unit, GLuint texture, GLenum
 struct Host {
     GLuint rest, kept, reserve, fill, publish;
     GLuint hash, keys, pool, wide, index, ring, changed, buffer, counts;
-    GLuint color, misses, wishes, hits, places, depth, picture, reserved, vertices;
+    GLuint color, misses, wishes, hits, starts, places, depth, picture, learning, reserved,
+        vertices;
     unsigned frame = 0;
 
     Host(const std::string &text, const glsl::CachePasses &passes)
@@ -92,7 +93,7 @@ struct Host {
         keys = texture(GL_TEXTURE_3D, GL_RGBA32I, side, GL_RGBA_INTEGER, GL_INT);
         pool = texture(GL_TEXTURE_3D, GL_R32F, 2 * side, GL_RED, GL_FLOAT);
         wide = texture(GL_TEXTURE_3D, GL_RGBA32F, 2, GL_RGBA, GL_FLOAT); // no field is a vector
-        std::array<std::uint32_t, 10> start{};
+        std::array<std::uint32_t, 14> start{};
         start[1] = cells;
         glGenBuffers(1, &buffer);
         glBindBuffer(GL_TEXTURE_BUFFER, buffer);
@@ -103,9 +104,15 @@ struct Host {
 
         color = texture(GL_TEXTURE_2D, GL_RGBA32F, size, GL_RGBA, GL_FLOAT);
         misses = texture(GL_TEXTURE_2D, GL_RGBA32I, size, GL_RGBA_INTEGER, GL_INT);
-        wishes = texture(GL_TEXTURE_2D, GL_RGBA32I, size, GL_RGBA_INTEGER, GL_INT);
+        glGenTextures(1, &wishes);
+        glBindTexture(GL_TEXTURE_2D_ARRAY, wishes);
+        glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32I, size, size, 4, 0, GL_RGBA_INTEGER, GL_INT,
+                     nullptr);
+        glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        starts = texture(GL_TEXTURE_2D, GL_RGBA32F, size, GL_RGBA, GL_FLOAT);
         hits = texture(GL_TEXTURE_2D, GL_RG32UI, size, GL_RG_INTEGER, GL_UNSIGNED_INT);
-        places = texture(GL_TEXTURE_2D, GL_R32UI, size, GL_RED_INTEGER, GL_UNSIGNED_INT);
+        places = texture(GL_TEXTURE_2D, GL_RGBA32UI, size, GL_RGBA_INTEGER, GL_UNSIGNED_INT);
         glGenRenderbuffers(1, &depth);
         glBindRenderbuffer(GL_RENDERBUFFER, depth);
         glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, size, size);
@@ -113,8 +120,15 @@ struct Host {
         glBindFramebuffer(GL_FRAMEBUFFER, picture);
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color, 0);
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT2, GL_TEXTURE_2D, misses, 0);
-        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT4, GL_TEXTURE_2D, wishes, 0);
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT3, GL_TEXTURE_2D, hits, 0);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT4, GL_TEXTURE_2D, starts, 0);
+        glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
+        glGenFramebuffers(1, &learning);
+        glBindFramebuffer(GL_FRAMEBUFFER, learning);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color, 0);
+        for (int i = 0; i < 4; ++i)
+            glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT2 + static_cast<GLenum>(i),
+                                      wishes, 0, i);
         glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
         glGenFramebuffers(1, &reserved);
         glBindFramebuffer(GL_FRAMEBUFFER, reserved);
@@ -124,9 +138,9 @@ struct Host {
     ~Host() {
         for (GLuint name : {rest, kept, reserve, fill, publish}) glDeleteProgram(name);
         for (GLuint name : {hash, keys, pool, wide, index, ring, changed, counts, color, misses,
-                            wishes, hits, places})
+                            wishes, hits, starts, places})
             glDeleteTextures(1, &name);
-        for (GLuint name : {picture, reserved}) glDeleteFramebuffers(1, &name);
+        for (GLuint name : {picture, learning, reserved}) glDeleteFramebuffers(1, &name);
         glDeleteRenderbuffers(1, &depth);
         glDeleteBuffers(1, &buffer);
         glDeleteVertexArrays(1, &vertices);
@@ -137,8 +151,8 @@ struct Host {
     void triangle() const { glDrawArrays(GL_TRIANGLES, 0, 3); }
     void targets(bool all) const {
         const GLenum outputs[] = {GL_COLOR_ATTACHMENT0, GL_NONE, GL_COLOR_ATTACHMENT2,
-                                  GL_COLOR_ATTACHMENT3};
-        glDrawBuffers(all ? 4 : 1, outputs);
+                                  GL_COLOR_ATTACHMENT3, GL_COLOR_ATTACHMENT4};
+        glDrawBuffers(all ? 5 : 1, outputs);
     }
     void use(GLuint program) const {
         glUseProgram(program);
@@ -157,7 +171,7 @@ struct Host {
         glBindBuffer(GL_COPY_READ_BUFFER, buffer);
         glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);
         glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 4, 8, 4);
-        const std::array<std::uint32_t, 7> zeros{};
+        const std::array<std::uint32_t, 11> zeros{};
         glBufferSubData(GL_COPY_WRITE_BUFFER, 12, sizeof zeros, zeros.data());
 
         glBindFramebuffer(GL_FRAMEBUFFER, picture);
@@ -172,25 +186,31 @@ struct Host {
         sampler(kept, "fathom_cache_wide", 2, GL_TEXTURE_3D, wide);
         triangle();
 
-        const GLenum learning[] = {GL_COLOR_ATTACHMENT0, GL_NONE, GL_COLOR_ATTACHMENT4};
-        glDrawBuffers(3, learning);
+        glBindFramebuffer(GL_FRAMEBUFFER, learning);
+        const GLenum learns[] = {GL_COLOR_ATTACHMENT0, GL_NONE,
+                                 GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3,
+                                 GL_COLOR_ATTACHMENT4, GL_COLOR_ATTACHMENT5};
+        glDrawBuffers(6, learns);
         glDepthMask(GL_FALSE);
         glDepthFunc(GL_LESS);
         use(rest);
         glUniform1f(at(rest, "fathom_cache_least"), 0.0f);
         glUniform1ui(at(rest, "fathom_cache_frame"), frame);
+        sampler(rest, "fathom_cache_index", 0, GL_TEXTURE_3D, index);
+        sampler(rest, "fathom_cache_starts", 1, GL_TEXTURE_2D, starts);
         triangle();
         glDisable(GL_DEPTH_TEST);
         glDepthMask(GL_TRUE);
 
         glBindFramebuffer(GL_FRAMEBUFFER, reserved);
-        const GLuint ones[] = {0xffffffffu, 0, 0, 0};
+        const GLuint ones[] = {0xffffffffu, 0xffffffffu, 0xffffffffu, 0xffffffffu};
         glClearBufferuiv(GL_COLOR, 0, ones);
         use(reserve);
         glUniform1ui(at(reserve, "fathom_cache_frame"), ++frame);
         sampler(reserve, "fathom_cache_misses", 0, GL_TEXTURE_2D, misses);
-        sampler(reserve, "fathom_cache_wishes", 1, GL_TEXTURE_2D, wishes);
-        sampler(reserve, "fathom_cache_index", 2, GL_TEXTURE_3D, index);
+        sampler(reserve, "fathom_cache_wishes", 1, GL_TEXTURE_2D_ARRAY, wishes);
+        sampler(reserve, "fathom_cache_tally", 2, GL_TEXTURE_2D, hits);
+        sampler(reserve, "fathom_cache_index", 3, GL_TEXTURE_3D, index);
         image(reserve, "fathom_cache_hash", 0, hash, GL_R32UI);
         image(reserve, "fathom_cache_keys", 1, keys, GL_RGBA32I);
         image(reserve, "fathom_cache_free", 2, ring, GL_R32UI);
@@ -238,7 +258,7 @@ struct Host {
         glReadBuffer(GL_COLOR_ATTACHMENT3);
         glReadPixels(0, 0, size, size, GL_RG_INTEGER, GL_UNSIGNED_INT, words.data());
         int count = 0;
-        for (std::size_t i = 1; i < words.size(); i += 2) count += words[i] != 0;
+        for (std::size_t i = 1; i < words.size(); i += 2) count += (words[i] & 3) != 0;
         return count;
     }
 };

@@ -59,7 +59,7 @@ TEST_CASE("a still view is learnt, and then nothing is missed any more") {
     CHECK(first.misses > 400); // every pixel of the ball
     CHECK(first.misses == first.computed);
     CHECK(counts.inserted > 100); // several pixels miss the same cell: one gets it in
-    CHECK(counts.inserted <= first.computed);
+    CHECK(counts.inserted <= glsl::cache_wishes * first.computed);
     CHECK(gl::occupancy(view.store().dump(false)).keys == counts.inserted);
     const int frames = warm(view, inputs, c.scene);
     CHECK(frames < 60);
@@ -81,7 +81,7 @@ TEST_CASE("no place is lost and no value torn, however small the cache") {
         use(view, c.scene, {.bits = 2}); // 64 cells for thousands
         for (int frame = 0; frame < 40; ++frame) {
             view.draw(frame_of(c.scene, 16, 0.1 * frame), c.scene.params,
-                      {.max_age = age, .least_pixels = 0});
+                      {.max_age = age, .least_pixels = 0, .weigh = false});
             REQUIRE(gl::check_cache(view.store().dump(false)) == "");
         }
         const gl::CacheOccupancy full = gl::occupancy(view.store().dump(false));
@@ -99,7 +99,7 @@ TEST_CASE("old keys move on, and are given up at the largest age") {
     gl::CacheCounts all;
     for (int frame = 0; frame < 30; ++frame) {
         view.draw(frame_of(c.scene, 24, 0.05 * frame), c.scene.params,
-                  {.max_age = 3, .least_pixels = 0});
+                  {.max_age = 3, .least_pixels = 0, .weigh = false});
         const gl::CacheCounts counts = view.store().read_counts();
         all.inserted += counts.inserted, all.evicted += counts.evicted,
             all.deleted += counts.deleted;
@@ -120,7 +120,7 @@ TEST_CASE("a lower maximum age gives up what is older") {
     use(view, c.scene, {.bits = 3});
     for (int frame = 0; frame < 24; ++frame) {
         view.draw(frame_of(c.scene, 16, 0.05 * frame), c.scene.params,
-                  {.max_age = frame < 12 ? 7 : 1 + frame % 3, .least_pixels = 0});
+                  {.max_age = frame < 12 ? 7 : 1 + frame % 3, .least_pixels = 0, .weigh = false});
         REQUIRE(gl::check_cache(view.store().dump(false)) == "");
     }
 }
@@ -132,7 +132,7 @@ TEST_CASE("ten thousand frames", "[.soak]") {
     use(view, c.scene, {.bits = 3});
     for (int frame = 0; frame < 10000; ++frame) {
         view.draw(frame_of(c.scene, 12, 0.03 * frame), c.scene.params,
-                  {.max_age = 1 + frame / 1000 % 7, .least_pixels = 0});
+                  {.max_age = 1 + frame / 1000 % 7, .least_pixels = 0, .weigh = false});
         REQUIRE(gl::check_cache(view.store().dump(false)) == "");
         if (frame % 500 == 499) check_values(view, c.scene, 0);
     }
@@ -320,7 +320,7 @@ TEST_CASE("misses are shown in red, and nothing else is") {
             count += pixels.rgba[i] > 0.8f && pixels.rgba[i] > 2 * pixels.rgba[i + 2];
         return count;
     };
-    const gl::CacheSettings shown{.least_pixels = 0, .show_misses = true};
+    const gl::CacheSettings shown{.least_pixels = 0, .show_misses = true, .weigh = false};
     for (int frame = 0; frame < 4; ++frame) {
         view.draw(inputs, c.scene.params, shown);
         CHECK(red() == view.read_tally().misses);
@@ -336,12 +336,12 @@ TEST_CASE("cells that are narrower than a pixel are not looked for") {
     gl::CachedView view;
     use(view, c.scene);
     const gl::FrameInputs inputs = frame_of(c.scene, 24);
-    view.draw(inputs, c.scene.params, {.least_pixels = 1});
+    view.draw(inputs, c.scene.params, {.least_pixels = 1, .weigh = false});
     CHECK(view.read_tally().misses == 0);
     CHECK(view.read_tally().computed > 200);
     CHECK(view.store().read_counts().inserted == 0);
     CHECK(view.read_pixels().rgba == exact(c.scene, 24, gl::Mode::Linear).rgba);
-    view.draw(inputs, c.scene.params, {.least_pixels = 0.25});
+    view.draw(inputs, c.scene.params, {.least_pixels = 0.25, .weigh = false});
     CHECK(view.read_tally().misses > 200);
 }
 
