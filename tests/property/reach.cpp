@@ -24,7 +24,9 @@ std::string rough_scene(test::Dice &dice) {
     const double size = dice.in(0.6, 1.4);
     const std::string shape =
         pick({"sphere({0:.3f})", "sphere({0:.3f})", "box({0:.3f}).offset({0:.3f} / 2)",
-              "(sphere({0:.3f}) | sphere(0.8 * {0:.3f}).translate([{0:.3f}, 0.2, 0]))"});
+              "(sphere({0:.3f}) | sphere(0.8 * {0:.3f}).translate([{0:.3f}, 0.2, 0]))",
+              "rounded_box([3, 2, 2.5] * {0:.3f}, radius: 0.7 * {0:.3f})",
+              "torus({0:.3f}, 0.6 * {0:.3f})", "cylinder({0:.3f}, {0:.3f}).offset(0.6 * {0:.3f})"});
     const std::string by =
         pick({"fbm({1:.3f} * p, octaves: {2})", "fbm({1:.3f} * p, octaves: {2})",
               "fbm({1:.3f} * p, octaves: {2}, alpha: 1.8)", "noise({1:.3f} * p)",

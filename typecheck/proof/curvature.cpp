@@ -26,59 +26,113 @@ double Prover::bend(NodeId field, const Box &box) {
     return machine.bend();
 }
 
-// `length(v) - c` with a v that is straight and lengthens nothing: |v|'' = (|v'|^2 - (v'.u)^2)/|v|
-// is at most 1/|v|.
-double Prover::core_of_leaf(NodeId field) {
-    NodeId length = field;
-    Interval less;
-    if (graph[field].op == Op::Sub || graph[field].op == Op::Add) {
-        const bool minus = graph[field].op == Op::Sub;
-        for (int side = 0; side < (minus ? 1 : 2); ++side) {
-            const NodeId other = graph.arg(field, 1 - side);
-            if (graph[graph.arg(field, side)].op != Op::Length || reads_point(other) ||
-                graph.reads(other).free_vars)
-                continue;
-            length = graph.arg(field, side);
-            less = minus ? number(other) : -number(other);
-        }
+namespace {
+
+// Whether a field is the distance to a closed set, less a number: the length, or the corner form
+// (tape.h), of parts that are each the distance to a set in coordinates of their own, as the
+// distance to a product of sets is. The coordinates together are straight and lengthen nothing. So
+// are made spheres, boxes, cylinders and tori, rounded or not.
+struct Distance {
+    const Tape &tape;
+    const Machine &machine;
+    std::vector<Row> coordinates{};
+
+    const Instruction *made(Slot s) const {
+        for (const auto *block : {&tape.each, &tape.once})
+            for (const Instruction &i : *block)
+                if (i.out == s && i.form != Form::Loop) return &i;
+        return nullptr;
     }
-    if (graph[length].op != Op::Length) return -infinity;
-    const Tape &tape = tape_of(graph.arg(length, 0));
+    bool fixed(Slot s) const { return machine.norm(s) == 0 && machine.bend(s) == 0; }
+    bool straight(Slot s) {
+        if (machine.bend(s) != 0 || machine.norm(s) == infinity) return false;
+        for (int c = 0; c < tape.size[s]; ++c) coordinates.push_back(machine.row(s, c));
+        return true;
+    }
+    bool positive(Slot s) const {
+        for (int c = 0; c < tape.size[s]; ++c)
+            if (!(machine.value(s, c).lo >= 0)) return false;
+        return fixed(s);
+    }
+    // x, |x| - c or length(x) - c, x straight and c >= 0; by component. Its size is the distance to
+    // where it is 0, its positive part to where it is not positive.
+    bool part(Slot s) {
+        if (straight(s)) return true;
+        const Instruction *i = made(s);
+        if (!i) return false;
+        if (i->form == Form::Plain && i->op == Op::Make && tape.size[s] == i->args.size())
+            return std::all_of(i->args.begin(), i->args.end(), [&](Slot a) { return part(a); });
+        if (i->form == Form::Plain && i->op == Op::Sub && positive(i->args[1])) {
+            i = made(i->args[0]);
+            if (!i) return false;
+        }
+        const bool size = i->form == Form::Plain && i->op == Op::Abs,
+                   length = i->form == Form::Norm && i->args.size() == 1;
+        return (size || length) && straight(i->args[0]);
+    }
+    // The number that is taken off; -infinity where it is no such distance.
+    double core() {
+        Slot s = tape.result;
+        double less = 0;
+        const Instruction *i = made(s);
+        if (i && i->form == Form::Plain && (i->op == Op::Sub || i->op == Op::Add) &&
+            fixed(i->args[1])) {
+            const Interval by = machine.value(i->args[1], 0);
+            less = i->op == Op::Sub ? by.lo : -by.hi;
+            i = made(i->args[0]);
+        }
+        if (!i || i->args.size() != 1 || (i->form != Form::Norm && i->form != Form::Corner) ||
+            !part(i->args[0]) || coordinates.size() > 16)
+            return -infinity;
+        const double norm = spectral_norm(coordinates.data(), int(coordinates.size()));
+        return norm <= 1 + 1e-9 ? less : -infinity;
+    }
+};
+
+} // namespace
+
+double Prover::core_of_leaf(NodeId field) {
+    const Tape &tape = tape_of(field);
     if (tape.too_large) return -infinity;
     Machine machine(tape, ranges, true);
     machine.run(Cell{});
-    const bool straight = machine.bend() == 0 && machine.norm() <= 1 + 1e-9;
-    return straight ? less.lo : -infinity;
+    return Distance{tape, machine}.core();
 }
 
 // c, where the raw field f has f'' <= 1/(f + c) along lines wherever f > -c: the distance to a
 // closed set, less c, as the distance is the least of those to the set's points. -infinity:
 // unknown.
-double Prover::core_of(ShapeId id) {
+double Prover::core_of(ShapeId id, int depth) {
+    if (depth > 32 || of(id).fact.local) return -infinity;
+    if (const auto found = cores.find(id); found != cores.end()) return found->second;
+    return cores[id] = core_made(id, depth);
+}
+
+double Prover::core_made(ShapeId id, int depth) {
     const Shape shape = scene.shapes[id];
     switch (shape.kind) {
     case ShapeKind::Leaf: return core_of_leaf(shape.args[0]);
     case ShapeKind::Library: {
         const bool exact = scene.shapes.libraries[shape.payload].has_claims &&
                            of(id).fact.kind == ir::FieldKind::Exact;
-        return std::max(of(shape.children[0]).core, exact ? 0 : -infinity);
+        return std::max(core_of(shape.children[0], depth + 1), exact ? 0 : -infinity);
     }
     case ShapeKind::Paint:
     case ShapeKind::Repaint:
     case ShapeKind::Mixed:
-    case ShapeKind::Contract: return child(shape).core;
+    case ShapeKind::Contract: return core_of(shape.children[0], depth + 1);
     case ShapeKind::Union: { // a least of fields bends upward as one of them does
         double least = infinity;
         for (std::size_t i = 0; i < shape.children.size(); ++i)
-            least = std::min(least, child(shape, i).core);
+            least = std::min(least, core_of(shape.children[i], depth + 1));
         return shape.children.empty() ? -infinity : least;
     }
     case ShapeKind::Offset:
         if (reads_point(shape.args[0])) return -infinity;
-        return down(child(shape).core + number(shape.args[0]).lo);
+        return down(core_of(shape.children[0], depth + 1) + number(shape.args[0]).lo);
     case ShapeKind::Map:
         if (shape.map == MapKind::Translate || shape.map == MapKind::Rotate)
-            return child(shape).core;
+            return core_of(shape.children[0], depth + 1);
         return -infinity;
     case ShapeKind::Empty:
     case ShapeKind::Intersection:
@@ -105,7 +159,7 @@ double Prover::curvature_of(ShapeId id, const Known &k) {
     const Shape shape = scene.shapes[id];
     if (shape.kind != ShapeKind::Displace || k.failed || local || !std::isfinite(inward))
         return infinity;
-    const double slope = k.fact.lipschitz_sup, room = child(shape).core - inward;
+    const double slope = k.fact.lipschitz_sup, room = core_of(shape.children[0]) - inward;
     if (!(room > 0) || !std::isfinite(slope) || slope <= 1 + slack) return infinity;
     const double bent = bend(shape.args[0], place(id).box);
     if (!std::isfinite(bent)) return infinity;

@@ -34,9 +34,7 @@ struct Known {
     // By how much the field may differ from that of a part that makes its gradient: an offset by r
     // moves surfaces, and not what gradients point away from.
     double drift = 0;
-    double lowered = 0; // outside, an exact field and at most this much (offsets by less than 0)
-    // f'' <= 1/(f + core) along lines wherever f > -core (curvature.cpp); -infinity: unknown.
-    double core = -ir::rounding::infinity;
+    double lowered = 0;  // outside, an exact field and at most this much (offsets by less than 0)
     NodeId leaf;         // of a field of one's own, that field
     bool failed = false; // reported, here or below
 };

@@ -68,6 +68,15 @@ class Machine {
     // Of second derivatives along straight lines, all components together; infinity where the slope
     // may jump, or nothing is known.
     double bend() const { return result_norm_ == infinity_ ? infinity_ : bend_[tape_.result]; }
+    // … and of any value on the way, with what else is known of it.
+    double bend(Slot s) const { return bend_[s]; }
+    double norm(Slot s) const { return norm_[s]; }
+    Interval value(Slot s, int i) const {
+        return value_[tape_.first[s] + static_cast<std::uint32_t>(i)];
+    }
+    const Row &row(Slot s, int i) const {
+        return grad_[tape_.first[s] + static_cast<std::uint32_t>(i)];
+    }
     Trouble trouble() const { return trouble_[tape_.result]; }
     NodeId cause() const { return cause_[tape_.result]; } // the first node that is in trouble
     std::size_t work() const { return work_; }            // instructions run so far

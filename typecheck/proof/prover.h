@@ -84,7 +84,11 @@ struct Prover {
 
     double bend(ir::NodeId field, const Box &box); // curvature.cpp
     double core_of_leaf(ir::NodeId field);
-    double core_of(ir::ShapeId id);                      // Known::core
+    // c, where f'' <= 1/(f + c) along lines wherever f > -c; -infinity: unknown. Asked for what is
+    // displaced alone.
+    double core_of(ir::ShapeId id, int depth = 0);
+    double core_made(ir::ShapeId id, int depth);
+    std::map<ir::ShapeId, double> cores;
     double curvature_of(ir::ShapeId id, const Known &k); // ShapeFact::curvature
 
     std::vector<ir::PartialSum> partial_sums(ir::ShapeId displaced, double slope); // octaves.cpp

@@ -82,7 +82,6 @@ void Prover::run() {
             finish(ShapeId{i}, k);
         }
         known[i] = k;
-        known[i].core = places[i].reached && !k.fact.local ? core_of(ShapeId{i}) : -infinity;
         scene.facts[i] = k.fact; // padded there alone, so that the slack does not add up
         scene.facts[i].bounds = padded(k.fact.bounds);
         scene.facts[i].repeat.copy = padded(k.fact.repeat.copy);

@@ -151,6 +151,24 @@ TEST_CASE("cores: what a displaced shape has to be") {
     CHECK(curved([&](Scenery &s) {
         return s.add(ShapeKind::Union, {rounded(s, 0.4), s.sphere(0.7)});
     }));
+    // A torus as it is written, and a length of what is squeezed.
+    const auto ring = [](Scenery &s, double squeezed) {
+        const NodeId out = s.g.sub(s.length(s.g.swizzle(s.p, std::array{0, 2})), s.n(1));
+        const NodeId q = s.g.make(Op::Make, Type::Vec2, {out, s.g.mul(s.y, s.n(squeezed))});
+        return s.leaf(s.g.sub(s.length(q), s.n(0.5)));
+    };
+    CHECK(curved([&](Scenery &s) { return ring(s, 1); }));
+    CHECK(curved([&](Scenery &s) { return ring(s, 0.7); }));
+    CHECK_FALSE(curved([&](Scenery &s) { return ring(s, 1.3); }));
+    CHECK_FALSE(curved([&](Scenery &s) { // coordinates that are not apart: x, and x + y
+        const NodeId q = s.g.make(Op::Make, Type::Vec2, {s.x, s.g.add(s.x, s.y)});
+        return s.leaf(s.g.sub(s.length(q), s.n(0.5)));
+    }));
+    CHECK_FALSE(curved([&](Scenery &s) { // not a distance: it rises to both sides of x = -1
+        const NodeId q =
+            s.g.make(Op::Make, Type::Vec2, {s.g.sub(s.call(Op::Abs, s.x), s.n(-1)), s.y});
+        return s.leaf(s.g.sub(s.length(q), s.n(1.5)));
+    }));
     CHECK_FALSE(curved([&](Scenery &s) { return s.box(1, 1, 1); }));
     CHECK_FALSE(curved([&](Scenery &s) {
         return s.add(ShapeKind::Union, {rounded(s, 0.4), s.box(2, 2, 2)});
