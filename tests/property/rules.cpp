@@ -55,6 +55,12 @@ std::vector<Case> cases() {
     out.push_back({"twist of a box", Rule::Twist,
                    [](Scenery &s) { return s.add(twisted(s.g, s.box(1.2, 5, 1.2), s.n(2), 1)); },
                    0.95});
+    out.push_back({"taper of a twist of a box", Rule::Twist,
+                   [](Scenery &s) {
+                       const ShapeId turned = s.add(twisted(s.g, s.box(1.2, 5, 1.2), s.n(2), 1));
+                       return s.add(tapered(s.g, turned, s.n(0.95), s.n(-2.5), s.n(2.5), 1));
+                   },
+                   0.9});
     out.push_back({"bend", Rule::Bend,
                    [](Scenery &s) { return s.add(bent(s.g, off_axis(s, 1), s.n(3), 1, 0)); },
                    0.95});
@@ -538,6 +544,10 @@ TEST_CASE("kinds that must not lengthen, in float32") {
              ShapeId turned = s.add(twisted(s.g, s.add(extruded), s.n(1), 2));
              return s.add(tapered(s.g, turned, s.n(0.5), s.n(-1), s.n(1), 2));
          }});
+    plain.push_back({"a steep taper of a twist off its axis", [](Scenery &s) {
+                         const ShapeId turned = s.add(twisted(s.g, off_axis(s, 0.8), s.n(2), 1));
+                         return s.add(tapered(s.g, turned, s.n(0.1), s.n(-0.5), s.n(0.5), 1));
+                     }});
     plain.push_back({"octaves of noise on a sphere", [](Scenery &s) {
                          NodeId sum = s.n(0);
                          for (int i = 0; i < 4; ++i) {

@@ -389,7 +389,14 @@ Known Prover::know_deformed(ShapeId id) {
         double most = std::max(1.0, ratio.hi);
         bool still = ratio == Interval(1.0);
         if (still) steepness = 0;
-        const Box &parts = inner.parts;
+        // What was turned about the same axis before is seen through: its points and surface points
+        // turn alike, and the turn adds k m to the slope along the axis, |m| at most the lever arm.
+        const Shape below = scene.shapes[shape.children[0]];
+        const bool twisted = below.kind == ir::ShapeKind::Map && below.map == MapKind::Twist &&
+                             below.axis == shape.axis;
+        const Known &straight = twisted ? of(below.children[0]) : inner;
+        const double rate = twisted ? number(below.args[2]).magnitude() : 0;
+        const Box &parts = straight.parts;
         double r = radius_about(parts, shape.axis);
         // How far along the axis a point between the ends can be from its nearest surface point.
         double v = std::max((Interval(parts.hi[a]) - from).hi, (to - Interval(parts.lo[a])).hi);
@@ -414,9 +421,15 @@ Known Prover::know_deformed(ShapeId id) {
             break;
         }
         double norm = infinity;
-        if (inner.parts_exact && std::isfinite(r) && std::isfinite(v))
-            norm = lower_triangle_norm(up(most + steepness * v * options.rules[Rule::Taper]),
-                                       up(steepness * r * options.rules[Rule::Taper]));
+        if (straight.parts_exact && std::isfinite(r) && std::isfinite(v)) {
+            const double slant = up(steepness * r * options.rules[Rule::Taper]),
+                         turn = up(most * rate * options.rules[Rule::Twist]);
+            norm = lower_triangle_norm(
+                up(most + steepness * v * options.rules[Rule::Taper]),
+                std::min(up(std::hypot(slant, turn * r), 4),
+                         up(slant + turn * std::min(straight.fact.lever[a], r))));
+            norm = up(norm * straight.fact.lipschitz_sup / l);
+        }
         Box inside = here;
         if (!std::isfinite(norm) && !here.finite() && own_box()) {
             inside = padded(k.fact.bounds);
