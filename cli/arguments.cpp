@@ -313,6 +313,11 @@ struct Reader {
             [this](const std::string &word) { return read_cells(word, bench.cache_bits); },
             "cells of the noise cache along an axis: 4, 8, … 128; 64 unless said")
             ->type_name("N");
+        sub->add_option(
+               "--frames", bench.frames,
+               "frames of each measure of the noise cache; else all take about three minutes")
+            ->check(quiet(CLI::Range(1, 1000)))
+            ->type_name("N");
 
         help = app.add_subcommand("help", "show this, or a command's options");
         help->add_option("COMMAND", help_about, "");

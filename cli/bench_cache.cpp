@@ -28,6 +28,9 @@ struct Bench {
         const auto since = std::chrono::steady_clock::now().time_since_epoch();
         return std::chrono::duration<double, std::milli>(since).count();
     }
+    std::uint64_t pixels() const {
+        return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    }
     template <class Work> double time(Work work) const {
         const double begin = now();
         work();
@@ -94,7 +97,8 @@ Motion move(const Bench &bench, gl::CachedView &view, const Move &how) {
                                     p.lo[0], p.hi[0]);
         }
         const gl::FrameInputs inputs = inputs_of(bench, how.param < 0 ? phase : 0);
-        const double one = bench.time([&] { view.draw(inputs, params, {.max_age = how.age}); });
+        const double one =
+            bench.time([&] { view.draw(inputs, params, {.max_age = how.age, .weigh = false}); });
         if (frame < how.settle) continue;
         const gl::CacheTally tally = view.read_tally();
         const gl::CacheCounts counts = view.store().read_counts();
@@ -105,7 +109,8 @@ Motion move(const Bench &bench, gl::CachedView &view, const Move &how) {
         add(motion.inserted, counts.inserted);
         add(motion.evicted, counts.evicted);
         add(motion.deleted, counts.deleted);
-        if (frame % 2 == 0) exact.push_back(bench.time([&] { view.draw_exactly(inputs, params); }));
+        if ((frame - how.settle) % 2 == 0)
+            exact.push_back(bench.time([&] { view.draw_exactly(inputs, params); }));
     }
     motion.cached = median(cached);
     motion.exact = median(exact);
@@ -139,9 +144,9 @@ void print_difference(const Bench &bench, gl::CachedView &view) {
     const gl::FrameInputs inputs = inputs_of(bench, 0, gl::Mode::Numbers);
     std::vector<std::uint64_t> misses;
     do {
-        view.draw(inputs, bench.scene.params, {});
+        view.draw(inputs, bench.scene.params, {.weigh = false});
         misses.push_back(view.read_tally().misses);
-    } while (misses.back() > 0 && ++frames < 100);
+    } while (1000 * misses.back() > bench.pixels() && ++frames < 40);
     const gl::Pixels kept = view.read_pixels();
     view.draw_exactly(inputs, bench.scene.params);
     const gl::Pixels exact = view.read_pixels();
@@ -167,9 +172,9 @@ void print_difference(const Bench &bench, gl::CachedView &view) {
 
 void learn(const Bench &bench, gl::CachedView &view) {
     const gl::FrameInputs inputs = inputs_of(bench, 0);
-    for (int frame = 0; frame < 200; ++frame) {
-        view.draw(inputs, bench.scene.params, {});
-        if (view.read_tally().misses == 0) return;
+    for (int frame = 0; frame < 40; ++frame) {
+        view.draw(inputs, bench.scene.params, {.weigh = false});
+        if (1000 * view.read_tally().misses <= bench.pixels()) return;
     }
 }
 
@@ -193,10 +198,10 @@ void print_ages(const Bench &bench, gl::CachedView &view, int frames) {
     bench.terminal.put("\nmaximum age, turning at 2 rad/s (figure 8.2)\n"
                        "  age   cached ms   inserted   evicted   deleted   misses a frame\n");
     Motion usual;
-    for (int age = 1; age <= glsl::cache_ages; ++age) {
+    for (int age : {1, 2, 4, glsl::cache_ages}) {
         view.forget();
         const Motion m =
-            move(bench, view, {.speed = 2, .settle = 2 * frames, .frames = frames, .age = age});
+            move(bench, view, {.speed = 2, .settle = frames, .frames = frames, .age = age});
         if (age == 4) usual = m;
         bench.terminal.put(fmt::format("  {:<3} {:>11.1f} {:>10.0f} {:>9.0f} {:>9.0f} {:>16.0f}\n",
                                        age, m.cached, m.inserted, m.evicted, m.deleted, m.misses));
@@ -213,21 +218,22 @@ void print_edits(const Bench &bench, gl::CachedView &view, int frames) {
     for (std::size_t i = 0; i < bench.scene.params.size(); ++i) {
         const ir::Param &p = bench.scene.params[i];
         if (p.structural || p.type != ir::Type::Float || !p.has_range) continue;
-        const Motion m = move(
-            bench, view,
-            {.speed = 1, .settle = 2 * frames, .frames = frames, .param = static_cast<int>(i)});
+        const Motion m =
+            move(bench, view,
+                 {.speed = 1, .settle = frames, .frames = frames, .param = static_cast<int>(i)});
         bench.terminal.put(fmt::format("\nmoving `{}` (figure 8.5): cached {:.1f} ms, exact {:.1f} "
                                        "ms, speed-up {:.2f}, {:.0f} misses a frame\n",
                                        p.name, m.cached, m.exact, m.exact / m.cached, m.misses));
     }
 }
 
-void measure_all(const Bench &bench, gl::CachedView &view) {
+void measure_all(const Bench &bench, gl::CachedView &view, int asked) {
     print_difference(bench, view);
-    // As many frames as take about a minute in all.
+    // As many frames as take about three minutes in all, unless it was said.
     const gl::FrameInputs inputs = inputs_of(bench, 0);
     const double one = bench.time([&] { view.draw_exactly(inputs, bench.scene.params); });
-    const int frames = std::clamp(static_cast<int>(1000 / std::max(one, 1.0)), 4, 24);
+    const int usual = std::clamp(static_cast<int>(2000 / std::max(one, 1.0)), 2, 24);
+    const int frames = asked > 0 ? asked : usual;
     print_speeds(bench, view, frames);
     print_ages(bench, view, frames);
     print_edits(bench, view, frames);
@@ -256,7 +262,7 @@ Exit bench_noise_cache(const BenchCommand &command, const ir::Scene &scene, Term
     }
     terminal.put(fmt::format("cache: {0}x{0}x{0} cells, {1:.3g} MB\n", view.store().side(),
                              static_cast<double>(view.store().size().bytes()) / 1e6));
-    measure_all(bench, view);
+    measure_all(bench, view, command.frames);
     return done;
 }
 

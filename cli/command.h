@@ -87,6 +87,7 @@ struct BenchCommand {
     SceneArguments scene;
     int width = 400, height = 400;
     bool noise_cache = false;
+    int frames = 0;     // of each of its measures; 0: as many as take about three minutes in all
     int cache_bits = 6; // 2^bits cells an axis
 };
 
