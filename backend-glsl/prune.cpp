@@ -140,7 +140,7 @@ class Planner {
     std::map<std::tuple<NodeId, NodeId, NodeId>, int> known_; // -1: cannot be pruned
 };
 
-constexpr const char *look_up = R"(
+constexpr const char *look_up_rows = R"(
 // Which rows of a long loop can matter in which cell (docs/performance.md).
 layout(std430, binding = 0) readonly buffer fathom_Cells { uvec2 fathom_cells[]; };
 layout(std430, binding = 1) readonly buffer fathom_Rows { uint fathom_rows[]; };
@@ -255,7 +255,7 @@ std::optional<PrunePlan> plan_pruning(const ir::Scene &scene,
     return plan;
 }
 
-std::string prune_look_up() { return look_up; }
+std::string prune_look_up() { return look_up_rows; }
 
 std::string prune_kernel(const PrunedLoop &loop, const PruneNames &names) {
     const std::map<std::string, std::string, std::less<>> values{

@@ -3,6 +3,7 @@
 #include "ir/graph.h"
 
 #include "ir/fold.h"
+#include "ir/stir.h"
 
 #include <algorithm>
 #include <bit>
@@ -106,11 +107,6 @@ int swizzle_component(std::uint32_t mask, int i) { return static_cast<int>(mask 
 // -- making nodes
 
 namespace {
-
-std::uint64_t stir(std::uint64_t h, std::uint64_t word) {
-    h = (h ^ word) * 0x9e3779b97f4a7c15ull;
-    return h ^ (h >> 29);
-}
 
 std::uint64_t hash_of(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
     std::uint64_t h =

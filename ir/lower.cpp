@@ -96,7 +96,7 @@ void Lowering::run() {
     find_names();
     find_free_vars();
     find_curved();
-    const Frame frame{p3_, 0};
+    const Where frame{p3_, 0};
     const NodeId distance = ask(Reading::Marched, scene_.root, frame);
     scene_.distance = graph_.add_function({"scene_distance", {}, {p3_}, distance});
     const NodeId hit = ask(Reading::Hit, scene_.root, frame);
@@ -270,7 +270,7 @@ bool Lowering::is_wrapper(Reading reading, ShapeId id) const {
            reading == Reading::Marched;
 }
 
-NodeId Lowering::ask(Reading reading, ShapeId id, Frame frame) {
+NodeId Lowering::ask(Reading reading, ShapeId id, Where frame) {
     const auto key = std::make_tuple(reading, id, frame.p, frame.values);
     if (const auto it = answers_.find(key); it != answers_.end()) return it->second;
     NodeId result;
@@ -301,13 +301,13 @@ FunctionId Lowering::function(Reading reading, ShapeId id) {
 
 // -- frames
 
-NodeId Lowering::value_of(NodeId var, Frame frame) const {
+NodeId Lowering::value_of(NodeId var, Where frame) const {
     const Substitution &values = environments_[frame.values];
     const auto it = values.find(var);
     return it == values.end() ? var : it->second;
 }
 
-NodeId Lowering::read(NodeId expression, Frame frame) {
+NodeId Lowering::read(NodeId expression, Where frame) {
     const Graph::Reads reads = graph_.reads(expression);
     if (!reads.point && (!reads.free_vars || frame.values == 0)) return expression;
     Substitution map = environments_[frame.values];
@@ -315,7 +315,7 @@ NodeId Lowering::read(NodeId expression, Frame frame) {
     return substitute(graph_, expression, map);
 }
 
-Frame Lowering::bind(Frame frame, NodeId var, NodeId value) {
+Where Lowering::bind(Where frame, NodeId var, NodeId value) {
     if (!var) return frame;
     const auto [it, added] = derived_.try_emplace({frame.values, var, value}, 0);
     if (added) {

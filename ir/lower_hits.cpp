@@ -14,7 +14,7 @@ NodeId Lowering::point3(NodeId p) {
 }
 
 // The surface that shows on a shape whose distance is not a mere min or max of its children's.
-NodeId Lowering::colored(ShapeId id, Frame frame) {
+NodeId Lowering::colored(ShapeId id, Where frame) {
     const Shape &s = shape(id);
     const auto child = [&](std::size_t i) { return ask(Reading::Hit, s.children[i], frame); };
     if (s.kind == ShapeKind::Map)
@@ -36,7 +36,7 @@ NodeId Lowering::colored(ShapeId id, Frame frame) {
     return hits.empty() ? far_away(Reading::Hit) : least(Reading::Hit, hits);
 }
 
-NodeId Lowering::painted(ShapeId id, Frame frame) {
+NodeId Lowering::painted(ShapeId id, Where frame) {
     const Shape &s = shape(id);
     const Material &m = shapes_.materials[s.payload];
     std::vector<NodeId> vars;
@@ -82,7 +82,7 @@ Packing Lowering::packing_of(std::vector<NodeId> vars) const {
     return packing;
 }
 
-NodeId Lowering::pack(const Packing &packing, Frame frame) {
+NodeId Lowering::pack(const Packing &packing, Where frame) {
     Graph &g = graph_;
     std::array<NodeId, extra_floats> floats;
     floats.fill(g.number(0));
@@ -170,7 +170,7 @@ std::int32_t Lowering::surface_of(std::uint32_t material, bool flat) {
 // The materials of a blend's operands, each as it is at the point, by the blend's weights: of two
 // whose distances differ by d < r, the lesser weighs 1 - (r - d)/2r and the greater the rest (the
 // slope of the quadratic profile); folded in order.
-NodeId Lowering::mixed(ShapeId id, Frame frame) {
+NodeId Lowering::mixed(ShapeId id, Where frame) {
     const NodeId paint = graph_.integer(mixed_surface(id));
     const NodeId extra = pack(packing_of(free_vars_[id.index]), frame);
     const NodeId distance = ask(Reading::Marched, shape(id).children.front(), frame);
@@ -181,7 +181,7 @@ std::int32_t Lowering::mixed_surface(ShapeId id) {
     if (const auto it = mixed_surfaces_.find(id); it != mixed_surfaces_.end()) return it->second;
     Graph &g = graph_;
     Surface surface = blank_surface();
-    Frame frame{shape(id).dims == 2 ? g.swizzle(surface.point, std::array{0, 1}) : surface.point,
+    Where frame{shape(id).dims == 2 ? g.swizzle(surface.point, std::array{0, 1}) : surface.point,
                 0};
     const Packing packing = packing_of(free_vars_[id.index]);
     for (std::size_t i = 0; i < packing.vars.size(); ++i)

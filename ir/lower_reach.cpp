@@ -54,7 +54,7 @@ NodeId Lowering::both(NodeId distance) {
     return graph_.make(Op::Make, Type::Vec2, {distance, distance});
 }
 
-NodeId Lowering::reach(ShapeId id, Frame frame) {
+NodeId Lowering::reach(ShapeId id, Where frame) {
     const Shape &s = shape(id);
     if (!curved_[id.index]) return both(ask(Reading::Marched, id, frame));
     NodeId value;

@@ -71,7 +71,7 @@ NodeId Lowering::least_of(Reading reading, NodeId count, int max_count, NodeId i
     return graph_.make(Op::Fold, graph_.type(start), {start}, id.index);
 }
 
-NodeId Lowering::repeated(Reading reading, ShapeId id, Frame frame) {
+NodeId Lowering::repeated(Reading reading, ShapeId id, Where frame) {
     return shapes_.repetitions[shape(id).payload].polar ? polar(reading, id, frame)
                                                         : lattice(reading, id, frame);
 }
@@ -79,7 +79,7 @@ NodeId Lowering::repeated(Reading reading, ShapeId id, Frame frame) {
 // Along an axis with cells of width c, u = x/c + h counts cells; h puts cell 0 at the origin, or,
 // of a finite number n of them, the middle there: copy i stands at (i - h) c. The first of N copies
 // asked is floor(u) - N/2 + 1 for even N, the nearest less (N-1)/2 for odd, kept within 0 .. n-N.
-NodeId Lowering::lattice(Reading reading, ShapeId id, Frame frame) {
+NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
     Graph &g = graph_;
     const Shape &s = shape(id);
     const Repetition &repetition = shapes_.repetitions[s.payload];
@@ -138,7 +138,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Frame frame) {
             q.push_back(local);
         }
         const NodeId point = g.make(Op::Make, vector_type(dims), q);
-        const Frame there =
+        const Where there =
             bind(at(frame, point), repetition.id, g.make(Op::Make, Type::Vec3, cell_id));
         return ask(reading, s.children.front(), there);
     };
@@ -215,7 +215,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Frame frame) {
 }
 
 // n copies about an axis, the k-th turned by k*2pi/n: the nearest is the one whose sector holds p.
-NodeId Lowering::polar(Reading reading, ShapeId id, Frame frame) {
+NodeId Lowering::polar(Reading reading, ShapeId id, Where frame) {
     Graph &g = graph_;
     const Shape &s = shape(id);
     const Repetition &repetition = shapes_.repetitions[s.payload];
@@ -276,7 +276,7 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Frame frame) {
 
 // A loop over the rows, carrying the least so far. A smooth union carries the blend instead: its
 // raw field only; 1e9 to begin with is further off than any blend reaches.
-NodeId Lowering::many(Reading reading, ShapeId id, Frame frame) {
+NodeId Lowering::many(Reading reading, ShapeId id, Where frame) {
     Graph &g = graph_;
     const Shape &s = shape(id);
     const Family &family = shapes_.families[s.payload];
@@ -284,7 +284,7 @@ NodeId Lowering::many(Reading reading, ShapeId id, Frame frame) {
     const bool smooth = family.smooth && reading == Reading::Raw;
     const NodeId k = smooth ? read(s.args[0], frame) : NodeId{};
     const NodeId row = g.fresh_var(Type::Int); // each loop counts for itself
-    const Frame inside = bind(frame, family.index, row);
+    const Where inside = bind(frame, family.index, row);
     return least_of(reading, count, family.count, row, [&](NodeId best) {
         const NodeId value = ask(reading, s.children.front(), inside);
         if (!smooth) return least(reading, std::array{best, value});

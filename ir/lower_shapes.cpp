@@ -91,12 +91,12 @@ bool Lowering::passes_through(ShapeId id) const {
     return false;
 }
 
-NodeId Lowering::answer(Reading reading, ShapeId id, Frame frame) {
+NodeId Lowering::answer(Reading reading, ShapeId id, Where frame) {
     const NodeId value = unmarked(reading, id, frame);
     return reading == Reading::Hit ? marked(id, value) : value;
 }
 
-NodeId Lowering::unmarked(Reading reading, ShapeId id, Frame frame) {
+NodeId Lowering::unmarked(Reading reading, ShapeId id, Where frame) {
     if (reading == Reading::Raw && fact(id).local) {
         const Box &box = fact(id).bounds;
         const NodeId q =
@@ -126,7 +126,7 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Frame frame) {
 // is asked only where it can be greater than what is known already. The reach is more than that
 // where all of the field is asked: sqrt(2 f/M), with no rounding of f worth counting
 // (lipschitz.md).
-NodeId Lowering::displaced(Reading reading, ShapeId id, Frame frame) {
+NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     const ShapeFact &known = fact(id);
     const bool reaches = reading == Reading::Reach;
     NodeId raw = ask(Reading::Raw, id, frame);
@@ -188,19 +188,19 @@ NodeId Lowering::divided(ShapeId id, NodeId raw, double times) {
     return graph_.div(raw, graph_.number(bound * times));
 }
 
-NodeId Lowering::guarded(Reading reading, ShapeId id, Frame frame, NodeId value) {
+NodeId Lowering::guarded(Reading reading, ShapeId id, Where frame, NodeId value) {
     if (!fact(id).guard) return value;
     return at_distance(reading, value,
                        graph_.make(Op::Max, {distance_of(reading, value), guard(id, frame)}));
 }
 
-NodeId Lowering::guard(ShapeId id, Frame frame) {
+NodeId Lowering::guard(ShapeId id, Where frame) {
     const ShapeFact &known = fact(id);
     if (!std::isfinite(known.round)) return box_distance(graph_, known.bounds, frame.p);
     return cylinder_distance(graph_, known.bounds, turning_axis(shape(id)), known.round, frame.p);
 }
 
-NodeId Lowering::structural(Reading reading, ShapeId id, Frame frame) {
+NodeId Lowering::structural(Reading reading, ShapeId id, Where frame) {
     const Shape &s = shape(id);
     const auto child = [&](std::size_t i) { return ask(reading, s.children[i], frame); };
     const auto children = [&] {
@@ -269,7 +269,7 @@ NodeId Lowering::structural(Reading reading, ShapeId id, Frame frame) {
     return {};
 }
 
-NodeId Lowering::raw_only(ShapeId id, Frame frame) {
+NodeId Lowering::raw_only(ShapeId id, Where frame) {
     const Shape &s = shape(id);
     const auto child = [&](std::size_t i) { return ask(Reading::Raw, s.children[i], frame); };
     const auto arg = [&](std::size_t i) { return read(s.args[i], frame); };
@@ -284,7 +284,7 @@ NodeId Lowering::raw_only(ShapeId id, Frame frame) {
     return graph_.sub(child(0), arg(0));
 }
 
-NodeId Lowering::blend(const Shape &s, Frame frame) {
+NodeId Lowering::blend(const Shape &s, Where frame) {
     std::vector<NodeId> args;
     for (NodeId number : s.args) {
         const NodeId value = read(number, frame);
@@ -298,7 +298,7 @@ NodeId Lowering::blend(const Shape &s, Frame frame) {
 }
 
 // The formulas of blends.h.
-NodeId Lowering::seam(const Shape &s, Frame frame) {
+NodeId Lowering::seam(const Shape &s, Where frame) {
     Graph &g = graph_;
     const NodeId a = ask(Reading::Raw, s.children[0], frame),
                  b = ask(Reading::Raw, s.children[1], frame);
@@ -320,7 +320,7 @@ NodeId Lowering::seam(const Shape &s, Frame frame) {
     return {};
 }
 
-NodeId Lowering::pseudonorm(const Shape &s, Frame frame) {
+NodeId Lowering::pseudonorm(const Shape &s, Where frame) {
     Graph &g = graph_;
     const NodeId zero = g.number(0), one = g.number(1);
     const NodeId p = g.make(Op::Max, {read(s.args[0], frame), one});
@@ -347,14 +347,14 @@ template <class F> Region map_region(const Region &region, F read) {
 }
 } // namespace
 
-Frame Lowering::inside(ShapeId id, Frame frame) {
+Where Lowering::inside(ShapeId id, Where frame) {
     const Region region = map_region(shapes_.regions[shape(id).payload],
                                      [&](NodeId number) { return read(number, frame); });
     NodeId q = region_between_caps(graph_, region, region_nearest(graph_, region, point3(frame.p)));
     for (const Region &less : region.less) q = region_way_out(graph_, less, q).point;
     return point_of(frame, q);
 }
-Frame Lowering::point_of(Frame frame, NodeId p) {
+Where Lowering::point_of(Where frame, NodeId p) {
     return at(frame, graph_.type(frame.p) == Type::Vec2 ? graph_.swizzle(p, std::array{0, 1}) : p);
 }
 
@@ -362,7 +362,7 @@ Frame Lowering::point_of(Frame frame, NodeId p) {
 // of what R leaves out, at the way out of it. With g the value there: in R max(g, sd_R); outside
 // sqrt(|p-q|^2 + max(g, 0)^2). Both are |(max(sd_R,0), max(g,0))| + min(max(sd_R, g), 0). What is
 // left out cuts with -sd.
-NodeId Lowering::within(Reading reading, ShapeId id, Frame frame) {
+NodeId Lowering::within(Reading reading, ShapeId id, Where frame) {
     Graph &g = graph_;
     const Region region = map_region(shapes_.regions[shape(id).payload],
                                      [&](NodeId number) { return read(number, frame); });

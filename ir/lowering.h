@@ -18,7 +18,8 @@ constexpr double nowhere = 1e9; // the distance to what is not there
 
 enum class Reading : std::uint8_t { Raw, Marched, Hit, Reach };
 
-struct Frame {
+// Where a field is asked.
+struct Where {
     NodeId p;
     std::uint32_t values = 0; // index of Lowering's environments; 0 binds nothing
 };
@@ -37,41 +38,41 @@ class Lowering {
 
   private:
     // -- asking
-    NodeId ask(Reading reading, ShapeId id, Frame frame);
+    NodeId ask(Reading reading, ShapeId id, Where frame);
     NodeId answer(Reading reading, ShapeId id,
-                  Frame frame); // without a function of its own, unless its children's
+                  Where frame); // without a function of its own, unless its children's
     NodeId unmarked(Reading reading, ShapeId id,
-                    Frame frame); // the answer before its part is noted
+                    Where frame); // the answer before its part is noted
     NodeId structural(Reading reading, ShapeId id,
-                      Frame frame);           // through the shape's own combination
-    NodeId raw_only(ShapeId id, Frame frame); // kinds whose field consumes raw fields
-    NodeId colored(ShapeId id, Frame frame); // whose surface shows on a leaf: a Hit, distance aside
+                      Where frame);           // through the shape's own combination
+    NodeId raw_only(ShapeId id, Where frame); // kinds whose field consumes raw fields
+    NodeId colored(ShapeId id, Where frame); // whose surface shows on a leaf: a Hit, distance aside
     bool passes_through(ShapeId id) const;
     NodeId divided(ShapeId id, NodeId raw, double times = 1);
-    NodeId displaced(Reading reading, ShapeId id, Frame frame);
-    NodeId guard(ShapeId id, Frame frame);
-    NodeId guarded(Reading reading, ShapeId id, Frame frame, NodeId value);
+    NodeId displaced(Reading reading, ShapeId id, Where frame);
+    NodeId guard(ShapeId id, Where frame);
+    NodeId guarded(Reading reading, ShapeId id, Where frame, NodeId value);
 
     // -- reach (lower_reach.cpp)
     bool hands_reach_on(const Shape &shape) const;
     void find_curved();
     NodeId both(NodeId distance);
-    NodeId reach(ShapeId id, Frame frame);
+    NodeId reach(ShapeId id, Where frame);
 
     // -- per kind
-    NodeId within(Reading reading, ShapeId id, Frame frame);
-    Frame inside(ShapeId id, Frame frame); // where `within` asks its child
-    Frame point_of(Frame frame, NodeId p);
+    NodeId within(Reading reading, ShapeId id, Where frame);
+    Where inside(ShapeId id, Where frame); // where `within` asks its child
+    Where point_of(Where frame, NodeId p);
     NodeId divided_by_cells(ShapeId id, NodeId field, NodeId q);
-    NodeId blend(const Shape &shape, Frame frame);
-    NodeId seam(const Shape &shape, Frame frame);
-    NodeId pseudonorm(const Shape &shape, Frame frame);
-    NodeId repeated(Reading reading, ShapeId id, Frame frame);
-    NodeId lattice(Reading reading, ShapeId id, Frame frame);
-    NodeId polar(Reading reading, ShapeId id, Frame frame);
-    NodeId many(Reading reading, ShapeId id, Frame frame);
-    NodeId painted(ShapeId id, Frame frame);
-    NodeId mixed(ShapeId id, Frame frame);
+    NodeId blend(const Shape &shape, Where frame);
+    NodeId seam(const Shape &shape, Where frame);
+    NodeId pseudonorm(const Shape &shape, Where frame);
+    NodeId repeated(Reading reading, ShapeId id, Where frame);
+    NodeId lattice(Reading reading, ShapeId id, Where frame);
+    NodeId polar(Reading reading, ShapeId id, Where frame);
+    NodeId many(Reading reading, ShapeId id, Where frame);
+    NodeId painted(ShapeId id, Where frame);
+    NodeId mixed(ShapeId id, Where frame);
 
     // -- values by reading: floats, or hits
     NodeId least(Reading reading, std::span<const NodeId> values);
@@ -87,10 +88,10 @@ class Lowering {
     NodeId least_of(Reading reading, NodeId count, int max_count, NodeId index, F each);
 
     // -- frames
-    NodeId read(NodeId expression, Frame frame);
-    Frame at(Frame frame, NodeId p) const { return {p, frame.values}; }
-    Frame bind(Frame frame, NodeId var, NodeId value);
-    NodeId value_of(NodeId var, Frame frame) const;
+    NodeId read(NodeId expression, Where frame);
+    Where at(Where frame, NodeId p) const { return {p, frame.values}; }
+    Where bind(Where frame, NodeId var, NodeId value);
+    NodeId value_of(NodeId var, Where frame) const;
 
     // -- functions
     FunctionId function(Reading reading, ShapeId id);
@@ -110,7 +111,7 @@ class Lowering {
 
     // -- looks
     std::int32_t surface_of(std::uint32_t material, bool flat);
-    NodeId pack(const Packing &packing, Frame frame);
+    NodeId pack(const Packing &packing, Where frame);
     NodeId unpack(const Packing &packing, std::size_t var, NodeId extra);
     Packing packing_of(std::vector<NodeId> vars) const;
     std::int32_t mixed_surface(ShapeId id);

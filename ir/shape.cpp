@@ -1,6 +1,8 @@
 // The hash-consed shapes and the boxes that bound them.
 #include "ir/shape.h"
 
+#include "ir/stir.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -66,11 +68,6 @@ Box intersect(Box a, Box b) {
 }
 
 namespace {
-
-std::uint64_t stir(std::uint64_t h, std::uint64_t word) {
-    h = (h ^ word) * 0x9e3779b97f4a7c15ull;
-    return h ^ (h >> 29);
-}
 
 std::uint64_t hash_of(const Shape &shape) {
     std::uint64_t h = static_cast<std::uint64_t>(shape.kind);

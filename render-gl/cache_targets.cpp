@@ -2,6 +2,7 @@
 #include "render-gl/cache_targets.h"
 
 #include "backend-glsl/cache.h"
+#include "render-gl/framebuffer.h"
 
 #include <epoxy/gl.h>
 
@@ -22,8 +23,6 @@ GLuint layers(GLint format, int width, int height, int count) {
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_LEVEL, 0);
     return name;
 }
-
-bool complete() { return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE; }
 
 } // namespace
 

@@ -1,5 +1,7 @@
 #include "render-gl/canvas.h"
 
+#include "render-gl/framebuffer.h"
+
 #include <epoxy/gl.h>
 
 #include <algorithm>
@@ -22,8 +24,6 @@ void attach(GLuint &texture, GLint format, int width, int height, GLuint framebu
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
 }
-
-bool complete() { return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE; }
 
 template <class T> std::vector<T> upside_down(const std::vector<T> &rows, int width, int height) {
     const std::size_t row = static_cast<std::size_t>(width) * 4;

@@ -17,7 +17,7 @@ using ir::rounding::up;
 
 namespace {
 
-constexpr std::size_t most_terms = 16, most_nodes = 1'000;
+constexpr std::size_t most_octaves = 16, most_of_a_sum = 1'000;
 constexpr double worth = 0.95; // a partial sum is used where its bound is that much less
 
 // Calls and short loops written out, so that the turns of a sum are its terms. Nothing where a loop
@@ -30,7 +30,7 @@ struct Unrolled {
     NodeId of(NodeId id) {
         if (failed || !graph.reads(id).point) return id;
         if (const auto found = known.find(id); found != known.end()) return found->second;
-        if (known.size() > most_nodes) failed = true;
+        if (known.size() > most_of_a_sum) failed = true;
         const ir::Node node = graph[id];
         std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
         NodeId out = id;
@@ -66,7 +66,7 @@ struct Unrolled {
         const ir::Fold fold = graph.fold(ir::FoldId{graph[fold_node].payload});
         const auto count = graph.as_number(fold.count);
         std::vector<NodeId> state(graph.args(fold_node).begin(), graph.args(fold_node).end());
-        failed = failed || !count || *count < 0 || *count > double(most_terms) || fold.condition;
+        failed = failed || !count || *count < 0 || *count > double(most_octaves) || fold.condition;
         for (int turn = 0; !failed && turn < int(*count); ++turn) {
             ir::Substitution map{{fold.index, graph.integer(turn)}};
             for (std::size_t i = 0; i < state.size(); ++i) map[fold.vars[i]] = state[i];
@@ -85,7 +85,7 @@ void split_sum(ir::Graph &graph, NodeId id, NodeId factor, std::vector<NodeId> &
         return graph.type(a) == ir::Type::Float && !graph.reads(a).point &&
                !graph.reads(a).free_vars;
     };
-    if (out.size() <= most_terms && node.type == ir::Type::Float && graph.reads(id).point) {
+    if (out.size() <= most_octaves && node.type == ir::Type::Float && graph.reads(id).point) {
         if (node.op == Op::Add || node.op == Op::Sub) {
             split_sum(graph, arg(0), factor, out);
             split_sum(graph, arg(1), node.op == Op::Add ? factor : graph.neg(factor), out);
@@ -112,7 +112,7 @@ std::vector<ir::PartialSum> Prover::partial_sums(ShapeId id, double slope) {
     const NodeId whole = unrolled.of(shape.args[0]);
     if (unrolled.failed) return out;
     split_sum(graph, whole, graph.number(1), terms);
-    if (terms.size() < 2 || terms.size() > most_terms) return out;
+    if (terms.size() < 2 || terms.size() > most_octaves) return out;
     // One look at all of the place: what noise says of itself does not depend on where it is.
     const Cell box = to_cell(place(id).box);
     const auto measured = [&](NodeId field, Interval &value) {
