@@ -1,5 +1,6 @@
 // Runs a tape over batches of points: floats through point_loops, dual numbers through
 // gradient_loops, by one interpreter that knows cells and no numbers.
+#include "backend-cpu/ball_rows.h"
 #include "backend-cpu/dual.h"
 #include "backend-cpu/sample.h"
 #include "backend-cpu/tape.h"
@@ -76,7 +77,38 @@ template <class Cell> class Runner {
         return true;
     }
 
+    // Turns of a loop of balls, a pack at a time; rows: which, or the first `count`.
+    void balls(const BallRows &balls, const std::uint32_t *rows, std::size_t count) const {
+        if constexpr (std::is_same_v<Cell, Word>) {
+            const BallPoints points{cells_ + balls.carried, cells_ + balls.place[0],
+                                    cells_ + balls.place[1], cells_ + balls.place[2], n_};
+            const BallLoops loops = ball_loops();
+            const auto run = [&](const float *numbers, std::size_t n) {
+                if (balls.smooth)
+                    loops.smooth(points, numbers, n, number_at(cells_[balls.k]));
+                else
+                    loops.least(points, numbers, n);
+            };
+            if (!rows) return run(balls.numbers.data(), count);
+            constexpr std::size_t most = 128;
+            alignas(64) float pack[4 * most];
+            for (std::size_t first = 0; first < count; first += most) {
+                const std::size_t n = std::min(most, count - first);
+                for (std::size_t i = 0; i < n; ++i)
+                    std::memcpy(pack + 4 * i,
+                                balls.numbers.data() + 4 * std::size_t{rows[first + i]},
+                                4 * sizeof(float));
+                run(pack, n);
+            }
+        }
+    }
+    bool is_balls(const Loop &loop) const {
+        return std::is_same_v<Cell, Word> && loop.balls >= 0 && n_ % 16 == 0;
+    }
+
     void turns(const Loop &loop, const std::uint32_t *rows, std::size_t count) const {
+        if (is_balls(loop))
+            return balls(program_.ball_loops[static_cast<std::size_t>(loop.balls)], rows, count);
         for (std::size_t i = 0; i < count; ++i) {
             store_word(cells_[loop.index], static_cast<std::int32_t>(rows[i]));
             run(loop.block);
@@ -89,6 +121,9 @@ template <class Cell> class Runner {
             for (std::size_t k = 1; k < n_; ++k)
                 count = std::max(count, int_at(cells_[loop.count + k]));
         count = std::min(count, loop.max_count);
+        if (is_balls(loop))
+            return balls(program_.ball_loops[static_cast<std::size_t>(loop.balls)], nullptr,
+                         static_cast<std::size_t>(std::max(count, 0)));
         for (std::int32_t turn = 0; turn < count; ++turn) {
             store_word(cells_[loop.index], turn);
             if (!run(loop.block)) break;

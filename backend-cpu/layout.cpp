@@ -1,6 +1,7 @@
 // From values to a tape: an order that keeps few values alive at once, registers by how long each
 // lives, addresses. As no function calls itself, each has its registers at one fixed place, above
 // those of all that may be calling it.
+#include "backend-cpu/ball_rows.h"
 #include "backend-cpu/code.h"
 
 #include <algorithm>
@@ -259,6 +260,7 @@ class Encoder {
         program_.steps = std::move(whole_);
         program_.images = scene_.images;
         program_.grids = scene_.grids;
+        find_ball_loops(program_);
         return std::move(program_);
     }
 

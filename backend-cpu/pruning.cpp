@@ -124,15 +124,34 @@ const PruneBlock &below(const Pruning &pruning, Asker &asker, const PruneCell &c
     return *cell.below.load(std::memory_order_acquire);
 }
 
-// The cell whose tape, or whose one number, answers at a place.
+// The cell whose tape, or whose one number, answers at a place. Most places lie in the block that
+// the last one lay in.
 const PruneCell *find(const Pruning &pruning, Asker &asker, const Place &place) {
+    const auto shift_of = [&](int level) { // to cells of the level
+        return bits_a_level * (pruning.settings.depth - level);
+    };
+    const auto index_at = [&](int level) {
+        const int shift = shift_of(level + 1);
+        return static_cast<std::size_t>((place.at[0] >> shift & 3) |
+                                        (place.at[1] >> shift & 3) << 2 |
+                                        (place.at[2] >> shift & 3) << 4);
+    };
+    Asker::Last &last = asker.last;
+    int level = 0;
     const PruneCell *cell = &pruning.root;
-    for (int level = 0; cell->splits; ++level) {
-        const int shift = bits_a_level * (pruning.settings.depth - 1 - level);
-        const auto index =
-            static_cast<std::size_t>((place.at[0] >> shift & 3) | (place.at[1] >> shift & 3) << 2 |
-                                     (place.at[2] >> shift & 3) << 4);
-        cell = &below(pruning, asker, *cell, place, level).cells[index];
+    if (last.block) {
+        const int shift = shift_of(last.level);
+        if (place.at[0] >> shift == last.at[0] && place.at[1] >> shift == last.at[1] &&
+            place.at[2] >> shift == last.at[2]) {
+            cell = &last.block->cells[index_at(last.level)];
+            level = last.level + 1;
+        }
+    }
+    for (; cell->splits; ++level) {
+        const PruneBlock &block = below(pruning, asker, *cell, place, level);
+        const int shift = shift_of(level);
+        last = {&block, level, {place.at[0] >> shift, place.at[1] >> shift, place.at[2] >> shift}};
+        cell = &block.cells[index_at(level)];
     }
     return cell;
 }

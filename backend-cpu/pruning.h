@@ -64,6 +64,11 @@ struct Asker {
         double kernels = 0, shapes = 0; // of the near ones' tapes, all told
         std::uint64_t cells = 0;        // with tapes, made by this thread
     } tally;
+    struct Last { // the block that the last place lay in, inside the cell `at` of `level`
+        const PruneBlock *block = nullptr;
+        int level = 0;
+        std::array<std::int32_t, 3> at{};
+    } last;
     std::vector<std::uint8_t> bounded; // by point of the last question: it got a bound
     struct Seen { // which group a cell has: open addressing, of this question where `turn` is its
         const PruneCell *cell = nullptr;

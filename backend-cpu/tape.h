@@ -52,6 +52,14 @@ struct Loop {
         std::uint32_t var = 0, next = 0; // addresses; may be the same
     };
     std::vector<Carried> carried;
+    std::int32_t balls = -1; // into Program::ball_loops
+};
+
+// A loop whose turns each join a ball to what it carries (ball_rows.h).
+struct BallRows {
+    bool smooth = false;                             // blended with radius k, or the lesser
+    std::uint32_t carried = 0, place[3] = {}, k = 0; // addresses
+    std::vector<float> numbers;                      // four a row: the centre, the radius
 };
 
 struct Read {
@@ -80,6 +88,7 @@ struct Program {
     std::vector<std::uint32_t> operands;
     std::vector<Block> blocks; // the last is the function asked for
     std::vector<Loop> loops;
+    std::vector<BallRows> ball_loops;
     std::vector<Read> reads;
     std::vector<float> table_data;
     std::vector<ir::ImageData> images;

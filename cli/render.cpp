@@ -3,6 +3,8 @@
 #include "render-gl/render.h"
 #include "backend-cpu/march.h"
 #include "base/picture.h"
+#include "cli/interrupt.h"
+#include "cli/preview.h"
 #include "cli/terminal.h"
 #include "render-gl/cache_passes.h"
 #include "render-gl/context.h"
@@ -139,9 +141,23 @@ Exit prepare_gl(Painter &painter, const driver::Compilation &compilation,
     return done;
 }
 
+// What is drawn so far, tile by tile: other threads draw into the rest of the picture meanwhile.
+struct Preview {
+    PreviewSize size;
+    std::vector<std::uint8_t> rgba;
+    void take(const cpu::Tile &tile, const cpu::Picture &from) {
+        rgba.resize(from.rgba.size());
+        for (int y = tile.y; y < tile.y + tile.height; ++y) {
+            const std::ptrdiff_t first = 4 * (static_cast<std::ptrdiff_t>(y) * from.width + tile.x);
+            std::copy_n(from.rgba.begin() + first, 4 * tile.width, rgba.begin() + first);
+        }
+    }
+};
+
 std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
                              const RenderCommand &command, double time,
-                             const std::function<void(double)> &progress, std::string &status) {
+                             const std::function<void(double)> &progress, std::string &status,
+                             Terminal &terminal) {
     if (painter.cache) {
         std::optional<gl::Pixels> pixels =
             draw_cached(*painter.cache, scene, command, time, progress, status);
@@ -154,7 +170,7 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
         request.height = command.height;
         request.samples = command.samples;
         request.time = time;
-        request.progress = [&](double share) { return progress(share), true; };
+        request.progress = [&](double share) { return progress(share), !Interrupts::noticed(); };
         std::optional<gl::Pixels> pixels =
             gl::draw(*painter.program, scene, request, gl::Mode::Linear);
         if (!pixels) return std::nullopt;
@@ -165,9 +181,18 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
         cpu::prepare(scene, ir::view_of(scene, time, aspect), command.width, command.height, time);
     cpu::PictureOptions options;
     options.samples = command.samples;
-    cpu::Picture made =
-        cpu::render(stage, options, [&](double share, const cpu::Tile &, const cpu::Picture &) {
-            return progress(share), true;
+    Preview preview;
+    if (terminal.interactive()) preview.size = preview_size(command.width, command.height);
+    cpu::Picture made = cpu::render(
+        stage, options, [&](double share, const cpu::Tile &tile, const cpu::Picture &so_far) {
+            if (preview.size.rows > 0) {
+                preview.take(tile, so_far);
+                terminal.preview(preview.size.rows, [&] {
+                    return preview_lines(preview.rgba, so_far.width, so_far.height, preview.size);
+                });
+            }
+            progress(share);
+            return !Interrupts::noticed();
         });
     if (stage.pruning && made.work.near > 0)
         status =
@@ -189,6 +214,7 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
 
     const std::pair<int, int> frames = command.frames.value_or(std::pair(0, 1));
     const int first = frames.first, last = frames.second;
+    const Interrupts interrupts;
     for (int frame = first; frame < last; ++frame) {
         std::string out = command.frames ? frame_name(command.out, frame) : command.out;
         double time = command.time + (command.frames ? frame / command.frame_rate : 0);
@@ -196,7 +222,12 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
         std::optional<Picture> picture = paint(
             painter, compilation.scene, command, time,
             [&](double share) { terminal.progress(out, (frame - first + share) / (last - first)); },
-            status);
+            status, terminal);
+        if (Interrupts::noticed()) { // nothing of this picture is written
+            terminal.finish_progress();
+            terminal.flush();
+            Interrupts::obey();
+        }
         if (!status.empty() && terminal.interactive()) terminal.say(out + ": " + status);
         if (!picture) {
             terminal.say(fmt::format("fathom: there is no memory for a picture of {}x{}",

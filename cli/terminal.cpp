@@ -76,8 +76,23 @@ void Terminal::progress(std::string_view what, double share) {
 }
 
 void Terminal::finish_progress() {
-    if (bar_shown_) (void)driver::write_all(STDERR_FILENO, "\r\x1b[K");
+    if (preview_rows_ > 0)
+        (void)driver::write_all(STDERR_FILENO, fmt::format("\r\x1b[{}A\x1b[J", preview_rows_));
+    else if (bar_shown_)
+        (void)driver::write_all(STDERR_FILENO, "\r\x1b[K");
     bar_shown_ = false;
+    preview_rows_ = 0;
+    next_bar_ = next_preview_ = 0;
+}
+
+void Terminal::preview(int rows, const std::function<std::string()> &lines) {
+    const long long now = milliseconds_now();
+    if (!interactive_ || rows <= 0 || now < next_preview_) return;
+    next_preview_ = now + 200;
+    std::string text = "\r";
+    if (preview_rows_ > 0) text += fmt::format("\x1b[{}A", preview_rows_);
+    (void)driver::write_all(STDERR_FILENO, text + lines());
+    preview_rows_ = rows;
     next_bar_ = 0;
 }
 

@@ -5,6 +5,8 @@
 #include "cli/command.h"
 #include "driver/compile.h"
 
+#include <functional>
+#include <string>
 #include <string_view>
 
 namespace fathom::cli {
@@ -26,11 +28,16 @@ class Terminal {
     void progress(std::string_view what, double share);
     void finish_progress();
 
+    // A picture as it comes above the bar (preview.h), where the terminal can; at most five times a
+    // second. `lines` makes its text, of `rows` lines. Wiped with the bar.
+    void preview(int rows, const std::function<std::string()> &lines);
+
   private:
     std::string buffer_;
     bool color_ = false, interactive_ = false, gone_ = false, bar_shown_ = false;
     int failure_ = 0;
-    long long next_bar_ = 0;
+    long long next_bar_ = 0, next_preview_ = 0;
+    int preview_rows_ = 0; // shown
 };
 
 driver::CompileOptions compile_options(const SceneArguments &scene);

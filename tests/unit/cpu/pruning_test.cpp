@@ -145,6 +145,32 @@ TEST_CASE("a blend of a table's rows is the same to the bit where rows are left 
     }
 }
 
+// Each row is blended with what the rows before it left: in the order of a spiral (Fibonacci's),
+// where each is a neighbour of some that came shortly before, and in no order.
+TEST_CASE("of long chains of blends a part is left, and the same bits") {
+    for (const bool in_order : {true, false}) {
+        constexpr int n = 610;
+        Shell f;
+        fathom::ir::Table rows{n, 4, {}};
+        for (int i = 0; i < n; ++i) {
+            const double j = in_order ? i : i * 377 % n, y = 1 - (2 * j + 1) / n,
+                         ring = std::sqrt(1 - y * y), angle = 2.39996323 * j;
+            for (double x :
+                 {1.3 * ring * std::cos(angle), 1.3 * y, 1.3 * ring * std::sin(angle), 0.05})
+                rows.data.push_back(static_cast<float>(x));
+        }
+        const TableId table = f.g.add_table(rows);
+        for (Profile profile : {Profile::Smooth, Profile::Round, Profile::Chamfer}) {
+            const NodeId d = f.loop(n, f.g.number(1e9), [&](NodeId best, NodeId i) {
+                return f.blended(profile, 0.03, best, f.row_ball(table, i));
+            });
+            const Program program = compile(f.scene, f.function(d));
+            INFO(static_cast<int>(profile) << (in_order ? " in order" : ""));
+            CHECK(check(program, {}).kernels < (in_order ? 600 : 200)); // of 1,830
+        }
+    }
+}
+
 TEST_CASE("operands that cannot matter are not computed") {
     for (int how = 0; how < 8; ++how) {
         Shell f;
