@@ -260,14 +260,14 @@ Picture Canvas::read_picture() const {
     return read_bytes(shown_framebuffer_, shown_width_, shown_height_);
 }
 
-void Canvas::show(int window_width, int window_height, double before) const {
+void Canvas::show(int window_width, int window_height, double before, unsigned into) const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_framebuffer_);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, into);
     glDisable(GL_SCISSOR_TEST);
     bool same = shown_width_ == window_width && shown_height_ == window_height;
     glBlitFramebuffer(0, 0, shown_width_, shown_height_, 0, 0, window_width, window_height,
                       GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, into);
     if (before <= 0 || !before_ || !fade_) return;
     glViewport(0, 0, window_width, window_height);
     glDisable(GL_DEPTH_TEST);

@@ -65,8 +65,13 @@ build() {
     else
         # no terminal: a line for each tenth that is done, and the rest in a log
         { ninja -C "$root/build" "$@" 2>&1; echo $? >"$root/build/.status"; } | tee "$root/build/build.log" |
-            awk -F '[][/]' '/^\[[0-9]+\/[0-9]+\]/ { tenth = int(10 * $2 / $3)
-                if (tenth > said) { said = tenth; printf "fathom: built %d of %d\n", $2, $3; fflush() } }' >&2
+            while IFS= read -r line; do # ninja's "[12/345] …"
+                case $line in "["*/*"]"*) ;; *) continue ;; esac
+                all=${line#*/} all=${all%%]*} made=${line#[} made=${made%%/*}
+                [ $((10 * made / all)) -gt "${said:-0}" ] || continue
+                said=$((10 * made / all))
+                say "built $made of $all"
+            done
         [ "$(cat "$root/build/.status")" = 0 ] || {
             tail -n 60 "$root/build/build.log" >&2
             return 1

@@ -9,6 +9,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <epoxy/gl.h>
 #include <filesystem>
 #include <iostream>
 #include <set>
@@ -326,4 +327,61 @@ TEST_CASE("to know its parts changes no pixel of a scene") {
             differing += std::abs(mine.rgba[i] - wanted->rgba[i]) > 2;
         CHECK(differing <= 80 * 60 * 4 / 500); // rounding at edges
     }
+}
+
+// From kept values to exact ones no pixel jumps: each frame of a fade lies between both pictures by
+// its share, so two that follow one another differ by that share of their difference.
+TEST_CASE("a picture fades into the next by shares") {
+    if (!has_context()) return;
+    constexpr int side = 48;
+    Drawn kept(camera + "sphere(1.6).paint(#ff8040)\n"),
+        exact(camera + "sphere(1.7).paint(#4080ff)\n");
+    gl::Canvas &canvas = kept.canvas;
+    const auto draw = [&](const Drawn &of) {
+        REQUIRE(canvas.draw(*of.picture, side, side,
+                            {{of.view({0, 0, side, side}, gl::Mode::Linear)}},
+                            of.compilation.scene.params, 0));
+        canvas.finish(settings(gl::Look::Picture, false));
+    };
+    unsigned framebuffer = 0, texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, side, side);
+    glGenFramebuffers(1, &framebuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    const auto shown = [&](double share) {
+        canvas.show(side, side, share, framebuffer);
+        std::vector<std::uint8_t> pixels(4 * side * side);
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+        glReadPixels(0, 0, side, side, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        return pixels;
+    };
+    draw(kept);
+    const auto first = shown(0);
+    canvas.keep_before();
+    draw(exact);
+    const auto last = shown(0);
+    REQUIRE(first != last);
+    constexpr int frames = 15; // of a sixtieth of a second, in a quarter of one
+    auto previous = first;
+    for (int frame = 0; frame <= frames; ++frame) {
+        const double share = 1 - double(frame) / frames;
+        const auto now = shown(share);
+        int jumps = 0, outside = 0;
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            if (i % 4 == 3) continue;
+            const double wide = std::abs(int(first[i]) - int(last[i]));
+            jumps += std::abs(int(now[i]) - int(previous[i])) > wide / frames + 2;
+            outside += std::fabs(now[i] - (share * first[i] + (1 - share) * last[i])) > 1.01;
+        }
+        INFO("share " << share);
+        CHECK(jumps == 0);
+        CHECK(outside == 0);
+        previous = now;
+    }
+    CHECK(previous == last);
+    glDeleteFramebuffers(1, &framebuffer);
+    glDeleteTextures(1, &texture);
 }
