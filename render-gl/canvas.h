@@ -71,8 +71,8 @@ class Canvas {
     std::vector<float> read_probe() const { return read(probe_framebuffer_); }
     Picture read_picture() const; // what is shown, without a window
 
-    // Fills the window's framebuffer, or another, with it, whatever the sizes; `before`: the share of
-    // the picture that is faded from.
+    // Fills the window's framebuffer, or another, with it, whatever the sizes; `before`: the share
+    // of the picture that is faded from.
     void show(int window_width, int window_height, double before = 0, unsigned into = 0) const;
 
   private:
