@@ -1,8 +1,6 @@
 // Rays through the field, in batches from which those that are done drop out. Names and order
 // follow ir/look.h and backend-glsl/marcher.cpp.
-#include "backend-cpu/rays.h"
-
-#include "ir/look.h"
+#include "backend-cpu/cell_march.h"
 
 #include <algorithm>
 #include <numeric>
@@ -90,12 +88,6 @@ void near(Worker &worker, const Vec *points, const float *d, const float *h, flo
 
 namespace {
 
-struct Walk {
-    float t, before = 0, stride = 0, d = 0;
-    float span = 0, reached = 0; // how far d reaches, and `before`; where that is more than they
-    int steps = 0;
-};
-
 // Which of the rays that found d small enough are at the surface.
 class Arrivals {
   public:
@@ -115,50 +107,12 @@ class Arrivals {
     std::vector<float> d_, h_, true_;
 };
 
-bool apart(const Walk &walk) {
-    if (walk.stride <= walk.before + std::max(walk.d, 0.0f)) return false;
-    return !(walk.d > 0 && walk.stride <= walk.reached + walk.span);
-}
-
-// How far beyond the last sample to look next, where what lies between is not known to be free.
-float nearer(const Walk &walk, const Lengths &lengths, bool reaching) {
-    if (!reaching) return walk.before;
-    const float to =
-        walk.d > 0 ? walk.reached + look::nearer * std::min(walk.span, walk.reached)
-                   : std::min(walk.reached, walk.stride * walk.before / (walk.before - walk.d) -
-                                                0.5f * lengths.tolerance(walk.t));
-    return std::max(walk.before, std::min(to, walk.stride));
-}
-
-void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
-    const float d = std::max(walk.d, 0.25f * lengths.slack);
-    const float span = std::max(walk.span, d);
-    float next = brute ? 0.1f * d : d;
-    if (!brute && span > d) {
-        next = span;
-        if (walk.stride > 0) {
-            const float change = (span * span - walk.reached * walk.reached) / walk.stride;
-            next = change < -span ? span * span / -change - 0.5f * lengths.tolerance(walk.t)
-                                  : span + look::bent_relaxation * (span + change);
-            next = std::max(next, d);
-        }
-    } else if (!brute && walk.stride > 0)
-        next += look::relaxation * d * std::max(walk.stride + d - walk.before, 0.0f) /
-                std::max(walk.stride - d + walk.before, look::flattest * walk.stride);
-    // what is not proved yet ends at the end exactly, rounding or not, so that it is still checked
-    const float proved = std::max(end, walk.t + d);
-    next = std::min(next, proved - walk.t);
-    walk.d = d;
-    walk.before = d;
-    walk.reached = span;
-    walk.stride = next;
-    walk.t = std::min(walk.t + next, proved);
-}
-
 } // namespace
 
-void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings,
-           bool brute) {
+namespace {
+
+void march_together(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings,
+                    bool brute) {
     const Lengths lengths(worker.stage);
     const bool reaching = worker.stage.reaches && !brute;
     const int max_steps = worker.stage.scene->render.max_steps * (brute ? 100 : 1);
@@ -169,11 +123,7 @@ void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> la
         landings[i] = {};
         if (rays[i].end >= rays[i].begin) active.push_back(i);
     }
-    // How small the distance is at a hit; in the last turn a pixel's width will do.
-    auto reach = [&](const Walk &walk) {
-        const float usual = lengths.tolerance(walk.t);
-        return walk.steps == max_steps ? std::max(usual, lengths.width(walk.t)) : usual;
-    };
+    const auto reach = [&](const Walk &walk) { return reach_at(walk, lengths, max_steps); };
     Arrivals arrivals;
     while (!active.empty()) {
         // Who has run out of steps or of way is done.
@@ -187,15 +137,12 @@ void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> la
             const RayState &ray = rays[active[k]];
             const float t = walks[active[k]].t;
             worker.points.set(0, k, ray.origin + t * ray.direction);
-            // below it, whether the ray has arrived is decided
-            worker.limits[k] = 2 * std::max(lengths.tolerance(t), lengths.width(t));
         }
         if (reaching)
             reaches(worker, worker.points, worker.values.data(), worker.spans.data(),
                     active.size());
         else
-            distances(worker, worker.points, worker.values.data(), active.size(),
-                      brute ? nullptr : worker.limits.data());
+            distances(worker, worker.points, worker.values.data(), active.size());
         arrivals.clear();
         for (std::size_t k = 0; k < active.size(); ++k) {
             Walk &walk = walks[active[k]];
@@ -204,9 +151,7 @@ void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> la
             if (reaching) walk.span = worker.spans[k];
             ++walk.steps;
             if (!brute && walk.steps < max_steps && apart(walk)) {
-                const float stride = nearer(walk, lengths, reaching);
-                walk.t += stride - walk.stride;
-                walk.stride = stride;
+                go_back(walk, lengths, reaching);
             } else if (walk.d <= reach(walk)) {
                 arrivals.add(active[k], ray.origin + walk.t * ray.direction, walk.d,
                              lengths.arm(walk.t));
@@ -224,6 +169,16 @@ void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> la
         // A landing has at least one step; who was set down has nothing more to do.
         std::erase_if(active, [&](std::size_t i) { return landings[i].steps > 0; });
     }
+}
+
+} // namespace
+
+void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings,
+           bool brute) {
+    if (worker.asker && !brute)
+        march_by_cells(worker, rays, landings);
+    else
+        march_together(worker, rays, landings, brute);
     worker.work.rays += rays.size();
     for (const Landing &landing : landings) {
         worker.work.steps += static_cast<std::uint64_t>(landing.steps);

@@ -176,6 +176,8 @@ Pruning::Pruning(const Program &p, const Inputs &inputs, const Cube &c, const Pr
       whole(whole_tape(parts)) {
     float most = 0;
     for (float x : cube.lo) most = std::max({most, std::fabs(x), std::fabs(x + cube.side)});
+    cells = static_cast<float>(std::int32_t{1} << bits_a_level * settings.depth);
+    scale = cells / cube.side;
     slack = 4e-7f * (cube.side + most);
     root.tape = whole.selection(parts);
     root.cost = whole.cost;
@@ -188,10 +190,33 @@ Asker::Asker(const Pruning &pruning, const Inputs &inputs)
     : shortener(pruning.parts), scratch(make_scratch(pruning.program, inputs)), in(3),
       out(pruning.program.results.size()) {}
 
+const PruneCell &cell_at(const Pruning &pruning, Asker &asker, float x, float y, float z) {
+    const float px = (x - pruning.cube.lo[0]) * pruning.scale,
+                py = (y - pruning.cube.lo[1]) * pruning.scale,
+                pz = (z - pruning.cube.lo[2]) * pruning.scale;
+    const bool inside = (px >= 0) & (py >= 0) & (pz >= 0) & (px < pruning.cells) &
+                        (py < pruning.cells) & (pz < pruning.cells);
+    if (!inside) return pruning.root;
+    return *find(pruning, asker,
+                 {static_cast<std::int32_t>(px), static_cast<std::int32_t>(py),
+                  static_cast<std::int32_t>(pz)});
+}
+
+void evaluate_in(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+                 const float *const *in, float *const *out, std::size_t n) {
+    evaluate(pruning.program, asker.scratch, in, out, n, cell.tape);
+    ++asker.tally.groups;
+    if (&cell == &pruning.root) {
+        asker.tally.outside += n;
+        return;
+    }
+    asker.tally.near += n;
+    asker.tally.kernels += double(cell.cost) * static_cast<double>(n);
+    asker.tally.shapes += double(cell.shapes) * static_cast<double>(n);
+}
+
 void ask(const Pruning &pruning, Asker &asker, const float *const *in, float *const *out,
          std::size_t n, const float *limits) {
-    const auto cells = static_cast<float>(std::int32_t{1} << bits_a_level * pruning.settings.depth);
-    const float scale = cells / pruning.cube.side;
     ++asker.turn;
     if (asker.seen.size() < 4 * n) asker.seen.assign(std::bit_ceil(4 * n), {});
     asker.groups.clear(), asker.counts.clear();
@@ -200,14 +225,7 @@ void ask(const Pruning &pruning, Asker &asker, const float *const *in, float *co
     const PruneCell *last = nullptr;
     std::uint32_t last_group = 0;
     for (std::size_t k = 0; k < n; ++k) {
-        Place place{};
-        bool inside = true;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const float x = (in[axis][k] - pruning.cube.lo[axis]) * scale;
-            inside = inside && x >= 0 && x < cells;
-            place.at[axis] = inside ? static_cast<std::int32_t>(x) : 0;
-        }
-        const PruneCell *cell = inside ? find(pruning, asker, place) : &pruning.root;
+        const PruneCell *cell = &cell_at(pruning, asker, in[0][k], in[1][k], in[2][k]);
         if (limits && cell->far > 0 && cell->far >= limits[k]) {
             out[0][k] = cell->far;
             asker.bounded[k] = 1;
@@ -243,12 +261,7 @@ void ask(const Pruning &pruning, Asker &asker, const float *const *in, float *co
         const float *points[] = {asker.in[0].data() + first, asker.in[1].data() + first,
                                  asker.in[2].data() + first};
         for (std::size_t c = 0; c < results.size(); ++c) results[c] = asker.out[c].data() + first;
-        evaluate(pruning.program, asker.scratch, points, results.data(), count, cell->tape);
-        ++asker.tally.groups;
-        (cell == &pruning.root ? asker.tally.outside : asker.tally.near) += count;
-        if (cell == &pruning.root) continue;
-        asker.tally.kernels += double(cell->cost) * count;
-        asker.tally.shapes += double(cell->shapes) * count;
+        evaluate_in(pruning, asker, *cell, points, results.data(), count);
     }
     for (std::size_t c = 0; c < results.size(); ++c)
         for (std::size_t i = 0; i < left; ++i)

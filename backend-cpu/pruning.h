@@ -50,6 +50,7 @@ struct Pruning {
     const PruneSettings settings;
     const ShortTape whole;
     float slack = 0; // by which points may be outside of the cell that rounding finds for them
+    float cells = 0, scale = 0; // of the finest level: along an axis, and in a unit of length
     PruneCell root;
 };
 
@@ -86,5 +87,10 @@ struct Asker {
 // out[c][k]: the c-th component of the result at point k. limits: one a point, or none: all exact.
 void ask(const Pruning &pruning, Asker &asker, const float *const *in, float *const *out,
          std::size_t n, const float *limits = nullptr);
+
+// The cell that answers at a place: the root outside of the cube. And the exact values in it.
+const PruneCell &cell_at(const Pruning &pruning, Asker &asker, float x, float y, float z);
+void evaluate_in(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+                 const float *const *in, float *const *out, std::size_t n);
 
 } // namespace fathom::cpu

@@ -55,6 +55,8 @@ class Columns {
 inline constexpr int tile_side = 32;
 inline constexpr std::size_t most_rays = tile_side * tile_side;
 
+struct CellMarch;
+
 // One thread's.
 struct Worker {
     explicit Worker(const Stage &stage);
@@ -69,6 +71,7 @@ struct Worker {
     Columns taps{3, most_rays};
     std::vector<float> tap_values = std::vector<float>(most_rays);
     Columns hits{9, most_rays};
+    std::shared_ptr<CellMarch> cell_march; // made when first needed
     Work work;
 };
 

@@ -217,3 +217,29 @@ TEST_CASE("no ray of a pruned march passes a surface") {
         CHECK(holes == 0);
     }
 }
+
+// Rays wait for each other cell by cell; what each finds does not depend on the others, nor on
+// which cells were there before it. One scene whose field is divided by its bound, one not.
+TEST_CASE("a ray lands alike alone and among others") {
+    constexpr int width = 40, height = 30;
+    for (const char *name : {"examples/07_tree.sdf", "bench/scenes/spheres_100.sdf",
+                             "examples/08_rocky_icosahedron.sdf"}) {
+        driver::Compilation c = driver::compile_file(fs::path(FATHOM_SOURCE_DIR) / name, {});
+        INFO(name);
+        REQUIRE(c.good());
+        const ir::View view = ir::view_of(c.scene, 0, double(width) / height);
+        const cpu::Stage stage = cpu::prepare(c.scene, view, width, height, 0, cpu::Prune::Always);
+        std::vector<cpu::Ray> rays;
+        for (int i = 0; i < width * height; ++i)
+            rays.push_back(cpu::eye_ray(stage, float(i % width) + 0.5f, float(i / width) + 0.5f));
+        const std::vector<cpu::Landing> together = cpu::cast(stage, rays);
+        int different = 0, hits = 0;
+        for (std::size_t i = rays.size(); i-- > 0;) {
+            const cpu::Landing alone = cpu::cast(stage, std::span(rays).subspan(i, 1))[0];
+            different += alone.t != together[i].t || alone.steps != together[i].steps;
+            hits += alone.t >= 0;
+        }
+        CHECK(different == 0);
+        CHECK(hits > 50);
+    }
+}
