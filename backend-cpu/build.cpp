@@ -299,8 +299,9 @@ Values FunctionBuilder::outside(const LoopCode &loop) const {
 
 } // namespace
 
-Code build(const Scene &scene, Calls &calls, std::size_t body) {
+Code build(const Scene &scene, Calls &calls, std::size_t body, Choices choices) {
     Code code;
+    code.choices = choices;
     FunctionBuilder(scene, calls, code).run(body);
     return code;
 }

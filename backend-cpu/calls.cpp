@@ -97,20 +97,22 @@ Calls plan_calls(const Scene &scene, const Body &root) {
     return calls;
 }
 
-static Program compile_body(const Scene &scene, const Body &root) {
+static Program compile_body(const Scene &scene, const Body &root, Choices choices) {
     Calls calls = plan_calls(scene, root);
     std::vector<Code> codes;
-    for (std::size_t i = 0; i < calls.bodies.size(); ++i) codes.push_back(build(scene, calls, i));
+    for (std::size_t i = 0; i < calls.bodies.size(); ++i)
+        codes.push_back(build(scene, calls, i, choices));
     return lay_out(scene, calls, std::move(codes));
 }
 
-Program compile(const Scene &scene, FunctionId function) {
-    return compile_body(scene, body_of(scene.graph, function));
+Program compile(const Scene &scene, FunctionId function, Choices choices) {
+    return compile_body(scene, body_of(scene.graph, function), choices);
 }
 
 Program compile(const Scene &scene, std::span<const NodeId> params,
                 std::span<const NodeId> results) {
-    return compile_body(scene, {{params.begin(), params.end()}, {results.begin(), results.end()}});
+    return compile_body(scene, {{params.begin(), params.end()}, {results.begin(), results.end()}},
+                        Choices::Joined);
 }
 
 } // namespace fathom::cpu

@@ -60,6 +60,7 @@ struct Code {
     Arena<Instruction> instructions;
     std::vector<LoopCode> loops;
     std::vector<SourceValue> sources;
+    Choices choices = Choices::Joined;
 };
 
 // Grows a Code, one kernel at a time: equal ones once, neighbours fused, operands brought to a
@@ -118,7 +119,7 @@ struct Calls {
 Calls plan_calls(const ir::Scene &scene, const Body &root);
 
 // Marks in `calls.shared` what the calls that it makes hand over.
-Code build(const ir::Scene &scene, Calls &calls, std::size_t body);
+Code build(const ir::Scene &scene, Calls &calls, std::size_t body, Choices choices);
 
 Program lay_out(const ir::Scene &scene, const Calls &calls, std::vector<Code> codes);
 

@@ -55,8 +55,31 @@ std::optional<Value> simplify(const Builder &builder, Kernel kernel, std::span<c
     return {};
 }
 
+namespace {
+
+// Solids cut out of each other.
+std::optional<Fused> fuse_choices(const Matcher &match, Kernel kernel, std::span<const Value> in) {
+    if (kernel == Kernel::MaxF) {
+        auto below = match.made_by(in[0], Kernel::SubF), above = match.made_by(in[1], Kernel::SubF);
+        if (!below.empty() && !above.empty() && below[1] == above[0])
+            return Fused{Kernel::Slab, then(below, {above[1]})};
+        if (auto n = match.made_by(in[1], Kernel::NegF); !n.empty())
+            return Fused{Kernel::MaxNeg, {in[0], n[0]}};
+        if (auto m = match.made_by(in[1], Kernel::MinF); !m.empty())
+            return Fused{Kernel::MaxMin, {in[0], m[0], m[1]}};
+    }
+    if (kernel == Kernel::MinF)
+        if (auto m = match.made_by(in[1], Kernel::MaxF); !m.empty())
+            return Fused{Kernel::MinMax, {in[0], m[0], m[1]}};
+    return {};
+}
+
+} // namespace
+
 std::optional<Fused> fuse(Builder &builder, Kernel kernel, std::span<const Value> in) {
     Matcher match(builder.code(), in);
+    if (builder.code().choices == Choices::Joined)
+        if (auto fused = fuse_choices(match, kernel, in)) return fused;
     if (kernel == Kernel::SubF) {
         if (auto d = match.made_by(in[0], Kernel::Distance3); !d.empty())
             return Fused{Kernel::Ball, then(d, {in[1]})};

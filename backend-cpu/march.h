@@ -54,7 +54,7 @@ struct Stage {
 Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int height, double time,
               Prune prune = Prune::Auto);
 // How many operands of unions, blends and other choices, and rows of tables, the whole tape has.
-float shapes_of(const Program &distance);
+float shapes_of(const ir::Scene &scene);
 
 enum class PictureMode : std::uint8_t { Color, Steps };
 

@@ -47,9 +47,13 @@ constexpr double cell_pixels = 16;
 
 // What holds all that rays can come to.
 void prune(Stage &stage, Prune how) {
-    const Parts parts = parts_of(stage.distance, stage.inputs);
-    if (how == Prune::Never || (how == Prune::Auto && whole_tape(parts).shapes < prune_from))
+    if (how == Prune::Never) return;
+    const ir::Scene &scene = *stage.scene;
+    Program distance = compile(scene, scene.distance, Choices::Apart);
+    if (how == Prune::Auto && whole_tape(parts_of(distance, stage.inputs)).shapes < prune_from)
         return;
+    stage.distance = std::move(distance);
+    stage.hit = compile(scene, scene.hit, Choices::Apart);
     const ir::Frame &frame = stage.frame;
     Cube cube;
     double side = 2.1 * frame.far;
@@ -75,7 +79,9 @@ void prune(Stage &stage, Prune how) {
 
 } // namespace
 
-float shapes_of(const Program &distance) { return whole_tape(parts_of(distance, {})).shapes; }
+float shapes_of(const ir::Scene &scene) {
+    return whole_tape(parts_of(compile(scene, scene.distance, Choices::Apart), {})).shapes;
+}
 
 Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int height, double time,
               Prune how) {

@@ -158,6 +158,10 @@ FATHOM_RANGE(BlendColumns,
 FATHOM_RANGE(MulAdd, (R a, R b, R c), return add(mul(a, b), c);)
 FATHOM_RANGE(AbsSub, (R a, R b), return sub(abs(a), b);)
 FATHOM_RANGE(MaxAbs, (R a, R b), return greatest(abs(a), abs(b));)
+FATHOM_RANGE(Slab, (R lo, R x, R hi), return greatest(sub(lo, x), sub(x, hi));)
+FATHOM_RANGE(MinMax, (R a, R b, R c), return least(a, greatest(b, c));)
+FATHOM_RANGE(MaxMin, (R a, R b, R c), return greatest(a, least(b, c));)
+FATHOM_RANGE(MaxNeg, (R a, R b), return greatest(a, neg(b));)
 FATHOM_RANGE(SubAbs, (R a, R b), return abs(sub(a, b));)
 FATHOM_RANGE(LengthPositive3, (R x, R y, R z),
              return length(greatest(x, {0, 0}), greatest(y, {0, 0}), greatest(z, {0, 0}));)

@@ -100,7 +100,11 @@ struct Program {
     std::size_t cells = 0;             // of a scratch, all told
 };
 
-Program compile(const ir::Scene &scene, ir::FunctionId function);
+// Minima and maxima that stand next to each other run as one kernel, which is the faster; or apart,
+// so that pruning.h can leave operands of each out. Values are the same.
+enum class Choices : std::uint8_t { Joined, Apart };
+
+Program compile(const ir::Scene &scene, ir::FunctionId function, Choices choices = Choices::Joined);
 // Expressions in `params` (Vars), all their results one after the other.
 Program compile(const ir::Scene &scene, std::span<const ir::NodeId> params,
                 std::span<const ir::NodeId> results);

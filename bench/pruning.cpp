@@ -92,7 +92,7 @@ void add_share(Table &table, const std::string &name) {
         return;
     }
     const cpu::Inputs inputs = cpu::inputs_of(made.scene, 0);
-    const cpu::Program program = cpu::compile(made.scene, made.scene.distance);
+    const cpu::Program program = cpu::compile(made.scene, made.scene.distance, cpu::Choices::Apart);
     double width = 0;
     cpu::Cube cube;
     for (std::size_t i = 0; i < 3; ++i)

@@ -195,9 +195,8 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
             return !Interrupts::noticed();
         });
     if (stage.pruning && made.work.near > 0)
-        status =
-            fmt::format("pruned: {:.0f} shapes to {:.0f} a cell", cpu::shapes_of(stage.distance),
-                        made.work.near_shapes / static_cast<double>(made.work.near));
+        status = fmt::format("pruned: {:.0f} shapes to {:.0f} a cell", cpu::shapes_of(scene),
+                             made.work.near_shapes / static_cast<double>(made.work.near));
     return Picture{made.width, made.height, std::move(made.rgba)};
 }
 

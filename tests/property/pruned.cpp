@@ -52,8 +52,12 @@ struct Wrong {
     double shapes = 0;
 };
 
-Wrong compare(const ir::Scene &scene, const cpu::Program &program, const cpu::Program &distance,
-              const cpu::Cube &cube, bool far_cells, std::size_t n) {
+// A function of the scene in cells against the tape of a picture that is not pruned.
+Wrong compare(const ir::Scene &scene, ir::FunctionId function, const cpu::Cube &cube,
+              bool far_cells, std::size_t n) {
+    const cpu::Program program = cpu::compile(scene, function, cpu::Choices::Apart),
+                       joined = cpu::compile(scene, function),
+                       distance = cpu::compile(scene, scene.distance);
     const cpu::Inputs inputs = cpu::inputs_of(scene, 0.25);
     cpu::PruneSettings settings;
     settings.far_cells = far_cells;
@@ -69,8 +73,8 @@ Wrong compare(const ir::Scene &scene, const cpu::Program &program, const cpu::Pr
     std::vector<float *> to, pruned_to;
     for (std::size_t c = 0; c < whole.size(); ++c)
         to.push_back(whole[c].data()), pruned_to.push_back(pruned[c].data());
-    cpu::Scratch scratch = cpu::make_scratch(program, inputs);
-    cpu::evaluate(program, scratch, in, to.data(), count);
+    cpu::Scratch scratch = cpu::make_scratch(joined, inputs);
+    cpu::evaluate(joined, scratch, in, to.data(), count);
     cpu::ask(pruning, asker, in, pruned_to.data(), count);
     Wrong wrong;
     wrong.points = count;
@@ -107,13 +111,12 @@ cpu::Cube cube_of(const ir::Scene &scene) {
 bool check(const ir::Scene &scene, std::size_t n) {
     if (ir::operations(scene.graph, scene.graph.function(scene.distance).result) > 1e5)
         return false;
-    const cpu::Program distance = cpu::compile(scene, scene.distance);
     const cpu::Cube cube = cube_of(scene);
-    const Wrong d = compare(scene, distance, distance, cube, true, n);
+    const Wrong d = compare(scene, scene.distance, cube, true, n);
     CHECK(d.points >= n / 2);
     CHECK(d.exact == 0);
     CHECK(d.bounds == 0);
-    const Wrong h = compare(scene, cpu::compile(scene, scene.hit), distance, cube, false, n / 4);
+    const Wrong h = compare(scene, scene.hit, cube, false, n / 4);
     CHECK(h.exact == 0);
     return true;
 }
@@ -172,9 +175,8 @@ TEST_CASE("of two thousand unlike shapes a cell keeps a few") {
     driver::Compilation c = driver::compile_text("shapes.sdf", text, {}, {});
     REQUIRE(c.good());
     check(c.scene, 2000);
-    const cpu::Program distance = cpu::compile(c.scene, c.scene.distance);
-    CHECK(cpu::shapes_of(distance) >= 2000);
-    const Wrong d = compare(c.scene, distance, distance, cube_of(c.scene), false, 2000);
+    CHECK(cpu::shapes_of(c.scene) >= 2000);
+    const Wrong d = compare(c.scene, c.scene.distance, cube_of(c.scene), false, 2000);
     CHECK(d.shapes < 100);
 }
 

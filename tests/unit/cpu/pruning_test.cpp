@@ -127,7 +127,7 @@ TEST_CASE("a loop over a table keeps in a cell the rows that can matter") {
     const NodeId d = f.loop(400, f.g.number(1e9), [&](NodeId best, NodeId i) {
         return f.g.make(Op::Union, {best, f.row_ball(rows, i)});
     });
-    const Answers answers = check(compile(f.scene, f.function(d)));
+    const Answers answers = check(compile(f.scene, f.function(d), Choices::Apart));
     CHECK(answers.far > many / 4);
     CHECK(answers.kernels < 60); // of 1200
 }
@@ -140,7 +140,7 @@ TEST_CASE("a blend of a table's rows is the same to the bit where rows are left 
             return f.blended(profile, 0.08, best, f.row_ball(rows, i));
         });
         INFO(static_cast<int>(profile));
-        const Answers answers = check(compile(f.scene, f.function(d)));
+        const Answers answers = check(compile(f.scene, f.function(d), Choices::Apart));
         if (profile != Profile::Columns) CHECK(answers.kernels < 300); // of 1200
     }
 }
@@ -164,7 +164,7 @@ TEST_CASE("of long chains of blends a part is left, and the same bits") {
             const NodeId d = f.loop(n, f.g.number(1e9), [&](NodeId best, NodeId i) {
                 return f.blended(profile, 0.03, best, f.row_ball(table, i));
             });
-            const Program program = compile(f.scene, f.function(d));
+            const Program program = compile(f.scene, f.function(d), Choices::Apart);
             INFO(static_cast<int>(profile) << (in_order ? " in order" : ""));
             CHECK(check(program, {}).kernels < (in_order ? 600 : 200)); // of 1,830
         }
@@ -194,7 +194,7 @@ TEST_CASE("operands that cannot matter are not computed") {
                                             f.g.neg(f.g.make(Op::Intersection, {d, b}))});
         }
         INFO(how);
-        const Answers answers = check(compile(f.scene, f.function(d)));
+        const Answers answers = check(compile(f.scene, f.function(d), Choices::Apart));
         if (how != 4) CHECK(answers.kernels < 200); // of some 600
     }
 }
@@ -212,7 +212,7 @@ TEST_CASE("the nearest hit of a table's rows, with its paint, keeps the rows tha
     });
     PruneSettings settings;
     settings.far_cells = false;
-    const Answers answers = check(compile(f.scene, f.function(d)), settings);
+    const Answers answers = check(compile(f.scene, f.function(d), Choices::Apart), settings);
     CHECK(answers.kernels < 300); // of 300 * 14
 }
 
@@ -224,18 +224,18 @@ TEST_CASE("what a turn makes of all before it is no row of a table") {
         return f.g.make(Op::Union,
                         {best, f.g.add(f.row_ball(rows, i), f.g.mul(best, f.g.number(0.1)))});
     });
-    check(compile(f.scene, f.function(d)));
+    check(compile(f.scene, f.function(d), Choices::Apart));
     // A maximum that begins high, a minimum that begins low.
     const NodeId most = f.loop(50, f.g.number(1), [&](NodeId best, NodeId i) {
         return f.g.make(Op::Max, {best, f.row_ball(rows, i)});
     });
-    check(compile(f.scene, f.function(most)));
+    check(compile(f.scene, f.function(most), Choices::Apart));
     // A choice that nobody ordered: the last row that is near.
     const NodeId last = f.loop(50, f.g.number(0.5), [&](NodeId best, NodeId i) {
         const NodeId ball = f.row_ball(rows, i);
         return f.g.make(Op::Select, {f.g.make(Op::Less, {ball, f.g.number(0.4)}), ball, best});
     });
-    check(compile(f.scene, f.function(last)));
+    check(compile(f.scene, f.function(last), Choices::Apart));
 }
 
 TEST_CASE("threads that ask at once find the same cells") {
@@ -244,7 +244,7 @@ TEST_CASE("threads that ask at once find the same cells") {
     const NodeId d = f.loop(400, f.g.number(1e9), [&](NodeId best, NodeId i) {
         return f.g.make(Op::Union, {best, f.row_ball(rows, i)});
     });
-    const Program program = compile(f.scene, f.function(d));
+    const Program program = compile(f.scene, f.function(d), Choices::Apart);
     const Inputs inputs;
     Pruning pruning(program, inputs, {{-2, -2, -2}, 4}, {});
     const Points points = spread(many);

@@ -44,6 +44,30 @@ TEST_CASE("a union holds one running value, however many its operands") {
     }
 }
 
+TEST_CASE("solids cut out of each other run as one kernel, or apart to be pruned") {
+    Fields f;
+    Graph &g = f.g;
+    const NodeId x = g.component(f.p, 0), y = g.component(f.p, 1);
+    auto slab = [&](NodeId along, double lo, double hi) {
+        return g.make(Op::Max, {g.sub(g.number(lo), along), g.sub(along, g.number(hi))});
+    };
+    const NodeId beam = g.make(Op::Intersection, {slab(x, -1, 0.5), slab(y, -0.25, 2)});
+    const NodeId pair = g.make(Op::Union, {x, y});
+    const NodeId both = g.make(Op::Union, {f.ball(0, 1, 0, 0.3), beam});
+    const NodeId all =
+        g.make(Op::Intersection, {f.ball(0, 0, 0, 3), pair, g.neg(g.make(Op::Length, {f.p}))});
+    const FunctionId function = f.function(g.add(both, all));
+    const Program joined = compile(f.scene, function),
+                  apart = compile(f.scene, function, Choices::Apart);
+    for (const char *name : {"Slab", "MinMax", "MaxMin", "MaxNeg"}) {
+        INFO(name);
+        CHECK(count_steps(joined, name) == (name == std::string("Slab") ? 2 : 1));
+        CHECK(count_steps(apart, name) == 0);
+    }
+    const Points points = spread(1000);
+    CHECK(values(joined, points) == values(apart, points));
+}
+
 // 100 balls from a table, least distance: acc = min(acc, |p - row.xyz| - row.w).
 static FunctionId table_loop(Fields &f, NodeId count, NodeId condition_on = {}) {
     Graph &g = f.g;
