@@ -64,7 +64,7 @@ void compare(Table &table, const gl::Context &context, const std::string &what,
     request.width = 320;
     request.height = 240;
     const auto drawn = [&](const auto &program) {
-        return gl::draw(std::get<gl::Program>(program), scene, request, gl::Mode::Linear);
+        return gl::draw(std::get<gl::Program>(program), scene, request, gl::Mode::Picture);
     };
     const auto first = drawn(ours), second = drawn(theirs);
     if (!first || !second) return lacks("it cannot be drawn");

@@ -92,6 +92,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
         NodeId x, cell, shift, base, last; // last: the greatest index, invalid where endless
         int copies = 1;
         bool repeats = false;
+        bool fewer = false; // there may be fewer copies than are asked
     };
     std::array<Axis, 3> axes;
     int total = 1;
@@ -112,6 +113,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
                        g.number(even ? a.copies / 2 - 1 : a.copies / 2));
         if (!endless) {
             a.last = g.sub(count, g.number(1));
+            a.fewer = !(g.as_number(count).value_or(0) >= a.copies);
             const NodeId most = g.make(Op::Max, {g.sub(count, g.number(a.copies)), g.number(0)});
             a.base = g.make(Op::Clamp, {a.base, g.number(0), most});
         }
@@ -128,7 +130,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
                 continue;
             }
             NodeId index = g.add(a.base, k[static_cast<std::size_t>(i)]);
-            if (a.last) index = g.make(Op::Min, {index, a.last});
+            if (a.fewer) index = g.make(Op::Min, {index, a.last});
             cell_id[static_cast<std::size_t>(i)] = index;
             NodeId local = g.sub(a.x, g.mul(g.sub(index, a.shift), a.cell));
             if (repetition.mirrored)

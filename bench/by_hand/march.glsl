@@ -5,7 +5,7 @@
 uniform vec2 fathom_resolution, fathom_offset;
 uniform vec3 fathom_origin, fathom_right, fathom_up, fathom_forward, fathom_sun;
 uniform float fathom_extent;
-uniform int fathom_mode; // 3 here, always; the compiler does not know
+uniform int fathom_mode; // 0 here, always; the compiler does not know
 out vec4 color;
 
 #define ZERO min(fathom_mode, 0)
@@ -95,6 +95,11 @@ vec3 shade(vec3 o, vec3 dir, float t) {
     return c;
 }
 
+vec3 srgb(vec3 c) {
+    c = clamp(c, 0.0, 1.0);
+    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
+}
+
 void main() {
     vec2 place = vec2(gl_FragCoord.x, fathom_resolution.y - gl_FragCoord.y) + fathom_offset - 0.5;
     vec2 uv = (2.0 * place - fathom_resolution) / fathom_resolution.y;
@@ -105,5 +110,5 @@ void main() {
     float begin = max(way.x, 0.0);
     float t = way.y < begin ? -1.0 : march(fathom_origin, dir, begin, way.y);
     vec3 sky = mix(vec3(0.63, 0.66, 0.68), vec3(0.21, 0.34, 0.53), smoothstep(-0.3, 0.8, dir.y));
-    color = vec4(t < 0.0 ? sky : shade(fathom_origin, dir, t), 1.0);
+    color = vec4(srgb(t < 0.0 ? sky : shade(fathom_origin, dir, t)), 1.0);
 }
