@@ -53,7 +53,7 @@ class Emitter {
     Emitter(const ir::Scene &scene, const std::optional<Rolled> &loops, const Options &options,
             Diagnostics &diagnostics)
         : scene_(loops ? loops->scene : scene), options_(options),
-          diagnostics_(diagnostics), module_{scene_, options, {}, {}, {}, {}, {}, {}, {}, {}, {}} {
+          diagnostics_(diagnostics), module_{scene_, options} {
         if (loops) module_.results = loops->results;
     }
 
@@ -144,7 +144,7 @@ class Emitter {
     // A field's meaning is all that its own text says, and the data that the text only names.
     KeptField kept_field(std::uint32_t id) const {
         Options plain;
-        Module alone{scene_, plain, {}, {}, {}, {}, {}, {}, {}, {}};
+        Module alone{scene_, plain};
         alone.results = module_.results;
         const ir::FunctionId field = scene_.graph.cache(ir::CacheId{id}).field;
         const SceneText text = assemble_functions(alone, {&field, 1});

@@ -28,12 +28,13 @@ struct TableUse {
 struct Module {
     const ir::Scene &scene;
     const Options &options;
-    Names names;
-    std::map<std::uint32_t, std::string> functions; // the needed ones, by FunctionId
-    std::set<HelperKey> helpers;
-    std::map<std::uint32_t, TableUse> tables;         // by TableId
-    std::map<std::uint32_t, ir::FunctionId> computed; // by TableRead's payload: the formula instead
-    std::map<std::uint32_t, std::string> params, images, grids;
+    Names names{};
+    std::map<std::uint32_t, std::string> functions{}; // the needed ones, by FunctionId
+    std::set<HelperKey> helpers{};
+    std::map<std::uint32_t, TableUse> tables{}; // by TableId
+    std::map<std::uint32_t, ir::FunctionId>
+        computed{}; // by TableRead's payload: the formula instead
+    std::map<std::uint32_t, std::string> params{}, images{}, grids{};
     std::vector<float> texels{};
     bool reads_time = false;
     bool hits = false;                        // the struct Hit is used
