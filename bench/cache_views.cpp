@@ -38,7 +38,7 @@ void measure_views(Table &table, double &worst, const std::string &what,
     if (!c.good()) return table.push_back({.what = what, .missing = complaint(c)});
     gl::CachedView view;
     Diagnostics diagnostics;
-    if (const std::string why = view.use(c.scene, {}, diagnostics); !why.empty())
+    if (const std::string why = view.use(c.scene, gl::usual_cache_size, diagnostics); !why.empty())
         return table.push_back({.what = what, .missing = why});
     for (const Distance &distance : distances) {
         view.weigh_anew();

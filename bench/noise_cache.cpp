@@ -30,7 +30,7 @@ void measure_scene(Table &table, const std::string &what, const driver::Compilat
     if (!c.good()) return table.push_back({.what = what, .missing = complaint(c)});
     gl::CachedView view;
     Diagnostics diagnostics;
-    if (const std::string why = view.use(c.scene, {}, diagnostics); !why.empty())
+    if (const std::string why = view.use(c.scene, gl::usual_cache_size, diagnostics); !why.empty())
         return table.push_back({.what = what, .missing = why});
     const gl::FrameInputs inputs = middle_of(c.scene, 1);
     for (int frame = 0; frame < 60; ++frame) {

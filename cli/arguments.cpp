@@ -311,7 +311,8 @@ struct Reader {
         option(
             sub, "--cells",
             [this](const std::string &word) { return read_cells(word, bench.cache_bits); },
-            "cells of the noise cache along an axis: 4, 8, … 128; 64 unless said")
+            "cells of the noise cache along an axis: 4, 8, … 128; 64 unless said, and 128 where "
+            "a view needs more")
             ->type_name("N");
         sub->add_option(
                "--frames", bench.frames,
@@ -389,11 +390,9 @@ std::variant<Invocation, Answer> read_arguments(int count, const char *const *ar
         if (reader.compile.out.empty())
             return wrong("--noise-cache writes several files: name the first by -o");
     }
-    if (app.got_subcommand("render") && reader.render.cache) {
-        if (reader.render.backend == Backend::Cpu)
-            return wrong("--cache needs GL, which --backend cpu leaves out");
-        if (reader.render.samples > 1) return wrong("--cache takes one ray a pixel");
-    }
+    if (app.got_subcommand("render") && reader.render.cache &&
+        reader.render.backend == Backend::Cpu)
+        return wrong("--cache needs GL, which --backend cpu leaves out");
     if (app.got_subcommand("eval") && reader.eval.at.empty() && !reader.eval.points)
         return wrong("eval wants points: --at X,Y,Z or --points -");
     return reader.invocation;

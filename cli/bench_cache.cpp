@@ -255,7 +255,9 @@ Exit bench_noise_cache(const BenchCommand &command, const ir::Scene &scene, Term
                              bench.software ? "the processor's" : "on the clock"));
     print_fields(bench);
     gl::CachedView view;
-    const std::string why = view.use(scene, {.bits = command.cache_bits}, diagnostics);
+    const gl::CacheSize size =
+        command.cache_bits ? gl::CacheSize{.bits = command.cache_bits} : gl::usual_cache_size;
+    const std::string why = view.use(scene, size, diagnostics);
     if (!why.empty()) {
         terminal.say(fmt::format("fathom: drawn exactly: {}", why));
         return done;

@@ -88,7 +88,7 @@ struct BenchCommand {
     int width = 400, height = 400;
     bool noise_cache = false;
     int frames = 0;     // of each of its measures; 0: as many as take about three minutes in all
-    int cache_bits = 6; // 2^bits cells an axis
+    int cache_bits = 0; // 2^bits cells an axis; 0: 64, and 128 where a view needs more
 };
 
 using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, EvalCommand, ViewCommand,

@@ -22,25 +22,41 @@ struct Painter {
     std::unique_ptr<gl::CachedView> cache; // with --cache, where it can be had
 };
 
-// A still picture is drawn anew until less than a hundredth of it misses, or a frame learnt less
-// than a quarter of what was missing, or look-ups do not pay: what it misses then is computed.
+// A still picture is drawn through the cache until less than a twentieth of it misses, or a frame
+// learnt less than a quarter of what was missing, or look-ups do not pay; what the last frame
+// misses is computed. Where the first one, which computes all, wishes for more cells than pixels
+// miss, few of them share any: learning them takes longer than computing this picture, so that was
+// it.
 constexpr int most_learning_frames = 6;
 
-bool learn(gl::CachedView &view, const ir::Scene &scene, const gl::FrameInputs &inputs,
-           const std::function<void(double)> &progress) {
+bool draw_still(gl::CachedView &view, const ir::Scene &scene, const gl::FrameInputs &inputs,
+                const std::function<void(double)> &progress) {
     const auto pixels =
         static_cast<std::uint64_t>(inputs.width) * static_cast<std::uint64_t>(inputs.height);
     std::uint64_t before = 0;
     for (int frame = 0; frame < most_learning_frames; ++frame) {
         if (!view.draw(inputs, scene.params, {})) return false;
         const std::uint64_t misses = view.read_tally().misses;
-        progress((frame + 1.0) / (most_learning_frames + 1));
-        if (!view.looked_up() || 100 * misses <= pixels) break;
-        // The first frame misses everything, the second all that needs more than a few cells.
-        if (frame > 1 && 4 * misses > 3 * before) break;
+        progress((frame + 1.0) / most_learning_frames);
+        if (!view.looked_up() || 20 * misses <= pixels) break;
+        const gl::CacheCounts counts = view.store().read_counts();
+        const std::uint64_t cells =
+            std::uint64_t{counts.inserted} + counts.crowded + std::uint64_t{counts.full};
+        if (frame == 0 ? cells > misses : 4 * misses > 3 * before) break;
         before = misses;
     }
     return true;
+}
+
+std::string kept_share(const gl::CachedView &view) {
+    const double all = static_cast<double>(view.width()) * view.height();
+    const gl::CacheTally tally = view.read_tally();
+    const double computed = static_cast<double>(tally.computed);
+    if (!view.looked_up()) return "drawn exactly: kept values do not pay in this view";
+    if (computed < all && tally.hits > 0)
+        return fmt::format("{:.1f} % by kept values", 100 - 100 * computed / all);
+    return tally.misses > 0 ? "drawn exactly: its pixels share too few kept values to learn them"
+                            : "drawn exactly: cells are narrower than pixels";
 }
 
 std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &scene,
@@ -55,11 +71,12 @@ std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &sce
     inputs.height = command.height;
     inputs.time = time;
     inputs.mode = gl::Mode::Linear;
-    if (!command.frames && !learn(view, scene, inputs, progress)) return std::nullopt;
     std::optional<gl::Pixels> sum;
     for (int k = 0; k < command.samples; ++k) {
         inputs.offset = ir::sample_offset(k);
-        if (!view.draw(inputs, scene.params, {})) return std::nullopt;
+        const bool drawn = k == 0 && !command.frames ? draw_still(view, scene, inputs, progress)
+                                                     : view.draw(inputs, scene.params, {});
+        if (!drawn) return std::nullopt;
         gl::Pixels pixels = view.read_pixels();
         if (sum)
             for (std::size_t i = 0; i < sum->rgba.size(); ++i) sum->rgba[i] += pixels.rgba[i];
@@ -68,11 +85,7 @@ std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &sce
     }
     if (command.samples > 1)
         for (float &value : sum->rgba) value /= static_cast<float>(command.samples);
-    const double all = static_cast<double>(command.width) * command.height;
-    status = view.looked_up()
-                 ? fmt::format("{:.1f} % by kept values",
-                               100 - 100 * static_cast<double>(view.read_tally().computed) / all)
-                 : std::string("drawn exactly: kept values do not pay in this view");
+    status = kept_share(view);
     return sum;
 }
 
@@ -132,7 +145,7 @@ Exit prepare_gl(Painter &painter, const driver::Compilation &compilation,
     painter.program = std::move(std::get<gl::Program>(program));
     if (command.cache) {
         auto view = std::make_unique<gl::CachedView>();
-        const std::string why = view->use(compilation.scene, {}, diagnostics);
+        const std::string why = view->use(compilation.scene, gl::usual_cache_size, diagnostics);
         if (why.empty())
             painter.cache = std::move(view);
         else
@@ -227,7 +240,9 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
             terminal.flush();
             Interrupts::obey();
         }
-        if (!status.empty() && terminal.interactive()) terminal.say(out + ": " + status);
+        // Who asks for kept values is told what became of it.
+        if (!status.empty() && (terminal.interactive() || (command.cache && !command.frames)))
+            terminal.say(out + ": " + status);
         if (!picture) {
             terminal.say(fmt::format("fathom: there is no memory for a picture of {}x{}",
                                      command.width, command.height));

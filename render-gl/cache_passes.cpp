@@ -170,8 +170,10 @@ std::string CachedView::use(CachePrograms programs, const CacheSize &size) {
     first_unit_ = units - 3;
     CacheSize wanted = size;
     for (const glsl::KeptField &field : programs.fields) wanted.wide |= field.wide;
-    if (!store_.hash() || store_.size().bits != wanted.bits ||
-        (wanted.wide && !store_.size().wide)) {
+    const int bits = store_.size().bits;
+    const bool fits = bits == wanted.bits || (bits > wanted.bits && bits <= wanted.most_bits);
+    if (!store_.hash() || !fits || (wanted.wide && !store_.size().wide)) {
+        if (store_.hash() && fits) wanted.bits = bits;
         meanings_.clear();
         if (!store_.make(wanted)) return "the graphics card has no memory for the noise cache";
     }
@@ -389,14 +391,33 @@ void CachedView::tint() {
 }
 
 // What the frame before the last one says of the next.
-void CachedView::judge() {
+void CachedView::judge(bool weigh) {
     const std::optional<CacheCounts> counts = store_.counts_before();
     if (!counts) return;
+    const double lost =
+        static_cast<double>(counts->deleted) + counts->crowded + static_cast<double>(counts->full);
+    too_small_ = too_small(growth_, lost, static_cast<double>(store_.cells())) &&
+                 store_.size().bits < store_.size().most_bits;
+    if (!weigh) return;
     judged(worth_,
            {static_cast<double>(counts->paid), static_cast<double>(counts->wasted),
             static_cast<double>(counts->left), static_cast<double>(counts->steps),
             counts->inserted > 0},
            programs_->prices);
+    if (worth_.exact) store_.forget_counts(); // what the frames since then counted is of no use
+}
+
+// Twice as many cells an axis, and empty: it learns anew. Where there is no memory for that it
+// stays as it was.
+bool CachedView::grow() {
+    CacheSize size = store_.size();
+    ++size.bits;
+    too_small_ = false;
+    growth_ = {};
+    worth_ = {};
+    if (store_.make(size)) return true;
+    size.most_bits = --size.bits;
+    return store_.make(size);
 }
 
 bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &params,
@@ -409,6 +430,7 @@ bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &p
         store_.begin_frame();
         return draw_exactly(inputs, params);
     }
+    if (too_small_ && !grow()) return drop(), false;
     const int ages = std::clamp(settings.max_age, 1, glsl::cache_ages);
     ++frame_;
     store_.begin_frame();
@@ -420,12 +442,9 @@ bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &p
     fill(inputs, params);
     publish(); // the index that the next frame looks up in
     glEndConditionalRender();
-    if (settings.weigh) {
-        drew_kept(worth_);
-        store_.set_counts_aside();
-        judge();
-        if (worth_.exact) store_.forget_counts(); // what the frames since then counted is of no use
-    }
+    if (settings.weigh) drew_kept(worth_);
+    store_.set_counts_aside();
+    judge(settings.weigh);
     if (settings.show_misses) tint();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return true;

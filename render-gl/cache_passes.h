@@ -62,8 +62,8 @@ class CachedView {
     CachedView(const CachedView &) = delete;
     CachedView &operator=(const CachedView &) = delete;
 
-    // Takes a scene's programs. What the cache already holds of the same fields stays. An empty
-    // text where all went well; else why the scene is drawn exactly.
+    // Takes a scene's programs. What the cache already holds of the same fields stays, as does a
+    // cache that has grown. An empty text where all went well; else why the scene is drawn exactly.
     std::string use(CachePrograms programs, const CacheSize &size);
     std::string use(const ir::Scene &scene, const CacheSize &size, Diagnostics &diagnostics,
                     const CacheOptions &options = {}); // builds them, too
@@ -104,12 +104,14 @@ class CachedView {
     void reserve(int ages);
     void fill(const FrameInputs &inputs, const std::vector<ir::Param> &params);
     void tint();
-    void judge();
+    void judge(bool weigh);
+    bool grow();
     std::vector<std::uint32_t> read_counted() const;
 
     CacheStore store_;
     CacheWorth worth_;
-    bool looked_up_ = false;
+    CacheGrowth growth_;
+    bool looked_up_ = false, too_small_ = false;
     std::optional<CachePrograms> programs_;
     std::optional<Program> reserve_, publish_, sweep_, tint_;
     std::vector<int> numbers_; // by the programs' fields

@@ -20,6 +20,11 @@ bool pays(const CacheWork &work, const CachePrices &prices) {
     return gain > least_gain * evaluations_a_step * work.steps * prices.whole;
 }
 
+bool too_small(CacheGrowth &growth, double lost, double cells) {
+    growth.frames = CacheGrowth::share * lost > cells ? growth.frames + 1 : 0;
+    return growth.frames >= CacheGrowth::patience;
+}
+
 bool looks_up_next(const CacheWorth &worth) { return !worth.exact || worth.frames >= worth.gap; }
 
 void drew_exactly(CacheWorth &worth) {

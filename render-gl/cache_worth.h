@@ -32,6 +32,14 @@ struct CacheWorth {
     int gap = first_gap;
 };
 
+// A cache that gives up more than a 32nd of what it has room for, frame after frame, keeps nothing
+// for long: what a view learns pushes out what it learnt before. True where a larger one is wanted.
+struct CacheGrowth {
+    static constexpr int patience = 2, share = 32;
+    int frames = 0; // one after the other
+};
+bool too_small(CacheGrowth &growth, double lost, double cells);
+
 bool looks_up_next(const CacheWorth &worth);
 void drew_exactly(CacheWorth &worth);
 void drew_kept(CacheWorth &worth); // begins a trial, where it is one

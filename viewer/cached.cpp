@@ -17,7 +17,8 @@ void Cached::take(std::variant<gl::CachePrograms, std::string> programs) {
     if (std::string *why = std::get_if<std::string>(&programs))
         why_not_ = std::move(*why);
     else
-        why_not_ = view_.use(std::move(std::get<gl::CachePrograms>(programs)), {});
+        why_not_ =
+            view_.use(std::move(std::get<gl::CachePrograms>(programs)), gl::usual_cache_size);
 }
 
 void Cached::build(const ir::Scene &scene, int part_stride) {
@@ -30,7 +31,9 @@ bool Cached::draw(const gl::FrameInputs &inputs, const std::vector<ir::Param> &p
     gl::CacheSettings settings;
     settings.show_misses = show_misses;
     settings.weigh = !show_misses; // who looks at the misses wants to see the cache at work
+    const std::size_t cells = view_.store().cells();
     if (!view_.draw(inputs, params, settings)) return false;
+    if (view_.store().cells() != cells) gl::start_again(choice); // it has grown, and learns anew
     ++frames_;
     return true;
 }

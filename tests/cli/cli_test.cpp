@@ -28,7 +28,6 @@ TEST_CASE("the noise cache's passes are written beside the picture's shader") {
           2);
     CHECK(shell(folder, "fathom compile rock.sdf --noise-cache --field-only -o a.frag").exit == 2);
     CHECK(shell(folder, "fathom render rock.sdf --cache --backend cpu -o a.png").exit == 2);
-    CHECK(shell(folder, "fathom render rock.sdf --cache --samples 4 -o a.png").exit == 2);
     CHECK(shell(folder, "fathom bench rock.sdf --noise-cache --cells 100").exit == 2);
     CHECK(shell(folder, "fathom compile rock.sdf --noise-cache -o a.frag").exit == 0);
     for (const char *name :
@@ -37,6 +36,28 @@ TEST_CASE("the noise cache's passes are written beside the picture's shader") {
     CHECK(shell(folder, "fathom compile plain.sdf --noise-cache -o b.frag").exit == 0);
     CHECK(std::filesystem::exists(folder.path() / "b.frag"));
     CHECK(!std::filesystem::exists(folder.path() / "b.fill.frag"));
+}
+
+TEST_CASE("a still picture is drawn by kept values where that is no dearer than computing it") {
+    const ScratchFolder folder;
+    const auto picture = [&](const std::string &name, const std::string &camera,
+                             const std::string &more) {
+        folder.write(name, "sphere(1).displace(cached(p => 0.03 * fbm(2 * p, octaves: 6), cell: "
+                           "0.05))\ncamera(" +
+                               camera + ", look_at: [0, 0, 0])\n");
+        const Result result =
+            shell(folder, "fathom render " + name + " --cache --size 48x48 --backend gl " + more +
+                              " -o a.png");
+        CHECK(result.exit == 0);
+        return result.err;
+    };
+    CHECK(contains(picture("near.sdf", "at: [0, 0, 1.6], fov: 20deg", ""), "% by kept values"));
+    CHECK(contains(picture("near.sdf", "at: [0, 0, 1.6], fov: 20deg", "--samples 2"),
+                   "% by kept values"));
+    CHECK(contains(picture("few.sdf", "at: [0, 0, 4], fov: 25deg", ""),
+                   "drawn exactly: its pixels share too few kept values"));
+    CHECK(contains(picture("far.sdf", "at: [0, 0, 40], fov: 25deg", ""),
+                   "drawn exactly: cells are narrower than pixels"));
 }
 
 TEST_CASE("without images on the card the noise cache's commands draw exactly and say so") {

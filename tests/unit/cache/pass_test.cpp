@@ -91,6 +91,26 @@ TEST_CASE("no place is lost and no value torn, however small the cache") {
     }
 }
 
+TEST_CASE("a cache that is too small for a view grows, and then holds it") {
+    if (!has_context()) return;
+    const driver::Compilation c = compiled(rock);
+    const gl::FrameInputs inputs = frame_of(c.scene, 24);
+    gl::CachedView small, growing;
+    use(small, c.scene, {.bits = 4}); // 4,096 cells, for more than 6,000
+    use(growing, c.scene, {.bits = 4, .most_bits = 5});
+    CHECK(warm(small, inputs, c.scene, 40) == 40);
+    CHECK(small.store().size().bits == 4);
+    CHECK(warm(growing, inputs, c.scene, 40) < 40);
+    CHECK(growing.store().size().bits == 5);
+    CHECK(gl::check_cache(growing.store().dump(false)) == "");
+    check_values(growing, c.scene, 0);
+    // It stays so for the next text, and no larger than it may.
+    use(growing, c.scene, {.bits = 4, .most_bits = 5});
+    CHECK(growing.store().size().bits == 5);
+    CHECK(warm(growing, inputs, c.scene, 1) == 0);
+    CHECK(gl::CacheSize{.bits = 7}.bytes() == 8 * gl::CacheSize{.bits = 6}.bytes());
+}
+
 TEST_CASE("old keys move on, and are given up at the largest age") {
     if (!has_context()) return;
     const driver::Compilation c = compiled(rock);

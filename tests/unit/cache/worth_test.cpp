@@ -57,6 +57,17 @@ TEST_CASE("a cache that never pays costs few frames, one that pays again is take
     CHECK(kept_of(2000, slower) > 1000);
 }
 
+TEST_CASE("a cache that keeps nothing for long is too small, one that gives up a little is not") {
+    gl::CacheGrowth growth;
+    CHECK(!gl::too_small(growth, 100, 1024));
+    CHECK(gl::too_small(growth, 100, 1024));
+    growth = {};
+    for (int frame = 0; frame < 100; ++frame) {
+        CHECK(!gl::too_small(growth, 20, 1024));
+        CHECK(!gl::too_small(growth, frame % 2 ? 1000 : 0, 1024)); // a jump now and then
+    }
+}
+
 TEST_CASE("a view whose cells are narrower than pixels is drawn exactly, a nearer one is not") {
     if (!has_context()) return;
     const driver::Compilation c = compiled(rock);
