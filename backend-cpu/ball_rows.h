@@ -16,6 +16,9 @@ struct BallPoints {
 struct BallLoops {
     void (*least)(const BallPoints &points, const float *rows, std::size_t count);
     void (*smooth)(const BallPoints &points, const float *rows, std::size_t count, float k);
+    // And by how much a row was less than what was carried, at most, if it is more than `drop`.
+    void (*smooth_dropping)(const BallPoints &points, const float *rows, std::size_t count, float k,
+                            float *drop) = nullptr;
 };
 BallLoops ball_loops();                  // the fastest that this processor runs
 std::vector<BallLoops> ball_loop_sets(); // in the order of point_loop_sets

@@ -45,7 +45,7 @@ class Marcher {
             const Vec p = ray.origin + walk.t * ray.direction;
             const PruneCell &cell = cell_at(pruning_, asker_, p.x, p.y, p.z);
             if (!(cell.far > 0 && cell.far >= limit_at(walk.t, lengths_))) {
-                wait(i, cell);
+                wait(i, cell.far > 0 ? *cell.above : cell);
                 return;
             }
             ++asker_.tally.far, ++worker_.work.evaluations;

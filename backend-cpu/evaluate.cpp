@@ -25,8 +25,10 @@ template <class Cell> class Runner {
   public:
     using Number = decltype(number_at(std::declval<const Cell &>()));
 
-    Runner(const Program &program, Loops<Cell> loops, Cell *cells, std::size_t n)
-        : program_(program), loops_(loops), cells_(cells), n_(n) {}
+    // unknown: by point, set where a Cut leaves it so.
+    Runner(const Program &program, Loops<Cell> loops, Cell *cells, std::size_t n,
+           std::uint8_t *unknown = nullptr)
+        : program_(program), loops_(loops), cells_(cells), n_(n), unknown_(unknown) {}
 
     // False: the loop that this block is the body of is done.
     bool run(std::uint32_t block) const {
@@ -47,7 +49,7 @@ template <class Cell> class Runner {
                 if (rows->all)
                     loop(program_.loops[step.target]);
                 else
-                    turns(program_.loops[step.target], selection.rows + rows->first, rows->count);
+                    turns(program_.loops[step.target], selection.rows + rows->first, *rows);
                 ++rows;
             } else {
                 one(step, operands);
@@ -78,13 +80,18 @@ template <class Cell> class Runner {
     }
 
     // Turns of a loop of balls, a pack at a time; rows: which, or the first `count`.
-    void balls(const BallRows &balls, const std::uint32_t *rows, std::size_t count) const {
+    void balls(const BallRows &balls, const std::uint32_t *rows, std::size_t count,
+               const Cut &cut = {}) const {
         if constexpr (std::is_same_v<Cell, Word>) {
             const BallPoints points{cells_ + balls.carried, cells_ + balls.place[0],
                                     cells_ + balls.place[1], cells_ + balls.place[2], n_};
             const BallLoops loops = ball_loops();
+            alignas(64) float drop[batch_size];
+            if (cut.any()) begin_cut(balls, cut, drop);
             const auto run = [&](const float *numbers, std::size_t n) {
-                if (balls.smooth)
+                if (cut.any())
+                    loops.smooth_dropping(points, numbers, n, number_at(cells_[balls.k]), drop);
+                else if (balls.smooth)
                     loops.smooth(points, numbers, n, number_at(cells_[balls.k]));
                 else
                     loops.least(points, numbers, n);
@@ -100,16 +107,29 @@ template <class Cell> class Runner {
                                 4 * sizeof(float));
                 run(pack, n);
             }
+            if (cut.any())
+                for (std::size_t k = 0; k < n_; ++k) unknown_[k] |= drop[k] < cut.drop;
         }
+    }
+    // Where the chain begins with less than the bound it begins with what is true.
+    void begin_cut(const BallRows &balls, const Cut &cut, float *drop) const {
+        if constexpr (std::is_same_v<Cell, Word>)
+            for (std::size_t k = 0; k < n_; ++k) {
+                Cell &carried = cells_[balls.carried + k];
+                const bool known = number_at(carried) <= cut.start;
+                drop[k] = known ? cut.drop : -cut.drop;
+                if (!known) store_number(carried, cut.start);
+            }
     }
     bool is_balls(const Loop &loop) const {
         return std::is_same_v<Cell, Word> && loop.balls >= 0 && n_ % 16 == 0;
     }
 
-    void turns(const Loop &loop, const std::uint32_t *rows, std::size_t count) const {
+    void turns(const Loop &loop, const std::uint32_t *rows, const Selection::Rows &which) const {
         if (is_balls(loop))
-            return balls(program_.ball_loops[static_cast<std::size_t>(loop.balls)], rows, count);
-        for (std::size_t i = 0; i < count; ++i) {
+            return balls(program_.ball_loops[static_cast<std::size_t>(loop.balls)], rows,
+                         which.count, which.cut);
+        for (std::size_t i = 0; i < which.count; ++i) {
             store_word(cells_[loop.index], static_cast<std::int32_t>(rows[i]));
             run(loop.block);
         }
@@ -161,6 +181,7 @@ template <class Cell> class Runner {
     Loops<Cell> loops_;
     Cell *cells_;
     std::size_t n_;
+    std::uint8_t *unknown_;
 };
 
 template <class Cell> void fill_shared(const Program &program, const Inputs &inputs, Cell *cells) {
@@ -227,7 +248,7 @@ template <class Run> void in_batches(const Program &program, Scratch &scratch,
             std::memcpy(to, in[c] + first, count * sizeof(Word));
             std::fill(to + count, to + all, to[count - 1]);
         }
-        run(Runner<Word>(program, loops, scratch.cells, all));
+        run(scratch.cells, loops, first, count, all);
         for (std::size_t c = 0; c < program.results.size(); ++c) {
             const Word *from = scratch.cells + program.results[c].address;
             if (program.results[c].shared)
@@ -244,13 +265,27 @@ void evaluate(const Program &program, Scratch &scratch, const float *const *in, 
               std::size_t n) {
     const auto root = static_cast<std::uint32_t>(program.blocks.size() - 1);
     in_batches(program, scratch, in, out, n,
-               [root](const Runner<Word> &runner) { runner.run(root); });
+               [&](Word *cells, Loops<Word> loops, std::size_t, std::size_t, std::size_t all) {
+                   Runner<Word>(program, loops, cells, all).run(root);
+               });
 }
 
-void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out,
-              std::size_t n, const Selection &selection) {
-    in_batches(program, scratch, in, out, n,
-               [&](const Runner<Word> &runner) { runner.run(selection); });
+std::size_t evaluate(const Program &program, Scratch &scratch, const float *const *in,
+                     float *const *out, std::size_t n, const Selection &selection,
+                     std::uint32_t *unknown) {
+    bool cuts = false;
+    for (const Selection::Rows &rows : selection.loops) cuts = cuts || rows.cut.any();
+    std::size_t open = 0;
+    in_batches(
+        program, scratch, in, out, n,
+        [&](Word *cells, Loops<Word> loops, std::size_t first, std::size_t count, std::size_t all) {
+            std::uint8_t marks[batch_size];
+            if (cuts) std::fill_n(marks, all, std::uint8_t{0});
+            Runner<Word>(program, loops, cells, all, marks).run(selection);
+            for (std::size_t k = 0; cuts && k < count; ++k)
+                if (marks[k]) unknown[open++] = static_cast<std::uint32_t>(first + k);
+        });
+    return open;
 }
 
 void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in,

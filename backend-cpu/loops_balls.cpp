@@ -47,9 +47,38 @@ all_passes(const BallPoints &points, const float *rows, std::size_t count, Join 
                });
 }
 
+template <std::size_t n> [[gnu::always_inline]] inline void
+pass_dropping(const BallPoints &points, const float *rows, float k, float *drop) {
+    Word *carried = points.carried;
+    const Word *x = points.x, *y = points.y, *z = points.z;
+    float row[n * numbers];
+    for (std::size_t i = 0; i < n * numbers; ++i) row[i] = rows[i];
+    const std::size_t count = points.count;
+    FATHOM_INDEPENDENT
+    for (std::size_t p = 0; p < count; ++p) {
+        float a = load<float>(carried[p]), most = drop[p];
+        for (std::size_t i = 0; i < n; ++i) {
+            const float b = BallRow<float>::run(
+                load<float>(x[p]), load<float>(y[p]), load<float>(z[p]), row[i * numbers],
+                row[i * numbers + 1], row[i * numbers + 2], row[i * numbers + 3]);
+            most = most < a - b ? a - b : most;
+            a = BlendSmoothRow<float>::run(a, b, k);
+        }
+        store(carried[p], a);
+        drop[p] = most;
+    }
+}
+[[gnu::flatten]] void smooth_dropping(const BallPoints &points, const float *rows,
+                                      std::size_t count, float k, float *drop) {
+    std::size_t i = 0;
+    for (; i + at_once <= count; i += at_once)
+        pass_dropping<at_once>(points, rows + i * numbers, k, drop);
+    for (; i < count; ++i) pass_dropping<1>(points, rows + i * numbers, k, drop);
+}
+
 } // namespace
 
 BallLoops ball_loops();
-BallLoops ball_loops() { return {least, smooth}; }
+BallLoops ball_loops() { return {least, smooth, smooth_dropping}; }
 
 } // namespace fathom::cpu::FATHOM_ISA

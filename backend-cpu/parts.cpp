@@ -325,6 +325,8 @@ class PartMaker {
             made_.parts[rows.decisions[k].part].decision = static_cast<std::int32_t>(k);
         rows.renewable = rows.droppable && renewable(loop, rows);
         if (!rows.renewable) rows.least = -1;
+        rows.chain = rows.renewable && loop.balls >= 0 &&
+                     program_.ball_loops[static_cast<std::size_t>(loop.balls)].smooth;
         made_.loops[index] = std::move(rows);
     }
 
@@ -371,7 +373,7 @@ void splice(const Parts &parts, std::uint32_t block, ShortTape &tape) {
         tape.shapes += parts.parts[i].choice == Choice::None ? 0 : 1;
         if (step.kind != StepKind::Loop) continue;
         const RowLoop &loop = parts.loops[step.target];
-        Selection::Rows rows{static_cast<std::uint32_t>(tape.rows.size()), 0, !loop.droppable};
+        Selection::Rows rows{static_cast<std::uint32_t>(tape.rows.size()), 0, !loop.droppable, {}};
         if (loop.droppable) {
             rows.count = static_cast<std::uint32_t>(loop.turns);
             for (std::uint32_t row = 0; row < rows.count; ++row) tape.rows.push_back(row);
@@ -389,6 +391,11 @@ Parts parts_of(const Program &program, const Inputs &inputs) {
 
 Selection ShortTape::selection(const Parts &parts) const {
     return {parts.table.data(), parts.operands.data(), steps, loops, rows.data()};
+}
+
+void ShortTape::clear() {
+    steps.clear(), rows.clear(), loops.clear();
+    cost = 0, shapes = 1, cut = false;
 }
 
 ShortTape whole_tape(const Parts &parts) {

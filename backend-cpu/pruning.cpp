@@ -59,56 +59,99 @@ void pack(const Parts &parts, const ShortTape &tape, PruneBlock &block) {
     }
 }
 
-PruneBlock *make_block(const Pruning &pruning, Asker &asker, const PruneCell &cell,
-                       const Place &place, int level) {
-    const Boxes boxes = boxes_inside(pruning, place, level);
-    run_over(pruning.parts, asker.shortener, cell.tape, boxes);
+// Whether a box's tape with a Cut gives values nearly everywhere in it. A chain of blends that
+// comes nearer row by row, by less than their radius, forgets nothing.
+bool forgets(const Pruning &pruning, Asker &asker, const Boxes &boxes, std::size_t box,
+             const ShortTape &tape) {
+    constexpr std::size_t n = 16;
+    float in[3][n];
+    for (std::size_t i = 0; i < n; ++i) { // 2 x 2 x 4
+        const float way[] = {static_cast<float>(i & 1) * 0.8f + 0.1f,
+                             static_cast<float>(i >> 1 & 1) * 0.8f + 0.1f,
+                             static_cast<float>(i >> 2) * 0.3f + 0.05f};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            in[axis][i] =
+                boxes.lo[axis][box] + way[axis] * (boxes.hi[axis][box] - boxes.lo[axis][box]);
+    }
+    const std::size_t results = pruning.program.results.size();
+    asker.tried.resize(results * n);
+    asker.tried_to.resize(results);
+    for (std::size_t c = 0; c < results; ++c) asker.tried_to[c] = asker.tried.data() + c * n;
+    const float *from[] = {in[0], in[1], in[2]};
+    std::uint32_t unknown[n];
+    return evaluate(pruning.program, asker.scratch, from, asker.tried_to.data(), n,
+                    tape.selection(pruning.parts), unknown) <= 1;
+}
+
+bool has_cut(const Selection &tape) {
+    return std::ranges::any_of(tape.loops, [](const auto &rows) { return rows.cut.any(); });
+}
+
+// The cells of a block, their tapes made from that of `from`. Gives how many of them have a Cut by
+// which too many of their points are unknown.
+int fill(const Pruning &pruning, Asker &asker, const Boxes &boxes, const PruneCell &cell,
+         const PruneCell &from, int level, PruneBlock &block) {
+    run_over(pruning.parts, asker.shortener, from.tape, boxes);
     const float half_diagonal =
         0.8660254f * std::ldexp(pruning.cube.side, -bits_a_level * (level + 1));
-    auto block = std::make_unique<PruneBlock>();
     struct Piece {
         std::size_t steps, loops, packed;
     };
-    std::array<Piece, most_boxes> pieces{};
-    ShortTape tape;
+    std::array<Piece, most_boxes + 1> pieces{};
+    int unknown = 0;
+    ShortTape &tape = asker.tape;
     for (std::size_t k = 0; k < most_boxes; ++k) {
-        PruneCell &made = block->cells[k];
-        pieces[k] = {block->steps.size(), block->loops.size(), block->packed.size()};
+        PruneCell &made = block.cells[k];
+        made.above = &cell;
+        pieces[k] = {block.steps.size(), block.loops.size(), block.packed.size()};
         const float least = asker.shortener.result_lo[k];
-        if (pruning.settings.far_cells && least >= pruning.settings.far * half_diagonal)
-            made.far = least;
-        tape.steps.clear(), tape.loops.clear(), tape.rows.clear();
-        tape.cost = 0, tape.shapes = 1;
-        shorten(pruning.parts, asker.shortener, cell.tape, k, tape);
+        if (pruning.settings.far_cells && least >= pruning.settings.far * half_diagonal) {
+            made.far = least; // and where exact values are asked for, the cell above has them
+            continue;
+        }
+        shorten(pruning.parts, asker.shortener, from.tape, k, true, tape);
+        if (tape.cut && !forgets(pruning, asker, boxes, k, tape))
+            shorten(pruning.parts, asker.shortener, from.tape, k, false, tape);
+        if (!tape.cut && has_cut(tape.selection(pruning.parts)))
+            unknown += !forgets(pruning, asker, boxes, k, tape);
         for (Selection::Rows &rows : tape.loops)
-            rows.first += static_cast<std::uint32_t>(block->rows.size());
-        block->steps.insert(block->steps.end(), tape.steps.begin(), tape.steps.end());
-        block->loops.insert(block->loops.end(), tape.loops.begin(), tape.loops.end());
-        block->rows.insert(block->rows.end(), tape.rows.begin(), tape.rows.end());
+            rows.first += static_cast<std::uint32_t>(block.rows.size());
+        block.steps.insert(block.steps.end(), tape.steps.begin(), tape.steps.end());
+        block.loops.insert(block.loops.end(), tape.loops.begin(), tape.loops.end());
+        block.rows.insert(block.rows.end(), tape.rows.begin(), tape.rows.end());
         made.cost = tape.cost;
         made.shapes = tape.shapes;
         // where cells get smaller and tapes hardly shorter, the shapes are closer than their blends
-        made.splits = made.far == 0 && level + 1 < pruning.settings.depth &&
-                      tape.cost > pruning.settings.enough &&
+        made.splits = level + 1 < pruning.settings.depth && tape.cost > pruning.settings.enough &&
                       (level < 1 || tape.cost < 0.8f * cell.cost);
-        if (!made.splits) pack(pruning.parts, tape, *block);
+        if (!made.splits) pack(pruning.parts, tape, block);
         ++asker.tally.cells;
     }
+    pieces[most_boxes] = {block.steps.size(), block.loops.size(), block.packed.size()};
     for (std::size_t k = 0; k < most_boxes; ++k) {
-        const bool last = k + 1 == most_boxes;
-        const Piece &first = pieces[k],
-                    &end =
-                        last ? Piece{block->steps.size(), block->loops.size(), block->packed.size()}
-                             : pieces[k + 1];
-        Selection &tape_of = block->cells[k].tape;
+        const Piece &first = pieces[k], &end = pieces[k + 1];
+        Selection &tape_of = block.cells[k].tape;
         tape_of.table = pruning.parts.table.data();
         tape_of.operands = pruning.parts.operands.data();
-        tape_of.steps = std::span(block->steps).subspan(first.steps, end.steps - first.steps);
-        tape_of.loops = std::span(block->loops).subspan(first.loops, end.loops - first.loops);
-        tape_of.rows = block->rows.data();
-        tape_of.packed = std::span(block->packed).subspan(first.packed, end.packed - first.packed);
-        tape_of.packed_operands = block->operands.data();
+        tape_of.steps = std::span(block.steps).subspan(first.steps, end.steps - first.steps);
+        tape_of.loops = std::span(block.loops).subspan(first.loops, end.loops - first.loops);
+        tape_of.rows = block.rows.data();
+        tape_of.packed = std::span(block.packed).subspan(first.packed, end.packed - first.packed);
+        tape_of.packed_operands = block.operands.data();
     }
+    return unknown;
+}
+
+PruneBlock *make_block(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+                       const Place &place, int level) {
+    constexpr int too_many = most_boxes / 8;
+    const Boxes boxes = boxes_inside(pruning, place, level);
+    auto block = std::make_unique<PruneBlock>();
+    if (fill(pruning, asker, boxes, cell, cell, level, *block) < too_many) return block.release();
+    const PruneCell *from = &cell; // whose Cut is too near for what is in it: without one
+    while (has_cut(from->tape)) from = from->above;
+    block = std::make_unique<PruneBlock>();
+    fill(pruning, asker, boxes, cell, *from, level, *block);
     return block.release();
 }
 
@@ -202,9 +245,45 @@ const PruneCell &cell_at(const Pruning &pruning, Asker &asker, float x, float y,
                   static_cast<std::int32_t>(pz)});
 }
 
+namespace {
+
+void evaluate_exactly(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+                      const float *const *in, float *const *out, std::size_t n);
+
+// The points asker.unknown, by the cell above, whose tape has more rows and a Cut far beyond, or
+// none as the whole tape.
+void ask_above(const Pruning &pruning, Asker &asker, const PruneCell &cell, const float *const *in,
+               float *const *out, std::size_t n) {
+    const std::vector<std::uint32_t> which(asker.unknown.begin(),
+                                           asker.unknown.begin() + static_cast<std::ptrdiff_t>(n));
+    const std::size_t results = pruning.program.results.size();
+    std::vector<float> numbers((3 + results) * n);
+    const float *from[3];
+    std::vector<float *> to;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        from[axis] = numbers.data() + axis * n;
+        for (std::size_t i = 0; i < n; ++i) numbers[axis * n + i] = in[axis][which[i]];
+    }
+    for (std::size_t c = 0; c < results; ++c) to.push_back(numbers.data() + (3 + c) * n);
+    asker.tally.again += n;
+    evaluate_exactly(pruning, asker, *cell.above, from, to.data(), n);
+    for (std::size_t c = 0; c < results; ++c)
+        for (std::size_t i = 0; i < n; ++i) out[c][which[i]] = to[c][i];
+}
+
+void evaluate_exactly(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+                      const float *const *in, float *const *out, std::size_t n) {
+    if (asker.unknown.size() < n) asker.unknown.resize(n);
+    const std::size_t unknown =
+        evaluate(pruning.program, asker.scratch, in, out, n, cell.tape, asker.unknown.data());
+    if (unknown > 0) ask_above(pruning, asker, cell, in, out, unknown);
+}
+
+} // namespace
+
 void evaluate_in(const Pruning &pruning, Asker &asker, const PruneCell &cell,
                  const float *const *in, float *const *out, std::size_t n) {
-    evaluate(pruning.program, asker.scratch, in, out, n, cell.tape);
+    evaluate_exactly(pruning, asker, cell, in, out, n);
     ++asker.tally.groups;
     if (&cell == &pruning.root) {
         asker.tally.outside += n;
@@ -226,11 +305,14 @@ void ask(const Pruning &pruning, Asker &asker, const float *const *in, float *co
     std::uint32_t last_group = 0;
     for (std::size_t k = 0; k < n; ++k) {
         const PruneCell *cell = &cell_at(pruning, asker, in[0][k], in[1][k], in[2][k]);
-        if (limits && cell->far > 0 && cell->far >= limits[k]) {
-            out[0][k] = cell->far;
-            asker.bounded[k] = 1;
-            ++asker.tally.far;
-            continue;
+        if (cell->far > 0) {
+            if (limits && cell->far >= limits[k]) {
+                out[0][k] = cell->far;
+                asker.bounded[k] = 1;
+                ++asker.tally.far;
+                continue;
+            }
+            cell = cell->above;
         }
         if (cell != last) {
             last = cell;

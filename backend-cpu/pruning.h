@@ -30,9 +30,11 @@ struct PruneSettings {
 
 struct PruneBlock;
 struct PruneCell {
-    float far = 0;              // above 0: the least value in it
+    float far = 0; // above 0: the least value in it, and exact ones are asked of the cell above
     float cost = 0, shapes = 0; // of its tape
     bool splits = false;
+    const PruneCell *above =
+        nullptr; // what it is a part of: asked where a Cut leaves points unknown
     Selection tape;
     mutable std::atomic<PruneBlock *> below{nullptr};
     mutable std::atomic<bool> claimed{false};
@@ -58,10 +60,12 @@ struct Pruning {
 struct Asker {
     Asker(const Pruning &pruning, const Inputs &inputs);
     Shortener shortener;
+    ShortTape tape; // of the cell in the making
     Scratch scratch;
     struct Tally {
         std::uint64_t far = 0, near = 0, outside = 0; // points: outside of the cube
         std::uint64_t groups = 0;
+        std::uint64_t again = 0;        // points that the cell above was asked for
         double kernels = 0, shapes = 0; // of the near ones' tapes, all told
         std::uint64_t cells = 0;        // with tapes, made by this thread
     } tally;
@@ -82,13 +86,16 @@ struct Asker {
     std::vector<const PruneCell *> groups;
     std::vector<std::uint32_t> counts, firsts, next;
     std::vector<std::vector<float>> in, out;
+    std::vector<std::uint32_t> unknown;
+    std::vector<float> tried; // values at some places of a cell in the making
+    std::vector<float *> tried_to;
 };
 
 // out[c][k]: the c-th component of the result at point k. limits: one a point, or none: all exact.
 void ask(const Pruning &pruning, Asker &asker, const float *const *in, float *const *out,
          std::size_t n, const float *limits = nullptr);
 
-// The cell that answers at a place: the root outside of the cube. And the exact values in it.
+// The cell at a place: the root outside of the cube. And the exact values in one that is not far.
 const PruneCell &cell_at(const Pruning &pruning, Asker &asker, float x, float y, float z);
 void evaluate_in(const Pruning &pruning, Asker &asker, const PruneCell &cell,
                  const float *const *in, float *const *out, std::size_t n);

@@ -45,6 +45,7 @@ struct RowLoop {
                              // wins over that, it wins over what the loop began with
     std::int32_t least = -1; // renewable, and the rest goes with the minimum that this decision
                              // keeps: then order is nothing; -1: not so
+    bool chain = false;      // of blended balls, which a Cut may shorten
     std::int32_t turns = 0;
     struct Decision {
         std::uint32_t part = 0;
@@ -73,6 +74,8 @@ struct ShortTape {
     std::vector<Selection::Rows> loops;
     float cost = 0;   // kernels a point
     float shapes = 1; // operands of choices, and rows: what a cell may leave out
+    bool cut = false; // has a Cut that the tape it was made from does not have
+    void clear();
     Selection selection(const Parts &parts) const;
 };
 ShortTape whole_tape(const Parts &parts);
@@ -95,15 +98,18 @@ struct Shortener {
     };
     struct Turn {
         std::uint64_t neutral = 0, renewed = 0; // nothing changes; nothing of before is left
+        std::uint64_t beyond = 0;               // of a chain: may be cut off
     };
     struct LoopRun {
-        std::uint32_t first_turn = 0, first_low = 0, ends = no_part;
+        std::uint32_t first_turn = 0, first_low = 0, ends = no_part, cuts = no_part;
     };
     std::vector<Chosen> chosen; // by step of the tape at hand
     std::vector<Ends> ends;
     std::vector<Turn> turns;
-    std::vector<float> lows; // least loops: by turn and box
+    std::vector<std::array<Cut, most_boxes>> cuts; // of chains
+    std::vector<float> lows;                       // least loops and chains: by turn and box
     std::vector<LoopRun> loop_runs;
+    std::vector<std::uint32_t> kept; // turns of the loop at hand, from the last
     std::vector<std::uint32_t> live; // by slot: the epoch for which it is
     std::vector<float> cutoff;       // by slot: its value matters as far as it is not above this
     std::uint32_t epoch = 0;
@@ -113,7 +119,8 @@ struct Shortener {
 
 // First what a tape that holds in all boxes comes to in each, then, box by box, what of it is left.
 void run_over(const Parts &parts, Shortener &shortener, const Selection &from, const Boxes &boxes);
+// False for `cuts`: no Cut but those that the tape had.
 void shorten(const Parts &parts, Shortener &shortener, const Selection &from, std::size_t box,
-             ShortTape &tape);
+             bool cuts, ShortTape &tape);
 
 } // namespace fathom::cpu

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -125,6 +126,18 @@ Scratch make_scratch(const Program &program, const Inputs &inputs);
 void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out,
               std::size_t n);
 
+// A chain of blends, its rows in their order, of which those are left out that are at least T
+// wherever it is run. While the rows before a point's nearest ones are unknown, so is the number
+// that they leave, but for a lower bound: blends rise with what they blend, and T with anything
+// up to T - k is that thing. So the chain is begun with no more than `start` <= T - k, and where a
+// row then comes that is less than what is carried by `drop` >= k, what was before is forgotten
+// there, bound or not: from that row on all is exact. Where none comes it is not known.
+struct Cut {
+    float start = std::numeric_limits<float>::infinity(); // none: nothing is left out so
+    float drop = 0;
+    bool any() const { return start < std::numeric_limits<float>::infinity(); }
+};
+
 // Some steps of a program's last block, in an order of their own, calls spliced in: what is left of
 // it where parts are known not to matter (shorten.h). Of each loop among them the turns that
 // matter.
@@ -132,6 +145,7 @@ struct Selection {
     struct Rows {
         std::uint32_t first = 0, count = 0;
         bool all = false;
+        Cut cut;
     };
     const Step *table = nullptr;             // what `steps` counts
     const std::uint32_t *operands = nullptr; // of the table
@@ -142,8 +156,10 @@ struct Selection {
     std::span<const Step> packed{};
     const std::uint32_t *packed_operands = nullptr;
 };
-void evaluate(const Program &program, Scratch &scratch, const float *const *in, float *const *out,
-              std::size_t n, const Selection &selection);
+// Gives how many points there are whose value is not known for a Cut, and which, in `unknown`.
+std::size_t evaluate(const Program &program, Scratch &scratch, const float *const *in,
+                     float *const *out, std::size_t n, const Selection &selection,
+                     std::uint32_t *unknown);
 
 // Value and gradient by the first three input components, from the same tape run over dual numbers.
 // At a kink one of the sides', the same that decides the value. The result is a float: out is

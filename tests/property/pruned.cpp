@@ -49,7 +49,7 @@ std::array<std::vector<float>, 3> points_in(const ir::Scene &scene, const cpu::P
 
 struct Wrong {
     std::size_t exact = 0, bounds = 0, points = 0;
-    double shapes = 0;
+    double shapes = 0, again = 0; // of the points: whose cell did not know the value
 };
 
 // A function of the scene in cells against the tape of a picture that is not pruned.
@@ -86,6 +86,7 @@ Wrong compare(const ir::Scene &scene, ir::FunctionId function, const cpu::Cube &
                                          std::bit_cast<std::uint32_t>(pruned[c][k]);
         }
     wrong.shapes = asker.tally.shapes / double(std::max<std::uint64_t>(asker.tally.near, 1));
+    wrong.again = double(asker.tally.again) / double(count);
     if (!far_cells) return wrong;
     const std::vector<float> limits(count, 0.001f * cube.side);
     cpu::ask(pruning, asker, in, pruned_to.data(), count, limits.data());
@@ -244,4 +245,42 @@ TEST_CASE("a ray lands alike alone and among others") {
         CHECK(different == 0);
         CHECK(hits > 50);
     }
+}
+
+// Blended balls in an order in which each is near the ones before it: what was blended before is
+// forgotten where a ball comes that is nearer by more than the radius, and only there. In the last
+// scene balls come nearer by less than that, row by row.
+TEST_CASE("long chains of blends are forgotten only where nothing is left of them") {
+    const auto shell = [](int n, double k, const char *where) {
+        char text[600];
+        std::snprintf(text, sizeof text, R"(smooth_union(%g) {
+  for i in 0..%d {
+    let y = 1 - (2 * i + 1) / %d
+    let ring = sqrt(1 - y * y)
+    let angle = 2.39996323 * i
+    sphere(%g + %g * (i %% 20)).translate(%s)
+  }
+}
+)",
+                      k, n, n, 1 / std::sqrt(n), 0.02 / std::sqrt(n), where);
+        return std::string(text);
+    };
+    const char *spiral = "[ring * cos(angle), y, ring * sin(angle)]",
+               *helix = "[ring * cos(20 * y), y, ring * sin(20 * y)]";
+    double again = 0;
+    for (int n : {700, 3000})
+        for (double radii : {0.2, 1.0, 5.0})
+            for (const char *where : {spiral, helix}) {
+                const std::string text = shell(n, radii / std::sqrt(n), where);
+                INFO(text);
+                driver::Compilation c = driver::compile_text("shell.sdf", text, {}, {});
+                REQUIRE(c.good());
+                CHECK(check(c.scene, 6000));
+                const cpu::Program distance = cpu::compile(c.scene, c.scene.distance);
+                const Wrong d = compare(c.scene, distance, distance, cube_of(c.scene), false, 6000);
+                again += d.again;
+                CHECK(d.again < 2);
+                if (where == spiral && radii <= 1) CHECK(d.shapes < 0.06 * n);
+            }
+    CHECK(again > 0);
 }

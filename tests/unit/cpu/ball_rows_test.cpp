@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include <bit>
+#include <cmath>
 
 using namespace fathom::cpu;
 using namespace fathom::cpu::test;
@@ -32,6 +33,7 @@ TEST_CASE("rows of balls in packs are the kernels' rows to the bit") {
                     }
                     cells[4] = std::bit_cast<Word>(k);
                     std::vector<Word> packed = cells;
+                    const std::vector<Word> start = cells;
                     const std::uint32_t operands[] = {64, 64, 64 + n, 64 + 2 * n, 64 + 3 * n,
                                                       0,  1,  2,      3,          4};
                     const Kernel kernel = smooth ? Kernel::SmoothBall : Kernel::MinBall;
@@ -51,6 +53,24 @@ TEST_CASE("rows of balls in packs are the kernels' rows to the bit") {
                     else
                         packs[set].least(place, rows.data(), count);
                     CHECK(std::equal(cells.begin() + 64, cells.end(), packed.begin() + 64));
+                    if (!smooth) continue;
+                    // and by how much a row was less than what was there
+                    std::vector<float> drop(n, -1e9f), most = drop;
+                    std::copy(start.begin(), start.end(), packed.begin());
+                    packs[set].smooth_dropping(place, rows.data(), count, k, drop.data());
+                    CHECK(std::equal(cells.begin() + 64, cells.end(), packed.begin() + 64));
+                    std::copy(start.begin(), start.end(), packed.begin());
+                    for (std::uint32_t row = 0; row < count; ++row) {
+                        const float *r = rows.data() + 4 * row;
+                        for (std::uint32_t i = 0; i < n; ++i) {
+                            const float x = points.x[i] - r[0], y = points.y[i] - r[1],
+                                        z = points.z[i] - r[2];
+                            const float b = std::sqrt(x * x + y * y + z * z) - r[3];
+                            most[i] = std::max(most[i], std::bit_cast<float>(packed[64 + i]) - b);
+                        }
+                        packs[set].smooth(place, r, 1, k);
+                    }
+                    CHECK(drop == most);
                 }
 }
 
