@@ -237,6 +237,7 @@ class Builder {
     bool foreign_loop(Index at);
     bool foreign_head(Index first);
     bool foreign_body(Index at);
+    void foreign_then(Index at);
     bool foreign_lambda(Index at);
     bool separated_unit(Index at);
     std::string parameters_text(Index open) const;

@@ -470,6 +470,35 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
     return false;
 }
 
+// `if a then b else c`, `for i in 0..3 do b`.
+void Builder::foreign_then(Index at) {
+    Diagnostic &d = foreign(span(at), "a body stands in braces");
+    const auto end_of = [&](Index i) { // of the branch that begins there
+        while (!ends_statement(i) && kind(i) != Tok::Else && kind(i) != Tok::Close &&
+               kind(i) != Tok::ListClose && kind(i) != Tok::Comma)
+            i = tokens_.match[i] > i ? tokens_.match[i] + 1 : i + 1;
+        return i;
+    };
+    const auto before = [&](Index i) { return Span{id_, token(i).begin, token(i).begin}; };
+    const auto behind = [&](Index i) { return Span{id_, token(i - 1).end, token(i - 1).end}; };
+    const Index first = at + 1, end = end_of(first);
+    if (end == first || kind(first) == Tok::Body) {
+        d.help("write `{ … }`");
+        return;
+    }
+    std::string told = "`{ " + std::string(text(token(first).begin, token(end - 1).end)) + " }";
+    std::vector<Edit> edits{{span(at), "{"}, {behind(end), " }"}};
+    const Index other = end + 1;
+    if (kind(end) == Tok::Else && kind(other) != Tok::If && kind(other) != Tok::Body) {
+        if (const Index last = end_of(other); last > other) {
+            told += " else { " + std::string(text(token(other).begin, token(last - 1).end)) + " }";
+            edits.push_back({before(other), "{ "});
+            edits.push_back({behind(last), " }"});
+        }
+    }
+    d.help("write " + told + "`", std::move(edits));
+}
+
 // A header without its `{`: `if a = b {`, `if x:`, `if (c) return 1`.
 bool Builder::foreign_body(Index at) {
     const Tok found = kind(at);
@@ -488,7 +517,7 @@ bool Builder::foreign_body(Index at) {
         return true;
     }
     if (found == Tok::Name && (text(at) == "then" || text(at) == "do")) {
-        foreign(span(at), "a body stands in braces").help("write `{ … }`");
+        foreign_then(at);
         return true;
     }
     const bool statement =

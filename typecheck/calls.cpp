@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -84,9 +85,14 @@ static Value result_of(Evaluator &ev, const Outcome &out, Span place) {
     return poison();
 }
 
-static Value finish(Evaluator &ev, Value v, const lang::Function &f, std::string_view name) {
+static Value finish(Evaluator &ev, const Closure &c, Value v, const lang::Function &f,
+                    std::string_view name) {
     Span place = f.span;
     if (v.kind == ValueKind::Unit && f.result) {
+        const bool unread = std::ranges::any_of(c.ast->blocks[f.body].stmts, [](const auto &stmt) {
+            return std::holds_alternative<lang::Bad>(stmt.kind);
+        });
+        if (unread) return poison(); // the value may be what could not be read
         report(ev, Code::MissingValue, f.head.source ? f.head : place,
                fmt::format("`{}` promises a `{}` and ends without a value", name,
                            type_text(*f.result)));
@@ -120,7 +126,7 @@ static Value run_closure(Evaluator &ev, const Value &callee, std::string_view na
         declare(ev, frame, symbol_of(*c.ast, f.parameters[i].name), values[i], false,
                 f.parameters[i].name.span);
     Outcome out = run_body(ev, c, f, frame);
-    Value v = finish(ev, result_of(ev, out, f.span), f, name);
+    Value v = finish(ev, c, result_of(ev, out, f.span), f, name);
     pop_frame(ev, frame);
     ev.current_module = module;
     ev.calls.pop_back();
