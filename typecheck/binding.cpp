@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fathom::typecheck {
@@ -98,8 +99,12 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
                        fmt::format("`{}` takes {} argument{}, not {}", name, formals.size(),
                                    formals.size() == 1 ? "" : "s", given))
                     .note(fmt::format("it is `{}`", signature_text(name, formals)));
-            const std::string_view way = way_for_shapes(name);
-            if (args[0].value.kind == ValueKind::Shape && !way.empty()) d.help(std::string(way));
+            if (args[0].value.kind == ValueKind::Shape)
+                help_with_shape(d, name);
+            else if (formals[0].is_vector && std::ranges::all_of(args, [&](const Argument &b) {
+                         return !b.name && is_scalar(ev, b.value);
+                     }))
+                d.help("a vector is written in brackets: `[x, y, z]`");
             return std::nullopt;
         }
         give(next++, a);
@@ -147,6 +152,8 @@ std::span<const Formal> formals_of(Evaluator &ev, const Closure &c) {
         formal.optional = p.default_value.has_value();
         formal.takes_rest = &p == &f.parameters.back() && p.type && is_shape_list(*p.type);
         formal.is_angle = is_angle(p.name.text);
+        formal.is_vector = p.type && (p.type->named == lang::TypeName::Vec2 ||
+                                      p.type->named == lang::TypeName::Vec3);
         formal.declared = p.name.span;
         formals->push_back(formal);
     }

@@ -24,10 +24,6 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
 std::span<const Formal> formals_of(Evaluator &ev, const Closure &c);
 std::span<const Formal> formals_of(Evaluator &ev, const Builtin &builtin);
 
-// What does to shapes what the name makes one expect: of a function of numbers that was given a
-// shape. Empty where nothing does.
-std::string_view way_for_shapes(std::string_view name);
-
 void warn_of_degrees(Evaluator &ev, const Formal &formal, const Given &given, const Value &v);
 
 } // namespace fathom::typecheck

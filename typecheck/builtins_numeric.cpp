@@ -14,22 +14,6 @@ namespace fathom::typecheck {
 using ir::Op;
 using ir::Type;
 
-std::string_view way_for_shapes(std::string_view name) {
-    constexpr std::pair<std::string_view, std::string_view> ways[] = {
-        {"min", "shapes are united with `|`"},
-        {"max", "shapes are intersected with `&`"},
-        {"mix", "shapes are mixed by `blend(a, b, t)`"},
-        {"smoothstep", "shapes flow together in `smooth_union(r) { … }`"},
-        {"abs", "a shape's skin is `.shell(thickness)`"},
-        {"round", "`.offset(r)` rounds what is convex and grows by r; boxes have `rounded_box`"},
-        {"mod", "a shape is repeated by `.repeat(cell)`"},
-        {"fract", "a shape is repeated by `.repeat(cell)`"},
-    };
-    for (const auto &[known, way] : ways)
-        if (name == known) return way;
-    return {};
-}
-
 template <Op op>
 static Value componentwise(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     for (Value &a : args) {
@@ -45,8 +29,7 @@ static Value componentwise(Evaluator &ev, const CallSite &site, std::vector<Valu
             Diagnostic &d = report(ev, Code::TypeMismatch, site.arg(i),
                                    fmt::format("`{}` wants a number or a vector, this is {}",
                                                site.name, describe(ev, args[i])));
-            const std::string_view way = way_for_shapes(site.name);
-            if (args[i].kind == ValueKind::Shape && !way.empty()) d.help(std::string(way));
+            if (args[i].kind == ValueKind::Shape) help_with_shape(d, site.name);
             return poison();
         }
     return apply_op(ev, op, args, site.call, site.name);

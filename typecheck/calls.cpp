@@ -264,7 +264,7 @@ static Value call_closure(Evaluator &ev, const Value &callee, std::string_view n
     std::optional<std::uint32_t> frame;
     std::vector<Value> values;
     values.reserve(formals.size());
-    bool ok = true;
+    bool ok = true, misplaced = false;
     for (std::size_t i = 0; i < formals.size(); ++i) {
         const lang::Parameter &p = f.parameters[i];
         const Given &given = (*bound)[i];
@@ -279,11 +279,12 @@ static Value call_closure(Evaluator &ev, const Value &callee, std::string_view n
             v = eval(ev, *c.ast, *p.default_value, *frame);
             ev.current_module = module;
         }
-        if (p.type && v.kind != ValueKind::None) {
+        if (p.type && v.kind != ValueKind::None && !misplaced) {
             if (!check_type(ev, *p.type))
                 ok = false;
             else
                 v = convert(ev, v, *p.type, given.span, quoted(p.name.text, name), ok);
+            misplaced = !ok && given.value.kind == ValueKind::Shape; // so are those behind it
         }
         warn_of_degrees(ev, formals[i], given, v);
         ok = ok && !is_poison(v);
@@ -493,12 +494,13 @@ Value eval_call(Evaluator &ev, const File &ast, lang::ExprId id, const lang::Cal
                        fmt::format("`{}` is {}, not a function", m->name.text, describe(ev, *f)));
                 return poison();
             }
-            std::string near = nearest_name(m->name.text, visible_names(ev, frame));
+            const std::string near = likely_name(ev, frame, m->name.text);
             if (near.empty() && ev.modules[ev.current_module].lacks_names) return poison();
             Diagnostic &d = report(ev, Code::UnknownMember, m->name.span,
                                    fmt::format("there is no function `{}` for {}", m->name.text,
                                                describe(ev, object)));
-            if (!near.empty())
+            if (object.kind == ValueKind::Shape) help_with_shape(d, m->name.text);
+            if (!d.fix && !near.empty())
                 d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
             return poison();
         }

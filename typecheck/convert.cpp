@@ -232,6 +232,9 @@ Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span pl
     if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Int &&
         is_numeric(v))
         d.help("`int(x)` cuts the fraction off");
+    if (v.kind == ValueKind::Shape) help_with_shape(d, what.of);
+    if (what.of == "rotate" && what.name == "angle" && v.kind == ValueKind::Vec)
+        d.help("`.rotate_euler([x, y, z])` turns about the three axes");
     return poison();
 }
 
@@ -243,6 +246,7 @@ static void want(Evaluator &ev, const Value &v, Span place, What what, std::stri
                            fmt::format("{} wants {}, this is {}", what, wanted, describe(ev, v)));
     if (v.kind == ValueKind::String && wanted == "a color")
         d.help("colours are written without quotes: `red`, `#ff0000`");
+    if (v.kind == ValueKind::Shape && wanted == "a color") help_with_shape(d, "color");
 }
 
 std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what) {

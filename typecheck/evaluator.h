@@ -47,6 +47,7 @@ struct Formal {
     bool takes_rest = false; // the last one, of type [shape], or a builtin's of any number
     bool opens_list = true;  // a single list among the rest is the rest
     bool is_angle = false;   // in radians, so that a plain literal beyond a turn looks like degrees
+    bool is_vector = false;
     Span declared;
 };
 
@@ -276,6 +277,11 @@ inline Symbol symbol_of(const File &file, const lang::Name &name) {
     return file.symbols[name.word];
 }
 std::vector<std::string> visible_names(Evaluator &ev, std::uint32_t frame);
+// Adds what does to shapes what the name makes one expect, where something does: to an error about
+// a shape that was given to what takes none.
+void help_with_shape(Diagnostic &d, std::string_view name);
+// The name that another is likely to be meant for; empty: none.
+std::string likely_name(Evaluator &ev, std::uint32_t frame, const std::string &name);
 void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place);
 void check_names(Evaluator &ev, const File &ast, std::uint32_t module_frame);
 

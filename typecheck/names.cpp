@@ -134,6 +134,23 @@ static std::string_view name_from_elsewhere(std::string_view name) {
         {"rsqrt", "inversesqrt"},
         {"rand", "random"},
         {"half_space", "plane"},
+        {"frustum", "capped_cone"},
+        {"cone_frustum", "capped_cone"},
+        {"truncated_cone", "capped_cone"},
+        {"round_box", "rounded_box"},
+        {"rect", "rectangle"},
+        {"donut", "torus"},
+        {"onion", "shell"},
+        {"hollow", "shell"},
+        {"inflate", "offset"},
+        {"dilate", "offset"},
+        {"stretch", "elongate"},
+        {"flip", "mirror"},
+        {"array", "repeat"},
+        {"polar_repeat", "repeat_polar"},
+        {"radial_repeat", "repeat_polar"},
+        {"smooth_min", "smin"},
+        {"smooth_max", "smax"},
         {"blobs", "metaballs"},
         {"echo", "print"},
         {"subtract", "difference"},
@@ -142,9 +159,38 @@ static std::string_view name_from_elsewhere(std::string_view name) {
     return it == ours.end() ? std::string_view() : it->second;
 }
 
+std::string likely_name(Evaluator &ev, std::uint32_t frame, const std::string &name) {
+    const std::string_view known = name_from_elsewhere(name);
+    return known.empty() ? nearest_name(name, visible_names(ev, frame)) : std::string(known);
+}
+
+void help_with_shape(Diagnostic &d, std::string_view name) {
+    constexpr const char *painted = "a shape is given a colour or a material by `.paint(…)`";
+    constexpr std::pair<std::string_view, std::string_view> ways[] = {
+        {"min", "shapes are united with `|`"},
+        {"max", "shapes are intersected with `&`"},
+        {"mix", "shapes are mixed by `blend(a, b, t)`"},
+        {"smoothstep", "shapes flow together in `smooth_union(r) { … }`"},
+        {"abs", "a shape's skin is `.shell(thickness)`"},
+        {"round", "`.offset(r)` rounds what is convex and grows by r; boxes have `rounded_box`"},
+        {"mod", "a shape is repeated by `.repeat(cell)`"},
+        {"fract", "a shape is repeated by `.repeat(cell)`"},
+        {"color", painted},
+        {"colour", painted},
+        {"material", painted},
+        {"texture", painted},
+        {"rotate_x", "write `.rotate(angle, axis: X)`"},
+        {"rotate_y", "write `.rotate(angle, axis: Y)`"},
+        {"rotate_z", "write `.rotate(angle, axis: Z)`"}};
+    for (const auto &[known, way] : ways)
+        if (name == known) d.help(std::string(way));
+    if (name.ends_with("_union") || name.ends_with("_intersection") ||
+        name.ends_with("_difference"))
+        d.help(fmt::format("the shapes stand in a block behind it: `{}(r) {{ … }}`", name));
+}
+
 void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place) {
-    std::string near(name_from_elsewhere(name));
-    if (near.empty()) near = nearest_name(name, visible_names(ev, frame));
+    const std::string near = likely_name(ev, frame, name);
     if (near.empty() && ev.modules[ev.current_module].lacks_names) return; // one cause, one report
     Diagnostic &d =
         report(ev, Code::UnknownName, place, fmt::format("nothing here is called `{}`", name));
