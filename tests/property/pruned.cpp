@@ -276,8 +276,7 @@ TEST_CASE("long chains of blends are forgotten only where nothing is left of the
                 driver::Compilation c = driver::compile_text("shell.sdf", text, {}, {});
                 REQUIRE(c.good());
                 CHECK(check(c.scene, 6000));
-                const cpu::Program distance = cpu::compile(c.scene, c.scene.distance);
-                const Wrong d = compare(c.scene, distance, distance, cube_of(c.scene), false, 6000);
+                const Wrong d = compare(c.scene, c.scene.distance, cube_of(c.scene), false, 6000);
                 again += d.again;
                 CHECK(d.again < 2);
                 if (where == spiral && radii <= 1) CHECK(d.shapes < 0.06 * n);
