@@ -314,6 +314,11 @@ struct Reader {
             "cells of the noise cache along an axis: 4, 8, … 128; 64 unless said, and 128 where "
             "a view needs more")
             ->type_name("N");
+        sub->add_option("--figure", bench.figure,
+                        "of the noise cache's measures one alone, by the thesis's number: 8.2 ages "
+                        "and 8.3, 8.4 difference, 8.5 edits, 8.6 turning")
+            ->check(quiet(CLI::IsMember({"8.2", "8.3", "8.4", "8.5", "8.6"})))
+            ->type_name("N");
         sub->add_option(
                "--frames", bench.frames,
                "frames of each measure of the noise cache; else all take about three minutes")
@@ -393,6 +398,8 @@ std::variant<Invocation, Answer> read_arguments(int count, const char *const *ar
     if (app.got_subcommand("render") && reader.render.cache &&
         reader.render.backend == Backend::Cpu)
         return wrong("--cache needs GL, which --backend cpu leaves out");
+    if (app.got_subcommand("bench") && !reader.bench.figure.empty() && !reader.bench.noise_cache)
+        return wrong("--figure is one of the measures of `bench --noise-cache`");
     if (app.got_subcommand("eval") && reader.eval.at.empty() && !reader.eval.points)
         return wrong("eval wants points: --at X,Y,Z or --points -");
     return reader.invocation;

@@ -28,6 +28,10 @@ struct Bench {
         const auto since = std::chrono::steady_clock::now().time_since_epoch();
         return std::chrono::duration<double, std::milli>(since).count();
     }
+    void put(const std::string &row) const { // at once: the next one may take long
+        terminal.put(row);
+        terminal.flush();
+    }
     std::uint64_t pixels() const {
         return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
     }
@@ -81,7 +85,8 @@ struct Move {
     int settle = 0;   // frames before those that are measured
     int frames = 8;
     int age = 4;
-    int param = -1; // which is moved; none: the view turns
+    int param = -1;     // which is moved; none: the view turns
+    bool weigh = false; // drawn exactly where that is quicker, by counted work
 };
 
 Motion move(const Bench &bench, gl::CachedView &view, const Move &how) {
@@ -97,8 +102,8 @@ Motion move(const Bench &bench, gl::CachedView &view, const Move &how) {
                                     p.lo[0], p.hi[0]);
         }
         const gl::FrameInputs inputs = inputs_of(bench, how.param < 0 ? phase : 0);
-        const double one =
-            bench.time([&] { view.draw(inputs, params, {.max_age = how.age, .weigh = false}); });
+        const double one = bench.time(
+            [&] { view.draw(inputs, params, {.max_age = how.age, .weigh = how.weigh}); });
         if (frame < how.settle) continue;
         const gl::CacheTally tally = view.read_tally();
         const gl::CacheCounts counts = view.store().read_counts();
@@ -131,10 +136,10 @@ void print_fields(const Bench &bench) {
         case ir::Kept::Ridged: verdict = "computed: Worley noise alone, too few cells"; break;
         case ir::Kept::Steep: verdict = "computed: its slope has no bound"; break;
         }
-        bench.terminal.put(fmt::format("field {}: cell {:g}, about {:.3g} ns against {:g} for a "
-                                       "look-up, error at most {:.3g}; {}\n",
-                                       i, graph.cache(id).cell, cost, ir::look_up_cost,
-                                       ir::kept_error(bench.scene, id), verdict));
+        bench.put(fmt::format("field {}: cell {:g}, about {:.3g} ns against {:g} for a "
+                              "look-up, error at most {:.3g}; {}\n",
+                              i, graph.cache(id).cell, cost, ir::look_up_cost,
+                              ir::kept_error(bench.scene, id), verdict));
     }
 }
 
@@ -159,15 +164,15 @@ void print_difference(const Bench &bench, gl::CachedView &view) {
         const double d = std::abs(kept.rgba[i + 1] - exact.rgba[i + 1]);
         most = std::max(most, d), sum += d, ++both;
     }
-    bench.terminal.put(fmt::format(
-        "\ndifference from exact (figure 8.4), a still view after {} frames\n", frames));
-    bench.terminal.put(fmt::format(
+    bench.put(fmt::format("\ndifference from exact (figure 8.4), a still view after {} frames\n",
+                          frames));
+    bench.put(fmt::format(
         "  along the ray: mean {:.3g}, most {:.3g}; pixels that only one of them hits: {} of {}\n",
         sum / static_cast<double>(std::max<std::size_t>(both, 1)), most, one, both + one));
-    bench.terminal.put("  misses by frame:");
+    bench.put("  misses by frame:");
     for (std::size_t i = 0; i < misses.size() && i < 12; ++i)
-        bench.terminal.put(fmt::format(" {}", misses[i]));
-    bench.terminal.put("\n");
+        bench.put(fmt::format(" {}", misses[i]));
+    bench.put("\n");
 }
 
 void learn(const Bench &bench, gl::CachedView &view) {
@@ -179,64 +184,83 @@ void learn(const Bench &bench, gl::CachedView &view) {
 }
 
 void print_speeds(const Bench &bench, gl::CachedView &view, int frames) {
-    bench.terminal.put("\nspeed-up against the speed of turning (figure 8.6)\n"
-                       "  rad/s   cached ms   exact ms   speed-up   misses a frame   pixels that "
-                       "miss   hits a frame\n");
+    bench.put("\nspeed-up against the speed of turning (figure 8.6)\n"
+              "  rad/s   cached ms   exact ms   speed-up   misses a frame   pixels that "
+              "miss   hits a frame\n");
     for (double speed : {0.0, 0.1, 0.5, 1.0, 2.0, 4.0}) {
         // A still view is learnt until it asks for nothing new, a turning one settles to its own
         // share of misses.
         if (speed == 0) learn(bench, view);
         const Motion m = move(bench, view, {.speed = speed, .settle = frames, .frames = frames});
-        bench.terminal.put(fmt::format(
+        bench.put(fmt::format(
             "  {:<5g} {:>11.1f} {:>10.1f} {:>10.2f} {:>16.0f} {:>18.0f} {:>14.0f}\n", speed,
             m.cached, m.exact, m.exact / m.cached, m.misses, m.computed, m.hits));
-        bench.terminal.flush();
     }
 }
 
 void print_ages(const Bench &bench, gl::CachedView &view, int frames) {
-    bench.terminal.put("\nmaximum age, turning at 2 rad/s (figure 8.2)\n"
-                       "  age   cached ms   inserted   evicted   deleted   misses a frame\n");
+    bench.put("\nmaximum age, turning at 2 rad/s (figure 8.2)\n"
+              "  age   cached ms   inserted   evicted   deleted   misses a frame\n");
     Motion usual;
     for (int age : {1, 2, 4, glsl::cache_ages}) {
         view.forget();
         const Motion m =
             move(bench, view, {.speed = 2, .settle = frames, .frames = frames, .age = age});
         if (age == 4) usual = m;
-        bench.terminal.put(fmt::format("  {:<3} {:>11.1f} {:>10.0f} {:>9.0f} {:>9.0f} {:>16.0f}\n",
-                                       age, m.cached, m.inserted, m.evicted, m.deleted, m.misses));
-        bench.terminal.flush();
+        bench.put(fmt::format("  {:<3} {:>11.1f} {:>10.0f} {:>9.0f} {:>9.0f} {:>16.0f}\n", age,
+                              m.cached, m.inserted, m.evicted, m.deleted, m.misses));
     }
-    bench.terminal.put(fmt::format("\nages at 2 rad/s, {} keys in {} cells (figure 8.3)\n ",
-                                   usual.occupancy.keys, usual.occupancy.cells));
+    bench.put(fmt::format("\nages at 2 rad/s, {} keys in {} cells (figure 8.3)\n ",
+                          usual.occupancy.keys, usual.occupancy.cells));
     for (std::size_t age = 0; age < 4; ++age)
-        bench.terminal.put(fmt::format("  {}: {}", age, usual.occupancy.ages[age]));
-    bench.terminal.put("\n");
+        bench.put(fmt::format("  {}: {}", age, usual.occupancy.ages[age]));
+    bench.put("\n");
 }
 
+// Each frame with another value: kept all the same, as a moving view is drawn, and exactly.
 void print_edits(const Bench &bench, gl::CachedView &view, int frames) {
+    bench.put("\nediting a param, another value each frame (figure 8.5)\n"
+              "  param            read by a kept field   cached ms   as drawn ms   exact ms   "
+              "speed-up   as drawn   pixels that miss\n");
+    const std::vector<glsl::KeptField> &fields = view.fields();
     for (std::size_t i = 0; i < bench.scene.params.size(); ++i) {
         const ir::Param &p = bench.scene.params[i];
         if (p.structural || p.type != ir::Type::Float || !p.has_range) continue;
-        const Motion m =
-            move(bench, view,
-                 {.speed = 1, .settle = frames, .frames = frames, .param = static_cast<int>(i)});
-        bench.terminal.put(fmt::format("\nmoving `{}` (figure 8.5): cached {:.1f} ms, exact {:.1f} "
-                                       "ms, speed-up {:.2f}, {:.0f} misses a frame\n",
-                                       p.name, m.cached, m.exact, m.exact / m.cached, m.misses));
+        const bool read = std::any_of(fields.begin(), fields.end(), [&](const auto &field) {
+            return std::count(field.params.begin(), field.params.end(), i) > 0;
+        });
+        view.weigh_anew();
+        learn(bench, view);
+        Move how{.speed = 1, .settle = frames, .frames = frames, .param = static_cast<int>(i)};
+        const Motion forced = move(bench, view, how);
+        how.weigh = true;
+        const Motion drawn = move(bench, view, how);
+        bench.put(fmt::format("  {:<16} {:<20} {:>11.1f} {:>13.1f} {:>10.1f} {:>10.2f} {:>10.2f} "
+                              "{:>18.0f}\n",
+                              p.name, read ? "yes" : "no", forced.cached, drawn.cached,
+                              forced.exact, forced.exact / forced.cached,
+                              drawn.exact / drawn.cached, forced.misses));
     }
 }
 
-void measure_all(const Bench &bench, gl::CachedView &view, int asked) {
-    print_difference(bench, view);
+void measure(const Bench &bench, gl::CachedView &view, const BenchCommand &command) {
+    const int side = view.store().side();
+    const auto wanted = [&](const char *figure) {
+        return command.figure.empty() || command.figure == figure;
+    };
     // As many frames as take about three minutes in all, unless it was said.
     const gl::FrameInputs inputs = inputs_of(bench, 0);
     const double one = bench.time([&] { view.draw_exactly(inputs, bench.scene.params); });
     const int usual = std::clamp(static_cast<int>(2000 / std::max(one, 1.0)), 2, 24);
-    const int frames = asked > 0 ? asked : usual;
-    print_speeds(bench, view, frames);
-    print_ages(bench, view, frames);
-    print_edits(bench, view, frames);
+    const int frames = command.frames > 0 ? command.frames : usual;
+    if (wanted("8.4")) print_difference(bench, view);
+    if (wanted("8.6")) print_speeds(bench, view, frames);
+    if (wanted("8.2") || wanted("8.3")) print_ages(bench, view, frames);
+    if (wanted("8.5")) print_edits(bench, view, frames);
+    if (view.store().side() > side)
+        bench.put(fmt::format("\nthe cache has grown to {0}x{0}x{0} cells, {1:.3g} MB\n",
+                              view.store().side(),
+                              static_cast<double>(view.store().size().bytes()) / 1e6));
 }
 
 } // namespace
@@ -262,9 +286,9 @@ Exit bench_noise_cache(const BenchCommand &command, const ir::Scene &scene, Term
         terminal.say(fmt::format("fathom: drawn exactly: {}", why));
         return done;
     }
-    terminal.put(fmt::format("cache: {0}x{0}x{0} cells, {1:.3g} MB\n", view.store().side(),
-                             static_cast<double>(view.store().size().bytes()) / 1e6));
-    measure_all(bench, view, command.frames);
+    bench.put(fmt::format("cache: {0}x{0}x{0} cells, {1:.3g} MB\n", view.store().side(),
+                          static_cast<double>(view.store().size().bytes()) / 1e6));
+    measure(bench, view, command);
     return done;
 }
 

@@ -180,6 +180,7 @@ std::string CachedView::use(CachePrograms programs, const CacheSize &size) {
     if (std::string why = build_passes(); !why.empty()) return why;
     programs_ = std::move(programs);
     number_fields();
+    read_.clear();
     weigh_anew();
     return "";
 }
@@ -202,6 +203,17 @@ void CachedView::set_fields(const Program &program) const {
     glUniform1iv(glGetUniformLocation(program.name(), "fathom_cache_fields"),
                  static_cast<GLsizei>(numbers_.size()), numbers_.data());
     set(program, "fathom_cache_bits", store_.size().bits);
+}
+
+// Whether a kept field reads other values than in the frame before.
+bool CachedView::edited(const std::vector<ir::Param> &params) {
+    std::vector<double> now;
+    for (const glsl::KeptField &field : programs_->fields)
+        for (std::uint32_t param : field.params)
+            now.insert(now.end(), params[param].value.begin(), params[param].value.end());
+    const bool other = now.size() == read_.size() && now != read_;
+    read_ = std::move(now);
+    return other;
 }
 
 // Gives up what was filled with other values of the params, or by what had the number before.
@@ -423,7 +435,8 @@ bool CachedView::grow() {
 bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &params,
                       const CacheSettings &settings) {
     if (!programs_ || !targets_.resize(inputs.width, inputs.height, programs_->pick)) return false;
-    looked_up_ = !settings.weigh || looks_up_next(worth_);
+    const bool stale = edited(params);
+    looked_up_ = !settings.weigh || (!stale && looks_up_next(worth_));
     if (!looked_up_) {
         drew_exactly(worth_);
         targets_.clear_counts();

@@ -25,7 +25,9 @@ struct CacheSettings {
     // share is found by no later frame either, unless nothing moves at all.
     double least_pixels = 1;
     bool show_misses = false; // in red
-    bool weigh = true;        // draws exactly where counted work says that look-ups do not pay
+    // Draws exactly where counted work says that look-ups do not pay, and while params are edited
+    // that a kept field reads: such a frame would find nothing.
+    bool weigh = true;
 };
 
 using glsl::PixelState;
@@ -88,12 +90,16 @@ class CachedView {
 
     CacheStore &store() { return store_; }
     const CacheStore &store() const { return store_; }
+    const std::vector<glsl::KeptField> &fields() const {
+        return programs_->fields;
+    } // ready() alone
     // The number in the cache's keys of Graph::caches' i-th field; -1 where it is not kept.
     int number_of(std::uint32_t cache) const;
 
   private:
     std::string build_passes();
     void number_fields();
+    bool edited(const std::vector<ir::Param> &params);
     void renew(const std::vector<ir::Param> &params, int ages);
     void sweep(int field);
     void publish();
@@ -116,7 +122,8 @@ class CachedView {
     std::optional<Program> reserve_, publish_, sweep_, tint_;
     std::vector<int> numbers_; // by the programs' fields
     std::map<int, std::vector<double>>
-        meanings_; // by number: the meaning and the params' values it was filled with
+        meanings_;             // by number: the meaning and the params' values it was filled with
+    std::vector<double> read_; // what the kept fields read of the params, in the frame before
     int first_unit_ = 0, ages_ = 0;
     std::uint32_t frame_ = 0;
     std::size_t sweep_cells_ = 0; // that the target of sweep() is made for

@@ -8,8 +8,9 @@ namespace fathom::gl {
 namespace {
 
 // Measured on llvmpipe (docs/noise-cache.md): a pixel that is left costs about so many evaluations
-// more, and a step of the march brings about five with it: gradients, shadows, occlusion.
-constexpr double left_evaluations = 32, evaluations_a_step = 5, least_gain = 0.05;
+// more, since its neighbours wait while it is computed; a step of the march brings about five with
+// it: gradients, shadows, occlusion.
+constexpr double left_evaluations = 96, evaluations_a_step = 5, least_gain = 0.05;
 
 } // namespace
 

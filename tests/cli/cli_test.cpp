@@ -60,6 +60,26 @@ TEST_CASE("a still picture is drawn by kept values where that is no dearer than 
                    "drawn exactly: cells are narrower than pixels"));
 }
 
+TEST_CASE("one figure of the noise cache is measured alone") {
+    const ScratchFolder folder;
+    folder.write("rock.sdf", "param depth = 0.03 in 0.0..0.03\nparam size = 1.0 in 0.5..1.0\n"
+                             "sphere(size).displace(cached(p => depth * fbm(2 * p, octaves: 6), "
+                             "cell: 0.05))\ncamera(at: [0, 0, 2], look_at: [0, 0, 0])\n");
+    const std::string bench = "fathom bench rock.sdf --size 24x24 --frames 1 ";
+    CHECK(shell(folder, bench + "--noise-cache --figure 9.1").exit == 2);
+    CHECK(shell(folder, bench + "--figure 8.5").exit == 2);
+    const Result edits = shell(folder, bench + "--noise-cache --figure 8.5");
+    CHECK(edits.exit == 0);
+    CHECK(contains(edits.out, "(figure 8.5)"));
+    CHECK(contains(edits.out, "  depth            yes "));
+    CHECK(contains(edits.out, "  size             no "));
+    for (const char *other : {"(figure 8.2)", "(figure 8.3)", "(figure 8.4)", "(figure 8.6)"})
+        CHECK(!contains(edits.out, other));
+    const Result ages = shell(folder, bench + "--noise-cache --figure 8.2");
+    CHECK(contains(ages.out, "(figure 8.2)"));
+    CHECK(!contains(ages.out, "(figure 8.5)"));
+}
+
 TEST_CASE("without images on the card the noise cache's commands draw exactly and say so") {
     const ScratchFolder folder;
     folder.write("rock.sdf",

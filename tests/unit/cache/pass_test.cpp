@@ -243,6 +243,23 @@ camera(at: [0, 0, 4], look_at: [0, 0, 0])
         CHECK(view.read_tally().hits >
               10 * view.read_tally().misses); // most of it stays useful (figure 8.5)
     }
+    SECTION("a param that the field reads, frame after frame") {
+        constexpr gl::CacheSettings weighed{.least_pixels = 0};
+        for (int frame = 1; frame < 5; ++frame) { // drawn exactly: it would find nothing
+            set("depth", 0.1 + 0.01 * frame);
+            view.draw(inputs, c.scene.params, weighed);
+            CHECK(!view.looked_up());
+        }
+        view.draw(inputs, c.scene.params, weighed);
+        CHECK(view.looked_up());
+        CHECK(view.store().read_counts().swept == bumps_before);
+        set("size", 1.01); // which no field reads
+        view.draw(inputs, c.scene.params, weighed);
+        CHECK(view.looked_up());
+        set("depth", 0.11);
+        view.draw(inputs, c.scene.params, all_cells); // kept all the same
+        CHECK(view.looked_up());
+    }
     SECTION("the text around the fields") {
         const driver::Compilation other = compiled(text("1.01", "5"));
         use(view, other.scene);
