@@ -96,10 +96,11 @@ Motion move(const Bench &bench, gl::CachedView &view, const Move &how) {
     const auto add = [&](double &to, double value) { to += value / how.frames; };
     for (int frame = 0; frame < how.settle + how.frames; ++frame) {
         const double phase = how.speed * frame * frame_time;
-        if (how.param >= 0) { // there and back over a quarter of its range
+        if (how.param >= 0) { // a quarter of its range, to where there is more room, and back
             ir::Param &p = params[static_cast<std::size_t>(how.param)];
-            p.value[0] = std::clamp(p.initial[0] + 0.25 * (p.hi[0] - p.lo[0]) * std::sin(phase),
-                                    p.lo[0], p.hi[0]);
+            const double range = p.hi[0] - p.lo[0];
+            const double way = p.initial[0] < p.lo[0] + range / 2 ? 1 : -1;
+            p.value[0] = p.initial[0] + way * 0.25 * range * std::abs(std::sin(phase));
         }
         const gl::FrameInputs inputs = inputs_of(bench, how.param < 0 ? phase : 0);
         const double one = bench.time(

@@ -89,10 +89,11 @@ void show_cache(Controls &controls, const CacheFigures &cache) {
     line(fmt::format("{} keys in {} cells, {:.1f} %", there.keys, there.cells,
                      100.0 * static_cast<double>(there.keys) /
                          static_cast<double>(std::max<std::size_t>(there.cells, 1))));
-    line(fmt::format("last frame: {} hits, {} misses, {} pixels computed", cache.tally.hits,
-                     cache.tally.misses, cache.tally.computed));
-    line(fmt::format("{} inserted, {} evicted, {} deleted, {} without room", cache.counts.inserted,
-                     cache.counts.evicted, cache.counts.deleted,
+    // Short lines: the panel takes the width of the frame before.
+    line(fmt::format("last frame: {} hits, {} misses", cache.tally.hits, cache.tally.misses));
+    line(fmt::format("{} pixels computed", cache.tally.computed));
+    line(fmt::format("{} inserted, {} evicted", cache.counts.inserted, cache.counts.evicted));
+    line(fmt::format("{} deleted, {} without room", cache.counts.deleted,
                      cache.counts.crowded + cache.counts.full));
     line(fmt::format("kept {:.1f} ms, exact {:.1f} ms: {}", cache.choice.kept_ms,
                      cache.choice.exact_ms,

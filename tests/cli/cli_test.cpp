@@ -73,6 +73,9 @@ TEST_CASE("one figure of the noise cache is measured alone") {
     CHECK(contains(edits.out, "(figure 8.5)"));
     CHECK(contains(edits.out, "  depth            yes "));
     CHECK(contains(edits.out, "  size             no "));
+    // Each frame another depth, from the end of its range inwards: what was kept is missed.
+    const std::string row = edits.out.substr(edits.out.find("  depth "));
+    CHECK(std::stoi(row.substr(row.rfind(' ', row.find('\n')))) > 0);
     for (const char *other : {"(figure 8.2)", "(figure 8.3)", "(figure 8.4)", "(figure 8.6)"})
         CHECK(!contains(edits.out, other));
     const Result ages = shell(folder, bench + "--noise-cache --figure 8.2");
