@@ -61,11 +61,31 @@ struct RangeCells {
     float *lo = nullptr, *hi = nullptr;
 };
 using RangeLoop = void (*)(const RangeCells &cells, const std::uint32_t *operands, std::size_t n);
+// Rows of balls that join what a loop carries (ball_rows.h), over boxes: as one row after the other
+// with the loops of its kernels.
+struct BallRangeRows {
+    const float *lo[3], *hi[3]; // places
+    float *carried_lo, *carried_hi;
+    const float *numbers;      // four a row: the centre, the radius
+    const std::uint32_t *rows; // which, `count` of them
+    std::size_t count, boxes;  // boxes: a multiple of at_once
+    std::size_t at_once = 8;
+    bool smooth;
+    float k_lo, k_hi; // the radius; of the lesser of two: 0
+};
+// By row, bit k: in box k the ball changes nothing, and leaves nothing of what was. `lows`: its
+// lower ends, boxes a row, where wanted.
+struct BallRangeFound {
+    std::uint64_t *neutral, *renewed;
+    std::size_t stride; // of both, in words
+    float *lows;
+};
 struct RangeLoops {
     std::span<const RangeLoop> loops; // by variant
     // Bit k: a + margin <= b and a < b all over box k; shared ones have one number for all boxes.
     std::uint64_t (*below)(const float *a_hi, bool a_shared, const float *b_lo, bool b_shared,
                            const float *margin_hi, bool margin_shared, std::size_t n) = nullptr;
+    void (*balls)(const BallRangeRows &rows, const BallRangeFound &found) = nullptr;
 };
 std::vector<RangeLoops> range_loop_sets(); // in the order of point_loop_sets
 RangeLoops range_loops();                  // the fastest

@@ -68,13 +68,15 @@ constexpr auto all_range_loops() {
 constexpr auto loops = all_range_loops();
 
 // Eight truths, a byte each, to eight bits: the multiplication brings byte i's last bit to 56 + i.
+std::uint64_t bits_of_eight(const std::uint8_t *truths) {
+    std::uint64_t eight;
+    std::memcpy(&eight, truths, 8);
+    return eight * 0x0102040810204080u >> 56;
+}
 std::uint64_t bits_of(const std::uint8_t *truths) {
     std::uint64_t bits = 0;
-    for (std::size_t byte = 0; byte < 8; ++byte) {
-        std::uint64_t eight;
-        std::memcpy(&eight, truths + 8 * byte, 8);
-        bits |= (eight * 0x0102040810204080u >> 56) << (8 * byte);
-    }
+    for (std::size_t byte = 0; byte < 8; ++byte)
+        bits |= bits_of_eight(truths + 8 * byte) << (8 * byte);
     return bits;
 }
 
@@ -99,9 +101,110 @@ std::uint64_t below(const float *a_hi, bool a_shared, const float *b_lo, bool b_
     });
 }
 
+// Boxes are taken eight at a time; where a ball is out of reach of all eight, k and what is carried
+// there apart, by a test that is coarser than ranges and surely wider than rounding, it changes
+// nothing.
+constexpr std::size_t eight = 8, most_eights = 8;
+struct Eights {
+    float lo[3][most_eights], hi[3][most_eights], carried[most_eights];
+};
+std::uint64_t in_reach(const Eights &eights, std::size_t n, const float *row, float k) {
+    std::uint8_t truths[most_eights] = {};
+    for (std::size_t e = 0; e < n; ++e) {
+        float square = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float way = sem::greatest(
+                sem::greatest(eights.lo[axis][e] - row[axis], row[axis] - eights.hi[axis][e]),
+                0.0f);
+            square += way * way;
+        }
+        const float a = eights.carried[e];
+        const float reach = sem::greatest(
+            a + k + row[3] + 1e-5f * (sem::abs(a) + sem::abs(k) + sem::abs(row[3])), 0.0f);
+        truths[e] = !(square >= reach * reach * 1.00001f);
+    }
+    return bits_of_eight(truths);
+}
+
+// Bit j: number j is negative.
+std::uint64_t signs_of(const float *numbers) {
+    std::uint64_t bits = 0;
+    for (std::size_t pair = 0; pair < 4; ++pair) {
+        std::uint64_t two;
+        std::memcpy(&two, numbers + 2 * pair, sizeof two);
+        bits |= (two >> 31 & 1) << (2 * pair) | (two >> 63) << (2 * pair + 1);
+    }
+    return bits;
+}
+
+template <bool is_smooth>
+[[gnu::flatten]] void ball_rows(const BallRangeRows &in, const BallRangeFound &found) {
+    const std::size_t n = in.boxes, eights_count = n / eight;
+    const std::size_t lanes = in.at_once; // eight, but vectorised as a loop, not piece by piece
+    float *carried_lo = in.carried_lo, *carried_hi = in.carried_hi;
+    const Range k{in.k_lo, in.k_hi};
+    Eights eights;
+    const auto most = [](const float *numbers) {
+        float greatest = numbers[0];
+        for (std::size_t i = 1; i < eight; ++i) greatest = sem::greatest(greatest, numbers[i]);
+        return greatest;
+    };
+    for (std::size_t e = 0; e < most_eights; ++e) {
+        const std::size_t first = (e < eights_count ? e : 0) * eight;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            float least = in.lo[axis][first];
+            for (std::size_t i = 1; i < eight; ++i)
+                least = sem::least(least, in.lo[axis][first + i]);
+            eights.lo[axis][e] = least;
+            eights.hi[axis][e] = most(in.hi[axis] + first);
+        }
+        eights.carried[e] = most(in.carried_hi + first);
+    }
+    const std::uint64_t all = eights_count == most_eights ? 0xff : (1u << eights_count) - 1;
+    for (std::size_t i = 0; i < in.count; ++i) {
+        const float *row = in.numbers + 4 * std::size_t{in.rows[i]};
+        const Range x{row[0], row[0]}, y{row[1], row[1]}, z{row[2], row[2]}, r{row[3], row[3]};
+        std::uint64_t neutral = ~std::uint64_t{0}, renewed = 0;
+        for (std::uint64_t left = in_reach(eights, most_eights, row, k.hi) & all; left != 0;
+             left &= left - 1) {
+            const auto e = static_cast<std::size_t>(std::countr_zero(left));
+            const std::size_t first = e * eight;
+            float lo[eight], hi[eight], a_lo[eight], a_hi[eight];
+            FATHOM_INDEPENDENT
+            for (std::size_t j = 0; j < lanes; ++j) {
+                const std::size_t box = first + j;
+                const Range b = range::BallRow::run({in.lo[0][box], in.hi[0][box]},
+                                                    {in.lo[1][box], in.hi[1][box]},
+                                                    {in.lo[2][box], in.hi[2][box]}, x, y, z, r);
+                lo[j] = b.lo, hi[j] = b.hi;
+                a_lo[j] = carried_lo[box], a_hi[j] = carried_hi[box];
+            }
+            float same[eight], fresh[eight];
+            FATHOM_INDEPENDENT
+            for (std::size_t j = 0; j < lanes; ++j) {
+                same[j] = (lo[j] - a_hi[j] >= k.hi) & (a_hi[j] < lo[j]) ? -1.0f : 1.0f;
+                fresh[j] = (a_lo[j] - hi[j] >= k.hi) & (hi[j] < a_lo[j]) ? -1.0f : 1.0f;
+                const Range a{a_lo[j], a_hi[j]}, b{lo[j], hi[j]};
+                const Range joined =
+                    is_smooth ? range::BlendSmoothRow::run(a, b, k) : range::MinFRow::run(a, b);
+                carried_lo[first + j] = joined.lo, carried_hi[first + j] = joined.hi;
+            }
+            neutral &= ~((signs_of(same) ^ 0xff) << first);
+            renewed |= signs_of(fresh) << first;
+            if (found.lows) std::memcpy(found.lows + i * n + first, lo, sizeof lo);
+            eights.carried[e] = most(in.carried_hi + first);
+        }
+        found.neutral[i * found.stride] = neutral;
+        found.renewed[i * found.stride] = renewed;
+    }
+}
+void balls(const BallRangeRows &in, const BallRangeFound &found) {
+    in.smooth ? ball_rows<true>(in, found) : ball_rows<false>(in, found);
+}
+
 } // namespace
 
 RangeLoops range_loops();
-RangeLoops range_loops() { return {loops, below}; }
+RangeLoops range_loops() { return {loops, below, balls}; }
 
 } // namespace fathom::cpu::FATHOM_ISA

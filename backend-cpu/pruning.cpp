@@ -32,7 +32,8 @@ void remove(PruneBlock *block) {
     delete block;
 }
 
-// The boxes of the cells inside the cell of `level` that holds a place, x first.
+// The boxes of the cells inside the cell of `level` that holds a place, by eighths and their
+// eighths: the bits of their number are x, y, z of the finer, x, y, z of the coarser ones.
 Boxes boxes_inside(const Pruning &pruning, const Place &place, int level) {
     Boxes boxes;
     boxes.count = most_boxes;
@@ -41,8 +42,8 @@ Boxes boxes_inside(const Pruning &pruning, const Place &place, int level) {
     for (std::size_t k = 0; k < most_boxes; ++k)
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::int32_t first = (place.at[axis] >> shift) << bits_a_level;
-            const auto at =
-                static_cast<float>(first + static_cast<std::int32_t>(k >> (2 * axis) & 3));
+            const auto at = static_cast<float>(
+                first + static_cast<std::int32_t>((k >> axis & 1) | (k >> axis >> 2 & 2)));
             boxes.lo[axis][k] = pruning.cube.lo[axis] + at * side - pruning.slack;
             boxes.hi[axis][k] = pruning.cube.lo[axis] + (at + 1) * side + pruning.slack;
         }
@@ -175,9 +176,10 @@ const PruneCell *find(const Pruning &pruning, Asker &asker, const Place &place) 
     };
     const auto index_at = [&](int level) {
         const int shift = shift_of(level + 1);
-        return static_cast<std::size_t>((place.at[0] >> shift & 3) |
-                                        (place.at[1] >> shift & 3) << 2 |
-                                        (place.at[2] >> shift & 3) << 4);
+        const std::int32_t x = place.at[0] >> shift, y = place.at[1] >> shift,
+                           z = place.at[2] >> shift;
+        return static_cast<std::size_t>((x & 1) | (y & 1) << 1 | (z & 1) << 2 | (x & 2) << 2 |
+                                        (y & 2) << 3 | (z & 2) << 4);
     };
     Asker::Last &last = asker.last;
     int level = 0;

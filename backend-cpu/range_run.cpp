@@ -11,7 +11,8 @@ namespace fathom::cpu {
 namespace {
 
 constexpr float endless = std::numeric_limits<float>::infinity();
-constexpr float cut_radii = 4;        // how far beyond a chain's end rows are cut off: measured
+constexpr float cut_radii = 4; // how far beyond a chain's end rows are cut off: measured
+constexpr std::uint64_t everywhere = ~std::uint64_t{0};
 constexpr float least_round = 1e-15f; // of smaller radii the squares are no floats any more
 
 // Runs steps over ranges and notes what wins.
@@ -25,6 +26,7 @@ class RangeRunner {
         std::size_t loop = 0;
         memory_.chosen.clear(), memory_.ends.clear(), memory_.turns.clear();
         memory_.lows.clear(), memory_.loop_runs.clear(), memory_.cuts.clear();
+        memory_.listed.clear();
         for (std::uint32_t id : tape.steps) {
             const Part &part = parts_.parts[id];
             Shortener::Chosen chosen;
@@ -166,7 +168,10 @@ class RangeRunner {
     void rows(const Step &step, const Selection &tape, const Selection::Rows &rows) {
         const Loop &loop = program_.loops[step.target];
         Shortener::LoopRun run{static_cast<std::uint32_t>(memory_.turns.size()),
-                               static_cast<std::uint32_t>(memory_.lows.size()), no_part, no_part};
+                               static_cast<std::uint32_t>(memory_.lows.size()),
+                               no_part,
+                               no_part,
+                               {}};
         if (rows.all) {
             memory_.loop_runs.push_back(run);
             this->loop(loop);
@@ -175,7 +180,9 @@ class RangeRunner {
         const RowLoop &known = parts_.loops[step.target];
         decided_.resize(known.decisions.size());
         if (rows.cut.any()) begin_below(loop.carried[0].var, rows.cut);
-        for (std::uint32_t i = 0; i < rows.count; ++i) {
+        const bool balls = is_balls(loop, known);
+        if (balls) ball_rows(loop, known, tape.rows + rows.first, rows.count);
+        for (std::uint32_t i = 0; !balls && i < rows.count; ++i) {
             for (auto &decided : decided_) decided.wins[0] = decided.wins[1] = 0;
             turn_to(loop, tape.rows[rows.first + i]);
             row(loop, known);
@@ -194,7 +201,37 @@ class RangeRunner {
             above(run, rows.count);
         }
         if (known.chain) cut(loop, known, rows, run);
+        list(run, rows.count);
         memory_.loop_runs.push_back(run);
+    }
+
+    bool is_balls(const Loop &loop, const RowLoop &known) const {
+        return loop.balls >= 0 && known.renewable && known.decisions.size() == 1 &&
+               known.decisions[0].kept == 0;
+    }
+    // The same as row by row, all at once.
+    void ball_rows(const Loop &loop, const RowLoop &known, const std::uint32_t *rows,
+                   std::size_t count) {
+        const BallRows &balls = program_.ball_loops[static_cast<std::size_t>(loop.balls)];
+        const std::size_t first = memory_.turns.size(), first_low = memory_.lows.size();
+        const bool lows = known.least >= 0 || known.chain;
+        memory_.turns.resize(first + count);
+        if (lows) memory_.lows.resize(first_low + count * n_);
+        BallRangeRows in{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            in.lo[axis] = cells_.lo + balls.place[axis];
+            in.hi[axis] = cells_.hi + balls.place[axis];
+        }
+        in.carried_lo = cells_.lo + balls.carried, in.carried_hi = cells_.hi + balls.carried;
+        in.numbers = balls.numbers.data();
+        in.rows = rows, in.count = count, in.boxes = n_;
+        in.smooth = balls.smooth;
+        if (balls.smooth) in.k_lo = cells_.lo[balls.k], in.k_hi = cells_.hi[balls.k];
+        if (count == 0) return;
+        static_assert(sizeof(Shortener::Turn) % sizeof(std::uint64_t) == 0);
+        loops_.balls(in, {&memory_.turns[first].neutral, &memory_.turns[first].renewed,
+                          sizeof(Shortener::Turn) / sizeof(std::uint64_t),
+                          lows ? memory_.lows.data() + first_low : nullptr});
     }
 
     // What a chain that was cut begins with lies between the bound and what it began with. (What
@@ -231,9 +268,32 @@ class RangeRunner {
         }
         static constexpr float nothing = 0;
         for (std::uint32_t i = 0; i < rows.count; ++i)
-            memory_.turns[run.first_turn + i].beyond =
-                loops_.below(beyond.data(), false, memory_.lows.data() + run.first_low + i * n_,
-                             false, &nothing, true, n_);
+            if (memory_.turns[run.first_turn + i].neutral != everywhere)
+                memory_.turns[run.first_turn + i].beyond =
+                    loops_.below(beyond.data(), false, memory_.lows.data() + run.first_low + i * n_,
+                                 false, &nothing, true, n_);
+    }
+
+    // By box, the turns that may change something, in their order.
+    void list(Shortener::LoopRun &run, std::uint32_t rows) {
+        std::array<std::uint32_t, most_boxes> next{};
+        const Shortener::Turn *turns = memory_.turns.data() + run.first_turn;
+        for (std::uint32_t i = 0; i < rows; ++i)
+            each_bit(~turns[i].neutral, [&](std::size_t box) { ++next[box]; });
+        std::uint32_t first = static_cast<std::uint32_t>(memory_.listed.size());
+        run.listed[0] = first;
+        for (std::size_t box = 0; box < most_boxes; ++box) {
+            first += next[box];
+            next[box] = run.listed[box];
+            run.listed[box + 1] = first;
+        }
+        memory_.listed.resize(first);
+        for (std::uint32_t i = 0; i < rows; ++i)
+            each_bit(~turns[i].neutral, [&](std::size_t box) { memory_.listed[next[box]++] = i; });
+    }
+    template <class F> void each_bit(std::uint64_t bits, F &&f) const {
+        if (n_ < 64) bits &= (std::uint64_t{1} << n_) - 1;
+        for (; bits != 0; bits &= bits - 1) f(static_cast<std::size_t>(std::countr_zero(bits)));
     }
 
     // Of a minimum nothing is changed either by a row that is above it in the end.
@@ -241,9 +301,10 @@ class RangeRunner {
         static constexpr float nothing = 0;
         const float *least = memory_.ends[run.ends].hi.data();
         for (std::uint32_t i = 0; i < rows; ++i)
-            memory_.turns[run.first_turn + i].neutral |=
-                loops_.below(least, false, memory_.lows.data() + run.first_low + i * n_, false,
-                             &nothing, true, n_);
+            if (memory_.turns[run.first_turn + i].neutral != everywhere)
+                memory_.turns[run.first_turn + i].neutral |=
+                    loops_.below(least, false, memory_.lows.data() + run.first_low + i * n_, false,
+                                 &nothing, true, n_);
     }
 
     void row(const Loop &loop, const RowLoop &known) {

@@ -110,9 +110,9 @@ class Backward {
             bool renewed = false;
             std::size_t beyond = 0;
             memory_.kept.clear();
-            for (std::uint32_t i = from.count; i-- > 0 && !renewed;) {
+            for (std::uint32_t at = run.listed[box_ + 1]; at-- > run.listed[box_] && !renewed;) {
+                const std::uint32_t i = memory_.listed[at];
                 const Shortener::Turn &turn = memory_.turns[run.first_turn + i];
-                if (turn.neutral & bit_) continue;
                 if (least && memory_.lows[run.first_low + i * memory_.boxes + box_] > cutoff)
                     continue;
                 memory_.kept.push_back(i);

@@ -102,6 +102,7 @@ struct Shortener {
     };
     struct LoopRun {
         std::uint32_t first_turn = 0, first_low = 0, ends = no_part, cuts = no_part;
+        std::array<std::uint32_t, most_boxes + 1> listed{}; // where each box's begin
     };
     std::vector<Chosen> chosen; // by step of the tape at hand
     std::vector<Ends> ends;
@@ -109,9 +110,10 @@ struct Shortener {
     std::vector<std::array<Cut, most_boxes>> cuts; // of chains
     std::vector<float> lows;                       // least loops and chains: by turn and box
     std::vector<LoopRun> loop_runs;
-    std::vector<std::uint32_t> kept; // turns of the loop at hand, from the last
-    std::vector<std::uint32_t> live; // by slot: the epoch for which it is
-    std::vector<float> cutoff;       // by slot: its value matters as far as it is not above this
+    std::vector<std::uint32_t> listed; // by box of a loop: turns that may change something
+    std::vector<std::uint32_t> kept;   // turns of the loop at hand, from the last
+    std::vector<std::uint32_t> live;   // by slot: the epoch for which it is
+    std::vector<float> cutoff;         // by slot: its value matters as far as it is not above this
     std::uint32_t epoch = 0;
     std::size_t boxes = 0;
     std::array<float, most_boxes> result_lo{}, result_hi{}; // of the first result, by box
