@@ -118,3 +118,73 @@ TEST_CASE("only loops whose turns are a ball's joining are run in packs") {
         CHECK(wrong == 0);
     }
 }
+
+// The rows of balls over boxes against the range loops of the kernels row by row, in every
+// instruction set: the same ranges, and what the coarse test leaves out changes nothing.
+TEST_CASE("rows of balls over boxes are the kernels' ranges") {
+    constexpr std::uint32_t n = 64, count = 40;
+    const Points corners = spread(n), centres = spread(count);
+    for (const RangeLoops &loops : range_loop_sets())
+        for (const bool smooth : {false, true})
+            for (const float begin : {1e9f, 0.4f, -0.3f}) {
+                // cx cy cz r k, then the carried number, x, y, z, a ball
+                std::vector<float> lo(5 + 5 * n), hi(5 + 5 * n), rows;
+                for (std::uint32_t i = 0; i < n; ++i) {
+                    const float width = i % 8 == 0 ? 1.0f : 0.05f;
+                    lo[5 + i] = hi[5 + i] = begin;
+                    const float at[] = {corners.x[i], corners.y[i], corners.z[i]};
+                    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+                        lo[5 + (1 + axis) * n + i] = at[axis];
+                        hi[5 + (1 + axis) * n + i] = at[axis] + width;
+                    }
+                }
+                const float k = 0.2f;
+                lo[4] = hi[4] = k;
+                std::vector<float> carried_lo(n, begin), carried_hi(n, begin), lows(n * count);
+                std::vector<std::uint32_t> which;
+                for (std::uint32_t row = 0; row < count; ++row) {
+                    which.push_back(row);
+                    rows.insert(rows.end(), {centres.x[row], centres.y[row], centres.z[row],
+                                             0.1f + 0.01f * static_cast<float>(row)});
+                }
+                std::vector<std::uint64_t> neutral(count), renewed(count);
+                BallRangeRows in{};
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    in.lo[axis] = lo.data() + 5 + (1 + axis) * n;
+                    in.hi[axis] = hi.data() + 5 + (1 + axis) * n;
+                }
+                in.carried_lo = carried_lo.data(), in.carried_hi = carried_hi.data();
+                in.numbers = rows.data(), in.rows = which.data();
+                in.count = count, in.boxes = n, in.smooth = smooth;
+                if (smooth) in.k_lo = in.k_hi = k;
+                loops.balls(in, {neutral.data(), renewed.data(), 1, lows.data()});
+
+                const RangeCells cells{lo.data(), hi.data()};
+                const std::uint32_t ball[] = {5 + 4 * n, 5 + n, 5 + 2 * n, 5 + 3 * n, 0, 1, 2, 3},
+                                    join[] = {5, 5, 5 + 4 * n, 4};
+                const auto ball_loop = best_variant(Kernel::Ball, 0b1111000).index,
+                           join_loop = best_variant(smooth ? Kernel::BlendSmooth : Kernel::MinF,
+                                                    smooth ? 0b100 : 0)
+                                           .index;
+                const float margin = smooth ? k : 0;
+                int wrong = 0, skipped = 0;
+                for (std::uint32_t row = 0; row < count; ++row) {
+                    std::copy_n(rows.begin() + 4 * row, 4, lo.begin());
+                    std::copy_n(rows.begin() + 4 * row, 4, hi.begin());
+                    loops.loops[ball_loop](cells, ball, n);
+                    const auto same = loops.below(hi.data() + 5, false, lo.data() + ball[0], false,
+                                                  &margin, true, n),
+                               fresh = loops.below(hi.data() + ball[0], false, lo.data() + 5, false,
+                                                   &margin, true, n);
+                    wrong += same != neutral[row] || fresh != renewed[row];
+                    skipped += same == ~std::uint64_t{0};
+                    for (std::uint32_t i = 0; i < n; ++i)
+                        wrong += (same >> i & 1) == 0 && lows[row * n + i] != lo[ball[0] + i];
+                    loops.loops[join_loop](cells, join, n);
+                }
+                CHECK(wrong == 0);
+                CHECK((skipped > 0) == (begin < 0));
+                CHECK(std::equal(carried_lo.begin(), carried_lo.end(), lo.begin() + 5));
+                CHECK(std::equal(carried_hi.begin(), carried_hi.end(), hi.begin() + 5));
+            }
+}
