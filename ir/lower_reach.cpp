@@ -45,6 +45,7 @@ void Lowering::find_curved() {
         const Shape &s = shape(ShapeId{i});
         curved_[i] = s.kind == ShapeKind::Displace && std::isfinite(fact(ShapeId{i}).curvature) &&
                      std::isfinite(fact(ShapeId{i}).outward);
+        curved_[i] |= s.kind == ShapeKind::Within && !fact(ShapeId{i}).cells.bend.empty();
         if (!hands_reach_on(s)) continue;
         for (ShapeId child : s.children) curved_[i] |= curved_[child.index];
     }
@@ -60,6 +61,10 @@ NodeId Lowering::reach(ShapeId id, Where frame) {
     NodeId value;
     if (s.kind == ShapeKind::Displace) {
         value = displaced(Reading::Reach, id, frame);
+    } else if (s.kind == ShapeKind::Within) {
+        const NodeId distance = ask(Reading::Marched, id, frame);
+        value = graph_.make(Op::Make, Type::Vec2,
+                            {distance, graph_.make(Op::Max, {distance, bent_by_cells(id, frame)})});
     } else if (s.kind == ShapeKind::Union) {
         std::vector<NodeId> plain; // by one number as long as they may
         for (ShapeId child : s.children) {

@@ -347,9 +347,13 @@ template <class F> Region map_region(const Region &region, F read) {
 }
 } // namespace
 
+Region Lowering::region_of(ShapeId id, Where frame) {
+    return map_region(shapes_.regions[shape(id).payload],
+                      [&](NodeId number) { return read(number, frame); });
+}
+
 Where Lowering::inside(ShapeId id, Where frame) {
-    const Region region = map_region(shapes_.regions[shape(id).payload],
-                                     [&](NodeId number) { return read(number, frame); });
+    const Region region = region_of(id, frame);
     NodeId q = region_between_caps(graph_, region, region_nearest(graph_, region, point3(frame.p)));
     for (const Region &less : region.less) q = region_way_out(graph_, less, q).point;
     return point_of(frame, q);
@@ -364,8 +368,7 @@ Where Lowering::point_of(Where frame, NodeId p) {
 // left out cuts with -sd.
 NodeId Lowering::within(Reading reading, ShapeId id, Where frame) {
     Graph &g = graph_;
-    const Region region = map_region(shapes_.regions[shape(id).payload],
-                                     [&](NodeId number) { return read(number, frame); });
+    const Region region = region_of(id, frame);
     const NodeId p = point3(frame.p);
     const ShapeId child = shape(id).children.front();
     NodeId field = ask(Reading::Raw, child, inside(id, frame));
@@ -398,64 +401,6 @@ NodeId Lowering::within(Reading reading, ShapeId id, Where frame) {
     for (const Region &less : region.less)
         distance = g.make(Op::Max, {distance, g.neg(region_distance(g, less, p))});
     return distance;
-}
-
-// A field that is steep in places is divided by its bound in the cell where q lies, the mean of
-// the cell's corners there, so that nothing jumps. That holds as far as the cell, grown by its
-// margin, reaches: so the step ends there, if it is longer than what the bound for all of the
-// region gives (semantics.md, 13).
-NodeId Lowering::divided_by_cells(ShapeId id, NodeId field, NodeId q) {
-    Graph &g = graph_;
-    const CellBounds &cells = fact(id).cells;
-    std::array<double, 3> size{}, lo = cells.box.lo, last{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        size[i] = (cells.box.hi[i] - lo[i]) / cells.count[i];
-        last[i] = cells.count[i] - 1;
-    }
-    const NodeId u = g.div(g.sub(q, g.vec(lo)), g.vec(size)); // in cells
-    const NodeId cell =
-        g.make(Op::Clamp, {g.make(Op::Floor, {u}), g.vec(std::array<double, 3>{}), g.vec(last)});
-    const std::array<double, 3> strides{1, cells.count[0] + 1.0,
-                                        (cells.count[0] + 1.0) * (cells.count[1] + 1.0)};
-    const NodeId first = g.make(Op::ToInt, Type::Int,
-                                {g.add(g.make(Op::Dot, {cell, g.vec(strides)}), g.number(0.5))});
-    const auto found = cell_tables_.try_emplace(id);
-    if (found.second) {
-        Table table;
-        table.rows = static_cast<int>(cells.lipschitz.size());
-        table.stride = 1;
-        for (double bound : cells.lipschitz)
-            table.data.push_back(std::nextafter(float(bound), INFINITY));
-        found.first->second = g.add_table(std::move(table));
-    }
-    const NodeId part = g.make(Op::Clamp, {g.sub(u, cell), g.vec(std::array<double, 3>{}),
-                                           g.vec(std::array{1.0, 1.0, 1.0})});
-    std::vector<NodeId> bounds;
-    for (int corner = 0; corner < 8; ++corner) {
-        const double row = corner % 2 + corner / 2 % 2 * strides[1] + corner / 4 * strides[2];
-        bounds.push_back(
-            g.make(Op::TableRead, Type::Float,
-                   {g.make(Op::Add, Type::Int, {first, g.integer(static_cast<int>(row))})},
-                   table_slot(found.first->second, 0)));
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-        std::vector<NodeId> mixed;
-        for (std::size_t i = 0; i < bounds.size(); i += 2)
-            mixed.push_back(g.make(Op::Mix, {bounds[i], bounds[i + 1], g.component(part, axis)}));
-        bounds = std::move(mixed);
-    }
-    const NodeId bound = bounds.front();
-    // |u - middle| cells from the middle; the walls are half a cell from there.
-    const NodeId from_middle =
-        g.make(Op::Abs, {g.sub(u, g.add(cell, g.vec(std::array{0.5, 0.5, 0.5})))});
-    const NodeId left = g.mul(g.sub(g.vec(std::array{0.5, 0.5, 0.5}), from_middle), g.vec(size));
-    const NodeId wall =
-        g.make(Op::Min, {g.component(left, 0),
-                         g.make(Op::Min, {g.component(left, 1), g.component(left, 2)})});
-    const NodeId whole = divided(shape(id).children.front(), field);
-    const NodeId reach =
-        g.make(Op::Max, {g.add(wall, g.number(cells.margin)), g.make(Op::Abs, {whole})});
-    return g.make(Op::Clamp, {g.div(field, bound), g.neg(reach), reach});
 }
 
 } // namespace fathom::ir

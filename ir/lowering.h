@@ -63,7 +63,15 @@ class Lowering {
     NodeId within(Reading reading, ShapeId id, Where frame);
     Where inside(ShapeId id, Where frame); // where `within` asks its child
     Where point_of(Where frame, NodeId p);
+    Region region_of(ShapeId id, Where frame);
+
+    // -- bounds by cells (lower_cells.cpp)
+    struct InCell {
+        NodeId slope, bend, wall; // bend: invalid where it is not known; wall: how far both hold
+    };
+    InCell in_cell(ShapeId id, NodeId q);
     NodeId divided_by_cells(ShapeId id, NodeId field, NodeId q);
+    NodeId bent_by_cells(ShapeId id, Where frame);
     NodeId blend(const Shape &shape, Where frame);
     NodeId seam(const Shape &shape, Where frame);
     NodeId pseudonorm(const Shape &shape, Where frame);

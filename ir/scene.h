@@ -23,6 +23,7 @@ struct CellBounds {
     std::array<int, 3> count{};
     double margin = 0;
     std::vector<double> lipschitz; // empty: none
+    std::vector<double> bend;      // of second derivatives along lines; empty: known of no cell
 };
 
 // Of a displacement that is a sum: what its first terms say before the others are asked.

@@ -110,6 +110,61 @@ TEST_CASE("what reaches is free, and no ray passes a surface") {
     CHECK(steps < 0.8 * plain_steps);
 }
 
+// Algebraic surfaces, by bounds in cells: a heart, on which the field has a threefold root along a
+// curve, a quartic, a sextic, and one with a parameter. What lies inside is found by looking at
+// each ray in a thousand places.
+TEST_CASE("rays find surfaces on which a field of one's own is flat") {
+    const char *texts[] = {
+        R"(let a = p => p.x * p.x + 2.25 * p.z * p.z + p.y * p.y - 1
+implicit(p => a(p) * a(p) * a(p) - (p.x * p.x + 0.1125 * p.z * p.z) * p.y * p.y * p.y,
+         within: aabb(-[1.4, 1.4, 1.4], [1.4, 1.4, 1.4])))",
+        R"(implicit(p => dot(p, p) * dot(p, p) * dot(p, p) - 2 * p.x * p.x * p.y * p.y - 0.3, within: ball(1.8)))",
+        R"(implicit(p => p.x * p.x * p.x * p.x + p.y * p.y * p.y * p.y + p.z * p.z * p.z * p.z -
+              dot(p, p) + 0.3, within: aabb(-[1.5, 1.5, 1.5], [1.5, 1.5, 1.5])))",
+        R"(param w: float = 0.5 in 0.2..0.8
+implicit(p => pow(p.x * p.x + p.y * p.y - w, 3) + 4 * p.z * p.z * p.z * p.z, within: ball(2)).rotate(0.4, axis: X))"};
+    for (const std::string text : texts) {
+        INFO(text);
+        driver::Compilation c = driver::compile_text("scene", text, {}, {});
+        REQUIRE(c.good());
+        CHECK(c.scene.reach);
+        const test::Spans spans =
+            test::measure_spans(c.scene, c.scene.bounds.lo, c.scene.bounds.hi, 100'000);
+        CHECK(spans.cut == 0);
+        CHECK(spans.shorter == 0);
+        constexpr int side = 40, places = 1000;
+        const cpu::Stage stage = cpu::prepare(c.scene, ir::view_of(c.scene, 0, 1), side, side, 0);
+        std::vector<cpu::Ray> rays;
+        for (int i = 0; i < side * side; ++i)
+            rays.push_back(cpu::eye_ray(stage, float(i % side) + 0.5f, float(i / side) + 0.5f));
+        const auto found = cpu::cast(stage, rays);
+        test::Sampler sampler(c.scene);
+        const double far = 2.2 * stage.frame.radius + std::sqrt(3.0) * stage.view.focus;
+        int holes = 0, inside = 0;
+        for (std::size_t k = 0; k < rays.size(); ++k) {
+            std::vector<test::Point3> points;
+            for (int i = 0; i < places; ++i) {
+                const double t = far * i / places;
+                test::Point3 p;
+                for (std::size_t a = 0; a < 3; ++a)
+                    p[a] = rays[k].origin[a] + t * rays[k].direction[a];
+                points.push_back(p);
+            }
+            const std::vector<float> values = sampler.values(points);
+            int run = 0;
+            for (int i = 0; i < places && run < 5; ++i) {
+                run = values[std::size_t(i)] < 0 ? run + 1 : 0;
+                if (run < 5) continue;
+                ++inside;
+                const double t = far * i / places; // well inside
+                holes += found[k].t < 0 || found[k].t > t;
+            }
+        }
+        CHECK(inside > 15);
+        CHECK(holes == 0);
+    }
+}
+
 TEST_CASE("the shader reaches as far as the processor") {
     if (!has_context()) return;
     test::Dice dice{43};

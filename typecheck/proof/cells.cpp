@@ -13,6 +13,7 @@ namespace {
 
 constexpr int fewest = 4, finest = 16; // cells along the longest side
 constexpr double lead = 0.25;          // the margin, in the smallest side of a cell
+constexpr double flattest = 1e-6;      // of the bound for all of the region
 
 } // namespace
 
@@ -27,7 +28,7 @@ ir::CellBounds bound_cells(Flattening &context, const Ranges &ranges, NodeId fie
     }
     const Tape tape = flatten(context, field);
     if (tape.too_large) return out;
-    Machine machine(tape, ranges);
+    Machine machine(tape, ranges, true);
     // Where it is everywhere about as steep, one bound says as much.
     std::vector<double> slopes;
     Dice dice{0xce11};
@@ -60,6 +61,8 @@ ir::CellBounds bound_cells(Flattening &context, const Ranges &ranges, NodeId fie
     const double grown = out.margin * 1.001; // what float32 makes of the cell's number and walls
     const auto [nx, ny, nz] = out.count;
     out.lipschitz.assign(std::size_t(nx + 1) * std::size_t(ny + 1) * std::size_t(nz + 1), 0);
+    out.bend = out.lipschitz;
+    bool bends_known = false;
     for (int z = 0; z < nz; ++z)
         for (int y = 0; y < ny; ++y)
             for (int x = 0; x < nx; ++x) {
@@ -71,15 +74,20 @@ ir::CellBounds bound_cells(Flattening &context, const Ranges &ranges, NodeId fie
                         std::min(out.box.lo[i] + (at[i] + 1) * size[i] + grown, out.box.hi[i])};
                 if (misses(zone, cell)) continue;
                 machine.run(cell);
-                const double bound = std::min(machine.norm(), whole) * (1 + 1e-6);
+                const double bound = std::min(machine.norm(), whole) * (1 + 1e-6),
+                             bend = machine.bend() * (1 + 1e-4); // float32 in the root
+                bends_known = bends_known || std::isfinite(bend);
                 for (int corner = 0; corner < 8; ++corner) {
                     const int row = (z + corner / 4) * (ny + 1) + y + corner / 2 % 2;
-                    double &there = out.lipschitz[std::size_t(row * (nx + 1) + x + corner % 2)];
-                    there = std::max(there, bound);
+                    const auto there = std::size_t(row * (nx + 1) + x + corner % 2);
+                    out.lipschitz[there] = std::max(out.lipschitz[there], bound);
+                    out.bend[there] = std::max(out.bend[there], bend);
                 }
             }
-    // Not near 0: a field that is flat in a cell cannot step further than the cell.
-    for (double &bound : out.lipschitz) bound = std::max(bound, std::min(whole, 1.0));
+    // Not near 0: where a field is flat, steps end with the cell.
+    for (double &bound : out.lipschitz) bound = std::max(bound, flattest * whole);
+    for (double &bend : out.bend) bend = std::max(bend, flattest * whole / shortest);
+    if (!bends_known) out.bend.clear();
     return out;
 }
 

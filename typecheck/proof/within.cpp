@@ -152,6 +152,7 @@ Known Prover::know_within(ShapeId id) {
         k.fact.cells =
             bound_cells(flattening, ranges, inner.leaf, zone, inner.fact.lipschitz_sup, budget);
         for (double &bound : k.fact.cells.lipschitz) bound *= options.rules[Rule::Field];
+        for (double &bend : k.fact.cells.bend) bend *= options.rules[Rule::Curvature];
     }
     const double across = 1 + (slope_in_holes(zone) - 1) * options.rules[Rule::Holes];
     NodeId formula =
