@@ -226,13 +226,11 @@ constexpr const char *shade_phong =
     float margin = $SHADOW_BIAS * fathom_tolerance(t);
     vec3 q = p + margin * n;
     float angle = max(look.soft_shadows, $LEAST_ANGLE);
-    for (int i = $ZERO; i < $LIGHTS; ++i) {
-        fathom_Light light = fathom_light(i);
-        vec3 way = light.directional ? light.position : light.position - q;
+$EACH_LIGHT        vec3 way = light.directional ? light.position : light.position - q;
         float away = length(way);
         vec3 l = away > 0.0 ? way / away : n;
         float facing = dot(n, l);
-        if (facing <= 0.0) continue;
+        if (facing <= 0.0) $UNLIT;
         float seen = 1.0;
         if (look.shadow_darkness > 0.0) {
             float reach = light.directional ? $SUN_REACH : away;
@@ -245,6 +243,13 @@ constexpr const char *shade_phong =
     }
     return color;
 }
+)";
+
+constexpr const char *each_light = R"(    for (int i = $ZERO; i < $LIGHTS; ++i) {
+        fathom_Light light = fathom_light(i);
+)";
+constexpr const char *one_light = R"(    {
+        fathom_Light light = fathom_light(0);
 )";
 
 constexpr const char *output = R"(
@@ -349,6 +354,8 @@ Values values_of(const MarcherOptions &options) {
         {"EPSILON", float_literal(options.epsilon)},
         {"MAX_STEPS", std::to_string(options.max_steps)},
         {"ZERO", options.zero},
+        {"EACH_LIGHT", options.lights == 1 ? one_light : each_light},
+        {"UNLIT", options.lights == 1 ? "return color" : "continue"},
         {"LIGHTS", std::to_string(options.lights)},
         {"FLOAT_SLACK", float_literal(look::float_slack)},
         {"NORMAL_SLACK", float_literal(look::normal_slack)},
@@ -396,7 +403,7 @@ Values values_of(const MarcherOptions &options) {
     values["KEPT_RESUME"] = options.kept ? kept_resume : "";
     values["KEPT_STOP"] = options.kept ? kept_stop : "";
     values["AND_PRESENT"] = options.kept ? " && !fathom_absent" : "";
-    for (const char *part : {"RAY", "OPEN", "SAMPLE_SHADE", "CLOSED", "SURROUNDINGS"})
+    for (const char *part : {"RAY", "OPEN", "SAMPLE_SHADE", "CLOSED", "SURROUNDINGS", "EACH_LIGHT"})
         values[part] = fill(values[part], values);
     return values;
 }
