@@ -137,10 +137,13 @@ std::string rule_text(const ir::Scene &scene, ShapeId id, Prover &prover) {
     case ShapeKind::Library:
         return opaque(scene, id) ? "stated in the library, beside its proof" : "its body's";
     case ShapeKind::Within:
-        return fact.cells.lipschitz.empty() ? "the field inside, the distance to the region outside"
-                                            : "the field inside, marched by a bound for each of " +
-                                                  std::to_string(fact.cells.lipschitz.size()) +
-                                                  " cells; the distance to the region outside";
+        return fact.cells.lipschitz.empty()
+                   ? "the field inside, the distance to the region outside"
+                   : "the field inside, marched by a bound for each of " +
+                         std::to_string(fact.cells.count[0] * fact.cells.count[1] *
+                                        fact.cells.count[2]) +
+                         (fact.cells.bend.empty() ? " cells" : " cells, and by curvature") +
+                         "; the distance to the region outside";
     case ShapeKind::Repeat: {
         std::string copies;
         for (int n : fact.repeat.neighbors)
