@@ -60,11 +60,13 @@ void pack(const Parts &parts, const ShortTape &tape, PruneBlock &block) {
     }
 }
 
-// Whether a box's tape with a Cut gives values nearly everywhere in it. A chain of blends that
-// comes nearer row by row, by less than their radius, forgets nothing.
-bool forgets(const Pruning &pruning, Asker &asker, const Boxes &boxes, std::size_t box,
-             const ShortTape &tape) {
-    constexpr std::size_t n = 16;
+constexpr std::size_t tried_points = 16;
+
+// At how many of these points a box's tape with a Cut gives no value. A chain of blends that comes
+// nearer row by row, by less than their radius, forgets nothing.
+std::size_t unknown_of(const Pruning &pruning, Asker &asker, const Boxes &boxes, std::size_t box,
+                       const ShortTape &tape) {
+    constexpr std::size_t n = tried_points;
     float in[3][n];
     for (std::size_t i = 0; i < n; ++i) { // 2 x 2 x 4
         const float way[] = {static_cast<float>(i & 1) * 0.8f + 0.1f,
@@ -81,7 +83,7 @@ bool forgets(const Pruning &pruning, Asker &asker, const Boxes &boxes, std::size
     const float *from[] = {in[0], in[1], in[2]};
     std::uint32_t unknown[n];
     return evaluate(pruning.program, asker.scratch, from, asker.tried_to.data(), n,
-                    tape.selection(pruning.parts), unknown) <= 1;
+                    tape.selection(pruning.parts), unknown);
 }
 
 bool has_cut(const Selection &tape) {
@@ -111,10 +113,10 @@ int fill(const Pruning &pruning, Asker &asker, const Boxes &boxes, const PruneCe
             continue;
         }
         shorten(pruning.parts, asker.shortener, from.tape, k, true, tape);
-        if (tape.cut && !forgets(pruning, asker, boxes, k, tape))
+        if (tape.cut && unknown_of(pruning, asker, boxes, k, tape) > tried_points / 2)
             shorten(pruning.parts, asker.shortener, from.tape, k, false, tape);
         if (!tape.cut && has_cut(tape.selection(pruning.parts)))
-            unknown += !forgets(pruning, asker, boxes, k, tape);
+            unknown += unknown_of(pruning, asker, boxes, k, tape) > 1;
         for (Selection::Rows &rows : tape.loops)
             rows.first += static_cast<std::uint32_t>(block.rows.size());
         block.steps.insert(block.steps.end(), tape.steps.begin(), tape.steps.end());

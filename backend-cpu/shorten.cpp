@@ -121,8 +121,8 @@ class Backward {
             }
             if (memory_.kept.empty()) return; // what it carries is what it began with
             if (renewed) kept.cut = {};
-            const bool cuts =
-                static_cast<float>(beyond) > worth_a_cut * static_cast<float>(memory_.kept.size());
+            const bool cuts = may_cut_ && static_cast<float>(beyond) >
+                                              worth_a_cut * static_cast<float>(memory_.kept.size());
             if (cuts) kept.cut = memory_.cuts[run.cuts][box_], tape.cut = true;
             for (std::size_t k = memory_.kept.size(); k-- > 0;) {
                 const std::uint32_t i = memory_.kept[k];
