@@ -182,8 +182,8 @@ template <bool is_smooth>
             float same[eight], fresh[eight];
             FATHOM_INDEPENDENT
             for (std::size_t j = 0; j < lanes; ++j) {
-                same[j] = (lo[j] - a_hi[j] >= k.hi) & (a_hi[j] < lo[j]) ? -1.0f : 1.0f;
-                fresh[j] = (a_lo[j] - hi[j] >= k.hi) & (hi[j] < a_lo[j]) ? -1.0f : 1.0f;
+                same[j] = ((lo[j] - a_hi[j] >= k.hi) & (a_hi[j] < lo[j])) ? -1.0f : 1.0f;
+                fresh[j] = ((a_lo[j] - hi[j] >= k.hi) & (hi[j] < a_lo[j])) ? -1.0f : 1.0f;
                 const Range a{a_lo[j], a_hi[j]}, b{lo[j], hi[j]};
                 const Range joined =
                     is_smooth ? range::BlendSmoothRow::run(a, b, k) : range::MinFRow::run(a, b);
