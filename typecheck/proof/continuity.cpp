@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -34,7 +35,21 @@ NodeId rebuilt(Graph &graph, const Polynomial &polynomial) {
 
 std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth = 0);
 
-// |a|*|a| is a*a.
+// A factor that stands twice in a product, and what its square is: |a|^2 = a^2, cos^2 = 1 - sin^2.
+std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Polynomial &b);
+bool has_square(const Graph &graph, NodeId factor) {
+    return graph[factor].op == Op::Abs || graph[factor].op == Op::Cos;
+}
+std::optional<Polynomial> squared(Graph &graph, NodeId factor) {
+    const NodeId x = graph.arg(factor, 0);
+    if (graph[factor].op == Op::Cos) {
+        const NodeId sine = graph.make(Op::Sin, {x});
+        return Polynomial{{{}, 1.0}, {{sine, sine}, -1.0}};
+    }
+    const auto inner = polynomial(graph, x);
+    return inner ? multiply(graph, *inner, *inner) : std::nullopt;
+}
+
 std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Polynomial &b) {
     Polynomial out;
     for (const auto &[m, x] : a)
@@ -42,17 +57,16 @@ std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Poly
             Monomial product = m;
             product.insert(product.end(), n.begin(), n.end());
             std::sort(product.begin(), product.end());
-            auto twice =
+            const auto twice =
                 std::adjacent_find(product.begin(), product.end(), [&](NodeId u, NodeId v) {
-                    return u == v && graph[u].op == Op::Abs;
+                    return u == v && has_square(graph, u);
                 });
             if (twice != product.end()) {
-                auto inner = polynomial(graph, graph.arg(*twice, 0));
+                const NodeId factor = *twice;
                 product.erase(twice, twice + 2);
-                if (!inner) return {};
-                auto squared = multiply(graph, *inner, *inner);
-                if (!squared) return {};
-                auto whole = multiply(graph, *squared, Polynomial{{product, x * y}});
+                const auto square = squared(graph, factor);
+                if (!square) return {};
+                auto whole = multiply(graph, *square, Polynomial{{product, x * y}});
                 if (!whole) return {};
                 for (const auto &[k, z] : *whole) out[k] += z;
             } else {
@@ -246,6 +260,21 @@ NodeId component_of(Graph &graph, NodeId vector, int i) {
 NodeId in_one_form(Graph &graph, NodeId scalar) {
     auto p = polynomial(graph, scalar);
     return p ? rebuilt(graph, *p) : scalar;
+}
+
+NodeId without_turns(Graph &graph, NodeId angle) {
+    auto sum = polynomial(graph, angle);
+    if (!sum) return angle;
+    constexpr double turn = 2 * std::numbers::pi, grain = 4294967296.0;
+    for (auto &[factors, c] : *sum) {
+        const bool whole = std::all_of(factors.begin(), factors.end(), [&](NodeId f) {
+            return graph[f].op == Op::ToFloat && graph[graph.arg(f, 0)].type == ir::Type::Int;
+        });
+        if (!whole || std::fabs(c) > 1e6) continue;
+        c = std::round((c - turn * std::round(c / turn)) * grain) / grain;
+        if (c == -std::round(turn / 2 * grain) / grain) c = -c; // half a turn, either way
+    }
+    return rebuilt(graph, *sum);
 }
 
 bool keeps_length(Graph &graph, NodeId q) {

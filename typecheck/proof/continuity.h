@@ -16,6 +16,9 @@ bool arms_agree(ir::Graph &graph, ir::NodeId condition, ir::NodeId a, ir::NodeId
 ir::NodeId component_of(ir::Graph &graph, ir::NodeId vector, int i);
 // The same number as a sum of products: equal sums become one node.
 ir::NodeId in_one_form(ir::Graph &graph, ir::NodeId scalar);
+// The same angle in one form, with whole turns left out: of a + 3 pi, a + pi; of 2 pi n with n
+// whole, 0. Numbers are rounded to 2^-32 on the way, so this is for comparing.
+ir::NodeId without_turns(ir::Graph &graph, ir::NodeId angle);
 // |q| = |p| for all p, as of reflections: proved as polynomials.
 bool keeps_length(ir::Graph &graph, ir::NodeId q);
 

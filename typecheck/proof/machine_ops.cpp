@@ -516,6 +516,8 @@ void Step::run() {
             Interval whole = (x - lo) / width, t = min(max(whole, Interval(0.0)), Interval(1.0));
             auto curve = [](double u) { return u * u * (3 - 2 * u); };
             Interval v = meet(Interval(0, 1), ir::outward(curve(t.lo), curve(t.hi), 4));
+            if (whole.hi <= 0 || whole.lo >= 1)
+                v = whole.hi <= 0 ? 0.0 : 1.0; // and not by rounding
             // 6t(1-t): least at the end further from 1/2, 3/2 at 1/2
             auto slope = [](double u) { return 6 * u * (1 - u); };
             Interval d = ir::outward(std::min(slope(t.lo), slope(t.hi)),

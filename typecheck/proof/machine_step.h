@@ -41,6 +41,7 @@ struct Step {
     double bend() const; // machine_bend.cpp
 
     // -- what mixes components (machine_vectors.cpp)
+    double together() const;
     void splat();
     void make();
     void swizzle();

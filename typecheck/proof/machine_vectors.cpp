@@ -17,12 +17,28 @@ void Step::splat() {
     if (machine.norm_[out] != infinity) machine.cause_[out] = machine.cause_[in.args[0]];
 }
 
+// Of all arguments together: those that depend on the same coordinates by the triangle inequality,
+// the greatest of those that do not (supports.h).
+double Step::together() const {
+    double groups[4] = {0, 0, 0, 0};
+    for (int a = 0; a < int(in.args.size()); ++a) {
+        double &group = groups[a < 16 ? in.groups >> (2 * a) & 3 : 0];
+        group = up(std::hypot(group, norm(a)), 4);
+    }
+    return std::max({groups[0], groups[1], groups[2], groups[3]});
+}
+
 void Step::make() {
     int c = 0;
-    double most = 0;
+    double most = together();
+    if (!in.turned.empty() && most != infinity) { // M v + c: |M| |J_v|, where M and c are still
+        bool still = true;
+        for (std::size_t i = 1; i < in.turned.size(); ++i)
+            still = still && machine.norm_[in.turned[i]] == 0;
+        if (still) most = std::min(most, up(times(in.norm, machine.norm_[in.turned[0]]), 4));
+    }
     NodeId wave;
     for (int a = 0; a < int(in.args.size()); ++a) {
-        most = up(std::hypot(most, norm(a)), 4);
         for (int k = 0; k < size(a) && c < n; ++k, ++c) {
             set(c, value(a, k), grad(a, k), odd(a, k));
             if (odd(a, k)) wave = machine.cause_[in.args[static_cast<std::size_t>(a)]];
@@ -106,9 +122,8 @@ void Step::length() {
     Interval length;
     Row columns[16];
     int rows = 0;
-    double norms = 0;
+    double norms = together();
     for (int a = 0; a < int(in.args.size()); ++a) {
-        norms = up(std::hypot(norms, norm(a)), 4);
         for (int c = 0; c < size(a); ++c) {
             length += square(value(a, c));
             if (rows < 16)
@@ -248,7 +263,7 @@ void Step::multiply() {
             up(times(matrix_norm(b), machine.norm_[a]) + times(matrix_norm(a), machine.norm_[b]));
     else {
         Slot m = left ? a : b, v = left ? b : a;
-        rule = up(times(matrix_norm(m), machine.norm_[v]) +
+        rule = up(times(std::min(matrix_norm(m), in.norm), machine.norm_[v]) +
                   times(machine.box_length(v).hi, machine.norm_[m]));
     }
     finish(rule, any_odd);

@@ -287,6 +287,11 @@ Known Prover::know_lerp(ShapeId id) {
         sup = up(sup + weight.lipschitz * gap * options.rules[Rule::LerpVarying]);
     }
     if (varies && !std::isfinite(weight.lipschitz)) k.failed = true;
+    if (!std::isfinite(sup) && !k.failed && !a.failed && !b.failed) {
+        if (Diagnostic *d = report(id, Code::NeedsRegion, "the blend's weight grows without limit"))
+            d->help("write `.within(…)` after it, or hold the weight, as in `saturate(…)`");
+        k.failed = true;
+    }
     if (k.failed)
         fail(k);
     else

@@ -122,6 +122,10 @@ struct Canonical {
                 return zero(node.type);
             break;
         }
+        case Op::Sin:
+        case Op::Cos:
+            if (node.type == ir::Type::Float) args[0] = without_turns(graph, args[0]);
+            break;
         case Op::Length: {
             NodeId sum = graph.number(0);
             for (int i = 0; i < ir::components(graph[args[0]].type); ++i) {

@@ -3,6 +3,8 @@
 
 #include "typecheck/proof/continuity.h"
 #include "typecheck/proof/steps.h"
+#include "typecheck/proof/supports.h"
+#include "typecheck/proof/turned.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +29,8 @@ struct Flattener {
     std::vector<bool> varies; // by slot
     std::size_t count = 0;
     std::unordered_set<NodeId> cancelling; // steps
+    std::unordered_set<NodeId> known_turned;
+    Supports supports{tape};
 
     explicit Flattener(Flattening &c) : context(c), graph(c.graph) {}
 
@@ -44,6 +48,9 @@ struct Flattener {
         for (Slot s : instruction.args) instruction.varies = instruction.varies || varies[s];
         instruction.out = fresh(instruction.type, instruction.varies);
         Slot out = instruction.out;
+        if (instruction.op == Op::Make || instruction.form == Form::Norm)
+            instruction.groups = supports.groups(instruction.args);
+        supports.follow(instruction);
         bool hoisted = !scope.loop && !instruction.varies;
         (hoisted ? tape.once : *scope.block).push_back(std::move(instruction));
         return out;
@@ -229,6 +236,31 @@ struct Flattener {
         }
         return {};
     }
+    // A Make, or a matrix times a vector, seen as another vector turned.
+    Slot emit_turned(Scope &scope, NodeId id, Instruction out) {
+        const auto may_be = [&](NodeId v) { return varies[slot(scope, v)]; };
+        const bool is_make = out.op == Op::Make;
+        const auto t = ir::is_vector(out.type) ? turned(graph, id, may_be, known_turned)
+                                               : std::optional<Turned>();
+        if (!t) return emit(scope, out);
+        bool still = true;
+        std::vector<Slot> constants;
+        for (NodeId c : t->constants) {
+            constants.push_back(slot(scope, c));
+            still = still && !varies[constants.back()];
+        }
+        const Slot of = slot(scope, t->of);
+        if (!still && !scope.loop) return emit(scope, out);
+        if (is_make) {
+            out.norm = t->norm;
+            out.turned = {of};
+            out.turned.insert(out.turned.end(), constants.begin(), constants.end());
+        }
+        known_turned.insert(id);
+        const Slot made = emit(scope, out);
+        if (still && t->whole && supports.is_base(of)) supports.make_base(made);
+        return made;
+    }
     // x of max(x, 0), or of min(x, 0).
     std::optional<NodeId> above_zero(Op op, NodeId id) {
         if (graph[id].op != op) return {};
@@ -330,6 +362,16 @@ struct Flattener {
             }
             break;
         }
+        case Op::Make:
+        case Op::MatMul: {
+            if (out.op == Op::MatMul && ir::is_vector(node.type))
+                for (int i = 0; i < 2; ++i)
+                    if (const NodeId m = graph.arg(id, i); ir::is_matrix(graph[m].type))
+                        out.norm = matrix_norm(graph, m).value_or(out.norm);
+            for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
+                out.args.push_back(slot(scope, a));
+            return emit_turned(scope, id, std::move(out));
+        }
         case Op::Select: {
             NodeId condition = graph.arg(id, 0);
             for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
@@ -395,10 +437,8 @@ struct Flattener {
         case Op::ToFloat:
         case Op::ToInt:
         case Op::Splat:
-        case Op::Make:
         case Op::Swizzle:
         case Op::Column:
-        case Op::MatMul:
         case Op::Transpose:
         case Op::TableRead:
         case Op::Hash:

@@ -39,6 +39,11 @@ struct Instruction {
     Slot out = 0;
     std::vector<Slot> args;
     std::uint32_t payload = 0; // the op's; of a Loop: index into Tape::loops
+    std::uint32_t groups = 0;  // of a Make or Norm: Supports::groups of its arguments
+    // Of a Make that is M v + c (turned.h): v, then what M and c are made of.
+    std::vector<Slot> turned;
+    // … and of a matrix product: a bound of the matrix' norm, whatever its numbers are.
+    double norm = ir::rounding::infinity;
     NodeId node;
 };
 

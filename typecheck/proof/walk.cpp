@@ -359,7 +359,14 @@ void Prover::finish(ShapeId id, Known &k) {
             if (i != a) section *= k.fact.bounds.hi[i] - k.fact.bounds.lo[i];
         if (std::numbers::pi * k.fact.round * k.fact.round >= section) k.fact.round = infinity;
     }
-    if (k.failed || !std::isfinite(k.fact.lipschitz_sup)) return;
+    if (k.failed) return;
+    if (!std::isfinite(k.fact.lipschitz_sup)) { // no rule gave a bound, and none said so
+        if (Diagnostic *d = report(id, Code::NeedsRegion,
+                                   operation_name(scene, id) + " here has no bound on its slope"))
+            d->help("write `.within(…)` after it, with a region that holds what you want to see, "
+                    "as in `.within(ball(3))`");
+        return fail(k);
+    }
     double below = 1;
     for (ShapeId c : shape.children) below = std::max(below, of(c).fact.lipschitz_sup);
     if (!shape.children.empty() && std::isfinite(below) && k.fact.lipschitz_sup > 4 * below &&

@@ -1,1 +1,1 @@
-set(libs fathom_driver fathom_glsl)
+set(libs fathom_driver fathom_glsl fathom_cpu)

@@ -1,0 +1,32 @@
+// Vectors that are turned: each component a sum of another vector's components times numbers, as
+// rotations by any angle are, however they are written. Decided on expressions. Knows nothing of
+// cells or slopes.
+#pragma once
+
+#include "ir/graph.h"
+
+#include <functional>
+#include <optional>
+#include <unordered_set>
+#include <vector>
+
+namespace fathom::proof {
+
+struct Turned {
+    ir::NodeId of;                     // the vector v of M v + c
+    double norm = 1;                   // a bound of M's spectral norm
+    bool whole = false;                // M's rows are of one length and at right angles, as many as
+                                       // v has components
+    std::vector<ir::NodeId> constants; // what M and c are made of: holds where none of these varies
+};
+
+// `vector` as M v + c; nothing where that is not seen. `varies` says which vectors may be v;
+// `turned` holds those already known to be: they are not looked into.
+std::optional<Turned> turned(ir::Graph &graph, ir::NodeId vector,
+                             const std::function<bool(ir::NodeId)> &varies,
+                             const std::unordered_set<ir::NodeId> &turned);
+
+// The same for a matrix alone: a bound of its spectral norm, from M M^T.
+std::optional<double> matrix_norm(ir::Graph &graph, ir::NodeId matrix);
+
+} // namespace fathom::proof
