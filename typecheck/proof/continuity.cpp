@@ -277,6 +277,24 @@ NodeId without_turns(Graph &graph, NodeId angle) {
     return rebuilt(graph, *sum);
 }
 
+std::optional<double> number_of(Graph &graph, NodeId scalar) {
+    const auto sum = polynomial(graph, scalar);
+    if (!sum) return {};
+    double number = 0, rest = 0;
+    for (const auto &[factors, c] : *sum) {
+        const bool small = std::all_of(factors.begin(), factors.end(), [&](NodeId f) {
+            return graph[f].op == Op::Sin || graph[f].op == Op::Cos;
+        });
+        if (!small) {
+            if (c == 0) continue;
+            return {};
+        }
+        (factors.empty() ? number : rest) += factors.empty() ? c : std::fabs(c);
+    }
+    if (rest > rounding * std::max(std::fabs(number), 1e-3)) return {};
+    return number < 0 ? number - rest : number + rest;
+}
+
 bool keeps_length(Graph &graph, NodeId q) {
     NodeId p = graph.point(graph[q].type);
     Polynomial sum;
@@ -300,7 +318,14 @@ bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b) {
     case Op::Less:
     case Op::LessEqual: {
         NodeId u = graph.arg(condition, 0), v = graph.arg(condition, 1);
-        return graph[u].type == ir::Type::Float && agree_where_equal(graph, u, v, a, b);
+        if (graph[u].type != ir::Type::Float) return false;
+        if (agree_where_equal(graph, u, v, a, b)) return true;
+        if (!ir::is_vector(graph[a].type)) return false;
+        for (int i = 0; i < ir::components(graph[a].type); ++i)
+            if (!agree_where_equal(graph, u, v, component_of(graph, a, i),
+                                   component_of(graph, b, i)))
+                return false;
+        return true;
     }
     case Op::Not: return arms_agree(graph, graph.arg(condition, 0), b, a);
     case Op::And:

@@ -258,6 +258,13 @@ void Machine::finish(const Instruction &instruction, double rule, bool odd_used)
         return;
     }
     int n = tape_.size[s];
+    if (!instruction.turned.empty() && rule < infinity) { // M v + c: |M| |J_v|, M and c being still
+        bool still = true;
+        for (std::size_t i = 1; i < instruction.turned.size(); ++i)
+            still = still && norm_[instruction.turned[i]] == 0;
+        if (still)
+            rule = std::min(rule, up(times(instruction.norm, norm_[instruction.turned[0]]), 4));
+    }
     double box = 0;
     if (rule > 0) box = spectral_norm(&grad_[at], n);
     norm_[s] = std::min(std::isnan(rule) ? infinity : rule, box);

@@ -58,6 +58,8 @@ double Step::bend() const {
     case Form::Sinc:
     case Form::Corner:
     case Form::OddPower:
+    case Form::Smooth:
+    case Form::LogSum:
     case Form::Joined:
     case Form::Loop: return infinity;
     case Form::Plain: break;

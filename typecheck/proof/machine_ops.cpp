@@ -104,6 +104,8 @@ void Step::run() {
     }
     if (in.form == Form::Norm) return length();
     if (in.form == Form::Corner) return corner();
+    if (in.form == Form::Smooth) return smooth();
+    if (in.form == Form::LogSum) return log_sum();
 
     switch (in.op) {
     case Op::Const: {
@@ -378,6 +380,10 @@ void Step::run() {
         bool varies = norm(0) > 0 || norm(1) > 0;
         bool cut = x.lo <= 0 && y.contains(0);
         Interval v = pi;
+        if (cut && in.cancels && x.hi < 0 && y.lo >= 0) // the cut from above: up to pi
+            v = meet(pi, ir::outward(std::atan2(y.hi, x.hi), pi.hi, ir::rounding::library));
+        else if (cut && in.cancels && x.hi < 0 && y.hi <= 0) // and from below, its limit there
+            v = meet(pi, ir::outward(pi.lo, std::atan2(y.lo, x.hi), ir::rounding::library));
         if (!cut) {
             double a = std::atan2(y.lo, x.lo), b = std::atan2(y.lo, x.hi),
                    c = std::atan2(y.hi, x.lo), d = std::atan2(y.hi, x.hi);

@@ -49,6 +49,8 @@ struct Step {
     void transpose();
     void length();
     void corner();
+    void smooth();
+    void log_sum();
     void dot();
     void cross();
     void normalize();

@@ -30,13 +30,7 @@ double Step::together() const {
 
 void Step::make() {
     int c = 0;
-    double most = together();
-    if (!in.turned.empty() && most != infinity) { // M v + c: |M| |J_v|, where M and c are still
-        bool still = true;
-        for (std::size_t i = 1; i < in.turned.size(); ++i)
-            still = still && machine.norm_[in.turned[i]] == 0;
-        if (still) most = std::min(most, up(times(in.norm, machine.norm_[in.turned[0]]), 4));
-    }
+    const double most = together();
     NodeId wave;
     for (int a = 0; a < int(in.args.size()); ++a) {
         for (int k = 0; k < size(a) && c < n; ++k, ++c) {
@@ -152,6 +146,43 @@ void Step::length() {
     }
     set(0, length, g);
     finish(norms, false);
+}
+
+// A mean of the two gradients, or the gradient of the one that is less (greater) by k.
+void Step::smooth() {
+    const Interval x = value(0, 0), y = value(1, 0), k = value(2, 0);
+    if ((in.payload & 2) != 0 && k.contains(0)) return fail(Trouble::Singular);
+    const double reach = k.magnitude();
+    const bool may_be_less = k.lo < 0 ? (in.payload & 1) != 0 || k.hi > 0 : (in.payload & 1) == 0,
+               may_be_greater =
+                   k.lo < 0 ? (in.payload & 1) == 0 || k.hi > 0 : (in.payload & 1) != 0;
+    if (may_be_less != may_be_greater)
+        for (int a = 0; a < 2; ++a) { // decided for one: it is all there is
+            const Interval own = value(a, 0), other = value(1 - a, 0);
+            const double ahead = may_be_less ? other.lo - own.hi : own.lo - other.hi;
+            if (!(ahead > reach)) continue;
+            set(0, own, grad(a, 0));
+            return finish(norm(a), any_odd);
+        }
+    Interval v = may_be_less ? min(x, y) + Interval(-reach / 4, 0) : max(x, y);
+    if (may_be_greater) v = hull(v, max(x, y) + Interval(0, reach / 4));
+    set(0, v, joined(grad(0, 0), grad(1, 0)));
+    finish(std::max(norm(0), norm(1)), any_odd);
+}
+
+// Between the greatest and log(n) more; a mean of the gradients.
+void Step::log_sum() {
+    Interval most = value(0, 0);
+    Row g = grad(0, 0);
+    double norms = norm(0);
+    for (int a = 1; a < int(in.args.size()); ++a) {
+        most = max(most, value(a, 0));
+        g = joined(g, grad(a, 0));
+        norms = std::max(norms, norm(a));
+    }
+    const double terms = double(in.args.size());
+    set(0, most + Interval(0, up(in.op == Op::Log ? std::log(terms) : std::log2(terms), 4)), g);
+    finish(norms, any_odd);
 }
 
 void Step::dot() {

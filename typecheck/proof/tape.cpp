@@ -2,6 +2,8 @@
 #include "typecheck/proof/tape.h"
 
 #include "typecheck/proof/continuity.h"
+#include "typecheck/proof/segments.h"
+#include "typecheck/proof/smooth.h"
 #include "typecheck/proof/steps.h"
 #include "typecheck/proof/supports.h"
 #include "typecheck/proof/turned.h"
@@ -236,10 +238,15 @@ struct Flattener {
         }
         return {};
     }
-    // A Make, or a matrix times a vector, seen as another vector turned.
+    // A vector that may be another one turned, or moved along a direction.
     Slot emit_turned(Scope &scope, NodeId id, Instruction out) {
+        if (const auto way = moved_along(graph, id)) {
+            out.norm = way->norm;
+            out.turned = {slot(scope, way->v), slot(scope, way->b)};
+            return emit(scope, out);
+        }
         const auto may_be = [&](NodeId v) { return varies[slot(scope, v)]; };
-        const bool is_make = out.op == Op::Make;
+        const bool is_matrix = out.op == Op::MatMul; // whose rule has the matrix' norm
         const auto t = ir::is_vector(out.type) ? turned(graph, id, may_be, known_turned)
                                                : std::optional<Turned>();
         if (!t) return emit(scope, out);
@@ -251,7 +258,7 @@ struct Flattener {
         }
         const Slot of = slot(scope, t->of);
         if (!still && !scope.loop) return emit(scope, out);
-        if (is_make) {
+        if (!is_matrix) {
             out.norm = t->norm;
             out.turned = {of};
             out.turned.insert(out.turned.end(), constants.begin(), constants.end());
@@ -312,6 +319,18 @@ struct Flattener {
                     out.cancels = out.cancels || cancelling.contains(arg);
                 return emit(scope, out);
             }
+            if (auto smooth = smooth_extremum(graph, id);
+                smooth && !varies[slot(scope, smooth->k)]) {
+                out.form = Form::Smooth;
+                out.payload = (smooth->greater ? 1u : 0u) + (smooth->divides ? 2u : 0u);
+                out.args = {slot(scope, smooth->x), slot(scope, smooth->y), slot(scope, smooth->k)};
+                return emit(scope, out);
+            }
+            if (ir::is_vector(node.type)) {
+                for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
+                    out.args.push_back(slot(scope, a));
+                return emit_turned(scope, id, std::move(out));
+            }
             if (auto v = corner(id)) {
                 out.form = Form::Corner;
                 out.args = {slot(scope, *v)};
@@ -323,6 +342,14 @@ struct Flattener {
             if (auto parts = norm_parts(id)) {
                 out.form = Form::Norm;
                 for (NodeId part : *parts) out.args.push_back(slot(scope, part));
+                return emit(scope, out);
+            }
+            break;
+        case Op::Log:
+        case Op::Log2:
+            if (const auto terms = log_of_exponentials(graph, id); !terms.empty()) {
+                out.form = Form::LogSum;
+                for (NodeId term : terms) out.args.push_back(slot(scope, term));
                 return emit(scope, out);
             }
             break;
@@ -410,8 +437,6 @@ struct Flattener {
         case Op::InverseSqrt:
         case Op::Exp:
         case Op::Exp2:
-        case Op::Log:
-        case Op::Log2:
         case Op::Sin:
         case Op::Cos:
         case Op::Tan:

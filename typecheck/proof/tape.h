@@ -24,6 +24,8 @@ enum class Form : std::uint8_t {
     Corner,   // |max(v, 0)| + min(greatest of v, 0): the distance to a corner, 1-Lipschitz in v
     Square,   // x*x, never negative
     OddPower, // x*|x|^c, c > 0, whose slope (c + 1)*|x|^c is finite at 0 where that of |x|^c is not
+    Smooth,   // smooth_extremum: of x, y, k; payload: 1 for the greater, + 2 where k divides
+    LogSum,   // log(exp(a) + exp(b) + …)
     Joined,   // a Select whose arms were proved to agree on the border
     Loop,
 };
@@ -40,7 +42,7 @@ struct Instruction {
     std::vector<Slot> args;
     std::uint32_t payload = 0; // the op's; of a Loop: index into Tape::loops
     std::uint32_t groups = 0;  // of a Make or Norm: Supports::groups of its arguments
-    // Of a Make that is M v + c (turned.h): v, then what M and c are made of.
+    // Of a vector that is M v + c (turned.h, segments.h): v, then what M and c are made of.
     std::vector<Slot> turned;
     // … and of a matrix product: a bound of the matrix' norm, whatever its numbers are.
     double norm = ir::rounding::infinity;

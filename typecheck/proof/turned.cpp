@@ -6,6 +6,7 @@
 
 #include "ir/interval.h"
 #include "typecheck/proof/continuity.h"
+#include "typecheck/proof/segments.h"
 
 #include <algorithm>
 #include <array>
@@ -35,10 +36,12 @@ struct Reader {
     Graph &graph;
     const std::function<bool(NodeId)> *varies = nullptr;
     const std::unordered_set<NodeId> *turned = nullptr;
-    int size = 0; // of the vector that is read: smaller ones are looked into
+    int size = 0;         // of the vector that is read: smaller ones are looked into
+    bool shallow = false; // sums and products of vectors are not looked into
     NodeId of{};
     std::vector<NodeId> constants{};
     std::unordered_map<NodeId, NodeId> calls{};
+    std::unordered_map<NodeId, bool> bends{};
     int steps = 0;
     bool failed = false;
 
@@ -60,6 +63,13 @@ struct Reader {
         return id;
     }
 
+    // What bends on its way is no M v + c (segments.h), but no steeper than v: it may be the base.
+    bool moved(NodeId id) {
+        auto [known, is_new] = bends.emplace(id, false);
+        if (is_new) known->second = moved_along(graph, id).has_value();
+        return known->second;
+    }
+
     // Entry i of a vector or, column by column, of a matrix, as a scalar; invalid where a matrix is
     // not made of such.
     NodeId part(NodeId id, int i) {
@@ -69,8 +79,13 @@ struct Reader {
         if (!ir::is_matrix(whole.type) && turned && turned->contains(id) &&
             ir::components(whole.type) >= size)
             return graph.component(id, i);
+        const NodeId called = id;
         id = entered(id);
         const ir::Node node = graph[id];
+        if (ir::is_vector(node.type) && node.op == Op::Sub && moved(id))
+            return graph.component(called, i);
+        if (shallow && ir::is_vector(node.type) && (by_component(node.op) || node.op == Op::Cross))
+            return graph.component(called, i);
         if (node.op == Op::Splat) return graph.arg(id, 0);
         if (node.op == Op::Swizzle)
             return part(graph.arg(id, 0), ir::swizzle_component(node.payload, i));
@@ -87,6 +102,13 @@ struct Reader {
             for (NodeId a : args)
                 if (!a) return {};
             return graph.make(node.op, ir::Type::Float, args);
+        }
+        if (node.op == Op::Cross) {
+            const NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
+            const int j = (i + 1) % 3, k = (i + 2) % 3;
+            const NodeId aj = part(a, j), ak = part(a, k), bj = part(b, j), bk = part(b, k);
+            if (failed) return {};
+            return graph.sub(graph.mul(aj, bk), graph.mul(ak, bj));
         }
         if (node.op == Op::MatMul && ir::is_vector(node.type)) {
             const NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
@@ -174,6 +196,15 @@ struct Reader {
             if (sum.rest) out.rest = id;
             return out;
         }
+        case Op::Dot: {
+            NodeId sum;
+            for (int i = 0; i < ir::components(graph[graph.arg(id, 0)].type); ++i) {
+                const NodeId x = part(graph.arg(id, 0), i), y = part(graph.arg(id, 1), i);
+                if (failed) return {};
+                sum = plus(sum, graph.mul(x, y));
+            }
+            return graph[sum].op == Op::Dot ? constant(sum) : read(sum);
+        }
         case Op::Call:
             if (const NodeId inner = entered(id); inner != id) return read(inner);
             break;
@@ -202,7 +233,7 @@ std::optional<Norm> rows_norm(Graph &graph, const std::vector<std::array<NodeId,
             for (std::size_t c = 0; c < 4; ++c)
                 if (rows[i][c] && rows[j][c])
                     product = graph.add(product, graph.mul(rows[i][c], rows[j][c]));
-            const auto entry = graph.as_number(in_one_form(graph, product));
+            const auto entry = number_of(graph, product);
             if (!entry) return {};
             sum += std::fabs(*entry);
             if (i == j)
@@ -222,23 +253,28 @@ std::optional<Norm> rows_norm(Graph &graph, const std::vector<std::array<NodeId,
 std::optional<Turned> turned(Graph &graph, NodeId vector, const std::function<bool(NodeId)> &varies,
                              const std::unordered_set<NodeId> &known) {
     const int n = ir::components(graph[vector].type);
-    Reader reader{graph, &varies, &known, n};
-    std::vector<std::array<NodeId, 4>> rows;
-    for (int i = 0; i < n; ++i) {
-        const NodeId part = reader.part(vector, i);
-        if (!part || reader.failed) return {};
-        rows.push_back(reader.read(part).by);
-        if (reader.failed) return {};
+    std::optional<Turned> found; // where something else may vary, which a loop's values may
+    for (const bool shallow : {false, true}) {
+        Reader reader{graph, &varies, &known, n};
+        std::vector<std::array<NodeId, 4>> rows;
+        reader.shallow = shallow;
+        for (int i = 0; i < n && !reader.failed; ++i) {
+            const NodeId part =
+                shallow && by_component(graph[vector].op) ? NodeId() : reader.part(vector, i);
+            reader.failed = reader.failed || !part;
+            if (!reader.failed) rows.push_back(reader.read(part).by);
+        }
+        if (reader.failed || !reader.of || reader.of == vector) continue;
+        const auto norm = rows_norm(graph, rows);
+        if (!norm) continue;
+        const bool still = std::none_of(reader.constants.begin(), reader.constants.end(), varies);
+        if (still || !found)
+            found = Turned{reader.of, norm->norm,
+                           norm->even && ir::components(graph[reader.of].type) == n,
+                           std::move(reader.constants)};
+        if (still) break;
     }
-    if (!reader.of || reader.of == vector) return {};
-    const auto norm = rows_norm(graph, rows);
-    if (!norm) return {};
-    Turned out;
-    out.of = reader.of;
-    out.norm = norm->norm;
-    out.whole = norm->even && ir::components(graph[reader.of].type) == n;
-    out.constants = std::move(reader.constants);
-    return out;
+    return found;
 }
 
 std::optional<double> matrix_norm(Graph &graph, NodeId matrix) {
