@@ -36,7 +36,8 @@ struct Reader {
     Graph &graph;
     const std::function<bool(NodeId)> *varies = nullptr;
     const std::unordered_set<NodeId> *turned = nullptr;
-    int size = 0;         // of the vector that is read: smaller ones are looked into
+    NodeId self{};        // the vector that is read
+    int size = 0;         // its components: smaller ones are looked into
     bool shallow = false; // sums and products of vectors are not looked into
     NodeId of{};
     std::vector<NodeId> constants{};
@@ -159,6 +160,7 @@ struct Reader {
             if (!x) break;
             if (graph[x].op != Op::Swizzle) return read(x);
             const NodeId vector = graph.arg(x, 0);
+            if (vector == self) break; // not looked into
             if (!(*varies)(vector)) return constant(x);
             if (!of) of = vector;
             if (of != vector) break;
@@ -255,7 +257,7 @@ std::optional<Turned> turned(Graph &graph, NodeId vector, const std::function<bo
     const int n = ir::components(graph[vector].type);
     std::optional<Turned> found; // where something else may vary, which a loop's values may
     for (const bool shallow : {false, true}) {
-        Reader reader{graph, &varies, &known, n};
+        Reader reader{graph, &varies, &known, vector, n};
         std::vector<std::array<NodeId, 4>> rows;
         reader.shallow = shallow;
         for (int i = 0; i < n && !reader.failed; ++i) {
@@ -264,7 +266,7 @@ std::optional<Turned> turned(Graph &graph, NodeId vector, const std::function<bo
             reader.failed = reader.failed || !part;
             if (!reader.failed) rows.push_back(reader.read(part).by);
         }
-        if (reader.failed || !reader.of || reader.of == vector) continue;
+        if (reader.failed || !reader.of) continue;
         const auto norm = rows_norm(graph, rows);
         if (!norm) continue;
         const bool still = std::none_of(reader.constants.begin(), reader.constants.end(), varies);

@@ -81,6 +81,8 @@ TEST_CASE("turning the point by any angle, in any way of writing, costs nothing"
          "let q = p * cos(time) + cross(k, p) * sin(time) + k * dot(k, p) * (1 - cos(time))\n"
          "sd_box(q, [1, 0.5, 0.3])",
          1, 1},
+        // a matrix that is made of the point
+        {"let m = mat3(normalize(p + [4, 0, 0]), Y, Z); length(m * p) - 1", 0.5, 9},
         // not a turn: a shear, a scale, and an angle that varies
         {"length([p.x + 0.5 * p.y, p.y, p.z]) - 1", 1.28, 1.3},
         {"length([2 * p.x, p.y, p.z]) - 1", 2, 2.01},
