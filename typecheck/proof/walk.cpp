@@ -344,6 +344,16 @@ Known Prover::know(ShapeId id) {
 
 void Prover::finish(ShapeId id, Known &k) {
     const Shape &shape = scene.shapes[id];
+    // Each rule says for itself why it has no bound. Whatever comes to no number without saying so
+    // is not marched either: nothing may be proved by a bound that is none.
+    if (!k.failed && !std::isfinite(k.fact.lipschitz_sup)) {
+        if (Diagnostic *d =
+                report(id, Code::LipschitzUnbounded,
+                       "no bound was found for the slope of " + operation_name(scene, id)))
+            d->help("write `.within(…)` after it, with a region that holds what you want to see, "
+                    "as in `.within(ball(3))`, or smaller numbers");
+        fail(k);
+    }
     bool everywhere_valid = everywhere(place(id).box);
     bool deformed = shape.kind == ShapeKind::Displace || shape.kind == ShapeKind::Many ||
                     (shape.kind == ShapeKind::Map &&
