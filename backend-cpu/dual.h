@@ -1,13 +1,18 @@
 // A number with its gradient by the three coordinates of a point: forward-mode differentiation of
-// whatever template is given it. At a kink the derivative is that of the side that the value takes,
-// because choices compare values alone. Derivatives that do not exist (sqrt at 0, say) are 0, so
+// whatever template is given it. At a kink the derivative is that of one side: of what decides a
+// little further along a fixed direction v. So where numbers are equal, choices compare how fast
+// they grow along v, grad . v. All choices of a point agree on that side, so that a field which is
+// smooth although its text is not (numbers sorted by min and max, say) has its true gradient there;
+// chosen one by one, they would mix sides. Derivatives that do not exist (sqrt at 0, say) are 0, so
 // that gradients are always finite there.
 #pragma once
 
 #include "backend-cpu/kernels.h"
+#include "ir/semantics.h"
 
 #include <bit>
 #include <cmath>
+#include <initializer_list>
 #include <type_traits>
 
 namespace fathom::cpu {
@@ -21,10 +26,17 @@ struct Dual {
     constexpr explicit Dual(int v) : value(static_cast<float>(v)) {}
     constexpr Dual(float v, float x, float y, float z) : value(v), dx(x), dy(y), dz(z) {}
 
-    friend bool operator<(Dual a, Dual b) { return a.value < b.value; }
-    friend bool operator>(Dual a, Dual b) { return a.value > b.value; }
-    friend bool operator<=(Dual a, Dual b) { return a.value <= b.value; }
-    friend bool operator>=(Dual a, Dual b) { return a.value >= b.value; }
+    // Along v, whose components have no simple ratio: planes of ties hold it by chance alone.
+    constexpr float growth() const { return 0.7548777f * dx + 0.5698403f * dy + 0.324718f * dz; }
+
+    friend bool operator<(Dual a, Dual b) {
+        return a.value < b.value || (a.value == b.value && a.growth() < b.growth());
+    }
+    friend bool operator>(Dual a, Dual b) { return b < a; }
+    friend bool operator<=(Dual a, Dual b) {
+        return a.value < b.value || (a.value == b.value && a.growth() <= b.growth());
+    }
+    friend bool operator>=(Dual a, Dual b) { return b <= a; }
     friend bool operator==(Dual a, Dual b) { return a.value == b.value; }
     friend bool operator!=(Dual a, Dual b) { return a.value != b.value; }
 };
@@ -59,6 +71,25 @@ inline Dual trunc(Dual a) { return Dual(std::trunc(a.value)); }
 inline Dual sqrt(Dual a) {
     float root = std::sqrt(a.value);
     return chain(root, a, 0.5f / root);
+}
+// The length of a vector is |x| along a line on which but one component x changes, also at 0.
+inline Dual length_at_zero(Dual all, std::initializer_list<Dual> components) {
+    if (all.value != 0) return all;
+    const Dual *only = nullptr;
+    for (const Dual &one : components)
+        if (one.growth() != 0) {
+            if (only) return all;
+            only = &one;
+        }
+    if (!only) return all;
+    return only->growth() < 0 ? -*only : *only;
+}
+inline Dual length(Dual x, Dual y) { return length_at_zero(sqrt(x * x + y * y), {x, y}); }
+inline Dual length(Dual x, Dual y, Dual z) {
+    return length_at_zero(sqrt(x * x + y * y + z * z), {x, y, z});
+}
+inline Dual length(Dual x, Dual y, Dual z, Dual w) {
+    return length_at_zero(sqrt(x * x + y * y + z * z + w * w), {x, y, z, w});
 }
 inline Dual exp(Dual a) {
     float e = std::exp(a.value);
@@ -100,6 +131,15 @@ inline Dual pow(Dual a, Dual b) {
     float by_b = a.value > 0 ? power * std::log(a.value) : 0.0f;
     return chain(power, a, by_a, b, by_b);
 }
+
+} // namespace fathom::cpu
+
+namespace fathom::ir::sem {
+// 0 at 0, whatever the number grows to.
+template <> inline cpu::Dual sign(cpu::Dual x) { return cpu::Dual(sign(x.value)); }
+} // namespace fathom::ir::sem
+
+namespace fathom::cpu {
 
 // How a cell holds it: ints and truths in the first word. Beside the type, where look-up by
 // argument finds them.

@@ -10,11 +10,13 @@
 namespace fathom::cli {
 namespace {
 
-// The field at any number of points: coordinates in, printed lines out.
+// The field at any number of points: coordinates in, printed lines out. The distance is the one
+// that is marched; where the field has a kink the gradient's numbers may have taken its other side.
 class Evaluator {
   public:
     Evaluator(const ir::Scene &scene, double time)
         : program_(cpu::compile(scene, scene.distance)),
+          values_(cpu::make_scratch(program_, cpu::inputs_of(scene, time))),
           scratch_(cpu::make_gradient_scratch(program_, cpu::inputs_of(scene, time))) {}
 
     void add(const std::array<double, 3> &point) {
@@ -31,14 +33,16 @@ class Evaluator {
             out[i] = out_[i].data();
         }
         cpu::evaluate_gradient(program_, scratch_, in.data(), out.data(), count);
+        cpu::evaluate(program_, values_, in.data(), out.data(), count); // the first of the four
         for (std::size_t k = 0; k < count; ++k)
-            terminal.put(fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", out_[0][k], out_[1][k],
-                                     out_[2][k], out_[3][k]));
+            terminal.put(fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", out_[0][k] + 0.0f,
+                                     out_[1][k] + 0.0f, out_[2][k] + 0.0f, out_[3][k] + 0.0f));
         for (std::vector<float> &values : in_) values.clear();
     }
 
   private:
     cpu::Program program_;
+    cpu::Scratch values_;
     cpu::GradientScratch scratch_;
     std::array<std::vector<float>, 3> in_;
     std::array<std::vector<float>, 4> out_;
@@ -108,6 +112,8 @@ Exit run(const EvalCommand &command, Terminal &terminal) {
         driver::compile_file(command.scene.file, compile_options(command.scene));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
+    if (!in_proved_time(compilation.scene, command.time, command.time, terminal))
+        return usage_error;
     Evaluator evaluator(compilation.scene, command.time);
     for (const std::array<double, 3> &point : command.at) evaluator.add(point);
     evaluator.print(terminal);
