@@ -80,6 +80,7 @@ const params = $PARAMS;
 const view = {target: $TARGET, back: $BACK, focus: $FOCUS, extent: $EXTENT, orthographic: $ORTHOGRAPHIC};
 const sun = $SUN;
 const animated = $ANIMATED;
+const seconds = $SECONDS; // for which the proof holds: then the time begins anew
 const fragment = $FRAGMENT;
 )";
 
@@ -142,7 +143,7 @@ function draw(now) {
   set("fathom_orthographic", "int", [view.orthographic ? 1 : 0]);
   set("fathom_sun", "vec3", sun);
   set("fathom_mode", "int", [0]);
-  set("fathom_time", "float", [now / 1000]);
+  set("fathom_time", "float", [now / 1000 % seconds]);
   for (const p of params) set(p.name, p.type, p.value);
   gl.drawArrays(gl.TRIANGLES, 0, 3);
 }
@@ -229,6 +230,7 @@ std::string html_page(const ir::Scene &scene, const Options &options,
                                                                        1) != std::string::npos
                                           ? "true"
                                           : "false"},
+                         {"SECONDS", format_shortest(scene.render.time_end)},
                          {"FRAGMENT", script_string(fragment)}});
     return head + page_tail;
 }

@@ -4,6 +4,7 @@
 #include "cli/command.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace fathom::cli {
@@ -142,6 +143,20 @@ void add_size(CLI::App *app, int &width, int &height) {
         ->type_name("WxH");
 }
 
+void add_time(CLI::App *app, double &time, const std::string &help) {
+    option(
+        app, "--time",
+        [&time](const std::string &word) {
+            const std::optional<double> number = parse_number(word);
+            if (!number || !std::isfinite(*number))
+                return fmt::format("wants seconds, as 2.5, not `{}`", word);
+            time = *number;
+            return std::string();
+        },
+        help)
+        ->type_name("T");
+}
+
 // The help says in words what is allowed, so that CLI11 need not add it in its own.
 CLI::Validator quiet(CLI::Validator validator) { return validator.description(""); }
 
@@ -235,8 +250,7 @@ struct Reader {
                         {{"auto", Backend::Auto}, {"gl", Backend::Gl}, {"cpu", Backend::Cpu}},
                         "gl, cpu, or auto: gl where a context can be had")
             ->type_name("WHICH");
-        sub->add_option("--time", render.time, "seconds; with --frames, when frame 0 is")
-            ->type_name("T");
+        add_time(sub, render.time, "seconds; with --frames, when frame 0 is");
         option(
             sub, "--frames",
             [this](const std::string &word) {
@@ -275,7 +289,7 @@ struct Reader {
             },
             "`-`: one `X Y Z` a line on standard input")
             ->type_name("-");
-        sub->add_option("--time", eval.time, "seconds")->type_name("T");
+        add_time(sub, eval.time, "seconds");
 
         sub = command("import", "turn a YAML save file into the language", import);
         sub->add_option("IN.yaml", import.file, "the save file, `-` for standard input")

@@ -220,16 +220,21 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
         driver::compile_file(command.scene.file, compile_options(command.scene));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
+    const std::pair<int, int> frames = command.frames.value_or(std::pair(0, 1));
+    const int first = frames.first, last = frames.second;
+    const auto time_of = [&](int frame) {
+        return command.time + (command.frames ? frame / command.frame_rate : 0);
+    };
+    if (!in_proved_time(compilation.scene, time_of(first), time_of(last - 1), terminal))
+        return usage_error;
     Painter painter;
     if (command.backend != Backend::Cpu) exit = prepare_gl(painter, compilation, command, terminal);
     if (exit != done) return exit;
 
-    const std::pair<int, int> frames = command.frames.value_or(std::pair(0, 1));
-    const int first = frames.first, last = frames.second;
     const Interrupts interrupts;
     for (int frame = first; frame < last; ++frame) {
         std::string out = command.frames ? frame_name(command.out, frame) : command.out;
-        double time = command.time + (command.frames ? frame / command.frame_rate : 0);
+        const double time = time_of(frame);
         std::string status; // what is worth knowing of how it was drawn
         std::optional<Picture> picture = paint(
             painter, compilation.scene, command, time,

@@ -1,5 +1,6 @@
 #include "cli/terminal.h"
 
+#include "base/text.h"
 #include "driver/watch.h"
 
 #include <algorithm>
@@ -121,6 +122,16 @@ Exit report(const driver::Compilation &compilation, const SceneArguments &scene,
     for (const std::string &error : compilation.usage_errors) terminal.say("fathom: " + error);
     if (compilation.diagnostics.has_errors()) return scene_error;
     return compilation.usage_errors.empty() ? done : usage_error;
+}
+
+bool in_proved_time(const ir::Scene &scene, double first, double last, Terminal &terminal) {
+    const double end = scene.render.time_end;
+    if (first >= 0 && last <= end) return true;
+    if (!scene.graph.reads(scene.graph.function(scene.distance).result).time) return true;
+    terminal.say(fmt::format("fathom: --time {}: this scene is proved from 0 to {} seconds; "
+                             "`render(time: …)` in it says to which time",
+                             format_shortest(first < 0 ? first : last), format_shortest(end)));
+    return false;
 }
 
 Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal) {

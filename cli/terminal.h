@@ -46,6 +46,9 @@ driver::CompileOptions compile_options(const SceneArguments &scene);
 // command ends.
 Exit report(const driver::Compilation &compilation, const SceneArguments &scene,
             Terminal &terminal);
+// What is proved of a scene that moves holds for the seconds that its `render(time: …)` says.
+// False, with the reason, where `first` to `last` leave them and the field reads the time.
+bool in_proved_time(const ir::Scene &scene, double first, double last, Terminal &terminal);
 void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, Terminal &terminal);
 
 // Writes a result to a file, or to standard output where `out` is empty or `-`.

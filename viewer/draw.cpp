@@ -406,7 +406,10 @@ void App::draw(double seconds) {
     if (width == 0 || height == 0) return; // minimised
     const double passed =
         sequence > 0 ? 1.0 / 30 : seconds; // a sequence's frames are a thirtieth of a second apart
-    if (animated()) time += passed;
+    if (animated()) {                      // beyond the span of the proof the time begins anew
+        const double end = scene->compilation.scene.render.time_end;
+        time = std::fmod(time + passed, end);
+    }
     if (controls.rotate) orbit(views.camera(), -2 * turns_a_second * passed, 0);
     fly_by_keys(seconds);
     const bool by_hand = milliseconds_since(touched) < 150;
