@@ -18,14 +18,16 @@ Exit run(const DocCommand &command, Terminal &terminal) {
     std::vector<std::string> names;
     bool found = false;
     for (const typecheck::LibraryEntry &entry : entries) {
+        const std::string module = entry.module.empty() ? "" : entry.module + ".";
+        const std::string name = module + entry.name;
         if (command.name.empty()) {
-            terminal.put(fmt::format("{:<28} {}\n", entry.name, first_line(entry.doc)));
-        } else if (entry.name == command.name) {
-            terminal.put(
-                fmt::format("{}{}\n\n{}\n", found ? "\n" : "", entry.signature, entry.doc));
+            terminal.put(fmt::format("{:<28} {}\n", name, first_line(entry.doc)));
+        } else if (name == command.name || entry.name == command.name) {
+            terminal.put(fmt::format("{}{}{}\n\n{}\n", found ? "\n" : "", module, entry.signature,
+                                     entry.doc));
             found = true;
         }
-        names.push_back(entry.name);
+        names.push_back(name);
     }
     if (command.name.empty() || found) return done;
     std::string near = nearest_name(command.name, names);

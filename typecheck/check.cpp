@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <pthread.h>
 #include <set>
 
@@ -244,6 +245,7 @@ std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &librar
     Diagnostics diagnostics;
     for (const LibraryFile &file : library) {
         SourceId id = sources.add(std::string(file.name), std::string(file.text));
+        const std::string module = file.prelude ? "" : std::string(file.name);
         lang::Ast ast = lang::parse(sources, id, diagnostics);
         for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
             if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind)) {
@@ -251,10 +253,11 @@ std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &librar
                 if (!fn.name || fn.name->text[0] == '_') continue;
                 std::string head = text_of(sources, id, fn.head);
                 out.push_back({fn.name->text, head.starts_with("fn ") ? head.substr(3) : head,
-                               fn.doc, std::string(file.name)});
+                               fn.doc, std::string(file.name), module});
             } else if (auto *l = std::get_if<lang::Let>(&s.kind)) {
                 if (l->name.text[0] != '_')
-                    out.push_back({l->name.text, l->name.text, l->doc, std::string(file.name)});
+                    out.push_back(
+                        {l->name.text, l->name.text, l->doc, std::string(file.name), module});
             }
         }
     }
@@ -264,8 +267,10 @@ std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &librar
         for (std::size_t i = 0; i < b.parameters.size(); ++i)
             signature +=
                 (i ? ", " : "") + b.parameters[i].name + (b.parameters[i].optional ? " = …" : "");
-        out.push_back({b.name, signature + ")", b.doc, "built in"});
+        out.push_back({b.name, signature + ")", b.doc, "built in", ""});
     }
+    // What is visible everywhere first: who asks for `box` means that.
+    std::ranges::stable_partition(out, [](const LibraryEntry &e) { return e.module.empty(); });
     return out;
 }
 

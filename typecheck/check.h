@@ -56,6 +56,7 @@ struct Override {
 // For `fathom doc` and editors: a public name of the embedded library.
 struct LibraryEntry {
     std::string name, signature, doc, file;
+    std::string module; // "dfmodel"; empty for what is visible everywhere
 };
 
 // The checker asks the analysis two things while it evaluates: `lipschitz(s)`, and the exact extent

@@ -174,7 +174,33 @@ TEST_CASE("points are answered with distance and gradient") {
     CHECK(wrong.exit == 2);
     CHECK(contains(wrong.err, "line 2"));
     CHECK(shell(folder, "fathom eval good.sdf").exit == 2);
+    // Where numbers that are sorted are equal, a smooth field still has its own gradient, of
+    // length 1.
+    folder.write("sorted.sdf", "octahedron(1)\n");
+    CHECK(shell(folder, "fathom eval sorted.sdf --at 1,1,1 --at -1,-1,1").out ==
+          "1.15470052 0.577350259 0.577350259 0.577350259\n"
+          "1.15470052 -0.577350259 -0.577350259 0.577350259\n");
+    // On a face, a length whose one component passes 0 is that component's size.
+    folder.write("face.sdf", "pyramid(1)\n");
+    CHECK(shell(folder, "fathom eval face.sdf --at 0,-0.5,0").out == "0 0 -1 0\n");
     CHECK(shell(folder, "fathom eval param.sdf -Dradius=1.5 --at 3,0,0").out.starts_with("1.5 1"));
+}
+
+TEST_CASE("a time that no proof covers is refused where the field reads it") {
+    const ScratchFolder folder;
+    folder.write("wave.sdf", "box(1).displace(p => 0.1 * sin(p.x * (1 + time)))\n"
+                             "render(time: 10)\n");
+    folder.write("still.sdf", "sphere(1).paint(p => hsv(time, 1, 1))\n");
+    const auto says = [&](const std::string &command) { return shell(folder, command); };
+    CHECK(says("fathom eval wave.sdf --at 1,0,0 --time 10").exit == 0);
+    const Result late = says("fathom eval wave.sdf --at 1,0,0 --time 10.5");
+    CHECK(late.exit == 2);
+    CHECK(contains(late.err, "proved from 0 to 10 seconds"));
+    CHECK(says("fathom eval wave.sdf --at 1,0,0 --time -1").exit == 2);
+    CHECK(says("fathom eval wave.sdf --at 1,0,0 --time nan").exit == 2);
+    CHECK(says("fathom render wave.sdf --size 4x4 -o a.png --frames 0..22 --fps 2").exit == 2);
+    CHECK(says("fathom render wave.sdf --size 4x4 -o a.png --frames 19..21 --fps 2").exit == 0);
+    CHECK(says("fathom render still.sdf --size 4x4 -o b.png --time 9999").exit == 0);
 }
 
 TEST_CASE("a large table goes into a buffer's file beside the shader, a loop's into neither") {
@@ -256,7 +282,8 @@ TEST_CASE("what is misspelt is answered with what is near") {
     CHECK(contains(shell(folder, "fathom explain unknown-nam").err, "did you mean `unknown-name`"));
     CHECK(contains(shell(folder, "fathom doc spher").err, "did you mean `sphere`"));
     CHECK(shell(folder, "fathom explain unknown-name").out.starts_with("# unknown-name"));
-    CHECK(contains(shell(folder, "fathom doc sphere").out, "sphere(radius"));
+    CHECK(shell(folder, "fathom doc sphere").out.starts_with("sphere(radius"));
+    CHECK(shell(folder, "fathom doc dfmodel.sphere").out.starts_with("dfmodel.sphere(radius"));
     CHECK(shell(folder, "fathom help").exit == 0);
     CHECK(contains(shell(folder, "fathom help render").out, "--backend"));
     CHECK(contains(shell(folder, "fathom render --help").out, "--backend"));
