@@ -292,6 +292,8 @@ class Emitter {
     std::string scene_inputs() {
         std::string text;
         if (options_.target == Target::Shadertoy || options_.target == Target::GlslViewer) {
+            if (module_.reads_time && options_.field_only && options_.target == Target::GlslViewer)
+                text += "uniform float u_time;\n"; // which a picture's inputs declare
             if (module_.reads_time)
                 text += std::string("#define fathom_time ") +
                         (options_.target == Target::Shadertoy ? "iTime\n" : "u_time\n");

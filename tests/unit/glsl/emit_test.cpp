@@ -61,6 +61,17 @@ TEST_CASE("a sphere is emitted for every target") {
         }
 }
 
+TEST_CASE("a field that moves is emitted for every target, alone or in its picture") {
+    for (glsl::Target target : all_targets)
+        for (bool field_only : {false, true}) {
+            CAPTURE(glsl::target_name(target), field_only);
+            const Scene scene = of_field([](Graph &g, NodeId p) {
+                return g.sub(g.make(Op::Length, {p}), g.make(Op::Cos, {g.time()}));
+            });
+            emitted(scene, {.target = target, .field_only = field_only});
+        }
+}
+
 TEST_CASE("every op is emitted for every target") {
     for (glsl::Target target : all_targets) {
         const Scene scene = of_field([](Graph &g, NodeId p) {
