@@ -121,7 +121,14 @@ std::optional<TreeNode> TreeWriter::otherwise(ShapeId id, const Paint &paint,
     ++functions_;
     TreeNode result = made(NodeType::Field);
     add(result, "Field", std::move(*field_steps));
-    add(result, "Assumed", yaml_scalar(scene_.facts[id.index].lipschitz_sup));
+    const ir::ShapeFact &fact = scene_.facts[id.index];
+    if (boxed_ && fact.bounds.finite() && !fact.bounds.empty()) {
+        const auto &lo = fact.bounds.lo, &hi = fact.bounds.hi;
+        add(result, "Within",
+            yaml_mapping(
+                {{"Low", yaml_xyz(lo[0], lo[1], lo[2])}, {"High", yaml_xyz(hi[0], hi[1], hi[2])}}));
+    }
+    add(result, "Assumed", yaml_scalar(fact.lipschitz_sup));
     if (!paint.fill.empty()) add(result, "Material", yaml_word(paint.fill));
     if (!paint.forced && painted_within(id))
         unsaved(

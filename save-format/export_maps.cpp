@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace fathom::save {
 namespace {
@@ -145,7 +146,8 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
         const auto rate = numbers_.number(s.args[2]);
         if (!rate) return push(otherwise(id, paint, "a twist that is no number"));
         if (*rate == 0) return united(s.children[0], paint, out);
-        auto result = one_child(NodeType::Twist, s.children[0], paint);
+        auto result = deformed(id, NodeType::Twist, paint);
+        if (result && result->type == made(NodeType::Field).type) return push(std::move(result));
         if (result) {
             add(*result, "Rate", yaml_scalar(-*rate));
             if (s.axis != 2) add(*result, "Axis", yaml_word(axes[s.axis]));
@@ -160,8 +162,8 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
                    to = bend ? std::optional(0.0) : numbers_.number(s.args[4]);
         if (!first || !from || !to)
             return push(otherwise(id, paint, "a deformation that is no number"));
-        auto result = one_child(NodeType::Deformation, s.children[0], paint);
-        if (!result) return;
+        auto result = deformed(id, NodeType::Deformation, paint);
+        if (!result || result->type == made(NodeType::Field).type) return push(std::move(result));
         add(*result, "Function", yaml_word(bend ? "bend" : "taper"));
         Value arguments = yaml_mapping(
             {{bend ? "rate" : "ratio", yaml_scalar(*first)}, {"axis", yaml_word(axes[s.axis])}});
@@ -208,6 +210,18 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
     }
     case ir::MapKind::Revolve: return push(otherwise(id, paint, "flat shapes"));
     }
+}
+
+// A deformation wants to know where its shape ends, which a function does not say. So where there
+// is one below it, it becomes a function itself; or, so that the paints below are kept, each
+// function goes out with its box.
+std::optional<TreeNode> TreeWriter::deformed(ShapeId id, NodeType type, const Paint &paint) {
+    const int functions = functions_;
+    const bool boxed = std::exchange(boxed_, boxed_ || painted_within(id));
+    auto result = one_child(type, shape(id).children[0], paint);
+    const bool whole = functions_ != functions && !boxed_;
+    boxed_ = boxed;
+    return whole ? otherwise(id, paint, "this deformation") : std::move(result);
 }
 
 // The copies of what is written as a function have no ends that an import could know: then the

@@ -78,9 +78,12 @@ constexpr P offset[] = {number("Distance", 0)};
 constexpr P displacement[] = {word("Map", "<None>"), number("Amount", 0.1), sizes("Scale", 1),
                               labelled(tree("Field"))};
 constexpr P library[] = {word("Function", ""), tree("Arguments"), material};
-constexpr P profile_blend[] = {word("Operation", "Union"), word("Profile", "Smooth"),
-                               size("Radius", 0.1), number("Count", 4), labelled(flag("Mix"))};
-constexpr P pseudo_norm[] = {size("Exponent", 2)};
+constexpr P profile_blend[] = {word("Operation", "Union"),
+                               word("Profile", "Smooth"),
+                               {"Radius", K::Number, 0.1, "", 0, 1e9, false, false},
+                               number("Count", 4),
+                               labelled(flag("Mix"))};
+constexpr P pseudo_norm[] = {exponent("Exponent", 2)};
 constexpr P seam[] = {word("Profile", "Pipe"), size("Radius", 0.1), size("Depth", 0.1)};
 constexpr P field[] = {tree("Field"),
                        tree("Within"),

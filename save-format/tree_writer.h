@@ -55,6 +55,7 @@ class TreeWriter {
     std::optional<TreeNode> library(ShapeId id, const Paint &paint);
     std::optional<TreeNode> field(ShapeId id, const ir::Region *region, const Paint &paint);
     std::optional<TreeNode> one_child(NodeType type, ShapeId child, const Paint &paint);
+    std::optional<TreeNode> deformed(ShapeId id, NodeType type, const Paint &paint);
     std::optional<TreeNode> seam(ShapeId id, const Paint &paint);
     // What nodes cannot say, or not with these numbers: the shape as the function of the point that
     // it is. Where that has no words either, `what` is reported.
@@ -77,7 +78,8 @@ class TreeWriter {
     Diagnostics &diagnostics_;
     std::optional<ir::Scene> lowered_; // made when a function is first asked for
     std::unordered_map<ShapeId, NodeId> raw_;
-    int functions_ = 0; // shapes that went out as functions, so that no one knows where they end
+    bool boxed_ = false; // functions are written with the boxes that hold them
+    int functions_ = 0;  // shapes that went out as functions, so that no one knows where they end
 };
 
 inline const std::string no_words = "it reads an image, or loops too often";

@@ -302,3 +302,30 @@ TEST_CASE("generated scenes are the same after an export and an import", "[save]
     }
     CHECK(proved > 90);
 }
+
+TEST_CASE("the edges of what arguments may be come back, and deformed functions", "[save][field]") {
+    for (const char *text :
+         {"star(6, 1, 0.7).extrude(2, 60deg, 0.4)", "rectangle([1, 1]).extrude(2, twist: 1)",
+          "rectangle([1, 1]).extrude(2, taper: 0)", "ring(1, 0.6).extrude(1).bend(0.4)",
+          "smooth_union(0, sphere(0.7), box(1))", "columns_union(0, 2, sphere(0.7), box(1))",
+          "pseudonorm_blend(sphere(0.6).translate(x: -0.5), sphere(0.6), inf)",
+          "pseudonorm_blend(sphere(0.6).translate(x: -0.5), sphere(0.6), 1)"}) {
+        INFO(text);
+        const driver::Compilation first = driver::compile_text("a.sdf", text, "", {});
+        REQUIRE(first.good());
+        const Comparison result = compared(first, 3);
+        CHECK(result.exported == "");
+        CHECK(result.imported == "");
+        CHECK(result.errors == "");
+        check_fields(result, false);
+    }
+    // Paints below a deformation are kept; the functions there have their boxes, for its proof.
+    const driver::Compilation painted = driver::compile_text(
+        "a.sdf", "(star(6, 1, 0.7).extrude(2).paint(red) | sphere(0.9)).twist(0.5)", "", {});
+    REQUIRE(painted.good());
+    const Comparison result = compared(painted, 3);
+    CHECK(result.exported == "");
+    CHECK(result.errors == "");
+    CHECK(result.signs);
+    CHECK(result.sdf.find("paint(") != std::string::npos);
+}
