@@ -72,6 +72,15 @@ struct Step {
     int size(int arg) const {
         return int(machine.tape_.size[in.args[static_cast<std::size_t>(arg)]]);
     }
+    // The axes along which an argument may change, a bit for each. Where they are other ones for A
+    // than for B, |(A + B) v| <= hypot(|A|, |B|) |v|, as each asks a part of v of its own.
+    unsigned axes(int arg) const {
+        unsigned bits = 0;
+        for (int c = 0; c < size(arg); ++c)
+            for (unsigned j = 0; j < 3; ++j)
+                if (grad(arg, c)[j] != Interval(0.0)) bits |= 1u << j;
+        return bits;
+    }
     double norm(int arg) const { return machine.norm_[in.args[static_cast<std::size_t>(arg)]]; }
     void set(int c, Interval v, const Row &g, bool is_odd = false) {
         machine.value_[at + static_cast<std::uint32_t>(c)] = v;
@@ -132,7 +141,9 @@ struct Step {
         for (std::size_t j = 0; j < 3; ++j) {
             double column = 0;
             for (int c = 0; c < size(arg); ++c) column += std::pow(grad(arg, c)[j].magnitude(), 2);
-            double m = ir::rounding::times(slope, ir::rounding::up(std::sqrt(column), 4));
+            double m = column == 0
+                           ? 0
+                           : ir::rounding::times(slope, ir::rounding::up(std::sqrt(column), 4));
             g[j] = {-m, m};
         }
         return g;

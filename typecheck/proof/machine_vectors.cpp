@@ -140,7 +140,7 @@ void Step::length() {
                 column += std::pow(grad(a, c)[j].magnitude(), 2);
                 along += value(a, c) * grad(a, c)[j];
             }
-        double m = std::min(up(std::sqrt(column), 4), norms);
+        double m = column == 0 ? 0 : std::min(up(std::sqrt(column), 4), norms);
         g[j] = {-m, m};
         if (length.lo > 0) g[j] = meet(g[j], along / length);
     }
