@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <unordered_set>
 
@@ -194,7 +195,28 @@ std::string cause_text(const ir::Graph &graph, NodeId cause) {
     case Op::Smoothstep: return "`smoothstep` with equal edges";
     case Op::Sub:
     case Op::Add: return "a wave made with `%`";
-    default: return "`" + std::string(ir::info(graph[cause].op).name) + "`";
+    case Op::Mul:
+    case Op::MatMul: return "a product";
+    default: break;
+    }
+    std::string name(ir::info(graph[cause].op).name);
+    for (char &c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return "`" + name + "`";
+}
+
+// Smooth at every point: what has no bound by one of these has outgrown all numbers.
+bool only_grows(const ir::Graph &graph, NodeId cause) {
+    if (!cause) return false;
+    switch (graph[cause].op) {
+    case Op::Mul:
+    case Op::MatMul:
+    case Op::Dot:
+    case Op::Cross:
+    case Op::Exp:
+    case Op::Exp2:
+    case Op::Sinh:
+    case Op::Cosh: return true;
+    default: return false;
     }
 }
 
@@ -237,13 +259,24 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
         return;
     }
     std::string cause = cause_text(graph, b.cause);
-    if (b.at_infinity) {
+    const bool endless = !place(id).box.finite() && !place(id).zone;
+    const bool grows = b.trouble == Trouble::None ||
+                       (b.trouble == Trouble::Singular && only_grows(graph, b.cause));
+    if (b.at_infinity || (grows && endless)) {
         if (Diagnostic *d =
                 report(id, Code::LipschitzUnbounded,
                        what + " grows steeper without limit, as it is asked everywhere"))
-            d->note("no bound on its slope holds for all points; far from the origin " + cause +
-                    " has none")
+            d->note("no bound on its slope holds for all points" +
+                    (b.cause ? "; far from the origin " + cause + " has none" : ""))
                 .help("give it a region, as in `within: ball(3)`, " + assume);
+        return;
+    }
+    if (grows) {
+        if (Diagnostic *d =
+                report(id, Code::LipschitzUnbounded,
+                       what + " is too steep to be bounded near " + point_text(b.where, dims)))
+            d->note("its numbers grow beyond all limits there")
+                .help("choose a smaller region or smaller numbers, " + assume);
         return;
     }
     switch (b.trouble) {
@@ -367,8 +400,8 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
         for (std::size_t i = 0; i < 3; ++i) run += (p[i] - q[i]) * (p[i] - q[i]);
         return run > 0 ? std::sqrt(rise / run) : 0.0;
     };
-    // fewer where a field has long loops, so that the time is bounded
-    const double share = std::min(1.0, 1e5 / ir::operations(scene.graph, field));
+    // fewer where a field has long loops, so that the work is bounded: about 5 million operations
+    const double share = std::min(1.0, 1e3 / ir::operations(scene.graph, field));
     const int pairs = std::max(10, static_cast<int>(2000 * share));
     int violations = 0;
     double worst = 0;
