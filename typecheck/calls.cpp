@@ -495,7 +495,7 @@ Value eval_call(Evaluator &ev, const File &ast, lang::ExprId id, const lang::Cal
                 return poison();
             }
             const std::string near = likely_name(ev, frame, m->name.text);
-            if (near.empty() && ev.modules[ev.current_module].lacks_names) return poison();
+            if (lacking(ev, m->name.text, near)) return poison();
             Diagnostic &d = report(ev, Code::UnknownMember, m->name.span,
                                    fmt::format("there is no function `{}` for {}", m->name.text,
                                                describe(ev, object)));

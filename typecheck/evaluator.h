@@ -283,6 +283,10 @@ void help_with_shape(Diagnostic &d, std::string_view name);
 // The name that another is likely to be meant for; empty: none.
 std::string likely_name(Evaluator &ev, std::uint32_t frame, const std::string &name);
 void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place);
+// Whether a name may be one that a file which could not be read would have brought. Short names are
+// near to others by chance.
+bool lacking(const Evaluator &ev, const std::string &name, const std::string &near);
+std::string way_inside(const std::string &path); // how a file elsewhere can be read
 void check_names(Evaluator &ev, const File &ast, std::uint32_t module_frame);
 
 // -- report.cpp

@@ -334,6 +334,14 @@ static Value bring(Evaluator &ev, const lang::Import &import, std::uint32_t modu
     return unit();
 }
 
+std::string way_inside(const std::string &path) {
+    const std::size_t slash = path.rfind('/');
+    return fmt::format("if that file is yours, give its folder on the command line: `-I {}`",
+                       slash == path.npos ? "."
+                       : slash == 0       ? "/"
+                                          : path.substr(0, slash));
+}
+
 static Value import_failed(Evaluator &ev, const lang::Import &import) {
     // the names it would have brought are unknown, so those that are asked of it stay quiet
     if (!import.as) ev.modules[ev.current_module].lacks_names = true;
@@ -365,6 +373,8 @@ Value import_module(Evaluator &ev, const lang::Import &import, Span, std::uint32
             report(ev, code, import.path_span, fmt::format("`{}`: {}", import.path, error->why));
         if (error->reason == LoadError::Reason::NotFound)
             d.note("paths are relative to the importing file, then to the -I folders");
+        else if (error->reason == LoadError::Reason::Outside)
+            d.help(way_inside(import.path));
         for (const LibraryFile &file : ev.library)
             if (!file.prelude && import.path == fmt::format("{}.sdf", file.name))
                 d.help(fmt::format("the library's own module goes by its name: `import \"{}\"`",

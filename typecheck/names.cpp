@@ -189,9 +189,13 @@ void help_with_shape(Diagnostic &d, std::string_view name) {
         d.help(fmt::format("the shapes stand in a block behind it: `{}(r) {{ … }}`", name));
 }
 
+bool lacking(const Evaluator &ev, const std::string &name, const std::string &near) {
+    return ev.modules[ev.current_module].lacks_names && (near.empty() || name.size() < 5);
+}
+
 void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place) {
     const std::string near = likely_name(ev, frame, name);
-    if (near.empty() && ev.modules[ev.current_module].lacks_names) return; // one cause, one report
+    if (lacking(ev, name, near)) return; // one cause, one report
     Diagnostic &d =
         report(ev, Code::UnknownName, place, fmt::format("nothing here is called `{}`", name));
     if (ev.in_field == 0 && (name == "p" || name == "pos" || name == "uv")) {

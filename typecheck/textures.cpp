@@ -27,7 +27,8 @@ static void refuse(Evaluator &ev, Span place, const char *what, const std::strin
                    const LoadError &error) {
     const Code code =
         error.reason == LoadError::Reason::Outside ? Code::ImportOutside : Code::FileNotFound;
-    report(ev, code, place, fmt::format("the {} `{}`: {}", what, path, error.why));
+    Diagnostic &d = report(ev, code, place, fmt::format("the {} `{}`: {}", what, path, error.why));
+    if (code == Code::ImportOutside) d.help(way_inside(path));
 }
 
 // The file whose text asks: a path is looked up beside it, also where the library's own text hands

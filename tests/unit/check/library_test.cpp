@@ -63,6 +63,8 @@ TEST_CASE("names that a missing file would have brought are not reported one by 
     CHECK(codes(compiled(
               "import \"nowhere.sdf\"\nvault(2).translate(x: 1)\nsphere(1).gilded_leaf()\n")) ==
           std::vector<std::string>{"import-not-found"});
+    CHECK(codes(compiled("import \"../arch.sdf\"\narch(2)\n")) ==
+          std::vector<std::string>{"import-outside"}); // though `arc` is near
     // what is near to a name that is there is still a slip
     CHECK(codes(compiled("import \"nowhere.sdf\"\nspere(1)\n")) ==
           std::vector<std::string>{"import-not-found", "unknown-name"});
