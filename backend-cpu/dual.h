@@ -135,8 +135,11 @@ inline Dual pow(Dual a, Dual b) {
 } // namespace fathom::cpu
 
 namespace fathom::ir::sem {
-// 0 at 0, whatever the number grows to.
+// Where these jump they have the value that floats have, whatever the number grows to.
 template <> inline cpu::Dual sign(cpu::Dual x) { return cpu::Dual(sign(x.value)); }
+template <> inline cpu::Dual step(cpu::Dual edge, cpu::Dual x) {
+    return cpu::Dual(step(edge.value, x.value));
+}
 } // namespace fathom::ir::sem
 
 namespace fathom::cpu {
