@@ -284,14 +284,6 @@ Known Prover::know_lerp(ShapeId id) {
                         "see, as in `.within(ball(3))`");
             k.failed = true;
         }
-        if (!std::isfinite(sup) && !k.failed) { // a weight without limits weighs each slope so
-            if (Diagnostic *d = report(id, Code::NeedsRegion,
-                                       "the blend's weight grows without bound, and the field "
-                                       "with it"))
-                d->help("limit it, as in `clamp(…, 0, 1)`, or write `.within(…)` after the blend, "
-                        "as in `.within(ball(3))`");
-            k.failed = true;
-        }
         sup = up(sup + weight.lipschitz * gap * options.rules[Rule::LerpVarying]);
     }
     if (varies && !std::isfinite(weight.lipschitz)) k.failed = true;
