@@ -80,6 +80,7 @@ std::vector<std::string> wrong_calls() {
         "superquadric([1, 1, 1], 0, 1)",
         "superquadric([1, 1, 1], 1, 3)",
         "gdf([])",
+        "sphere(inverse(mat2(1, 2, 2, 4))[0][0])",
         "gdf([[0, 0, 0]])",
         "gdf_cube(1, 0.5)",
         "gdf_icosahedron(0)",
@@ -168,11 +169,12 @@ std::vector<std::string> wrong_calls() {
 // Entries whose every argument of the right type makes something: no list is too short, no number
 // degenerate. Those whose errors are of files are tested with the images.
 const std::set<std::string> always_right{
-    "empty",   "union",    "xor",          "complement", "blend",       "translate", "rotate_euler",
-    "offset",  "displace", "distort",      "within",     "paint",       "repaint",   "hsv",
-    "noise",   "simplex",  "value_noise",  "worley",     "saturate",    "smin",      "smax",
-    "rotate2", "distance", "radians",      "degrees",    "faceforward", "refract",   "asinh",
-    "acosh",   "atanh",    "distance_grid"};
+    "empty",        "union",        "xor",          "complement", "blend",       "translate",
+    "rotate_euler", "offset",       "displace",     "distort",    "within",      "paint",
+    "repaint",      "hsv",          "noise",        "simplex",    "value_noise", "worley",
+    "saturate",     "smin",         "smax",         "rotate2",    "distance",    "radians",
+    "degrees",      "faceforward",  "refract",      "asinh",      "acosh",       "atanh",
+    "determinant",  "outerProduct", "distance_grid"};
 
 } // namespace
 
