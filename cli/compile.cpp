@@ -72,6 +72,7 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
 } // namespace
 
 Exit run(const CompileCommand &command, Terminal &terminal) {
+    if (overwrites(command.scene.file, command.out, terminal)) return usage_error;
     auto act = [&](const driver::Compilation &compilation) {
         return emit(command, compilation, terminal);
     };

@@ -20,6 +20,7 @@ std::string way(const std::filesystem::path &from_file, const std::filesystem::p
 } // namespace
 
 Exit run(const ImportCommand &command, Terminal &terminal) {
+    if (overwrites(command.file, command.out, terminal)) return usage_error;
     bool standard_input = command.file == "-";
     std::string error;
     std::optional<std::string> text =
@@ -51,6 +52,7 @@ Exit run(const ImportCommand &command, Terminal &terminal) {
 }
 
 Exit run(const ExportCommand &command, Terminal &terminal) {
+    if (overwrites(command.scene.file, command.out, terminal)) return usage_error;
     driver::Compilation compilation =
         driver::compile_file(command.scene.file, compile_options(command.scene));
     Exit exit = report(compilation, command.scene, terminal);

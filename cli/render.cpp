@@ -216,6 +216,7 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
 } // namespace
 
 Exit run(const RenderCommand &command, Terminal &terminal) {
+    if (overwrites(command.scene.file, command.out, terminal)) return usage_error;
     driver::Compilation compilation =
         driver::compile_file(command.scene.file, compile_options(command.scene));
     Exit exit = report(compilation, command.scene, terminal);

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -132,6 +133,15 @@ bool in_proved_time(const ir::Scene &scene, double first, double last, Terminal 
                              "`render(time: …)` in it says to which time",
                              format_shortest(first < 0 ? first : last), format_shortest(end)));
     return false;
+}
+
+bool overwrites(const std::string &file, const std::string &out, Terminal &terminal) {
+    std::error_code none;
+    if (file == "-" || out.empty() || out == "-" || !std::filesystem::equivalent(file, out, none))
+        return false;
+    terminal.say(
+        fmt::format("fathom: -o {}: that is the file that is read; write to another", out));
+    return true;
 }
 
 Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal) {

@@ -51,6 +51,9 @@ Exit report(const driver::Compilation &compilation, const SceneArguments &scene,
 bool in_proved_time(const ir::Scene &scene, double first, double last, Terminal &terminal);
 void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, Terminal &terminal);
 
+// Whether a result would be written over the very file that it is made from; says so.
+bool overwrites(const std::string &file, const std::string &out, Terminal &terminal);
+
 // Writes a result to a file, or to standard output where `out` is empty or `-`.
 Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal);
 

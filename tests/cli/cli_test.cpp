@@ -234,6 +234,19 @@ TEST_CASE("a failed command leaves the old file") {
         CHECK_FALSE(contains(entry.path().filename().string(), "fathom-tmp"));
 }
 
+TEST_CASE("no result is written over what it is made from") {
+    Scenes folder;
+    for (const char *command :
+         {"fathom export good.sdf -o ./good.sdf", "fathom compile good.sdf -o good.sdf",
+          "fathom render good.sdf --size 4x4 -o good.sdf", "fathom import good.sdf -o good.sdf"}) {
+        INFO(command);
+        const Result result = shell(folder, command);
+        CHECK(result.exit == 2);
+        CHECK(contains(result.err, "that is the file that is read"));
+    }
+    CHECK(shell(folder, "cat good.sdf").out == "sphere(1)\n");
+}
+
 TEST_CASE("a reader that leaves ends the program quietly, a full disk does not") {
     Scenes folder;
     Result head = shell(folder, "fathom explain | head -n 1");
