@@ -232,7 +232,11 @@ bool Builder::foreign_junk(Index first, Index at) {
     if (found == Tok::Name && juxtaposed_calls(first, at)) return true;
     const bool after_loop =
         (kind(first) == Tok::For || kind(first) == Tok::While) && kind(at - 1) == Tok::BraceClose;
-    if (after_loop && !ends_statement(at)) {
+    // what begins another statement wants a line of its own, and no operator does
+    const bool starts = found == Tok::Name || found == Tok::Number || found == Tok::Let ||
+                        found == Tok::Var || found == Tok::For || found == Tok::If ||
+                        found == Tok::While || found == Tok::Return;
+    if (after_loop && !ends_statement(at) && !starts) {
         Diagnostic &d = diagnostics_.add(Code::WrongPlace, span(at),
                                          "a loop has no value that this could apply to");
         d.label(span(first), "the loop");

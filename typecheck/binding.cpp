@@ -68,7 +68,9 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
                            fmt::format("`{}` has no argument `{}`", name, a.name->text));
                 std::string near = nearest_name(a.name->text, names);
                 if (near.empty()) near = shortest_begun_by(a.name->text, names); // `r` for `radius`
-                if (!near.empty())
+                if (a.name->text == "within" && name != "within")
+                    d.help("a region stands behind the whole: `.within(ball(3))`");
+                else if (!near.empty())
                     d.help(fmt::format("did you mean `{}`?", near), {{a.name->span, near}});
                 d.note(fmt::format("it is `{}`", signature_text(name, formals)));
                 ok = false;

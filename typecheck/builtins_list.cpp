@@ -247,6 +247,7 @@ static Value shuffle_call(Evaluator &ev, const CallSite &site, std::vector<Value
 // ----------------------------------------------------------------------
 
 static Value print_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+    if (is_poison(args[0])) return poison();
     report(ev, Code::Printed, site.call, print_value(ev, args[0]));
     return unit();
 }

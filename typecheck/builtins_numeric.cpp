@@ -25,7 +25,8 @@ static Value componentwise(Evaluator &ev, const CallSite &site, std::vector<Valu
         }
     }
     for (std::size_t i = 0; i < args.size(); ++i)
-        if (!is_numeric(args[i]) || numeric_type(ev, args[i]) == Type::Bool) {
+        if (args[i] = or_color(args[i]);
+            !is_numeric(args[i]) || numeric_type(ev, args[i]) == Type::Bool) {
             Diagnostic &d = report(ev, Code::TypeMismatch, site.arg(i),
                                    fmt::format("`{}` wants a number or a vector, this is {}",
                                                site.name, describe(ev, args[i])));

@@ -22,6 +22,7 @@ static Value material_call(Evaluator &ev, const CallSite &site, std::vector<Valu
     // each property is a constant or a function of the point, or of the point and the normal
     auto property = [&](std::size_t i, Type type, const char *what, ir::NodeId otherwise) {
         if (!given(args[i])) return otherwise;
+        if (type == Type::Vec3) args[i] = or_color(args[i]);
         if (is_function(args[i])) {
             auto node = apply_field(ev, args[i], {g.point(), normal}, type, site.arg(i), what);
             ok = ok && node;
@@ -141,6 +142,7 @@ static Value lighting_call(Evaluator &ev, const CallSite &site, std::vector<Valu
 static Value background_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     Setting s{Setting::Kind::Background, {}, {}, {}, {}, {}, {}};
     ir::Graph &g = ev.scene.graph;
+    args[0] = or_color(args[0]);
     if (is_function(args[0])) {
         ir::NodeId direction =
             g.make(ir::Op::Direction, Type::Vec3, std::initializer_list<ir::NodeId>{});

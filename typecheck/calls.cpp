@@ -404,7 +404,8 @@ Value call_value(Evaluator &ev, const Value &callee, std::string_view name,
     case ValueKind::Module: break;
     }
     Diagnostic &d = report(ev, Code::NotCallable, callee_span,
-                           fmt::format("`{}` is {}, not a function", name.empty() ? "this" : name,
+                           fmt::format("{} is {}, not a function",
+                                       name.empty() ? "this" : fmt::format("`{}`", name),
                                        describe(ev, callee)));
     if (callee.kind == ValueKind::List ||
         (is_numeric(callee) && ir::is_vector(numeric_type(ev, callee))))

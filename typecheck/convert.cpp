@@ -139,7 +139,8 @@ static std::optional<Value> as_named(Evaluator &ev, const Value &raw, const lang
     case TypeName::Mat4:
     case TypeName::Color: break;
     }
-    const Value v = vector_of_list(ev, raw);
+    const Value list = vector_of_list(ev, raw);
+    const Value v = type.named == TypeName::Color ? or_color(list) : list;
     if (!is_numeric(v)) return std::nullopt;
     const Type t = numeric_type(ev, v);
     if (type.named == TypeName::AnyField) return v;
@@ -308,7 +309,7 @@ std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int siz
 }
 
 std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, What what) {
-    const Value c = vector_of_list(ev, v);
+    const Value c = or_color(vector_of_list(ev, v));
     if (is_numeric(c) && numeric_type(ev, c) != Type::Bool)
         if (auto color = as_color(ev, c, numeric_type(ev, c))) return to_node(ev, *color);
     want(ev, v, place, what, "a color");

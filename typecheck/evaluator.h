@@ -348,6 +348,8 @@ std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span pl
 Value list_value(Evaluator &ev, std::vector<Value> items);
 Value string_value(Evaluator &ev, std::string text);
 bool is_function(const Value &v);
+// Where a colour is wanted: `tan` is one beside GLSL's function; every other value is itself.
+Value or_color(const Value &v);
 
 // -- expressions.cpp, statements.cpp
 Value eval(Evaluator &ev, const File &ast, lang::ExprId expr, std::uint32_t frame);

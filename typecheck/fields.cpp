@@ -65,7 +65,9 @@ std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field,
     return std::nullopt;
 }
 
-std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span place, What what) {
+std::optional<ir::Material> want_material(Evaluator &ev, const Value &given, Span place,
+                                          What what) {
+    const Value v = or_color(given);
     if (v.kind == ValueKind::Material) return ev.materials[v.id];
     if (is_poison(v)) return std::nullopt;
     ir::Graph &g = ev.scene.graph;

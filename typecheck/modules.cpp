@@ -172,6 +172,11 @@ static Value css_color(std::uint32_t rgb) {
     return color(linear(16), linear(8), linear(0));
 }
 
+Value or_color(const Value &v) {
+    if (v.kind != ValueKind::Builtin || builtins()[v.id].name != std::string_view("tan")) return v;
+    return css_color(0xd2b48c);
+}
+
 static void declare_constants(Evaluator &ev) {
     auto let = [&](const char *name, Value v) {
         declare(ev, ev.prelude_frame, intern(ev, name), v, false, {});

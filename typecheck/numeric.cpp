@@ -123,6 +123,7 @@ Value apply_op(Evaluator &ev, Op op, std::vector<Value> args, Span place, std::s
     Type widest = Type::Int;
     for (Value &a : args) {
         if (is_poison(a)) return poison();
+        a = or_color(a);
         if (a.kind == ValueKind::List || !is_numeric(a) || numeric_type(ev, a) == Type::Bool) {
             report(ev, Code::TypeMismatch, place,
                    fmt::format("`{}` wants numbers, this is {}", name, describe(ev, a)));

@@ -197,7 +197,14 @@ std::string cause_text(const ir::Graph &graph, NodeId cause) {
     case Op::Add: return "a wave made with `%`";
     case Op::Mul:
     case Op::MatMul: return "a product";
-    default: break;
+    case Op::Make:
+    case Op::Swizzle:
+    case Op::Splat:
+    case Op::Neg: return "an expression";
+    case Op::Perlin: return "`noise`";
+    case Op::ValueNoise: return "`value_noise`";
+    case Op::SpotNoise: return "`spot_noise`";
+    default: break; // NOLINT: the others are called in the language as their ops are
     }
     std::string name(ir::info(graph[cause].op).name);
     for (char &c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -248,10 +255,11 @@ bool reads_list_by_point(const ir::Graph &graph, const std::vector<NodeId> &root
 
 void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &what) {
     int dims = scene.shapes[id].dims;
+    const bool leaf = scene.shapes[id].kind == ShapeKind::Leaf;
+    const bool has_region = leaf || what == "the map"; // an argument `within:`
     const std::string assume =
-        scene.shapes[id].kind == ShapeKind::Leaf
-            ? "or state a bound that you know with `lipschitz:`, which is then tested"
-            : "or limit it";
+        leaf ? "or state a bound that you know with `lipschitz:`, which is then tested"
+             : "or limit it";
     if (b.too_large) {
         if (Diagnostic *d =
                 report(id, Code::LipschitzUnbounded, what + " is too large to be analysed"))
@@ -268,7 +276,9 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                        what + " grows steeper without limit, as it is asked everywhere"))
             d->note("no bound on its slope holds for all points" +
                     (b.cause ? "; far from the origin " + cause + " has none" : ""))
-                .help("give it a region, as in `within: ball(3)`, " + assume);
+                .help((has_region ? "give it a region, as in `within: ball(3)`, "
+                                  : "write `.within(…)` after it, as in `.within(ball(3))`, ") +
+                      assume);
         return;
     }
     if (grows) {
@@ -295,9 +305,8 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                         " and " + number_text(b.value_b) + " at " + point_text(b.side_b, dims) +
                         ": " + cause)
                     .help((by_list ? between : "make both sides agree there, ") +
-                          "keep the jump out of the region with "
-                          "`within:`, " +
-                          assume);
+                          "keep the jump out of the region with " +
+                          (has_region ? "`within:`, " : "`.within(…)`, ") + assume);
         } else if (Diagnostic *d = report(id, Code::LipschitzUnbounded,
                                           "it cannot be proved that " + what +
                                               " does not jump near " + point_text(b.where, dims)))
@@ -316,9 +325,12 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                                    what + " is undefined or infinitely steep near " +
                                        point_text(b.where, dims)))
             d->note(cause + " happens there, and the field is asked in all of its region")
-                .help("choose a region that avoids it, as in `within: ball(2) - tube(Y, 0.1)`, "
-                      "keep it off with `max(…, 0.001)`, " +
-                      assume);
+                .help(std::string(has_region
+                                      ? "choose a region that avoids it, as in `within: ball(2) - "
+                                        "tube(Y, 0.1)`, "
+                                      : "keep it out with a region behind it, as in "
+                                        "`.within(ball(2) - tube(Y, 0.1))`, ") +
+                      "keep it off with `max(…, 0.001)`, " + assume);
         return;
     }
 }
