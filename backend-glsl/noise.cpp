@@ -141,7 +141,17 @@ float fathom_worley(vec3 p) {
     return sqrt(least);
 }
 )"},
+        // A cell's spots, at most eight, are written out: as a loop's turns they would add up with
+        // the march's to more than llvmpipe grants a shader (turns_together).
         {"fathom_spot_noise", {{"fathom_worley_point", ""}, {"fathom_hash_more", ""}}, R"(
+float fathom_spot(vec3 x, vec3 corner, inout uint h, bool there) {
+    h = fathom_hash_more(h, 1u);
+    vec3 d = x - (corner + fathom_worley_point(h));
+    float t = max(1.0 - (d.x * d.x + d.y * d.y + d.z * d.z), 0.0);
+    h = fathom_hash_more(h, 2u);
+    return there ? (fathom_unit(h) * 2.0 - 1.0) * (t * t * t) : 0.0;
+}
+
 float fathom_spot_noise(vec3 p, float radius, float density) {
     float n = clamp(density, 0.0, 8.0);
     vec3 q = p / max(radius, 1e-6);
@@ -154,12 +164,18 @@ float fathom_spot_noise(vec3 p, float radius, float density) {
             for (int i = -1; i <= 1; ++i) {
                 uint h = fathom_hash_lattice(cell + uvec3(uint(i), uint(j), uint(k)), 0x3c6ef372u);
                 int count = int(floor(n + fathom_unit(h)));
-                for (int spot = 0; spot < count; ++spot) {
-                    h = fathom_hash_more(h, 1u);
-                    vec3 d = x - (vec3(float(i), float(j), float(k)) + fathom_worley_point(h));
-                    float t = max(1.0 - (d.x * d.x + d.y * d.y + d.z * d.z), 0.0);
-                    h = fathom_hash_more(h, 2u);
-                    sum += (fathom_unit(h) * 2.0 - 1.0) * (t * t * t);
+                vec3 corner = vec3(float(i), float(j), float(k));
+                sum += fathom_spot(x, corner, h, count > 0);
+                sum += fathom_spot(x, corner, h, count > 1);
+                if (count > 2) {
+                    sum += fathom_spot(x, corner, h, true);
+                    sum += fathom_spot(x, corner, h, count > 3);
+                }
+                if (count > 4) {
+                    sum += fathom_spot(x, corner, h, true);
+                    sum += fathom_spot(x, corner, h, count > 5);
+                    sum += fathom_spot(x, corner, h, count > 6);
+                    sum += fathom_spot(x, corner, h, count > 7);
                 }
             }
     return sum / sqrt(max(n, 1.0));
