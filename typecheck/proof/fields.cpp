@@ -271,11 +271,14 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     const bool grows = b.trouble == Trouble::None ||
                        (b.trouble == Trouble::Singular && only_grows(graph, b.cause));
     if (b.at_infinity || (grows && endless)) {
+        const bool jumps = b.trouble == Trouble::Jump;
         if (Diagnostic *d =
                 report(id, Code::LipschitzUnbounded,
-                       what + " grows steeper without limit, as it is asked everywhere"))
-            d->note("no bound on its slope holds for all points" +
-                    (b.cause ? "; far from the origin " + cause + " has none" : ""))
+                       jumps ? "it cannot be proved that " + what + " does not jump"
+                             : what + " grows steeper without limit, as it is asked everywhere"))
+            d->note(jumps ? cause + " jumps, and that both sides meet is not seen"
+                          : "no bound on its slope holds for all points" +
+                                (b.cause ? "; far from the origin " + cause + " has none" : ""))
                 .help((has_region ? "give it a region, as in `within: ball(3)`, "
                                   : "write `.within(…)` after it, as in `.within(ball(3))`, ") +
                       assume);
