@@ -30,11 +30,16 @@ class Assembler {
             module_.functions[id.index] = name;
             want(module_.result_of(id));
         };
-        want_function(scene_.distance, "sdf");
+        const std::string hit =
+            module_.options.part_stride > 0 ? "fathom_marked_hit" : "fathom_hit";
+        want_function(scene_.distance, module_.around ? "fathom_all" : "sdf");
         if (!module_.options.field_only) want_function(scene_.reach, "fathom_reach");
         if (scene_.hit != scene_.distance)
-            want_function(scene_.hit,
-                          module_.options.part_stride > 0 ? "fathom_marked_hit" : "fathom_hit");
+            want_function(scene_.hit, module_.around ? "fathom_all_hit" : hit.c_str());
+        if (module_.around) {
+            want_function(scene_.endless, "fathom_endless");
+            want_function(scene_.endless_hit, "fathom_endless_hit");
+        }
         for (const ir::Surface &s : scene_.surfaces)
             for (NodeId id : {s.diffuse, s.specular, s.exponent, s.emission}) want(id);
         if (with_looks) {
@@ -54,6 +59,7 @@ class Assembler {
         std::string functions;
         for (const auto &[index, name] : module_.functions)
             functions += function(FunctionId{index}, name) + readers(index);
+        if (module_.around) functions += prune_around(hit);
         if (!scene_.distance) functions += "\nfloat sdf(vec3 p) {\n    return 1e9;\n}\n";
         std::string looks = materials();
         if (with_looks) looks += lighting() + lights();

@@ -64,6 +64,10 @@ class Emitter {
     }
 
     void use(const PrunePlan &plan) { module_.pruned = plan.loops; }
+    void use_far_cells() {
+        far_cells_ = true;
+        module_.around = static_cast<bool>(scene_.endless);
+    }
 
     // What lists the rows of one grid's cells.
     PruneKernel run_kernel(const PrunedLoop &loop) {
@@ -77,6 +81,20 @@ class Emitter {
                                  scene.functions +
                                  prune_kernel(loop, {name(loop.value), name(loop.start),
                                                      name(loop.joined), name(loop.radius)});
+        if (check(text, output, Stage::Compute)) kernel.text = text;
+        return kernel;
+    }
+
+    // What makes the far cells of a scene that reads nothing but tables, params and the time.
+    PruneKernel run_far() {
+        const SceneText scene = assemble_functions(module_, {&scene_.distance, 1});
+        Output output = gathered();
+        if (!output.images.empty() || !output.grids.empty()) return {};
+        PruneKernel kernel{"", output.tables, output.uniforms, 0, output.reads_time};
+        const std::string text = "#version 430 core\n// " + options_.title +
+                                 ": written by fathom.\n\n" + scene_inputs() +
+                                 prune_look_up(scene_.bounds) + scene.tables + scene.functions +
+                                 far_kernel(module_.functions.at(scene_.distance.index));
         if (check(text, output, Stage::Compute)) kernel.text = text;
         return kernel;
     }
@@ -200,9 +218,12 @@ class Emitter {
         marcher.zero = zero();
         marcher.pick = options_.instruments == Instruments::Pick;
         marcher.kept = !module_.kept.empty();
-        const std::string before = head() + inputs(view) +
-                                   (module_.pruned.empty() ? "" : prune_look_up()) + scene.tables +
-                                   scene.functions;
+        marcher.far_cells = far_cells_;
+        marcher.around = module_.around;
+        std::string before = head() + inputs(view);
+        if (!module_.pruned.empty()) before += prune_look_up(scene_.bounds);
+        before += scene.tables + scene.functions;
+        if (far_cells_) before += far_look_up(marcher.boxed ? "fathom_off(p)" : "0.0");
         if (options_.instruments == Instruments::Probe) return before + probe_text(marcher);
         return before + hit_function() + scene.looks + marcher_text(marcher) + entry(view);
     }
@@ -493,6 +514,7 @@ class Emitter {
     Diagnostics &diagnostics_;
     Module module_;
     int location_ = 0, binding_ = 0;
+    bool far_cells_ = false;
 };
 
 // The box of a scene's cells: larger than its bounds by what shading looks around.
@@ -555,18 +577,25 @@ Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnos
         options.pruning ? plan_pruning(loops ? loops->scene : scene, results) : std::nullopt;
     if (plan) plan->scene.reach = {};
     if (!plan) return Emitter(scene, loops, options, diagnostics).run();
+    Pruning pruning = grid_of(scene);
+    Options direct = options;
+    direct.noise_cache = false;
+    for (const PrunedLoop &loop : plan->grids) {
+        pruning.kernels.push_back(
+            Emitter(plan->scene, results, direct, diagnostics).run_kernel(loop));
+        if (pruning.kernels.back().text.empty()) return {};
+    }
+    if (options.far_cells) {
+        Emitter cells(plan->scene, results, direct, diagnostics);
+        cells.use(*plan);
+        pruning.far = cells.run_far();
+    }
+    if (diagnostics.has_errors()) return {};
     Emitter picture(plan->scene, results, options, diagnostics);
     picture.use(*plan);
+    if (!pruning.far.text.empty()) picture.use_far_cells();
     Output output = picture.run();
-    if (output.text.empty()) return output;
-    output.pruning = grid_of(scene);
-    for (const PrunedLoop &loop : plan->grids) {
-        Options direct = options;
-        direct.noise_cache = false;
-        output.pruning.kernels.push_back(
-            Emitter(plan->scene, results, direct, diagnostics).run_kernel(loop));
-        if (output.pruning.kernels.back().text.empty()) return {};
-    }
+    if (!output.text.empty()) output.pruning = std::move(pruning);
     return output;
 }
 

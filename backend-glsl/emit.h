@@ -41,7 +41,8 @@ struct Options {
     bool noise_cache =
         false; // GL 4.2: cached fields worth it are read through the noise cache (cache.h)
     bool pruning =
-        false;       // GL 4.3: long loops run over the rows that can matter in a cell (prune.h)
+        false; // GL 4.3: long loops run over the rows that can matter in a cell (prune.h)
+    bool far_cells = true; // … and rays ask no rows in cells that are far from all surfaces
     double time = 0; // where a target has no host that sets a camera: the moment whose camera is
                      // the first view
     std::string title = "scene";              // html: the page's title
@@ -71,18 +72,20 @@ struct KeptField {
     std::vector<std::uint32_t> params; // that it reads
 };
 
-// A compute shader that makes the lists of one grid, and its own data.
+// A compute shader that makes the lists of one grid, or the far cells, and its own data.
 struct PruneKernel {
     std::string text;
     std::vector<float> tables;
     std::vector<Uniform> uniforms;
     int rows = 0;
+    bool reads_time = false;
 };
 
 // What a text with `pruning` runs by: cells that fill this box, as many grids of them as kernels.
 struct Pruning {
     std::array<double, 3> lo{}, hi{};
     std::vector<PruneKernel> kernels;
+    PruneKernel far; // no text where rays are not to look for far cells
 };
 
 struct Output {

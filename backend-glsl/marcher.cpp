@@ -101,7 +101,7 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     float d = 0.0;
 $REACHED_BEFORE    int steps = 0;
 $KEPT_RESUME    for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
-        vec3 p = origin + t * direction;
+$FAR_CELLS        vec3 p = origin + t * direction;
         bool last = steps == $MAX_STEPS - 1;
         float reach = fathom_tolerance(t);
         if (last) reach = max(reach, fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t);
@@ -135,9 +135,9 @@ float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, floa
     float before = 0.0;
     float shadow = 1.0;
     for (int i = $ZERO; i < $SHADOW_STEPS && s > margin; ++i) {
-        vec3 p = q + s * l;
-        $SAMPLE_SHADOW;
-$KEPT_STOP        float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
+$FAR_SHADOW        vec3 p = q + s * l;
+$ASK_EXACT        $SAMPLE_SHADOW;
+$ASKED_EXACT$KEPT_STOP        float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
         float c = sqrt(max(near * near - y * y, 0.0));
         shadow = min(shadow, c / (angle * (s + y)));
         if (near <= 0.0 || shadow < 0.00390625) return 0.0;
@@ -326,6 +326,32 @@ constexpr const char *kept_width =
 constexpr const char *kept_resume = "    fathom_resume(t, before, stride, steps);\n";
 constexpr const char *kept_stop = "        if (fathom_absent) break;\n";
 
+// Through far cells first, all rays together; then the field is asked, once. A step is what asks
+// it.
+constexpr const char *far_cells =
+    R"(        while (t <= end) {
+            vec2 clear = fathom_clear(origin + t * direction, direction, fathom_tolerance(t));
+            if (!(clear.y > 0.0 && stride <= before + clear.x)) break;
+            t += clear.y;
+            before = 0.0;
+            stride = 0.0;
+        }
+        if (t > end + fathom_slack) break;
+)";
+// What is farther than the shadow's edge as it is now changes nothing.
+constexpr const char *far_shadow =
+    R"(        for (vec2 clear; s > margin; s -= clear.y) {
+            clear = fathom_clear(q + s * l, -l, max(shadow * angle * s, margin));
+            if (!(clear.y > 0.0)) break;
+            before = 0.0;
+        }
+        if (s <= margin) break;
+)";
+
+constexpr const char *ask_exact =
+    "        fathom_exact = fathom_off(p) <= max(shadow * angle * s, margin);\n";
+constexpr const char *asked_exact = "        fathom_exact = false;\n";
+
 using Values = std::map<std::string, std::string, std::less<>>;
 
 Values values_of(const MarcherOptions &options) {
@@ -399,6 +425,10 @@ Values values_of(const MarcherOptions &options) {
     values["BENT_RELAXATION"] = float_literal(look::bent_relaxation);
     values["KEEP_REACHED"] = reach ? "        reached = span;\n" : "";
     for (const char *part : {"NEARER", "BENT"}) values[part] = fill(values[part], values);
+    values["FAR_CELLS"] = options.far_cells ? far_cells : "";
+    values["FAR_SHADOW"] = options.far_cells ? far_shadow : "";
+    values["ASK_EXACT"] = options.around ? ask_exact : "";
+    values["ASKED_EXACT"] = options.around ? asked_exact : "";
     values["KEPT_WIDTH"] = options.kept ? kept_width : "";
     values["KEPT_RESUME"] = options.kept ? kept_resume : "";
     values["KEPT_STOP"] = options.kept ? kept_stop : "";

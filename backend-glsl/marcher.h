@@ -25,8 +25,10 @@ struct MarcherOptions {
     bool skip_shading = false;
     bool local_normals = false; // some material reads its normal
     bool default_sun = false;
-    bool pick = false; // writes fathom_pick too (emit.h)
-    bool kept = false; // some field is read through the noise cache (cache.h)
+    bool pick = false;      // writes fathom_pick too (emit.h)
+    bool kept = false;      // some field is read through the noise cache (cache.h)
+    bool far_cells = false; // rays may ask `fathom_clear` (prune.h)
+    bool around = false; // outside of the cells the field may be less than the distance (prune.h)
     int lights = 0;
     int max_steps = 256;
     double epsilon = 5e-4;

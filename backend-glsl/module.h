@@ -42,6 +42,7 @@ struct Module {
     std::map<std::uint32_t, ir::NodeId> results{}; // by FunctionId: as loops (roll.h)
 
     std::map<std::uint32_t, PrunePlan::Use> pruned{}; // by FoldId: loops over a cell's rows
+    bool around = false; // outside of the cells there are the scene's endless parts (prune.h)
 
     ir::NodeId result_of(ir::FunctionId id) const {
         const auto it = results.find(id.index);

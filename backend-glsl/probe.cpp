@@ -20,7 +20,7 @@ vec4 fathom_slice(vec3 origin, vec3 direction) {
     if (abs(along) < 1e-6) return vec4(0.0);
     float t = (fathom_plane.w - dot(fathom_plane.xyz, origin)) / along;
     if (t <= 0.0 || t > fathom_far) return vec4(0.0);
-    return vec4(sdf(origin + t * direction), t, 0.0, 1.0);
+$ASK_EXACT    return vec4(sdf(origin + t * direction), t, 0.0, 1.0);
 }
 
 vec4 fathom_check(vec3 origin, vec3 direction, float begin, float end) {
@@ -56,6 +56,7 @@ constexpr int check_steps_a_step = 40;
 std::string probe_text(const MarcherOptions &options) {
     return march_text(options) +
            fill(probe, {{"RAY", ray_text(options)},
+                        {"ASK_EXACT", options.around ? "    fathom_exact = true;\n" : ""},
                         {"MAX_STEPS", std::to_string(options.max_steps)},
                         {"CHECK_STEPS", std::to_string(check_steps_a_step * options.max_steps)}});
 }

@@ -34,6 +34,10 @@ NodeId distance_of(Graph &graph, NodeId id) {
     return {};
 }
 
+// In diagonals of a cell.
+constexpr double far_from = 0.625;  // a cell is far whose centre is farther from surfaces
+constexpr double least_way = 0.125; // a shorter way ahead is none
+
 class Planner {
   public:
     Planner(const ir::Scene &scene, const std::map<std::uint32_t, NodeId> &results)
@@ -145,15 +149,92 @@ constexpr const char *look_up_rows = R"(
 layout(std430, binding = 0) readonly buffer fathom_Cells { uvec2 fathom_cells[]; };
 layout(std430, binding = 1) readonly buffer fathom_Rows { uint fathom_rows[]; };
 uniform vec3 fathom_grid_lo, fathom_grid_size;
-uniform int fathom_grid_side;
+uniform int fathom_grid_side; // 0: no lists
+
+vec3 fathom_place(vec3 p) {
+    return (p - fathom_grid_lo) * (float(fathom_grid_side) / fathom_grid_size);
+}
+
+bool fathom_inside(vec3 place) {
+    return all(greaterThanEqual(place, vec3(0.0))) && all(lessThan(place, vec3(float(fathom_grid_side))));
+}
+
+// How far p is from all that has an end.
+float fathom_off(vec3 p) {
+    return length(max(max($LO - p, p - $HI), 0.0));
+}
 
 uvec2 fathom_list(vec3 p, int grid, uint rows) {
-    float side = float(fathom_grid_side);
-    vec3 place = (p - fathom_grid_lo) * (side / fathom_grid_size);
-    bool inside = all(greaterThanEqual(place, vec3(0.0))) && all(lessThan(place, vec3(side)));
-    if (!inside) return uvec2(0u, rows);
+    vec3 place = fathom_place(p);
+    if (!fathom_inside(place)) return uvec2(0u, rows);
     ivec3 c = ivec3(place);
     return fathom_cells[((grid * fathom_grid_side + c.z) * fathom_grid_side + c.y) * fathom_grid_side + c.x];
+}
+)";
+
+constexpr const char *look_up_far = R"(
+// How far the cells' centres are from all surfaces; 0 in a cell that holds some, or might.
+layout(std430, binding = 2) readonly buffer fathom_Far { float fathom_far_cells[]; };
+
+// How far back and ahead of p all is more than `margin` away from surfaces, by one ball that p is in.
+vec2 fathom_clear(vec3 p, vec3 direction, float margin) {
+    vec3 size = fathom_grid_size / float(fathom_grid_side);
+    vec3 place = fathom_place(p);
+    vec3 away = vec3(0.0);
+    float radius;
+    if (fathom_inside(place)) {
+        ivec3 c = ivec3(place);
+        away = p - (fathom_grid_lo + (vec3(c) + 0.5) * size);
+        radius = fathom_far_cells[(c.z * fathom_grid_side + c.y) * fathom_grid_side + c.x];
+    } else {
+        radius = $OUTSIDE;
+    }
+    radius -= margin;
+    float inside = radius * radius - dot(away, away);
+    if (!(radius > 0.0 && inside > 0.0)) return vec2(0.0);
+    float along = dot(away, direction);
+    float half_chord = sqrt(along * along + inside);
+    vec2 both = vec2(half_chord + along, half_chord - along);
+    return both.y > $LEAST_WAY * length(size) ? both : vec2(0.0);
+}
+)";
+
+constexpr const char *around_cells = R"(
+bool fathom_exact = false;
+
+bool fathom_outside(vec3 p) {
+    return fathom_grid_side > 0 && !fathom_inside(fathom_place(p));
+}
+
+float sdf(vec3 p) {
+    if (fathom_outside(p)) {
+        float endless = fathom_endless(p);
+        float off = fathom_off(p);
+        if (endless <= off || !fathom_exact) return min(endless, off);
+    }
+    return fathom_all(p);
+}
+
+Hit $HIT(vec3 p) {
+    if (fathom_outside(p) && fathom_endless(p) <= fathom_off(p)) return fathom_endless_hit(p);
+    return fathom_all_hit(p);
+}
+)";
+
+constexpr const char *make_far = R"(
+layout(local_size_x = 64) in;
+layout(std430, binding = 2) writeonly buffer fathom_Far { float fathom_far_cells[]; };
+
+void main() {
+    int side = fathom_grid_side;
+    int cell = int(gl_GlobalInvocationID.x);
+    if (cell >= side * side * side) return;
+    vec3 size = fathom_grid_size / float(side);
+    vec3 center = fathom_grid_lo + (vec3(cell % side, cell / side % side, cell / (side * side)) + 0.5) * size;
+    float extent = length(max(abs(fathom_grid_lo), abs(fathom_grid_lo + fathom_grid_size)));
+    float d = $SDF(center);
+    d -= 1e-5 * (extent + abs(d));
+    fathom_far_cells[cell] = d > $FAR_FROM * length(size) ? d : 0.0;
 }
 )";
 
@@ -255,7 +336,23 @@ std::optional<PrunePlan> plan_pruning(const ir::Scene &scene,
     return plan;
 }
 
-std::string prune_look_up() { return look_up_rows; }
+std::string prune_look_up(const ir::Box &bounds) {
+    const auto corner = [](const std::array<double, 3> &v) {
+        return "vec3(" + float_literal(v[0]) + ", " + float_literal(v[1]) + ", " +
+               float_literal(v[2]) + ")";
+    };
+    return fill(look_up_rows, {{"LO", corner(bounds.lo)}, {"HI", corner(bounds.hi)}});
+}
+
+std::string far_look_up(const std::string &outside) {
+    return fill(look_up_far, {{"OUTSIDE", outside}, {"LEAST_WAY", float_literal(least_way)}});
+}
+
+std::string prune_around(const std::string &hit) { return fill(around_cells, {{"HIT", hit}}); }
+
+std::string far_kernel(const std::string &sdf) {
+    return fill(make_far, {{"SDF", sdf}, {"FAR_FROM", float_literal(far_from)}});
+}
 
 std::string prune_kernel(const PrunedLoop &loop, const PruneNames &names) {
     const std::map<std::string, std::string, std::less<>> values{

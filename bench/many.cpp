@@ -88,7 +88,7 @@ Drawn draw(const ir::Scene &scene, bool pruning, bool frames) {
     result.frame = std::min(frame(), frame());
     if (gl::Pruning *lists = std::get<gl::Program>(program).pruning()) {
         begin = now();
-        lists->remake(scene.params);
+        lists->remake(scene.params, 0);
         gl::finish();
         result.lists = (now() - begin) * 1e3;
     }

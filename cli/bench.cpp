@@ -106,7 +106,7 @@ void bench_gl(const BenchCommand &command, const ir::Scene &scene, Terminal &ter
     row(terminal, "  rows in all", pruning->tally().all, "");
     row(terminal, "  cells along an axis", pruning->tally().side, "");
     row(terminal, "  making the lists", measure([&] {
-            pruning->remake(scene.params);
+            pruning->remake(scene.params, 0);
             gl::finish();
         }),
         "ms");

@@ -70,7 +70,8 @@ Exit say(const CheckCommand &command, const driver::Compilation &compilation, Te
             explain_pruning(compilation.scene, terminal);
             for (int rows : glsl::prunable_rows(compilation.scene))
                 terminal.put(fmt::format("a loop over {} rows: where GL 4.3 draws, each cell of "
-                                         "space has a list of those that can matter in it\n",
+                                         "space has a list of those that can matter in it, or "
+                                         "one number if none is near\n",
                                          rows));
         }
         if (!command.json) terminal.say(verdict_line(compilation, command.scene.file));

@@ -107,6 +107,8 @@ void Lowering::run() {
         scene_.reach = graph_.add_function({"scene_reach", {}, {p3_}, reach});
     }
 
+    add_endless(frame);
+
     Surface plain =
         blank_surface(); // what nobody painted: the gray of sRGB 0.7, with a white highlight
     const double gray = 0.448;
@@ -325,6 +327,23 @@ Where Lowering::bind(Where frame, NodeId var, NodeId value) {
         environments_.push_back(std::move(values));
     }
     return {frame.p, it->second};
+}
+
+// -- what goes on beyond the rest
+
+void Lowering::add_endless(Where frame) {
+    scene_.endless = scene_.endless_hit = {};
+    std::vector<NodeId> distances, hits;
+    for (const TopLevel &part : scene_.top_level) {
+        if (fact(part.shape).bounds.finite()) continue;
+        distances.push_back(ask(Reading::Marched, part.shape, frame));
+        hits.push_back(ask(Reading::Hit, part.shape, frame));
+    }
+    if (hits.empty() || hits.size() == scene_.top_level.size()) return;
+    scene_.endless = graph_.add_function(
+        {"scene_endless", {}, {p3_}, graph_.make(Op::Union, Type::Float, distances)});
+    scene_.endless_hit = graph_.add_function(
+        {"scene_endless_hit", {}, {p3_}, graph_.make(Op::NearestHit, Type::Hit, hits)});
 }
 
 // -- the scene's extent (semantics.md, 23)

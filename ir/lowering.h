@@ -126,6 +126,7 @@ class Lowering {
     Surface blank_surface();
     void finish_surface(Surface surface);
     NodeId point3(NodeId p);
+    void add_endless(Where frame);
     void find_bounds();
 
     const Shape &shape(ShapeId id) const { return shapes_[id]; }

@@ -162,10 +162,12 @@ struct Scene {
     FunctionId reach; // (vec3) -> vec2, or none: the same distance, and how far it reaches beside
                       // another sample (look.h, MARCH), at least as far
     FunctionId hit;   // (vec3) -> Hit: the same distance, with the surface that decides
-    std::vector<Surface> surfaces;  // by a hit's paint; the last is that of what nobody painted
-    FunctionId background_function; // (vec3 direction) -> vec3
-    Box bounds;                     // of the finite top-level parts; empty when there are none
-    double far = 0;                 // a far limit for rays
+    FunctionId endless, endless_hit; // the same of the parts without an end alone, where the scene
+                                     // has others beside them
+    std::vector<Surface> surfaces;   // by a hit's paint; the last is that of what nobody painted
+    FunctionId background_function;  // (vec3 direction) -> vec3
+    Box bounds;                      // of the finite top-level parts; empty when there are none
+    double far = 0;                  // a far limit for rays
 };
 
 } // namespace fathom::ir

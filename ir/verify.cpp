@@ -19,6 +19,8 @@ class Verifier {
         signature(scene_.distance, "distance", Type::Float);
         signature(scene_.hit, "hit", Type::Hit);
         if (scene_.reach) signature(scene_.reach, "reach", Type::Vec2);
+        if (scene_.endless) signature(scene_.endless, "endless", Type::Float);
+        if (scene_.endless_hit) signature(scene_.endless_hit, "endless_hit", Type::Hit);
         signature(scene_.background_function, "background", Type::Vec3);
         if (scene_.surfaces.empty()) fail("there is no surface for what is not painted");
         for (const Light &light : scene_.lights) {

@@ -67,7 +67,7 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
 int Program::location(const char *name) const { return glGetUniformLocation(program_, name); }
 
 void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) const {
-    if (pruning_) pruning_->prepare(params);
+    if (pruning_) pruning_->prepare(params, in.time);
     glUseProgram(program_);
     const auto vector = [&](const char *name, const ir::Triple &v) {
         glUniform3f(location(name), static_cast<float>(v[0]), static_cast<float>(v[1]),

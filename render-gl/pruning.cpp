@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 #include <string_view>
+#include <utility>
 
 namespace fathom::gl {
 
@@ -40,6 +41,14 @@ void drop(unsigned &buffer) {
     buffer = 0;
 }
 
+// The lists' kernels, then that of the far cells.
+std::vector<const glsl::PruneKernel *> sources_of(const glsl::Pruning &pruning) {
+    std::vector<const glsl::PruneKernel *> sources;
+    for (const glsl::PruneKernel &kernel : pruning.kernels) sources.push_back(&kernel);
+    if (!pruning.far.text.empty()) sources.push_back(&pruning.far);
+    return sources;
+}
+
 void set_grid(unsigned program, const glsl::Pruning &pruning, int side) {
     const auto vector = [&](const char *name, double x, double y, double z) {
         glUniform3f(glGetUniformLocation(program, name), static_cast<float>(x),
@@ -65,66 +74,71 @@ bool can_prune() {
     if (epoxy_gl_version() < 43) return false;
     GLint blocks = 0;
     glGetIntegerv(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, &blocks);
-    return blocks >= 2;
+    return blocks >= 3;
+}
+
+std::optional<ProgramError> Pruning::compile(Kernel &kernel, const glsl::PruneKernel &source) {
+    if (kernel.program) glDeleteProgram(kernel.program);
+    kernel = {};
+    if (auto error = link(kernel.program, {{GL_COMPUTE_SHADER, source.text}})) return error;
+    glUseProgram(kernel.program);
+    glUniform1i(glGetUniformLocation(kernel.program, "fathom_tables"), 0);
+    return kernel.tables.fill(source.tables);
 }
 
 std::variant<std::unique_ptr<Pruning>, ProgramError> Pruning::build(const glsl::Pruning &pruning) {
     std::unique_ptr<Pruning> result(new Pruning);
     result->source_ = pruning;
-    if (auto error = result->compile()) return *error;
+    for (const glsl::PruneKernel *source : sources_of(result->source_))
+        if (auto error = compile(result->kernels_.emplace_back(), *source)) return *error;
     return result;
 }
 
-std::optional<ProgramError> Pruning::compile() {
-    for (Kernel &kernel : kernels_)
-        if (kernel.program) glDeleteProgram(kernel.program);
-    kernels_.clear();
-    stale_ = true;
-    for (const glsl::PruneKernel &source : source_.kernels) {
-        Kernel &kernel = kernels_.emplace_back();
-        if (auto error = link(kernel.program, {{GL_COMPUTE_SHADER, source.text}})) return error;
-        glUseProgram(kernel.program);
-        glUniform1i(glGetUniformLocation(kernel.program, "fathom_tables"), 0);
-        if (auto error = kernel.tables.fill(source.tables)) return error;
-    }
-    return std::nullopt;
-}
-
+// A kernel's text that is new here is a part of the picture's own, which has passed.
 void Pruning::adopt(const glsl::Pruning &pruning) {
-    bool same = pruning.kernels.size() == source_.kernels.size();
-    for (std::size_t i = 0; same && i < kernels_.size(); ++i)
-        same = pruning.kernels[i].text == source_.kernels[i].text &&
-               pruning.kernels[i].tables.size() == source_.kernels[i].tables.size();
-    bool data = same && pruning.lo == source_.lo && pruning.hi == source_.hi;
-    for (std::size_t i = 0; data && i < kernels_.size(); ++i)
-        data = pruning.kernels[i].tables == source_.kernels[i].tables;
-    source_ = pruning;
-    if (data) return;
-    if (!same) {
-        compile(); // the picture's own text has passed: these are parts of it
-        return;
+    const glsl::Pruning before = std::exchange(source_, pruning);
+    const auto fresh = sources_of(source_), old = sources_of(before);
+    stale_ |= source_.lo != before.lo || source_.hi != before.hi || fresh.size() != old.size();
+    for (std::size_t i = fresh.size(); i < kernels_.size(); ++i)
+        glDeleteProgram(kernels_[i].program);
+    kernels_.resize(fresh.size());
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+        const bool same = i < old.size() && fresh[i]->text == old[i]->text;
+        if (same && fresh[i]->tables == old[i]->tables) continue;
+        stale_ = true;
+        if (same && fresh[i]->tables.size() == old[i]->tables.size())
+            kernels_[i].tables.replace(fresh[i]->tables);
+        else
+            compile(kernels_[i], *fresh[i]);
     }
-    for (std::size_t i = 0; i < kernels_.size(); ++i)
-        kernels_[i].tables.replace(source_.kernels[i].tables);
-    stale_ = true;
 }
 
-void Pruning::prepare(const std::vector<ir::Param> &params) {
-    for (std::size_t i = 0; i < kernels_.size(); ++i) {
+void Pruning::prepare(const std::vector<ir::Param> &params, double time) {
+    const auto sources = sources_of(source_);
+    bool far_stale = false;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
         std::vector<double> values;
-        for (const glsl::Uniform &uniform : source_.kernels[i].uniforms)
+        for (const glsl::Uniform &uniform : sources[i]->uniforms)
             values.insert(values.end(), params[uniform.param].value.begin(),
                           params[uniform.param].value.end());
-        stale_ |= values != kernels_[i].values;
+        if (sources[i]->reads_time) values.push_back(time);
+        const bool changed = values != kernels_[i].values;
+        (i < source_.kernels.size() ? stale_ : far_stale) |= changed;
         kernels_[i].values = std::move(values);
     }
-    if (stale_) make(params);
+    if (stale_) make_lists(params);
+    if (stale_ || far_stale) make_far(params, time);
     stale_ = false;
+}
+
+void Pruning::remake(const std::vector<ir::Param> &params, double time) {
+    make_lists(params);
+    make_far(params, time);
 }
 
 // A level that has no room for its lists is made again with as much as it asked for; where that is
 // too much, the level before has to do.
-void Pruning::make(const std::vector<ir::Param> &params) {
+void Pruning::make_lists(const std::vector<ir::Param> &params) {
     const auto rows = static_cast<std::size_t>(most_rows(source_));
     std::vector<std::uint32_t> every(rows);
     std::iota(every.begin(), every.end(), 0u);
@@ -134,10 +148,11 @@ void Pruning::make(const std::vector<ir::Param> &params) {
     rows_ = buffer_of(rows * sizeof(std::uint32_t), every.data());
     for (int side : sides_for(static_cast<int>(rows))) {
         const std::size_t cells = static_cast<std::size_t>(side) * static_cast<std::size_t>(side) *
-                                  static_cast<std::size_t>(side) * kernels_.size();
+                                  static_cast<std::size_t>(side) * source_.kernels.size();
         next_cells_ = buffer_of(cells * 2 * sizeof(std::uint32_t), nullptr);
         // A list is at most as long as its parent's; most are much shorter.
-        const double mean = side_ ? 0.6 * tally_.rows / static_cast<double>(kernels_.size()) : 48;
+        const double mean =
+            side_ ? 0.6 * tally_.rows / static_cast<double>(source_.kernels.size()) : 48;
         auto wanted = static_cast<std::uint32_t>(
             rows + std::min(static_cast<std::size_t>(mean * static_cast<double>(cells)) + 65536,
                             most_entries - rows));
@@ -162,7 +177,7 @@ void Pruning::make(const std::vector<ir::Param> &params) {
         drop(next_cells_), drop(next_rows_);
         side_ = side;
         tally_ = {side,
-                  static_cast<double>(wanted - rows) * static_cast<double>(kernels_.size()) /
+                  static_cast<double>(wanted - rows) * static_cast<double>(source_.kernels.size()) /
                       static_cast<double>(cells),
                   0};
         for (const glsl::PruneKernel &kernel : source_.kernels) tally_.all += kernel.rows;
@@ -170,12 +185,36 @@ void Pruning::make(const std::vector<ir::Param> &params) {
     drop(next_cells_), drop(next_rows_);
 }
 
+void Pruning::make_far(const std::vector<ir::Param> &params, double time) {
+    if (source_.far.text.empty()) return;
+    drop(far_cells_);
+    const int cells = side_ * side_ * side_;
+    far_cells_ = buffer_of(std::max<std::size_t>(cells, 1) * sizeof(float), nullptr);
+    const Kernel &kernel = kernels_.back();
+    glUseProgram(kernel.program);
+    bind(kernel.program);
+    glUniform1f(glGetUniformLocation(kernel.program, "fathom_time"), static_cast<GLfloat>(time));
+    set_params(kernel.program, source_.far.uniforms, params);
+    kernel.tables.bind();
+    glDispatchCompute(static_cast<GLuint>((cells + 63) / 64), 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+std::vector<float> Pruning::far_cells() const {
+    std::vector<float> values(static_cast<std::size_t>(far_cells_ ? side_ * side_ * side_ : 0));
+    if (values.empty()) return values;
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, far_cells_);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0,
+                       static_cast<GLsizeiptr>(values.size() * sizeof(float)), values.data());
+    return values;
+}
+
 void Pruning::level(int side, int parent_side, std::size_t room,
                     const std::vector<ir::Param> &params) {
     const unsigned buffers[] = {cells_, rows_, next_cells_, next_rows_, total_};
     for (unsigned i = 0; i < 5; ++i) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]);
     const int cells = side * side * side;
-    for (std::size_t i = 0; i < kernels_.size(); ++i) {
+    for (std::size_t i = 0; i < source_.kernels.size(); ++i) {
         const unsigned program = kernels_[i].program;
         glUseProgram(program);
         set_grid(program, source_, side);
@@ -192,11 +231,13 @@ void Pruning::level(int side, int parent_side, std::size_t room,
 void Pruning::bind(unsigned program) const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, cells_);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, rows_);
+    if (far_cells_) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, far_cells_);
     set_grid(program, source_, side_);
 }
 
 Pruning::~Pruning() {
-    for (unsigned *buffer : {&cells_, &rows_, &next_cells_, &next_rows_, &total_}) drop(*buffer);
+    for (unsigned *buffer : {&cells_, &rows_, &far_cells_, &next_cells_, &next_rows_, &total_})
+        drop(*buffer);
     for (Kernel &kernel : kernels_)
         if (kernel.program) glDeleteProgram(kernel.program);
 }

@@ -20,9 +20,9 @@ class Pruning {
   public:
     static std::variant<std::unique_ptr<Pruning>, ProgramError> build(const glsl::Pruning &pruning);
 
-    // The lists for these values, made where they are not yet.
-    void prepare(const std::vector<ir::Param> &params);
-    void remake(const std::vector<ir::Param> &params) { make(params); } // to be measured
+    // The lists and far cells for these values, made where they are not yet.
+    void prepare(const std::vector<ir::Param> &params, double time);
+    void remake(const std::vector<ir::Param> &params, double time); // to be measured
     // Sets what a picture's text reads; its program must be current.
     void bind(unsigned program) const;
     // Fresh numbers, or fresh texts.
@@ -34,6 +34,8 @@ class Pruning {
         double all = 0;  // in a cell without pruning
     };
     Tally tally() const { return tally_; }
+    // By cell, x first: how far its centre is from all surfaces; 0 where the cell is not far.
+    std::vector<float> far_cells() const;
 
     ~Pruning();
     Pruning(const Pruning &) = delete;
@@ -46,15 +48,16 @@ class Pruning {
         std::vector<double> values; // of the params that it reads, when it last ran
     };
     Pruning() = default;
-    std::optional<ProgramError> compile();
-    void make(const std::vector<ir::Param> &params);
+    static std::optional<ProgramError> compile(Kernel &kernel, const glsl::PruneKernel &source);
+    void make_lists(const std::vector<ir::Param> &params);
+    void make_far(const std::vector<ir::Param> &params, double time);
     void level(int side, int parent_side, std::size_t room, const std::vector<ir::Param> &params);
 
     glsl::Pruning source_;
-    std::vector<Kernel> kernels_;
+    std::vector<Kernel> kernels_; // the lists', then that of the far cells
     bool stale_ = true;
     int side_ = 0;
-    unsigned cells_ = 0, rows_ = 0, next_cells_ = 0, next_rows_ = 0, total_ = 0;
+    unsigned cells_ = 0, rows_ = 0, far_cells_ = 0, next_cells_ = 0, next_rows_ = 0, total_ = 0;
     Tally tally_;
 };
 

@@ -1,4 +1,6 @@
-// Pruned loops draw the same picture to the bit, by fewer rows.
+// Pruned loops draw the same picture to the bit, by fewer rows; rays land the same through far
+// cells.
+#include "tests/support/reference_eval.h"
 #include "tests/unit/glsl/scenes.h"
 #include "tests/unit/render_gl/context.h"
 
@@ -7,15 +9,23 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <functional>
+#include <random>
+
 using namespace fathom;
 using namespace fathom::scenes;
 
 namespace {
 
-glsl::Output emitted(const Scene &scene, bool pruning) {
+glsl::Output emitted(const Scene &scene, bool pruning, bool far_cells = false) {
     Diagnostics diagnostics;
-    glsl::Output output = glsl::emit(
-        scene, {.target = glsl::Target::Glsl330, .buffers = true, .pruning = pruning}, diagnostics);
+    glsl::Output output = glsl::emit(scene,
+                                     {.target = glsl::Target::Glsl330,
+                                      .buffers = true,
+                                      .pruning = pruning,
+                                      .far_cells = far_cells},
+                                     diagnostics);
     for (const Diagnostic &d : diagnostics.items()) UNSCOPED_INFO(d.message);
     CHECK_FALSE(diagnostics.has_errors());
     return output;
@@ -27,20 +37,51 @@ gl::Program built(const glsl::Output &output, const Scene &scene) {
     return std::move(std::get<gl::Program>(program));
 }
 
-// Steps, distances and paints; then colours.
-std::vector<float> drawn(const gl::Program &program, const Scene &scene, double away) {
+std::vector<float> drawn(const gl::Program &program, const Scene &scene, double away, gl::Mode mode,
+                         double time = 0) {
     gl::Request request;
     request.width = 96;
     request.height = 72;
-    request.view = ir::view_of(scene, 0, 96.0 / 72);
+    request.time = time;
+    request.view = ir::view_of(scene, time, 96.0 / 72);
     for (double &x : request.view->origin) x *= away;
-    std::vector<float> all;
-    for (gl::Mode mode : {gl::Mode::Numbers, gl::Mode::Linear}) {
-        const auto pixels = gl::draw(program, scene, request, mode);
-        REQUIRE(pixels);
-        all.insert(all.end(), pixels->rgba.begin(), pixels->rgba.end());
-    }
+    const auto pixels = gl::draw(program, scene, request, mode);
+    REQUIRE(pixels);
+    return pixels->rgba;
+}
+
+// Steps, distances and paints; then colours.
+std::vector<float> drawn(const gl::Program &program, const Scene &scene, double away) {
+    std::vector<float> all = drawn(program, scene, away, gl::Mode::Numbers);
+    const std::vector<float> colors = drawn(program, scene, away, gl::Mode::Linear);
+    all.insert(all.end(), colors.begin(), colors.end());
     return all;
+}
+
+// Of two pictures of the same: by pixel the largest difference of a colour, in descending order;
+// and the rays' ends that lie farther apart than the march's tolerance allows.
+struct Apart {
+    std::vector<float> colors{};
+    int ends = 0, hits = 0;
+};
+Apart apart(const gl::Program &a, const gl::Program &b, const Scene &scene, double away,
+            double time = 0) {
+    Apart result;
+    const auto ends_a = drawn(a, scene, away, gl::Mode::Numbers, time),
+               ends_b = drawn(b, scene, away, gl::Mode::Numbers, time);
+    const auto colors_a = drawn(a, scene, away, gl::Mode::Linear, time),
+               colors_b = drawn(b, scene, away, gl::Mode::Linear, time);
+    for (std::size_t i = 0; i < ends_a.size(); i += 4) {
+        const float t = ends_a[i + 1], u = ends_b[i + 1];
+        result.hits += t >= 0;
+        result.ends += (t < 0) != (u < 0) || std::abs(t - u) > 0.01f * std::max(t, 0.1f);
+        float most = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            most = std::max(most, std::abs(colors_a[i + k] - colors_b[i + k]));
+        result.colors.push_back(most);
+    }
+    std::ranges::sort(result.colors, std::greater<>());
+    return result;
 }
 
 bool can_test() { return has_context() && gl::can_prune(); }
@@ -68,11 +109,121 @@ TEST_CASE("what is drawn by lists of rows is the same to the bit") {
         }
 }
 
+TEST_CASE("rays land where they did, through far cells that promise no more than there is") {
+    if (!can_test()) return;
+    for (bool smooth : {false, true}) {
+        CAPTURE(smooth);
+        const Scene scene = table_of_spheres(300, smooth);
+        const glsl::Output output = emitted(scene, true, true);
+        REQUIRE_FALSE(output.pruning.far.text.empty());
+        const gl::Program pruned = built(output, scene), plain = built(emitted(scene, true), scene);
+        for (double away : {1.0, 0.5, 3.0}) {
+            CAPTURE(away);
+            const Apart found = apart(pruned, plain, scene, away);
+            CHECK(found.hits > 90);
+            CHECK(found.ends <= 2);          // within the tolerance of what they pass
+            CHECK(found.colors[20] < 0.02f); // a shadow's edge, a normal in another place
+        }
+
+        const std::vector<float> far = pruned.pruning()->far_cells();
+        const auto side = static_cast<std::size_t>(pruned.pruning()->tally().side);
+        REQUIRE(far.size() == side * side * side);
+        CHECK(std::ranges::count_if(far, [](float f) { return f > 0; }) > 0.5 * double(far.size()));
+        test::Reference reference(scene);
+        std::mt19937 random(5);
+        std::uniform_real_distribution<double> part(0, 1);
+        for (int tries = 0; tries < 3000; ++tries) {
+            const std::size_t cell = random() % far.size();
+            const std::array<std::size_t, 3> index{cell % side, cell / side % side,
+                                                   cell / (side * side)};
+            std::array<double, 3> p{};
+            double from_center = 0, half_diagonal = 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const double size =
+                    (output.pruning.hi[i] - output.pruning.lo[i]) / static_cast<double>(side);
+                const double at = part(random);
+                p[i] = output.pruning.lo[i] + (static_cast<double>(index[i]) + at) * size;
+                from_center += (at - 0.5) * (at - 0.5) * size * size;
+                half_diagonal += 0.25 * size * size;
+            }
+            if (far[cell] == 0) continue;
+            CHECK(far[cell] > std::sqrt(half_diagonal));
+            CHECK(far[cell] - std::sqrt(from_center) <= reference.distance(p));
+        }
+    }
+}
+
+TEST_CASE("far cells follow the time, by the rows' old lists") {
+    if (!can_test()) return;
+    Scene scene = table_of_spheres(200);
+    Graph &g = scene.graph;
+    // A ball that goes through the others, beside their loop.
+    const Function rows = g.function(scene.distance);
+    const NodeId p = rows.params[0], zero = g.number(0),
+                 x = g.mul(g.number(3), g.make(Op::Sin, {g.time()}));
+    const NodeId ball =
+        sphere_distance(g, p, g.make(Op::Make, Type::Vec3, {x, zero, zero}), g.number(0.5));
+    scene.distance = g.add_function({"scene", {}, {p}, g.make(Op::Union, {rows.result, ball})});
+    const glsl::Output output = emitted(scene, true, true);
+    CHECK(output.pruning.far.reads_time);
+    const gl::Program pruned = built(output, scene), plain = built(emitted(scene, true), scene);
+    for (double time : {0.0, 0.5, 1.6}) {
+        CAPTURE(time);
+        const Apart found = apart(pruned, plain, scene, 1, time);
+        CHECK(found.ends == 0);
+        CHECK(found.colors[20] < 0.02f);
+    }
+}
+
+TEST_CASE("a ground that goes on beyond the cells is drawn, lit and shaded as it was") {
+    if (!can_test()) return;
+    for (bool smooth : {false, true}) {
+        CAPTURE(smooth);
+        Scene scene = table_of_spheres(300, smooth);
+        Graph &g = scene.graph;
+        const Function rows = g.function(scene.distance), row_hits = g.function(scene.hit);
+        const auto ground = [&](NodeId p) {
+            return g.make(Op::Add, {g.component(p, 1), g.number(2.3)});
+        };
+        const auto ground_hit = [&](NodeId p) {
+            return g.make(Op::MakeHit, Type::Hit,
+                          {ground(p), g.integer(-1), p, g.vec(std::array{0.0, 0.0, 0.0, 0.0})});
+        };
+        const NodeId p = rows.params[0], q = row_hits.params[0];
+        scene.distance =
+            g.add_function({"scene", {}, {p}, g.make(Op::Union, {rows.result, ground(p)})});
+        scene.hit =
+            g.add_function({"scene_hit",
+                            {},
+                            {q},
+                            g.make(Op::NearestHit, Type::Hit, {row_hits.result, ground_hit(q)})});
+        scene.endless = g.add_function({"endless", {}, {p}, ground(p)});
+        scene.endless_hit = g.add_function({"endless_hit", {}, {q}, ground_hit(q)});
+        scene.facts[scene.root.index].bounds = Box::everything();
+        Light sun; // low, so that the rows' shadow leaves the cells
+        sun.directional = true;
+        sun.position = g.vec3(0.8, 0.4, 0.3);
+        sun.color = g.vec3(1, 1, 1);
+        scene.lights.push_back(sun);
+        const gl::Program pruned = built(emitted(scene, true, true), scene),
+                          plain = built(emitted(scene, false), scene);
+        for (double away : {1.0, 0.5, 3.0}) {
+            CAPTURE(away);
+            const Apart found = apart(pruned, plain, scene, away);
+            CHECK(found.hits > 1000);
+            CHECK(found.ends <= found.hits / 500); // at the horizon rays run out of steps
+            CHECK(found.colors[static_cast<std::size_t>(found.hits / 50)] < 0.02f);
+        }
+    }
+}
+
 TEST_CASE("moved rows have fresh lists without a fresh program") {
     if (!can_test()) return;
     const Scene scene = table_of_spheres(300);
-    gl::Program pruned = built(emitted(scene, true), scene);
+    gl::Program pruned = built(emitted(scene, true), scene),
+                far = built(emitted(scene, true, true), scene);
     drawn(pruned, scene, 1);
+    drawn(far, scene, 1);
     // Each row stands where another stood: two texels a row.
     const auto shuffle = [](std::vector<float> &texels) {
         const std::vector<float> before = texels;
@@ -82,12 +233,19 @@ TEST_CASE("moved rows have fresh lists without a fresh program") {
             for (std::size_t k = 0; k < 8; ++k)
                 texels[i * 8 + k] = before[(i * 7 + 11) % rows * 8 + k];
     };
-    glsl::Output fresh = emitted(scene, true), whole = emitted(scene, false);
-    shuffle(fresh.tables);
-    shuffle(whole.tables);
-    for (glsl::PruneKernel &kernel : fresh.pruning.kernels) shuffle(kernel.tables);
-    pruned.adopt(fresh);
-    CHECK(drawn(pruned, scene, 1) == drawn(built(whole, scene), scene, 1));
+    const auto shuffled = [&](glsl::Output output) {
+        shuffle(output.tables);
+        for (glsl::PruneKernel &kernel : output.pruning.kernels) shuffle(kernel.tables);
+        if (!output.pruning.far.text.empty()) shuffle(output.pruning.far.tables);
+        return output;
+    };
+    pruned.adopt(shuffled(emitted(scene, true)));
+    const gl::Program whole = built(shuffled(emitted(scene, false)), scene);
+    CHECK(drawn(pruned, scene, 1) == drawn(whole, scene, 1));
+    far.adopt(shuffled(emitted(scene, true, true)));
+    const Apart found = apart(far, whole, scene, 1);
+    CHECK(found.ends == 0);
+    CHECK(found.colors[20] < 0.02f);
 }
 
 TEST_CASE("loops that nothing simple bounds, or that time moves, run over all rows") {
