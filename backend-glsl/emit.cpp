@@ -75,7 +75,7 @@ class Emitter {
         const SceneText scene = assemble_functions(module_, wanted);
         const auto name = [&](ir::FunctionId id) { return module_.functions.at(id.index); };
         Output output = gathered();
-        PruneKernel kernel{"", output.tables, output.uniforms, loop.rows};
+        PruneKernel kernel{"", output.tables, output.uniforms, loop.rows, output.reads_time};
         const std::string text = "#version 430 core\n// " + options_.title +
                                  ": written by fathom.\n\n" + scene_inputs() + scene.tables +
                                  scene.functions +

@@ -129,7 +129,7 @@ class Planner {
 
     bool reads_only(NodeId id, std::initializer_list<NodeId> vars) const {
         const Graph::Reads reads = graph_.reads(id);
-        if (reads.time || reads.point || reads.normal || reads.direction) return false;
+        if (reads.point || reads.normal || reads.direction) return false;
         return std::ranges::all_of(graph_.free_vars(id), [&](NodeId var) {
             return std::ranges::find(vars, var) != vars.end();
         });

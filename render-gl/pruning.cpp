@@ -126,19 +126,19 @@ void Pruning::prepare(const std::vector<ir::Param> &params, double time) {
         (i < source_.kernels.size() ? stale_ : far_stale) |= changed;
         kernels_[i].values = std::move(values);
     }
-    if (stale_) make_lists(params);
+    if (stale_) make_lists(params, time);
     if (stale_ || far_stale) make_far(params, time);
     stale_ = false;
 }
 
 void Pruning::remake(const std::vector<ir::Param> &params, double time) {
-    make_lists(params);
+    make_lists(params, time);
     make_far(params, time);
 }
 
 // A level that has no room for its lists is made again with as much as it asked for; where that is
 // too much, the level before has to do.
-void Pruning::make_lists(const std::vector<ir::Param> &params) {
+void Pruning::make_lists(const std::vector<ir::Param> &params, double time) {
     const auto rows = static_cast<std::size_t>(most_rows(source_));
     std::vector<std::uint32_t> every(rows);
     std::iota(every.begin(), every.end(), 0u);
@@ -166,7 +166,7 @@ void Pruning::make_lists(const std::vector<ir::Param> &params) {
             const auto begin = static_cast<std::uint32_t>(rows);
             drop(total_);
             total_ = buffer_of(sizeof begin, &begin);
-            level(side, side_, room, params);
+            level(side, side_, room, params, time);
             glBindBuffer(GL_SHADER_STORAGE_BUFFER, total_);
             glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof wanted, &wanted);
             good = wanted <= room;
@@ -210,7 +210,7 @@ std::vector<float> Pruning::far_cells() const {
 }
 
 void Pruning::level(int side, int parent_side, std::size_t room,
-                    const std::vector<ir::Param> &params) {
+                    const std::vector<ir::Param> &params, double time) {
     const unsigned buffers[] = {cells_, rows_, next_cells_, next_rows_, total_};
     for (unsigned i = 0; i < 5; ++i) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]);
     const int cells = side * side * side;
@@ -221,6 +221,7 @@ void Pruning::level(int side, int parent_side, std::size_t room,
         glUniform1i(glGetUniformLocation(program, "fathom_grid"), static_cast<GLint>(i));
         glUniform1i(glGetUniformLocation(program, "fathom_parent_side"), parent_side);
         glUniform1ui(glGetUniformLocation(program, "fathom_room"), static_cast<GLuint>(room));
+        glUniform1f(glGetUniformLocation(program, "fathom_time"), static_cast<GLfloat>(time));
         set_params(program, source_.kernels[i].uniforms, params);
         kernels_[i].tables.bind();
         glDispatchCompute(static_cast<GLuint>((cells + 63) / 64), 1, 1);

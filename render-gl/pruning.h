@@ -49,9 +49,10 @@ class Pruning {
     };
     Pruning() = default;
     static std::optional<ProgramError> compile(Kernel &kernel, const glsl::PruneKernel &source);
-    void make_lists(const std::vector<ir::Param> &params);
+    void make_lists(const std::vector<ir::Param> &params, double time);
     void make_far(const std::vector<ir::Param> &params, double time);
-    void level(int side, int parent_side, std::size_t room, const std::vector<ir::Param> &params);
+    void level(int side, int parent_side, std::size_t room, const std::vector<ir::Param> &params,
+               double time);
 
     glsl::Pruning source_;
     std::vector<Kernel> kernels_; // the lists', then that of the far cells
