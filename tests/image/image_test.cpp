@@ -83,6 +83,27 @@ TEST_CASE("GL and the CPU draw the same picture of each example") {
     }
 }
 
+// llvmpipe ends a shader after 65,536 turns of all its loops: with a loop for each spot the march
+// came to more, and the solid was full of holes. Steps run out in places, by either.
+TEST_CASE("a displacement by spot noise has no holes by GL") {
+    auto context = gl::Context::make();
+    REQUIRE(std::holds_alternative<gl::Context>(context));
+    const driver::Compilation compilation = driver::compile_text(
+        "spots.sdf",
+        "sphere(1).displace(p => 0.1 * spot_noise(p, 0.3, 20))\ncamera(at: [0, 0, 4])\n", "", {});
+    REQUIRE(compilation.good());
+    gl::Request request;
+    request.width = width;
+    request.height = height;
+    Diagnostics diagnostics;
+    const std::optional<Picture> by_gl = gl::render(compilation.scene, request, diagnostics);
+    REQUIRE(by_gl);
+    const ir::View view = ir::view_of(compilation.scene, 0, static_cast<double>(width) / height);
+    const cpu::Picture by_cpu =
+        cpu::render(cpu::prepare(compilation.scene, view, width, height, 0), {});
+    CHECK(disagreeing(by_gl->rgba, by_cpu.rgba) < width * height / 50);
+}
+
 // What is closed in sees less of the sky; a lamp that shines on it shines undimmed, so that
 // contacts are not black.
 TEST_CASE("occlusion dims the ambient light alone") {
