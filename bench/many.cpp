@@ -145,6 +145,8 @@ void measure_many(Table &table) {
                  "sqrt(1 - y * y) * sin(2.4 * i)])\n  }\n}\n");
     measure_link(table, "GL links 2,000 unlike shapes, blended", unlike_text(2000));
     measure_frame(table, "frame 200x150: 1,000 spheres", shell_text(1000, false), 50);
+    measure_frame(table, "frame 200x150: 1,000 spheres over a ground",
+                  "plane(Y, -1.3)\n" + shell_text(1000, false), 50);
     measure_frame(table, "frame 200x150: 1,000 blended spheres", shell_text(1000, true), 50);
     measure_frame(table, "frame 200x150: 10,000 blended spheres", shell_text(10000, true), 100);
 }

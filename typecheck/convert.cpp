@@ -213,10 +213,7 @@ static std::optional<Value> as_type(Evaluator &ev, const Value &v, const lang::T
 }
 
 bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type) {
-    std::size_t contracts = ev.scene.shapes.contracts.size();
-    bool ok = as_type(ev, v, type).has_value();
-    (void)contracts;
-    return ok;
+    return as_type(ev, v, type).has_value();
 }
 
 Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place, What what,
@@ -236,7 +233,8 @@ Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span pl
         d.help("`int(x)` cuts the fraction off");
     if (v.kind == ValueKind::Shape) help_with_shape(d, what.of);
     if (what.of == "rotate" && what.name == "angle" && v.kind == ValueKind::Vec)
-        d.help("`.rotate_euler([x, y, z])` turns about the three axes");
+        d.help("the angle comes first: `.rotate(angle, axis)`; `.rotate_euler([x, y, z])` turns "
+               "about all three axes");
     return poison();
 }
 
