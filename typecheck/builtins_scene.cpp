@@ -68,6 +68,13 @@ static Value camera_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     auto ortho = given(args[3]) ? want_known_bool(ev, args[3], site.arg(3), "`orthographic`")
                                 : std::optional(false);
     if (!at || !look || !fov || !ortho) return poison();
+    if (*at == *look) {
+        report(ev, Code::BadArgument, site.arg(0), "the camera stands where it looks")
+            .help(given(args[1])
+                      ? "move it, or let `look_at` be another point"
+                      : "move it, or say where it looks with `look_at`: the origin else");
+        return poison();
+    }
     s.camera = {*at, *look, *fov, *ortho, true};
     return setting_value(ev, std::move(s));
 }
