@@ -185,10 +185,12 @@ class Writer {
         }
         const std::string i = names_.numbered('i');
         const int stride = turns_together(fold);
-        std::string turn_end; // a turn's last line
+        std::string turn_end; // a turn's last line, of turns too many
         if (const auto pruned = module_.pruned.find(graph_[id].payload);
             pruned != module_.pruned.end()) {
             turn_end = listed_loop(pruned->second, fold, i, indent);
+        } else if (stride == 0) {
+            turn_end = filled_loop(fold, i, indent);
         } else if (stride > 1) {
             const std::string group = names_.numbered('i'), turn = names_.numbered('i');
             line(indent, "for (int " + group + " = 0; " + group + " < " +
@@ -238,8 +240,24 @@ class Writer {
         name_[id] = name_[fold.vars[0]];
     }
 
-    // The head of a loop over the rows of a cell's list, in groups for the reason below; what a
-    // group's last turns compute beyond the list's end is taken back, by the line handed back.
+    // The head of a loop in groups that do not fill it; what the last group's turns compute beyond
+    // the end is taken back, by the line handed back.
+    std::string filled_loop(const ir::Fold &fold, const std::string &i, int indent) {
+        const std::string group = names_.numbered('i'), turn = names_.numbered('i'),
+                          &carried = name_[fold.vars[0]],
+                          count = at_least(expression(fold.count), Primary);
+        const Type type = graph_[fold.vars[0]].type;
+        const std::string before = names_.numbered(prefix_of(type));
+        line(indent, "for (int " + group + " = 0; " + group + " < " + count + "; " + group +
+                         " += " + std::to_string(most_together) + ") for (int " + turn + " = 0; " +
+                         turn + " < " + std::to_string(most_together) + "; ++" + turn + ") {");
+        line(indent + 1, "int " + i + " = min(" + group + " + " + turn + ", " + count + " - 1);");
+        line(indent + 1, std::string(glsl_type(type)) + " " + before + " = " + carried + ";");
+        return "if (" + group + " + " + turn + " >= " + count + ") " + carried + " = " + before +
+               ";";
+    }
+
+    // The same over the rows of a cell's list.
     std::string listed_loop(const PrunePlan::Use &use, const ir::Fold &fold, const std::string &i,
                             int indent) {
         const std::string list = names_.numbered('n'), group = names_.numbered('i'),
@@ -260,13 +278,15 @@ class Writer {
 
     // A long loop runs in groups of a few turns. Drivers write such a short inner loop out, which
     // is faster, and keeps within the 65,536 turns, of all loops together, after which Mesa's
-    // llvmpipe ends a shader. 1: no groups.
+    // llvmpipe ends a shader. 1: no groups; 0: groups of most_together that do not fill the loop,
+    // where no large ones do.
+    static constexpr int most_together = 8;
     int turns_together(const ir::Fold &fold) const {
         const auto count = graph_.as_number(fold.count);
         if (!count || fold.condition || *count < 32) return 1;
-        for (int stride = 8; stride > 1; --stride)
-            if (static_cast<int>(*count) % stride == 0) return stride;
-        return 1;
+        int stride = most_together;
+        while (static_cast<int>(*count) % stride != 0) --stride;
+        return stride < most_together / 2 && fold.vars.size() == 1 ? 0 : stride;
     }
 
     // Whether `root` reads statement `s` (itself, or through other nodes of the same loop).

@@ -270,7 +270,8 @@ std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &librar
         out.push_back({b.name, signature + ")", b.doc, "built in", ""});
     }
     // What is visible everywhere first: who asks for `box` means that.
-    std::ranges::stable_partition(out, [](const LibraryEntry &e) { return e.module.empty(); });
+    std::stable_partition(out.begin(), out.end(),
+                          [](const LibraryEntry &e) { return e.module.empty(); });
     return out;
 }
 
