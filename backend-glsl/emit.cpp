@@ -64,10 +64,8 @@ class Emitter {
     }
 
     void use(const PrunePlan &plan) { module_.pruned = plan.loops; }
-    void use_far_cells() {
-        far_cells_ = true;
-        module_.around = static_cast<bool>(scene_.endless);
-    }
+    void use_far_cells() { far_cells_ = true; }
+    void ask_less_outside() { module_.around = static_cast<bool>(scene_.endless); }
 
     // What lists the rows of one grid's cells.
     PruneKernel run_kernel(const PrunedLoop &loop) {
@@ -593,6 +591,7 @@ Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnos
     if (diagnostics.has_errors()) return {};
     Emitter picture(plan->scene, results, options, diagnostics);
     picture.use(*plan);
+    if (options.far_cells) picture.ask_less_outside();
     if (!pruning.far.text.empty()) picture.use_far_cells();
     Output output = picture.run();
     if (!output.text.empty()) output.pruning = std::move(pruning);
