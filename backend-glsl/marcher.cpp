@@ -348,8 +348,19 @@ constexpr const char *far_shadow =
         if (s <= margin) break;
 )";
 
+// Beyond the cells a value that is not exact shades nothing.
 constexpr const char *ask_exact =
-    "        fathom_exact = fathom_off(p) <= max(shadow * angle * s, margin);\n";
+    R"(        if (fathom_outside(p)) {
+            float off = fathom_off(p);
+            float edge = max(shadow * angle * s, margin);
+            if (off > 2.0 * edge && off < fathom_endless(p)) {
+                s -= off - edge;
+                before = 0.0;
+                continue;
+            }
+        }
+        fathom_exact = true;
+)";
 constexpr const char *asked_exact = "        fathom_exact = false;\n";
 
 using Values = std::map<std::string, std::string, std::less<>>;

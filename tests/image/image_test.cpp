@@ -119,6 +119,37 @@ TEST_CASE("long loops leave no holes by GL") {
     }
 }
 
+// Rows of a loop over a ground without end: by GL only the ground is asked beyond the rows' cells,
+// and what is not asked casts no shadow.
+TEST_CASE("rows stand on an endless ground and shade it by GL as by the CPU") {
+    auto context = gl::Context::make();
+    REQUIRE(std::holds_alternative<gl::Context>(context));
+    for (const char *ground :
+         {"plane(Y, -1.3)", "plane(Y, -1.3).displace(p => 0.06 * sin(15 * p.x) * sin(15 * p.z))",
+          "plane(Y, -1.3).displace_map(image(\"pebbles.png\"), 0.06, scale: 1.4)"}) {
+        CAPTURE(ground);
+        const driver::Compilation made = driver::compile_text(
+            "rows.sdf",
+            ground + std::string("\nfor i in 0..300 {\n"
+                                 "  let y = 1 - (2 * i + 1) / 300\n"
+                                 "  let r = sqrt(1 - y * y)\n"
+                                 "  sphere(0.08).translate([r * cos(2.4 * i), y, r * sin(2.4 * "
+                                 "i)])\n}\ncamera(at: [2, 1.6, 3], fov: 45deg)\n"),
+            FATHOM_SOURCE_DIR "/examples/parts", {});
+        REQUIRE(made.good());
+        gl::Request request;
+        request.width = width;
+        request.height = height;
+        Diagnostics diagnostics;
+        const std::optional<Picture> by_gl = gl::render(made.scene, request, diagnostics);
+        REQUIRE(by_gl);
+        const ir::View view = ir::view_of(made.scene, 0, static_cast<double>(width) / height);
+        const cpu::Picture by_cpu =
+            cpu::render(cpu::prepare(made.scene, view, width, height, 0), {});
+        CHECK(disagreeing(by_gl->rgba, by_cpu.rgba) < width * height / 400);
+    }
+}
+
 // What is closed in sees less of the sky; a lamp that shines on it shines undimmed, so that
 // contacts are not black.
 TEST_CASE("occlusion dims the ambient light alone") {
