@@ -103,7 +103,8 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
                     .note(fmt::format("it is `{}`", signature_text(name, formals)));
             if (args[0].value.kind == ValueKind::Shape)
                 help_with_shape(d, name);
-            else if (formals[0].is_vector && std::ranges::all_of(args, [&](const Argument &b) {
+            else if (!formals.empty() && formals[0].is_vector &&
+                     std::ranges::all_of(args, [&](const Argument &b) {
                          return !b.name && is_scalar(ev, b.value);
                      }))
                 d.help("a vector is written in brackets: `[x, y, z]`");
