@@ -158,6 +158,7 @@ Exit write_result(const std::string &out, std::string_view bytes, Terminal &term
 Exit watch_scene(const SceneArguments &scene, Terminal &terminal,
                  const std::function<Exit(const driver::Compilation &)> &act) {
     driver::Watcher watcher;
+    std::string told;
     for (;;) {
         {
             driver::Compilation compilation =
@@ -166,9 +167,9 @@ Exit watch_scene(const SceneArguments &scene, Terminal &terminal,
             if (terminal.flush() != done || terminal.reader_gone()) return exit;
             watcher.watch(compilation.files);
         }
-        if (!watcher.good()) {
-            terminal.say("fathom: cannot watch: " + watcher.error());
-            return device_error;
+        if (watcher.polls_because() != told) {
+            told = watcher.polls_because();
+            terminal.say("fathom: " + told);
         }
         while (!watcher.wait(std::chrono::hours(1))) {
         }

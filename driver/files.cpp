@@ -5,6 +5,9 @@
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
+#include <mutex>
+#include <set>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -127,14 +130,67 @@ int write_all(int descriptor, std::string_view bytes) {
     return 0;
 }
 
-std::string write_file(const std::filesystem::path &named, std::string_view bytes) {
-    std::error_code ignored;
-    // A symbolic link stays one: what it leads to is replaced.
-    std::filesystem::path target = named;
-    if (std::filesystem::is_symlink(named, ignored)) {
-        std::filesystem::path followed = std::filesystem::weakly_canonical(named, ignored);
-        if (!ignored) target = followed;
+namespace {
+
+constexpr std::string_view temporary_mark = ".fathom-tmp";
+constexpr std::size_t temporary_tail = 6; // what mkostemp makes of the name's end
+
+// A symbolic link stays one: what it leads to is written, also where nothing stands there yet.
+// Empty for a ring of links.
+std::filesystem::path followed(std::filesystem::path path) {
+    std::error_code error;
+    for (int links = 0; links < 40; ++links) {
+        if (!std::filesystem::is_symlink(path, error)) return path;
+        const std::filesystem::path next = std::filesystem::read_symlink(path, error);
+        if (error) return path;
+        path = next.is_absolute() ? next : path.parent_path() / next;
     }
+    return {};
+}
+
+// Removes what writes left behind that were killed. A file that is being written is locked. Once a
+// folder and process: only another process can have been killed.
+void sweep(const std::filesystem::path &folder) {
+    static std::mutex mutex;
+    static std::set<std::filesystem::path> swept;
+    std::lock_guard lock(mutex);
+    std::error_code error;
+    if (!swept.insert(std::filesystem::absolute(folder, error)).second) return;
+    std::filesystem::directory_iterator entries(folder, error), end;
+    for (; !error && entries != end; entries.increment(error)) {
+        const std::string name = entries->path().filename().string();
+        const std::size_t tail = temporary_mark.size() + temporary_tail;
+        if (name.size() <= tail + 1 || name[0] != '.' ||
+            name.compare(name.size() - tail, temporary_mark.size(), temporary_mark) != 0)
+            continue;
+        Descriptor file(
+            ::open(entries->path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+        struct stat status {};
+        if (file.get() < 0 || ::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode))
+            continue;
+        if (::flock(file.get(), LOCK_EX | LOCK_NB) == 0) ::unlink(entries->path().c_str());
+    }
+}
+
+// A new file beside the target, locked while it is open; -1 and errno. One that another process
+// swept before the lock was ours is made again.
+int locked_temporary(const std::string &pattern, std::string &name) {
+    for (;;) {
+        name = pattern;
+        const int file = ::mkostemp(name.data(), O_CLOEXEC);
+        if (file < 0) return -1;
+        struct stat status {};
+        ::flock(file, LOCK_EX | LOCK_NB);
+        if (::fstat(file, &status) == 0 && status.st_nlink > 0) return file;
+        ::close(file);
+    }
+}
+
+} // namespace
+
+std::string write_file(const std::filesystem::path &named, std::string_view bytes) {
+    const std::filesystem::path target = followed(named);
+    if (target.empty()) return error_words(ELOOP);
     struct stat old {};
     bool exists = ::stat(target.c_str(), &old) == 0;
     if (exists && S_ISDIR(old.st_mode)) return "is a directory";
@@ -147,10 +203,14 @@ std::string write_file(const std::filesystem::path &named, std::string_view byte
     if (exists && ::access(target.c_str(), W_OK) != 0) return error_words(errno);
 
     std::filesystem::path folder = target.parent_path().empty() ? "." : target.parent_path();
-    std::string temporary =
-        (folder / ("." + target.filename().string() + ".fathom-tmpXXXXXX")).string();
+    sweep(folder);
+    std::string temporary;
     HoldInterrupts hold;
-    Descriptor file(::mkostemp(temporary.data(), O_CLOEXEC));
+    Descriptor file(locked_temporary((folder / ("." + target.filename().string() +
+                                                std::string(temporary_mark) +
+                                                std::string(temporary_tail, 'X')))
+                                         .string(),
+                                     temporary));
     if (file.get() < 0) return error_words(errno);
     mode_t mask = ::umask(0);
     ::umask(mask);

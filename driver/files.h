@@ -30,9 +30,10 @@ std::optional<std::string> read_file(const std::filesystem::path &path, std::siz
 std::optional<std::string> read_standard_input(std::size_t limit, std::string &error);
 
 // Writes beside the target, then renames: on any failure, a full disk included, the old file stays
-// as it was and nothing is left behind. Interrupts wait until the rename is done. A target that is
-// no regular file (a pipe, /dev/null) is written in place. Returns an empty string, or the reason
-// of the failure.
+// as it was and nothing is left behind. Interrupts wait until the rename is done; what a kill
+// leaves, `.NAME.fathom-tmp…`, the next process that writes into the folder removes. Symbolic links
+// are followed, also where they lead to nothing yet. A target that is no regular file (a pipe,
+// /dev/null) is written in place. Returns an empty string, or the reason of the failure.
 std::string write_file(const std::filesystem::path &target, std::string_view bytes);
 
 // Writes all of `bytes` to a descriptor; 0, or the errno of the failure.

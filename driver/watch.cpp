@@ -28,6 +28,7 @@ constexpr std::uint32_t interesting = IN_CLOSE_WRITE | IN_MODIFY | IN_ATTRIB | I
 constexpr milliseconds quiet_after_complete{2};
 constexpr milliseconds quiet_after_incomplete{60};
 constexpr milliseconds longest_burst{400};
+constexpr milliseconds look_again{500}; // where the system tells nothing
 
 // A file's folder and, where the name or a folder above is a symbolic link, every place on the way
 // to what it means.
@@ -47,10 +48,15 @@ std::vector<fs::path> places(const fs::path &file) {
 } // namespace
 
 Watcher::Watcher() {
-    inotify_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    if (inotify_ < 0)
-        error_ = "the system has no more file watches to give (fs.inotify.max_user_instances)";
     wake_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+    inotify_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    if (inotify_ < 0) poll_from_now_on(errno, "fs.inotify.max_user_instances");
+}
+
+void Watcher::poll_from_now_on(int error, const char *what) {
+    polls_because_ = "the system gives no more file watches (" +
+                     (error == EMFILE || error == ENOSPC ? std::string(what) : error_words(error)) +
+                     "): files are looked at twice a second instead";
 }
 
 Watcher::~Watcher() {
@@ -65,7 +71,7 @@ void Watcher::watch(const std::map<fs::path, FileStamp> &files) {
         files_[fs::absolute(file, error).lexically_normal()] = state;
     }
     compare_first_ = true;
-    rewatch_folders();
+    if (polls_because_.empty()) rewatch_folders();
 }
 
 void Watcher::rewatch_folders() {
@@ -98,8 +104,8 @@ void Watcher::watch_folder(const fs::path &folder) {
     int id = ::inotify_add_watch(inotify_, folder.c_str(), interesting);
     if (id >= 0)
         folders_[id] = folder;
-    else if (errno == ENOSPC)
-        error_ = "the system has no more file watches to give (fs.inotify.max_user_watches)";
+    else if (errno != ENOENT && errno != ENOTDIR) // gone since: its ancestor tells
+        poll_from_now_on(errno, "fs.inotify.max_user_watches");
 }
 
 Watcher::Batch Watcher::read_events() {
@@ -176,6 +182,7 @@ bool Watcher::wait(milliseconds timeout) {
     if (std::exchange(compare_first_, false) && compare()) return true;
     steady_clock::time_point end = steady_clock::now() + timeout;
     for (;;) {
+        if (!polls_because_.empty()) return wait_polling(end);
         milliseconds left = std::chrono::ceil<milliseconds>(end - steady_clock::now());
         std::array<pollfd, 2> ready{pollfd{inotify_, POLLIN, 0}, pollfd{wake_, POLLIN, 0}};
         int count = ::poll(ready.data(), ready.size(),
@@ -190,6 +197,25 @@ bool Watcher::wait(milliseconds timeout) {
         if (!batch.relevant) continue;
         settle(batch.complete);
         if (compare()) return true;
+    }
+}
+
+// A file that changed is looked at again until it rests.
+bool Watcher::wait_polling(steady_clock::time_point end) {
+    bool changed = compare();
+    for (;;) {
+        const milliseconds left = std::chrono::ceil<milliseconds>(end - steady_clock::now());
+        const milliseconds pause = changed ? quiet_after_incomplete : std::min(left, look_again);
+        pollfd woken{wake_, POLLIN, 0};
+        if (::poll(&woken, 1, static_cast<int>(std::max<std::int64_t>(0, pause.count()))) != 0) {
+            std::uint64_t value = 0;
+            if (woken.revents && ::read(wake_, &value, sizeof value) > 0) return changed;
+            return changed; // an interrupt: the caller may have to end
+        }
+        const bool again = compare();
+        if (changed && !again) return true;
+        changed = changed || again;
+        if (!changed && left <= pause) return false;
     }
 }
 

@@ -1,6 +1,7 @@
 // Tells when a file, or any other that the scene read, was saved. Watches *directories*, so that an
-// editor's atomic renames, delete-and-create and backup dances are seen; joins bursts. Knows
-// nothing of what the files hold.
+// editor's atomic renames, delete-and-create and backup dances are seen; joins bursts. Where the
+// system gives no watches, it looks at the files twice a second, and says so. Knows nothing of what
+// the files hold.
 #pragma once
 
 #include "driver/files.h"
@@ -20,10 +21,9 @@ class Watcher {
     Watcher(const Watcher &) = delete;
     Watcher &operator=(const Watcher &) = delete;
 
-    // False where the system gives no inotify instance or watch (its limits are reached); `error`
-    // says so.
-    bool good() const { return error_.empty(); }
-    const std::string &error() const { return error_; }
+    // Why it looks at the files instead of being told: the system gave no inotify instance or watch
+    // (its limits are reached). Empty where it is told.
+    const std::string &polls_because() const { return polls_because_; }
 
     // The files to watch from now on, in place of those before, each with its state when it was
     // read: what was saved since then is news too, so nothing falls between reading and watching.
@@ -51,10 +51,12 @@ class Watcher {
     Batch read_events();
     void settle(bool complete);
     bool compare();
+    void poll_from_now_on(int error, const char *what);
+    bool wait_polling(std::chrono::steady_clock::time_point end);
 
     int inotify_ = -1;
     int wake_ = -1;
-    std::string error_;
+    std::string polls_because_;
     std::map<std::filesystem::path, FileStamp> files_; // absolute; as last reported
     bool compare_first_ = false;
     std::map<int, std::filesystem::path> folders_; // by watch descriptor

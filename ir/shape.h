@@ -164,6 +164,7 @@ struct Library {
     std::string name; // "sphere"
     std::vector<std::pair<std::string, NodeId>>
         arguments; // the call's, defaults filled in; the numbers and vectors only
+    std::vector<std::pair<std::string, std::vector<NodeId>>> lists{}; // … and lists of them
     bool has_claims = false;
     Claims claims;
 };

@@ -20,12 +20,20 @@ Value *find(Value &mapping, std::string_view key) {
     return const_cast<Value *>(std::as_const(mapping).find(key));
 }
 
+Value varying_value(const TreeNode &node) {
+    Value value;
+    value.kind = Value::Kind::Mapping;
+    value.entries = node.varying;
+    return value;
+}
+
 Value node_value(const TreeNode &node, std::map<std::string, int> &ordinals) {
     if (node.verbatim) return *node.verbatim;
     Value properties;
     properties.kind = Value::Kind::Mapping;
     properties.entries = node.properties;
     const NodeTypeRow *row = find_node_type(node.type);
+    if (!node.varying.empty()) properties.entries.emplace_back("Varying", varying_value(node));
     std::vector<Value> children;
     for (const TreeNode &child : node.children) children.push_back(node_value(child, ordinals));
     if (!children.empty() || !row || row->children != Arity::Leaf)
@@ -103,6 +111,18 @@ Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> 
                 set("Intensity", yaml_scalar(intensity));
             }
         }
+        Value varying;
+        varying.kind = Value::Kind::Mapping;
+        const auto vary = [&](const char *name, ir::NodeId value) {
+            if (!numbers.varies(value)) return;
+            if (auto steps = numbers.steps(value))
+                varying.entries.emplace_back(name, std::move(*steps));
+        };
+        vary(key, source.position);
+        vary("Color", source.color);
+        std::erase_if(properties.entries,
+                      [](const Entry &entry) { return spelling_key(entry.first) == "varying"; });
+        if (!varying.entries.empty()) set("Varying", std::move(varying));
         return light;
     };
     const auto fresh = [&](std::size_t number) {
@@ -126,6 +146,44 @@ Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> 
     return yaml_list(std::move(lights));
 }
 
+// What is round the scene and 0.3 has no place for: labelled.
+void add_surroundings(const ir::Scene &scene, Numbers &numbers, Value &properties) {
+    const ir::Lighting &l = scene.lighting;
+    const ir::RenderSettings usual;
+    const auto add = [&](const char *name, Value value) {
+        properties.entries.emplace_back(name, std::move(value));
+    };
+    if (scene.background)
+        if (auto steps = numbers.steps(scene.background)) add("Background", std::move(*steps));
+    if (scene.render.epsilon != usual.epsilon) add("Epsilon", yaml_scalar(scene.render.epsilon));
+    if (scene.render.far != usual.far) add("Far", yaml_scalar(scene.render.far));
+    if (scene.render.time_end != usual.time_end)
+        add("Time End", yaml_scalar(scene.render.time_end));
+    Value varying;
+    varying.kind = Value::Kind::Mapping;
+    const auto vary = [&](const char *name, ir::NodeId value) {
+        if (auto steps = numbers.steps(value))
+            varying.entries.emplace_back(name, std::move(*steps));
+    };
+    const std::pair<const char *, ir::NodeId> parts[] = {
+        {"Ambient", l.ambient},
+        {"Ambient Occlusion", l.ambient_occlusion},
+        {"Shadow Darkness", l.shadow_darkness},
+        {"Soft Shadows", l.soft_shadows},
+        {"Specular Intensity", l.specular_intensity}};
+    for (const auto &[key, value] : parts)
+        if (numbers.varies(value)) vary(key, value);
+    const ir::Camera &camera = scene.camera;
+    if (camera.given && (numbers.varies(camera.at) || numbers.varies(camera.look_at) ||
+                         numbers.varies(camera.fov))) {
+        vary("Camera At", camera.at);
+        vary("Camera Target", camera.look_at);
+        vary("Field of View", camera.fov);
+        if (camera.orthographic) add("Orthographic", yaml_switch(true));
+    }
+    if (!varying.entries.empty()) add("Varying", std::move(varying));
+}
+
 Value lighting_value(const ir::Scene &scene, Numbers &numbers, KeptItems &kept) {
     const ir::Lighting &l = scene.lighting;
     const auto ambient = numbers.vector(l.ambient).value_or(std::array<double, 3>{});
@@ -139,6 +197,7 @@ Value lighting_value(const ir::Scene &scene, Numbers &numbers, KeptItems &kept) 
                                      {"Specular Intensity", number(l.specular_intensity)},
                                      {"Specular Exponent", yaml_scalar(128)},
                                      {"Skip Shadows & Shading", yaml_switch(l.skip)}});
+    add_surroundings(scene, numbers, properties);
     Value name = yaml_word("Lighting");
     if (kept.lighting && kept.lighting->items.size() == 3) {
         name = kept.lighting->items[1];
@@ -281,6 +340,96 @@ std::vector<Value> settings_values(const ir::Scene &scene, Numbers &numbers,
 
 } // namespace
 
+// Sliders, as they are: everything that follows them says so by their names.
+static Value parameters_value(const ir::Scene &scene) {
+    std::vector<Value> items;
+    for (const ir::Param &param : scene.params) {
+        const auto list = [&](const std::array<double, 4> &numbers) {
+            std::vector<Value> parts;
+            for (int i = 0; i < ir::components(param.type); ++i) {
+                const double v = numbers[static_cast<std::size_t>(i)];
+                parts.push_back(yaml_scalar(param.is_color ? channel_of(v) : v));
+            }
+            return parts.size() == 1 ? parts[0] : yaml_list(std::move(parts));
+        };
+        Value item = yaml_mapping({{"Name", yaml_word(param.name)}});
+        if (param.label != param.name) item.entries.emplace_back("Label", yaml_word(param.label));
+        const char *type = param.is_color                 ? "Color"
+                           : param.type == ir::Type::Bool ? "Switch"
+                           : param.type == ir::Type::Int  ? "Whole"
+                           : param.type == ir::Type::Vec2 ? "Vec2"
+                           : param.type == ir::Type::Vec3 ? "Vec3"
+                           : param.type == ir::Type::Vec4 ? "Vec4"
+                                                          : "Float";
+        if (param.type != ir::Type::Float) item.entries.emplace_back("Type", yaml_word(type));
+        item.entries.emplace_back(
+            "Value", param.type == ir::Type::Bool ? yaml_switch(param.value[0] != 0)
+                                                  : list(param.value));
+        if (param.has_range) {
+            item.entries.emplace_back("Low", list(param.lo));
+            item.entries.emplace_back("High", list(param.hi));
+        }
+        items.push_back(std::move(item));
+    }
+    return yaml_list(std::move(items));
+}
+
+static Value caches_value(Numbers &numbers) {
+    std::vector<Value> items;
+    for (const FlowWords::Cached &cached : numbers.words().caches)
+        items.push_back(yaml_mapping(
+            {{"Cell", yaml_scalar(cached.cell)}, {"Field", parse_text(cached.flow).value}}));
+    return yaml_list(std::move(items));
+}
+
+static void count_labelled(const TreeNode &node, std::map<std::string, int> &types, bool &varying) {
+    const NodeTypeRow *row = find_node_type(node.type);
+    if (row && row->type >= first_labelled && row->type != NodeType::Lighting) ++types[row->name];
+    varying = varying || !node.varying.empty();
+    for (const TreeNode &child : node.children) count_labelled(child, types, varying);
+}
+
+// What stands under labelled keys, so that only this project reads it.
+static void report_labelled(const ir::Scene &scene, Numbers &numbers, const TreeNode &root,
+                            Diagnostics &diagnostics) {
+    std::string what;
+    const auto say = [&](const std::string &text) { what += (what.empty() ? "" : ", ") + text; };
+    const auto counted = [](std::size_t n, const std::string &one) {
+        return std::to_string(n) + " " + one + (n == 1 ? "" : "s");
+    };
+    const ir::RenderSettings usual;
+    std::map<std::string, int> types;
+    bool varying = false;
+    count_labelled(root, types, varying);
+    if (scene.background) say("the background");
+    if (scene.render.epsilon != usual.epsilon || scene.render.far != usual.far ||
+        scene.render.time_end != usual.time_end)
+        say("limits of the march");
+    if (!scene.params.empty()) say(counted(scene.params.size(), "parameter"));
+    if (numbers.moves()) say("motion");
+    if (!numbers.words().caches.empty())
+        say(counted(numbers.words().caches.size(), "cached field"));
+    for (const auto &[type, count] : types)
+        say(counted(static_cast<std::size_t>(count), "`" + type + "` node"));
+    if (!what.empty())
+        Remark(diagnostics,
+               Diagnostic{Code::Unsupported,
+                          Severity::Note,
+                          "under labelled keys, which version 0.3 does not have: " + what,
+                          {},
+                          {},
+                          {},
+                          {}})
+            .note("`fathom import` reads them back; another reader leaves them out, and has "
+                  "parameters and motion at their present values");
+    for (const ir::Param &param : scene.params)
+        if (param.structural)
+            unsaved(diagnostics, param.origin,
+                    "`" + param.name + "` decides what shapes there are: the file has those of "
+                                       "its present value")
+                .note("the parameter itself is kept, and moves what follows it otherwise");
+}
+
 std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
     KeptItems kept = read_kept(scene.kept);
     Numbers numbers(scene);
@@ -310,8 +459,13 @@ std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
     write_item(looks.textures(), 0, out);
     write_item(yaml_list(looks.materials()), 0, out);
     std::map<std::string, int> ordinals;
+    Value lighting = lighting_value(scene, numbers, kept); // programs: before the caches they use
+    const Value caches = caches_value(numbers), parameters = parameters_value(scene);
+    if (!caches.items.empty()) root.properties.insert(root.properties.begin(), {"Caches", caches});
+    if (!parameters.items.empty())
+        root.properties.insert(root.properties.begin(), {"Parameters", parameters});
     Value tree = node_value(root, ordinals);
-    Value lighting = lighting_value(scene, numbers, kept);
+    report_labelled(scene, numbers, root, diagnostics);
     const bool beside = kept.lighting && !kept.lighting->items.empty() &&
                         switch_of(kept.lighting->items[0]).value_or(false);
     if (beside && !tree.items[2].entries.empty()) { // as the file had it: among the root's children

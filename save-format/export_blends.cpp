@@ -84,8 +84,8 @@ std::optional<TreeNode> TreeWriter::profile_blend(ShapeId id, bool complemented,
                   : all         ? "Intersection"
                                 : "Difference"));
     add(result, "Profile", yaml_word(profiles[std::min<std::size_t>(profile, 4)]));
-    add(result, "Radius", yaml_scalar(*radius));
-    if (profile >= 3) add(result, "Count", yaml_scalar(*count));
+    number(result, "Radius", s.args[0]);
+    if (profile >= 3) number(result, "Count", s.args[1]);
     for (const ShapeId child : children) {
         if (auto operand = single(child, paint)) result.children.push_back(std::move(*operand));
     }
@@ -103,8 +103,8 @@ std::optional<TreeNode> TreeWriter::seam(ShapeId id, const Paint &paint) {
     if (!radius || !depth || !first || rest.empty()) return otherwise(id, paint, "this seam");
     TreeNode result = made(NodeType::Seam);
     add(result, "Profile", yaml_word(names[s.payload]));
-    add(result, "Radius", yaml_scalar(*radius));
-    if (s.payload >= 2) add(result, "Depth", yaml_scalar(*depth));
+    number(result, "Radius", s.args[0]);
+    if (s.payload >= 2) number(result, "Depth", s.args[1]);
     result.children.push_back(std::move(*first));
     for (TreeNode &other : rest) result.children.push_back(std::move(other));
     return result;
@@ -116,29 +116,22 @@ std::optional<TreeNode> TreeWriter::lerp(ShapeId id, const Paint &paint) {
     const int functions = functions_;
     TreeNode result = made(NodeType::Blend);
     const NodeId t = numbers_.reduced(s.args[0]);
-    if (const auto factor = graph.as_number(t)) {
-        add(result, "Factor", yaml_scalar(*factor));
-    } else {
+    if (!number(result, "Factor", t)) {
         // 2.14: clamp(length(p - center), 0, 1)
-        std::optional<std::array<double, 3>> center;
+        NodeId center;
         if (graph[t].op == ir::Op::Clamp && graph[graph.arg(t, 0)].op == ir::Op::Length &&
             graph.as_number(graph.arg(t, 1)) == 0.0 && graph.as_number(graph.arg(t, 2)) == 1.0) {
             const NodeId from = graph.arg(graph.arg(t, 0), 0);
-            if (from == graph.point()) center = std::array<double, 3>{};
+            if (from == graph.point()) center = graph.vec3(0, 0, 0);
             if (graph[from].op == ir::Op::Sub && graph.arg(from, 0) == graph.point())
-                center = numbers_.vector(graph.arg(from, 1));
+                center = graph.arg(from, 1);
             if (graph[from].op == ir::Op::Add) {
-                for (int i = 0; i < 2; ++i) {
-                    if (graph.arg(from, i) != graph.point()) continue;
-                    center = numbers_.vector(graph.arg(from, 1 - i));
-                    if (center)
-                        for (double &part : *center) part = -part;
-                }
+                for (int i = 0; i < 2; ++i)
+                    if (graph.arg(from, i) == graph.point())
+                        center = graph.make(ir::Op::Neg, {graph.arg(from, 1 - i)});
             }
         }
-        if (center) {
-            add(result, "Center", yaml_xyz((*center)[0], (*center)[1], (*center)[2]));
-        } else {
+        if (!center || !vector(result, "Center", center)) {
             auto field_steps = steps(t);
             if (!field_steps) return otherwise(id, paint, "a blend by this function");
             add(result, "Factor Field", std::move(*field_steps));
@@ -150,7 +143,7 @@ std::optional<TreeNode> TreeWriter::lerp(ShapeId id, const Paint &paint) {
     if (!first || rest.empty())
         return otherwise(id, paint, "a blend with something that is left out");
     // Where the factor varies, both have to end somewhere.
-    if (functions_ != functions && !graph.as_number(t))
+    if (functions_ != functions && !numbers_.number(t))
         return otherwise(id, paint, "this blend by a function");
     result.children.push_back(std::move(*first));
     for (TreeNode &other : rest) result.children.push_back(std::move(other));

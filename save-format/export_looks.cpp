@@ -177,7 +177,7 @@ Value Looks::textures() const {
 std::optional<Looks::Look> Looks::look_of(const ir::Material &material) {
     Look look;
     const auto read = [&](ir::NodeId id, std::array<double, 3> &out) {
-        const auto value = numbers_.vector(id);
+        const auto value = numbers_.varies(id) ? std::nullopt : numbers_.vector(id);
         if (value)
             for (std::size_t i = 0; i < 3; ++i) out[i] = channel_of((*value)[i]);
         return value.has_value();
@@ -188,7 +188,8 @@ std::optional<Looks::Look> Looks::look_of(const ir::Material &material) {
         look.texture_scale = material.texture.scale;
         if (scene_.graph[diffuse].op == ir::Op::Mix) diffuse = scene_.graph.arg(diffuse, 0);
     }
-    const auto exponent = numbers_.number(material.exponent);
+    const auto exponent = numbers_.varies(material.exponent) ? std::nullopt
+                                                             : numbers_.number(material.exponent);
     if (!read(diffuse, look.diffuse) || !read(material.specular, look.specular) ||
         !read(material.emission, look.emission) || !exponent)
         return std::nullopt;

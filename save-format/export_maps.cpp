@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <unordered_set>
 #include <utility>
 
 namespace fathom::save {
@@ -75,6 +76,48 @@ void TreeWriter::rotation(const ir::Constant &matrix, TreeNode child, std::vecto
     out.push_back(std::move(result));
 }
 
+// A turn by an angle that follows params or time about an axis that does not: the object's own, as
+// the library makes it of both.
+bool TreeWriter::varying_turn(TreeNode &node, NodeId matrix) {
+    ir::Graph &graph = numbers_.graph();
+    matrix = numbers_.reduced(matrix);
+    std::vector<NodeId> open{matrix}, angles;
+    std::unordered_set<NodeId> seen;
+    while (!open.empty()) {
+        const NodeId at = open.back();
+        open.pop_back();
+        if (!seen.insert(at).second) continue;
+        if (graph[at].op == ir::Op::Sin) angles.push_back(graph.arg(at, 0));
+        open.insert(open.end(), graph.args(at).begin(), graph.args(at).end());
+    }
+    for (const NodeId angle : angles) {
+        if (graph.is_constant(angle)) continue;
+        // the axis is what a turn by 1 leaves of R - R'
+        const NodeId turned = ir::substitute(graph, matrix, {{angle, graph.number(1)}});
+        if (!graph.is_constant(turned)) continue;
+        const auto m = graph.constant_of(turned).value;
+        std::array<double, 3> axis{m[5] - m[7], m[6] - m[2], m[1] - m[3]};
+        for (double &part : axis) part = std::abs(part) < 1e-12 ? 0 : part / (2 * std::sin(1.0));
+        for (double &part : axis) part = shortest_near(part);
+        const double length = std::hypot(axis[0], axis[1], axis[2]);
+        if (std::abs(length - 1) > 1e-9) continue;
+        const NodeId same = ir::rotation(graph, graph.vec3(axis[0], axis[1], axis[2]), angle);
+        bool equal = true; // at some angles, up to rounding
+        for (const double test : {0.3, 2.1, -1.2}) {
+            const NodeId a = ir::substitute(graph, matrix, {{angle, graph.number(test)}}),
+                         b = ir::substitute(graph, same, {{angle, graph.number(test)}});
+            equal = equal && graph.is_constant(a) && graph.is_constant(b);
+            for (std::size_t i = 0; equal && i < 9; ++i)
+                equal = std::abs(graph.constant_of(a).value[i] - graph.constant_of(b).value[i]) <
+                        1e-9;
+        }
+        if (!equal) continue;
+        add(node, "Axis", yaml_xyz(axis[0], axis[1], axis[2]));
+        return number(node, "Angle", angle);
+    }
+    return false;
+}
+
 void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out) {
     const Shape &s = shape(id);
     ir::Graph &graph = numbers_.graph();
@@ -86,9 +129,10 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
     case ir::MapKind::Translate: {
         const auto by = numbers_.vector(s.args[2]);
         if (!by) return push(otherwise(id, paint, "a movement that is no number"));
-        if (*by == std::array<double, 3>{}) return united(s.children[0], paint, out);
+        if (*by == std::array<double, 3>{} && !numbers_.varies(s.args[2]))
+            return united(s.children[0], paint, out);
         auto result = one_child(NodeType::Translation, s.children[0], paint);
-        if (result) add(*result, "Vector", yaml_xyz(-(*by)[0], -(*by)[1], -(*by)[2]));
+        if (result) vector(*result, "Vector", graph.make(ir::Op::Neg, {s.args[2]}));
         return push(std::move(result));
     }
     case ir::MapKind::Rotate: {
@@ -101,7 +145,9 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
         bool identity = true;
         for (std::size_t i = 0; i < 9; ++i)
             identity = identity && std::abs(m[i] - (i % 4 == 0 ? 1 : 0)) < 1e-15;
-        if (identity) return united(s.children[0], paint, out);
+        const bool varies = numbers_.varies(s.args[2]);
+        if (varies && det < 0) return push(otherwise(id, paint, "a reflection that varies"));
+        if (identity && !varies) return united(s.children[0], paint, out);
         // A reflection in planes of the axes is a scaling; any other is one in x, then the rotation
         // that is left.
         bool diagonal = det < 0;
@@ -125,13 +171,19 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
         std::vector<TreeNode> children = std::move(inner.children);
         TreeNode held;
         rotation(turn, std::move(held), out);
+        if (varies && !varying_turn(out.back(), s.args[2])) {
+            out.pop_back();
+            return push(otherwise(id, paint, "a rotation about an axis that varies"));
+        }
         out.back().children = std::move(children);
         return;
     }
     case ir::MapKind::Scale: {
         const auto by = numbers_.vector(s.args[2]);
         if (!by) return push(otherwise(id, paint, "a scale that is no number"));
-        if (*by == std::array<double, 3>{1, 1, 1}) return united(s.children[0], paint, out);
+        const bool varies = numbers_.varies(s.args[2]);
+        if (*by == std::array<double, 3>{1, 1, 1} && !varies)
+            return united(s.children[0], paint, out);
         auto result = one_child(NodeType::Scaling, s.children[0], paint);
         // the shortest number whose reciprocal the scale is
         const auto factor = [](double scale) {
@@ -140,16 +192,22 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
         };
         if (result)
             add(*result, "Factors", yaml_xyz(factor((*by)[0]), factor((*by)[1]), factor((*by)[2])));
+        if (result && varies) { // one number where all three are the same
+            NodeId scale = numbers_.reduced(s.args[2]);
+            const NodeId x = graph.component(scale, 0);
+            if (x == graph.component(scale, 1) && x == graph.component(scale, 2)) scale = x;
+            vary(*result, "Factors", graph.make(ir::Op::Div, {graph.number(1), scale}));
+        }
         return push(std::move(result));
     }
     case ir::MapKind::Twist: {
         const auto rate = numbers_.number(s.args[2]);
         if (!rate) return push(otherwise(id, paint, "a twist that is no number"));
-        if (*rate == 0) return united(s.children[0], paint, out);
+        if (*rate == 0 && !numbers_.varies(s.args[2])) return united(s.children[0], paint, out);
         auto result = deformed(id, NodeType::Twist, paint);
         if (result && result->type == made(NodeType::Field).type) return push(std::move(result));
         if (result) {
-            add(*result, "Rate", yaml_scalar(-*rate));
+            number(*result, "Rate", graph.make(ir::Op::Neg, {s.args[2]}));
             if (s.axis != 2) add(*result, "Axis", yaml_word(axes[s.axis]));
         }
         return push(std::move(result));
@@ -174,6 +232,8 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
             arguments.entries.emplace_back("to", yaml_scalar(*to));
         }
         add(*result, "Arguments", std::move(arguments));
+        vary(*result, bend ? "rate" : "ratio", s.args[2]);
+        if (!bend) vary(*result, "from", s.args[3]), vary(*result, "to", s.args[4]);
         return push(std::move(result));
     }
     case ir::MapKind::Fold: {
@@ -295,8 +355,10 @@ void TreeWriter::copies(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
             add(*result, "Function", yaml_word("repeat_mirror"));
             add(*result, "Arguments",
                 yaml_mapping({{"cell", yaml_xyz(size[0], size[1], size[2])}}));
+            vary(*result, "cell", s.args[0]);
         } else {
             add(*result, "Cell", yaml_xyz(size[0], size[1], size[2]));
+            vary(*result, "Cell", s.args[0]);
             bool counted = false;
             for (std::size_t i = 0; i < 3; ++i)
                 counted = counted || (r.along[i] && std::isfinite(copies[i]));

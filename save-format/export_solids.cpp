@@ -35,18 +35,13 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
     const bool exact = l.claims.kind == ir::FieldKind::Exact;
     std::string name = l.name.substr(l.name.rfind('.') + 1);
     bool whole = true;
-    const auto number = [&](std::string_view key) {
-        const NodeId *node = argument(l, key);
-        const auto value = node ? numbers_.number(*node) : std::nullopt;
-        whole = whole && value;
-        return yaml_scalar(value.value_or(0));
+    const auto set_number = [&](TreeNode &node, const char *property, std::string_view key) {
+        const NodeId *value = argument(l, key);
+        whole = whole && value && number(node, property, *value);
     };
-    const auto vector = [&](std::string_view key) {
-        const NodeId *node = argument(l, key);
-        const auto value = node ? numbers_.vector(*node) : std::nullopt;
-        whole = whole && value;
-        const auto v = value.value_or(std::array<double, 3>{});
-        return yaml_xyz(v[0], v[1], v[2]);
+    const auto set_vector = [&](TreeNode &node, const char *property, std::string_view key) {
+        const NodeId *value = argument(l, key);
+        whole = whole && value && vector(node, property, *value);
     };
     const auto finish = [&](TreeNode result) -> std::optional<TreeNode> {
         if (!whole) return otherwise(id, paint, "`" + name + "` with these arguments");
@@ -57,40 +52,40 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
     };
     if (name == "sphere" && exact) {
         TreeNode result = made(NodeType::Sphere);
-        add(result, "Radius", number("radius"));
+        set_number(result, "Radius", "radius");
         return finish(std::move(result));
     }
     if (name == "torus" && exact) {
         TreeNode result = made(NodeType::Torus);
-        add(result, "Major Radius", number("major"));
-        add(result, "Minor Radius", number("minor"));
+        set_number(result, "Major Radius", "major");
+        set_number(result, "Minor Radius", "minor");
         return finish(std::move(result));
     }
     if (name == "box") {
         TreeNode result = made(NodeType::Box);
-        add(result, "Size", vector("size"));
+        set_vector(result, "Size", "size");
         if (exact) add(result, "Exact", yaml_switch(true));
         return finish(std::move(result));
     }
     if (name == "cylinder" || (name == "cone" && !exact)) {
         TreeNode result = made(name == "cone" ? NodeType::Cone : NodeType::Cylinder);
-        add(result, "Radius", number("radius"));
-        add(result, "Height", number("height"));
+        set_number(result, "Radius", "radius");
+        set_number(result, "Height", "height");
         if (exact) add(result, "Exact", yaml_switch(true));
         return finish(std::move(result));
     }
     if (name == "menger_sponge") {
         TreeNode result = made(NodeType::MengerSponge);
-        add(result, "Size", number("size"));
-        add(result, "Iterations", number("iterations"));
+        set_number(result, "Size", "size");
+        set_number(result, "Iterations", "iterations");
         return finish(std::move(result));
     }
     if (name == "blobby") {
         TreeNode result = made(NodeType::BlobbyObjects);
-        add(result, "Balls", number("balls"));
-        add(result, "Size", vector("size"));
-        add(result, "Radius", number("radius"));
-        add(result, "Seed", number("seed"));
+        set_number(result, "Balls", "balls");
+        set_vector(result, "Size", "size");
+        set_number(result, "Radius", "radius");
+        set_number(result, "Seed", "seed");
         return finish(std::move(result));
     }
     const auto sets = vector_sets();
@@ -98,8 +93,8 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         if (name != set.function) continue;
         TreeNode result = made(NodeType::GeneralizedDistanceFunction);
         add(result, "Shape", yaml_word(set.name));
-        add(result, "Radius", number("radius"));
-        add(result, "Exponent", number("exponent"));
+        set_number(result, "Radius", "radius");
+        set_number(result, "Exponent", "exponent");
         return finish(std::move(result));
     }
     if (name == "gdf_pair") {
@@ -111,12 +106,12 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         };
         TreeNode result = made(NodeType::GeneralizedDistanceFunction);
         add(result, "Shape", set("a"));
-        add(result, "Radius", number("radius"));
-        add(result, "Exponent", number("a_exponent"));
+        set_number(result, "Radius", "radius");
+        set_number(result, "Exponent", "a_exponent");
         add(result, "Second Shape", set("b"));
-        add(result, "Scale", number("a_scale"));
-        add(result, "Second Scale", number("b_scale"));
-        add(result, "Second Exponent", number("b_exponent"));
+        set_number(result, "Scale", "a_scale");
+        set_number(result, "Second Scale", "b_scale");
+        set_number(result, "Second Exponent", "b_exponent");
         return finish(std::move(result));
     }
     if (name == "distance_grid") { // the file is no number: the body tells which it reads
@@ -126,9 +121,8 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         add(result, "File", yaml_word(scene_.grids[*grid].name));
         return finish(std::move(result));
     }
-    const bool of_numbers = name != "gdf" && name != "gdf_blend" && name != "metaballs" &&
-                            name != "tubes" && is_library_solid(name);
-    if (of_numbers) {
+    const bool called = !l.arguments.empty() || !l.lists.empty(); // not the claims of a body alone
+    if (called && is_library_solid(name)) {
         TreeNode result = made(NodeType::LibraryShape);
         add(result, "Function", yaml_word(name));
         Value arguments;
@@ -142,6 +136,20 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
             if (value->type == ir::Type::Bool) parts[0] = yaml_switch(value->value[0] != 0);
             arguments.entries.emplace_back(key, parts.size() == 1 ? parts[0]
                                                                   : yaml_list(std::move(parts)));
+            vary(result, key, node);
+        }
+        for (const auto &[key, nodes] : l.lists) {
+            std::vector<Value> items;
+            for (const NodeId node : nodes) {
+                const auto value = numbers_.constant(node);
+                if (!value || numbers_.varies(node))
+                    return otherwise(id, paint, "`" + name + "` with this list");
+                std::vector<Value> parts;
+                for (int i = 0; i < ir::components(value->type); ++i)
+                    parts.push_back(yaml_scalar(value->value[static_cast<std::size_t>(i)]));
+                items.push_back(parts.size() == 1 ? parts[0] : yaml_list(std::move(parts)));
+            }
+            arguments.entries.emplace_back(key, yaml_list(std::move(items)));
         }
         add(result, "Arguments", std::move(arguments));
         return finish(std::move(result));

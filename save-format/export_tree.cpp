@@ -32,10 +32,32 @@ ShapeId TreeWriter::bare(ShapeId id) const {
     return id;
 }
 
-std::optional<Value> TreeWriter::steps(NodeId expression) {
-    const std::string flow = numbers_.program(expression);
-    if (flow.empty()) return std::nullopt;
-    return parse_text(flow).value;
+void TreeWriter::vary(TreeNode &node, std::string_view name, NodeId value) {
+    if (!value || !numbers_.varies(value)) return;
+    if (auto program = steps(value)) {
+        node.varying.emplace_back(std::string(name), std::move(*program));
+        return;
+    }
+    unsaved(diagnostics_, {},
+            "the save format has no words for what `" + std::string(name) + "` of a `" +
+                node.type + "` follows: " + no_words)
+        .note("its present value is written");
+}
+
+bool TreeWriter::number(TreeNode &node, const char *name, NodeId value) {
+    const auto present = numbers_.number(value);
+    if (!present) return false;
+    add(node, name, yaml_scalar(*present));
+    vary(node, name, value);
+    return true;
+}
+
+bool TreeWriter::vector(TreeNode &node, const char *name, NodeId value) {
+    const auto present = numbers_.vector(value);
+    if (!present) return false;
+    add(node, name, yaml_xyz((*present)[0], (*present)[1], (*present)[2]));
+    vary(node, name, value);
+    return true;
 }
 
 void TreeWriter::united(ShapeId id, const Paint &paint, std::vector<TreeNode> &out) {
@@ -67,7 +89,8 @@ void TreeWriter::united(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
     case ShapeKind::Paint:
     case ShapeKind::Repaint: return painted(id, paint, out);
     case ShapeKind::Offset:
-        if (numbers_.number(s.args[0]) == 0.0) return united(s.children[0], paint, out);
+        if (numbers_.number(s.args[0]) == 0.0 && !numbers_.varies(s.args[0]))
+            return united(s.children[0], paint, out);
         break;
     case ShapeKind::Leaf:
     case ShapeKind::Intersection:
@@ -115,10 +138,12 @@ bool TreeWriter::displaced(ShapeId id, const Paint &paint, std::vector<TreeNode>
     const std::string texture = looks_.texture(map.map.image);
     if (!amount || texture.empty()) return false;
     open_maps_.insert(found->second);
-    if (looks_.displaces(paint.fill, map, *amount))
+    if (looks_.displaces(paint.fill, map, *amount) && !numbers_.varies(map.amount))
         united(id, paint, out);
-    else if (auto result = map_node(map, *amount, id, paint))
+    else if (auto result = map_node(map, *amount, id, paint)) {
+        vary(*result, "Amount", map.amount);
         out.push_back(std::move(*result));
+    }
     open_maps_.erase(found->second);
     return true;
 }
@@ -139,7 +164,7 @@ std::optional<TreeNode> TreeWriter::map_node(const ir::DisplacementMap &map, dou
 std::optional<TreeNode> TreeWriter::displaced_base(ShapeId id, const Paint &paint) {
     const Shape &s = shape(id);
     const ir::DisplacementMap &map = scene_.shapes.displacement_maps[s.payload - 1];
-    const NodeId moved = numbers_.reduced(s.args[0]);
+    const NodeId moved = numbers_.present(s.args[0]);
     const ir::Graph &graph = numbers_.graph();
     double amount = graph[moved].op == ir::Op::Neg ? -1 : 1;
     if (graph[moved].op == ir::Op::Mul) {
@@ -234,23 +259,21 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
     }
     case ShapeKind::Lerp: return lerp(id, paint);
     case ShapeKind::PseudoNorm: {
-        const auto exponent = numbers_.number(s.args[0]);
         auto first = single(s.children[0], paint);
         std::vector<TreeNode> rest;
         united(s.children[1], paint, rest);
-        if (!exponent || !first || rest.empty())
-            return otherwise(id, paint, "this pseudo-norm blend");
         TreeNode result = made(NodeType::PseudoNormBlend);
-        add(result, "Exponent", yaml_scalar(*exponent));
+        if (!number(result, "Exponent", s.args[0]) || !first || rest.empty())
+            return otherwise(id, paint, "this pseudo-norm blend");
         result.children.push_back(std::move(*first));
         for (TreeNode &other : rest) result.children.push_back(std::move(other));
         return result;
     }
     case ShapeKind::Offset: {
-        const auto distance = numbers_.number(s.args[0]);
-        if (!distance) return otherwise(id, paint, "an offset that is no number");
+        if (!numbers_.number(s.args[0]))
+            return otherwise(id, paint, "an offset that is no number");
         auto result = one_child(NodeType::Offset, s.children[0], paint);
-        if (result) add(*result, "Distance", yaml_scalar(*distance));
+        if (result) number(*result, "Distance", s.args[0]);
         return result;
     }
     case ShapeKind::Shell: {
@@ -260,6 +283,7 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
         if (!result) return result;
         add(*result, "Function", yaml_word("shell"));
         add(*result, "Arguments", yaml_mapping({{"thickness", yaml_scalar(*thickness)}}));
+        vary(*result, "thickness", s.args[0]);
         return result;
     }
     case ShapeKind::Displace: {
@@ -305,17 +329,37 @@ Numbers::Numbers(const ir::Scene &scene) : graph_(scene.graph) {
             values_[NodeId{i}] = graph_.number(0);
         }
     }
+    for (const ir::Param &param : scene.params) words_.params.push_back(param.name);
 }
 
 NodeId Numbers::reduced(NodeId id) {
+    return variables_.empty() ? id : ir::substitute(graph_, id, variables_);
+}
+
+NodeId Numbers::present(NodeId id) {
     return values_.empty() ? id : ir::substitute(graph_, id, values_);
 }
 
-std::string Numbers::program(NodeId id) { return program_flow(graph_, id, values_); }
+bool Numbers::varies(NodeId id) {
+    return !graph_.is_constant(id) && !graph_.is_constant(reduced(id)) &&
+           graph_.is_constant(present(id));
+}
+
+std::string Numbers::program(NodeId id) {
+    std::string flow = program_flow(graph_, id, variables_, words_);
+    moves_ = moves_ || flow.find("[Time]") != std::string::npos;
+    return flow;
+}
+
+std::optional<Value> Numbers::steps(NodeId id) {
+    const std::string flow = program(id);
+    if (flow.empty()) return std::nullopt;
+    return parse_text(flow).value;
+}
 
 std::optional<ir::Constant> Numbers::constant(NodeId id) {
     if (!id) return std::nullopt;
-    const NodeId node = graph_.is_constant(id) ? id : reduced(id);
+    const NodeId node = graph_.is_constant(id) ? id : present(id);
     if (!graph_.is_constant(node)) return std::nullopt;
     return graph_.constant_of(node);
 }
@@ -336,7 +380,7 @@ std::optional<std::array<double, 3>> Numbers::vector(NodeId id) {
 }
 
 void Numbers::set(NodeId variable, const ir::Constant &value) {
-    values_[variable] = graph_.constant(value);
+    values_[variable] = variables_[variable] = graph_.constant(value);
 }
 
 std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers, Looks &looks,

@@ -4,6 +4,7 @@
 
 #include "ir/scene.h"
 #include "save-format/kept_items.h"
+#include "save-format/program.h"
 #include "save-format/yaml_writer.h"
 
 #include <optional>
@@ -11,7 +12,7 @@
 namespace fathom::save {
 
 // Expressions as numbers: params and time stand for their values, variables for what the walk has
-// put in their place.
+// put in their place. As programs they keep what they follow.
 class Numbers {
   public:
     explicit Numbers(const ir::Scene &scene);
@@ -19,14 +20,21 @@ class Numbers {
     std::optional<ir::Constant> constant(ir::NodeId id);
     std::optional<double> number(ir::NodeId id);
     std::optional<std::array<double, 3>> vector(ir::NodeId id); // a vec2's third component is 0
-    ir::NodeId reduced(ir::NodeId id);  // the expression, with those values in it
+    ir::NodeId reduced(ir::NodeId id); // the expression, with variables' values in it
+    ir::NodeId present(ir::NodeId id); // … and those of params and time
+    bool varies(ir::NodeId id);        // it is a number at present, and follows params or time
     std::string program(ir::NodeId id); // its steps in flow form; empty where there are no words
+    std::optional<Value> steps(ir::NodeId id); // the same as a value
     void set(ir::NodeId variable, const ir::Constant &value);
     ir::Graph &graph() { return graph_; }
+    FlowWords &words() { return words_; }
+    bool moves() const { return moves_; } // some program reads the time
 
   private:
     ir::Graph graph_;
-    ir::Substitution values_;
+    ir::Substitution values_, variables_;
+    FlowWords words_;
+    bool moves_ = false;
 };
 
 // What the file cannot hold: a warning, since the rest is written.

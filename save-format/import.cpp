@@ -79,7 +79,8 @@ class Settings {
         if (!seen_ && value.kind == Value::Kind::Scalar) {
             const auto steps = number_of(value);
             if (steps && *steps >= 1 && *steps <= 100000 && *steps == std::floor(*steps)) {
-                in.settings.push_back("render(max_steps: " + sdf_number(*steps) + ")");
+                in.settings.push_back("render(max_steps: " + sdf_number(*steps) + in.limits + ")");
+                in.limits.clear();
             } else {
                 in.report.content(
                     value.span,
@@ -106,6 +107,11 @@ class Settings {
 
     // The camera of the first view, or the first one.
     void camera(Importer &in) const {
+        if (!in.limits.empty()) in.settings.push_back("render(" + in.limits.substr(2) + ")");
+        if (!in.camera.empty()) {
+            in.settings.insert(in.settings.begin(), in.camera);
+            return;
+        }
         const double index = view_.value_or(0);
         const bool legal = index >= 0 && index < static_cast<double>(cameras_.size()) &&
                            index == std::floor(index);

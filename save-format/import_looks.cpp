@@ -221,8 +221,8 @@ void read_light(Importer &in, const TakenValue &taken) {
         items.size() > 2 && items[2].kind == Value::Kind::Mapping ? &items[2] : nullptr;
     if (!properties) return;
     for (const auto &[name, value] : properties->entries) {
-        static constexpr std::string_view known[] = {"Children", "Position", "Direction", "Color",
-                                                     "Intensity"};
+        static constexpr std::string_view known[] = {"Children", "Position",  "Direction",
+                                                     "Color",    "Intensity", "Varying"};
         bool found = false;
         for (const std::string_view other : known)
             found = found || spelling_key(other) == spelling_key(name);
@@ -252,9 +252,19 @@ void read_light(Importer &in, const TakenValue &taken) {
         }
         return sdf_vector(part);
     };
-    const std::string position = vector("Position"), direction = vector("Direction");
+    const Value *varying = properties->find("Varying");
+    const auto formula = [&](const char *what) {
+        return varying ? in.formula(*varying, what, taken.value.span) : std::string();
+    };
+    std::string position = formula("Position"), direction = formula("Direction");
+    if (position.empty()) position = vector("Position");
+    if (direction.empty()) direction = vector("Direction");
     if (position.empty() && direction.empty()) return; // as 0.3 has it: the language's own light
     std::string call = !position.empty() ? "light(at: " + position : "sun(direction: " + direction;
+    if (const std::string glow = formula("Color"); !glow.empty()) { // its intensity is in it
+        in.settings.push_back(call + ", color: " + glow + ")");
+        return;
+    }
     if (const Value *color = properties->find("Color")) {
         const Channels channels = read_color(in, color, "Color", {255, 255, 255}, color->span);
         if (channels.red != 255 || channels.green != 255 || channels.blue != 255)
@@ -365,14 +375,20 @@ void Importer::read_lighting(bool in_tree) {
     };
     const double red = number(0), green = number(1), blue = number(2);
     const double ambient[3] = {red, green, blue};
+    const auto text = [&](std::size_t i) {
+        const std::string varying = formula(properties.varying, row.properties[i].name, event.span);
+        return varying.empty() ? sdf_number(number(i)) : varying;
+    };
+    const std::string sky = formula(properties.varying, "Ambient", event.span);
     std::string call = "lighting(ambient: " +
-                       (red == green && green == blue ? sdf_number(red) : sdf_vector(ambient)) +
-                       ", ambient_occlusion: " + sdf_number(number(3)) +
-                       ", shadow_darkness: " + sdf_number(number(4)) +
-                       ", soft_shadows: " + sdf_number(number(5)) +
-                       ", specular_intensity: " + sdf_number(number(6));
+                       (!sky.empty()                     ? sky
+                        : red == green && green == blue ? sdf_number(red)
+                                                        : sdf_vector(ambient)) +
+                       ", ambient_occlusion: " + text(3) + ", shadow_darkness: " + text(4) +
+                       ", soft_shadows: " + text(5) + ", specular_intensity: " + text(6);
     if (number(8) != 0) call += ", skip: true";
     settings.insert(settings.begin() + static_cast<std::ptrdiff_t>(light_mark), call + ")");
+    read_surroundings(properties, event.span);
     // What the statement does not say: the name, the place, the carried exponent and all that was
     // not understood.
     if (name != "Lighting" || !properties.unknown.empty() || in_tree) {

@@ -131,6 +131,14 @@ void Importer::read_property(const NodeTypeRow &row, const Event &key, Propertie
         take_flow(reader, reader.next(), properties.unknown);
         return;
     }
+    if (spelling_key(key.text) == "varying" && properties.varying.entries.empty()) {
+        const TakenValue taken = take_value(reader, reader.next(), 1u << 20);
+        if (taken.value.kind == Value::Kind::Mapping)
+            properties.varying = taken.value;
+        else
+            report.content(key.span, "`Varying` has to be a mapping of properties to programs");
+        return;
+    }
     const PropertyType *type = find_property(row, key.text);
     if (!type) {
         std::vector<std::string> known;

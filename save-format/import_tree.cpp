@@ -3,6 +3,7 @@
 // dissolve, names, nodes left out) is recorded.
 #include "save-format/importer.h"
 #include "save-format/node_text.h"
+#include "save-format/yaml_writer.h"
 
 #include "base/suggest.h"
 #include "base/text.h"
@@ -281,6 +282,8 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
             if (properties.values[i].given && property.kind != PropertyKind::Carried)
                 properties.keep(property.name, property_flow(property, properties.values[i]));
         }
+        if (!properties.varying.entries.empty())
+            properties.keep("Varying", flow_text(properties.varying));
     };
     // A head that an export cannot know is recorded with all that it said.
     const auto as_group = [&](std::size_t base) {
@@ -484,8 +487,17 @@ void TreeReader::root(const Event &first) {
             if (event.kind == EventKind::MappingEnd || event.kind == EventKind::Broken ||
                 event.kind == EventKind::End)
                 break;
-            if (event.kind != EventKind::Scalar || spelling_key(event.text) != "children" ||
-                given) {
+            const std::string key =
+                event.kind == EventKind::Scalar ? spelling_key(event.text) : std::string();
+            if (!given && (key == "parameters" || key == "caches")) {
+                const TakenValue taken = take_value(in_.reader, in_.reader.next(), 1u << 22);
+                if (key == "parameters")
+                    in_.read_parameters(taken.value);
+                else
+                    in_.read_caches(taken.value);
+                continue;
+            }
+            if (key != "children" || given) {
                 in_.read_property(*row, event, properties, "the root");
                 continue;
             }

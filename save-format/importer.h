@@ -3,6 +3,7 @@
 #pragma once
 
 #include "save-format/node_types.h"
+#include "save-format/program.h"
 #include "save-format/save_format.h"
 #include "save-format/sdf_text.h"
 #include "save-format/yaml_reader.h"
@@ -37,6 +38,7 @@ struct Property {
 
 struct Properties {
     std::vector<Property> values; // as in the node type's row
+    Value varying;                // programs by property: what numbers follow
     std::string unknown;          // flow entries that go on unread: "Foo: 1, Bar: [2]"
     void keep(std::string_view key, std::string_view flow);
 };
@@ -69,7 +71,10 @@ struct Importer {
     bool lighting_seen = false;
     std::size_t nodes = 0;
     std::array<int, 64>
-        ordinals{}; // base nodes by type so far, for the names that an export would give
+        ordinals{};     // base nodes by type so far, for the names that an export would give
+    Words words;        // parameters and cached fields, by their names in programs
+    std::string limits; // of the march, as further arguments of `render(…)`
+    std::string camera; // one that moves, in place of the first view's
 
     // Leave the reader after the item that `first` begins.
     void read_textures(const Event &first);
@@ -85,6 +90,12 @@ struct Importer {
     void read_property(const NodeTypeRow &row, const Event &key, Properties &properties,
                        std::string_view of);
     std::string text_of_asset(const std::string &file) const;
+    // The root's labelled lists, and what the lighting says beside the light.
+    void read_parameters(const Value &list);
+    void read_caches(const Value &list);
+    void read_surroundings(const Properties &properties, Span at);
+    // The expression that a number follows, by its name in `Varying`; empty for none.
+    std::string formula(const Value &varying, std::string_view name, Span at);
 };
 
 std::optional<double> number_of(const Value &value);

@@ -38,6 +38,7 @@ struct TreeNode {
     bool named = false;
     bool head = false; // of a group that a record brought back: it counts in no ordinal
     std::vector<Entry> properties;
+    std::vector<Entry> varying; // programs by property: what numbers follow
     std::vector<TreeNode> children;
     std::optional<Value> verbatim; // instead of all that
     std::vector<Value> extra;

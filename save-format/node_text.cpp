@@ -3,6 +3,7 @@
 // dfmodel. Transforms of the file act on the point (2.5, 2.6, 2.9, 2.12), the language's on the
 // object: hence the inverses.
 #include "save-format/node_text.h"
+#include "save-format/reading.h"
 
 #include "base/text.h"
 #include "save-format/program.h"
@@ -13,51 +14,6 @@
 namespace fathom::save {
 namespace {
 
-// The properties of a row by name, with its defaults.
-class Reading {
-  public:
-    Reading(const NodeTypeRow &row, const Properties &properties)
-        : row_(row), properties_(properties) {}
-
-    const Property &operator[](std::string_view name) const {
-        return properties_.values[index(name)];
-    }
-    double number(std::string_view name) const {
-        const std::size_t at = index(name);
-        return properties_.values[at].given ? properties_.values[at].number[0]
-                                            : row_.properties[at].fallback;
-    }
-    void vector(std::string_view name, double (&out)[3]) const {
-        const std::size_t at = index(name);
-        for (int axis = 0; axis < 3; ++axis) {
-            out[axis] = properties_.values[at].given ? properties_.values[at].number[axis]
-                                                     : row_.properties[at].fallback;
-        }
-    }
-    std::string word(std::string_view name) const {
-        const std::size_t at = index(name);
-        return properties_.values[at].given ? properties_.values[at].word
-                                            : std::string(row_.properties[at].word);
-    }
-    std::string text(std::string_view name) const { return sdf_number(number(name)); }
-    std::string vector_text(std::string_view name) const {
-        double value[3];
-        vector(name, value);
-        return value[0] == value[1] && value[1] == value[2] ? sdf_number(value[0])
-                                                            : sdf_vector(value);
-    }
-
-  private:
-    std::size_t index(std::string_view name) const {
-        for (std::size_t i = 0; i < row_.properties.size(); ++i) {
-            if (row_.properties[i].name == name) return i;
-        }
-        return 0;
-    }
-    const NodeTypeRow &row_;
-    const Properties &properties_;
-};
-
 // 1/a, by a short number where that is exact, else by a division that the language does in the same
 // double arithmetic.
 std::string reciprocal(double a) {
@@ -67,124 +23,10 @@ std::string reciprocal(double a) {
     return "1 / " + (a < 0 ? "(" + sdf_number(a) + ")" : sdf_number(a));
 }
 
-bool is_plain_list(const Value &value) {
-    if (value.kind != Value::Kind::Sequence || value.items.empty()) return false;
-    for (const Value &item : value.items) {
-        if (!number_of(item)) return false;
-    }
-    return true;
-}
-
-// Numbers, vectors and lists of them, as an argument of a library call; empty where it is something
-// else.
-std::string argument_text(const Value &value) {
-    if (const auto number = number_of(value)) return sdf_number(*number);
-    if (value.kind == Value::Kind::Scalar) {
-        const auto on = switch_of(value);
-        return on && value.plain ? (*on ? "true" : "false") : std::string();
-    }
-    if (value.kind != Value::Kind::Sequence) return {};
-    std::string text = "[";
-    for (const Value &item : value.items) {
-        if (!number_of(item) && !is_plain_list(item)) return {};
-        if (text.size() > 1) text += ", ";
-        text += argument_text(item);
-    }
-    return text + "]";
-}
-
-std::string library_call(Importer &in, const Reading &reading, Properties &properties, Span at) {
-    const std::string function = reading.word("Function");
-    if (!is_library_solid(function)) {
-        in.report
-            .content(at, "`" + printable(function.substr(0, 80)) + "` is no solid of the library")
-            .note("the node is left out, and kept for an export");
-        return {};
-    }
-    std::string call = function + "(";
-    for (const auto &[name, value] : reading["Arguments"].tree.entries) {
-        const bool is_name =
-            !name.empty() &&
-            name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") == std::string::npos &&
-            name[0] >= 'a';
-        const std::string text = argument_text(value);
-        if (!is_name || text.empty()) {
-            in.report.content(value.span, "`" + printable(name.substr(0, 80)) +
-                                              "` is no argument of numbers, and is left out");
-            properties.keep(name, "~");
-            continue;
-        }
-        if (call.back() != '(') call += ", ";
-        call += name + ": " + text;
-    }
-    return call + ")";
-}
-
-std::string gdf_call(Importer &in, const Reading &reading, Properties &properties, Span at) {
-    const auto set_of = [&](const char *property) {
-        const std::string word = reading.word(property);
-        if (is_none(word)) return -1;
-        const int set = find_vector_set(word);
-        if (set >= 0) return set;
-        in.report
-            .content(at, "`" + printable(word.substr(0, 80)) + "` is no set of vectors for `" +
-                             property + "`")
-            .help("the sets are Tetrahedron, Cube, Octahedron, Dodecahedron, Icosahedron, "
-                  "Truncated Octahedron and Truncated Icosahedron");
-        properties.keep(property, flow_scalar(word, true));
-        return -1;
-    };
-    int first = set_of("Shape");
-    const int second = set_of("Second Shape");
-    if (first < 0) first = 4; // the table's default
-    const std::string radius = "radius: " + reading.text("Radius");
-    const auto exponent_text = [&](const char *property, const char *argument) {
-        const double exponent = reading.number(property);
-        return std::isinf(exponent) ? std::string()
-                                    : std::string(", ") + argument + ": " + sdf_number(exponent);
-    };
-    const auto sets = vector_sets();
-    if (second < 0 && reading.number("Scale") == 1) {
-        return std::string(sets[static_cast<std::size_t>(first)].function) + "(" + radius +
-               exponent_text("Exponent", "exponent") + ")";
-    }
-    const auto set_text = [&](int set) {
-        return "dfmodel." + std::string(sets[static_cast<std::size_t>(set)].function + 4);
-    };
-    return "dfmodel.gdf_pair(" + set_text(first) + ", " + set_text(second < 0 ? first : second) +
-           ", a_scale: " + reading.text("Scale") +
-           ", b_scale: " + (second < 0 ? "0" : reading.text("Second Scale")) + ", " + radius +
-           exponent_text("Exponent", "a_exponent") +
-           exponent_text("Second Exponent", "b_exponent") + ")";
-}
-
-std::string field_call(Importer &in, const Reading &reading, Span at) {
-    std::string why;
-    const std::string lambda = program_text(reading["Field"].tree, why);
-    if (lambda.empty()) {
-        in.report.content(at, "the program of this field cannot be read: " + why)
-            .note("the node is left out, and kept for an export");
-        return {};
-    }
-    std::string call = "implicit(" + lambda;
-    if (reading["Within"].given) {
-        const std::string region = region_text(reading["Within"].tree);
-        if (region.empty()) {
-            in.report.content(at, "the region of this field cannot be read")
-                .note("the node is left out, and kept for an export");
-            return {};
-        }
-        call += ", within: " + region;
-    }
-    if (reading["Assumed"].given) call += ", lipschitz: " + reading.text("Assumed");
-    if (reading["Estimate"].given) call += ", estimate: " + reading.text("Estimate");
-    return call + ")";
-}
-
 } // namespace
 
 std::string leaf_text(Importer &in, const NodeTypeRow &row, Properties &properties, Span at) {
-    const Reading reading(row, properties);
+    const Reading reading(in, row, properties, at);
     const auto exact = [&](std::string_view call) {
         return (reading.number("Exact") != 0 ? "" : "dfmodel.") + std::string(call);
     };
@@ -263,10 +105,12 @@ std::string leaf_text(Importer &in, const NodeTypeRow &row, Properties &properti
 }
 
 std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &properties, Span at) {
-    const Reading reading(row, properties);
+    const Reading reading(in, row, properties, at);
     double v[3];
     switch (row.type) {
     case NodeType::Translation: {
+        if (const std::string moved = reading.formula("Vector"); !moved.empty())
+            return ".translate(-" + moved + ")";
         reading.vector("Vector", v); // 2.6: d(p + v) is the object moved by -v
         const int moved = (v[0] != 0) + (v[1] != 0) + (v[2] != 0);
         if (moved == 0) return {};
@@ -276,6 +120,10 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
         return std::string(".translate(") + "xyz"[axis] + ": " + sdf_number(v[axis]) + ")";
     }
     case NodeType::Rotation: {
+        if (reading["Axis"].given) { // labelled: the object's own turn, in place of the angles
+            reading.vector("Axis", v);
+            return ".rotate(" + reading.text("Angle") + ", axis: " + sdf_vector(v) + ")";
+        }
         reading.vector("Angles",
                        v); // 2.5: d(R p), R = Rx Ry Rz, turns the object by Rz(-z) Ry(-y) Rx(-x)
         const int turned = (v[0] != 0) + (v[1] != 0) + (v[2] != 0);
@@ -290,6 +138,8 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
         return ".rotate_euler([" + angles + "])";
     }
     case NodeType::Scaling: {
+        if (const std::string factors = reading.formula("Factors"); !factors.empty())
+            return ".scale(1 / " + factors + ")";
         reading.vector("Factors", v); // 2.10, 2.12: d(S p) is the object 1/a as large
         for (const double part : v) {
             if (part == 0) {
@@ -311,6 +161,8 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
             properties.keep("Axis", flow_scalar(axis, true));
             axis = "Z";
         }
+        const std::string varying = reading.formula("Rate");
+        if (!varying.empty()) return ".twist(-" + varying + ", axis: " + axis + ")";
         return rate == 0 ? std::string() : ".twist(" + sdf_number(-rate) + ", axis: " + axis + ")";
     }
     case NodeType::Turnaround: {
@@ -325,7 +177,8 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
     case NodeType::Repetition: {
         reading.vector("Cell", v);
         if (v[0] == 0 && v[1] == 0 && v[2] == 0) return {};
-        std::string call = ".repeat(" + sdf_vector(v);
+        const std::string cell = reading.formula("Cell");
+        std::string call = ".repeat(" + (cell.empty() ? sdf_vector(v) : cell);
         if (reading["Count"].given) {
             double count[3];
             reading.vector("Count", count);
@@ -337,18 +190,19 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
         const double exponent = reading.number("Exponent");
         const std::string region =
             reading["Within"].given ? region_text(reading["Within"].tree) : std::string();
-        if (exponent == 1) return {};
-        return ".hyperize(" + sdf_number(exponent) + (region.empty() ? "" : ", within: " + region) +
+        if (exponent == 1 && !reading.varies("Exponent")) return {};
+        return ".hyperize(" + reading.text("Exponent") + (region.empty() ? "" : ", within: " + region) +
                ")";
     }
     case NodeType::Offset: {
         const double distance = reading.number("Distance");
-        return distance == 0 ? std::string() : ".offset(" + sdf_number(distance) + ")";
+        const bool nothing = distance == 0 && !reading.varies("Distance");
+        return nothing ? std::string() : ".offset(" + reading.text("Distance") + ")";
     }
     case NodeType::Displacement: {
         if (reading["Field"].given) {
             std::string why;
-            const std::string lambda = program_text(reading["Field"].tree, why);
+            const std::string lambda = program_text(reading["Field"].tree, in.words, why);
             if (!lambda.empty()) return ".displace(" + lambda + ")";
             in.report.content(at, "the program of this displacement cannot be read: " + why);
             return {};
@@ -360,7 +214,7 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
             in.report.content(at, "there is no texture `" + printable(map.substr(0, 80)) + "`");
             return {};
         }
-        if (reading.number("Amount") == 0) return {};
+        if (reading.number("Amount") == 0 && !reading.varies("Amount")) return {};
         reading.vector("Scale", v); // of a picture: X and Y
         return ".displace_map(" + texture->second + ", " + reading.text("Amount") + ", scale: " +
                (v[0] == v[1] ? sdf_number(v[0])
@@ -373,8 +227,8 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
         std::string why;
         std::string call =
             row.type == NodeType::Distortion
-                ? distortion_text(reading["Map"].tree, reading["Within"].tree, why)
-                : deformation_text(reading.word("Function"), reading["Arguments"].tree, why);
+                ? distortion_text(reading["Map"].tree, reading["Within"].tree, in.words, why)
+                : deformation_call(reading, why);
         if (call.empty())
             in.report.content(at, "this node cannot be read: " + why)
                 .note("its children stand as they are");
@@ -407,7 +261,7 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
 void operator_text(Importer &in, const NodeTypeRow &row, Properties &properties, Body &body,
                    std::size_t begin, std::size_t first_end, std::size_t rest_mark,
                    std::size_t rest, Span at) {
-    const Reading reading(row, properties);
+    const Reading reading(in, row, properties, at);
     const auto block = [&](std::string head) {
         body[begin] = {Piece::Kind::Open, std::move(head), {}};
         body.push_back({Piece::Kind::Close, "}", {}});
@@ -448,7 +302,7 @@ void operator_text(Importer &in, const NodeTypeRow &row, Properties &properties,
         }
     } else if (reading["Factor Field"].given) {
         std::string why;
-        last = program_text(reading["Factor Field"].tree, why);
+        last = program_text(reading["Factor Field"].tree, in.words, why);
         if (last.empty()) {
             in.report.content(at, "the program of this factor cannot be read: " + why)
                 .note("the factor 0.5 stands in");
@@ -457,9 +311,11 @@ void operator_text(Importer &in, const NodeTypeRow &row, Properties &properties,
     } else if (reading["Center"].given) { // 2.14
         double center[3];
         reading.vector("Center", center);
-        const bool origin = center[0] == 0 && center[1] == 0 && center[2] == 0;
-        last = "p => clamp(length(p" + (origin ? std::string() : " - " + sdf_vector(center)) +
-               "), 0, 1)";
+        const std::string varying = reading.formula("Center");
+        const bool origin =
+            varying.empty() && center[0] == 0 && center[1] == 0 && center[2] == 0;
+        const std::string at_center = varying.empty() ? sdf_vector(center) : varying;
+        last = "p => clamp(length(p" + (origin ? std::string() : " - " + at_center) + "), 0, 1)";
     } else {
         last = reading.text("Factor");
     }
@@ -476,7 +332,7 @@ void operator_text(Importer &in, const NodeTypeRow &row, Properties &properties,
 
 // {Diffuse: steps, Specular: steps, Exponent: steps, Emission: steps, Repaint: True}
 std::string paint_call(Importer &in, const NodeTypeRow &row, Properties &properties, Span at) {
-    const Reading reading(row, properties);
+    const Reading reading(in, row, properties, at);
     if (row.type != NodeType::Generic || !reading["Paint"].given) return {};
     const Value &looks = reading["Paint"].tree;
     std::string arguments;
@@ -488,7 +344,7 @@ std::string paint_call(Importer &in, const NodeTypeRow &row, Properties &propert
         const Value *steps = looks.find(key);
         if (!steps) continue;
         std::string why;
-        const std::string lambda = program_text(*steps, why, true);
+        const std::string lambda = program_text(*steps, in.words, why, Given::PointAndNormal);
         if (lambda.empty()) {
             in.report.content(at,
                               std::string("`") + key + "` of this paint cannot be read: " + why);

@@ -67,7 +67,8 @@ constexpr P blend[] = {number("Factor", 0.5),
                        {"Center", K::Vector, 0, "", -1e9, 1e9, false, true},
                        labelled(tree("Factor Field"))};
 constexpr P translation[] = {vector("Vector", 0)};
-constexpr P rotation[] = {vector("Angles", 0)};
+constexpr P rotation[] = {vector("Angles", 0), labelled(vector("Axis", 0)),
+                          labelled(number("Angle", 0))};
 constexpr P scaling[] = {vector("Factors", 1)};
 constexpr P twist[] = {number("Rate", 1), labelled(word("Axis", "Z"))};
 constexpr P turnaround[] = {labelled(word("Axis", "X"))};
@@ -100,7 +101,12 @@ constexpr P lighting[] = {number("Ambient R", 0),
                           number("Soft Shadows", 0.03),
                           number("Specular Intensity", 0.4),
                           {"Specular Exponent", K::Carried, 0, "128"},
-                          flag("Skip Shadows & Shading")};
+                          flag("Skip Shadows & Shading"),
+                          labelled(tree("Background")),
+                          labelled(size("Epsilon", 5e-4)),
+                          labelled(size("Far", 0)),
+                          labelled(size("Time End", 3600)),
+                          labelled(flag("Orthographic"))};
 
 constexpr NodeTypeRow rows[] = {
     {NodeType::Generic, "Generic", Arity::Many, generic},

@@ -47,6 +47,8 @@ enum class NodeType : std::uint8_t {
     Lighting
 };
 
+inline constexpr NodeType first_labelled = NodeType::LibraryShape;
+
 enum class PropertyKind : std::uint8_t {
     Number,
     Whole,

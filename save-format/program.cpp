@@ -76,6 +76,8 @@ constexpr Spelling spellings[] = {
     {"SpotNoise", "spot_noise", 3, false},
 };
 
+constexpr std::size_t most_inline = 20000; // characters of an expression without names
+
 constexpr std::string_view constructors[] = {"vec2", "vec3", "vec4", "mat2", "mat3", "mat4"};
 
 std::string constant_text(const Value &value) {
@@ -89,8 +91,8 @@ std::string constant_text(const Value &value) {
 
 class Program {
   public:
-    Program(const Value &steps, bool with_normal, std::string &why)
-        : steps_(steps), with_normal_(with_normal), why_(why) {}
+    Program(const Value &steps, const Words &words, Given given, std::string &why)
+        : steps_(steps), words_(words), given_(given), why_(why) {}
 
     std::string text() {
         if (steps_.kind != Value::Kind::Sequence || steps_.items.empty()) {
@@ -108,17 +110,25 @@ class Program {
             }
             const bool last = i + 1 == steps_.items.size();
             // A value that is used twice, or grows long, gets a name; others stand where they are
-            // used.
-            if (!last && (uses_[i] > 1 || expression.size() > 60) && expression.size() > 3) {
+            // used, as all do where no block can stand.
+            if (expression.size() > most_inline) {
+                why_ = "it is too long for a number";
+                return {};
+            }
+            if (!last && given_ != Given::Nothing && (uses_[i] > 1 || expression.size() > 60) &&
+                expression.size() > 3) {
                 lets_ += "let t" + std::to_string(i) + " = " + expression + "; ";
                 expression = "t" + std::to_string(i);
             }
             texts_.push_back(std::move(expression));
         }
         std::string result = texts_.back();
+        if (given_ == Given::Nothing) return result;
         if (result.size() > 2 && result.front() == '(' && whole_in_parentheses(result))
             result = result.substr(1, result.size() - 2);
-        return std::string(normal_used_ ? "(p, n) => " : "p => ") +
+        return std::string(normal_used_                   ? "(p, n) => "
+                           : given_ == Given::Direction ? "d => "
+                                                        : "p => ") +
                (lets_.empty() ? result : "{ " + lets_ + result + " }");
     }
 
@@ -144,8 +154,9 @@ class Program {
         uses_.assign(steps_.items.size(), 0);
         for (const Value &step : steps_.items) {
             if (step.kind != Value::Kind::Sequence) continue;
-            const bool constant = !step.items.empty() && step.items[0].text == "Const";
-            for (std::size_t i = 1; i < step.items.size() && !constant; ++i) {
+            const std::string op = step.items.empty() ? std::string() : step.items[0].text;
+            if (op == "Const" || op == "Id" || op == "Param") continue;
+            for (std::size_t i = op == "Cached" ? 2 : 1; i < step.items.size(); ++i) {
                 const auto number = number_of(step.items[i]);
                 if (number && *number >= 0 && *number < static_cast<double>(uses_.size()))
                     ++uses_[static_cast<std::size_t>(*number)];
@@ -158,9 +169,23 @@ class Program {
         if (value.kind != Value::Kind::Sequence || value.items.empty()) return {};
         const std::string &op = value.items[0].text;
         const std::size_t count = value.items.size() - 1;
-        if (op == "Point") return "p";
+        if (op == "Point") {
+            const bool legal = given_ != Given::Direction && given_ != Given::Nothing;
+            return legal ? "p" : std::string();
+        }
+        if (op == "Direction") return given_ == Given::Direction ? "d" : std::string();
         if (op == "Time") return "time";
-        if (op == "Normal" && with_normal_) {
+        if (op == "Param" && count == 1) {
+            const auto found = words_.params.find(value.items[1].text);
+            return found == words_.params.end() ? std::string() : found->second;
+        }
+        if (op == "Id" && count == 1) {
+            const auto number = number_of(value.items[1]);
+            const bool legal = number && *number == std::floor(*number) && *number >= 0 &&
+                               *number < words_.copies;
+            return legal ? copy_name(static_cast<int>(*number)) : std::string();
+        }
+        if (op == "Normal" && given_ == Given::PointAndNormal) {
             normal_used_ = true;
             return "n";
         }
@@ -168,7 +193,8 @@ class Program {
         std::vector<std::string> arguments;
         std::size_t first = 1;
         std::string_view word; // of Make, Splat and Swizzle: the type or the components
-        if (op == "Make" || op == "Splat" || op == "Swizzle" || op == "Column") {
+        if (op == "Make" || op == "Splat" || op == "Swizzle" || op == "Column" ||
+            op == "Cached") {
             if (count < 2) return {};
             word = value.items[1].text;
             first = 2;
@@ -198,6 +224,12 @@ class Program {
             return op == "Column" ? arguments[0] + "[" + std::string(word) + "]"
                                   : arguments[0] + "." + std::string(word);
         }
+        if (op == "Cached") {
+            const auto index = number_of(value.items[1]);
+            const bool legal = arguments.size() == 1 && index && *index == std::floor(*index) &&
+                               *index >= 0 && *index < static_cast<double>(words_.caches.size());
+            return legal ? call(words_.caches[static_cast<std::size_t>(*index)]) : std::string();
+        }
         if (op == "Neg" && arguments.size() == 1) return "(-" + arguments[0] + ")";
         if (op == "Not" && arguments.size() == 1) return "(not " + arguments[0] + ")";
         if (op == "Select" && arguments.size() == 3)
@@ -222,7 +254,9 @@ class Program {
     }
 
     const Value &steps_;
-    bool with_normal_, normal_used_ = false;
+    const Words &words_;
+    Given given_;
+    bool normal_used_ = false;
     std::string &why_;
     std::vector<int> uses_;
     std::vector<std::string> texts_;
@@ -249,8 +283,12 @@ std::string yaml_number(double value) {
     return sdf_number(value);
 }
 
-std::string program_text(const Value &steps, std::string &why, bool with_normal) {
-    return Program(steps, with_normal, why).text();
+std::string vector_text(const Value &vector) { return vector_of(&vector); }
+
+std::string copy_name(int level) { return "id_" + std::to_string(level + 1); }
+
+std::string program_text(const Value &steps, const Words &words, std::string &why, Given given) {
+    return Program(steps, words, given, why).text();
 }
 
 // {Ball: radius, Center: {X, Y, Z}}, {Low: …, High: …}, {Tube: radius, Axis: Y}, `Everywhere`, and
@@ -296,38 +334,12 @@ std::string region_text(const Value &region) {
     return text;
 }
 
-std::string distortion_text(const Value &map, const Value &within, std::string &why) {
-    const std::string lambda = program_text(map, why);
+std::string distortion_text(const Value &map, const Value &within, const Words &words,
+                            std::string &why) {
+    const std::string lambda = program_text(map, words, why);
     if (lambda.empty()) return {};
     const std::string region = region_text(within);
     return ".distort(" + lambda + (region.empty() ? "" : ", within: " + region) + ")";
-}
-
-std::string deformation_text(std::string_view function, const Value &arguments, std::string &why) {
-    if (!is_library_deformation(function)) {
-        why = "it is no transform of the library";
-        return {};
-    }
-    std::string call = "." + std::string(function) + "(";
-    for (const auto &[name, value] : arguments.entries) {
-        const bool is_name =
-            !name.empty() &&
-            name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string::npos;
-        std::string text;
-        if (const auto number = number_of(value)) {
-            text = sdf_number(*number);
-        } else if (value.kind == Value::Kind::Mapping) {
-            text = vector_of(&value);
-        } else if (value.text == "X" || value.text == "Y" || value.text == "Z") {
-            text = value.text;
-        }
-        if (!is_name || text.empty()) {
-            why = "an argument is no number, vector or axis";
-            return {};
-        }
-        call += (call.back() == '(' ? "" : ", ") + name + ": " + text;
-    }
-    return call + ")";
 }
 
 } // namespace fathom::save

@@ -6,24 +6,51 @@
 #include "ir/scene.h"
 #include "save-format/yaml_reader.h"
 
+#include <cstdint>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 namespace fathom::save {
 
-// `p => …`; empty, with the reason, where the steps make no sense. Looks may also read the normal:
-// `(p, n) => …`.
-std::string program_text(const Value &steps, std::string &why, bool with_normal = false);
-std::string region_text(const Value &region);
-std::string distortion_text(const Value &map, const Value &within, std::string &why);
-std::string deformation_text(std::string_view function, const Value &arguments, std::string &why);
+// What steps name beside earlier steps, as the text calls it.
+struct Words {
+    std::unordered_map<std::string, std::string> params; // by their names in the file
+    std::vector<std::string> caches;                     // in the file's order
+    int copies = 0; // repetitions around, whose copies differ: `id_1`, `id_2`, …
+};
 
+// What a program is a function of.
+enum class Given : std::uint8_t { Point, PointAndNormal, Direction, Nothing };
+
+// `p => …`, of the normal too `(p, n) => …`, of nothing an expression; empty, with the reason,
+// where the steps make no sense.
+std::string program_text(const Value &steps, const Words &words, std::string &why,
+                         Given given = Given::Point);
+std::string region_text(const Value &region);
+std::string vector_text(const Value &vector); // {X, Y, Z}; empty where it is none
+std::string distortion_text(const Value &map, const Value &within, const Words &words,
+                            std::string &why);
+
+std::string copy_name(int level); // what the number of a copy is called
 std::string yaml_number(double value); // shortest exact form, `.inf`
 
+// The same for the way out. Cached fields are collected as programs use them.
+struct FlowWords {
+    struct Cached {
+        std::string flow;
+        double cell = 0;
+    };
+    std::vector<std::string> params; // by index
+    std::vector<Cached> caches;
+    std::vector<ir::NodeId> ids; // of the repetitions around, whose copies differ
+};
+
 // The steps of an expression in flow form, its loops turn by turn; empty where an operation has no
-// words there (images, grids, long loops). `present` stands for params and time, in what is called
-// too. The graph grows by what the turns are.
-std::string program_flow(ir::Graph &graph, ir::NodeId root, const ir::Substitution &present);
+// words there (images, grids, long loops). `present` stands for variables, in what is called too.
+// The graph grows by what the turns are.
+std::string program_flow(ir::Graph &graph, ir::NodeId root, const ir::Substitution &present,
+                         FlowWords &words);
 
 // What an Op::Blend computes, as arithmetic.
 ir::NodeId blend_expression(ir::Graph &graph, ir::NodeId blend);

@@ -5,6 +5,7 @@
 
 #include "save-format/yaml_writer.h"
 
+#include <algorithm>
 #include <string_view>
 #include <unordered_map>
 
@@ -19,8 +20,9 @@ constexpr double most_turns = 1024; // of a loop
 
 class StepWriter {
   public:
-    StepWriter(ir::Graph &graph, const ir::Substitution &present)
-        : graph_(graph), present_(present), most_nodes_(graph.size() + 16 * most_steps) {}
+    StepWriter(ir::Graph &graph, const ir::Substitution &present, FlowWords &words)
+        : graph_(graph), present_(present), words_(words),
+          most_nodes_(graph.size() + 16 * most_steps) {}
 
     std::string flow(NodeId root) {
         return step(ir::substitute(graph_, root, present_), 0) < 0 ? std::string()
@@ -76,20 +78,44 @@ class StepWriter {
         return step(ir::substitute(graph_, function.result, inside), depth + 1);
     }
 
-    // What a loop's variables are after its last turn; none where there are too many turns, or
-    // nobody knows how many. After the first turn whose condition is false nothing changes any
-    // more.
+    // A cached field is written once, among the file's others. One that reads a copy's number is
+    // another field in each copy: there it is no more than what it computes.
+    int cached(ir::CacheId id, const std::vector<NodeId> &args, int depth) {
+        const ir::Cache cache = graph_.cache(id);
+        const ir::Function function = graph_.function(cache.field);
+        ir::Substitution inside = present_;
+        inside[function.params[0]] = graph_.point();
+        const std::string flow = StepWriter(graph_, inside, words_).flow(function.result);
+        if (flow.empty()) return -1;
+        if (flow.find("[Id, ") != std::string::npos) return call(cache.field, args, depth);
+        std::size_t index = 0;
+        while (index < words_.caches.size() &&
+               (words_.caches[index].flow != flow || words_.caches[index].cell != cache.cell))
+            ++index;
+        if (index == words_.caches.size()) words_.caches.push_back({flow, cache.cell});
+        const int at = step(args[0], depth + 1);
+        return at < 0 ? -1
+                      : push("Cached, " + std::to_string(index) + ", " + std::to_string(at));
+    }
+
+    // What a loop's variables are after its last turn; none where there are too many turns. After
+    // the first turn whose condition is false nothing changes any more.
     const std::vector<NodeId> *results(NodeId id) {
         if (const auto found = loops_.find(id); found != loops_.end()) return &found->second;
         const ir::Fold loop = graph_.fold(ir::FoldId{graph_[id].payload});
-        const auto turns = graph_.as_number(loop.count);
-        if (!turns || *turns > most_turns) return nullptr;
+        const auto known = graph_.as_number(loop.count);
+        const double turns = known.value_or(loop.max_count);
+        if (turns > most_turns) return nullptr;
         std::vector<NodeId> values(graph_.args(id).begin(), graph_.args(id).end());
         NodeId running = graph_.boolean(true);
-        for (int turn = 0; turn < static_cast<int>(*turns); ++turn) {
+        for (int turn = 0; turn < static_cast<int>(turns); ++turn) {
             if (graph_.size() > most_nodes_) return nullptr;
             ir::Substitution now{{loop.index, graph_.integer(turn)}};
             for (std::size_t k = 0; k < values.size(); ++k) now.emplace(loop.vars[k], values[k]);
+            if (!known)
+                running = graph_.make(
+                    Op::And,
+                    {running, graph_.make(Op::Less, {graph_.integer(turn), loop.count})});
             if (loop.condition)
                 running =
                     graph_.make(Op::And, {running, ir::substitute(graph_, loop.condition, now)});
@@ -114,7 +140,15 @@ class StepWriter {
         case Op::Normal: return push("Normal");
         case Op::Time: return push("Time");
         case Op::Call: return call(ir::FunctionId{node.payload}, args, depth);
-        case Op::Cached: return call(graph_.cache(ir::CacheId{node.payload}).field, args, depth);
+        case Op::Direction: return push("Direction");
+        case Op::Param: return push("Param, " + flow_scalar(words_.params[node.payload], true));
+        case Op::Var: {
+            const auto found = std::find(words_.ids.begin(), words_.ids.end(), id);
+            return found == words_.ids.end()
+                       ? -1
+                       : push("Id, " + std::to_string(found - words_.ids.begin()));
+        }
+        case Op::Cached: return cached(ir::CacheId{node.payload}, args, depth);
         case Op::Fold: return result(id, 0, depth);
         case Op::FoldResult: return result(args[0], node.payload, depth);
         case Op::Blend: return step(blend_expression(graph_, id), depth + 1);
@@ -133,9 +167,6 @@ class StepWriter {
             }
             return constant(value);
         }
-        case Op::Direction:
-        case Op::Param:
-        case Op::Var:
         case Op::Image:
         case Op::Grid:
         case Op::MakeHit:
@@ -236,6 +267,7 @@ class StepWriter {
 
     ir::Graph &graph_;
     const ir::Substitution &present_;
+    FlowWords &words_;
     std::size_t most_nodes_;
     std::unordered_map<NodeId, int> steps_;
     std::unordered_map<NodeId, std::vector<NodeId>> loops_;
@@ -245,8 +277,9 @@ class StepWriter {
 
 } // namespace
 
-std::string program_flow(ir::Graph &graph, NodeId root, const ir::Substitution &present) {
-    return StepWriter(graph, present).flow(root);
+std::string program_flow(ir::Graph &graph, NodeId root, const ir::Substitution &present,
+                         FlowWords &words) {
+    return StepWriter(graph, present, words).flow(root);
 }
 
 } // namespace fathom::save

@@ -63,7 +63,12 @@ class TreeWriter {
     std::optional<TreeNode> no_field(ShapeId id, const std::string &what); // reports
     NodeId raw_field(ShapeId id);
     bool painted_within(ShapeId id) const;
-    std::optional<Value> steps(NodeId expression); // none where it has no words
+    std::optional<Value> steps(NodeId expression) { return numbers_.steps(expression); }
+    // Adds a number (a vector) as it is at present, and what it follows; false where it is none.
+    bool number(TreeNode &node, const char *name, NodeId value);
+    bool vector(TreeNode &node, const char *name, NodeId value);
+    void vary(TreeNode &node, std::string_view name, NodeId value);
+    bool varying_turn(TreeNode &node, NodeId matrix);
     std::optional<Value> region(const ir::Region &region);
 
     const Shape &shape(ShapeId id) const { return scene_.shapes[id]; }

@@ -302,8 +302,16 @@ static Value call_closure(Evaluator &ev, const Value &callee, std::string_view n
         ir::Library library;
         library.name = f.name->text;
         for (std::size_t i = 0; i < values.size(); ++i)
-            if (is_numeric(values[i]))
+            if (is_numeric(values[i])) {
                 library.arguments.emplace_back(formals[i].name, to_node(ev, values[i]));
+            } else if (values[i].kind == ValueKind::List) {
+                const std::vector<Value> items = ev.lists[values[i].id];
+                std::vector<ir::NodeId> nodes;
+                for (const Value &item : items)
+                    if (is_numeric(item)) nodes.push_back(to_node(ev, item));
+                if (nodes.size() == items.size())
+                    library.lists.emplace_back(formals[i].name, std::move(nodes));
+            }
         return library_shape(ev, std::move(library), v, call);
     }
     return v;

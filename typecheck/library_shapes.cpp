@@ -20,6 +20,11 @@ Value library_shape(Evaluator &ev, ir::Library library, const Value &body, Span 
     }
     std::string key = "library:" + library.name + ":";
     for (const auto &[name, node] : library.arguments) key += name + "=" + number_key(node.index);
+    for (const auto &[name, nodes] : library.lists) {
+        key += name + "=[";
+        for (const ir::NodeId node : nodes) key += number_key(node.index);
+        key += "]";
+    }
     if (library.has_claims) {
         const ir::Claims &c = library.claims;
         key += number_key(static_cast<std::uint32_t>(c.kind)) + number_key(c.lipschitz.index) +

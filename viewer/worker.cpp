@@ -164,7 +164,7 @@ void Worker::run() {
                     linkers = {}; // its program ends with it, so the next is made anew
                 }
                 finished_ = std::move(made);
-                if (!watcher_.good()) complaint_ = watcher_.error();
+                complaint_ = watcher_.polls_because();
             }
             hooks_.ready();
             if (scene && !ending_ && !asked_) build_kept(*scene, part_stride, number);
