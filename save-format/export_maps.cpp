@@ -14,7 +14,6 @@
 namespace fathom::save {
 namespace {
 
-constexpr int most_copies = 4096; // of a repetition whose copies differ
 constexpr double degree = std::numbers::pi / 180;
 
 // The shortest decimal within a few units in the last place: 30, where the arithmetic
@@ -196,7 +195,8 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
             NodeId scale = numbers_.reduced(s.args[2]);
             const NodeId x = graph.component(scale, 0);
             if (x == graph.component(scale, 1) && x == graph.component(scale, 2)) scale = x;
-            vary(*result, "Factors", graph.make(ir::Op::Div, {graph.number(1), scale}));
+            const NodeId one = scale == x ? graph.number(1) : graph.vec3(1, 1, 1);
+            vary(*result, "Factors", graph.make(ir::Op::Div, {one, scale}));
         }
         return push(std::move(result));
     }
@@ -305,32 +305,12 @@ void TreeWriter::copies(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
     if (r.polar) {
         const auto count = numbers_.number(s.args[0]);
         if (!count) return refuse("a repetition that is no number");
-        if (!r.id) {
-            auto result = one_child(NodeType::Deformation, s.children[0], paint);
-            if (!result) return;
-            add(*result, "Function", yaml_word("repeat_polar"));
-            add(*result, "Arguments",
-                yaml_mapping({{"n", yaml_scalar(*count)}, {"axis", yaml_word(axes[r.axis])}}));
-            out.push_back(std::move(*result));
-            return;
-        }
-        if (*count > most_copies) return refuse("so many copies that differ");
-        for (int i = 0; i < static_cast<int>(*count); ++i) {
-            numbers_.set(r.id, {ir::Type::Vec3, {double(i), 0, 0}});
-            TreeNode held;
-            united(s.children[0], paint, held.children);
-            if (held.children.empty()) continue;
-            if (i == 0) {
-                for (TreeNode &child : held.children) out.push_back(std::move(child));
-                continue;
-            }
-            double angles[3] = {0, 0, 0};
-            angles[r.axis] = shortest_near(-360.0 * i / *count);
-            TreeNode turned = made(NodeType::Rotation);
-            add(turned, "Angles", yaml_xyz(angles[0], angles[1], angles[2]));
-            turned.children = std::move(held.children);
-            out.push_back(std::move(turned));
-        }
+        auto result = copied(NodeType::Deformation, id, paint);
+        if (!result) return;
+        add(*result, "Function", yaml_word("repeat_polar"));
+        add(*result, "Arguments",
+            yaml_mapping({{"n", yaml_scalar(*count)}, {"axis", yaml_word(axes[r.axis])}}));
+        out.push_back(std::move(*result));
         return;
     }
     const auto cell = numbers_.vector(s.args[0]);
@@ -339,54 +319,44 @@ void TreeWriter::copies(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
                            : std::optional(std::array<double, 3>{1e9, 1e9, 1e9});
     if (!cell || !count) return refuse("a repetition that is no number");
     std::array<double, 3> size{}, copies{};
-    bool finite = true;
     for (std::size_t i = 0; i < 3; ++i) {
         size[i] = r.along[i] ? (*cell)[i] : 0;
         copies[i] = !r.along[i]          ? 1
                     : (*count)[i] >= 1e8 ? std::numeric_limits<double>::infinity()
                                          : (*count)[i];
-        finite = finite && std::isfinite(copies[i]);
     }
-    if (!r.id) {
-        auto result = one_child(r.mirrored ? NodeType::Deformation : NodeType::Repetition,
-                                s.children[0], paint);
-        if (!result) return;
-        if (r.mirrored) {
-            add(*result, "Function", yaml_word("repeat_mirror"));
-            add(*result, "Arguments",
-                yaml_mapping({{"cell", yaml_xyz(size[0], size[1], size[2])}}));
-            vary(*result, "cell", s.args[0]);
-        } else {
-            add(*result, "Cell", yaml_xyz(size[0], size[1], size[2]));
-            vary(*result, "Cell", s.args[0]);
-            bool counted = false;
-            for (std::size_t i = 0; i < 3; ++i)
-                counted = counted || (r.along[i] && std::isfinite(copies[i]));
-            for (std::size_t i = 0; i < 3; ++i)
-                copies[i] = r.along[i] ? copies[i] : std::numeric_limits<double>::infinity();
-            if (counted) add(*result, "Count", yaml_xyz(copies[0], copies[1], copies[2]));
-        }
-        out.push_back(std::move(*result));
-        return;
+    auto result = copied(r.mirrored ? NodeType::Deformation : NodeType::Repetition, id, paint);
+    if (!result) return;
+    if (r.mirrored) {
+        add(*result, "Function", yaml_word("repeat_mirror"));
+        add(*result, "Arguments",
+            yaml_mapping({{"cell", yaml_xyz(size[0], size[1], size[2])}}));
+        vary(*result, "cell", s.args[0]);
+    } else {
+        add(*result, "Cell", yaml_xyz(size[0], size[1], size[2]));
+        vary(*result, "Cell", s.args[0]);
+        bool counted = false;
+        for (std::size_t i = 0; i < 3; ++i)
+            counted = counted || (r.along[i] && std::isfinite(copies[i]));
+        for (std::size_t i = 0; i < 3; ++i)
+            copies[i] = r.along[i] ? copies[i] : std::numeric_limits<double>::infinity();
+        if (counted) add(*result, "Count", yaml_xyz(copies[0], copies[1], copies[2]));
     }
-    if (!finite) return refuse("a repetition without end whose copies differ");
-    if (copies[0] * copies[1] * copies[2] > most_copies)
-        return refuse("so many copies that differ");
-    for (int x = 0; x < static_cast<int>(copies[0]); ++x) {
-        for (int y = 0; y < static_cast<int>(copies[1]); ++y) {
-            for (int z = 0; z < static_cast<int>(copies[2]); ++z) {
-                numbers_.set(r.id, {ir::Type::Vec3, {double(x), double(y), double(z)}});
-                const double index[3] = {double(x), double(y), double(z)};
-                double moved[3];
-                for (std::size_t i = 0; i < 3; ++i)
-                    moved[i] = shortest_near(((copies[i] - 1) / 2 - index[i]) * size[i]);
-                TreeNode copy = made(NodeType::Translation);
-                add(copy, "Vector", yaml_xyz(moved[0], moved[1], moved[2]));
-                united(s.children[0], paint, copy.children);
-                if (!copy.children.empty()) out.push_back(std::move(copy));
-            }
-        }
-    }
+    out.push_back(std::move(*result));
+}
+
+// The child of a repetition. Where copies differ it is what copy 0 is, and numbers say how they
+// follow the copy.
+std::optional<TreeNode> TreeWriter::copied(NodeType type, ShapeId id, const Paint &paint) {
+    const ir::Repetition &r = scene_.shapes.repetitions[shape(id).payload];
+    if (!r.id) return one_child(type, shape(id).children[0], paint);
+    numbers_.open_copies(r.id);
+    const bool boxed = std::exchange(boxed_, true); // functions of a copy end where it does
+    auto result = one_child(type, shape(id).children[0], paint);
+    boxed_ = boxed;
+    numbers_.close_copies();
+    if (result) add(*result, "Differ", yaml_switch(true));
+    return result;
 }
 
 } // namespace fathom::save

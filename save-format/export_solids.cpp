@@ -154,6 +154,9 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         add(result, "Arguments", std::move(arguments));
         return finish(std::move(result));
     }
+    const ShapeId body = bare(s.children[0]);
+    if (l.has_claims && !l.claims.lipschitz && shape(body).kind == ShapeKind::Leaf)
+        return field(body, nullptr, paint); // its bound was proved, and will be again
     if (l.has_claims) return otherwise(id, paint, "`" + name + "`");
     return single(s.children[0], paint); // a combination or transform under its library's name
 }

@@ -383,6 +383,11 @@ void Numbers::set(NodeId variable, const ir::Constant &value) {
     values_[variable] = variables_[variable] = graph_.constant(value);
 }
 
+void Numbers::open_copies(NodeId id) {
+    values_[id] = graph_.vec3(0, 0, 0);
+    words_.ids.push_back(id);
+}
+
 std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers, Looks &looks,
                                   Diagnostics &diagnostics) {
     TreeWriter writer(scene, numbers, looks, diagnostics);

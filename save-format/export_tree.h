@@ -26,6 +26,8 @@ class Numbers {
     std::string program(ir::NodeId id); // its steps in flow form; empty where there are no words
     std::optional<Value> steps(ir::NodeId id); // the same as a value
     void set(ir::NodeId variable, const ir::Constant &value);
+    void open_copies(ir::NodeId id); // until closed, programs may read which copy it is
+    void close_copies() { words_.ids.pop_back(); }
     ir::Graph &graph() { return graph_; }
     FlowWords &words() { return words_; }
     bool moves() const { return moves_; } // some program reads the time

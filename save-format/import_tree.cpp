@@ -40,6 +40,7 @@ struct Children {
     std::size_t rest_mark = 0;                 // the held piece before the second one
     std::size_t rest_pieces = 0;
     std::string display; // of the only one
+    bool differ = false; // they are read as those of one copy, which knows its number
 };
 
 class TreeReader {
@@ -159,7 +160,13 @@ void TreeReader::read_properties(Event event, const NodeTypeRow *row, const std:
         const bool has_children = !row || row->children != Arity::Leaf;
         if (event.kind == EventKind::Scalar && has_children &&
             spelling_key(event.text) == "children") {
+            const PropertyType *differ = row ? find_property(*row, "Differ") : nullptr;
+            into.differ =
+                differ && properties.values[static_cast<std::size_t>(differ - row->properties.data())]
+                                  .number[0] != 0;
+            in_.words.copies += into.differ;
             children(event, row, body, into, properties);
+            in_.words.copies -= into.differ;
         } else if (!row) { // already reported as a whole
             std::string key, value;
             const std::string name = event.text;
@@ -244,8 +251,8 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     const bool block = !row || row->children != Arity::Leaf;
     const bool custom =
         !is_default_name(name, row ? std::string_view(row->name) : std::string_view(type));
-    const bool hoisted =
-        block && !top && (blocks_ >= block_limit || (custom && row && row->children != Arity::One));
+    const bool hoisted = // but not out of copies that differ: what it says may name the copy
+        block && !top && in_.words.copies == 0 && (blocks_ >= block_limit || (custom && row && row->children != Arity::One));
     Body own;
     Body &target = hoisted ? own : body;
     const std::size_t blocks_mark = blocks_;
@@ -376,9 +383,21 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
                           kids.rest_pieces, type_span);
         }
     } else if (row->children == Arity::One) {
-        unite();
         const std::string call = transform_call(in_, *row, properties, type_span);
-        if (!result.contributed) {
+        if (kids.differ && kids.pieces > 0 && call.ends_with(")")) {
+            // `s.repeat(…, copies: …)` asks nothing of s but that it is a shape
+            target[begin] = {Piece::Kind::Open,
+                             "sphere(1)" + call.substr(0, call.size() - 1) + ", copies: (_, " +
+                                 copy_name(in_.words.copies) + ") => union {",
+                             {}};
+            target.push_back({Piece::Kind::Close, "})", {}});
+            result.contributed = true;
+        } else {
+            unite();
+        }
+        if (result.contributed && kids.differ) {
+            based = true;
+        } else if (!result.contributed) {
         } else if (call.empty()) {
             group(kids.base);
         } else {

@@ -73,7 +73,8 @@ constexpr P scaling[] = {vector("Factors", 1)};
 constexpr P twist[] = {number("Rate", 1), labelled(word("Axis", "Z"))};
 constexpr P turnaround[] = {labelled(word("Axis", "X"))};
 constexpr P repetition[] = {{"Cell", K::Vector, 0, "", 0, 1e9},
-                            labelled({"Count", K::Vector, none, "", 0, none})};
+                            labelled({"Count", K::Vector, none, "", 0, none}),
+                            labelled(flag("Differ"))};
 constexpr P hyperize[] = {size("Exponent", 1), labelled(tree("Within"))};
 constexpr P offset[] = {number("Distance", 0)};
 constexpr P displacement[] = {word("Map", "<None>"), number("Amount", 0.1), sizes("Scale", 1),
@@ -92,7 +93,7 @@ constexpr P field[] = {tree("Field"),
                        {"Estimate", K::Number, 0, "", 0, 1e9, false, true},
                        material};
 constexpr P distortion[] = {tree("Map"), tree("Within")};
-constexpr P deformation[] = {word("Function", ""), tree("Arguments")};
+constexpr P deformation[] = {word("Function", ""), tree("Arguments"), labelled(flag("Differ"))};
 constexpr P lighting[] = {number("Ambient R", 0),
                           number("Ambient G", 0),
                           number("Ambient B", 0),

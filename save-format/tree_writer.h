@@ -44,6 +44,7 @@ class TreeWriter {
     void rotation(const ir::Constant &matrix, TreeNode made, std::vector<TreeNode> &out);
     void repeat(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
     void copies(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
+    std::optional<TreeNode> copied(NodeType type, ShapeId id, const Paint &paint);
     void painted(ShapeId id, Paint paint, std::vector<TreeNode> &out);
     bool displaced(ShapeId id, const Paint &paint, std::vector<TreeNode> &out);
     std::optional<TreeNode> displaced_base(ShapeId id, const Paint &paint);
