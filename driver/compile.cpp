@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -109,12 +110,51 @@ bool is_save_file(const std::filesystem::path &file) {
     return file.extension() == ".yaml" || file.extension() == ".yml";
 }
 
-SourceId imported(Compilation &out, SourceId save_file) {
-    save::ImportResult result = save::import_yaml(out.sources, save_file, out.diagnostics);
-    return out.sources.add(out.sources[save_file].name + " (imported)", std::move(result.sdf));
+// Notes the parts of the save file that errors of its text belong to; false where none is new.
+bool note_unusable(const Compilation &out, SourceId text, const save::ImportResult &result,
+                   std::map<std::uint32_t, std::string> &unusable) {
+    bool more = false;
+    for (const Diagnostic &d : out.diagnostics.items()) {
+        const Span at = d.primary.span;
+        if (d.severity != Severity::Error || at.source != text || at.end == 0) continue;
+        // the last part that begins before the error's end: that of a chain's last call
+        const auto behind = std::upper_bound(
+            result.parts.begin(), result.parts.end(), at.end - 1,
+            [](std::uint32_t offset, const auto &part) { return offset < part.first; });
+        if (behind == result.parts.begin() || !std::prev(behind)->second.source) continue;
+        more = unusable.emplace(std::prev(behind)->second.begin, d.message).second || more;
+    }
+    return more;
+}
+
+constexpr int most_attempts = 32; // at a save file, each without the parts refused before
+
+// The text of a save file, compiled; with those parts left out that no compiler takes, so that the
+// others are not lost with them.
+Compilation compile_imported(const std::string &name, const std::string &text, SceneFiles &files,
+                             const std::string &identity, save::ImportOptions &import,
+                             const CompileOptions &options) {
+    for (int attempt = 1;; ++attempt) {
+        Compilation out;
+        const SourceId save_file = out.sources.add(name, text);
+        save::ImportResult result =
+            save::import_yaml(out.sources, save_file, out.diagnostics, import);
+        const SourceId root = out.sources.add(name + " (imported)", std::move(result.sdf));
+        run_phases(out, files, identity, root, options);
+        if (result.structural_error || attempt == most_attempts ||
+            !note_unusable(out, root, result, import.unusable))
+            return out;
+    }
 }
 
 } // namespace
+
+void leave_out_unusable(const std::string &name, const std::string &text,
+                        const std::filesystem::path &scene, save::ImportOptions &import) {
+    SceneFiles files(scene.parent_path(), {});
+    const std::string identity = files.add_root(scene);
+    compile_imported(name, text, files, identity, import, {});
+}
 
 Compilation compile_text(std::string name, std::string text, const std::filesystem::path &folder,
                          const CompileOptions &options) {
@@ -142,9 +182,13 @@ Compilation compile_file(const std::filesystem::path &file, const CompileOptions
         return compile_text("<stdin>", std::move(*text), "", options);
     } else {
         std::string identity = files.add_root(file);
-        SourceId root = out.sources.add(file.string(), std::move(*text));
-        if (is_save_file(file)) root = imported(out, root);
-        run_phases(out, files, identity, root, options);
+        if (is_save_file(file)) {
+            save::ImportOptions import;
+            out = compile_imported(file.string(), *text, files, identity, import, options);
+        } else {
+            const SourceId root = out.sources.add(file.string(), std::move(*text));
+            run_phases(out, files, identity, root, options);
+        }
     }
     out.files = files.touched();
     return out;

@@ -4,6 +4,7 @@
 
 #include "driver/files.h"
 #include "ir/lower.h"
+#include "save-format/save_format.h"
 #include "typecheck/check.h"
 
 #include <filesystem>
@@ -51,6 +52,12 @@ Compilation compile_file(const std::filesystem::path &file, const CompileOptions
 // Text that is no file (yet): printed as `name`, importing as if it lay in `folder`.
 Compilation compile_text(std::string name, std::string text, const std::filesystem::path &folder,
                          const CompileOptions &options);
+
+// Adds to `import.unusable` what of a save file no compiler takes (a twist of what has no end, a
+// grid that is not there), so that an import leaves out that alone. `scene` is where the text will
+// stand.
+void leave_out_unusable(const std::string &name, const std::string &text,
+                        const std::filesystem::path &scene, save::ImportOptions &import);
 
 // The embedded standard library.
 const std::vector<typecheck::LibraryFile> &standard_library();

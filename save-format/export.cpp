@@ -46,7 +46,9 @@ Value node_value(const TreeNode &node, std::map<std::string, int> &ordinals) {
     Value type;
     type.text = node.type;
     type.plain = true;
-    std::vector<Value> items{std::move(type), yaml_word(name), std::move(properties)};
+    Value named = yaml_word(name);
+    named.plain = named.plain || node.plain;
+    std::vector<Value> items{std::move(type), std::move(named), std::move(properties)};
     items.insert(items.end(), node.extra.begin(), node.extra.end());
     return yaml_list(std::move(items));
 }

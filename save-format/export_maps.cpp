@@ -16,22 +16,6 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-// The shortest decimal within a few units in the last place: 30, where the arithmetic
-// left 29.999999999999996.
-double shortest_near(double value) {
-    if (value == 0 || !std::isfinite(value)) return value;
-    double best = value;
-    std::string text = yaml_number(value);
-    for (int digits = 1; digits <= 15; ++digits) {
-        const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) + 1 - digits);
-        const double rounded =
-            std::abs(unit) >= 1 ? std::round(value / unit) * unit
-                                : std::round(value * std::round(1 / unit)) / std::round(1 / unit);
-        if (std::abs(rounded - value) <= 4e-15 * std::abs(value)) return rounded;
-    }
-    return best;
-}
-
 // The v with which the library raises space to a power (thesis 6.3), where q is such a map. It
 // writes x |x|^(v - 1), whose power the graph multiplies out where it is small and whole.
 std::optional<double> hyperized_by(ir::Graph &graph, NodeId q, NodeId p) {
@@ -48,6 +32,21 @@ std::optional<double> hyperized_by(ir::Graph &graph, NodeId q, NodeId p) {
 }
 
 } // namespace
+
+// 30, where the arithmetic left 29.999999999999996.
+double shortest_near(double value) {
+    if (value == 0 || !std::isfinite(value)) return value;
+    double best = value;
+    std::string text = yaml_number(value);
+    for (int digits = 1; digits <= 15; ++digits) {
+        const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) + 1 - digits);
+        const double rounded =
+            std::abs(unit) >= 1 ? std::round(value / unit) * unit
+                                : std::round(value * std::round(1 / unit)) / std::round(1 / unit);
+        if (std::abs(rounded - value) <= 4e-15 * std::abs(value)) return rounded;
+    }
+    return best;
+}
 
 // A rotation's angles, as 2.5 has them: the point is turned by R = Rx Ry Rz, the object by its
 // transpose.
@@ -123,6 +122,7 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
     const auto push = [&](std::optional<TreeNode> result) {
         if (result) out.push_back(std::move(*result));
     };
+    if (s.dims == 2) return push(flat_map(id, paint));
     static constexpr const char *axes[] = {"X", "Y", "Z"};
     switch (s.map) {
     case ir::MapKind::Translate: {
@@ -268,7 +268,8 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
         if (result) add(*result, "Map", std::move(*map_steps));
         return push(std::move(result));
     }
-    case ir::MapKind::Revolve: return push(otherwise(id, paint, "flat shapes"));
+    case ir::MapKind::Revolve:
+        return push(raised(id, "revolve", "offset", s.args[2], paint));
     }
 }
 

@@ -29,6 +29,67 @@ std::optional<std::uint32_t> grid_below(const ir::Graph &graph, std::vector<Node
 
 } // namespace
 
+// The library has the dodecahedron's, the icosahedron's and both sets with y and z the other way
+// round: they go out turned about x, but where images lie on shapes, which would turn as well.
+std::optional<TreeNode> TreeWriter::generalised(ShapeId id, const ir::Library &l,
+                                                const std::string &name, const Paint &paint) {
+    const auto sets = vector_sets();
+    TreeNode result = made(NodeType::GeneralizedDistanceFunction);
+    bool whole = true, turned = false, straight = false;
+    const auto set_number = [&](const char *property, std::string_view key) {
+        const NodeId *value = argument(l, key);
+        whole = whole && value && number(result, property, *value);
+    };
+    const auto set_of = [&](int wanted) -> const VectorSet * {
+        const bool old = wanted == 3 || wanted == 4 || wanted == 6;
+        const int now = wanted == 6 ? 9 : old ? wanted + 4 : wanted;
+        for (const VectorSet &set : sets) {
+            if (set.number != now) continue;
+            turned = turned || old;
+            straight = straight || (!old && set.turned());
+            return &set;
+        }
+        return nullptr;
+    };
+    if (name == "gdf_pair") {
+        const auto add_set = [&](const char *property, std::string_view key) {
+            const NodeId *node = argument(l, key);
+            const auto value = node ? numbers_.number(*node) : std::nullopt;
+            const VectorSet *set = value ? set_of(static_cast<int>(*value)) : nullptr;
+            whole = whole && set;
+            if (set) add(result, property, yaml_word(set->name));
+        };
+        add_set("Shape", "a");
+        set_number("Radius", "radius");
+        set_number("Exponent", "a_exponent");
+        add_set("Second Shape", "b");
+        set_number("Scale", "a_scale");
+        set_number("Second Scale", "b_scale");
+        set_number("Second Exponent", "b_exponent");
+        if (!whole || (turned && (straight || !scene_.images.empty())))
+            return otherwise(id, paint, "`" + name + "` with these arguments");
+    } else {
+        const VectorSet *set = nullptr;
+        for (const VectorSet &other : sets) {
+            std::string function = other.function;
+            if (name == function) set = &other;
+            if (other.turned() && name == function.erase(4, 3)) set = &other, turned = true;
+        }
+        if (!set || (turned && !scene_.images.empty())) return std::nullopt;
+        add(result, "Shape", yaml_word(set->name));
+        set_number("Radius", "radius");
+        set_number("Exponent", "exponent");
+        if (!whole) return otherwise(id, paint, "`" + name + "` with these arguments");
+    }
+    if (!paint.fill.empty()) add(result, "Material", yaml_word(paint.fill));
+    add(result, "Offset", yaml_mapping({{"X", yaml_scalar(0)}, {"Y", yaml_scalar(0)}}));
+    if (!turned) return result;
+    TreeNode turn = made(NodeType::Rotation);
+    add(turn, "Angles", yaml_xyz(90, 0, 0));
+    turn.children.push_back(std::move(result));
+    return turn;
+}
+
 std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
     const Shape &s = shape(id);
     const ir::Library &l = scene_.shapes.libraries[s.payload];
@@ -88,32 +149,7 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         set_number(result, "Seed", "seed");
         return finish(std::move(result));
     }
-    const auto sets = vector_sets();
-    for (const VectorSet &set : sets) {
-        if (name != set.function) continue;
-        TreeNode result = made(NodeType::GeneralizedDistanceFunction);
-        add(result, "Shape", yaml_word(set.name));
-        set_number(result, "Radius", "radius");
-        set_number(result, "Exponent", "exponent");
-        return finish(std::move(result));
-    }
-    if (name == "gdf_pair") {
-        const auto set = [&](std::string_view key) {
-            const NodeId *node = argument(l, key);
-            const auto value = node ? numbers_.number(*node) : std::nullopt;
-            whole = whole && value && *value >= 0 && *value < static_cast<double>(sets.size());
-            return yaml_word(whole ? sets[static_cast<std::size_t>(*value)].name : "");
-        };
-        TreeNode result = made(NodeType::GeneralizedDistanceFunction);
-        add(result, "Shape", set("a"));
-        set_number(result, "Radius", "radius");
-        set_number(result, "Exponent", "a_exponent");
-        add(result, "Second Shape", set("b"));
-        set_number(result, "Scale", "a_scale");
-        set_number(result, "Second Scale", "b_scale");
-        set_number(result, "Second Exponent", "b_exponent");
-        return finish(std::move(result));
-    }
+    if (auto gdf = generalised(id, l, name, paint)) return gdf;
     if (name == "distance_grid") { // the file is no number: the body tells which it reads
         const auto grid = grid_below(scene_.graph, shape(bare(s.children[0])).args);
         if (!grid) return otherwise(id, paint, "this grid");

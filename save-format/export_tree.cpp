@@ -65,7 +65,8 @@ void TreeWriter::united(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
     if (displaced(id, paint, out)) return;
     const Shape &s = shape(id);
     if (const auto listed = scene_.shapes.listed.find(id);
-        listed != scene_.shapes.listed.end() && s.args.empty()) {
+        listed != scene_.shapes.listed.end() &&
+        (s.args.empty() || s.kind == ShapeKind::Map)) {
         const std::vector<ShapeId> parts = listed->second;
         for (const ShapeId part : parts) united(part, paint, out);
         return;
@@ -305,7 +306,7 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
     }
     case ShapeKind::Library: return library(id, paint);
     case ShapeKind::Seam: return seam(id, paint);
-    case ShapeKind::Extrude: return otherwise(id, paint, "flat shapes");
+    case ShapeKind::Extrude: return raised(id, "extrude", "height", s.args[0], paint);
     case ShapeKind::Empty:
     case ShapeKind::Union:
     case ShapeKind::Map:

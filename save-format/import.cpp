@@ -152,7 +152,8 @@ std::string assemble(Importer &in, std::string_view version) {
     std::string text = "// From the save file " + printable(in.source.name) + ", version " +
                        printable(version) + ".\nimport \"dfmodel\" as dfmodel\n\n";
     text += in.out;
-    if (!in.out.empty() && text.back() == '\n' && !in.scene.empty()) text += '\n';
+    text += marked(no_part, "");
+    if (!in.scene.empty()) text += '\n';
     for (const std::string &name : in.scene) text += name + "\n";
     if (in.scene.empty()) text += "empty // the file has no shape that could be read\n";
     if (!in.settings.empty()) text += '\n';
@@ -298,6 +299,8 @@ ImportResult import_yaml(const Sources &sources, SourceId source, Diagnostics &d
     result.structural_error = in.reader.broken();
     result.nodes = in.nodes;
     result.sdf = assemble(in, version);
+    for (const auto &[offset, place] : take_marks(result.sdf))
+        result.parts.emplace_back(offset, place == no_part ? Span{} : Span{source, place, place});
     return result;
 }
 

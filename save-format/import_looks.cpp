@@ -301,14 +301,20 @@ void Importer::read_textures(const Event &) {
                                    "`: the first one counts");
             continue;
         }
+        if (const auto found = options.unusable.find(at.begin); found != options.unusable.end()) {
+            report.content(at, "this texture cannot be used: " + found->second)
+                .note("it is left out, and kept for an export");
+            continue;
+        }
         const std::string identifier = names.unique(name, "texture");
-        out +=
-            "let " + identifier + " = image(" + sdf_string(text_of_asset(taken.value.text)) + ")\n";
+        out += marked(at.begin, "let " + identifier + " = image(" +
+                                    sdf_string(text_of_asset(taken.value.text)) + ")\n");
         textures.emplace(name, identifier);
     }
 }
 
 void Importer::read_materials(const Event &) {
+    out += marked(no_part, "");
     for (;;) {
         Event event = reader.next();
         if (event.kind == EventKind::SequenceEnd || event.kind == EventKind::Broken ||
@@ -316,7 +322,7 @@ void Importer::read_materials(const Event &) {
             break;
         read_material(*this, take_value(reader, std::move(event), 1 << 16));
     }
-    if (!out.empty()) out += '\n';
+    if (!textures.empty() || !materials.empty()) out += '\n';
 }
 
 void Importer::read_lighting(bool in_tree) {

@@ -5,6 +5,7 @@
 #include "base/suggest.h"
 #include "base/text.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fathom::save {
@@ -35,6 +36,10 @@ bool convert(const PropertyType &type, const Value &value, Property &property,
             return false;
         wanted += ", " + limits(type);
         property.number[0] = *number;
+        if (type.kind == PropertyKind::Whole && !within(type, *number)) { // the nearest count
+            property.number[0] = std::clamp(*number, type.least, type.most);
+            property.given = true;
+        }
         return within(type, *number);
     }
     case PropertyKind::Vector: {
@@ -173,8 +178,10 @@ void Importer::read_property(const NodeTypeRow &row, const Event &key, Propertie
             .content(taken.value.span,
                      "`" + std::string(type->name) + "` wants " + wanted +
                          (shown ? ", not `" + printable(taken.flow) + "`" : std::string()))
-            .note("its default stands in, and the value is kept for an export");
+            .note((read.given ? sdf_number(read.number[0]) : std::string("its default")) +
+                  " stands in, and the value is kept for an export");
         properties.keep(type->name, taken.flow);
+        if (read.given) property = std::move(read);
         return;
     }
     read.given = true;

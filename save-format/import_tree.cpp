@@ -216,7 +216,10 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     }
     const std::string type = event.text;
     const Span type_span = event.span;
+    const std::uint32_t part = type_span.begin;
     const NodeTypeRow *row = find_node_type(type);
+    const auto unusable = in_.options.unusable.find(part);
+    const bool usable = unusable == in_.options.unusable.end();
     if (row && row->type == NodeType::Lighting) {
         if (top && !in_.lighting_seen) {
             in_.read_lighting(true);
@@ -225,7 +228,15 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
         row = nullptr;
     }
     ++in_.nodes;
-    if (!row) {
+    if (!usable) {
+        const bool leaf = row && row->children == Arity::Leaf;
+        in_.report
+            .content(type_span, "this `" + printable(type.substr(0, 80)) +
+                                    "` cannot be used: " + unusable->second)
+            .note(leaf ? "it is left out, and kept for an export"
+                       : "its children are united in its place; it is kept for an export");
+        if (!leaf) row = nullptr;
+    } else if (!row) {
         std::vector<std::string> known;
         for (const NodeTypeRow &other : node_types()) known.emplace_back(other.name);
         Remark remark = in_.report.content(type_span, "there is no node type `" +
@@ -346,7 +357,7 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
                                           ? paint_call(in_, *row, properties, type_span)
                                           : std::string();
             if (!paint.empty()) {
-                target.back().text += chain_mark + paint;
+                target.back().text += chain_mark + marked(part, paint);
                 based = true;
             } else if (result.contributed) {
                 group(kids.base);
@@ -381,13 +392,18 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
             result.contributed = based = true;
             operator_text(in_, *row, properties, target, begin, kids.first_end, kids.rest_mark,
                           kids.rest_pieces, type_span);
+            for (Piece *piece : {&target[begin], &target.back()})
+                piece->text = marked(part, std::move(piece->text));
+            if (target[target.size() - 2].kind == Piece::Kind::Line) // its last argument
+                target[target.size() - 2].text =
+                    marked(part, std::move(target[target.size() - 2].text));
         }
     } else if (row->children == Arity::One) {
         const std::string call = transform_call(in_, *row, properties, type_span);
         if (kids.differ && kids.pieces > 0 && call.ends_with(")")) {
             // `s.repeat(…, copies: …)` asks nothing of s but that it is a shape
             target[begin] = {Piece::Kind::Open,
-                             "sphere(1)" + call.substr(0, call.size() - 1) + ", copies: (_, " +
+                             marked(part, "sphere(1)") + call.substr(0, call.size() - 1) + ", copies: (_, " +
                                  copy_name(in_.words.copies) + ") => union {",
                              {}};
             target.push_back({Piece::Kind::Close, "})", {}});
@@ -402,14 +418,14 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
             group(kids.base);
         } else {
             target.back().text += chain_mark;
-            target.back().text += call;
+            target.back().text += marked(part, call);
             based = true;
         }
         if (kids.pieces == 1 && !custom) result.display = kids.display;
     } else {
-        std::string text = leaf_text(in_, *row, properties, type_span);
+        std::string text = usable ? leaf_text(in_, *row, properties, type_span) : std::string();
         if (!text.empty()) {
-            target.push_back({Piece::Kind::Line, std::move(text), {}});
+            target.push_back({Piece::Kind::Line, marked(part, std::move(text)), {}});
             result.contributed = based = true;
         }
     }
@@ -429,7 +445,7 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
              true});
         return {};
     }
-    const bool held = based && target[begin].text == "difference {";
+    const bool held = based && target[begin].text == "difference {"; // not marked: `hold` made it
     if (!based)
         result.dissolves = kids.dissolves;
     else if (!held && (!row || row->type == NodeType::Generic || row->type == NodeType::Union))

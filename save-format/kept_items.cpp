@@ -83,8 +83,11 @@ void set_properties(TreeNode &node, const Value &properties) {
         const PropertyType *type = row ? find_property(*row, key) : nullptr;
         if (!type) continue;
         const auto number = number_of(present->second);
+        const auto kept = number_of(value);
         bool untouched =
-            type->kind == PropertyKind::Carried || (number && *number == type->fallback);
+            type->kind == PropertyKind::Carried || (number && *number == type->fallback) ||
+            (type->kind == PropertyKind::Whole && number && kept &&
+             *number == std::clamp(*kept, type->least, type->most));
         if (type->kind == PropertyKind::Vector) {
             untouched = std::all_of(
                 present->second.entries.begin(), present->second.entries.end(),
@@ -113,6 +116,7 @@ bool apply(const TreeRecord &record, TreeNode &root) {
                 return false;
             made.type = value.items[1].text;
             made.name = value.items[2].text;
+            made.plain = value.items[2].plain;
             made.named = made.head = true;
             made.properties = value.items[3].entries;
             const auto from = parent->rest.rbegin(),
@@ -128,6 +132,7 @@ bool apply(const TreeRecord &record, TreeNode &root) {
     if (record.label == "name") {
         node->name = value.text;
         node->named = true;
+        node->plain = value.plain;
     } else if (record.label == "type") {
         node->type = value.text;
     } else if (record.label == "properties") {

@@ -115,6 +115,8 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
         const int moved = (v[0] != 0) + (v[1] != 0) + (v[2] != 0);
         if (moved == 0) return {};
         for (double &part : v) part = part == 0 ? 0 : -part;
+        if (reading.number("Flat") != 0)
+            return ".translate([" + sdf_number(v[0]) + ", " + sdf_number(v[1]) + "])";
         if (moved > 1) return ".translate(" + sdf_vector(v) + ")";
         const int axis = v[0] != 0 ? 0 : v[1] != 0 ? 1 : 2;
         return std::string(".translate(") + "xyz"[axis] + ": " + sdf_number(v[axis]) + ")";
@@ -128,6 +130,7 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
                        v); // 2.5: d(R p), R = Rx Ry Rz, turns the object by Rz(-z) Ry(-y) Rx(-x)
         const int turned = (v[0] != 0) + (v[1] != 0) + (v[2] != 0);
         if (turned == 0) return {};
+        if (reading.number("Flat") != 0) return ".rotate(" + sdf_number(-v[2]) + "deg)";
         if (turned == 1) {
             const int axis = v[0] != 0 ? 0 : v[1] != 0 ? 1 : 2;
             return ".rotate(" + sdf_number(-v[axis]) + "deg, axis: " + "XYZ"[axis] + ")";
@@ -149,6 +152,8 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
             }
         }
         if (v[0] == 1 && v[1] == 1 && v[2] == 1) return {};
+        if (reading.number("Flat") != 0)
+            return ".scale([" + reciprocal(v[0]) + ", " + reciprocal(v[1]) + "])";
         if (v[0] == v[1] && v[1] == v[2]) return ".scale(" + reciprocal(v[0]) + ")";
         return ".scale([" + reciprocal(v[0]) + ", " + reciprocal(v[1]) + ", " + reciprocal(v[2]) +
                "])";

@@ -66,10 +66,11 @@ constexpr P explicit_field[] = {word("File", ""), material, texture_offset};
 constexpr P blend[] = {number("Factor", 0.5),
                        {"Center", K::Vector, 0, "", -1e9, 1e9, false, true},
                        labelled(tree("Factor Field"))};
-constexpr P translation[] = {vector("Vector", 0)};
+constexpr P flat = labelled(flag("Flat"));
+constexpr P translation[] = {vector("Vector", 0), flat};
 constexpr P rotation[] = {vector("Angles", 0), labelled(vector("Axis", 0)),
-                          labelled(number("Angle", 0))};
-constexpr P scaling[] = {vector("Factors", 1)};
+                          labelled(number("Angle", 0)), flat};
+constexpr P scaling[] = {vector("Factors", 1), flat};
 constexpr P twist[] = {number("Rate", 1), labelled(word("Axis", "Z"))};
 constexpr P turnaround[] = {labelled(word("Axis", "X"))};
 constexpr P repetition[] = {{"Cell", K::Vector, 0, "", 0, 1e9},
@@ -173,13 +174,13 @@ constexpr Synonym synonyms[] = {
 };
 
 constexpr VectorSet sets[] = {
-    {"Tetrahedron", "gdf_tetrahedron"},
-    {"Cube", "gdf_cube"},
-    {"Octahedron", "gdf_octahedron"},
-    {"Dodecahedron", "gdf_dodecahedron"},
-    {"Icosahedron", "gdf_icosahedron"},
-    {"Truncated Octahedron", "gdf_truncated_octahedron"},
-    {"Truncated Icosahedron", "gdf_truncated_icosahedron"},
+    {"Tetrahedron", "gdf_tetrahedron", 0},
+    {"Cube", "gdf_cube", 1},
+    {"Octahedron", "gdf_octahedron", 2},
+    {"Dodecahedron", "gdf_ac_dodecahedron", 7},
+    {"Icosahedron", "gdf_ac_icosahedron", 8},
+    {"Truncated Octahedron", "gdf_truncated_octahedron", 5},
+    {"Truncated Icosahedron", "gdf_ac_truncated_icosahedron", 9},
 };
 
 const NodeTypeRow *look_up(std::string_view name) {
@@ -269,13 +270,26 @@ bool is_library_solid(std::string_view function) {
                                                   "schwarz_p",
                                                   "mandelbulb",
                                                   "helix",
-                                                  "tubes"};
+                                                  "tubes",
+                                                  // flat ones, below an extrusion or a revolution
+                                                  "circle",
+                                                  "ellipse",
+                                                  "rectangle",
+                                                  "rounded_rectangle",
+                                                  "polygon",
+                                                  "regular_polygon",
+                                                  "star",
+                                                  "segment",
+                                                  "arc",
+                                                  "ring",
+                                                  "bezier"};
     return std::find(std::begin(solids), std::end(solids), function) != std::end(solids);
 }
 
 bool is_library_deformation(std::string_view function) {
     static constexpr std::string_view names[] = {
-        "bend", "taper", "shell", "mirror", "reflect", "elongate", "repeat_polar", "repeat_mirror"};
+        "bend",     "taper",        "shell",         "mirror",  "reflect",
+        "elongate", "repeat_polar", "repeat_mirror", "extrude", "revolve"};
     return std::find(std::begin(names), std::end(names), function) != std::end(names);
 }
 

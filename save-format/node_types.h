@@ -86,11 +86,13 @@ const NodeTypeRow *find_node_type(std::string_view name); // any spelling; null 
 const PropertyType *find_property(const NodeTypeRow &row, std::string_view name);
 bool is_shape(NodeType type); // leaves with a material
 
-// The sets of unit vectors of Akleman and Chen that 6.1 may use, by the name in `Shape`; the number
-// is the one that module dfmodel counts them by. -1: unknown.
+// The sets of unit vectors of Akleman and Chen that 6.1 may use, by the name in `Shape`. -1:
+// unknown. Three of them the library has turned by 90 degrees about x; those are module dfmodel's.
 struct VectorSet {
     const char *name;     // "Truncated Octahedron"
     const char *function; // "gdf_truncated_octahedron"
+    int number = 0;       // that module dfmodel counts them by
+    bool turned() const { return number >= 7; }
 };
 std::span<const VectorSet> vector_sets();
 int find_vector_set(std::string_view name);

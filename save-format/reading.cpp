@@ -137,7 +137,8 @@ std::string gdf_call(Importer &in, const Reading &reading, Properties &propertie
     };
     const auto sets = vector_sets();
     if (second < 0 && reading.number("Scale") == 1 && !reading.varies("Scale")) {
-        return std::string(sets[static_cast<std::size_t>(first)].function) + "(" + radius +
+        const VectorSet &set = sets[static_cast<std::size_t>(first)];
+        return (set.turned() ? "dfmodel." : "") + std::string(set.function) + "(" + radius +
                exponent_text("Exponent", "exponent") + ")";
     }
     const auto set_text = [&](int set) {

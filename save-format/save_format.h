@@ -7,13 +7,19 @@
 #include "base/diagnostic.h"
 #include "ir/scene.h"
 
+#include <map>
 #include <string>
+#include <vector>
 
 namespace fathom::save {
 
 struct ImportOptions {
     bool strict = false;         // what is wrong in the content is an error, not a warning
     std::size_t max_depth = 256; // of nodes within nodes; deeper is a structural error
+    // Parts that cannot be used, by where they begin in the file, and why: what a compiler said of
+    // the text that came of them. A solid is left out, a transform or combination unites its
+    // children; all are kept for an export.
+    std::map<std::uint32_t, std::string> unusable;
     std::string asset_prefix; // put before the relative paths of textures and grids: the way from
                               // the .sdf's folder to the save file's ("../saves/"), empty where
                               // both lie in one folder
@@ -25,6 +31,8 @@ struct ImportResult {
     bool structural_error =
         false; // broken YAML or a wrong main list: `sdf` is partial, write it only when asked
     std::size_t nodes = 0; // nodes of the scene tree that were read
+    // Which part of the file the text stands for from an offset on, in order.
+    std::vector<std::pair<std::uint32_t, Span>> parts;
 };
 
 // Never fails: what is wrong in the content is reported (`yaml-value`, `yaml-version`: warnings

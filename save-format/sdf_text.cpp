@@ -126,7 +126,7 @@ std::string sdf_string(std::string_view text) {
             out += "\\n";
         } else if (c == '\t') {
             out += "\\t";
-        } else {
+        } else if (static_cast<unsigned char>(c) >= 0x20) { // others the language does not read
             out += c;
         }
     }
@@ -165,6 +165,27 @@ std::string Names::unique(std::string_view wanted, std::string_view suffix) {
     }
 }
 
+std::string marked(std::uint32_t place, std::string text) {
+    return part_mark + std::to_string(place) + part_end + std::move(text);
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> take_marks(std::string &text) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
+    std::string plain;
+    plain.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] != part_mark) {
+            plain += text[i];
+            continue;
+        }
+        std::uint32_t place = 0;
+        while (text[++i] != part_end) place = 10 * place + static_cast<std::uint32_t>(text[i] - '0');
+        places.emplace_back(static_cast<std::uint32_t>(plain.size()), place);
+    }
+    text = std::move(plain);
+    return places;
+}
+
 void print_body(const Body &body, std::string_view head, std::string &out) {
     std::size_t depth = 0;
     bool first = true;
@@ -176,7 +197,9 @@ void print_body(const Body &body, std::string_view head, std::string &out) {
         first = false;
         const auto marks =
             static_cast<std::size_t>(std::count(text.begin(), text.end(), chain_mark));
-        const bool long_line = indent.size() + columns(text) - marks > 100;
+        std::string unmarked = text;
+        take_marks(unmarked);
+        const bool long_line = indent.size() + columns(unmarked) - marks > 100;
         out += indent;
         bool first_link = true;
         for (const char c : text) {

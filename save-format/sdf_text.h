@@ -2,6 +2,8 @@
 // layout of nested expressions. Knows only spellings, no grammar.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -30,6 +32,12 @@ class Names {
 // An expression that may span lines, in order: the pieces of one statement. `chain_mark` stands in
 // front of each `.call` that may begin a line of its own.
 inline constexpr char chain_mark = '\x01';
+// `part_mark`, a place in the file and `part_end` stand before what comes of the part there.
+inline constexpr char part_mark = '\x02', part_end = '\x03';
+inline constexpr std::uint32_t no_part = std::numeric_limits<std::uint32_t>::max();
+std::string marked(std::uint32_t place, std::string text);
+// Takes the marks out of a text; gives the places in order, by their offsets in what is left.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> take_marks(std::string &text);
 struct Piece {
     enum class Kind { Nothing, Open, Line, Close };
     Kind kind = Kind::Nothing;

@@ -1,7 +1,7 @@
 // The walk from shapes to nodes of a save file, whose parts lie by idea in export_tree.cpp (what
 // unites, groups and looks), export_maps.cpp (movements, deformations, repetitions),
-// export_blends.cpp (intersections, blends and seams), export_solids.cpp (the library's solids) and
-// export_fields.cpp (functions of the point). Private to those five files.
+// export_blends.cpp (intersections, blends and seams), export_solids.cpp (the library's solids),
+// export_flat.cpp (flat shapes) and export_fields.cpp (functions of the point). Private to those.
 #pragma once
 
 #include "save-format/export_looks.h"
@@ -69,7 +69,13 @@ class TreeWriter {
     bool number(TreeNode &node, const char *name, NodeId value);
     bool vector(TreeNode &node, const char *name, NodeId value);
     void vary(TreeNode &node, std::string_view name, NodeId value);
+    std::optional<TreeNode> generalised(ShapeId id, const ir::Library &library,
+                                        const std::string &name, const Paint &paint);
     bool varying_turn(TreeNode &node, NodeId matrix);
+    bool flat_words(ShapeId id);
+    std::optional<TreeNode> flat_map(ShapeId id, const Paint &paint);
+    std::optional<TreeNode> raised(ShapeId id, const char *function, const char *argument,
+                                   NodeId value, const Paint &paint);
     std::optional<Value> region(const ir::Region &region);
 
     const Shape &shape(ShapeId id) const { return scene_.shapes[id]; }
@@ -91,6 +97,7 @@ class TreeWriter {
 inline const std::string no_words = "it reads an image, or loops too often";
 
 TreeNode made(NodeType type);
+double shortest_near(double value); // the shortest decimal within a few units in the last place
 void add(TreeNode &node, const char *name, Value value);
 
 } // namespace fathom::save

@@ -106,6 +106,7 @@ struct Value {
     bool plain = false;
     std::vector<Value> items;   // Sequence
     std::vector<Entry> entries; // Mapping; keys that are no scalars stand as their flow form
+    bool complex_key = false;   // of an entry: its key is such a one
     Span span;
 
     const Value *find(std::string_view key) const; // without regard to case, spaces, `-` and `_`

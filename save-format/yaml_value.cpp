@@ -5,6 +5,7 @@
 #include "base/text.h"
 
 #include <cctype>
+#include <utility>
 
 namespace fathom::save {
 namespace {
@@ -134,6 +135,8 @@ TakenValue take_value(YamlReader &reader, Event first, std::size_t limit) {
     std::size_t parts = 0;
     std::size_t skipped = 0;    // levels of collections that are no longer kept
     std::size_t key_levels = 0; // levels inside a key that is a collection
+    std::size_t key_begin = 0;  // where it begins in the flow text
+    bool complex_key = false;   // the one that waits is such a one
     taken.value.span = first.span;
     walk(reader, std::move(first), &taken.flow, [&](const Event &event, bool key) {
         const bool starts =
@@ -146,9 +149,10 @@ TakenValue take_value(YamlReader &reader, Event first, std::size_t limit) {
         }
         if (key_levels > 0 ||
             (key && starts)) { // a key that is no scalar: it counts as text that no one looks for
+            if (key_levels == 0) key_begin = taken.flow.size() - 1; // its bracket
             if (starts) ++key_levels;
             if (ends) --key_levels;
-            if (key_levels == 0) keys.back().assign(1, '?');
+            if (key_levels == 0) keys.back() = taken.flow.substr(key_begin), complex_key = true;
             taken.whole = false;
             return;
         }
@@ -177,6 +181,7 @@ TakenValue take_value(YamlReader &reader, Event first, std::size_t limit) {
             if (open.back()->kind == Value::Kind::Mapping) {
                 open.back()->entries.emplace_back(keys.back(), Value{});
                 slot = &open.back()->entries.back().second;
+                slot->complex_key = std::exchange(complex_key, false);
             } else {
                 slot = &open.back()->items.emplace_back();
             }

@@ -26,7 +26,8 @@ bool on_one_line(const Value &value, int depth) {
                        [&](const Value &item) { return on_one_line(item, depth - 1); });
 }
 
-std::string key_text(std::string_view key) {
+std::string key_text(std::string_view key, const Value &value) {
+    if (value.complex_key) return "? " + std::string(key);
     std::string text = flow_scalar(key, !looks_like_more_than_text(key) || !key.empty());
     return key.size() > 200 ? "? " + text : text;
 }
@@ -77,7 +78,7 @@ std::string flow_text(const Value &value) {
     std::string text(1, value.kind == Value::Kind::Sequence ? '[' : '{');
     for (const Value &item : value.items) text += (text.size() > 1 ? ", " : "") + flow_text(item);
     for (const auto &[key, part] : value.entries)
-        text += (text.size() > 1 ? ", " : "") + key_text(key) + ": " + flow_text(part);
+        text += (text.size() > 1 ? ", " : "") + key_text(key, part) + ": " + flow_text(part);
     return text + (value.kind == Value::Kind::Sequence ? ']' : '}');
 }
 
@@ -106,7 +107,7 @@ void write_value(const Value &value, std::size_t indent, std::string &out) {
     }
     for (const auto &[key, part] : value.entries) {
         begin_line();
-        out += key_text(key);
+        out += key_text(key, part);
         if (on_one_line(part, 2)) {
             out += ": " + flow_text(part) + "\n";
         } else {

@@ -111,6 +111,7 @@ static ir::ShapeId opened(Evaluator &ev, ir::ShapeId profile, Line axis, const V
                 result = ev.scene.shapes.add(ir::rotated(g, result, g.constant(turn)));
             if (at != std::array{0.0, 0.0})
                 result = ev.scene.shapes.add(ir::translated(g, result, g.vec(at)));
+            ev.scene.shapes.listed[result] = {base}; // as the scene says it
             return result;
         },
         axis);
