@@ -1,6 +1,7 @@
 // The main list of a save file, written: version, textures, materials, tree, lighting, and the
 // unlabelled rest. What was kept from an import goes back to its place; what the scene says by now
 // goes before it.
+#include "ir/background.h"
 #include "ir/view.h"
 #include "save-format/export_looks.h"
 #include "save-format/export_tree.h"
@@ -148,6 +149,10 @@ Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> 
     return yaml_list(std::move(lights));
 }
 
+bool gives_background(const ir::Scene &scene, Numbers &numbers) {
+    return scene.background && scene.background != ir::usual_background(numbers.graph());
+}
+
 // What is round the scene and 0.3 has no place for: labelled.
 void add_surroundings(const ir::Scene &scene, Numbers &numbers, Value &properties) {
     const ir::Lighting &l = scene.lighting;
@@ -155,7 +160,7 @@ void add_surroundings(const ir::Scene &scene, Numbers &numbers, Value &propertie
     const auto add = [&](const char *name, Value value) {
         properties.entries.emplace_back(name, std::move(value));
     };
-    if (scene.background)
+    if (gives_background(scene, numbers))
         if (auto steps = numbers.steps(scene.background)) add("Background", std::move(*steps));
     if (scene.render.epsilon != usual.epsilon) add("Epsilon", yaml_scalar(scene.render.epsilon));
     if (scene.render.far != usual.far) add("Far", yaml_scalar(scene.render.far));
@@ -403,7 +408,7 @@ static void report_labelled(const ir::Scene &scene, Numbers &numbers, const Tree
     std::map<std::string, int> types;
     bool varying = false;
     count_labelled(root, types, varying);
-    if (scene.background) say("the background");
+    if (gives_background(scene, numbers)) say("the background");
     if (scene.render.epsilon != usual.epsilon || scene.render.far != usual.far ||
         scene.render.time_end != usual.time_end)
         say("limits of the march");

@@ -165,6 +165,11 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         arguments.kind = Value::Kind::Mapping;
         for (const auto &[key, node] : l.arguments) {
             const auto value = numbers_.constant(node);
+            auto program = value ? std::nullopt : steps(node);
+            if (program) { // of the point
+                arguments.entries.emplace_back(key, yaml_mapping({{"Program", *program}}));
+                continue;
+            }
             if (!value) return otherwise(id, paint, "`" + name + "` with these arguments");
             std::vector<Value> parts;
             for (int i = 0; i < ir::components(value->type); ++i)

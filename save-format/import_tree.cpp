@@ -26,6 +26,7 @@ struct Result {
     std::size_t base = 0; // nodes that an export has at this place before the records are applied
     std::string display;  // what a person would call it
     std::optional<Place> dissolves; // it would, where it stood at such a place
+    std::uint32_t part = no_part;   // where it begins in the file
 };
 
 // How the children of a node came out.
@@ -315,6 +316,7 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     };
 
     Result result;
+    result.part = part;
     result.display = name;
     bool based = false; // an export has a node of this type here
     std::string base_type = row ? row->name : type;
@@ -497,7 +499,7 @@ void TreeReader::top_level(const Event &first) {
     const std::string identifier =
         continues ? last_->identifier : in_.names.unique(result.display, "shape");
     print_body(body, "let " + identifier + " = ", in_.out);
-    in_.scene.push_back(identifier);
+    in_.scene.push_back(marked(result.part, identifier));
 }
 
 void TreeReader::root(const Event &first) {

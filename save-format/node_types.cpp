@@ -271,6 +271,7 @@ bool is_library_solid(std::string_view function) {
                                                   "mandelbulb",
                                                   "helix",
                                                   "tubes",
+                                                  "heightfield",
                                                   // flat ones, below an extrusion or a revolution
                                                   "circle",
                                                   "ellipse",

@@ -99,7 +99,11 @@ std::string library_call(Importer &in, const Reading &reading, Properties &prope
             name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") == std::string::npos &&
             name[0] >= 'a';
         std::string text = reading.formula(name);
-        if (text.empty()) text = argument_text(value);
+        std::string why;
+        const Value *program =
+            value.kind == Value::Kind::Mapping ? value.find("Program") : nullptr;
+        if (text.empty())
+            text = program ? program_text(*program, in.words, why) : argument_text(value);
         if (!is_name || text.empty()) {
             in.report.content(value.span, "`" + printable(name.substr(0, 80)) +
                                               "` is no argument of numbers, and is left out");

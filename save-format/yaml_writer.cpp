@@ -108,6 +108,10 @@ void write_value(const Value &value, std::size_t indent, std::string &out) {
     for (const auto &[key, part] : value.entries) {
         begin_line();
         out += key_text(key, part);
+        if (part.complex_key || key.size() > 200) { // marked: its value has a line of its own
+            out += '\n';
+            out.append(indent, ' ');
+        }
         if (on_one_line(part, 2)) {
             out += ": " + flow_text(part) + "\n";
         } else {

@@ -253,6 +253,15 @@ static Value remembered(Evaluator &ev, const Value &callee, std::string_view nam
     return v;
 }
 
+// A parameter that takes a function of the point alone: such arguments are kept as what they give.
+static bool of_a_point(const lang::Parameter &p) {
+    if (!p.type || p.type->kind != lang::TypeExpr::Kind::Function || p.type->items.size() != 2)
+        return false;
+    const lang::TypeName from = p.type->items[0].named;
+    return (from == lang::TypeName::Vec2 || from == lang::TypeName::Vec3) &&
+           p.type->items[1].named == lang::TypeName::Float;
+}
+
 static Value call_closure(Evaluator &ev, const Value &callee, std::string_view name,
                           std::span<const Argument> args, Span call, Span callee_span) {
     const Closure c = ev.closures[callee.id];
@@ -304,6 +313,12 @@ static Value call_closure(Evaluator &ev, const Value &callee, std::string_view n
         for (std::size_t i = 0; i < values.size(); ++i)
             if (is_numeric(values[i])) {
                 library.arguments.emplace_back(formals[i].name, to_node(ev, values[i]));
+            } else if (is_function(values[i]) && of_a_point(f.parameters[i])) {
+                const lang::TypeName point = f.parameters[i].type->items[0].named;
+                const Type type = point == lang::TypeName::Vec2 ? Type::Vec2 : Type::Vec3;
+                if (auto node = apply_field(ev, values[i], {ev.scene.graph.point(type)},
+                                            Type::Float, call, "a library's function"))
+                    library.arguments.emplace_back(formals[i].name, *node);
             } else if (values[i].kind == ValueKind::List) {
                 const std::vector<Value> items = ev.lists[values[i].id];
                 std::vector<ir::NodeId> nodes;

@@ -4,6 +4,8 @@
 #include "lang/parse.h"
 #include "typecheck/evaluator.h"
 
+#include "ir/background.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -163,15 +165,7 @@ void demand_ranges(Evaluator &ev) {
 void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions, const File &ast) {
     ir::Scene &scene = ev.scene;
     scene.lighting = default_lighting(ev);
-    ir::NodeId direction =
-        scene.graph.make(ir::Op::Direction, ir::Type::Vec3, std::initializer_list<ir::NodeId>{});
-    // a quiet sky: from a warm horizon to a soft blue, linear
-    ir::NodeId up =
-        scene.graph.make(ir::Op::Smoothstep, {scene.graph.number(-0.3), scene.graph.number(0.8),
-                                              scene.graph.component(direction, 1)});
-    scene.background = scene.graph.make(ir::Op::Mix, {scene.graph.vec3(0.63, 0.66, 0.68),
-                                                      scene.graph.vec3(0.21, 0.34, 0.53),
-                                                      scene.graph.splat(up, ir::Type::Vec3)});
+    scene.background = ir::usual_background(scene.graph);
     std::vector<ir::ShapeId> shapes;
     for (const Contribution &c : contributions) add_top_level(ev, c.value, c.span, shapes);
     bool some_only = false;

@@ -3,6 +3,8 @@
 #include "scratch_folder.h"
 
 #include <catch2/catch.hpp>
+#include <fcntl.h>
+#include <sys/file.h>
 #include <csignal>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -96,4 +98,42 @@ TEST_CASE("reading refuses what is no file, and what is too large") {
     ::mkfifo((folder / "pipe").c_str(), 0600);
     CHECK_FALSE(read_file(folder / "pipe", 100, error)); // and does not wait for a writer
     CHECK(error == "is not a regular file");
+}
+
+TEST_CASE("a link that leads to nothing yet stays a link, and a ring of links is told") {
+    ScratchFolder folder;
+    fs::create_directory(folder / "there");
+    fs::create_symlink("there/new.txt", folder / "link.txt");
+    fs::create_symlink("link.txt", folder / "second.txt");
+    CHECK(write_file(folder / "second.txt", "new") == "");
+    CHECK(fs::is_symlink(folder / "second.txt"));
+    CHECK(fs::is_symlink(folder / "link.txt"));
+    CHECK(folder.read("there/new.txt") == "new");
+    fs::create_symlink("nowhere/new.txt", folder / "lost.txt");
+    CHECK(write_file(folder / "lost.txt", "new") == "no such file or directory");
+    CHECK(fs::is_symlink(folder / "lost.txt"));
+    fs::create_symlink("ring.txt", folder / "ring.txt");
+    CHECK(write_file(folder / "ring.txt", "new") == "too many levels of symbolic links");
+    CHECK(fs::is_symlink(folder / "ring.txt"));
+}
+
+TEST_CASE("what a killed write left is swept by the next one, what is being written is not") {
+    ScratchFolder folder;
+    folder.write(".out.png.fathom-tmpAbC123", "half");
+    folder.write(".other.sdf.fathom-tmpXXXXXX", "half");
+    folder.write("mine.fathom-tmpAbC123", "kept");   // no dot before it
+    folder.write(".notes.fathom-tmp", "kept");       // no tail
+    folder.write(".out.png.fathom-tmpBusy00", "kept"); // another process has it open and locked
+    fs::create_directory(folder / ".folder.fathom-tmpAbC123");
+    const int busy = ::open((folder / ".out.png.fathom-tmpBusy00").c_str(), O_RDONLY | O_CLOEXEC);
+    REQUIRE(::flock(busy, LOCK_EX) == 0);
+    CHECK(write_file(folder / "out.png", "new") == "");
+    CHECK(folder.read("out.png") == "new");
+    CHECK_FALSE(fs::exists(folder / ".out.png.fathom-tmpAbC123"));
+    CHECK_FALSE(fs::exists(folder / ".other.sdf.fathom-tmpXXXXXX"));
+    CHECK(fs::exists(folder / "mine.fathom-tmpAbC123"));
+    CHECK(fs::exists(folder / ".notes.fathom-tmp"));
+    CHECK(fs::exists(folder / ".out.png.fathom-tmpBusy00"));
+    CHECK(fs::exists(folder / ".folder.fathom-tmpAbC123"));
+    ::close(busy);
 }

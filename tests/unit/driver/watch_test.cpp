@@ -5,7 +5,10 @@
 #include "scratch_folder.h"
 
 #include <catch2/catch.hpp>
+#include <optional>
+#include <sys/resource.h>
 #include <thread>
+#include <unistd.h>
 
 using namespace fathom::driver;
 using std::chrono::milliseconds;
@@ -33,7 +36,7 @@ struct Watched {
 
 TEST_CASE("each way to save is seen, 100 of 100") {
     Watched w;
-    REQUIRE(w.watcher.good());
+    REQUIRE(w.watcher.polls_because() == "");
     auto way = GENERATE(as<std::string>{}, "in place", "rename over", "delete and create",
                         "backup dance", "append", "truncate then write", "sed -i");
     INFO(way);
@@ -146,5 +149,63 @@ TEST_CASE("a wait is ended from another thread") {
     Watched w;
     std::thread other([&] { w.watcher.wake(); });
     CHECK_FALSE(w.watcher.wait(patience));
+    other.join();
+}
+
+namespace {
+
+// While it lives the process may open `spare` more files, so that a watcher gets its wake and no
+// watches.
+class FewFiles {
+  public:
+    explicit FewFiles(rlim_t spare) {
+        ::getrlimit(RLIMIT_NOFILE, &old_);
+        const int lowest = ::dup(0); // descriptors are given from the lowest on
+        ::close(lowest);
+        rlimit few{static_cast<rlim_t>(lowest) + spare, old_.rlim_max};
+        ::setrlimit(RLIMIT_NOFILE, &few);
+    }
+    FewFiles(const FewFiles &) = delete;
+    FewFiles &operator=(const FewFiles &) = delete;
+    ~FewFiles() { ::setrlimit(RLIMIT_NOFILE, &old_); }
+
+  private:
+    rlimit old_{};
+};
+
+} // namespace
+
+TEST_CASE("without watches the files are looked at, and it is said") {
+    ScratchFolder folder;
+    const fs::path file = folder.write("scene.sdf", "sphere(1)");
+    std::optional<Watcher> watcher;
+    {
+        FewFiles few(1);
+        watcher.emplace();
+    }
+    CHECK(watcher->polls_because() ==
+          "the system gives no more file watches (fs.inotify.max_user_instances): files are looked "
+          "at twice a second instead");
+    watcher->watch({{file, stamp_of(file)}});
+    CHECK_FALSE(watcher->wait(milliseconds(0)));
+    folder.write("scene.sdf", "sphere(2)  ");
+    CHECK(watcher->wait(patience));
+    CHECK_FALSE(watcher->wait(milliseconds(0)));
+    fs::remove(file); // a rename into place, later
+    std::thread later([&] {
+        std::this_thread::sleep_for(milliseconds(100));
+        fs::rename(folder.write("other", "sphere(3)"), file);
+    });
+    CHECK(watcher->wait(patience)); // it is gone, or already back
+    later.join();
+    while (watcher->wait(milliseconds(700))) {
+    }
+    folder.write("scene.sdf", "sphere(4)      ");
+    CHECK(watcher->wait(patience));
+    std::thread other([&] {
+        std::this_thread::sleep_for(milliseconds(50));
+        watcher->wake();
+    });
+    CHECK_FALSE(watcher->wait(std::chrono::hours(1)));
     other.join();
 }

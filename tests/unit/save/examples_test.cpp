@@ -121,6 +121,7 @@ TEST_CASE("every example comes back from a save file with its field and its pict
         CHECK(trip.imported == "");
         CHECK(trip.errors == "");
         auto t1 = std::chrono::steady_clock::now();
+        if (std::getenv("FATHOM_DUMP")) for (const ir::Scene *sc : {&first.scene, &trip.back.scene}) { for (std::size_t k = 0; k < sc->facts.size(); ++k) printf("%s %.9g [%g]\n", ir::shape_kind_name(sc->shapes[ir::ShapeId{k}].kind), sc->facts[k].lipschitz_sup, sc->graph.as_number(sc->facts[k].lipschitz).value_or(-1)); puts("----"); }
         if (!trip.back.good()) { printf("%-24s BAD\n", name.c_str()); continue; }
         const double field = field_difference(first.scene, trip.back.scene, 0),
                      pixels = picture_difference(first.scene, trip.back.scene, 0);

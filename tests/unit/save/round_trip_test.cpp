@@ -19,7 +19,8 @@ std::string lost(const std::string &yaml) {
     Diagnostics diagnostics;
     const std::string back = save::export_yaml(checked.checked.scene, diagnostics);
     std::string said;
-    for (const Diagnostic &d : diagnostics.items()) said += d.message + "\n";
+    for (const Diagnostic &d : diagnostics.items()) // a note says what is labelled
+        if (d.severity != Severity::Note) said += d.message + "\n";
     const save::ParsedText before = save::parse_text(yaml), after = save::parse_text(back);
     if (!after.ok) return "the export does not read: " + back;
     const std::string found = difference(before.value, after.value);

@@ -99,6 +99,7 @@ TEST_CASE("a count beyond its limit is the limit, and comes back as it was", "[s
     CHECK(imported.result.sdf.find("blobby(1000,") != std::string::npos);
     CHECK(imported.result.sdf.find("menger_sponge(1, 12)") != std::string::npos);
     const CheckedText checked = check_text(imported.result.sdf);
+    CHECK(checked.errors() == "");
     CHECK(difference(save::parse_text(yaml).value,
                      save::parse_text(export_text(checked.checked.scene)).value) == "");
 }
