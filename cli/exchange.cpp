@@ -39,10 +39,7 @@ Exit run(const ImportCommand &command, Terminal &terminal) {
         options.asset_prefix = way(command.out, command.file);
     const bool to_file = !command.out.empty() && command.out != "-";
     driver::leave_out_unusable(sources[source].name, sources[source].text,
-                               to_file          ? command.out
-                               : standard_input ? std::filesystem::path("-")
-                                                : std::filesystem::path(command.file),
-                               options);
+                               to_file ? command.out : command.file, options);
     save::ImportResult result = save::import_yaml(sources, source, diagnostics, options);
     print_diagnostics(diagnostics, sources, terminal);
     bool write = !diagnostics.has_errors() || (command.partial && result.structural_error);

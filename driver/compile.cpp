@@ -127,6 +127,7 @@ bool note_unusable(const Compilation &out, SourceId text, const save::ImportResu
     return more;
 }
 
+constexpr std::size_t most_asked = std::size_t{4} << 20; // bytes of a save file that is compiled
 constexpr int most_attempts = 32; // at a save file, each without the parts refused before
 
 // The text of a save file, compiled; with those parts left out that no compiler takes, so that the
@@ -151,6 +152,7 @@ Compilation compile_imported(const std::string &name, const std::string &text, S
 
 void leave_out_unusable(const std::string &name, const std::string &text,
                         const std::filesystem::path &scene, save::ImportOptions &import) {
+    if (text.size() > most_asked) return;
     SceneFiles files(scene.parent_path(), {});
     const std::string identity = files.add_root(scene);
     compile_imported(name, text, files, identity, import, {});

@@ -55,7 +55,7 @@ Compilation compile_text(std::string name, std::string text, const std::filesyst
 
 // Adds to `import.unusable` what of a save file no compiler takes (a twist of what has no end, a
 // grid that is not there), so that an import leaves out that alone. `scene` is where the text will
-// stand.
+// stand. Files above 4 MiB are not asked.
 void leave_out_unusable(const std::string &name, const std::string &text,
                         const std::filesystem::path &scene, save::ImportOptions &import);
 

@@ -206,11 +206,11 @@ std::string write_file(const std::filesystem::path &named, std::string_view byte
     sweep(folder);
     std::string temporary;
     HoldInterrupts hold;
-    Descriptor file(locked_temporary((folder / ("." + target.filename().string() +
-                                                std::string(temporary_mark) +
-                                                std::string(temporary_tail, 'X')))
-                                         .string(),
-                                     temporary));
+    Descriptor file(
+        locked_temporary((folder / ("." + target.filename().string() + std::string(temporary_mark) +
+                                    std::string(temporary_tail, 'X')))
+                             .string(),
+                         temporary));
     if (file.get() < 0) return error_words(errno);
     mode_t mask = ::umask(0);
     ::umask(mask);

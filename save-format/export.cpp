@@ -369,9 +369,9 @@ static Value parameters_value(const ir::Scene &scene) {
                            : param.type == ir::Type::Vec4 ? "Vec4"
                                                           : "Float";
         if (param.type != ir::Type::Float) item.entries.emplace_back("Type", yaml_word(type));
-        item.entries.emplace_back(
-            "Value", param.type == ir::Type::Bool ? yaml_switch(param.value[0] != 0)
-                                                  : list(param.value));
+        item.entries.emplace_back("Value", param.type == ir::Type::Bool
+                                               ? yaml_switch(param.value[0] != 0)
+                                               : list(param.value));
         if (param.has_range) {
             item.entries.emplace_back("Low", list(param.lo));
             item.entries.emplace_back("High", list(param.hi));
@@ -432,8 +432,9 @@ static void report_labelled(const ir::Scene &scene, Numbers &numbers, const Tree
     for (const ir::Param &param : scene.params)
         if (param.structural)
             unsaved(diagnostics, param.origin,
-                    "`" + param.name + "` decides what shapes there are: the file has those of "
-                                       "its present value")
+                    "`" + param.name +
+                        "` decides what shapes there are: the file has those of "
+                        "its present value")
                 .note("the parameter itself is kept, and moves what follows it otherwise");
 }
 

@@ -188,8 +188,8 @@ std::optional<Looks::Look> Looks::look_of(const ir::Material &material) {
         look.texture_scale = material.texture.scale;
         if (scene_.graph[diffuse].op == ir::Op::Mix) diffuse = scene_.graph.arg(diffuse, 0);
     }
-    const auto exponent = numbers_.varies(material.exponent) ? std::nullopt
-                                                             : numbers_.number(material.exponent);
+    const auto exponent =
+        numbers_.varies(material.exponent) ? std::nullopt : numbers_.number(material.exponent);
     if (!read(diffuse, look.diffuse) || !read(material.specular, look.specular) ||
         !read(material.emission, look.emission) || !exponent)
         return std::nullopt;

@@ -106,8 +106,8 @@ bool TreeWriter::varying_turn(TreeNode &node, NodeId matrix) {
                          b = ir::substitute(graph, same, {{angle, graph.number(test)}});
             equal = equal && graph.is_constant(a) && graph.is_constant(b);
             for (std::size_t i = 0; equal && i < 9; ++i)
-                equal = std::abs(graph.constant_of(a).value[i] - graph.constant_of(b).value[i]) <
-                        1e-9;
+                equal =
+                    std::abs(graph.constant_of(a).value[i] - graph.constant_of(b).value[i]) < 1e-9;
         }
         if (!equal) continue;
         add(node, "Axis", yaml_xyz(axis[0], axis[1], axis[2]));
@@ -268,8 +268,7 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
         if (result) add(*result, "Map", std::move(*map_steps));
         return push(std::move(result));
     }
-    case ir::MapKind::Revolve:
-        return push(raised(id, "revolve", "offset", s.args[2], paint));
+    case ir::MapKind::Revolve: return push(raised(id, "revolve", "offset", s.args[2], paint));
     }
 }
 
@@ -330,8 +329,7 @@ void TreeWriter::copies(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
     if (!result) return;
     if (r.mirrored) {
         add(*result, "Function", yaml_word("repeat_mirror"));
-        add(*result, "Arguments",
-            yaml_mapping({{"cell", yaml_xyz(size[0], size[1], size[2])}}));
+        add(*result, "Arguments", yaml_mapping({{"cell", yaml_xyz(size[0], size[1], size[2])}}));
         vary(*result, "cell", s.args[0]);
     } else {
         add(*result, "Cell", yaml_xyz(size[0], size[1], size[2]));

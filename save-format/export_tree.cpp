@@ -39,8 +39,8 @@ void TreeWriter::vary(TreeNode &node, std::string_view name, NodeId value) {
         return;
     }
     unsaved(diagnostics_, {},
-            "the save format has no words for what `" + std::string(name) + "` of a `" +
-                node.type + "` follows: " + no_words)
+            "the save format has no words for what `" + std::string(name) + "` of a `" + node.type +
+                "` follows: " + no_words)
         .note("its present value is written");
 }
 
@@ -65,8 +65,7 @@ void TreeWriter::united(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
     if (displaced(id, paint, out)) return;
     const Shape &s = shape(id);
     if (const auto listed = scene_.shapes.listed.find(id);
-        listed != scene_.shapes.listed.end() &&
-        (s.args.empty() || s.kind == ShapeKind::Map)) {
+        listed != scene_.shapes.listed.end() && (s.args.empty() || s.kind == ShapeKind::Map)) {
         const std::vector<ShapeId> parts = listed->second;
         for (const ShapeId part : parts) united(part, paint, out);
         return;
@@ -271,8 +270,7 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
         return result;
     }
     case ShapeKind::Offset: {
-        if (!numbers_.number(s.args[0]))
-            return otherwise(id, paint, "an offset that is no number");
+        if (!numbers_.number(s.args[0])) return otherwise(id, paint, "an offset that is no number");
         auto result = one_child(NodeType::Offset, s.children[0], paint);
         if (result) number(*result, "Distance", s.args[0]);
         return result;

@@ -20,9 +20,9 @@ class Numbers {
     std::optional<ir::Constant> constant(ir::NodeId id);
     std::optional<double> number(ir::NodeId id);
     std::optional<std::array<double, 3>> vector(ir::NodeId id); // a vec2's third component is 0
-    ir::NodeId reduced(ir::NodeId id); // the expression, with variables' values in it
-    ir::NodeId present(ir::NodeId id); // … and those of params and time
-    bool varies(ir::NodeId id);        // it is a number at present, and follows params or time
+    ir::NodeId reduced(ir::NodeId id);  // the expression, with variables' values in it
+    ir::NodeId present(ir::NodeId id);  // … and those of params and time
+    bool varies(ir::NodeId id);         // it is a number at present, and follows params or time
     std::string program(ir::NodeId id); // its steps in flow form; empty where there are no words
     std::optional<Value> steps(ir::NodeId id); // the same as a value
     void set(ir::NodeId variable, const ir::Constant &value);

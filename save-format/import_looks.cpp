@@ -387,7 +387,7 @@ void Importer::read_lighting(bool in_tree) {
     };
     const std::string sky = formula(properties.varying, "Ambient", event.span);
     std::string call = "lighting(ambient: " +
-                       (!sky.empty()                     ? sky
+                       (!sky.empty()                    ? sky
                         : red == green && green == blue ? sdf_number(red)
                                                         : sdf_vector(ambient)) +
                        ", ambient_occlusion: " + text(3) + ", shadow_darkness: " + text(4) +

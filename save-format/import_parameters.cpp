@@ -17,8 +17,8 @@ struct ParameterType {
     bool ranged; // may have a range
 };
 constexpr ParameterType parameter_types[] = {
-    {"float", "float", 1, true}, {"whole", "int", 1, true},    {"switch", "bool", 1, false},
-    {"color", "color", 3, false}, {"vec2", "vec2", 2, true},    {"vec3", "vec3", 3, true},
+    {"float", "float", 1, true},  {"whole", "int", 1, true}, {"switch", "bool", 1, false},
+    {"color", "color", 3, false}, {"vec2", "vec2", 2, true}, {"vec3", "vec3", 3, true},
     {"vec4", "vec4", 4, true},
 };
 

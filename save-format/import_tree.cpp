@@ -1,8 +1,8 @@
 // The scene tree: one pass over its nodes, each written as an expression when its last property was
 // read. What an export of the written text would not give back by itself (groups that unions
 // dissolve, names, nodes left out) is recorded.
-#include "save-format/importer.h"
 #include "save-format/node_text.h"
+#include "save-format/tree_reader.h"
 #include "save-format/yaml_writer.h"
 
 #include "base/suggest.h"
@@ -12,67 +12,6 @@
 #include <optional>
 
 namespace fathom::save {
-namespace {
-
-// Where a node stands decides what an export makes of a union there: see export_tree.cpp.
-enum class Place : std::uint8_t {
-    United,      // among siblings that are united: a union dissolves
-    Intersected, // an intersection dissolves
-    Alone        // an operand by itself
-};
-
-struct Result {
-    bool contributed = false;
-    std::size_t base = 0; // nodes that an export has at this place before the records are applied
-    std::string display;  // what a person would call it
-    std::optional<Place> dissolves; // it would, where it stood at such a place
-    std::uint32_t part = no_part;   // where it begins in the file
-};
-
-// How the children of a node came out.
-struct Children {
-    bool given = false;
-    std::size_t read = 0;   // in the file
-    std::size_t pieces = 0; // expressions
-    std::size_t base = 0;
-    std::optional<Place> dissolves; // of the only one
-    bool first = false;             // the first one contributed (differences and blends need it)
-    std::size_t first_base = 0, first_end = 0; // its nodes, and the piece behind it
-    std::size_t rest_mark = 0;                 // the held piece before the second one
-    std::size_t rest_pieces = 0;
-    std::string display; // of the only one
-    bool differ = false; // they are read as those of one copy, which knows its number
-};
-
-class TreeReader {
-  public:
-    explicit TreeReader(Importer &importer) : in_(importer) {}
-
-    void root(const Event &first);
-
-  private:
-    Result node(const Event &first, Place place, Body &body, bool top);
-    void top_level(const Event &first);
-    void children(const Event &key, const NodeTypeRow *row, Body &body, Children &into,
-                  Properties &properties);
-    void read_properties(Event event, const NodeTypeRow *row, const std::string &type, Body &body,
-                         Children &into, Properties &properties);
-    void keep(const char *label, std::string flow) {
-        in_.keep(label, path_text(), std::move(flow));
-    }
-    std::string path_text() const;
-
-    Importer &in_;
-    struct Statement { // written before the present one, for a part of it
-        std::string identifier;
-        Body body;
-        std::size_t begin = 0, end = 0; // in Importer::out
-    };
-    std::optional<Statement> last_;
-    std::vector<std::size_t> path_;
-    std::size_t blocks_ = 0; // that are open in the present statement
-};
-
 std::string TreeReader::path_text() const {
     std::string text;
     for (const std::size_t index : path_) {
@@ -81,6 +20,8 @@ std::string TreeReader::path_text() const {
     }
     return text;
 }
+
+namespace {
 
 // "Sphere 12" says no more than that it is a sphere.
 bool is_default_name(std::string_view name, std::string_view type) {
@@ -97,6 +38,8 @@ void add_comment(Piece &piece, std::string_view comment) {
 
 // Statements nest as deep as blocks do; the language reads 256 levels, and people fewer.
 constexpr std::size_t block_limit = 24;
+
+} // namespace
 
 void TreeReader::children(const Event &key, const NodeTypeRow *row, Body &body, Children &into,
                           Properties &properties) {
@@ -163,8 +106,9 @@ void TreeReader::read_properties(Event event, const NodeTypeRow *row, const std:
             spelling_key(event.text) == "children") {
             const PropertyType *differ = row ? find_property(*row, "Differ") : nullptr;
             into.differ =
-                differ && properties.values[static_cast<std::size_t>(differ - row->properties.data())]
-                                  .number[0] != 0;
+                differ &&
+                properties.values[static_cast<std::size_t>(differ - row->properties.data())]
+                        .number[0] != 0;
             in_.words.copies += into.differ;
             children(event, row, body, into, properties);
             in_.words.copies -= into.differ;
@@ -264,7 +208,8 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     const bool custom =
         !is_default_name(name, row ? std::string_view(row->name) : std::string_view(type));
     const bool hoisted = // but not out of copies that differ: what it says may name the copy
-        block && !top && in_.words.copies == 0 && (blocks_ >= block_limit || (custom && row && row->children != Arity::One));
+        block && !top && in_.words.copies == 0 &&
+        (blocks_ >= block_limit || (custom && row && row->children != Arity::One));
     Body own;
     Body &target = hoisted ? own : body;
     const std::size_t blocks_mark = blocks_;
@@ -405,8 +350,8 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
         if (kids.differ && kids.pieces > 0 && call.ends_with(")")) {
             // `s.repeat(…, copies: …)` asks nothing of s but that it is a shape
             target[begin] = {Piece::Kind::Open,
-                             marked(part, "sphere(1)") + call.substr(0, call.size() - 1) + ", copies: (_, " +
-                                 copy_name(in_.words.copies) + ") => union {",
+                             marked(part, "sphere(1)") + call.substr(0, call.size() - 1) +
+                                 ", copies: (_, " + copy_name(in_.words.copies) + ") => union {",
                              {}};
             target.push_back({Piece::Kind::Close, "})", {}});
             result.contributed = true;
@@ -477,104 +422,5 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     }
     return result;
 }
-
-void TreeReader::top_level(const Event &first) {
-    Body body;
-    blocks_ = 0;
-    last_.reset();
-    Result result = node(first, Place::United, body, true);
-    if (!result.contributed) return;
-    // A chain of calls on one named block continues that block's own statement.
-    std::erase_if(body, [](const Piece &piece) { return piece.kind == Piece::Kind::Nothing; });
-    const bool continues = last_ && last_->end == in_.out.size() && body.size() == 1 &&
-                           body[0].text.starts_with(last_->identifier + chain_mark);
-    if (continues) {
-        in_.out.resize(last_->begin);
-        last_->body.back().text += body[0].text.substr(last_->identifier.size());
-        last_->body.back().comment = body[0].comment;
-        body = std::move(last_->body);
-    }
-    for (Piece &piece : body) // the statement's own name says it
-        if (piece.comment == result.display) piece.comment.clear();
-    const std::string identifier =
-        continues ? last_->identifier : in_.names.unique(result.display, "shape");
-    print_body(body, "let " + identifier + " = ", in_.out);
-    in_.scene.push_back(marked(result.part, identifier));
-}
-
-void TreeReader::root(const Event &first) {
-    Event event = in_.reader.next();
-    const NodeTypeRow *row = event.kind == EventKind::Scalar ? find_node_type(event.text) : nullptr;
-    if (!row || row->type != NodeType::Generic) {
-        in_.reader.break_off(first.span,
-                             "the scene tree has to begin with its root, a `Generic` node");
-        return;
-    }
-    event = in_.reader.next();
-    std::string unknown;
-    if (event.kind == EventKind::Scalar) {
-        if (event.text != "Distance field") keep("name", flow_scalar(event.text, event.plain));
-        event = in_.reader.next();
-    }
-    if (event.kind == EventKind::MappingStart) {
-        Properties properties;
-        bool given = false;
-        for (;;) {
-            event = in_.reader.next();
-            if (event.kind == EventKind::MappingEnd || event.kind == EventKind::Broken ||
-                event.kind == EventKind::End)
-                break;
-            const std::string key =
-                event.kind == EventKind::Scalar ? spelling_key(event.text) : std::string();
-            if (!given && (key == "parameters" || key == "caches")) {
-                const TakenValue taken = take_value(in_.reader, in_.reader.next(), 1u << 22);
-                if (key == "parameters")
-                    in_.read_parameters(taken.value);
-                else
-                    in_.read_caches(taken.value);
-                continue;
-            }
-            if (key != "children" || given) {
-                in_.read_property(*row, event, properties, "the root");
-                continue;
-            }
-            given = true;
-            Event list = in_.reader.next();
-            if (list.kind != EventKind::SequenceStart) {
-                if (!(list.kind == EventKind::Scalar && list.plain && is_none(list.text))) {
-                    in_.report.content(list.span, "`Children` has to be a list of nodes");
-                }
-                skip_value(in_.reader, list);
-                continue;
-            }
-            for (std::size_t index = 0;; ++index) {
-                Event child = in_.reader.next();
-                if (child.kind == EventKind::SequenceEnd || child.kind == EventKind::Broken ||
-                    child.kind == EventKind::End)
-                    break;
-                path_.assign(1, index);
-                top_level(child);
-            }
-            path_.clear();
-        }
-        if (!properties.unknown.empty()) keep("properties", "{" + properties.unknown + "}");
-        event = in_.reader.next();
-    }
-    if (event.kind != EventKind::SequenceEnd && event.kind != EventKind::Broken &&
-        event.kind != EventKind::End) {
-        in_.report
-            .content(event.span,
-                     "a node has a type, a name and one mapping of properties, and no more")
-            .note("the rest is kept for an export");
-        std::string flow = "[";
-        take_flow(in_.reader, std::move(event), flow);
-        in_.rest_of_sequence(flow);
-        keep("extra", std::move(flow));
-    }
-}
-
-} // namespace
-
-void Importer::read_tree(const Event &first) { TreeReader(*this).root(first); }
 
 } // namespace fathom::save

@@ -84,10 +84,10 @@ void set_properties(TreeNode &node, const Value &properties) {
         if (!type) continue;
         const auto number = number_of(present->second);
         const auto kept = number_of(value);
-        bool untouched =
-            type->kind == PropertyKind::Carried || (number && *number == type->fallback) ||
-            (type->kind == PropertyKind::Whole && number && kept &&
-             *number == std::clamp(*kept, type->least, type->most));
+        bool untouched = type->kind == PropertyKind::Carried ||
+                         (number && *number == type->fallback) ||
+                         (type->kind == PropertyKind::Whole && number && kept &&
+                          *number == std::clamp(*kept, type->least, type->most));
         if (type->kind == PropertyKind::Vector) {
             untouched = std::all_of(
                 present->second.entries.begin(), present->second.entries.end(),

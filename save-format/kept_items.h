@@ -37,7 +37,7 @@ struct TreeNode {
     std::string type, name;
     bool named = false;
     bool plain = false; // the name stood without quotes, so that `~` and `12` are no text
-    bool head = false; // of a group that a record brought back: it counts in no ordinal
+    bool head = false;  // of a group that a record brought back: it counts in no ordinal
     std::vector<Entry> properties;
     std::vector<Entry> varying; // programs by property: what numbers follow
     std::vector<TreeNode> children;

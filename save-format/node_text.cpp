@@ -196,8 +196,8 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
         const std::string region =
             reading["Within"].given ? region_text(reading["Within"].tree) : std::string();
         if (exponent == 1 && !reading.varies("Exponent")) return {};
-        return ".hyperize(" + reading.text("Exponent") + (region.empty() ? "" : ", within: " + region) +
-               ")";
+        return ".hyperize(" + reading.text("Exponent") +
+               (region.empty() ? "" : ", within: " + region) + ")";
     }
     case NodeType::Offset: {
         const double distance = reading.number("Distance");
@@ -317,8 +317,7 @@ void operator_text(Importer &in, const NodeTypeRow &row, Properties &properties,
         double center[3];
         reading.vector("Center", center);
         const std::string varying = reading.formula("Center");
-        const bool origin =
-            varying.empty() && center[0] == 0 && center[1] == 0 && center[2] == 0;
+        const bool origin = varying.empty() && center[0] == 0 && center[1] == 0 && center[2] == 0;
         const std::string at_center = varying.empty() ? sdf_vector(center) : varying;
         last = "p => clamp(length(p" + (origin ? std::string() : " - " + at_center) + "), 0, 1)";
     } else {

@@ -126,7 +126,7 @@ class Program {
         if (given_ == Given::Nothing) return result;
         if (result.size() > 2 && result.front() == '(' && whole_in_parentheses(result))
             result = result.substr(1, result.size() - 2);
-        return std::string(normal_used_                   ? "(p, n) => "
+        return std::string(normal_used_                 ? "(p, n) => "
                            : given_ == Given::Direction ? "d => "
                                                         : "p => ") +
                (lets_.empty() ? result : "{ " + lets_ + result + " }");
@@ -181,8 +181,8 @@ class Program {
         }
         if (op == "Id" && count == 1) {
             const auto number = number_of(value.items[1]);
-            const bool legal = number && *number == std::floor(*number) && *number >= 0 &&
-                               *number < words_.copies;
+            const bool legal =
+                number && *number == std::floor(*number) && *number >= 0 && *number < words_.copies;
             return legal ? copy_name(static_cast<int>(*number)) : std::string();
         }
         if (op == "Normal" && given_ == Given::PointAndNormal) {
@@ -193,8 +193,7 @@ class Program {
         std::vector<std::string> arguments;
         std::size_t first = 1;
         std::string_view word; // of Make, Splat and Swizzle: the type or the components
-        if (op == "Make" || op == "Splat" || op == "Swizzle" || op == "Column" ||
-            op == "Cached") {
+        if (op == "Make" || op == "Splat" || op == "Swizzle" || op == "Column" || op == "Cached") {
             if (count < 2) return {};
             word = value.items[1].text;
             first = 2;

@@ -32,7 +32,7 @@ std::string vector_text(const Value &vector); // {X, Y, Z}; empty where it is no
 std::string distortion_text(const Value &map, const Value &within, const Words &words,
                             std::string &why);
 
-std::string copy_name(int level); // what the number of a copy is called
+std::string copy_name(int level);      // what the number of a copy is called
 std::string yaml_number(double value); // shortest exact form, `.inf`
 
 // The same for the way out. Cached fields are collected as programs use them.

@@ -94,8 +94,7 @@ class StepWriter {
             ++index;
         if (index == words_.caches.size()) words_.caches.push_back({flow, cache.cell});
         const int at = step(args[0], depth + 1);
-        return at < 0 ? -1
-                      : push("Cached, " + std::to_string(index) + ", " + std::to_string(at));
+        return at < 0 ? -1 : push("Cached, " + std::to_string(index) + ", " + std::to_string(at));
     }
 
     // What a loop's variables are after its last turn; none where there are too many turns. After
@@ -114,8 +113,7 @@ class StepWriter {
             for (std::size_t k = 0; k < values.size(); ++k) now.emplace(loop.vars[k], values[k]);
             if (!known)
                 running = graph_.make(
-                    Op::And,
-                    {running, graph_.make(Op::Less, {graph_.integer(turn), loop.count})});
+                    Op::And, {running, graph_.make(Op::Less, {graph_.integer(turn), loop.count})});
             if (loop.condition)
                 running =
                     graph_.make(Op::And, {running, ir::substitute(graph_, loop.condition, now)});

@@ -50,8 +50,7 @@ std::string Reading::vector_text(std::string_view name) const {
     if (!varying.empty()) return varying;
     double value[3];
     vector(name, value);
-    return value[0] == value[1] && value[1] == value[2] ? sdf_number(value[0])
-                                                        : sdf_vector(value);
+    return value[0] == value[1] && value[1] == value[2] ? sdf_number(value[0]) : sdf_vector(value);
 }
 
 namespace {
@@ -100,8 +99,7 @@ std::string library_call(Importer &in, const Reading &reading, Properties &prope
             name[0] >= 'a';
         std::string text = reading.formula(name);
         std::string why;
-        const Value *program =
-            value.kind == Value::Kind::Mapping ? value.find("Program") : nullptr;
+        const Value *program = value.kind == Value::Kind::Mapping ? value.find("Program") : nullptr;
         if (text.empty())
             text = program ? program_text(*program, in.words, why) : argument_text(value);
         if (!is_name || text.empty()) {
@@ -177,7 +175,6 @@ std::string field_call(Importer &in, const Reading &reading, Span at) {
     if (reading["Estimate"].given) call += ", estimate: " + reading.text("Estimate");
     return call + ")";
 }
-
 
 // Numbers, vectors and axes by name; what follows parameters and time stands in `Varying`.
 std::string deformation_call(const Reading &reading, std::string &why) {

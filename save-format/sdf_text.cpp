@@ -179,7 +179,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> take_marks(std::string &tex
             continue;
         }
         std::uint32_t place = 0;
-        while (text[++i] != part_end) place = 10 * place + static_cast<std::uint32_t>(text[i] - '0');
+        while (text[++i] != part_end)
+            place = 10 * place + static_cast<std::uint32_t>(text[i] - '0');
         places.emplace_back(static_cast<std::uint32_t>(plain.size()), place);
     }
     text = std::move(plain);

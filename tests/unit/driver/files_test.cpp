@@ -3,9 +3,9 @@
 #include "scratch_folder.h"
 
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <fcntl.h>
 #include <sys/file.h>
-#include <csignal>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -121,8 +121,8 @@ TEST_CASE("what a killed write left is swept by the next one, what is being writ
     ScratchFolder folder;
     folder.write(".out.png.fathom-tmpAbC123", "half");
     folder.write(".other.sdf.fathom-tmpXXXXXX", "half");
-    folder.write("mine.fathom-tmpAbC123", "kept");   // no dot before it
-    folder.write(".notes.fathom-tmp", "kept");       // no tail
+    folder.write("mine.fathom-tmpAbC123", "kept");     // no dot before it
+    folder.write(".notes.fathom-tmp", "kept");         // no tail
     folder.write(".out.png.fathom-tmpBusy00", "kept"); // another process has it open and locked
     fs::create_directory(folder / ".folder.fathom-tmpAbC123");
     const int busy = ::open((folder / ".out.png.fathom-tmpBusy00").c_str(), O_RDONLY | O_CLOEXEC);

@@ -49,14 +49,12 @@ TEST_CASE("what no compiler takes is left out alone", "[save][unusable]") {
          "[Library Shape, bad, {Function: octahedron, Arguments: {sides: 3}}]"},
         {"a flat shape among solids",
          "[Library Shape, bad, {Function: circle, Arguments: {radius: 1}}]"},
-        {"a field of no slope",
-         "[Field, bad, {Field: [[Point], [Swizzle, x, 0], [Sqrt, 1]]}]"},
+        {"a field of no slope", "[Field, bad, {Field: [[Point], [Swizzle, x, 0], [Sqrt, 1]]}]"},
     };
     for (const auto &[what, node] : cases) {
         INFO(what);
-        const std::string yaml =
-            file_of("[Box, good, {Size: {X: 1, Y: 2, Z: 3}}],\n" + node +
-                    ",\n[Sphere, other, {Radius: 0.25}]");
+        const std::string yaml = file_of("[Box, good, {Size: {X: 1, Y: 2, Z: 3}}],\n" + node +
+                                         ",\n[Sphere, other, {Radius: 0.25}]");
         const Taken result = taken(yaml);
         INFO(result.imported.result.sdf);
         INFO(result.imported.said());
@@ -93,8 +91,9 @@ TEST_CASE("a good file loses nothing to the question", "[save][unusable]") {
 }
 
 TEST_CASE("a count beyond its limit is the limit, and comes back as it was", "[save]") {
-    const std::string yaml = file_of("[Blobby Objects, b, {Balls: 5000, Size: {X: 9, Y: 9, Z: 9}}],"
-                                     "\n[Menger Sponge, m, {Size: 1, Iterations: 40}]");
+    const std::string yaml =
+        file_of("[Blobby Objects, b, {Balls: 5000, Size: {X: 200, Y: 200, Z: 200}}],"
+                "\n[Menger Sponge, m, {Size: 1, Iterations: 40}]");
     const Imported imported = import_text(yaml);
     CHECK(imported.result.sdf.find("blobby(1000,") != std::string::npos);
     CHECK(imported.result.sdf.find("menger_sponge(1, 12)") != std::string::npos);
@@ -116,7 +115,7 @@ TEST_CASE("keys that are no text and names without quotes survive trips", "[save
         yaml = export_text(checked.checked.scene);
         INFO(yaml);
         CHECK(difference(first, save::parse_text(yaml).value) == "");
-        CHECK(yaml.find("? [a, b]: ") != std::string::npos);
+        CHECK(yaml.find("? [a, b]\n") != std::string::npos);
         CHECK(yaml.find("'[a, b]'") == std::string::npos);
         CHECK(yaml.find("'~'") == std::string::npos);
         CHECK(yaml.find("'12'") == std::string::npos);
@@ -126,8 +125,8 @@ TEST_CASE("keys that are no text and names without quotes survive trips", "[save
 
 TEST_CASE("the sets of the dodecahedron and icosahedron are those of [AC99]", "[save]") {
     const double g = (1 + std::sqrt(5.0)) / 2;
-    const std::pair<const char *, std::array<double, 3>> faces[] = {
-        {"Dodecahedron", {0, g, 1}}, {"Icosahedron", {0, 1 / g, g}}};
+    const std::pair<const char *, std::array<double, 3>> faces[] = {{"Dodecahedron", {0, g, 1}},
+                                                                    {"Icosahedron", {0, 1 / g, g}}};
     for (const auto &[name, normal] : faces) {
         const driver::Compilation made = driver::compile_text(
             "a.sdf",
