@@ -74,9 +74,8 @@ class Emitter {
         const auto name = [&](ir::FunctionId id) { return module_.functions.at(id.index); };
         Output output = gathered();
         PruneKernel kernel{"", output.tables, output.uniforms, loop.rows, output.reads_time};
-        const std::string text = "#version 430 core\n// " + options_.title +
-                                 ": written by fathom.\n\n" + scene_inputs() + scene.tables +
-                                 scene.functions +
+        const std::string text = "#version 430 core\n" + written_by() + "\n" + scene_inputs() +
+                                 scene.tables + scene.functions +
                                  prune_kernel(loop, {name(loop.value), name(loop.start),
                                                      name(loop.joined), name(loop.radius)});
         if (check(text, output, Stage::Compute)) kernel.text = text;
@@ -89,8 +88,7 @@ class Emitter {
         Output output = gathered();
         if (!output.images.empty() || !output.grids.empty()) return {};
         PruneKernel kernel{"", output.tables, output.uniforms, 0, output.reads_time};
-        const std::string text = "#version 430 core\n// " + options_.title +
-                                 ": written by fathom.\n\n" + scene_inputs() +
+        const std::string text = "#version 430 core\n" + written_by() + "\n" + scene_inputs() +
                                  prune_look_up(scene_.bounds) + scene.tables + scene.functions +
                                  far_kernel(module_.functions.at(scene_.distance.index));
         if (check(text, output, Stage::Compute)) kernel.text = text;
@@ -110,8 +108,8 @@ class Emitter {
                             scene_.graph.cache(ir::CacheId{caches[i]}).cell,
                             scene_.caches[caches[i]].slope});
         Output output = gathered();
-        output.text = "#version 420 core\n// " + options_.title + ": written by fathom.\n\n" +
-                      scene_inputs() + scene.tables + scene.functions + cache_fill(kept);
+        output.text = "#version 420 core\n" + written_by() + "\n" + scene_inputs() + scene.tables +
+                      scene.functions + cache_fill(kept);
         if (!check(output.text, output)) return {};
         return output;
     }
@@ -259,6 +257,8 @@ class Emitter {
         return "min(fathom_mode, 0)";
     }
 
+    std::string written_by() const { return comment(options_.title + ": written by fathom."); }
+
     std::string head() const {
         std::string text;
         switch (options_.target) {
@@ -274,7 +274,7 @@ class Emitter {
         case Target::Spirv: text = "#version 450 core\n"; break;
         case Target::Shadertoy: break;
         }
-        text += "// " + options_.title + ": written by fathom.\n";
+        text += written_by();
         if (options_.field_only) {
             text += "// For a renderer of one's own: a step of sdf(p) never passes a surface.\n";
         } else if (options_.target == Target::Shadertoy) {
@@ -323,7 +323,7 @@ class Emitter {
             const ir::Param &param = scene_.params[index];
             const std::string value = param_value(param), type = glsl_type(param.type);
             if (!param.label.empty() && options_.instruments == Instruments::None)
-                text += "// " + one_line(param.label) + "\n";
+                text += comment(param.label);
             if (is_hosted(options_.target))
                 text += uniform(type, name, value);
             else
@@ -334,12 +334,6 @@ class Emitter {
                     sampler("samplerBuffer", "fathom_tables");
         for (const auto &[index, name] : module_.images) text += sampler("sampler2D", name);
         for (const auto &[index, name] : module_.grids) text += sampler("sampler3D", name);
-        return text;
-    }
-
-    static std::string one_line(std::string text) {
-        std::ranges::replace_if(
-            text, [](char c) { return c == '\n' || c == '\r' || c == '\\'; }, ' ');
         return text;
     }
 

@@ -12,7 +12,7 @@
 namespace fathom {
 
 struct Source {
-    std::string name; // as the user wrote it on the command line or in `import`; printed as is
+    std::string name; // as the user wrote it on the command line or in `import`; encoded where it is written (encode.h)
     std::string text; // UTF-8, as read
     std::vector<std::uint32_t> line_starts; // byte offsets; filled by Sources::add
 };

@@ -1,4 +1,5 @@
 // The command line, read with CLI11, which no other file includes.
+#include "base/encode.h"
 #include "base/suggest.h"
 #include "base/text.h"
 #include "cli/command.h"
@@ -344,7 +345,9 @@ struct Reader {
     }
 };
 
-Answer wrong(const std::string &words) { return {usage_error, "", "fathom: " + words}; }
+Answer wrong(const std::string &words) {
+    return {usage_error, "", "fathom: " + for_terminal(words)};
+}
 
 std::string help_hint(const CLI::App &app) {
     std::vector<CLI::App *> chosen = app.get_subcommands();

@@ -104,7 +104,7 @@ struct Invocation {
 // A line that is answered at once: help, the version, or what is wrong with it.
 struct Answer {
     Exit exit = done;
-    std::string results, words; // to standard output, to standard error
+    std::string results, words; // to standard output, to standard error; encoded for a terminal
 };
 
 std::variant<Invocation, Answer> read_arguments(int count, const char *const *arguments);

@@ -15,8 +15,11 @@ class Terminal {
   public:
     explicit Terminal(ColorChoice color);
 
-    void put(std::string_view results); // buffered
-    void say(std::string_view words);   // a line, at once
+    // Buffered. Where standard output is a terminal its lines are encoded for that, so that no
+    // bytes of a result steer it; a file or a pipe gets them as they are.
+    void put(std::string_view results);
+    void say(std::string_view words);     // a line, at once, encoded for a terminal
+    void say_text(std::string_view text); // lines that are encoded already, with colours of ours
     Exit flush(); // of the results; device_error where they could not be written
 
     bool color() const { return color_; }             // on standard error

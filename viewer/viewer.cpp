@@ -2,6 +2,7 @@
 // otherwise.
 #include "viewer/viewer.h"
 
+#include "base/encode.h"
 #include "viewer/app.h"
 
 #include <GLFW/glfw3.h>
@@ -182,7 +183,8 @@ std::string run(const Settings &settings) {
     }
     glfwSetErrorCallback(note_error);
     if (!glfwInit()) return no_window_sentence();
-    const Opened opened = open_window(settings, settings.file.filename().string() + " - Fathom");
+    const Opened opened =
+        open_window(settings, for_terminal(settings.file.filename().string()) + " - Fathom");
     if (!opened.window) {
         glfwTerminate();
         return fmt::format(

@@ -159,6 +159,7 @@ TEST_CASE("a click names the shape, outlines it and opens its line") {
     ::unsetenv("EDITOR");
     opened = &window;
     CHECK(outlined(opened->picture(), 0, 480) == 0);
+    const std::string scene = (window.folder / "scene.sdf").string();
     const Picture bare = window.picture();
     window.hands("mousemove 340 160");
     const Picture hovering =
@@ -170,13 +171,13 @@ TEST_CASE("a click names the shape, outlines it and opens its line") {
     CHECK(outlined(right, 0, 240) == 0);
     CHECK(outlined(right, 240, 480) > 100);
     REQUIRE(waited([&] { return fs::exists(tools / "log"); }));
-    CHECK(waited([&] { return tools.read("log") == "+3 scene.sdf\n"; }));
+    CHECK(waited([&] { return tools.read("log") == "+3 " + scene + "\n"; }));
     window.hands("mousemove 150 160");
     window.hands("click 1");
     const Picture left = window.picture();
     CHECK(outlined(left, 0, 240) > 100);
     CHECK(outlined(left, 240, 480) == 0);
-    CHECK(waited([&] { return tools.read("log") == "+3 scene.sdf\n+2 scene.sdf\n"; }));
+    CHECK(waited([&] { return tools.read("log") == "+3 " + scene + "\n+2 " + scene + "\n"; }));
     // The selection survives a reload that moves its line.
     window.reload(
         "\nlet a = sphere(1)\na.translate([-1.5, 0, 0])\nbox(1.5)\n  .translate([1.5, 0, 0])\n" +
