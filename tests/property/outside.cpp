@@ -493,6 +493,18 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("names that YAML readers take for numbers, dates, switches or merges are quoted") {
+    for (const char *name : {"12", "1_0", "0x1F", "12:30:45", "2001-01-01", "+1", ".5", "-.inf",
+                             "true", "No", "NULL", "~", "<<", "=", ""}) {
+        const std::string quoted = for_yaml(name);
+        CHECK(save::flow_text(save::yaml_word(name)) == quoted);
+        CHECK(save::flow_text(save::yaml_mapping({{name, save::yaml_scalar(1)}})) ==
+              "{" + quoted + ": 1}");
+    }
+    CHECK(save::flow_text(save::yaml_mapping({{"Radius", save::yaml_word("<None>")}})) ==
+          "{Radius: <None>}");
+}
+
 TEST_CASE("a save file of any names is imported and exported as the same tree") {
     for (const std::string &raw : nasty_texts(texts_to_try(60))) {
         INFO(for_json(raw));
