@@ -3,7 +3,7 @@
 
 #include "base/encode.h"
 #include "base/text.h"
-#include "ir/cost.h"
+#include "ir/passes/cost.h"
 
 #include <algorithm>
 #include <cmath>
