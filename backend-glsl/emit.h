@@ -1,4 +1,4 @@
-// From a lowered scene to shader text, for each target of cli.md. What is given out has been
+// From a lowered scene to shader text, for each target (docs/shaders.md). What is given out has been
 // checked by glslang. Sees expressions, functions, folds and tables only; knows no language, opens
 // no file, calls no GL.
 #pragma once
