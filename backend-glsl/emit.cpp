@@ -10,7 +10,7 @@
 #include "backend-glsl/roll.h"
 #include "backend-glsl/validate.h"
 #include "base/text.h"
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
 #include "ir/view.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// See marcher.h. Names and order follow ir/look.h, which explains; backend-cpu/march.cpp is this
-// file's sibling.
+// See marcher.h. Names and order follow ir/look.h, which explains; backend-cpu/trace/march.cpp is
+// this file's sibling.
 #include "backend-glsl/marcher.h"
 
 #include "backend-glsl/fill.h"

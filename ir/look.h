@@ -1,6 +1,6 @@
 // How a picture looks: the shading algorithm in plain prose and its constants, shared by the GLSL
-// marcher (backend-glsl/marcher.cpp) and the CPU one (backend-cpu/march.cpp), which follow it line
-// by line in float32. Knows no language and no back end. Where rays come from is in view.h.
+// marcher (backend-glsl/marcher.cpp) and the CPU one (backend-cpu/trace/march.cpp), which follow it
+// line by line in float32. Knows no language and no back end. Where rays come from is in view.h.
 //
 // Names. f: Scene::distance. hit: Scene::hit. eps: RenderSettings::epsilon. All of a pixel's
 // arithmetic is float32.

@@ -1,7 +1,7 @@
 // The rule of curvature in whole scenes (lipschitz.md, 4): random shapes displaced by noise
 // and waves, alone, moved, and in unions. Segments that it says are free are free, rays land where
 // a march at a tenth of the ball's step lands, and the shader's reach is the processor's.
-#include "backend-cpu/march.h"
+#include "backend-cpu/trace/march.h"
 #include "driver/compile.h"
 #include "random_scenes.h"
 #include "tests/support/shader_balls.h"

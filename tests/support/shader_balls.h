@@ -3,7 +3,7 @@
 // GL context (has_context()); where there is none, callers skip.
 #pragma once
 
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
 #include "tests/support/slopes.h"
 #include "tests/unit/render_gl/harness.h"
 

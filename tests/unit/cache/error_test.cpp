@@ -1,6 +1,6 @@
 // How far a picture through the cache is from the exact one: never more than stated, less with
 // finer cells as theory has it, and in no mixture of present and absent cells is a surface passed.
-#include "ir/cost.h"
+#include "ir/passes/cost.h"
 #include "tests/support/reference_eval.h"
 #include "tests/unit/cache/scenes.h"
 

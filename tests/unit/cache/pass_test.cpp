@@ -1,7 +1,7 @@
 // The cache's passes on the context at hand: what is kept, found, moved and given up, and the rules
 // that hold after every frame. The rules are the store's own reading of what lies on the card
 // (gl::check_cache): the CPU's hash against the GPU's, each place owned once.
-#include "ir/cost.h"
+#include "ir/passes/cost.h"
 #include "tests/support/reference_eval.h"
 #include "tests/unit/cache/scenes.h"
 

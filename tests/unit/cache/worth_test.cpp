@@ -1,5 +1,5 @@
 // When counted work says that look-ups pay, and what the renderer makes of it.
-#include "ir/cost.h"
+#include "ir/passes/cost.h"
 #include "render-gl/cache_worth.h"
 #include "tests/unit/cache/scenes.h"
 
