@@ -244,6 +244,8 @@ TEST_CASE("references that lead nowhere are found") {
         CHECK(dead("ir/a.cpp", {"int a; // rules.md, 1 and 2, look.h and `ir/cost`"}).empty());
         CHECK(dead("ir/a.cpp", {"call(\"none.md // none.h\");", "#include \"none.h\""}).empty());
         CHECK(dead("ir/a.cpp", {"", "// See none.md."}) == Said{"2: there is no none.md"});
+        CHECK(dead("ir/a.cpp", {"case '\"': // none.h"}) == Said{"1: there is no none.h"});
+        CHECK(dead("ir/CMakeLists.txt", {"x(\"#a\") # none.h"}) == Said{"1: there is no none.h"});
         CHECK(dead("ir/a.cpp", {"// looks.h's steps"}) == Said{"1: there is no looks.h"});
         CHECK(dead("ir/a.cpp", {"// as ir/none does"}) == Said{"1: there is no ir/none"});
         CHECK(dead("ir/a.cpp", {"// (rules.md,", "// 4)"}) ==

@@ -17,6 +17,8 @@ std::string comment_of(const std::string &line, bool hash) {
     for (std::size_t i = 0; i < line.size(); ++i) {
         if (line[i] == '\\') {
             ++i;
+        } else if (line.compare(i, 3, "'\"'") == 0) {
+            i += 2; // the sign itself opens no string
         } else if (line[i] == '"') {
             quoted = !quoted;
         } else if (!quoted && begins_comment(line, i, hash)) {
