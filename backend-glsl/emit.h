@@ -26,7 +26,7 @@ enum class Instruments {
     None,
     Pick, // a second output, fathom_pick: (part, t, steps, slope of the marched field at the hit);
           // (0, -1, steps, 0) where the ray hits nothing
-    Probe // no picture: fathom_pick is, by fathom_mode, what probe.h says
+    Probe // no picture: fathom_pick is, by fathom_mode, what marcher.h says
 };
 
 struct Options {

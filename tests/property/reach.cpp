@@ -166,7 +166,7 @@ implicit(p => pow(p.x * p.x + p.y * p.y - w, 3) + 4 * p.z * p.z * p.z * p.z, wit
 }
 
 TEST_CASE("the shader reaches as far as the processor") {
-    if (!has_context()) return;
+    require_context();
     test::Dice dice{43};
     for (int i = 0; i < 8; ++i) {
         const std::string text = rough_scene(dice);

@@ -55,7 +55,8 @@ bool is_placeholder(const std::string &name) {
 // Extensions of files that are the project's own wherever they are named.
 bool is_source(const std::string &name) {
     const std::string extension = std::filesystem::path(name).extension().string();
-    return std::set<std::string>{".md", ".h", ".cpp", ".def", ".cmake", ".py"}.contains(extension);
+    return std::set<std::string>{".md", ".h", ".cpp", ".def", ".glsl", ".cmake", ".py"}.contains(
+        extension);
 }
 
 // A path below a folder of the repository: to a file, to a folder, or to a pair `NAME.h`,
@@ -245,6 +246,7 @@ TEST_CASE("references that lead nowhere are found") {
         CHECK(dead("ir/a.cpp", {"call(\"none.md // none.h\");", "#include \"none.h\""}).empty());
         CHECK(dead("ir/a.cpp", {"", "// See none.md."}) == Said{"2: there is no none.md"});
         CHECK(dead("ir/a.cpp", {"case '\"': // none.h"}) == Said{"1: there is no none.h"});
+        CHECK(dead("ir/a.glsl", {"$# As none.h"}) == Said{"1: there is no none.h"});
         CHECK(dead("ir/CMakeLists.txt", {"x(\"#a\") # none.h"}) == Said{"1: there is no none.h"});
         CHECK(dead("ir/a.cpp", {"// looks.h's steps"}) == Said{"1: there is no looks.h"});
         CHECK(dead("ir/a.cpp", {"// as ir/none does"}) == Said{"1: there is no ir/none"});

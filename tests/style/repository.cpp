@@ -8,7 +8,8 @@ namespace fathom::style {
 namespace {
 
 bool begins_comment(const std::string &line, std::size_t at, bool hash) {
-    return hash ? line[at] == '#' : line.compare(at, 2, "//") == 0;
+    if (hash) return line[at] == '#';
+    return line.compare(at, 2, "//") == 0 || line.compare(at, 2, "$#") == 0; // $#: in templates
 }
 
 // What follows the first comment sign of a line that is not in a string; empty without one.
@@ -22,7 +23,7 @@ std::string comment_of(const std::string &line, bool hash) {
         } else if (line[i] == '"') {
             quoted = !quoted;
         } else if (!quoted && begins_comment(line, i, hash)) {
-            const std::size_t text = line.find_first_not_of(hash ? "#" : "/", i);
+            const std::size_t text = line.find_first_not_of(hash ? "#" : "/$#", i);
             return text == line.npos ? "" : line.substr(text);
         }
     }
