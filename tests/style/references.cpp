@@ -128,6 +128,14 @@ bool cites_by_name(const std::string &text, std::size_t at) {
            std::isalpha(static_cast<unsigned char>(text[at + 2]));
 }
 
+// The anchor that follows a page's name in a comment, "" without one. On pages links are checked.
+std::string anchor_after(const std::string &text, std::size_t at) {
+    if (at >= text.size() || text[at] != '#') return "";
+    std::size_t end = at + 1;
+    while (end < text.size() && in_path(text[end]) && text[end] != '.') ++end;
+    return text.substr(at + 1, end - at - 1);
+}
+
 struct Dead {
     int line = 0;
     std::string what;
@@ -149,9 +157,13 @@ void check_mentions(const Library &library, const std::string &file, const Runni
         if (name.starts_with("./")) name.erase(0, 2);
         if (pattern || open || name.starts_with("/") || is_placeholder(name)) continue;
         if (!is_source(name) && !leads_into(library, name)) continue;
+        const std::string anchor = file.ends_with(".md") ? "" : anchor_after(text, after);
         const std::string page = resolve(library, folder_of(file), name);
         if (!exists(library, folder_of(file), name))
             dead.push_back({prose.line(after - 1), "there is no " + name});
+        else if (!anchor.empty() &&
+                 !(library.pages.contains(page) && library.pages.at(page).anchors.contains(anchor)))
+            dead.push_back({prose.line(after - 1), page + " has no anchor #" + anchor});
         else if (library.pages.contains(page) && cites_by_name(text, after))
             dead.push_back({prose.line(after - 1), "cite a section of " + page + " by its number"});
         else if (library.pages.contains(page))
@@ -246,6 +258,9 @@ TEST_CASE("references that lead nowhere are found") {
         CHECK(dead("ir/a.cpp", {"call(\"none.md // none.h\");", "#include \"none.h\""}).empty());
         CHECK(dead("ir/a.cpp", {"", "// See none.md."}) == Said{"2: there is no none.md"});
         CHECK(dead("ir/a.cpp", {"case '\"': // none.h"}) == Said{"1: there is no none.h"});
+        CHECK(dead("ir/a.cpp", {"// docs/rules.md#2-next."}).empty());
+        CHECK(dead("ir/a.cpp", {"// docs/rules.md#2-nxt."}) ==
+              Said{"1: docs/rules.md has no anchor #2-nxt"});
         CHECK(dead("ir/a.glsl", {"$# As none.h"}) == Said{"1: there is no none.h"});
         CHECK(dead("ir/CMakeLists.txt", {"x(\"#a\") # none.h"}) == Said{"1: there is no none.h"});
         CHECK(dead("ir/a.cpp", {"// looks.h's steps"}) == Said{"1: there is no looks.h"});
