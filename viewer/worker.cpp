@@ -111,7 +111,10 @@ std::unique_ptr<Build> Worker::build() {
     const driver::Compilation &compilation = result->compilation;
     sort_out(compilation.diagnostics, compilation.sources, *result);
     if (!compilation.unreadable.empty())
-        result->errors.push_back("cannot read `" + file_.string() + "`: " + compilation.unreadable);
+        result->errors.push_back(
+            driver::stamp_of(file_).exists
+                ? "cannot read `" + file_.string() + "`: " + compilation.unreadable
+                : "there is no `" + file_.string() + "`; this window waits for it");
     for (const std::string &error : compilation.usage_errors) result->errors.push_back(error);
     if (result->good()) {
         glsl::Options target;
