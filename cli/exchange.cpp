@@ -45,7 +45,7 @@ Exit run(const ImportCommand &command, Terminal &terminal) {
     if (write) {
         Exit exit = write_result(command.out, result.sdf, terminal);
         if (exit != done) return exit;
-    } else if (result.structural_error && result.nodes > 0) {
+    } else if (result.structural_error) {
         terminal.say(
             fmt::format("fathom: nothing was written; --partial writes the {} nodes that were read",
                         result.nodes));

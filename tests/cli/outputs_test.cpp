@@ -204,7 +204,7 @@ TEST_CASE("a param that a shader holds as a constant is said, with its place and
 
 TEST_CASE("a cell that cannot vanish stays a slider, one that can decides what there is") {
     OutputScenes folder;
-    folder.write("cells.sdf", "param gap = 1 in 0.5..2.0\nparam row = 1 in 0.0..2.0\n"
+    folder.write("cells.sdf", "param gap = 1 in 0.5..2.0\nparam row = 0 in 0.0..2.0\n"
                               "sphere(0.2).repeat([gap, 0, row])\n");
     const Result page = shell(folder, "fathom compile cells.sdf --target html");
     CHECK(contains(page.out, "name: \"param_gap\""));

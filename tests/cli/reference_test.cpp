@@ -116,12 +116,10 @@ TEST_CASE("docs/cli.md names each command and option that help names, and no oth
         checked += real.size();
     }
     CHECK(checked > 30);
+    const std::set<std::string> others{"", "Everywhere", "For scenes"};
     for (const auto &[name, text] : page) {
-        if (read(fs::path(FATHOM_SOURCE_DIR) / "docs/cli.md").find("## fathom " + name) ==
-            std::string::npos)
-            continue;
         INFO("docs/cli.md has a section on " << name);
-        CHECK(commands_in_help(folder).count(name) == 1);
+        CHECK(others.count(name) + commands_in_help(folder).count(name) == 1);
     }
 }
 
@@ -140,7 +138,6 @@ TEST_CASE("docs/cli.md shows the JSON document as it is") {
         return found;
     };
     const std::string real = shell(folder, "fathom check --json a.sdf").out;
-    CHECK(contains(real, "\"fix\": null"));
     CHECK(keys(shown) == keys(real));
 }
 
