@@ -135,8 +135,8 @@ class Graph {
     std::size_t size() const { return nodes_.size(); }
 
     // Makes a node, or finds the equal one; folds constants and a few identities (x+0, x*1, x*0,
-    // min(x,x), swizzle of Make, Select of a constant, …; ir/fold.cpp). Types of componentwise
-    // arguments must be equal (asserted).
+    // min(x,x), swizzle of Make, Select of a constant, …; ir/passes/fold.cpp). Types of
+    // componentwise arguments must be equal (asserted).
     NodeId make(Op op, std::span<const NodeId> args); // types by rule
     NodeId make(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload = 0);
     NodeId make(Op op, std::initializer_list<NodeId> args);
