@@ -147,14 +147,15 @@ void add_scene(CLI::App *app, SceneArguments &scene, Read read = Read::Once) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-// Where a result goes. An empty name is a script's variable that was never set.
+// An empty name is a script's variable that was never set.
+CLI::Validator named() {
+    return CLI::Validator(
+        [](const std::string &word) { return std::string(word.empty() ? "wants a name" : ""); },
+        "");
+}
+
 CLI::Option *add_out(CLI::App *app, std::string &out, const std::string &help) {
-    return app->add_option("-o", out, help)
-        ->check(CLI::Validator(
-            [](const std::string &word) {
-                return word.empty() ? "wants a file's name, or `-` for standard output" : "";
-            },
-            ""));
+    return app->add_option("-o", out, help)->check(named());
 }
 
 void add_size(CLI::App *app, int &width, int &height) {
@@ -223,6 +224,7 @@ struct Reader {
         add_size(sub, view.width, view.height);
         sub->add_option("--record", view.record,
                         "save a picture of the window here after every reload")
+            ->check(named())
             ->type_name("DIR");
         sub->add_flag("--save-view", view.save_view,
                       "write the view into FILE when the window closes");
@@ -243,11 +245,13 @@ struct Reader {
         add_out(sub, compile.out,
                 "write here, not to standard output; for glsl450, large tables to OUT.tables")
             ->type_name("OUT");
-        sub->add_option(
-               "--target", compile.target,
-               "glsl450 (unless said), glsl330, es300, shadertoy, glslviewer, spirv or html")
-            ->check(CLI::IsMember(
-                {"glsl450", "glsl330", "es300", "shadertoy", "glslviewer", "spirv", "html"}))
+        std::vector<std::pair<std::string, std::string>> targets;
+        for (const char *name :
+             {"glsl450", "glsl330", "es300", "shadertoy", "glslviewer", "spirv", "html"})
+            targets.emplace_back(name, name);
+        choice<std::string>(
+            sub, "--target", compile.target, targets,
+            "glsl450 (unless said), glsl330, es300, shadertoy, glslviewer, spirv or html")
             ->type_name("TARGET");
         sub->add_flag("--field-only", compile.field_only,
                       "the field functions alone, for a renderer of your own");

@@ -231,7 +231,8 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
     if (overwrites(command.scene.file, out_of(first), terminal) ||
         misnamed(out_of(first), Content::Picture, terminal))
         return usage_error;
-    if (unwritable(out_of(first), terminal)) return device_error;
+    for (int frame = first; frame < last; ++frame)
+        if (unwritable(out_of(frame), terminal)) return device_error;
     driver::Compilation compilation =
         driver::compile_file(command.scene.file, compile_options(command.scene));
     Exit exit = report(compilation, command.scene, terminal);

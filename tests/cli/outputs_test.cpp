@@ -108,8 +108,11 @@ TEST_CASE("what cannot be written is refused, with what to write") {
     };
     refused("fathom render good.sdf" + small + "--frames 0..2 -o -", "frame_###.png");
     refused("fathom render good.sdf" + small + "--frames 0..2 -o /dev/null", ".png");
-    refused("fathom render good.sdf" + small + "-o ''", "`-` for standard output");
-    refused("fathom compile good.sdf -o ''", "`-` for standard output");
+    refused("fathom render good.sdf" + small + "-o ''", "wants a name");
+    refused("fathom compile good.sdf -o ''", "wants a name");
+    refused("fathom view good.sdf --record ''", "wants a name");
+    refused("fathom compile good.sdf --target HTML", "spirv or html, not `HTML`");
+    refused("fathom compile good.sdf --target ''", "spirv or html, not ``");
     refused("fathom compile good.sdf --target html --field-only", "--target es300 --field-only");
     refused("fathom compile good.sdf --noise-cache -o -", "name the first by -o");
     refused("fathom compile good.sdf --noise-cache", "name the first by -o");
@@ -130,6 +133,10 @@ TEST_CASE("a picture's folder is looked for before the picture is made") {
         CHECK(contains(refused.err, "cannot write"));
     }
     CHECK(contains(shell(folder, "fathom render good.sdf -o none/a.png").err, "no folder `none`"));
+    // Of all frames, before the first one.
+    fs::create_directory(folder / "f0");
+    CHECK(shell(folder, "fathom render good.sdf" + small + "--frames 0..2 -o f#/a.png").exit == 3);
+    CHECK_FALSE(fs::exists(folder / "f0/a.png"));
 }
 
 TEST_CASE("no option is taken that nothing reads") {
