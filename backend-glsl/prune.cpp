@@ -182,11 +182,11 @@ std::string prune_kernel(const PrunedLoop &loop, const PruneNames &names) {
     const Values values{
         {"BLENDED", loop.blended ? "1" : ""},
         {"ROWS", std::to_string(loop.rows)},
-        {"SLOPES", float_literal(static_cast<float>((loop.slope + loop.acc_slope) * 1.000001))},
+        {"SLOPE", float_literal(static_cast<float>((loop.slope + loop.acc_slope) * 1.000001))},
         {"VALUE", names.value},
         {"START", names.start},
         {"JOINED", names.joined},
-        {"RADIUS", names.radius}};
+        {"BLEND_RADIUS", names.radius}};
     return expand("prune_kernel", values);
 }
 

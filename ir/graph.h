@@ -48,7 +48,7 @@ struct OpInfo {
 const OpInfo &info(Op op);
 std::size_t op_count();
 
-// The blend profiles of two distances a and b within r of the seam (lipschitz.md, 4); n: steps or
+// The blend profiles of two distances a and b within r of the seam (lipschitz.md, 3); n: steps or
 // columns. Each is exactly min(a, b) outside its compact support.
 enum class Profile : std::uint8_t { Smooth, Round, Chamfer, Stairs, Columns };
 

@@ -47,7 +47,7 @@
 //   else 0..far.
 //
 //   BY CURVATURE, where the scene has Scene::reach, which gives d and a span >= d (lipschitz.md,
-//   curvature): between two samples outside the solid nothing lies where the stride is at most the
+//   4): between two samples outside the solid nothing lies where the stride is at most the
 //   sum of their spans, though the balls do not touch. `reached` is the span of `before`, 0 at
 //   first.
 //     where the last two spheres do not overlap:
@@ -112,7 +112,7 @@ inline constexpr float float_slack = 1e-6f;
 inline constexpr float normal_slack = 50;
 inline constexpr float least_slope = 1.0f / 1024;
 inline constexpr float relaxation =
-    0.9f; // performance.md, 3: best of those measured on scenes with L = 1
+    0.9f; // performance.md, 2: best of those measured on scenes with L = 1
 inline constexpr float flattest = 1e-3f;
 inline constexpr float bent_relaxation = 0.7f; // measured on displaced spheres, as these
 inline constexpr float nearer = 0.9f;

@@ -1,6 +1,6 @@
 // Displacements that are sums, as octaves of noise are: with the first terms alone, and the most
-// that the others can add, a ray may step by a bound that is less steep (lipschitz.md, nested
-// octaves).
+// that the others can add, a ray may step by a bound that is less steep (lipschitz.md, 3,
+// nested octaves).
 #include "proof/prover.h"
 
 #include <algorithm>

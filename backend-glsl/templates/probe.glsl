@@ -1,4 +1,4 @@
-$# The slice and the check of steps (probe.h). The check walks the same field at a tenth of the
+$# The slice and the check of steps (marcher.h). The check walks the same field at a tenth of the
 $# step. Where the field's slope is at most ten times what was promised, it cannot pass a surface
 $# even if the promise is broken; so a march that met nothing before the point where the check
 $# stands inside overstepped. Steps shorter than half the tolerance find nothing that counts.

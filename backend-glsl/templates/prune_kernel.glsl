@@ -27,11 +27,11 @@ void main() {
         from = fathom_parents[((fathom_grid * fathom_parent_side + b.z) * fathom_parent_side + b.y) *
                                   fathom_parent_side + b.x];
     }
-    float margin = $SLOPES * reach + 1e-5 * extent;
+    float margin = $SLOPE * reach + 1e-5 * extent;
     uint count = 0u;
 $if BLENDED
 
-    margin += max($RADIUS(center), 0.0);
+    margin += max($BLEND_RADIUS(center), 0.0);
     uint begin = from.x, at = 0u, end = 0u;
     for (int turn = 0; turn < 2; ++turn) {
         float acc = $START(center);

@@ -1,4 +1,4 @@
-// The rule of curvature in whole scenes (lipschitz.md, curvature): random shapes displaced by noise
+// The rule of curvature in whole scenes (lipschitz.md, 4): random shapes displaced by noise
 // and waves, alone, moved, and in unions. Segments that it says are free are free, rays land where
 // a march at a tenth of the ball's step lands, and the shader's reach is the processor's.
 #include "backend-cpu/trace/march.h"
