@@ -1,5 +1,6 @@
 #include "backend-glsl/html.h"
 
+#include "backend-glsl/params.h"
 #include "backend-glsl/template.h"
 #include "base/encode.h"
 #include "base/text.h"
@@ -32,7 +33,19 @@ std::string controls(const ir::Scene &scene, const std::vector<Uniform> &uniform
     return text + "]";
 }
 
-constexpr const char *page_head = R"(<!DOCTYPE html>
+// What the page has no control for: names and numbers, which hold nothing that could end a comment.
+std::string fixed_params(const ir::Scene &scene) {
+    std::string text;
+    for (const ir::Param &p : scene.params)
+        if (p.structural)
+            text += (text.empty() ? "" : ", ") + p.name + " = " + value_text(p) +
+                    (p.has_range ? " in " + range_text(p) : "");
+    return text.empty() ? ""
+                        : "\n<!-- Constants here, since they decide what there is: " + text +
+                              ". `fathom compile -D NAME=VALUE` writes the page for others. -->";
+}
+
+constexpr const char *page_head = R"(<!DOCTYPE html>$FIXED
 <html lang="en">
 <head>
 <meta charset="utf-8">
@@ -197,6 +210,7 @@ std::string html_page(const ir::Scene &scene, const Options &options,
     }
     const std::string head =
         fill(page_head, {{"TITLE", for_html(options.title)},
+                         {"FIXED", fixed_params(scene)},
                          {"PARAMS", controls(scene, uniforms)},
                          {"TARGET", array(target.data(), 3)},
                          {"BACK", array(back.data(), 3)},

@@ -51,6 +51,7 @@ struct RenderCommand {
     std::optional<std::pair<int, int>> frames; // first, one past the last
     double frame_rate = 30;
     int samples = 1;
+    int quality = 90;   // of a JPEG
     bool cache = false; // through the noise cache
 };
 struct EvalCommand {

@@ -151,26 +151,6 @@ bool in_proved_time(const ir::Scene &scene, double first, double last, Terminal 
     return false;
 }
 
-bool overwrites(const std::string &file, const std::string &out, Terminal &terminal) {
-    std::error_code none;
-    if (file == "-" || out.empty() || out == "-" || !std::filesystem::equivalent(file, out, none))
-        return false;
-    terminal.say(
-        fmt::format("fathom: -o {}: that is the file that is read; write to another", out));
-    return true;
-}
-
-Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal) {
-    if (out.empty() || out == "-") {
-        terminal.put(bytes);
-        return done; // a failed write is told when the results are flushed
-    }
-    std::string error = driver::write_file(out, bytes);
-    if (error.empty()) return done;
-    terminal.say(fmt::format("fathom: cannot write `{}`: {}", out, error));
-    return device_error;
-}
-
 Exit watch_scene(const SceneArguments &scene, Terminal &terminal,
                  const std::function<Exit(const driver::Compilation &)> &act) {
     driver::Watcher watcher;

@@ -54,12 +54,6 @@ Exit report(const driver::Compilation &compilation, const SceneArguments &scene,
 bool in_proved_time(const ir::Scene &scene, double first, double last, Terminal &terminal);
 void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, Terminal &terminal);
 
-// Whether a result would be written over the very file that it is made from; says so.
-bool overwrites(const std::string &file, const std::string &out, Terminal &terminal);
-
-// Writes a result to a file, or to standard output where `out` is empty or `-`.
-Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal);
-
 // Compiles, acts, and does both again after every save of a file that the scene read; ends by an
 // interrupt alone.
 Exit watch_scene(const SceneArguments &scene, Terminal &terminal,

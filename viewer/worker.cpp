@@ -112,8 +112,10 @@ std::unique_ptr<Build> Worker::build() {
     const driver::Compilation &compilation = result->compilation;
     sort_out(compilation.diagnostics, compilation.sources, *result);
     if (!compilation.unreadable.empty())
-        result->errors.push_back("cannot read `" + for_terminal(file_.string()) +
-                                 "`: " + compilation.unreadable);
+        result->errors.push_back(
+            driver::stamp_of(file_).exists
+                ? "cannot read `" + for_terminal(file_.string()) + "`: " + compilation.unreadable
+                : "there is no `" + for_terminal(file_.string()) + "`; this window waits for it");
     for (const std::string &error : compilation.usage_errors)
         result->errors.push_back(for_terminal(error));
     if (result->good()) {

@@ -297,7 +297,9 @@ TEST_CASE("what is misspelt is answered with what is near") {
     CHECK(shell(folder, "fathom explain unknown-name").out.starts_with("# unknown-name"));
     CHECK(shell(folder, "fathom doc sphere").out.starts_with("sphere(radius"));
     CHECK(shell(folder, "fathom doc dfmodel.sphere").out.starts_with("dfmodel.sphere(radius"));
-    CHECK(shell(folder, "fathom help").exit == 0);
+    // A head is told on one line, however long it is.
+    CHECK(shell(folder, "fathom doc gdf_blend")
+              .out.starts_with("gdf_blend(a: [vec3], b: [vec3], a_scale: float"));
     CHECK(contains(shell(folder, "fathom help render").out, "--backend"));
     CHECK(contains(shell(folder, "fathom render --help").out, "--backend"));
     CHECK(contains(shell(folder, "fathom --version").out, "fathom "));
@@ -337,7 +339,11 @@ TEST_CASE("no display is a sentence and status 3") {
         shell(folder, "env -u DISPLAY -u WAYLAND_DISPLAY '" FATHOM_PROGRAM "' view good.sdf");
     CHECK(result.exit == 3);
     CHECK(contains(result.err, "no display"));
-    CHECK(shell(folder, "fathom view nothing.sdf").exit == 3);
+    CHECK(shell(folder, "fathom view none/nothing.sdf").exit == 3);
+    CHECK(contains(shell(folder, "fathom view none/nothing.sdf").err, "no such file"));
+    CHECK(shell(folder, "fathom view nothing.txt").exit == 3);
+    CHECK(shell(folder, "fathom view ''").exit == 3);
+    CHECK(shell(folder, "fathom view .").exit == 3);
     CHECK(shell(folder, "fathom view -").exit == 2);
 }
 
