@@ -1,7 +1,7 @@
 // The language's text of a field program.
 #include "save-format/program.h"
 
-#include "save-format/importer.h"
+#include "save-format/sdf_text.h"
 
 #include <algorithm>
 #include <cmath>

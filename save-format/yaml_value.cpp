@@ -2,7 +2,9 @@
 // flow text.
 #include "save-format/yaml_reader.h"
 
-#include "base/text.h"
+#include "save-format/node_types.h"
+
+#include "base/encode.h"
 
 #include <cctype>
 #include <utility>
@@ -96,35 +98,7 @@ template <class Visit> void walk(YamlReader &reader, Event first, std::string *f
 std::string flow_scalar(std::string_view text, bool plain) {
     if (plain && text.empty()) return "~";
     if (plain && plain_in_flow(text)) return std::string(text);
-    bool printable = true;
-    for (const char c : text)
-        printable = printable && static_cast<unsigned char>(c) >= 0x20 && c != 0x7F;
-    std::string out;
-    if (printable) { // single quotes need no escapes but their own
-        out += '\'';
-        for (const char c : text) out.append(c == '\'' ? 2 : 1, c);
-        out += '\'';
-        return out;
-    }
-    static const char *hex = "0123456789ABCDEF";
-    out += '"';
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\') {
-            out += '\\';
-            out += c;
-        } else if (c == '\n') {
-            out += "\\n";
-        } else if (byte < 0x20 || byte == 0x7F) {
-            out += "\\x";
-            out += hex[byte >> 4];
-            out += hex[byte & 15];
-        } else {
-            out += c;
-        }
-    }
-    out += '"';
-    return out;
+    return for_yaml(text);
 }
 
 TakenValue take_value(YamlReader &reader, Event first, std::size_t limit) {
@@ -237,5 +211,33 @@ ParsedText parse_text(std::string_view text) {
     parsed.value = std::move(taken.value);
     return parsed;
 }
+
+std::optional<double> number_of(const Value &value) {
+    if (value.kind != Value::Kind::Scalar || !value.plain || value.text.empty())
+        return std::nullopt;
+    std::string_view text = value.text;
+    const bool negative = text[0] == '-';
+    if (negative || text[0] == '+') text.remove_prefix(1);
+    const std::string key = spelling_key(text);
+    if (key == ".inf")
+        return negative ? -std::numeric_limits<double>::infinity()
+                        : std::numeric_limits<double>::infinity();
+    if (text.empty() || !((text[0] >= '0' && text[0] <= '9') || text[0] == '.'))
+        return std::nullopt;
+    auto number = parse_number(text[0] == '.' ? "0" + std::string(text) : std::string(text));
+    if (!number && text.back() == '.') number = parse_number(text.substr(0, text.size() - 1));
+    if (!number || !std::isfinite(*number)) return std::nullopt;
+    return negative ? -*number : *number;
+}
+
+std::optional<bool> switch_of(const Value &value) {
+    if (value.kind != Value::Kind::Scalar) return std::nullopt;
+    const std::string key = spelling_key(value.text);
+    if (key == "true" || key == "yes" || key == "on" || key == "1") return true;
+    if (key == "false" || key == "no" || key == "off" || key == "0") return false;
+    return std::nullopt;
+}
+
+bool is_none(std::string_view word) { return word.empty() || word == "<None>" || word == "~"; }
 
 } // namespace fathom::save
