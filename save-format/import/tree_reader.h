@@ -1,4 +1,4 @@
-// The reader of the scene tree: import_tree.cpp reads nodes, import_root.cpp the root and what
+// The reader of the scene tree: tree.cpp reads nodes, root.cpp the root and what
 // stands right below it. Private to those two.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace fathom::save {
 
-// Where a node stands decides what an export makes of a union there: see export_tree.cpp.
+// Where a node stands decides what an export makes of a union there: see export/tree.cpp.
 enum class Place : std::uint8_t {
     United,      // among siblings that are united: a union dissolves
     Intersected, // an intersection dissolves

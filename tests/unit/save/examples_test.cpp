@@ -226,7 +226,7 @@ TEST_CASE("numbers that follow something come back following it", "[save][exampl
              "taper: 0.5)",
              "polygon([[0, -1], [1, 0], [0, 1]]).revolve()",
              "(star(5, 1, 0.5) | circle(0.3).scale([2, "
-             "1])).rotate(20deg).offset(0.05).revolve(1.5)",
+             "1])).rotate(20deg).revolve(1.5)",
              "metaballs([[0, 0, 0], [0.5, 0, 0]], radius: 0.6).translate(x: a)",
              "tubes([[0, 0, 0], [1, 0, 0], [1, a, 0]], radius: 0.1)",
              "heightfield(q => 0.2 * a * sin(4 * q.x + time), size: [2, 2], depth: 0.5)",
@@ -235,7 +235,7 @@ TEST_CASE("numbers that follow something come back following it", "[save][exampl
              "import \"dfmodel\" as dfmodel\ndfmodel.gdf_pair(dfmodel.dodecahedron, dfmodel.cube, "
              "1.5, -0.5, radius: 0.5 + a / 2)\ncamera(at: [3, 2, 5])",
              "import \"dfmodel\" as dfmodel\ndfmodel.gdf_pair(dfmodel.dodecahedron, "
-             "dfmodel.ac_icosahedron, 1.5, -0.5)\\ncamera(at: [3, 2, 5])",
+             "dfmodel.ac_icosahedron, 1.5, -0.5)\ncamera(at: [3, 2, 5])",
              "gdf_dodecahedron(0.8) & gdf_truncated_icosahedron(1, exponent: 9).rotate(a)",
              "for i in 0..4 { sphere(0.2 + 0.1 * a).translate(x: i * a) }",
              "sphere(1).paint(tint)",
