@@ -122,7 +122,8 @@ static Value sort_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
             is(args[1], ValueKind::None) ? item : call_with(ev, args[1], {item}, site.arg(1));
         auto k = want_known_number(ev, key, site.arg(0),
                                    is(args[1], ValueKind::None) ? "`sort` without a key"
-                                                                : "`sort`'s key");
+                                                                : "`sort`'s key",
+                                   Limit::OrInfinite);
         if (!k) return poison();
         keyed.emplace_back(*k, item);
     }

@@ -249,11 +249,17 @@ static void want(Evaluator &ev, const Value &v, Span place, What what, std::stri
     if (v.kind == ValueKind::Shape && wanted == "a color") help_with_shape(d, "color");
 }
 
-std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what) {
+static bool within(Evaluator &ev, const Value &v, Span place, What what, Limit limit) {
+    return limit == Limit::OrInfinite || finite_number(ev, v, place, what);
+}
+
+std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what,
+                                        Limit limit) {
     if (!is_scalar(ev, v)) {
         want(ev, v, place, what, "a number");
         return std::nullopt;
     }
+    if (!within(ev, v, place, what, limit)) return std::nullopt;
     auto known = element_as_known(ev, v, place, what);
     return known ? std::optional(known->num[0]) : std::nullopt;
 }
@@ -288,15 +294,18 @@ std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place
     return std::nullopt;
 }
 
-std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what) {
+std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what,
+                                           Limit limit) {
+    if (!within(ev, v, place, what, limit)) return std::nullopt;
     if (is_scalar(ev, v)) return to_node(ev, to_float(ev, v));
     want(ev, v, place, what, "a number");
     return std::nullopt;
 }
 
 std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int size, Span place,
-                                        What what) {
+                                        What what, Limit limit) {
     Value v = vector_of_list(ev, raw);
+    if (!within(ev, v, place, what, limit)) return std::nullopt;
     if (is_numeric(v)) {
         Type t = numeric_type(ev, v);
         if (t == Type::Int || t == Type::Float)
@@ -309,6 +318,7 @@ std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int siz
 
 std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, What what) {
     const Value c = or_color(vector_of_list(ev, v));
+    if (!finite_number(ev, c, place, what)) return std::nullopt;
     if (is_numeric(c) && numeric_type(ev, c) != Type::Bool)
         if (auto color = as_color(ev, c, numeric_type(ev, c))) return to_node(ev, *color);
     want(ev, v, place, what, "a color");

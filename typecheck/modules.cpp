@@ -441,6 +441,7 @@ static std::optional<Value> param_number(Evaluator &ev, const File &ast, lang::E
                "a parameter's value and range are known when the scene is read");
         return std::nullopt;
     }
+    if (!finite_number(ev, c, ast.exprs[id].span, quoted(p.name))) return std::nullopt;
     return c;
 }
 
@@ -496,6 +497,7 @@ void declare_param(Evaluator &ev, const File &ast, const lang::Param &param, std
                            describe(ev, value)));
         return fail();
     }
+    if (!finite_number(ev, value, ast.exprs[param.value].span, quoted(p.name))) return fail();
     p.type = numeric_type(ev, value);
     p.is_color = value.color;
     auto fill = [&](const Value &v) { return v.num; };

@@ -297,10 +297,9 @@ static Value as_vector(Evaluator &ev, const Value &v) {
     return make_vector(ev, items, static_cast<int>(items.size()), {});
 }
 
-Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Value &right,
-                 Span place, Span a_place, Span b_place) {
+static Value combined(Evaluator &ev, lang::BinaryOp op, const Value &left, const Value &right,
+                      Span place, Span a_place, Span b_place) {
     using lang::BinaryOp;
-    if (is_poison(left) || is_poison(right)) return poison();
     if (known_scalar(left) && known_scalar(right)) {
         double x = left.num[0], y = right.num[0];
         bool whole = left.kind == ValueKind::Int && right.kind == ValueKind::Int;
@@ -316,12 +315,7 @@ Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Valu
         }
         case BinaryOp::Pow: {
             double r = std::pow(x, y);
-            if (whole && y >= 0) return checked_int(ev, r, place);
-            if (!std::isfinite(r)) {
-                report(ev, Code::NumberRange, place, fmt::format("{} ^ {} is not a number", x, y));
-                return poison();
-            }
-            return number(r);
+            return whole && y >= 0 ? checked_int(ev, r, place) : number(r);
         }
         case BinaryOp::Union:
         case BinaryOp::Intersection:
@@ -390,6 +384,15 @@ Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Valu
     case BinaryOp::GreaterEqual: break;
     }
     return poison();
+}
+
+Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Value &right,
+                 Span place, Span a_place, Span b_place) {
+    if (is_poison(left) || is_poison(right)) return poison();
+    const Value v = combined(ev, op, left, right, place, a_place, b_place);
+    if (v.kind == ValueKind::Bool || v.kind == ValueKind::Int) return v;
+    if (v.kind == ValueKind::Field && numeric_type(ev, v) == Type::Bool) return v; // a comparison
+    return computed(ev, v, std::array{left, right}, place, quoted(operator_text(op)));
 }
 
 Value negate(Evaluator &ev, const Value &v, Span place) {

@@ -130,7 +130,8 @@ struct Prover {
     void set_lipschitz(Known &k, ir::NodeId formula,
                        double sup);        // an expression in params; constant where it reads none
     void fail(Known &k);                   // no proof: infinity, facts usable
-    void finish(ir::ShapeId id, Known &k); // guards, notes
+    void check_size(ir::ShapeId id, Known &k); // too large or too small for single precision
+    void finish(ir::ShapeId id, Known &k);     // guards, notes
 
     // -- reports; silent where the shape is not audible
     static std::string cheaper(const ir::Shape &shape);

@@ -1,0 +1,55 @@
+// Sizes that single precision cannot compute with: the square of a length has to fit, and what is
+// divided by it (base/single.h).
+#include "typecheck/proof/prover.h"
+
+#include "base/single.h"
+
+#include <cmath>
+
+namespace fathom::proof {
+
+using ir::ShapeId;
+using ir::ShapeKind;
+
+// How far a finite end of the box lies from the origin.
+static double farthest(const ir::Box &box) {
+    double far = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (const double end : {box.lo[i], box.hi[i]})
+            if (std::isfinite(end)) far = std::max(far, std::abs(end));
+    return far;
+}
+
+// The least width of a box that has one.
+static double thinnest(const ir::Box &box) {
+    double thin = longest;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (const double width = box.hi[i] - box.lo[i]; width > 0) thin = std::min(thin, width);
+    return thin;
+}
+
+void Prover::check_size(ShapeId id, Known &k) {
+    if (k.failed) return;
+    const ir::Shape &shape = scene.shapes[id];
+    const std::string name = operation_name(scene, id);
+    std::string wrong;
+    if (const double far = farthest(k.fact.bounds); far > longest)
+        wrong = name + " reaches " + number_text(far) + " from the origin, and a shape may reach " +
+                number_text(longest);
+    else if (const double thin = thinnest(k.fact.bounds);
+             thin < shortest && (shape.kind == ShapeKind::Leaf || shape.kind == ShapeKind::Map ||
+                                 shape.kind == ShapeKind::Library))
+        wrong = name + " is " + number_text(thin) + " wide, and a shape is at least " +
+                number_text(shortest) + " wide";
+    else if (k.fact.lipschitz_sup > longest)
+        wrong = name + " has a bound of " + number_text(k.fact.lipschitz_sup) +
+                ", and a bound is at most " + number_text(longest);
+    if (wrong.empty()) return;
+    if (Diagnostic *d = report(id, Code::NumberRange, wrong))
+        d->note("fields are computed in single precision, which has to hold the squares of "
+                "lengths")
+            .help("choose another unit of length, so that sizes are near to 1");
+    fail(k);
+}
+
+} // namespace fathom::proof
