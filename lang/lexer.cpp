@@ -197,8 +197,8 @@ void Lexer::word(std::uint32_t begin, std::uint32_t end) {
 void Lexer::number(std::uint32_t begin, std::uint32_t end) {
     const std::string_view word = slice(begin, end);
     const std::optional<NumberWord> number = read_number(word);
-    const bool held = number && fits_single(number->value) &&
-                      (number->value == 0 || flushed(number->value) != 0);
+    const bool held =
+        number && fits_single(number->value) && (number->value == 0 || flushed(number->value) != 0);
     if (held) return add(Tok::Number, begin, end);
     add(Tok::Bad, begin, end);
     if (is_digit(word[0]) && number_length(word) == word.size()) {

@@ -217,7 +217,8 @@ static Value int_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
         if (numeric_type(ev, v) == Type::Int) return v;
         if (v.kind == ValueKind::Float && std::abs(v.num[0]) >= 2147483648.0) {
             report(ev, Code::NumberRange, site.arg(0),
-                   fmt::format("{:.0f} does not fit a whole number of 32 bits", v.num[0]));
+                   fmt::format("{:.0f} does not fit a whole number of 32 bits", v.num[0]))
+                .help("`floor` and `trunc` cut a float off and keep it one");
             return poison();
         }
         return from_node(ev, ev.scene.graph.make(Op::ToInt, Type::Int, {to_node(ev, v)}));

@@ -81,8 +81,8 @@ static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
         if (l) c.lipschitz = *l;
     }
     if (given(args[3]) && given(args[4])) {
-        auto lo = want_vec_node(ev, args[3], dims, site.arg(3), "`lo`", Limit::OrInfinite),
-             hi = want_vec_node(ev, args[4], dims, site.arg(4), "`hi`", Limit::OrInfinite);
+        auto lo = want_vec_node(ev, args[3], dims, site.arg(3), "`lo`", Limit::None),
+             hi = want_vec_node(ev, args[4], dims, site.arg(4), "`hi`", Limit::None);
         if (lo && hi) c.lo = *lo, c.hi = *hi;
     }
     if (given(args[5])) {
@@ -337,7 +337,7 @@ static Value lerp_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
 
 static Value pseudonorm_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto pair = pair_argument(ev, site, args, 0);
-    auto e = want_scalar_node(ev, args[2], site.arg(2), "`exponent`", Limit::OrInfinite);
+    auto e = want_scalar_node(ev, args[2], site.arg(2), "`exponent`", Limit::None);
     if (!pair || !e) return poison();
     ir::Shape s;
     s.kind = ShapeKind::PseudoNorm;

@@ -289,15 +289,15 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
     int dims = args[0].size;
     ir::Graph &g = ev.scene.graph;
     // a flat shape's cell may be a vec2; the third axis does not repeat
-    auto as_cell = [&](const Value &v, std::size_t i, const char *what,
-                       double third, Limit limit) -> std::optional<ir::NodeId> {
+    auto as_cell = [&](const Value &v, std::size_t i, const char *what, double third,
+                       Limit limit) -> std::optional<ir::NodeId> {
         if (dims == 3) return want_vec_node(ev, v, 3, site.arg(i), what, limit);
         auto two = want_vec_node(ev, v, 2, site.arg(i), what, limit);
         if (!two) return std::nullopt;
         return g.make(Op::Make, Type::Vec3,
                       {g.component(*two, 0), g.component(*two, 1), g.number(third)});
     };
-    auto cell = as_cell(args[1], 1, "`cell`", 0, Limit::Finite);
+    auto cell = as_cell(args[1], 1, "`cell`", 0, Limit::Size);
     if (!cell) return poison();
     ir::Repetition r;
     r.mirrored = mirrored;
@@ -305,7 +305,7 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
     count.type = Type::Vec3;
     count.value = {1e9, 1e9, 1e9};
     if (!mirrored && given(args[2])) {
-        auto c = as_cell(args[2], 2, "`count`", 1, Limit::OrInfinite);
+        auto c = as_cell(args[2], 2, "`count`", 1, Limit::None);
         if (!c) return poison();
         Value known = from_node(ev, *c);
         auto k = element_as_known(ev, known, site.arg(2), "`count`");

@@ -249,8 +249,14 @@ static void want(Evaluator &ev, const Value &v, Span place, What what, std::stri
     if (v.kind == ValueKind::Shape && wanted == "a color") help_with_shape(d, "color");
 }
 
-static bool within(Evaluator &ev, const Value &v, Span place, What what, Limit limit) {
-    return limit == Limit::OrInfinite || finite_number(ev, v, place, what);
+// The number, or nothing after a report.
+static Value limited(Evaluator &ev, const Value &v, Span place, What what, Limit limit) {
+    switch (limit) {
+    case Limit::Size: return sized(ev, v, place, what);
+    case Limit::Finite: return finite_number(ev, v, place, what) ? v : poison();
+    case Limit::None: return v;
+    }
+    return v;
 }
 
 std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what,
@@ -259,9 +265,10 @@ std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span plac
         want(ev, v, place, what, "a number");
         return std::nullopt;
     }
-    if (!within(ev, v, place, what, limit)) return std::nullopt;
     auto known = element_as_known(ev, v, place, what);
-    return known ? std::optional(known->num[0]) : std::nullopt;
+    if (!known) return std::nullopt;
+    const Value x = limited(ev, *known, place, what, limit);
+    return is_poison(x) ? std::nullopt : std::optional(x.num[0]);
 }
 
 std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, What what) {
@@ -296,8 +303,10 @@ std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place
 
 std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what,
                                            Limit limit) {
-    if (!within(ev, v, place, what, limit)) return std::nullopt;
-    if (is_scalar(ev, v)) return to_node(ev, to_float(ev, v));
+    if (is_scalar(ev, v)) {
+        const Value x = limited(ev, to_float(ev, v), place, what, limit);
+        return is_poison(x) ? std::nullopt : std::optional(to_node(ev, x));
+    }
     want(ev, v, place, what, "a number");
     return std::nullopt;
 }
@@ -305,8 +314,9 @@ std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span p
 std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int size, Span place,
                                         What what, Limit limit) {
     Value v = vector_of_list(ev, raw);
-    if (!within(ev, v, place, what, limit)) return std::nullopt;
     if (is_numeric(v)) {
+        v = limited(ev, v, place, what, limit);
+        if (is_poison(v)) return std::nullopt;
         Type t = numeric_type(ev, v);
         if (t == Type::Int || t == Type::Float)
             return to_node(ev, make_vector(ev, {to_float(ev, v)}, size, place));
@@ -318,7 +328,7 @@ std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int siz
 
 std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, What what) {
     const Value c = or_color(vector_of_list(ev, v));
-    if (!finite_number(ev, c, place, what)) return std::nullopt;
+    if (is_poison(sized(ev, c, place, what))) return std::nullopt;
     if (is_numeric(c) && numeric_type(ev, c) != Type::Bool)
         if (auto color = as_color(ev, c, numeric_type(ev, c))) return to_node(ev, *color);
     want(ev, v, place, what, "a color");

@@ -331,6 +331,9 @@ Value in_range(Evaluator &ev, Value v, std::span<const Value> of, Span place);
 // The same, where `of` may not be infinite if the result is only known at field time.
 Value computed(Evaluator &ev, const Value &v, std::span<const Value> of, Span place, What what);
 bool finite_number(Evaluator &ev, const Value &v, Span place, What what); // else reported
+// What a shape or a setting may be made of: numbers up to `longest`, 0 where they are below
+// `shortest` (base/single.h). Poison after a report.
+Value sized(Evaluator &ev, Value v, Span place, What what);
 std::optional<ir::NodeId> node_in_range(Evaluator &ev, ir::NodeId node, Span place);
 
 // -- facts.cpp
@@ -342,17 +345,17 @@ Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span pl
 bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type);
 std::string type_text(const lang::TypeExpr &type);
 bool check_type(Evaluator &ev, const lang::TypeExpr &type); // reports a name that is none
-// Numbers that are finite, unless `inf` has a meaning there.
-enum class Limit { Finite, OrInfinite };
+// Which numbers are wanted: those that make shapes (`sized`), all that are finite, or `inf` too.
+enum class Limit { Size, Finite, None };
 std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what,
-                                        Limit limit = Limit::Finite);
+                                        Limit limit = Limit::Size);
 std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, What what);
 std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, What what);
 std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place, What what);
 std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what,
-                                           Limit limit = Limit::Finite);
+                                           Limit limit = Limit::Size);
 std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &v, int size, Span place,
-                                        What what, Limit limit = Limit::Finite);
+                                        What what, Limit limit = Limit::Size);
 std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, What what);
 std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place, What what,
                                       int dims = 0);

@@ -62,6 +62,34 @@ bool finite_number(Evaluator &ev, const Value &v, Span place, What what) {
     return false;
 }
 
+Value sized(Evaluator &ev, Value v, Span place, What what) {
+    if (!finite_number(ev, v, place, what)) return poison();
+    if (v.kind == ValueKind::List) {
+        std::vector<Value> items = ev.lists[v.id];
+        bool changed = false;
+        for (Value &item : items) {
+            if (is_poison(item)) continue; // reported
+            const Value in = sized(ev, item, place, what);
+            if (is_poison(in)) return in;
+            changed = changed || !(in == item);
+            item = in;
+        }
+        return changed ? list_value(ev, std::move(items)) : v;
+    }
+    for (double &x : known_numbers(ev, v)) {
+        if (std::abs(x) > longest) {
+            report(ev, Code::NumberRange, place,
+                   fmt::format("{} is at most 1e18, this is {}", what, print_value(ev, v)))
+                .note("fields are computed in single precision, which has to hold the squares of "
+                      "lengths")
+                .help("choose another unit of length, so that sizes are near to 1");
+            return poison();
+        }
+        if (std::abs(x) < shortest) x = 0;
+    }
+    return v;
+}
+
 Value computed(Evaluator &ev, const Value &v, std::span<const Value> of, Span place, What what) {
     if (v.kind == ValueKind::Field)
         for (const Value &a : of)

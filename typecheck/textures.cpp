@@ -110,9 +110,8 @@ std::optional<ir::Texture> want_texture(Evaluator &ev, const Value &image, Span 
         return std::nullopt;
     }
     if (!times) return std::nullopt;
-    const Value sizes =
-        in_range(ev, vec(2, {(*times)[0] * image.num[0], (*times)[1] * image.num[0]}), {},
-                 scale_place);
+    const Value sizes = in_range(
+        ev, vec(2, {(*times)[0] * image.num[0], (*times)[1] * image.num[0]}), {}, scale_place);
     if (is_poison(sizes)) return std::nullopt;
     if (sizes.num[0] == 0 || sizes.num[1] == 0) {
         report(ev, Code::NumberRange, scale_place, "the image's size is too small, it becomes 0");

@@ -128,8 +128,8 @@ struct Prover {
                     ir::NodeId formula);        // the bound of a field that is joined with its box
     void set_lipschitz(Known &k, double value); // a constant
     void set_lipschitz(Known &k, ir::NodeId formula,
-                       double sup);        // an expression in params; constant where it reads none
-    void fail(Known &k);                   // no proof: infinity, facts usable
+                       double sup); // an expression in params; constant where it reads none
+    void fail(Known &k);            // no proof: infinity, facts usable
     void check_size(ir::ShapeId id, Known &k); // too large or too small for single precision
     void finish(ir::ShapeId id, Known &k);     // guards, notes
 

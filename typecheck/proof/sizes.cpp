@@ -11,6 +11,8 @@ namespace fathom::proof {
 using ir::ShapeId;
 using ir::ShapeKind;
 
+constexpr double reach = longest * 1.001; // boxes are rounded outward
+
 // How far a finite end of the box lies from the origin.
 static double farthest(const ir::Box &box) {
     double far = 0;
@@ -33,7 +35,7 @@ void Prover::check_size(ShapeId id, Known &k) {
     const ir::Shape &shape = scene.shapes[id];
     const std::string name = operation_name(scene, id);
     std::string wrong;
-    if (const double far = farthest(k.fact.bounds); far > longest)
+    if (const double far = farthest(k.fact.bounds); far > reach)
         wrong = name + " reaches " + number_text(far) + " from the origin, and a shape may reach " +
                 number_text(longest);
     else if (const double thin = thinnest(k.fact.bounds);
