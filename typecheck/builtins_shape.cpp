@@ -90,13 +90,13 @@ static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
         for (char a : axes.value_or("")) c.symmetric[static_cast<std::size_t>(a - 'x')] = true;
     }
     if (given(args[6])) {
-        auto lever = want_vec_node(ev, args[6], 3, site.arg(6), "`lever`");
+        auto lever = want_vec_node(ev, args[6], 3, site.arg(6), "`lever`", Limit::None);
         if (lever)
             for (int i = 0; i < 3; ++i)
                 c.lever[static_cast<std::size_t>(i)] = g.component(*lever, i);
     }
     if (given(args[7])) {
-        auto swell = want_scalar_node(ev, args[7], site.arg(7), "`swell`");
+        auto swell = want_scalar_node(ev, args[7], site.arg(7), "`swell`", Limit::None);
         if (swell) c.swell = *swell;
     }
     return library_shape(ev, std::move(library), body, ev.scene.shapes[shape_of(body)].origin);

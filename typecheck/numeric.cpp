@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -264,8 +265,14 @@ static Value compare(Evaluator &ev, lang::BinaryOp op, const Value &a, const Val
     return poison();
 }
 
+static bool holds_zero(const Value &v) {
+    const std::size_t size = v.kind == ValueKind::Vec ? v.size : known_scalar(v) ? 1 : 0;
+    return std::ranges::count(std::span(v.num).first(size), 0.0) > 0;
+}
+
 static Value division_by_zero(Evaluator &ev, Span place, const char *what) {
-    report(ev, Code::NumberRange, place, fmt::format("{} by zero", what));
+    report(ev, Code::NumberRange, place, fmt::format("{} by zero", what))
+        .help("divide by another number, or ask with `if` before");
     return poison();
 }
 
@@ -355,6 +362,10 @@ static Value combined(Evaluator &ev, lang::BinaryOp op, const Value &left, const
     }
     if (op == BinaryOp::Mul)
         if (auto product = matrix_product(ev, a, b, place)) return *product;
+    const bool divides = op == BinaryOp::Div || op == BinaryOp::Mod;
+    if (divides && a.kind != ValueKind::Field && holds_zero(b))
+        return division_by_zero(ev, place,
+                                op == BinaryOp::Div ? "division" : "remainder of a division");
     switch (op) {
     case BinaryOp::Add: return apply_op(ev, Op::Add, {a, b}, place, "+");
     case BinaryOp::Sub: return apply_op(ev, Op::Sub, {a, b}, place, "-");

@@ -34,9 +34,8 @@ static void report_range(Evaluator &ev, Span place, double x) {
         return;
     }
     report(ev, Code::NumberRange, place,
-           std::isinf(x) ? "this is infinite, and its parts are not"
-                         : fmt::format("this is {}, beyond the 3.4e38 of single precision",
-                                       format_shortest(x)))
+           fmt::format("this is {}, and single precision ends at 3.4e38",
+                       std::isinf(x) ? "infinite" : format_shortest(x)))
         .help("write smaller numbers, or choose a larger unit of length");
 }
 
@@ -53,12 +52,16 @@ Value in_range(Evaluator &ev, Value v, std::span<const Value> of, Span place) {
     return v;
 }
 
-bool finite_number(Evaluator &ev, const Value &v, Span place, What what) {
-    if (!is_infinite(ev, v)) return true;
-    report(ev, Code::NumberRange, place,
-           fmt::format("{} wants a finite number, this is {}", what, print_value(ev, v)))
+static void report_infinite(Evaluator &ev, Span place, std::string message) {
+    report(ev, Code::NumberRange, place, std::move(message))
         .help("write a number of the size that the scene has; `inf` stands for no limit, where a "
               "default is `inf`, and in comparisons, `min`, `max` and `clamp`");
+}
+
+bool finite_number(Evaluator &ev, const Value &v, Span place, What what) {
+    if (!is_infinite(ev, v)) return true;
+    report_infinite(ev, place,
+                    fmt::format("{} wants a finite number, this is {}", what, print_value(ev, v)));
     return false;
 }
 
@@ -93,7 +96,12 @@ Value sized(Evaluator &ev, Value v, Span place, What what) {
 Value computed(Evaluator &ev, const Value &v, std::span<const Value> of, Span place, What what) {
     if (v.kind == ValueKind::Field)
         for (const Value &a : of)
-            if (!finite_number(ev, a, place, what)) return poison();
+            if (is_infinite(ev, a)) {
+                report_infinite(ev, place,
+                                fmt::format("{} of a field wants finite numbers, one is {}", what,
+                                            print_value(ev, a)));
+                return poison();
+            }
     return in_range(ev, v, of, place);
 }
 

@@ -5,6 +5,7 @@
 #include "base/single.h"
 
 #include <cmath>
+#include <fmt/format.h>
 
 namespace fathom::proof {
 
@@ -12,6 +13,8 @@ using ir::ShapeId;
 using ir::ShapeKind;
 
 constexpr double reach = longest * 1.001; // boxes are rounded outward
+
+static std::string short_text(double x) { return fmt::format("{:.3g}", x); } // also of 1e-20
 
 // How far a finite end of the box lies from the origin.
 static double farthest(const ir::Box &box) {
@@ -36,16 +39,16 @@ void Prover::check_size(ShapeId id, Known &k) {
     const std::string name = operation_name(scene, id);
     std::string wrong;
     if (const double far = farthest(k.fact.bounds); far > reach)
-        wrong = name + " reaches " + number_text(far) + " from the origin, and a shape may reach " +
-                number_text(longest);
+        wrong = name + " reaches " + short_text(far) + " from the origin, and a shape may reach " +
+                short_text(longest);
     else if (const double thin = thinnest(k.fact.bounds);
              thin < shortest && (shape.kind == ShapeKind::Leaf || shape.kind == ShapeKind::Map ||
                                  shape.kind == ShapeKind::Library))
-        wrong = name + " is " + number_text(thin) + " wide, and a shape is at least " +
-                number_text(shortest) + " wide";
+        wrong = name + " is " + short_text(thin) + " wide, and a shape is at least " +
+                short_text(shortest) + " wide";
     else if (k.fact.lipschitz_sup > longest)
-        wrong = name + " has a bound of " + number_text(k.fact.lipschitz_sup) +
-                ", and a bound is at most " + number_text(longest);
+        wrong = name + " has a bound of " + short_text(k.fact.lipschitz_sup) +
+                ", and a bound is at most " + short_text(longest);
     if (wrong.empty()) return;
     if (Diagnostic *d = report(id, Code::NumberRange, wrong))
         d->note("fields are computed in single precision, which has to hold the squares of "
