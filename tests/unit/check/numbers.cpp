@@ -377,3 +377,14 @@ TEST_CASE("infinity and the smallest numbers have their meanings") {
     const driver::Compilation c = test::compiled("implicit(p => 1e-30 * p.x, within: ball(1))");
     CHECK(c.scene.facts[c.scene.top_level[0].shape.index].lipschitz_sup >= shortest);
 }
+
+TEST_CASE("a slider is set to a number that shapes can have") {
+    for (const std::string value : {"1e39", "1e20", "inf", "inf - inf", "exp(1000)"}) {
+        driver::CompileOptions options;
+        options.overrides = {{"a", value}};
+        const driver::Compilation c =
+            driver::compile_text("scene.sdf", "param a = 1.0 in 0.5..2.0\nsphere(a)", ".", options);
+        INFO(value);
+        CHECK(c.usage_errors.size() == 1);
+    }
+}
