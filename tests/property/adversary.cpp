@@ -1,0 +1,361 @@
+// An adversary of the proof: random fields and shapes of the kinds that have been proved wrongly
+// before. Whatever the checker accepts is measured where such fields go wrong: on borders and next
+// to them, at 0, over params' ends and inside, over time. FATHOM_SCENES and FATHOM_SEED in the
+// environment make it longer, or another; FATHOM_SHOW says what each scene came to.
+#include "driver/compile.h"
+#include "tests/support/slopes.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+using namespace fathom;
+using namespace fathom::test;
+
+namespace {
+
+constexpr double reach = 2;
+
+class Adversary {
+  public:
+    explicit Adversary(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u + 1) {}
+
+    std::string scene(std::size_t kind) {
+        static constexpr std::array makers = {
+            &Adversary::truths,      &Adversary::steps,  &Adversary::lattice,
+            &Adversary::choices,     &Adversary::smooth, &Adversary::exponentials,
+            &Adversary::powers,      &Adversary::ratios, &Adversary::conditions,
+            &Adversary::repetitions, &Adversary::loops};
+        return (this->*makers[kind % makers.size()])();
+    }
+    static constexpr std::size_t kinds = 11;
+
+    double random() {
+        std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        return double((z ^ (z >> 31)) >> 11) * 0x1p-53;
+    }
+
+  private:
+    using Texts = std::initializer_list<const char *>;
+    std::size_t pick(std::size_t n) { return std::size_t(random() * double(n)); }
+    bool often() { return pick(2) == 0; }
+    std::string of(Texts texts) { return texts.begin()[pick(texts.size())]; }
+    static std::string number(double x) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.4g", x);
+        return text;
+    }
+    std::string between(double lo, double hi) { return number(lo + (hi - lo) * random()); }
+
+    // A linear form whose borders others share.
+    std::string linear() {
+        return "(" +
+               of({"p.x", "p.x + 1", "p.x - 1", "p.x + 0.5", "p.x - 0.5", "2 * p.x", "0.5 * p.x",
+                   "-p.x", "1 - p.x", "p.y", "p.x + p.y", "p.x - p.y", "3 * p.x + 1", "p.x / 0.25",
+                   "p.x + 1e-3", "p.x + time", "p.x + k", "p.x * 1.0000001"}) +
+               ")";
+    }
+    std::string flat() { // the point alone, smooth
+        return of({"p.x", "p.y", "p.z", "(p.x + p.y)", "sin(3 * p.x)", "cos(p.y)", "p.x * p.y",
+                   "length(p)", "(length(p) - 1)", "0.7", "time * 0.001", "k"});
+    }
+    std::string truth(int depth = 1) {
+        if (depth > 0 && pick(4) == 0) {
+            const std::string a = truth(depth - 1), b = truth(depth - 1);
+            return of({"(", "(not "}) + a + of({" and ", " or "}) + b + ")";
+        }
+        return "(" + (often() ? linear() : flat()) + of({" < ", " > ", " <= ", " >= "}) +
+               (often() ? "0" : flat()) + ")";
+    }
+    std::string step() {
+        const std::string u = linear();
+        switch (pick(9)) {
+        case 0: return "floor(" + u + ")";
+        case 1: return "ceil(" + u + ")";
+        case 2: return "round(" + u + ")";
+        case 3: return "fract(" + u + ")";
+        case 4: return "(" + u + " % 1)";
+        case 5: return "(" + u + " % 0.5)";
+        case 6: return "(" + u + " - round(" + u + "))";
+        case 7: return "(" + u + " - floor(" + u + "))";
+        default: return "hash(floor(" + u + "))";
+        }
+    }
+    // Continuous at its own borders, or nearly.
+    std::string tent() {
+        const std::string u = linear();
+        switch (pick(7)) {
+        case 0: return "abs(fract(" + u + ") - 0.5)";
+        case 1: return "abs(" + u + " - round(" + u + "))";
+        case 2: return "fract(" + u + ") * (1 - fract(" + u + "))";
+        case 3: return "sin(pi * fract(" + u + "))";
+        case 4: return "abs(" + u + " % 1 - 0.5)";
+        case 5: return "min(fract(" + u + "), 1 - fract(" + u + "))";
+        default: return "(ceil(" + u + ") - " + u + ") * (" + u + " - floor(" + u + "))";
+        }
+    }
+    std::string param() { return "param k = 0.5 in " + of({"0..1", "-1..1", "0.25..3"}) + "\n"; }
+    std::string field(const std::string &f) {
+        return param() + "implicit(p => " + of({"length(p) - 1", "p.y", "p.x + 0.3"}) +
+               " + 0.2 * (" + f + "), within: " + of({"ball(2)", "box(3)", "everywhere"}) + ")\n";
+    }
+
+    std::string truths() {
+        const std::string number =
+            often() ? "float(" + truth() + ")" : "float(int(" + truth() + ") + 1)";
+        switch (pick(6)) {
+        case 0: return field(number);
+        case 1: return field("hash(vec2(" + number + ", 1))");
+        case 2: return field(flat() + " * " + number);
+        case 3: return field("noise(p + " + number + ")");
+        case 4: return field("mix(" + flat() + ", " + flat() + ", " + number + ")");
+        default: return param() + "sphere(1).displace(p => 0.1 * " + number + ", amplitude: 0.2)\n";
+        }
+    }
+    std::string steps() {
+        switch (pick(6)) {
+        case 0: return field(step() + " * " + step());
+        case 1: return field(step() + " * " + tent());
+        case 2: return field(tent() + " * " + tent());
+        case 3: return field(tent() + " + " + step() + " * " + tent());
+        case 4: return field("max(" + tent() + ", " + tent() + ") * " + step());
+        default: return field(step() + " * " + step() + " * " + step());
+        }
+    }
+    std::string lattice() {
+        const std::string u = linear(), v = often() ? u : linear(),
+                          at = of({"floor", "floor", "ceil", "round"}),
+                          next = of({" + 1", " + 1", " - 1", " + 2"});
+        const std::string f = often() ? "fract(" + v + ")" : "smoothstep(0, 1, fract(" + v + "))";
+        const std::string way = pick(4) == 0 ? "(1 - " + f + ")" : f;
+        std::string mixed = "mix(hash(" + at + "(" + u + ")), hash(" + at + "(" + u + ")" + next +
+                            "), " + way + ")";
+        if (pick(3) == 0) mixed += " * " + tent();
+        if (pick(3) == 0) mixed += of({" + ", " * "}) + step();
+        return field(mixed);
+    }
+    std::string choices() {
+        const std::string u = linear(), v = of({"0", "1", "0.5", "p.y"});
+        const std::string a = often() ? u : step(), b = often() ? v : step();
+        const std::string order = of({" < ", " <= ", " > "});
+        switch (pick(3)) {
+        case 0: return field("if " + u + order + v + " { " + a + " } else { " + b + " }");
+        case 1:
+            return field("if " + step() + order + of({"0.5", "0", "1"}) + " { " + tent() +
+                         " } else { " + tent() + " }");
+        default:
+            return field("if " + truth() + " { " + tent() + " } else { " + of({"0", "0.5"}) + " }");
+        }
+    }
+    std::string smooth() {
+        const std::string k = of({"0.9", "k", "0.2", "(k - 0.5)", "(0.5 + p.y * 0.1)", "-0.3"}),
+                          a = "(length(p) - 1)", b = of({"p.y", "p.x", "(length(p - X) - 0.5)"});
+        const std::string width = of({"max(", "max(", "("}),
+                          other = of({"0.001", "20 * abs(p.y)", "abs(p.x)", "2"});
+        const std::string below = width == "(" ? k : "max(" + k + ", " + other + ")";
+        const std::string h = "max(" + k + " - abs(" + a + " - " + b + "), 0)";
+        const std::string sum =
+            often() ? "min(" + a + ", " + b + ") - " : "max(" + a + ", " + b + ") + ";
+        const std::string body =
+            pick(3) == 0 ? "{ let h = clamp(0.5 + 0.5 * (" + b + " - " + a + ") / " + below +
+                               ", 0, 1)\n mix(" + b + ", " + a + ", h) - " + k + " * h * (1 - h) }"
+                         : "{ let h = " + h + "\n" + sum + "h * h / (4 * " + below + ") }";
+        return param() + "implicit(p => " + body + ", within: ball(2))\n";
+    }
+    std::string exponentials() {
+        const std::string n = of({"4", "32", "64", "200", "(30 * k)"}),
+                          u = n + " * " + of({"p.x", "(length(p) - 1)", "(length(p - X) - 0.5)"}),
+                          v = n + " * " + of({"p.y", "(length(p + X) - 0.5)", "p.x"});
+        const std::string within = ", within: " + of({"ball(2)", "box(4)", "everywhere"}) + ")\n";
+        switch (pick(7)) {
+        case 0:
+            return param() + "implicit(p => -log(exp(-" + u + ") + exp(-" + v + ")) / " + n +
+                   within;
+        case 1:
+            return param() + "implicit(p => log2(exp2(" + u + ") + exp2(" + v + ")) / " + n +
+                   within;
+        case 2:
+            return param() + "implicit(p => exp(" + u + ") / (1 + exp(" + u + ")) - 0.5" + within;
+        case 3: return param() + "implicit(p => 1 / (1 + exp(-" + u + ")) - 0.5" + within;
+        case 4: return param() + "implicit(p => log(1 + exp(" + u + ")) - 0.5" + within;
+        case 5:
+            return param() + "implicit(p => log(exp(" + u + ") * exp(" + v + ")) - 0.5" + within;
+        default: return param() + "implicit(p => min(log(exp(" + u + ") + 1), 170) - 0.5" + within;
+        }
+    }
+    std::string powers() {
+        const std::string n = of({"2", "3", "7", "64", "65", "66", "101", "128", "0.5", "2.5", "-1",
+                                  "-3", "65.5", "2.00000001", "16777217"}),
+                          x = of({"p.x", "(p.x - 0.5)", "abs(p.x)", "(0.6 * p.x)", "(-p.y)",
+                                  "(p.x + 2.5)"});
+        return field("pow(" + x + ", " + n + ")" + of({"", " * 0.01", " * p.y"}));
+    }
+    std::string ratios() {
+        const std::string u = of({"p.x", "(5 * p.x)", "length(p)", "(p.x + p.y)", "(p.x * k)",
+                                  "p.x * p.y", "(length(p) - 1)"});
+        switch (pick(4)) {
+        case 0: return field("sin(" + u + ") / " + u);
+        case 1: return field("sin(" + u + ") / (" + u + " + 0.001)");
+        case 2: return field("length(p.xy) * sin(" + u + ") / (" + u + ")");
+        default: return field("p.y * sin(" + u + ") / " + u);
+        }
+    }
+    std::string argument() {
+        return of({"k", "k", "time", "(0.5 + 0.4 * sin(time))", "(k - 1)", "abs(k)", "0.3 * time",
+                   "0.7", "-0.5", "(k + 0.3)"});
+    }
+    std::string conditions() {
+        const std::string a = argument(), b = argument();
+        std::string shape;
+        switch (pick(12)) {
+        case 0: shape = "capped_torus(1, 0.2, angle: " + a + ")"; break;
+        case 1: shape = "superquadric([1, 0.8, 1], " + a + ", " + b + ")"; break;
+        case 2: shape = "round_cone(" + a + ", " + b + ", 0.8)"; break;
+        case 3: shape = "pyramid([1, " + a + ", 1])"; break;
+        case 4: shape = "star(5, 1, " + a + ").extrude(0.4)"; break;
+        case 5: shape = "sphere(" + a + ")"; break;
+        case 6: shape = "box(1).scale(" + a + ")"; break;
+        case 7: shape = "sphere(1).scale([1, " + a + ", " + b + "])"; break;
+        case 8: shape = "torus(" + a + ", " + b + ")"; break;
+        case 9: shape = "box(1).rotate(0.5, axis: [" + a + ", 0, 0])"; break;
+        case 10: shape = "capped_cone(" + a + ", " + b + ", 1)"; break;
+        default: shape = "box(1).shell(" + a + ")"; break;
+        }
+        if (pick(3) == 0) shape = "(" + shape + ").offset(0.05)";
+        return param() + shape + "\n" +
+               (often() ? "render(time: " + of({"1", "3", "10"}) + ")\n" : "");
+    }
+    std::string repetitions() {
+        const std::string motif =
+            of({"ellipsoid([0.3, 0.1, 0.5])", "ellipsoid([0.5, 0.2, 0.3])",
+                "sphere(0.4).scale([1, 0.3, 0.6])", "superquadric([0.4, 0.3, 0.5], 0.4, 1.5)",
+                "box([0.5, 0.3, 0.4]).scale([1, 0.4, 1])",
+                "(sphere(0.3) & box(0.4).translate(x: 0.1))"});
+        const std::string turned =
+            "rotate(" + between(0.1, 1.4) + ", axis: " + of({"X", "Y", "Z"}) + ")";
+        std::string shape = motif + "." + turned;
+        if (often())
+            shape += ".translate([" + between(-0.3, 0.3) + ", " + between(-0.2, 0.2) + ", " +
+                     between(-0.3, 0.3) + "])";
+        const std::string cell =
+            "[" + (often() ? "0" : between(0.7, 1.4)) + ", 0, " + between(0.7, 1.5) + "]";
+        shape += ".repeat(" + cell + of({"", "", ", count: [3, 1, 4]"}) + ")";
+        return pick(3) == 0 ? "(" + shape + ").offset(0.02)\n" : shape + "\n";
+    }
+    std::string loops() {
+        const std::string inner =
+            of({"floor(p.x)", "fract(p.x)", "float(p.x > 0)", "i0", "f0", "abs(f0 - 0.5)"});
+        return field("{ let i0 = floor(p.x)\n let f0 = fract(p.x)\n var s = 0.0\n for i in 0..3 { "
+                     "s = s + 0.1 * " +
+                     inner + " * (i + 1) }\n s" + of({" + ", " * "}) + tent() + " }");
+    }
+
+    std::uint64_t state_;
+};
+
+struct Verdict {
+    bool accepted = false;
+    std::string code, wrong;
+};
+
+// Points next to where things turn: coordinates are often a multiple of 1/4, or off by very little.
+Point3 near_borders(Adversary &random) {
+    Point3 p;
+    for (double &x : p) {
+        const double at = std::round(8 * reach * (random.random() - 0.5) * 2) / 8;
+        const double off = std::pow(10, -7 * random.random()) * (random.random() < 0.5 ? -1 : 1);
+        const double kind = random.random();
+        x = kind < 0.3 ? 2 * reach * (random.random() - 0.5) : kind < 0.55 ? at : at + 0.3 * off;
+        x = float(x);
+    }
+    return p;
+}
+
+std::string text_of(const Point3 &p) {
+    char text[128];
+    std::snprintf(text, sizeof text, "[%.9g, %.9g, %.9g]", p[0], p[1], p[2]);
+    return text;
+}
+
+// Pairs at all distances down to rounding; the marched field is 1-Lipschitz, and a number.
+std::string measured(const ir::Scene &scene, double time, Adversary &random, int pairs) {
+    Sampler sampler(scene, time);
+    std::vector<Point3> p, q;
+    for (int i = 0; i < pairs; ++i) {
+        p.push_back(near_borders(random));
+        Point3 to = p.back();
+        const double far = std::pow(10, -5 + 5 * random.random());
+        const bool along = random.random() < 0.6; // one coordinate alone, so across its borders
+        const auto axis = std::size_t(3 * random.random());
+        for (std::size_t k = 0; k < 3; ++k)
+            if (!along || k == axis) to[k] = float(to[k] + far * (random.random() * 2 - 1));
+        q.push_back(to);
+    }
+    const std::vector<float> a = sampler.values(p), b = sampler.values(q);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        if (!std::isfinite(a[i])) return "it is " + std::to_string(a[i]) + " at " + text_of(p[i]);
+        double way = 0;
+        for (std::size_t k = 0; k < 3; ++k) way += (p[i][k] - q[i][k]) * (p[i][k] - q[i][k]);
+        way = std::sqrt(way);
+        const double rounding = 6e-5 + 2e-6 * std::fabs(double(a[i]));
+        if (std::fabs(double(a[i]) - double(b[i])) > way * 1.002 + rounding)
+            return "it is " + std::to_string(a[i]) + " at " + text_of(p[i]) + " and " +
+                   std::to_string(b[i]) + " at " + text_of(q[i]);
+    }
+    return {};
+}
+
+Verdict judge(const std::string &text, Adversary &random, int pairs) {
+    Verdict out;
+    driver::Compilation c = driver::compile_text("adversary.sdf", text, "", {});
+    if (!c.good()) {
+        for (const Diagnostic &d : c.diagnostics.items())
+            if (d.severity == Severity::Error && out.code.empty())
+                out.code = std::string(code_name(d.code)) + ": " + d.message;
+        return out;
+    }
+    out.accepted = true;
+    for (const double part : {0.0, 1.0, 0.5, 0.37}) {
+        for (ir::Param &k : c.scene.params) k.value[0] = k.lo[0] + (k.hi[0] - k.lo[0]) * part;
+        const double time = std::min(c.scene.render.time_end, 10.0) * part;
+        out.wrong = measured(c.scene, time, random, pairs);
+        if (!out.wrong.empty()) {
+            if (!c.scene.params.empty())
+                out.wrong += ", k = " + std::to_string(c.scene.params[0].value[0]);
+            out.wrong += ", time = " + std::to_string(time);
+            return out;
+        }
+    }
+    return out;
+}
+
+int number_from(const char *variable, int otherwise) {
+    const char *text = std::getenv(variable);
+    return text ? std::atoi(text) : otherwise;
+}
+
+} // namespace
+
+TEST_CASE("what an adversary writes is refused, or is as flat as proved") {
+    const int scenes = number_from("FATHOM_SCENES", 660), seed = number_from("FATHOM_SEED", 1);
+    int accepted = 0, wrong = 0;
+    for (int i = 0; i < scenes; ++i) {
+        Adversary random(std::uint64_t(seed) * 1'000'003u + std::uint64_t(i));
+        const std::string text = random.scene(std::size_t(i) % Adversary::kinds);
+        const Verdict verdict = judge(text, random, 3000);
+        accepted += verdict.accepted;
+        wrong += !verdict.wrong.empty();
+        if (std::getenv("FATHOM_SHOW"))
+            std::printf("%s: %s", verdict.accepted ? "taken" : verdict.code.c_str(), text.c_str());
+        if (!verdict.wrong.empty())
+            std::printf("WRONG %d: %s\n%s", i, verdict.wrong.c_str(), text.c_str());
+        std::fflush(stdout);
+    }
+    std::printf("%d of %d accepted\n", accepted, scenes);
+    CHECK(wrong == 0);
+    CHECK(accepted > scenes / 5);
+}
