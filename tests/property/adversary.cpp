@@ -3,6 +3,7 @@
 // to them, at 0, over params' ends and inside, over time. FATHOM_SCENES and FATHOM_SEED in the
 // environment make it longer, or another; FATHOM_SHOW says what each scene came to.
 #include "driver/compile.h"
+#include "ir/lower.h"
 #include "tests/support/slopes.h"
 
 #include <catch2/catch.hpp>
@@ -17,6 +18,105 @@ using namespace fathom::test;
 namespace {
 
 constexpr double reach = 2;
+
+// Shapes of the library with an argument that its conditions are about.
+constexpr std::array library = {
+    "sphere(@)",
+    "box([1, @, 1])",
+    "rounded_box([1, 1, 1], radius: @ * 0.5)",
+    "box_frame([1, 1, 1], thickness: @ * 0.5)",
+    "torus(1, @)",
+    "torus(@, 0.2)",
+    "capped_torus(1, 0.2, angle: @)",
+    "capped_torus(1, 0.2, angle: 3 * @)",
+    "capped_torus(@, 0.2, angle: 2)",
+    "link(1 + 2 * @, 0.4, 0.1)",
+    "link(3, @, 0.2)",
+    "link(3, 0.5, @)",
+    "cylinder(@, 1)",
+    "cylinder(1, @)",
+    "rounded_cylinder(0.7, 1.2, @)",
+    "capsule([-1, 0, 0], [1, 0.5, 0], radius: @)",
+    "capsule([-@, 0, 0], [@, 0, 0], radius: 0.3)",
+    "cone(@, 1)",
+    "cone(1, @)",
+    "capped_cone(@, @, 1)",
+    "capped_cone(@, 0.5, 1)",
+    "capped_cone(0.5, 0.2, @)",
+    "round_cone(@, 0.5, 2)",
+    "round_cone(0.5, 0.5 + @, 1)",
+    "round_cone(0.5, 0.3, @)",
+    "plane([@, 0, 0])",
+    "slab(@)",
+    "ellipsoid([1, @, 0.7])",
+    "superquadric([1, 0.8, 1], @, 1)",
+    "superquadric([1, 0.8, 1], 0.5, 2 * @)",
+    "superquadric([1, @, 1], 0.5, 1)",
+    "helix(@, 0.4, turns: 3, thickness: 0.15)",
+    "helix(0.8, @, turns: 3, thickness: 0.15)",
+    "helix(0.8, 0.4, turns: @, thickness: 0.15)",
+    "helix(0.8, 0.4, turns: 3, thickness: @)",
+    "tubes([[-1, 0, 0], [0, 0.5, 0], [1, 0, 0]], radius: @)",
+    "heightfield(q => sin(q.x) * cos(q.y), [@, 1], depth: 1)",
+    "heightfield(q => sin(q.x) * cos(q.y), [1, 1], depth: @)",
+    "circle(@).extrude(0.5)",
+    "ellipse([1, @]).extrude(0.5)",
+    "rectangle([@, 1]).extrude(0.5)",
+    "rounded_rectangle([1, 1], radius: @).extrude(0.5)",
+    "regular_polygon(5, @).extrude(0.5)",
+    "star(5, 1, @).extrude(0.4)",
+    "star(5, 0.3 + @, 0.3).extrude(0.4)",
+    "segment([-0.5, 0], [0.5, 0.2], thickness: @).extrude(0.4)",
+    "arc(1, @, thickness: 0.2).extrude(0.4)",
+    "arc(@, 2, thickness: 0.2).extrude(0.4)",
+    "ring(1, @).extrude(0.4)",
+    "bezier([-1, 0], [0, 1], [1, @], thickness: 0.2).extrude(0.4)",
+    "circle(1).extrude(@)",
+    "circle(1).extrude(1, taper: @)",
+    "rectangle([1, 0.5]).extrude(@, twist: 1)",
+    "circle(0.3).revolve(@)",
+    "prism(6, 0.8, @)",
+    "prism(6, @, 1)",
+    "pyramid([1, @, 1])",
+    "pyramid([@, 1, 1])",
+    "tetrahedron(@)",
+    "octahedron(@)",
+    "dodecahedron(@)",
+    "icosahedron(@)",
+    "gdf([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], radius: @, exponent: 12)",
+    "gdf_cube(0.8, exponent: 1 + @)",
+    "gdf_octahedron(0.8, exponent: @)",
+    "gdf_blend([X, Y, Z], [[1, 1, 1], [-1, 1, 1]], @, 0.5, radius: 0.8)",
+    "metaballs([[-0.6, 0, 0], [0.5, 0.1, 0], [0, 0.7, 0]], radius: @)",
+    "menger(@, iterations: 2)",
+    "gyroid(@, thickness: 0.1) & sphere(1.4)",
+    "gyroid(1, thickness: @) & sphere(1.4)",
+    "schwarz_p(@, thickness: 0.1) & sphere(1.4)",
+    "box(1).rotate(0.5, axis: [@, 0, 0])",
+    "box(1).orient(Y, [@, 0, 0])",
+    "box(1).scale(@)",
+    "sphere(1).scale([1, @, 0.8])",
+    "dfmodel.scale(sphere(0.5), @ + 0.5)",
+    "box([1, 1, 0.5]).reflect([@, 0, 0])",
+    "box(1).bend(0.3, axis: Y, towards: [@, 0, 0])",
+    "box([1, 1, 1]).taper(@)",
+    "sphere(0.5).elongate([@, 0, 0])",
+    "hyperize(sphere(1), 1 + @)",
+    "box(1).shell(@)",
+    "sphere(0.2).repeat([@, 0, 0])",
+    "smooth_union(@) { sphere(0.7); sphere(0.5).translate(x: 0.8) }",
+    "round_union(@) { sphere(0.7); sphere(0.5).translate(x: 0.8) }",
+    "chamfer_difference(@) { box(1.6); cylinder(0.5, 3) }",
+    "stairs_union(@, 3) { box([2, 0.4, 2]); cylinder(0.5, 2) }",
+    "columns_union(@, 3) { box([2, 0.4, 2]); cylinder(0.5, 2) }",
+    "pipe(sphere(1), plane(Y, 0.3), @)",
+    "engrave(sphere(1), slab(0.6), @)",
+    "groove(sphere(1), slab(0.6), width: @, depth: 0.1)",
+    "groove(sphere(1), slab(0.6), width: 0.1, depth: @)",
+    "tongue(sphere(1), slab(0.6), width: @, depth: @)",
+    "blend(box(1.4), sphere(1), @)",
+    "pseudonorm_blend(sphere(0.6).translate(x: -0.5), sphere(0.6).translate(x: 0.5), 1 + @)",
+};
 
 class Adversary {
   public:
@@ -101,7 +201,8 @@ class Adversary {
     std::string param() { return "param k = 0.5 in " + of({"0..1", "-1..1", "0.25..3"}) + "\n"; }
     std::string field(const std::string &f) {
         return param() + "implicit(p => " + of({"length(p) - 1", "p.y", "p.x + 0.3"}) +
-               " + 0.2 * (" + f + "), within: " + of({"ball(2)", "box(3)", "everywhere"}) + ")\n";
+               " + 0.2 * (" + f + "), within: " +
+               of({"ball(2)", "aabb([-1.5, -1, -2], [1.5, 2, 1.5])", "everywhere"}) + ")\n";
     }
 
     std::string truths() {
@@ -170,7 +271,8 @@ class Adversary {
         const std::string n = of({"4", "32", "64", "200", "(30 * k)"}),
                           u = n + " * " + of({"p.x", "(length(p) - 1)", "(length(p - X) - 0.5)"}),
                           v = n + " * " + of({"p.y", "(length(p + X) - 0.5)", "p.x"});
-        const std::string within = ", within: " + of({"ball(2)", "box(4)", "everywhere"}) + ")\n";
+        const std::string within =
+            ", within: " + of({"ball(2)", "aabb([-4, -4, -4], [4, 4, 4])", "everywhere"}) + ")\n";
         switch (pick(7)) {
         case 0:
             return param() + "implicit(p => -log(exp(-" + u + ") + exp(-" + v + ")) / " + n +
@@ -209,24 +311,10 @@ class Adversary {
                    "0.7", "-0.5", "(k + 0.3)"});
     }
     std::string conditions() {
-        const std::string a = argument(), b = argument();
-        std::string shape;
-        switch (pick(12)) {
-        case 0: shape = "capped_torus(1, 0.2, angle: " + a + ")"; break;
-        case 1: shape = "superquadric([1, 0.8, 1], " + a + ", " + b + ")"; break;
-        case 2: shape = "round_cone(" + a + ", " + b + ", 0.8)"; break;
-        case 3: shape = "pyramid([1, " + a + ", 1])"; break;
-        case 4: shape = "star(5, 1, " + a + ").extrude(0.4)"; break;
-        case 5: shape = "sphere(" + a + ")"; break;
-        case 6: shape = "box(1).scale(" + a + ")"; break;
-        case 7: shape = "sphere(1).scale([1, " + a + ", " + b + "])"; break;
-        case 8: shape = "torus(" + a + ", " + b + ")"; break;
-        case 9: shape = "box(1).rotate(0.5, axis: [" + a + ", 0, 0])"; break;
-        case 10: shape = "capped_cone(" + a + ", " + b + ", 1)"; break;
-        default: shape = "box(1).shell(" + a + ")"; break;
-        }
-        if (pick(3) == 0) shape = "(" + shape + ").offset(0.05)";
-        return param() + shape + "\n" +
+        std::string shape = std::string(library[pick(library.size())]), out;
+        for (char c : shape) out += c == '@' ? argument() : std::string(1, c);
+        if (pick(3) == 0) out = "(" + out + ").offset(0.05)";
+        return "import \"dfmodel\" as dfmodel\n" + param() + out + "\n" +
                (often() ? "render(time: " + of({"1", "3", "10"}) + ")\n" : "");
     }
     std::string repetitions() {
@@ -319,7 +407,10 @@ Verdict judge(const std::string &text, Adversary &random, int pairs) {
         return out;
     }
     out.accepted = true;
-    for (const double part : {0.0, 1.0, 0.5, 0.37}) {
+    // Steps by cells are as long as is safe, and no slope of anything.
+    for (ir::ShapeFact &fact : c.scene.facts) fact.cells = {};
+    ir::lower(c.scene);
+    for (const double part : {0.0, 1.0, 0.5, 0.37, 1.0 / 3}) {
         for (ir::Param &k : c.scene.params) k.value[0] = k.lo[0] + (k.hi[0] - k.lo[0]) * part;
         const double time = std::min(c.scene.render.time_end, 10.0) * part;
         out.wrong = measured(c.scene, time, random, pairs);
@@ -358,4 +449,29 @@ TEST_CASE("what an adversary writes is refused, or is as flat as proved") {
     std::printf("%d of %d accepted\n", accepted, scenes);
     CHECK(wrong == 0);
     CHECK(accepted > scenes / 5);
+}
+
+TEST_CASE("a shape of the library is no steeper than proved at the ends of what it takes") {
+    int accepted = 0, wrong = 0;
+    for (const char *shape : library)
+        for (const char *range : {"0..1", "-0.5..1", "0.05..1"})
+            for (const bool raw : {false, true}) {
+                Adversary random(1);
+                std::string text;
+                for (const char c : std::string(shape)) text += c == '@' ? "k" : std::string(1, c);
+                if (raw) text = "(" + text + ").offset(0.01)";
+                text = std::string("import \"dfmodel\" as dfmodel\nparam k = 0.5 in ") + range +
+                       "\n" + text + "\n";
+                const Verdict verdict = judge(text, random, 2000);
+                accepted += verdict.accepted;
+                wrong += !verdict.wrong.empty();
+                if (std::getenv("FATHOM_SHOW"))
+                    std::printf("%s: %s", verdict.accepted ? "taken" : verdict.code.c_str(),
+                                text.c_str());
+                if (!verdict.wrong.empty())
+                    std::printf("WRONG: %s\n%s", verdict.wrong.c_str(), text.c_str());
+            }
+    std::printf("%d accepted\n", accepted);
+    CHECK(wrong == 0);
+    CHECK(accepted > int(library.size()));
 }

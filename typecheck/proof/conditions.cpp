@@ -15,7 +15,7 @@ using ir::Op;
 namespace {
 
 constexpr int most_boxes = 4096;
-constexpr double grain = 1e-6; // by this much an order may be missed at the ends of ranges
+constexpr double grain = 1e-6; // by this much an order may be missed: a size is 0 there at worst
 
 // One number that a condition hangs on: a component of a variable that stands for a param, or time,
 // for which the point's first coordinate stands.
@@ -95,23 +95,15 @@ NodeId in_differences(ir::Graph &graph, NodeId condition) {
     return way ? graph.make(node.op, {graph.number(0), *way}) : condition;
 }
 
-// Without the ends, where a range is meant to reach a limit.
-Interval inside(const Unknown &one) {
-    const double width = one.range.width();
-    if (one.whole) return width >= 2 ? Interval(one.range.lo + 1, one.range.hi - 1) : one.range;
-    const double off = 1e-3 * std::min(width, 1.0);
-    return {one.range.lo + off, one.range.hi - off};
-}
-
 // Is it true for all values? The box that is not decided is halved along its longest side.
 bool always(Flattening &flattening, Ranges &ranges, NodeId condition,
-            const std::vector<Unknown> &unknowns, bool whole_ranges) {
+            const std::vector<Unknown> &unknowns) {
     const Tape tape = flatten(flattening, condition);
     if (tape.too_large) return false;
     const double period = periods_of(tape, flattening.graph).period[0];
     std::vector<Interval> all;
     for (const Unknown &one : unknowns) {
-        all.push_back(whole_ranges ? one.range : inside(one));
+        all.push_back(one.range);
         if (one.time && period > 0 && all.back().width() > period)
             all.back().hi = all.back().lo + period * (1 + 1e-9);
     }
@@ -156,13 +148,12 @@ void Prover::test_conditions() {
             bound = bound && ranges.vars.contains(graph[var].payload);
         const Closed over = closed(scene, graph, ranges.time, condition.holds);
         if (!bound || over.endless) continue;
-        const auto holds = [&](NodeId node, bool whole_ranges) {
-            return always(flattening, ranges, node, over.unknowns, whole_ranges) ||
-                   always(flattening, ranges, in_differences(graph, node), over.unknowns,
-                          whole_ranges);
+        const auto holds = [&](NodeId node) {
+            return always(flattening, ranges, node, over.unknowns) ||
+                   always(flattening, ranges, in_differences(graph, node), over.unknowns);
         };
-        if (holds(over.holds, true)) continue;
-        if (holds(nearly(graph, over.holds), false))
+        if (holds(over.holds)) continue;
+        if (holds(nearly(graph, over.holds)))
             diagnostics
                 .add(Code::DegenerateRange, condition.at,
                      "at an end of a param's range " + condition.wanted)
