@@ -268,7 +268,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     }
     std::string cause = cause_text(graph, b.cause);
     const bool endless = !place(id).box.finite() && !place(id).zone;
-    const bool grows = b.trouble == Trouble::None ||
+    const bool grows = b.trouble == Trouble::None || b.trouble == Trouble::Overflow ||
                        (b.trouble == Trouble::Singular && only_grows(graph, b.cause));
     if (b.at_infinity || (grows && endless)) {
         const bool jumps = b.trouble == Trouble::Jump;
@@ -322,6 +322,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                       assume);
         return;
     }
+    case Trouble::Overflow: // told above
     case Trouble::Singular:
     case Trouble::None:
         if (Diagnostic *d = report(id, Code::FieldSingular,

@@ -141,7 +141,7 @@ void Machine::run(const Cell &cell) {
     for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
         if (in_reach_ && result_norm_ > 0 && value_[tape_.first[s] + i].magnitude() > single_most) {
             result_norm_ = infinity;
-            trouble_[s] = Trouble::Singular;
+            trouble_[s] = Trouble::Overflow;
         }
     for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
         if (odd_[tape_.first[s] + i]) { // a wave that nothing made even

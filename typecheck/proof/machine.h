@@ -37,7 +37,7 @@ struct Ranges {
 };
 Ranges ranges_of(const ir::Scene &scene);
 
-enum class Trouble : std::uint8_t { None, Jump, Singular };
+enum class Trouble : std::uint8_t { None, Jump, Singular, Overflow };
 
 struct Cell {
     std::array<Interval, 3> p{Interval::everything(), Interval::everything(),

@@ -108,7 +108,7 @@ bool Step::overflows() const {
 void Step::run() {
     if (machine.in_reach_ && overflows()) {
         for (int c = 0; c < n; ++c) set(c, Interval::everything(), none);
-        return fail(Trouble::Singular);
+        return fail(Trouble::Overflow);
     }
     if (in.form == Form::Wave) {
         bool bad = norm(1) > 0;

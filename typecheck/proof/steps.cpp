@@ -239,10 +239,11 @@ struct Border {
         return component_of(graph, of.of(graph.arg(step, arg), depth + 1), component);
     }
 
-    // Numbers that are whole but for rounding are whole.
-    static double snapped(double x) {
-        const double nearest = std::round(x);
-        return std::fabs(x - nearest) > 1e-9 ? x : nearest;
+    // Numbers that are whole but for rounding are whole. Where angles are cut pi may have been
+    // written with few digits, and no evaluator tells 1e-9 from 0; near 0 others do.
+    double snapped(double x) const {
+        const double nearest = std::round(x), rounding = group.is_angle ? 1e-9 : 1e-13;
+        return std::fabs(x - nearest) > rounding ? x : nearest;
     }
     // floor(number + slope * the infinitesimal)
     double floor_of(double number, double slope) const {
