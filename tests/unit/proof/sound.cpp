@@ -121,7 +121,7 @@ TEST_CASE("a smooth minimum has one width") {
     for (const double sign : {1.0, -1.0}) {
         Scenery s;
         CHECK(s.bound(smooth(s, s.n(0.9), s.n(1e-3), sign), cube(2)).lipschitz < 1.01);
-        CHECK(s.bound(smooth(s, s.n(0.9), s.n(2), sign), cube(2)).lipschitz < 1.01);
+        CHECK(s.bound(smooth(s, s.n(0.9), s.parameter(0, 2), sign), cube(2)).lipschitz < 1.01);
         const NodeId read = s.g.mul(s.n(20), s.call(Op::Abs, s.z));
         CHECK(s.bound(smooth(s, s.n(0.9), read, sign), cube(2)).lipschitz > 1.5);
         // a width below 0 is none: the least (greatest) itself
