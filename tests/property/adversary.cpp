@@ -379,30 +379,28 @@ class Adversary {
                 "p.y - 0.2 * fract(a / tau) * (1 - fract(p.x))"});
         return param() + "implicit(p => {\n let s = tau / " + n + "\n let a = atan(" +
                of({"p.z, p.x", "p.x, p.z", "p.z, p.x + 0.5", "2 * p.z, p.x"}) + ") + " + shift +
-               "\n let b = " + fold + "\n let r = length(p.xz)\n " + motif +
-               "\n}, within: ball(2) - tube(Y, 0.7))\n";
+               "\n let b = " + fold + "\n let r = length(p.xz)\n " + motif + "\n}, within: " +
+               of({"aabb([-2, -1, -1.5], [-0.6, 1, 1.5])",
+                   "aabb([-1.5, -1, -2], [1.5, 1, -0.6])"}) +
+               ")\n";
     }
     // What shapes make of fields that jump.
     std::string uses() {
         const std::string f = pick(3) == 0   ? "float(" + truth() + ")"
                               : pick(2) == 0 ? step()
                                              : tent() + " * " + (often() ? tent() : step());
-        switch (pick(6)) {
+        switch (pick(5)) {
         case 0: return param() + "sphere(1).displace(p => 0.1 * " + f + ")\n";
         case 1: return param() + "blend(sphere(1), box(1.4), p => clamp(" + f + ", 0, 1))\n";
         case 2: return param() + "box(1).distort(p => p + vec3(0, 0.1 * " + f + ", 0))\n";
-        case 3: {
-            std::string flat;
-            for (char c : f) flat += c;
-            return param() + "heightfield(q => { let p = vec3(q.x, q.y, 0.3)\n 0.1 * " + flat +
+        case 3:
+            return param() + "heightfield(q => { let p = vec3(q.x, q.y, 0.3)\n 0.1 * " + f +
                    " }, [3, 3], depth: 1)\n";
-        }
-        case 4:
+        default:
             return param() + "sphere(0.4).repeat([1.3, 0, 1.2], (s, id) => s.scale(" +
                    of({"0.5 + 0.5 * hash(id)", "0.2 * id.x", "1 - hash(id)", "k",
                        "[1, 0.5 + k * k, 0.8]"}) +
                    "))\n";
-        default: return param() + "sphere(1).offset(p => 0.1 * " + f + ")\n";
         }
     }
 
@@ -413,7 +411,7 @@ class Adversary {
 bool is_of_the_proof(Code code) {
     return code == Code::LipschitzUnbounded || code == Code::FieldJump ||
            code == Code::FieldSingular || code == Code::NeedsRegion || code == Code::BadArgument ||
-           code == Code::RepeatLimit;
+           code == Code::RepeatLimit || code == Code::StageMismatch;
 }
 
 struct Verdict {
