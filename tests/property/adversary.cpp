@@ -315,7 +315,7 @@ class Adversary {
         for (char c : shape) out += c == '@' ? argument() : std::string(1, c);
         if (pick(3) == 0) out = "(" + out + ").offset(0.05)";
         return "import \"dfmodel\" as dfmodel\n" + param() + out + "\n" +
-               (often() ? "render(time: " + of({"1", "3", "10"}) + ")\n" : "");
+               "render(time: " + of({"1", "3", "10"}) + ")\n";
     }
     std::string repetitions() {
         const std::string motif =
