@@ -1,8 +1,8 @@
 // Runs a tape over batches of points: floats through point_loops, dual numbers through
 // gradient_loops, by one interpreter that knows cells and no numbers.
-#include "backend-cpu/ball_rows.h"
-#include "backend-cpu/dual.h"
-#include "backend-cpu/sample.h"
+#include "backend-cpu/kernels/ball_rows.h"
+#include "backend-cpu/kernels/dual.h"
+#include "backend-cpu/kernels/sample.h"
 #include "backend-cpu/tape.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 // of its own. Knows nothing of rays and pictures.
 #pragma once
 
-#include "backend-cpu/cells.h"
+#include "backend-cpu/kernels/cells.h"
 #include "ir/scene.h"
 
 #include <cstddef>

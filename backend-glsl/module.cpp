@@ -2,7 +2,7 @@
 #include "backend-glsl/module.h"
 
 #include "base/text.h"
-#include "ir/cost.h"
+#include "ir/passes/cost.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // The noise cache against exact frames, still and learnt, as the goals have it (`fathom
 // bench
-// --noise-cache` tells more of one scene); and what ir/cost.cpp takes as measured: look-ups and
-// kinds of noise, a point each. Where the CPU draws, its own time counts.
+// --noise-cache` tells more of one scene); and what ir/passes/cost.cpp takes as measured: look-ups
+// and kinds of noise, a point each. Where the CPU draws, its own time counts.
 #include "bench/noise_cache.h"
 
-#include "ir/cost.h"
+#include "ir/passes/cost.h"
 #include "render-gl/cache_passes.h"
 #include "render-gl/context.h"
 

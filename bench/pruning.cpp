@@ -5,8 +5,8 @@
 // literature's factors are of: each of the march's evaluations by itself, in a batch of one.
 #include "bench/measure.h"
 
-#include "backend-cpu/march.h"
-#include "backend-cpu/pruning.h"
+#include "backend-cpu/prune/pruning.h"
+#include "backend-cpu/trace/march.h"
 
 #include <fmt/format.h>
 

@@ -8,8 +8,8 @@
 // gain when plain tracing is given that box has rows of its own.
 #include "bench/measure.h"
 
-#include "backend-cpu/march.h"
-#include "ir/lower.h"
+#include "backend-cpu/trace/march.h"
+#include "ir/lower/lower.h"
 
 #include <algorithm>
 #include <cmath>

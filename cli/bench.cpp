@@ -1,7 +1,7 @@
 // fathom bench: what a scene costs, phase by phase: medians of several runs on this machine, and
 // counts that do not depend on it.
 #include "cli/bench.h"
-#include "backend-cpu/march.h"
+#include "backend-cpu/trace/march.h"
 #include "backend-glsl/emit.h"
 #include "cli/terminal.h"
 #include "render-gl/context.h"

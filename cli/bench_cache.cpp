@@ -2,7 +2,7 @@
 // scene. Times are ratios of two ways taken in turn in one run; where the CPU draws, its own time
 // counts, since others may share the machine.
 #include "cli/bench.h"
-#include "ir/cost.h"
+#include "ir/passes/cost.h"
 #include "render-gl/cache_passes.h"
 #include "render-gl/context.h"
 

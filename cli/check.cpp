@@ -1,9 +1,9 @@
 // fathom check: parses, types, proves; says what it found to people, or to editors as JSON.
-#include "backend-cpu/march.h"
+#include "backend-cpu/trace/march.h"
 #include "backend-glsl/emit.h"
 #include "cli/terminal.h"
 #include "driver/verdict.h"
-#include "typecheck/proof/prove.h"
+#include "proof/prove.h"
 
 #include <cmath>
 #include <fmt/format.h>

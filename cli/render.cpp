@@ -1,7 +1,7 @@
 // fathom render: pictures without a window, by GL or by the CPU. Every picture is whole before its
 // file appears.
 #include "render-gl/render.h"
-#include "backend-cpu/march.h"
+#include "backend-cpu/trace/march.h"
 #include "base/picture.h"
 #include "cli/interrupt.h"
 #include "cli/preview.h"

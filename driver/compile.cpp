@@ -1,9 +1,9 @@
 #include "driver/compile.h"
 
 #include "driver/scene_files.h"
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
+#include "proof/prove.h"
 #include "save-format/save_format.h"
-#include "typecheck/proof/prove.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "driver/files.h"
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
 #include "typecheck/check.h"
 
 #include <filesystem>

@@ -2,7 +2,7 @@
 // what hangs below it in walk.cpp.
 #include "ir/graph.h"
 
-#include "ir/fold.h"
+#include "ir/passes/fold.h"
 #include "ir/stir.h"
 
 #include <algorithm>

@@ -48,7 +48,7 @@ struct OpInfo {
 const OpInfo &info(Op op);
 std::size_t op_count();
 
-// The blend profiles of two distances a and b within r of the seam (lipschitz.md, 4); n: steps or
+// The blend profiles of two distances a and b within r of the seam (lipschitz.md, 3); n: steps or
 // columns. Each is exactly min(a, b) outside its compact support.
 enum class Profile : std::uint8_t { Smooth, Round, Chamfer, Stairs, Columns };
 
@@ -135,8 +135,8 @@ class Graph {
     std::size_t size() const { return nodes_.size(); }
 
     // Makes a node, or finds the equal one; folds constants and a few identities (x+0, x*1, x*0,
-    // min(x,x), swizzle of Make, Select of a constant, …; ir/fold.cpp). Types of componentwise
-    // arguments must be equal (asserted).
+    // min(x,x), swizzle of Make, Select of a constant, …; ir/passes/fold.cpp). Types of
+    // componentwise arguments must be equal (asserted).
     NodeId make(Op op, std::span<const NodeId> args); // types by rule
     NodeId make(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload = 0);
     NodeId make(Op op, std::initializer_list<NodeId> args);

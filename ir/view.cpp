@@ -1,9 +1,9 @@
-// See view.h. Values of closed expressions come from ir/fold.h, which is the ops' meaning in
+// See view.h. Values of closed expressions come from ir/passes/fold.h, which is the ops' meaning in
 // double.
 #include "ir/view.h"
 
-#include "ir/fold.h"
 #include "ir/look.h"
+#include "ir/passes/fold.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,6 +1,6 @@
 #include "render-gl/cache_passes.h"
 
-#include "ir/cost.h"
+#include "ir/passes/cost.h"
 #include "render-gl/pruning.h"
 
 #include <epoxy/gl.h>

@@ -1,6 +1,6 @@
 #include "render-gl/cache_worth.h"
 
-#include "ir/cost.h"
+#include "ir/passes/cost.h"
 
 #include <algorithm>
 

@@ -12,8 +12,8 @@ struct CacheWork {
     bool learnt = false;
 };
 
-// ir/cost.h's, in nanoseconds a point: the cheapest of the kept fields, and the whole scene's field
-// with all of them.
+// ir/passes/cost.h's, in nanoseconds a point: the cheapest of the kept fields, and the whole
+// scene's field with all of them.
 struct CachePrices {
     double field = 0, whole = 0;
 };

@@ -2,7 +2,6 @@
 #include "save-format/kept_items.h"
 
 #include "base/text.h"
-#include "save-format/importer.h"
 #include "save-format/node_types.h"
 
 #include <algorithm>

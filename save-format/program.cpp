@@ -1,8 +1,6 @@
 // The language's text of a field program.
 #include "save-format/program.h"
 
-#include "save-format/importer.h"
-
 #include <algorithm>
 #include <cmath>
 

@@ -2,6 +2,8 @@
 // flow text.
 #include "save-format/yaml_reader.h"
 
+#include "save-format/node_types.h"
+
 #include "base/text.h"
 
 #include <cctype>
@@ -232,5 +234,33 @@ ParsedText parse_text(std::string_view text) {
     parsed.value = std::move(taken.value);
     return parsed;
 }
+
+std::optional<double> number_of(const Value &value) {
+    if (value.kind != Value::Kind::Scalar || !value.plain || value.text.empty())
+        return std::nullopt;
+    std::string_view text = value.text;
+    const bool negative = text[0] == '-';
+    if (negative || text[0] == '+') text.remove_prefix(1);
+    const std::string key = spelling_key(text);
+    if (key == ".inf")
+        return negative ? -std::numeric_limits<double>::infinity()
+                        : std::numeric_limits<double>::infinity();
+    if (text.empty() || !((text[0] >= '0' && text[0] <= '9') || text[0] == '.'))
+        return std::nullopt;
+    auto number = parse_number(text[0] == '.' ? "0" + std::string(text) : std::string(text));
+    if (!number && text.back() == '.') number = parse_number(text.substr(0, text.size() - 1));
+    if (!number || !std::isfinite(*number)) return std::nullopt;
+    return negative ? -*number : *number;
+}
+
+std::optional<bool> switch_of(const Value &value) {
+    if (value.kind != Value::Kind::Scalar) return std::nullopt;
+    const std::string key = spelling_key(value.text);
+    if (key == "true" || key == "yes" || key == "on" || key == "1") return true;
+    if (key == "false" || key == "no" || key == "off" || key == "0") return false;
+    return std::nullopt;
+}
+
+bool is_none(std::string_view word) { return word.empty() || word == "<None>" || word == "~"; }
 
 } // namespace fathom::save

@@ -12,7 +12,7 @@
 
 namespace fathom::typecheck {
 
-ir::Lighting default_lighting(Evaluator &ev); // builtins_scene.cpp
+ir::Lighting default_lighting(Evaluator &ev); // builtins/scene.cpp
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Ast to ir::Scene: names, types, stages, and the evaluation of everything that is scene time. The
-// proof is a step of its own (typecheck/proof). Opens no file: what a scene imports comes through
+// proof is a step of its own (proof). Opens no file: what a scene imports comes through
 // the `Loader` that the driver gives.
 #pragma once
 

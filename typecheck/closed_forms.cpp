@@ -6,7 +6,7 @@
 // stands at an edge, and a shader shows what was proved of the data.
 #include "typecheck/evaluator.h"
 
-#include "ir/fold.h"
+#include "ir/passes/fold.h"
 
 #include <algorithm>
 #include <cmath>

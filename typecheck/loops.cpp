@@ -4,7 +4,7 @@
 // time, say), the turns are written out one by one.
 #include "typecheck/evaluator.h"
 
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
 
 #include <fmt/format.h>
 

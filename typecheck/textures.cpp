@@ -3,7 +3,7 @@
 // read by the loader alone.
 #include "typecheck/textures.h"
 #include "typecheck/bases.h"
-#include "typecheck/builtins.h"
+#include "typecheck/builtins/builtins.h"
 
 #include "ir/charts.h"
 #include "ir/semantics.h"

@@ -1,7 +1,7 @@
 // One suite for all ops and all evaluators.
 #include "tests/conformance/questions.h"
 
-#include "backend-cpu/kernels.h"
+#include "backend-cpu/kernels/kernels.h"
 #include "backend-cpu/tape.h"
 
 #include <catch2/catch.hpp>

@@ -3,7 +3,7 @@
 // one in double.
 #pragma once
 
-#include "ir/fold.h"
+#include "ir/passes/fold.h"
 #include "tests/unit/glsl/op_cases.h"
 
 #include <functional>
@@ -19,7 +19,7 @@ struct Question {
 };
 
 std::vector<Question> questions();
-// The canonical answer (ir/fold.h), in double.
+// The canonical answer (ir/passes/fold.h), in double.
 ir::Constant canonical(const Question &question, const std::vector<ir::Constant> &row);
 // Why the answer is wrong; empty if it is not.
 std::string fault(const Question &question, std::size_t row, const ir::Constant &answer);

@@ -166,7 +166,7 @@ TEST_CASE("images and grids: a coordinate may be the same for all points") {
 }
 
 TEST_CASE("images and grids: a shader samples by the rule") {
-    if (!has_context()) return;
+    require_context();
     ir::Scene data;
     add_data(data);
     const Asked ask = asked(data);

@@ -3,7 +3,7 @@
 // Edges apart means: where a pixel of one picture lies beside an edge, float32 may put it on either
 // side. So a pixel agrees when each of its channels lies within 2/255 of the range that the other
 // picture has in the 3 x 3 pixels around.
-#include "backend-cpu/march.h"
+#include "backend-cpu/trace/march.h"
 #include "driver/compile.h"
 #include "render-gl/context.h"
 #include "render-gl/render.h"

@@ -3,7 +3,7 @@
 // over params at both ends of their ranges. A scene that fails is cut down before it is shown.
 // FATHOM_SCENES and FATHOM_SEED in the environment make it longer, or another.
 #include "driver/compile.h"
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
 #include "random_scenes.h"
 #include "tests/support/slopes.h"
 

@@ -1,7 +1,7 @@
 // Every example, as it is marched: the safe ball (the field keeps its sign within |d(p)| of p) on
 // 10^6 random balls, on the CPU and in the shader, and no holes: rays marched by proved steps land
 // where a plain march at a tenth of the step lands.
-#include "backend-cpu/march.h"
+#include "backend-cpu/trace/march.h"
 #include "driver/compile.h"
 #include "tests/support/shader_balls.h"
 
@@ -56,7 +56,7 @@ TEST_CASE("the field keeps its sign within the distance it gives") {
 }
 
 TEST_CASE("so it does in the shader") {
-    if (!has_context()) return;
+    require_context();
     for (const fs::path &file : examples()) {
         driver::Compilation c = driver::compile_file(file, {});
         INFO(file.filename().string());

@@ -6,7 +6,7 @@
 #include "backend-cpu/tape.h"
 #include "backend-glsl/emit.h"
 #include "driver/compile.h"
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
 #include "lang/format.h"
 #include "lang/parse.h"
 #include "tests/support/reference_eval.h"

@@ -1,8 +1,8 @@
 // Cells against whole tapes on real scenes: the examples, the scenes of the measures, random ones,
 // thousands of shapes. Exact values are the same to the bit, distance and hit; bounds are never
 // above; and no ray of a pruned march passes what a plain march with the whole tape hits.
-#include "backend-cpu/march.h"
-#include "backend-cpu/pruning.h"
+#include "backend-cpu/prune/pruning.h"
+#include "backend-cpu/trace/march.h"
 #include "driver/compile.h"
 #include "programs.h"
 #include "random_scenes.h"

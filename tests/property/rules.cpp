@@ -1,7 +1,7 @@
 // Each rule of the analysis in a case where its bound is attained: never exceeded, nearly reached,
 // and wrong at once when the rule is halved.
 #include "build.h"
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
 #include "tests/support/slopes.h"
 #include "tests/support/spans.h"
 

@@ -20,16 +20,17 @@ const std::map<std::string, Names> sees{
     {"base", {}},
     {"lang", {"base"}},
     {"ir", {"base"}},
+    {"proof", {"base", "ir"}},
     {"typecheck", {"base", "lang", "ir"}},
     {"backend-glsl", {"base", "ir"}},
     {"backend-cpu", {"base", "ir"}},
     {"save-format", {"base", "ir"}},
-    {"driver", {"base", "lang", "ir", "typecheck", "save-format"}},
+    {"driver", {"base", "lang", "ir", "proof", "typecheck", "save-format"}},
     {"render-gl", {"base", "ir", "backend-glsl"}},
     {"viewer", {"base", "ir", "backend-glsl", "save-format", "driver", "render-gl"}},
     {"cli",
-     {"base", "lang", "ir", "typecheck", "backend-glsl", "backend-cpu", "save-format", "driver",
-      "render-gl", "viewer"}},
+     {"base", "lang", "ir", "proof", "typecheck", "backend-glsl", "backend-cpu", "save-format",
+      "driver", "render-gl", "viewer"}},
 };
 
 // Foreign headers, by how their names begin, and the only folder (or file) that may see them.
@@ -43,7 +44,8 @@ const std::map<std::string, std::string> owners{
 const Names lonely{"tao/", "CLI/", "sys/inotify.h"};
 
 // Below the driver nothing opens a file, prints, or reads a clock or a locale.
-const Names pure{"base", "lang", "ir", "typecheck", "backend-glsl", "backend-cpu", "save-format"};
+const Names pure{"base",      "lang",         "ir",          "proof",
+                 "typecheck", "backend-glsl", "backend-cpu", "save-format"};
 const Names impure_headers{"fstream",  "iostream", "filesystem", "cstdio", "stdio.h",
                            "chrono",   "ctime",    "time.h",     "locale", "clocale",
                            "locale.h", "unistd.h", "fcntl.h"};

@@ -3,7 +3,7 @@
 // ir::evaluate's.
 #pragma once
 
-#include "ir/fold.h"
+#include "ir/passes/fold.h"
 #include "ir/scene.h"
 
 #include <algorithm>

@@ -5,9 +5,9 @@
 
 #include "backend-glsl/emit.h"
 #include "driver/compile.h"
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
+#include "proof/prove.h"
 #include "typecheck/check.h"
-#include "typecheck/proof/prove.h"
 
 #include <string>
 

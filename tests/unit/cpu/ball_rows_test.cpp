@@ -1,8 +1,8 @@
 // Rows of balls in packs against the kernels row by row, in every instruction set: the same bits.
 #include "scenes.h"
 
-#include "backend-cpu/ball_rows.h"
-#include "backend-cpu/kernels.h"
+#include "backend-cpu/kernels/ball_rows.h"
+#include "backend-cpu/kernels/kernels.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // Pictures of scenes whose look is known by geometry; the march against a brute one; counted work.
 #include "scenes.h"
 
-#include "backend-cpu/march.h"
+#include "backend-cpu/trace/march.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,7 @@
 // below. And that cells leave out what they can.
 #include "scenes.h"
 
-#include "backend-cpu/pruning.h"
+#include "backend-cpu/prune/pruning.h"
 
 #include <catch2/catch.hpp>
 

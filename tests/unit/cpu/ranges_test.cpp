@@ -1,7 +1,7 @@
 // Every kernel over ranges, in every instruction set: the floats that the point kernel computes
 // from numbers within the ranges lie within what the range kernel says.
-#include "backend-cpu/kernel_rows.h"
-#include "backend-cpu/kernels.h"
+#include "backend-cpu/kernels/kernel_rows.h"
+#include "backend-cpu/kernels/kernels.h"
 
 #include <catch2/catch.hpp>
 
@@ -26,7 +26,7 @@ template <class R, class... P> std::vector<Number> inputs_of(R (*)(P...)) {
 std::vector<std::vector<Number>> all_inputs() {
     return {
 #define FATHOM_KERNEL(name, parameters, expression, ...) inputs_of(&base::name##Row<float>::run),
-#include "backend-cpu/kernels.def"
+#include "backend-cpu/kernels/kernels.def"
 #undef FATHOM_KERNEL
     };
 }

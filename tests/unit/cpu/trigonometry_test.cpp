@@ -1,5 +1,5 @@
 // The interpreter's own sin, cos, atan and atan2 against the C library's in double precision.
-#include "backend-cpu/trigonometry.h"
+#include "backend-cpu/kernels/trigonometry.h"
 
 #include <catch2/catch.hpp>
 

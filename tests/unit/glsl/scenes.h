@@ -1,7 +1,7 @@
 // Lowered scenes made by hand, for the tests of what comes after the lowering.
 #pragma once
 
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
 #include "ir/scene.h"
 
 #include <cmath>

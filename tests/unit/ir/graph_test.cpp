@@ -1,7 +1,7 @@
 // The graph: one node for equal things, constants folded, identities applied, copies made where
 // asked.
-#include "ir/fold.h"
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
+#include "ir/passes/fold.h"
 #include "ir/semantics.h"
 #include "tests/support/reference_eval.h"
 

@@ -1,7 +1,7 @@
 // Scenes built by hand, for tests of the lowering: facts as the analysis would state them.
 #pragma once
 
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
 #include "ir/maps.h"
 #include "tests/support/reference_eval.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "ir/maps.h"
-#include "typecheck/proof/field.h"
-#include "typecheck/proof/prove.h"
+#include "proof/field.h"
+#include "proof/prove.h"
 
 #include <cmath>
 #include <string>

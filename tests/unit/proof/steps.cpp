@@ -1,7 +1,7 @@
 // Jumps that cancel, and those that do not.
 #include "build.h"
 
-#include "typecheck/proof/steps.h"
+#include "proof/steps.h"
 
 #include <catch2/catch.hpp>
 

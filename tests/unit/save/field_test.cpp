@@ -5,7 +5,7 @@
 
 #include "backend-cpu/tape.h"
 #include "driver/compile.h"
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
 
 #include <catch2/catch.hpp>
 

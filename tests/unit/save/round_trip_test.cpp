@@ -1,5 +1,5 @@
 // From a save file to the language and back: nothing is lost, in the file's order.
-#include "save-format/importer.h"
+#include "save-format/import/importer.h"
 #include "tests/unit/save/support.h"
 
 #include <catch2/catch.hpp>

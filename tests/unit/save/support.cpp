@@ -1,6 +1,6 @@
 #include "tests/unit/save/support.h"
 
-#include "save-format/importer.h"
+#include "save-format/import/importer.h"
 
 #include <filesystem>
 #include <fstream>

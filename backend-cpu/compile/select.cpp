@@ -1,0 +1,287 @@
+// One switch from operations to kernels. Componentwise ones go component by component; products of
+// matrices leave out what is multiplied by a constant 0, so that a turn about an axis costs what it
+// would by hand.
+#include "backend-cpu/compile/select.h"
+
+#include <cassert>
+
+namespace fathom::cpu {
+
+using namespace ir;
+
+namespace {
+
+using Values = std::vector<Value>;
+using Arguments = std::span<const Values>;
+
+Values by_component(Builder &builder, Kernel kernel, Arguments args) {
+    Values out;
+    for (std::size_t i = 0; i < args[0].size(); ++i) {
+        Values in;
+        for (const Values &arg : args) in.push_back(arg[i]);
+        out.push_back(builder.outputs(kernel, in)[0]);
+    }
+    return out;
+}
+
+Values chain(Builder &builder, Kernel kernel, Arguments args) {
+    Value sum = args[0][0];
+    for (const Values &arg : args.subspan(1)) sum = builder.make(kernel, {sum, arg[0]});
+    return {sum};
+}
+
+Values joined(Arguments args) {
+    Values all;
+    for (const Values &arg : args) all.insert(all.end(), arg.begin(), arg.end());
+    return all;
+}
+
+Value sum_of_products(Builder &builder, const Values &a, const Values &b) {
+    Values left, right;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (builder.number_of(a[i]) == 0.0f || builder.number_of(b[i]) == 0.0f) continue;
+        left.push_back(a[i]);
+        right.push_back(b[i]);
+    }
+    Values both = left;
+    both.insert(both.end(), right.begin(), right.end());
+    switch (left.size()) {
+    case 0: return builder.number(0);
+    case 1: return builder.make(Kernel::MulF, {left[0], right[0]});
+    case 2: return builder.outputs(Kernel::Dot2, both)[0];
+    case 3: return builder.outputs(Kernel::Dot3, both)[0];
+    default: return builder.outputs(Kernel::Dot4, both)[0];
+    }
+}
+
+Values multiply(Builder &builder, const Values &a, Type a_type, const Values &b, Type b_type) {
+    auto n = static_cast<std::size_t>(side(is_matrix(a_type) ? a_type : b_type));
+    auto row = [&](std::size_t r) {
+        Values values;
+        for (std::size_t c = 0; c < n; ++c) values.push_back(a[c * n + r]);
+        return values;
+    };
+    auto column = [&](std::size_t c) {
+        auto begin = b.begin() + static_cast<std::ptrdiff_t>(c * n);
+        return Values(begin, begin + static_cast<std::ptrdiff_t>(n));
+    };
+    Values out;
+    if (!is_matrix(b_type))
+        for (std::size_t r = 0; r < n; ++r) out.push_back(sum_of_products(builder, row(r), b));
+    else if (!is_matrix(a_type))
+        for (std::size_t c = 0; c < n; ++c) out.push_back(sum_of_products(builder, a, column(c)));
+    else
+        for (std::size_t c = 0; c < n; ++c)
+            for (std::size_t r = 0; r < n; ++r)
+                out.push_back(sum_of_products(builder, row(r), column(c)));
+    return out;
+}
+
+Values blend(Builder &builder, Profile profile, Arguments args) {
+    Value r = args[0][0], n = args[1][0], sum = args[2][0];
+    for (const Values &arg : args.subspan(3)) {
+        switch (profile) {
+        case Profile::Smooth: sum = builder.make(Kernel::BlendSmooth, {sum, arg[0], r}); break;
+        case Profile::Round: sum = builder.make(Kernel::BlendRound, {sum, arg[0], r}); break;
+        case Profile::Chamfer: sum = builder.make(Kernel::BlendChamfer, {sum, arg[0], r}); break;
+        case Profile::Stairs: sum = builder.make(Kernel::BlendStairs, {sum, arg[0], r, n}); break;
+        case Profile::Columns: sum = builder.make(Kernel::BlendColumns, {sum, arg[0], r, n}); break;
+        }
+    }
+    return {sum};
+}
+
+Value choose(Builder &builder, Value condition, Value yes, Value no, bool is_float) {
+    return builder.make(is_float ? Kernel::SelectF : Kernel::SelectI, {condition, yes, no});
+}
+
+// A hit's values: distance, paint, point, extra; the paint alone is an int.
+Values choose_hit(Builder &builder, Value condition, const Values &yes, const Values &no,
+                  std::size_t from) {
+    Values out(no.begin(), no.begin() + static_cast<std::ptrdiff_t>(from));
+    for (std::size_t i = from; i < no.size(); ++i)
+        out.push_back(choose(builder, condition, yes[i], no[i], i != 1));
+    return out;
+}
+
+Values fill_paint(Builder &builder, const Values &hit, const Values &paint) {
+    Value unpainted = builder.make(Kernel::LessI, {hit[1], builder.integer(0)});
+    return choose_hit(builder, unpainted, paint, hit, 1);
+}
+
+Values nearest(Builder &builder, Arguments args) {
+    Values best = args[0];
+    for (const Values &arg : args.subspan(1))
+        best = choose_hit(builder, builder.make(Kernel::LessF, {arg[0], best[0]}), arg, best, 0);
+    return best;
+}
+
+Values farthest(Builder &builder, Arguments args) {
+    Values best = args[0];
+    for (const Values &arg : args.subspan(1))
+        best = choose_hit(builder, builder.make(Kernel::LessF, {best[0], arg[0]}), arg, best, 0);
+    return fill_paint(builder, best, args[0]);
+}
+
+Kernel for_size(std::size_t size, std::array<Kernel, 4> kernels) { return kernels[size - 1]; }
+
+} // namespace
+
+std::vector<Value> select(Builder &builder, const Node &node, Arguments args,
+                          std::span<const Type> types) {
+    const bool whole = !types.empty() && (types.back() == Type::Int || types.back() == Type::Bool);
+    auto each = [&](Kernel kernel) {
+        assert(!whole);
+        return by_component(builder, kernel, args);
+    };
+    auto either = [&](Kernel floats, Kernel ints) {
+        return by_component(builder, whole ? ints : floats, args);
+    };
+    auto together = [&](Kernel kernel) { return builder.outputs(kernel, joined(args)); };
+    const std::size_t size = args.empty() ? 0 : args[0].size();
+
+    switch (node.op) {
+    case Op::Neg: return either(Kernel::NegF, Kernel::NegI);
+    case Op::Add: return either(Kernel::AddF, Kernel::AddI);
+    case Op::Sub: return either(Kernel::SubF, Kernel::SubI);
+    case Op::Mul: return either(Kernel::MulF, Kernel::MulI);
+    case Op::Div: return either(Kernel::DivF, Kernel::DivI);
+    case Op::Mod: return either(Kernel::ModF, Kernel::ModI);
+    case Op::Min: return either(Kernel::MinF, Kernel::MinI);
+    case Op::Max: return either(Kernel::MaxF, Kernel::MaxI);
+    case Op::Abs: return either(Kernel::AbsF, Kernel::AbsI);
+    case Op::Sign: return either(Kernel::SignF, Kernel::SignI);
+    case Op::Clamp: return either(Kernel::ClampF, Kernel::ClampI);
+    case Op::Pow: return either(Kernel::PowF, Kernel::PowI);
+    case Op::Step: return each(Kernel::StepF);
+    case Op::Atan2: return each(Kernel::Atan2F);
+    case Op::Floor: return each(Kernel::FloorF);
+    case Op::Ceil: return each(Kernel::CeilF);
+    case Op::Round: return each(Kernel::RoundF);
+    case Op::Trunc: return each(Kernel::TruncF);
+    case Op::Fract: return each(Kernel::FractF);
+    case Op::Sqrt: return each(Kernel::SqrtF);
+    case Op::InverseSqrt: return each(Kernel::InverseSqrtF);
+    case Op::Exp: return each(Kernel::ExpF);
+    case Op::Exp2: return each(Kernel::Exp2F);
+    case Op::Log: return each(Kernel::LogF);
+    case Op::Log2: return each(Kernel::Log2F);
+    case Op::Sin: return each(Kernel::SinF);
+    case Op::Cos: return each(Kernel::CosF);
+    case Op::Tan: return each(Kernel::TanF);
+    case Op::Asin: return each(Kernel::AsinF);
+    case Op::Acos: return each(Kernel::AcosF);
+    case Op::Atan: return each(Kernel::AtanF);
+    case Op::Sinh: return each(Kernel::SinhF);
+    case Op::Cosh: return each(Kernel::CoshF);
+    case Op::Tanh: return each(Kernel::TanhF);
+    case Op::Mix: return each(Kernel::MixF);
+    case Op::Smoothstep: return each(Kernel::SmoothstepF);
+
+    case Op::Dot: {
+        if (size == 1) return {builder.make(Kernel::MulF, {args[0][0], args[1][0]})};
+        return together(for_size(size, {Kernel::MulF, Kernel::Dot2, Kernel::Dot3, Kernel::Dot4}));
+    }
+    case Op::Length:
+        return together(
+            for_size(size, {Kernel::AbsF, Kernel::Length2, Kernel::Length3, Kernel::Length4}));
+    case Op::Cross: return together(Kernel::Cross);
+    case Op::Normalize:
+        return together(for_size(size, {Kernel::Normalize1, Kernel::Normalize2, Kernel::Normalize3,
+                                        Kernel::Normalize4}));
+
+    case Op::Less: return either(Kernel::LessF, Kernel::LessI);
+    case Op::LessEqual: return either(Kernel::LessEqualF, Kernel::LessEqualI);
+    case Op::Equal: return either(Kernel::EqualF, Kernel::EqualI);
+    case Op::NotEqual: return either(Kernel::NotEqualF, Kernel::NotEqualI);
+    case Op::And: return {builder.make(Kernel::And, {args[0][0], args[1][0]})};
+    case Op::Or: return {builder.make(Kernel::Or, {args[0][0], args[1][0]})};
+    case Op::Not: return {builder.make(Kernel::Not, {args[0][0]})};
+    case Op::Select: {
+        Values out;
+        for (std::size_t i = 0; i < args[1].size(); ++i)
+            out.push_back(choose(builder, args[0][0], args[1][i], args[2][i],
+                                 !whole && !(node.type == Type::Hit && i == 1)));
+        return out;
+    }
+
+    case Op::ToFloat:
+        if (!whole) return args[0];
+        return {builder.make(Kernel::FloatOfInt, {args[0][0]})};
+    case Op::ToInt:
+        if (whole) return args[0];
+        return {builder.make(Kernel::IntOfFloat, {args[0][0]})};
+    case Op::Splat: return Values(static_cast<std::size_t>(components(node.type)), args[0][0]);
+    case Op::Make: return joined(args);
+    case Op::Swizzle: {
+        Values out;
+        for (int i = 0; i < swizzle_size(node.payload); ++i)
+            out.push_back(args[0][static_cast<std::size_t>(swizzle_component(node.payload, i))]);
+        return out;
+    }
+    case Op::Column: {
+        auto n = static_cast<std::size_t>(side(types[0]));
+        auto begin = args[0].begin() + static_cast<std::ptrdiff_t>(node.payload * n);
+        return {begin, begin + static_cast<std::ptrdiff_t>(n)};
+    }
+    case Op::MatMul: return multiply(builder, args[0], types[0], args[1], types[1]);
+    case Op::Transpose: {
+        auto n = static_cast<std::size_t>(side(types[0]));
+        Values out;
+        for (std::size_t c = 0; c < n; ++c)
+            for (std::size_t r = 0; r < n; ++r) out.push_back(args[0][r * n + c]);
+        return out;
+    }
+
+    case Op::Hash:
+        if (whole) return together(Kernel::HashI);
+        return together(
+            for_size(size, {Kernel::Hash1, Kernel::Hash2, Kernel::Hash3, Kernel::Hash4}));
+    case Op::Perlin: return together(Kernel::Perlin);
+    case Op::Simplex: return together(Kernel::Simplex);
+    case Op::ValueNoise: return together(Kernel::ValueNoise);
+    case Op::Worley: return together(Kernel::Worley);
+    case Op::SpotNoise: return together(Kernel::SpotNoise);
+
+    case Op::Union: return chain(builder, Kernel::MinF, args);
+    case Op::Intersection: return chain(builder, Kernel::MaxF, args);
+    case Op::Blend: return blend(builder, static_cast<Profile>(node.payload), args);
+
+    case Op::MakeHit: return joined(args);
+    case Op::HitDistance: return {args[0][0]};
+    case Op::HitPaint: return {args[0][1]};
+    case Op::HitPoint: return {args[0][2], args[0][3], args[0][4]};
+    case Op::HitExtra: return {args[0][5], args[0][6], args[0][7], args[0][8]};
+    case Op::NearestHit: return nearest(builder, args);
+    case Op::FarthestHit: return farthest(builder, args);
+    case Op::HitWith: {
+        Values out = args[0];
+        out[0] = args[1][0];
+        return out;
+    }
+    case Op::FillPaint: {
+        Values paint = joined(args.subspan(1));
+        paint.insert(paint.begin(), args[0][0]); // its distance, so that both are hits
+        return fill_paint(builder, args[0], paint);
+    }
+
+    case Op::Const:
+    case Op::Point:
+    case Op::Normal:
+    case Op::Direction:
+    case Op::Time:
+    case Op::Param:
+    case Op::Var:
+    case Op::TableRead:
+    case Op::Image:
+    case Op::Grid:
+    case Op::Call:
+    case Op::Fold:
+    case Op::FoldResult:
+    case Op::Cached: break;
+    }
+    assert(!"build.cpp does these");
+    return {};
+}
+
+} // namespace fathom::cpu

@@ -1,0 +1,103 @@
+// Where in space which parts of a field matter: a hierarchy of cells, 64 in each, with a shorter
+// tape each (shorten.h), or, far from every surface, one number. Cells are made when a point first
+// asks for them and depend on nothing but their place, so that pictures are the same whoever asks
+// first; any number of threads may ask.
+//
+// A value is that of the whole tape to the bit, unless the asker says that less will do: of a
+// distance that is at least its `limit` any lower bound that is at least the limit. Far cells
+// answer that with the least value that the field takes in them.
+#pragma once
+
+#include "backend-cpu/prune/shorten.h"
+
+#include <atomic>
+#include <memory>
+
+namespace fathom::cpu {
+
+// A cube of space. Outside of it the whole tape runs.
+struct Cube {
+    std::array<float, 3> lo{};
+    float side = 0;
+};
+
+struct PruneSettings {
+    bool far_cells = true; // the first result is a distance, and bounds of it may be asked for
+    int depth = 4;         // levels of cells: 4^depth along an axis
+    float enough = 32;     // a tape of so few kernels is short enough
+    float far = 1;         // times half a cell's diagonal: from there on one number has to do
+};
+
+struct PruneBlock;
+struct PruneCell {
+    float far = 0; // above 0: the least value in it, and exact ones are asked of the cell above
+    float cost = 0, shapes = 0; // of its tape
+    bool splits = false;
+    const PruneCell *above =
+        nullptr; // what it is a part of: asked where a Cut leaves points unknown
+    Selection tape;
+    mutable std::atomic<PruneBlock *> below{nullptr};
+    mutable std::atomic<bool> claimed{false};
+};
+
+struct Pruning {
+    Pruning(const Program &program, const Inputs &inputs, const Cube &cube,
+            const PruneSettings &settings);
+    ~Pruning();
+    Pruning(const Pruning &) = delete;
+    Pruning &operator=(const Pruning &) = delete;
+    const Program program;
+    const Parts parts;
+    const Cube cube;
+    const PruneSettings settings;
+    const ShortTape whole;
+    float slack = 0; // by which points may be outside of the cell that rounding finds for them
+    float cells = 0, scale = 0; // of the finest level: along an axis, and in a unit of length
+    PruneCell root;
+};
+
+// One thread's memory.
+struct Asker {
+    Asker(const Pruning &pruning, const Inputs &inputs);
+    Shortener shortener;
+    ShortTape tape; // of the cell in the making
+    Scratch scratch;
+    struct Tally {
+        std::uint64_t far = 0, near = 0, outside = 0; // points: outside of the cube
+        std::uint64_t groups = 0;
+        std::uint64_t again = 0;        // points that the cell above was asked for
+        double kernels = 0, shapes = 0; // of the near ones' tapes, all told
+        std::uint64_t cells = 0;        // with tapes, made by this thread
+    } tally;
+    struct Last { // the block that the last place lay in, inside the cell `at` of `level`
+        const PruneBlock *block = nullptr;
+        int level = 0;
+        std::array<std::int32_t, 3> at{};
+    } last;
+    std::vector<std::uint8_t> bounded; // by point of the last question: it got a bound
+    struct Seen { // which group a cell has: open addressing, of this question where `turn` is its
+        const PruneCell *cell = nullptr;
+        std::uint32_t turn = 0, group = 0;
+    };
+    std::vector<Seen> seen;
+    std::uint32_t turn = 0;
+    // points left, their groups, and the groups
+    std::vector<std::uint32_t> order, group_of, place;
+    std::vector<const PruneCell *> groups;
+    std::vector<std::uint32_t> counts, firsts, next;
+    std::vector<std::vector<float>> in, out;
+    std::vector<std::uint32_t> unknown;
+    std::vector<float> tried; // values at some places of a cell in the making
+    std::vector<float *> tried_to;
+};
+
+// out[c][k]: the c-th component of the result at point k. limits: one a point, or none: all exact.
+void ask(const Pruning &pruning, Asker &asker, const float *const *in, float *const *out,
+         std::size_t n, const float *limits = nullptr);
+
+// The cell at a place: the root outside of the cube. And the exact values in one that is not far.
+const PruneCell &cell_at(const Pruning &pruning, Asker &asker, float x, float y, float z);
+void evaluate_in(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+                 const float *const *in, float *const *out, std::size_t n);
+
+} // namespace fathom::cpu

@@ -1,0 +1,183 @@
+#include "backend-cpu/trace/cell_march.h"
+
+#include <bit>
+
+namespace fathom::cpu {
+
+namespace {
+
+class Marcher {
+  public:
+    Marcher(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings)
+        : worker_(worker), pruning_(*worker.stage.pruning), asker_(*worker.asker),
+          memory_(*worker.cell_march), rays_(rays), landings_(landings), lengths_(worker.stage),
+          max_steps_(worker.stage.scene->render.max_steps), steep_(worker.stage.frame.steep) {}
+
+    void run() {
+        memory_.walks.resize(std::max(memory_.walks.size(), rays_.size()));
+        memory_.next.resize(std::max(memory_.next.size(), rays_.size()));
+        memory_.stops.clear(), memory_.queue.clear();
+        ++memory_.turn;
+        if (memory_.seen.empty()) memory_.seen.resize(4 * most_rays);
+        for (std::uint32_t i = 0; i < rays_.size(); ++i) {
+            landings_[i] = {};
+            memory_.walks[i] = {};
+            memory_.walks[i].t = rays_[i].begin;
+            if (rays_[i].end >= rays_[i].begin) go_on(i);
+        }
+        std::size_t first = 0;
+        while (first < memory_.queue.size() || !memory_.arriving.rays.empty()) {
+            if (first == memory_.queue.size()) {
+                arrive();
+                continue;
+            }
+            halt(memory_.queue[first++]);
+            if (memory_.arriving.rays.size() > most_rays / 2) arrive();
+        }
+    }
+
+  private:
+    // Through far cells to one where the ray has to wait, or to its end.
+    void go_on(std::uint32_t i) {
+        Walk &walk = memory_.walks[i];
+        const RayState &ray = rays_[i];
+        while (goes_on(i)) {
+            const Vec p = ray.origin + walk.t * ray.direction;
+            const PruneCell &cell = cell_at(pruning_, asker_, p.x, p.y, p.z);
+            if (!(cell.far > 0 && cell.far >= limit_at(walk.t, lengths_))) {
+                wait(i, cell.far > 0 ? *cell.above : cell);
+                return;
+            }
+            ++asker_.tally.far, ++worker_.work.evaluations;
+            walk.d = cell.far;
+            ++walk.steps;
+            if (walk.steps < max_steps_ && apart(walk))
+                go_back(walk, lengths_, false);
+            else
+                advance(walk, ray.end, lengths_, false);
+        }
+    }
+
+    // Who has run out of steps or of way is done.
+    bool goes_on(std::uint32_t i) {
+        const Walk &walk = memory_.walks[i];
+        if (walk.steps < max_steps_ && walk.t <= rays_[i].end + lengths_.slack) return true;
+        landings_[i] = {-1.0f, walk.steps};
+        return false;
+    }
+
+    std::uint32_t stop_at(const PruneCell &cell) {
+        if (4 * memory_.stops.size() > memory_.seen.size()) {
+            memory_.seen.assign(2 * memory_.seen.size(), {});
+            for (std::uint32_t s = 0; s < memory_.stops.size(); ++s)
+                *seen_at(*memory_.stops[s].cell) = {memory_.stops[s].cell, memory_.turn, s};
+        }
+        CellMarch::Seen *seen = seen_at(cell);
+        if (seen->turn != memory_.turn) {
+            *seen = {&cell, memory_.turn, static_cast<std::uint32_t>(memory_.stops.size())};
+            memory_.stops.push_back({&cell, 0, 0});
+        }
+        return seen->stop;
+    }
+    CellMarch::Seen *seen_at(const PruneCell &cell) {
+        const std::size_t mask = memory_.seen.size() - 1;
+        std::size_t at = (reinterpret_cast<std::uintptr_t>(&cell) / sizeof(PruneCell)) & mask;
+        while (memory_.seen[at].turn == memory_.turn && memory_.seen[at].cell != &cell)
+            at = (at + 1) & mask;
+        return &memory_.seen[at];
+    }
+
+    void wait(std::uint32_t i, const PruneCell &cell) {
+        const std::uint32_t s = stop_at(cell);
+        CellMarch::Stop &stop = memory_.stops[s];
+        if (stop.count++ == 0) memory_.queue.push_back(s);
+        memory_.next[i] = stop.first;
+        stop.first = i;
+    }
+
+    // All who wait in a cell, until none is in it.
+    void halt(std::uint32_t s) {
+        CellMarch::Stop &stop = memory_.stops[s];
+        const PruneCell &cell = *stop.cell;
+        std::vector<std::uint32_t> &here = memory_.here;
+        here.clear();
+        for (std::uint32_t k = 0, i = stop.first; k < stop.count; ++k, i = memory_.next[i])
+            here.push_back(i);
+        stop.count = 0;
+        for (std::size_t k = 0; k < here.size(); ++k) {
+            const RayState &ray = rays_[here[k]];
+            worker_.points.set(0, k, ray.origin + memory_.walks[here[k]].t * ray.direction);
+        }
+        worker_.work.evaluations += here.size();
+        float *out = worker_.values.data();
+        evaluate_in(pruning_, asker_, cell, worker_.points.pointers(), &out, here.size());
+        for (std::size_t k = 0; k < here.size(); ++k) {
+            const std::uint32_t i = here[k];
+            if (step(i, worker_.values[k])) go_on(i);
+        }
+    }
+
+    // False: the ray is done, or is looked at closely.
+    bool step(std::uint32_t i, float d) {
+        Walk &walk = memory_.walks[i];
+        const RayState &ray = rays_[i];
+        walk.d = d;
+        ++walk.steps;
+        if (walk.steps < max_steps_ && apart(walk)) {
+            go_back(walk, lengths_, false);
+            return true;
+        }
+        if (d <= reach_at(walk, lengths_, max_steps_)) {
+            if (!steep_) {
+                landings_[i] = {walk.t + d, walk.steps};
+                return false;
+            }
+            CellMarch::Arriving &arriving = memory_.arriving;
+            arriving.rays.push_back(i);
+            arriving.points.push_back(ray.origin + walk.t * ray.direction);
+            arriving.d.push_back(d);
+            arriving.arms.push_back(lengths_.arm(walk.t));
+            return false;
+        }
+        advance(walk, ray.end, lengths_, false);
+        return true;
+    }
+
+    void arrive() {
+        CellMarch::Arriving &arriving = memory_.arriving;
+        const std::size_t count = arriving.rays.size();
+        arriving.distances.resize(count);
+        near(worker_, arriving.points.data(), arriving.d.data(), arriving.arms.data(),
+             arriving.distances.data(), count);
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t i = arriving.rays[k];
+            Walk &walk = memory_.walks[i];
+            if (arriving.distances[k] <= reach_at(walk, lengths_, max_steps_)) {
+                landings_[i] = {walk.t + walk.d, walk.steps};
+            } else {
+                advance(walk, rays_[i].end, lengths_, false);
+                go_on(i);
+            }
+        }
+        arriving.rays.clear(), arriving.points.clear(), arriving.d.clear(), arriving.arms.clear();
+    }
+
+    Worker &worker_;
+    const Pruning &pruning_;
+    Asker &asker_;
+    CellMarch &memory_;
+    std::span<const RayState> rays_;
+    std::span<Landing> landings_;
+    const Lengths lengths_;
+    const int max_steps_;
+    const bool steep_;
+};
+
+} // namespace
+
+void march_by_cells(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings) {
+    if (!worker.cell_march) worker.cell_march = std::make_shared<CellMarch>();
+    Marcher(worker, rays, landings).run();
+}
+
+} // namespace fathom::cpu

@@ -1,0 +1,98 @@
+// The CPU's pictures: ir/look.h over batches of rays, in float32 and in the order of
+// backend-glsl/marcher.cpp, on all cores. Opens and prints nothing.
+#pragma once
+
+#include "backend-cpu/tape.h"
+#include "ir/view.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+namespace fathom::cpu {
+
+// Work that was done, in numbers that do not depend on the machine.
+struct Work {
+    std::uint64_t rays = 0; // from the eye
+    std::uint64_t hits = 0;
+    std::uint64_t steps = 0; // of rays from the eye: evaluations on their way, look.h's `steps`
+    std::uint64_t shadow_steps = 0;
+    std::uint64_t evaluations = 0; // of the distance, for whatever purpose
+    // With pruning: of those, how many a far cell answered; what cells near the surface keep of the
+    // shapes, all told; and how many evaluations that were.
+    std::uint64_t far = 0, near = 0;
+    double near_shapes = 0;
+    Work &operator+=(const Work &other);
+};
+
+struct Pruning;
+// Whether the shapes that cannot matter are left out, cell by cell (pruning.h). By itself from so
+// many shapes on.
+enum class Prune : std::uint8_t { Auto, Never, Always };
+inline constexpr float prune_from = 256;
+
+// A scene made ready to be looked at from one place. Constant while any number of threads use it.
+struct Stage {
+    const ir::Scene *scene = nullptr;
+    int width = 0, height = 0;
+    ir::View view;
+    ir::Frame frame;
+    Inputs inputs;
+    Program distance, hit, background;
+    Program reach; // Scene::reach, where `reaches`: not with pruning
+    std::shared_ptr<const Pruning> pruning, hit_pruning; // none: not worth it
+    std::vector<Program> surfaces;
+    std::vector<ir::LightValue> lights;
+    bool has_background = false, reaches = false;
+    bool local_normals = false; // some surface reads its normal
+    struct Look {
+        float ambient[3] = {};
+        float ambient_occlusion = 0, shadow_darkness = 0, soft_shadows = 0, specular_intensity = 0;
+    } look;
+};
+Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int height, double time,
+              Prune prune = Prune::Auto);
+// How many operands of unions, blends and other choices, and rows of tables, the whole tape has.
+float shapes_of(const ir::Scene &scene);
+
+enum class PictureMode : std::uint8_t { Color, Steps };
+
+struct PictureOptions {
+    int samples = 1;
+    unsigned jobs = 0; // 0: as many as the machine has cores
+    PictureMode mode = PictureMode::Color;
+};
+
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgba; // sRGB, from the top left
+    Work work;
+    bool complete = false; // false: cancelled
+};
+
+struct Tile {
+    int x = 0, y = 0, width = 0, height = 0; // of the picture, whose pixels there are now final
+};
+
+// Called by one thread at a time, with the part that is done, 0 to 1, and the tile just finished;
+// false cancels.
+using Progress = std::function<bool(double done, const Tile &tile, const Picture &so_far)>;
+
+Picture render(const Stage &stage, const PictureOptions &options, const Progress &progress = {});
+
+// Rays alone, for tests: where each hits (negative: nowhere) and after how many steps. `brute`
+// marches plainly, at a tenth of the proved step and ten times as often, as a check on what the
+// stepping may have jumped over.
+struct Ray {
+    std::array<float, 3> origin, direction;
+};
+struct Landing {
+    float t = -1;
+    int steps = 0;
+};
+std::vector<Landing> cast(const Stage &stage, std::span<const Ray> rays, bool brute = false);
+Ray eye_ray(const Stage &stage, float x,
+            float y); // through a place of the picture, in pixels from its top left
+
+} // namespace fathom::cpu

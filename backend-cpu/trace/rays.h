@@ -1,0 +1,125 @@
+// What marching and shading share: points in structure-of-arrays form, and one thread's memory for
+// evaluating them.
+#pragma once
+
+#include "backend-cpu/prune/pruning.h"
+#include "backend-cpu/trace/march.h"
+
+#include <cmath>
+#include <optional>
+
+namespace fathom::cpu {
+
+struct Vec {
+    float x = 0, y = 0, z = 0;
+};
+inline Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec operator*(Vec a, Vec b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+inline Vec operator*(float s, Vec a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Vec operator/(Vec a, float s) { return {a.x / s, a.y / s, a.z / s}; }
+inline Vec operator-(Vec a) { return {-a.x, -a.y, -a.z}; }
+inline float dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline float length(Vec a) { return std::sqrt(dot(a, a)); }
+inline Vec vec(const std::array<double, 3> &a) {
+    return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
+}
+inline float clamp(float x, float lo, float hi) { return std::fmin(std::fmax(x, lo), hi); }
+
+// Rows of numbers, one column a point: what a Program takes and gives.
+class Columns {
+  public:
+    Columns(std::size_t rows, std::size_t most) : most_(most), numbers_(rows * most) {
+        for (std::size_t r = 0; r < rows; ++r) pointers_.push_back(numbers_.data() + r * most);
+    }
+    Columns(const Columns &) = delete;
+    Columns &operator=(const Columns &) = delete;
+    float *operator[](std::size_t row) { return pointers_[row]; }
+    float *const *pointers() const { return pointers_.data(); }
+    void set(std::size_t row, std::size_t i, Vec v) {
+        pointers_[row][i] = v.x;
+        pointers_[row + 1][i] = v.y;
+        pointers_[row + 2][i] = v.z;
+    }
+    Vec vec(std::size_t row, std::size_t i) const {
+        return {pointers_[row][i], pointers_[row + 1][i], pointers_[row + 2][i]};
+    }
+    std::size_t most() const { return most_; }
+
+  private:
+    std::size_t most_;
+    std::vector<float> numbers_;
+    std::vector<float *> pointers_;
+};
+
+inline constexpr int tile_side = 32;
+inline constexpr std::size_t most_rays = tile_side * tile_side;
+
+struct CellMarch;
+
+// One thread's.
+struct Worker {
+    explicit Worker(const Stage &stage);
+    const Stage &stage;
+    Scratch distance, reach, hit, background;
+    std::optional<Asker> asker, hit_asker;
+    std::vector<float> limits = std::vector<float>(most_rays);
+    std::vector<Scratch> surfaces;
+    Columns points{3, most_rays};
+    std::vector<float> values = std::vector<float>(most_rays);
+    std::vector<float> spans = std::vector<float>(most_rays);
+    Columns taps{3, most_rays};
+    std::vector<float> tap_values = std::vector<float>(most_rays);
+    Columns hits{9, most_rays};
+    std::shared_ptr<CellMarch> cell_march; // made when first needed
+    Work work;
+};
+
+// Numbers of the frame in float32.
+struct Lengths {
+    float slack, pixel, far, base, slope;
+    bool orthographic;
+    explicit Lengths(const Stage &stage);
+    float tolerance(float t) const { return base + slope * t; }
+    float arm(float t) const;
+    float width(float t) const { return orthographic ? pixel : pixel * t; } // of a pixel
+};
+
+struct RayState {
+    Vec origin, direction;
+    float begin = 0, end = 0;
+};
+struct Inside {
+    float first, last;
+};
+Inside box(const ir::Frame &frame, Vec origin, Vec direction);
+RayState clipped(const Stage &stage, Vec origin,
+                 Vec direction); // between the eye and the end of everything
+
+// limits: from what value on a lower bound of the distance will do, by point; without them all are
+// exact.
+void distances(Worker &worker, const Columns &points, float *out, std::size_t n,
+               const float *limits = nullptr);
+// The distances, and how far they reach (Scene::reach).
+void reaches(Worker &worker, const Columns &points, float *out, float *spans, std::size_t n);
+bool is_bound(const Worker &worker, std::size_t k); // of the last distances'
+void hits(Worker &worker, std::size_t n);           // at worker.points, into worker.hits
+// The gradients of the distance at n points, with arms h.
+void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std::size_t n);
+// The true distances near n points where the field says d; d itself where nothing was divided by a
+// bound.
+void near(Worker &worker, const Vec *points, const float *d, const float *h, float *out,
+          std::size_t n);
+
+void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings, bool brute);
+// Linear colours of the rays; those with t < 0 see the background.
+void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings,
+           std::span<Vec> colors);
+
+struct ShadowRay {
+    Vec from, towards;
+    float reach, margin, arm;
+};
+void shadows(Worker &worker, std::span<const ShadowRay> rays, float angle, std::span<float> lit);
+
+} // namespace fathom::cpu

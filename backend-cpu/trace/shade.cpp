@@ -1,0 +1,220 @@
+// The colours of rays, by ir/look.h: normals, surfaces grouped by paint, lights with their shadows,
+// occlusion. Names and order follow backend-glsl/marcher.cpp.
+#include "backend-cpu/trace/rays.h"
+
+#include "ir/look.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace fathom::cpu {
+
+namespace look = ir::look;
+
+namespace {
+
+struct Material {
+    Vec diffuse, specular, emission;
+    float exponent = 0;
+};
+
+// What is known of the points that were hit, one entry a hit.
+struct Points {
+    std::vector<std::size_t> ray;
+    std::vector<Vec> p, n;
+    std::vector<float> t, h;
+    std::vector<Material> material;
+    std::size_t size() const { return ray.size(); }
+};
+
+void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
+    std::vector<Vec> gradient(at.size());
+    gradients(worker, at.p.data(), at.h.data(), gradient.data(), at.size());
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        const float slope = length(gradient[k]);
+        at.n.push_back(slope > 0 ? gradient[k] / slope : -rays[at.ray[k]].direction);
+    }
+}
+
+constexpr std::size_t paint_row = 1, point_row = 2,
+                      extra_row = 5; // of a hit: distance, paint, point, extra
+
+void ask_hits(Worker &worker, std::span<const Vec> points) {
+    for (std::size_t k = 0; k < points.size(); ++k) worker.points.set(0, k, points[k]);
+    hits(worker, points.size());
+}
+
+void find_materials(Worker &worker, Points &at) {
+    const Stage &stage = worker.stage;
+    const std::size_t count = at.size();
+    std::vector<Vec> local = at.n;
+    if (stage.local_normals) { // the normal in the space where the paint stands
+        std::vector<Vec> beside(count);
+        for (std::size_t k = 0; k < count; ++k) beside[k] = at.p[k] + at.h[k] * at.n[k];
+        ask_hits(worker, beside);
+        for (std::size_t k = 0; k < count; ++k) local[k] = worker.hits.vec(point_row, k);
+    }
+    ask_hits(worker, at.p);
+    if (stage.local_normals)
+        for (std::size_t k = 0; k < count; ++k) {
+            const Vec turned = local[k] - worker.hits.vec(point_row, k);
+            const float size = length(turned);
+            local[k] = size > 0 ? turned / size : at.n[k];
+        }
+
+    const auto last = static_cast<std::int32_t>(stage.surfaces.size()) - 1;
+    std::vector<std::vector<std::size_t>> by_paint(stage.surfaces.size());
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto paint = std::bit_cast<std::int32_t>(worker.hits[paint_row][k]);
+        by_paint[static_cast<std::size_t>(paint < 0 || paint > last ? last : paint)].push_back(k);
+    }
+    Columns in(10, count), out(10, count);
+    at.material.resize(count);
+    for (std::size_t s = 0; s < by_paint.size(); ++s) {
+        const std::vector<std::size_t> &group = by_paint[s];
+        for (std::size_t i = 0; i < group.size(); ++i) {
+            in.set(0, i, worker.hits.vec(point_row, group[i]));
+            in.set(3, i, local[group[i]]);
+            for (std::size_t c = 0; c < 4; ++c) in[6 + c][i] = worker.hits[extra_row + c][group[i]];
+        }
+        evaluate(stage.surfaces[s], worker.surfaces[s], in.pointers(), out.pointers(),
+                 group.size());
+        for (std::size_t i = 0; i < group.size(); ++i)
+            at.material[group[i]] = {out.vec(0, i), out.vec(3, i), out.vec(7, i), out[6][i]};
+    }
+}
+
+// How much of the surroundings five samples along the normal find closed (thesis, 4.2.1).
+std::vector<float> find_occlusion(Worker &worker, const Points &at) {
+    const std::size_t count = at.size();
+    std::vector<float> sum(count, 0.0f), d(count), dq, h, truth;
+    std::vector<std::size_t> close;
+    std::vector<Vec> q;
+    const float reach = look::occlusion_reach * static_cast<float>(worker.stage.frame.radius) /
+                        static_cast<float>(look::occlusion_samples);
+    float weight = 1, total = 0;
+    for (int sample = 0; sample < look::occlusion_samples; ++sample) {
+        const float x = reach * static_cast<float>(sample + 1);
+        weight *= 0.5f;
+        total += weight;
+        for (std::size_t k = 0; k < count; ++k) {
+            worker.points.set(0, k, at.p[k] + x * at.n[k]);
+            worker.limits[k] = x;
+        }
+        distances(worker, worker.points, d.data(), count, worker.limits.data());
+        close.clear(), q.clear(), dq.clear(), h.clear();
+        for (std::size_t k = 0; k < count; ++k) // the true distance is no less than d
+            if (!(d[k] >= x)) {
+                close.push_back(k), q.push_back(worker.points.vec(0, k));
+                dq.push_back(d[k]), h.push_back(at.h[k]);
+            }
+        truth.resize(close.size());
+        near(worker, q.data(), dq.data(), h.data(), truth.data(), close.size());
+        for (std::size_t i = 0; i < close.size(); ++i)
+            sum[close[i]] += weight * clamp(1.0f - truth[i] / x, 0.0f, 1.0f);
+    }
+    for (float &s : sum) s /= total;
+    return sum;
+}
+
+struct Facing {
+    std::size_t point;
+    Vec l;
+    float facing;
+};
+
+void add_light(Worker &worker, std::span<const RayState> rays, const Points &at,
+               const ir::LightValue &light, std::span<Vec> colors) {
+    const Stage &stage = worker.stage;
+    const Lengths lengths(stage);
+    const Stage::Look &lighting = stage.look;
+    std::vector<Facing> lit;
+    std::vector<ShadowRay> shadow_rays;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        const float margin = look::shadow_bias * lengths.tolerance(at.t[k]);
+        const Vec q = at.p[k] + margin * at.n[k];
+        const Vec way = light.directional ? vec(light.position) : vec(light.position) - q;
+        const float away = length(way);
+        const Vec l = away > 0 ? way / away : at.n[k];
+        const float facing = dot(at.n[k], l);
+        if (!(facing > 0)) continue;
+        lit.push_back({k, l, facing});
+        const float sun_reach =
+            stage.frame.boxed ? std::max(box(stage.frame, q, l).last, 0.0f) : lengths.far;
+        shadow_rays.push_back({q, l, light.directional ? sun_reach : away, margin, at.h[k]});
+    }
+    std::vector<float> seen(lit.size(), 1.0f);
+    if (lighting.shadow_darkness > 0) {
+        std::vector<float> shadow(lit.size());
+        shadows(worker, shadow_rays, std::max(lighting.soft_shadows, look::least_angle), shadow);
+        for (std::size_t i = 0; i < lit.size(); ++i)
+            seen[i] -= lighting.shadow_darkness * (1.0f - shadow[i]);
+    }
+    const Vec color = vec(light.color);
+    for (std::size_t i = 0; i < lit.size(); ++i) {
+        const auto [k, l, facing] = lit[i];
+        const Material &m = at.material[k];
+        const Vec r = 2.0f * facing * at.n[k] - l;
+        float gleam = std::max(-dot(r, rays[at.ray[k]].direction), 0.0f);
+        gleam = gleam > 0 ? lighting.specular_intensity * std::pow(gleam, m.exponent) : 0.0f;
+        Vec &sum = colors[at.ray[k]];
+        sum = sum + seen[i] * color * (facing * m.diffuse + gleam * m.specular);
+    }
+}
+
+void see_background(Worker &worker, std::span<const RayState> rays,
+                    std::span<const Landing> landings, std::span<Vec> colors) {
+    std::vector<std::size_t> missed;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        if (landings[i].t < 0) missed.push_back(i);
+    if (!worker.stage.has_background) {
+        for (std::size_t i : missed)
+            colors[i] = {look::background[0], look::background[1], look::background[2]};
+        return;
+    }
+    for (std::size_t k = 0; k < missed.size(); ++k)
+        worker.points.set(0, k, rays[missed[k]].direction);
+    evaluate(worker.stage.background, worker.background, worker.points.pointers(),
+             worker.taps.pointers(), missed.size());
+    for (std::size_t k = 0; k < missed.size(); ++k) colors[missed[k]] = worker.taps.vec(0, k);
+}
+
+} // namespace
+
+void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings,
+           std::span<Vec> colors) {
+    see_background(worker, rays, landings, colors);
+    const Stage &stage = worker.stage;
+    const Lengths lengths(stage);
+    Points at;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (landings[i].t < 0) continue;
+        const float t = landings[i].t;
+        at.ray.push_back(i);
+        at.p.push_back(rays[i].origin + t * rays[i].direction);
+        at.t.push_back(t);
+        at.h.push_back(lengths.arm(t));
+    }
+    if (at.size() == 0) return;
+    find_normals(worker, rays, at);
+    find_materials(worker, at);
+    if (stage.scene->lighting.skip) {
+        for (std::size_t k = 0; k < at.size(); ++k)
+            colors[at.ray[k]] = at.material[k].diffuse + at.material[k].emission;
+        return;
+    }
+    std::vector<float> open(at.size(), 1.0f);
+    if (stage.look.ambient_occlusion > 0) {
+        const std::vector<float> occlusion = find_occlusion(worker, at);
+        for (std::size_t k = 0; k < at.size(); ++k)
+            open[k] -= stage.look.ambient_occlusion * occlusion[k];
+    }
+    const Vec ambient{stage.look.ambient[0], stage.look.ambient[1], stage.look.ambient[2]};
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        const Material &m = at.material[k];
+        colors[at.ray[k]] = open[k] * m.diffuse * ambient + m.emission;
+    }
+    for (const ir::LightValue &light : stage.lights) add_light(worker, rays, at, light, colors);
+}
+
+} // namespace fathom::cpu

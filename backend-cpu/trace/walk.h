@@ -1,0 +1,77 @@
+// One ray's way, sample by sample: ir/look.h's MARCH and BY CURVATURE in float32. Knows no fields:
+// what is found at a sample is written into the walk by the caller.
+#pragma once
+
+#include "backend-cpu/trace/rays.h"
+#include "ir/look.h"
+
+#include <algorithm>
+
+namespace fathom::cpu {
+
+struct Walk {
+    float t = 0, before = 0, stride = 0, d = 0;
+    float span = 0, reached = 0; // how far d reaches, and `before`; where that is more than they
+    int steps = 0;
+};
+
+// How small the distance is at a hit; in the last turn a pixel's width will do.
+inline float reach_at(const Walk &walk, const Lengths &lengths, int max_steps) {
+    const float usual = lengths.tolerance(walk.t);
+    return walk.steps == max_steps ? std::max(usual, lengths.width(walk.t)) : usual;
+}
+
+// From which value on a lower bound of the distance will do: below it, whether the ray has arrived
+// is decided.
+inline float limit_at(float t, const Lengths &lengths) {
+    return 2 * std::max(lengths.tolerance(t), lengths.width(t));
+}
+
+// The balls about the last two samples do not touch: something may lie between them.
+inline bool apart(const Walk &walk) {
+    if (walk.stride <= walk.before + std::max(walk.d, 0.0f)) return false;
+    return !(walk.d > 0 && walk.stride <= walk.reached + walk.span);
+}
+
+// How far beyond the last sample to look next, where what lies between is not known to be free.
+inline float nearer(const Walk &walk, const Lengths &lengths, bool reaching) {
+    if (!reaching) return walk.before;
+    const float to =
+        walk.d > 0 ? walk.reached + ir::look::nearer * std::min(walk.span, walk.reached)
+                   : std::min(walk.reached, walk.stride * walk.before / (walk.before - walk.d) -
+                                                0.5f * lengths.tolerance(walk.t));
+    return std::max(walk.before, std::min(to, walk.stride));
+}
+
+inline void go_back(Walk &walk, const Lengths &lengths, bool reaching) {
+    const float stride = nearer(walk, lengths, reaching);
+    walk.t += stride - walk.stride;
+    walk.stride = stride;
+}
+
+inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
+    const float d = std::max(walk.d, 0.25f * lengths.slack);
+    const float span = std::max(walk.span, d);
+    float next = brute ? 0.1f * d : d;
+    if (!brute && span > d) {
+        next = span;
+        if (walk.stride > 0) {
+            const float change = (span * span - walk.reached * walk.reached) / walk.stride;
+            next = change < -span ? span * span / -change - 0.5f * lengths.tolerance(walk.t)
+                                  : span + ir::look::bent_relaxation * (span + change);
+            next = std::max(next, d);
+        }
+    } else if (!brute && walk.stride > 0)
+        next += ir::look::relaxation * d * std::max(walk.stride + d - walk.before, 0.0f) /
+                std::max(walk.stride - d + walk.before, ir::look::flattest * walk.stride);
+    // what is not proved yet ends at the end exactly, rounding or not, so that it is still checked
+    const float proved = std::max(end, walk.t + d);
+    next = std::min(next, proved - walk.t);
+    walk.d = d;
+    walk.before = d;
+    walk.reached = span;
+    walk.stride = next;
+    walk.t = std::min(walk.t + next, proved);
+}
+
+} // namespace fathom::cpu

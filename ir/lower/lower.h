@@ -1,0 +1,52 @@
+// Shapes to functions. The one place that knows what each ShapeKind computes; after it a back end
+// sees only expressions, functions and folds.
+//
+// Four readings of a shape (semantics.md, 10 and 11). What looks at a picture (normals, occlusion,
+// |f|/|grad f|) uses the marched one, normalised by its gradient.
+//   raw      the field itself, which offsets, blends and displacements consume
+//   marched  the distance that rays use. It goes through the outermost min/max tree (Union,
+//            Intersection, Complement, Xor, Paint, Repeat, Many, Library without claims, Extrude,
+//            and Maps that keep or undo lengths: rigid, uniformly scaled, Fold, Revolve) down to
+//            its leaves, each divided there by its own bound (facts[s].lipschitz). Within answers
+//            by its region, with its child's bound, which has to hold in the region; `guard`ed
+//            shapes by max with their box's distance
+//   hit      marched, carrying which surface decides
+//   reach    marched, and how far that reaches by curvature (look.h); only where some displacement
+//            has it, and through what reach.cpp names
+// A shape asked at more than one point becomes a function of its own (named after its library call
+// or place); so the lowered scene is linear in the shapes. Complete only after the analysis has
+// filled `facts`.
+#pragma once
+
+#include "ir/scene.h"
+
+namespace fathom::ir {
+
+void lower(Scene &scene);
+
+// Lowered so that a hit also tells which part of the scene it is on: the innermost operand of a
+// union, a blend or another combination. A hit's paint, where it is not negative, then holds two
+// numbers: code + stride * part, where the code stride - 1 says that nobody painted; part 0 is
+// none, part n is shapes[n - 1]. Only who decodes them (backend-glsl's Options::part_stride) may
+// ask for it.
+struct Parts {
+    std::vector<ShapeId> shapes;
+    int stride = 0;
+};
+Parts lower_with_parts(Scene &scene);
+
+// Signed distance of a region, exact, negative inside; and the point of the convex part nearest to
+// p (p itself inside).
+NodeId region_distance(Graph &graph, const Region &region, NodeId p);
+NodeId region_nearest(Graph &graph, const Region &region, NodeId p);
+
+// How many operations an expression takes at most, its loops' turns and its calls counted out.
+double operations(const Graph &graph, NodeId root);
+constexpr double most_operations = 1e7; // of one point: beyond it no picture ever ends
+
+// The rules that a scene obeys on its way to a back end (argument order, types, payloads in range,
+// no free variables, no Point in functions …). Returns the first broken rule in words, or an empty
+// string. For assertions and tests.
+std::string verify(const Scene &scene);
+
+} // namespace fathom::ir

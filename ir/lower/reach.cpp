@@ -1,0 +1,89 @@
+// The fourth reading: beside the marched distance how far it reaches by curvature (look.h, MARCH),
+// as one vec2, so that the octaves of a displacement are still asked only where they matter. Where
+// nothing is known but the ball, both are the same number. A union is nearest and reaches least far
+// by each component; lengths keep their size in isometries; a guard's distance is one that every
+// point of the solid keeps, hence the least of both numbers.
+#include "ir/lower/lowering.h"
+#include "ir/maps.h"
+
+namespace fathom::ir {
+
+// Whether the shape's own combination hands its children's reach on. Folds do not: a mirror may
+// bend a field upward sharply. Intersections would need more than the lesser reach.
+bool Lowering::hands_reach_on(const Shape &s) const {
+    switch (s.kind) {
+    case ShapeKind::Union:
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint:
+    case ShapeKind::Mixed:
+    case ShapeKind::Contract: return true;
+    case ShapeKind::Library: return !shapes_.libraries[s.payload].has_claims;
+    case ShapeKind::Map: return s.map == MapKind::Translate || s.map == MapKind::Rotate;
+    case ShapeKind::Empty:
+    case ShapeKind::Leaf:
+    case ShapeKind::Intersection:
+    case ShapeKind::Complement:
+    case ShapeKind::Xor:
+    case ShapeKind::Blend:
+    case ShapeKind::Seam:
+    case ShapeKind::Lerp:
+    case ShapeKind::PseudoNorm:
+    case ShapeKind::Offset:
+    case ShapeKind::Shell:
+    case ShapeKind::Displace:
+    case ShapeKind::Extrude:
+    case ShapeKind::Repeat:
+    case ShapeKind::Within:
+    case ShapeKind::Many: return false;
+    }
+    return false;
+}
+
+void Lowering::find_curved() {
+    curved_.assign(shapes_.size(), 0);
+    for (std::size_t i = 0; i <= scene_.root.index; ++i) {
+        const Shape &s = shape(ShapeId{i});
+        curved_[i] = s.kind == ShapeKind::Displace && std::isfinite(fact(ShapeId{i}).curvature) &&
+                     std::isfinite(fact(ShapeId{i}).outward);
+        curved_[i] |= s.kind == ShapeKind::Within && !fact(ShapeId{i}).cells.bend.empty();
+        if (!hands_reach_on(s)) continue;
+        for (ShapeId child : s.children) curved_[i] |= curved_[child.index];
+    }
+}
+
+NodeId Lowering::both(NodeId distance) {
+    return graph_.make(Op::Make, Type::Vec2, {distance, distance});
+}
+
+NodeId Lowering::reach(ShapeId id, Where frame) {
+    const Shape &s = shape(id);
+    if (!curved_[id.index]) return both(ask(Reading::Marched, id, frame));
+    NodeId value;
+    if (s.kind == ShapeKind::Displace) {
+        value = displaced(Reading::Reach, id, frame);
+    } else if (s.kind == ShapeKind::Within) {
+        const NodeId distance = ask(Reading::Marched, id, frame);
+        value = graph_.make(Op::Make, Type::Vec2,
+                            {distance, graph_.make(Op::Max, {distance, bent_by_cells(id, frame)})});
+    } else if (s.kind == ShapeKind::Union) {
+        std::vector<NodeId> plain; // by one number as long as they may
+        for (ShapeId child : s.children) {
+            if (!curved_[child.index]) {
+                plain.push_back(ask(Reading::Marched, child, frame));
+                continue;
+            }
+            const NodeId one = ask(Reading::Reach, child, frame);
+            value = value ? graph_.make(Op::Min, {value, one}) : one;
+        }
+        if (!plain.empty())
+            value = graph_.make(Op::Min, {value, both(graph_.make(Op::Union, Type::Float, plain))});
+    } else if (s.kind == ShapeKind::Map) {
+        value = ask(Reading::Reach, s.children.front(), at(frame, read(s.args[0], frame)));
+    } else {
+        value = ask(Reading::Reach, s.children.front(), frame);
+    }
+    if (!fact(id).guard) return value;
+    return graph_.make(Op::Max, {value, both(guard(id, frame))});
+}
+
+} // namespace fathom::ir

@@ -1,0 +1,272 @@
+// Folding of constants: each op's meaning (ir/semantics.h) applied to numbers. Ints and bools are
+// doubles that hold whole numbers.
+#include "ir/passes/fold.h"
+
+#include "ir/semantics.h"
+
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace fathom::ir {
+namespace {
+
+using Args = std::span<const Constant>;
+
+std::size_t size_of(Type type) { return static_cast<std::size_t>(components(type)); }
+
+Constant scalar(Type type, double value) {
+    Constant result{type, {}};
+    result.value[0] = value;
+    return result;
+}
+
+template <class F> Constant map1(Type type, const Constant &a, F f) {
+    Constant result{type, {}};
+    for (std::size_t i = 0; i < size_of(type); ++i) result.value[i] = f(a.value[i]);
+    return result;
+}
+template <class F> Constant map2(Type type, const Constant &a, const Constant &b, F f) {
+    Constant result{type, {}};
+    for (std::size_t i = 0; i < size_of(type); ++i) result.value[i] = f(a.value[i], b.value[i]);
+    return result;
+}
+template <class F> Constant map3(Type type, Args a, F f) {
+    Constant result{type, {}};
+    for (std::size_t i = 0; i < size_of(type); ++i)
+        result.value[i] = f(a[0].value[i], a[1].value[i], a[2].value[i]);
+    return result;
+}
+
+std::int32_t whole(double x) { return sem::saturate(x); }
+
+// sin(x + quarters * pi/2). A quarter turn, as near as a double comes to one, has the sine that is
+// meant: else a rotation by 90deg would carry a cosine of 6e-17.
+double sine(double x, int quarters) {
+    const double turned = x / (std::numbers::pi / 2), whole = std::round(turned);
+    if (std::abs(whole) < 1e6 && std::abs(turned - whole) <= 1e-15 * std::abs(whole)) {
+        constexpr double values[] = {0, 1, 0, -1};
+        return values[(static_cast<int>(whole) + quarters) & 3];
+    }
+    return quarters == 0 ? std::sin(x) : std::cos(x);
+}
+
+// The arithmetic of ints where it differs from that of floats.
+template <class I, class F> Constant arithmetic(Type type, Args a, I of_int, F of_float) {
+    if (type == Type::Int) return scalar(type, of_int(whole(a[0].value[0]), whole(a[1].value[0])));
+    return map2(type, a[0], a[1], of_float);
+}
+
+double dot(const Constant &a, const Constant &b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < size_of(a.type); ++i) sum += a.value[i] * b.value[i];
+    return sum;
+}
+
+Constant multiply_matrices(Type type, const Constant &a, const Constant &b) {
+    Constant result{type, {}};
+    // A vector on the left is a row, on the right a column.
+    const std::size_t n = static_cast<std::size_t>(is_matrix(a.type) ? side(a.type) : side(b.type));
+    const std::size_t rows = is_matrix(a.type) ? n : 1, columns = is_matrix(b.type) ? n : 1;
+    for (std::size_t c = 0; c < columns; ++c)
+        for (std::size_t r = 0; r < rows; ++r) {
+            double sum = 0;
+            for (std::size_t k = 0; k < n; ++k)
+                sum += a.value[is_matrix(a.type) ? k * n + r : k] *
+                       b.value[is_matrix(b.type) ? c * n + k : k];
+            result.value[c * rows + r] = sum;
+        }
+    return result;
+}
+
+double hash(const Constant &a) {
+    const std::size_t n = size_of(a.type);
+    std::uint32_t h = sem::hash_begin(static_cast<int>(n));
+    for (std::size_t i = 0; i < n; ++i)
+        h = sem::hash_more(h, a.type == Type::Int ? sem::hash_word(whole(a.value[i]))
+                                                  : sem::hash_word(a.value[i]));
+    return sem::unit<double>(h);
+}
+
+double blend(Profile profile, Args a) {
+    const double r = a[0].value[0], n = a[1].value[0];
+    double result = a[2].value[0];
+    for (std::size_t i = 3; i < a.size(); ++i) {
+        const double next = a[i].value[0];
+        switch (profile) {
+        case Profile::Smooth: result = sem::blend_smooth(result, next, r); break;
+        case Profile::Round: result = sem::blend_round(result, next, r); break;
+        case Profile::Chamfer: result = sem::blend_chamfer(result, next, r); break;
+        case Profile::Stairs: result = sem::blend_stairs(result, next, r, n); break;
+        case Profile::Columns: result = sem::blend_columns(result, next, r, n); break;
+        }
+    }
+    return result;
+}
+
+Constant joined(Type type, Args a) {
+    Constant result{type, {}};
+    std::size_t at = 0;
+    for (const Constant &part : a)
+        for (std::size_t i = 0; i < size_of(part.type); ++i) result.value[at++] = part.value[i];
+    assert(at == size_of(type));
+    return result;
+}
+
+Constant swizzled(Type type, const Constant &a, std::uint32_t mask) {
+    Constant result{type, {}};
+    for (int i = 0; i < swizzle_size(mask); ++i)
+        result.value[static_cast<std::size_t>(i)] =
+            a.value[static_cast<std::size_t>(swizzle_component(mask, i))];
+    return result;
+}
+
+Constant transposed(const Constant &a) {
+    Constant result{a.type, {}};
+    const std::size_t n = static_cast<std::size_t>(side(a.type));
+    for (std::size_t c = 0; c < n; ++c)
+        for (std::size_t r = 0; r < n; ++r) result.value[c * n + r] = a.value[r * n + c];
+    return result;
+}
+
+Constant column(Type type, const Constant &a, std::uint32_t index) {
+    Constant result{type, {}};
+    const std::size_t n = static_cast<std::size_t>(side(a.type));
+    for (std::size_t r = 0; r < n; ++r) result.value[r] = a.value[index * n + r];
+    return result;
+}
+
+} // namespace
+
+std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload) {
+    using D = double;
+    const auto x = [&](std::size_t i) { return a[i].value[0]; };
+    const auto at = [&](std::size_t i, std::size_t k) { return a[i].value[k]; };
+    const auto each = [&](auto f) { return map1(type, a[0], f); };
+    const auto flag = [](bool value) { return scalar(Type::Bool, value ? 1 : 0); };
+    const auto number = [](double value) { return scalar(Type::Float, value); };
+    switch (op) {
+    case Op::Const:
+    case Op::Point:
+    case Op::Normal:
+    case Op::Direction:
+    case Op::Time:
+    case Op::Param:
+    case Op::Var:
+    case Op::TableRead:
+    case Op::Image:
+    case Op::Grid:
+    case Op::Call:
+    case Op::Fold:
+    case Op::FoldResult:
+    case Op::Cached:
+    case Op::MakeHit:
+    case Op::HitDistance:
+    case Op::HitPaint:
+    case Op::HitPoint:
+    case Op::HitExtra:
+    case Op::NearestHit:
+    case Op::FarthestHit:
+    case Op::HitWith:
+    case Op::FillPaint: return std::nullopt;
+
+    case Op::Neg:
+        if (type == Type::Int) return scalar(type, sem::int_neg(whole(x(0))));
+        return each([](D v) { return -v; });
+    case Op::Add: return arithmetic(type, a, sem::int_add, [](D u, D v) { return u + v; });
+    case Op::Sub: return arithmetic(type, a, sem::int_sub, [](D u, D v) { return u - v; });
+    case Op::Mul: return arithmetic(type, a, sem::int_mul, [](D u, D v) { return u * v; });
+    case Op::Div: return arithmetic(type, a, sem::int_div, [](D u, D v) { return u / v; });
+    case Op::Mod: return arithmetic(type, a, sem::int_mod, sem::mod<D>);
+    case Op::Pow:
+        return arithmetic(
+            type, a, [](std::int32_t u, std::int32_t v) { return whole(sem::pow<D>(u, v)); },
+            sem::pow<D>);
+    case Op::Min: return map2(type, a[0], a[1], sem::min<D>);
+    case Op::Max: return map2(type, a[0], a[1], sem::max<D>);
+    case Op::Step: return map2(type, a[0], a[1], sem::step<D>);
+    case Op::Atan2: return map2(type, a[0], a[1], sem::atan2<D>);
+    case Op::Abs:
+        if (type == Type::Int) return scalar(type, whole(sem::abs(x(0))));
+        return each(sem::abs<D>);
+    case Op::Sign: return each(sem::sign<D>);
+    case Op::Floor: return each([](D v) { return std::floor(v); });
+    case Op::Ceil: return each([](D v) { return std::ceil(v); });
+    case Op::Round: return each(sem::round<D>);
+    case Op::Trunc: return each([](D v) { return std::trunc(v); });
+    case Op::Fract: return each(sem::fract<D>);
+    case Op::Sqrt: return each(sem::sqrt<D>);
+    case Op::InverseSqrt: return each(sem::inverse_sqrt<D>);
+    case Op::Exp: return each([](D v) { return std::exp(v); });
+    case Op::Exp2: return each([](D v) { return std::exp2(v); });
+    case Op::Log: return each(sem::log<D>);
+    case Op::Log2: return each(sem::log2<D>);
+    case Op::Sin: return each([](D v) { return sine(v, 0); });
+    case Op::Cos: return each([](D v) { return sine(v, 1); });
+    case Op::Tan: return each([](D v) { return std::tan(v); });
+    case Op::Asin: return each(sem::asin<D>);
+    case Op::Acos: return each(sem::acos<D>);
+    case Op::Atan: return each([](D v) { return std::atan(v); });
+    case Op::Sinh: return each([](D v) { return std::sinh(v); });
+    case Op::Cosh: return each([](D v) { return std::cosh(v); });
+    case Op::Tanh: return each([](D v) { return std::tanh(v); });
+    case Op::Clamp: return map3(type, a, sem::clamp<D>);
+    case Op::Mix: return map3(type, a, sem::mix<D>);
+    case Op::Smoothstep: return map3(type, a, sem::smoothstep<D>);
+
+    case Op::Dot: return number(dot(a[0], a[1]));
+    case Op::Length: return number(std::sqrt(dot(a[0], a[0])));
+    case Op::Cross: {
+        Constant result{type, {}};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+            result.value[i] = at(0, j) * at(1, k) - at(0, k) * at(1, j);
+        }
+        return result;
+    }
+    case Op::Normalize: {
+        const double factor = sem::normalizer(dot(a[0], a[0]));
+        return each([factor](D v) { return v * factor; });
+    }
+
+    case Op::Less: return flag(x(0) < x(1));
+    case Op::LessEqual: return flag(x(0) <= x(1));
+    case Op::Equal: return flag(x(0) == x(1));
+    case Op::NotEqual: return flag(x(0) != x(1));
+    case Op::And: return flag(x(0) != 0 && x(1) != 0);
+    case Op::Or: return flag(x(0) != 0 || x(1) != 0);
+    case Op::Not: return flag(x(0) == 0);
+    case Op::Select: return x(0) != 0 ? a[1] : a[2];
+
+    case Op::ToFloat: return number(x(0));
+    case Op::ToInt: return scalar(Type::Int, whole(x(0)));
+    case Op::Splat: {
+        const double value = x(0);
+        return map1(type, a[0], [value](D) { return value; });
+    }
+    case Op::Make: return joined(type, a);
+    case Op::Swizzle: return swizzled(type, a[0], payload);
+    case Op::Column: return column(type, a[0], payload);
+    case Op::MatMul: return multiply_matrices(type, a[0], a[1]);
+    case Op::Transpose: return transposed(a[0]);
+
+    case Op::Hash: return number(hash(a[0]));
+    case Op::Perlin: return number(sem::perlin(at(0, 0), at(0, 1), at(0, 2)));
+    case Op::Simplex: return number(sem::simplex(at(0, 0), at(0, 1), at(0, 2)));
+    case Op::ValueNoise: return number(sem::value_noise(at(0, 0), at(0, 1), at(0, 2)));
+    case Op::Worley: return number(sem::worley(at(0, 0), at(0, 1), at(0, 2)));
+    case Op::SpotNoise: return number(sem::spot_noise(at(0, 0), at(0, 1), at(0, 2), x(1), x(2)));
+
+    case Op::Union:
+    case Op::Intersection: {
+        double result = x(0);
+        for (std::size_t i = 1; i < a.size(); ++i)
+            result = op == Op::Union ? sem::min(result, x(i)) : sem::max(result, x(i));
+        return number(result);
+    }
+    case Op::Blend: return number(blend(static_cast<Profile>(payload), a));
+    }
+    return std::nullopt;
+}
+
+} // namespace fathom::ir

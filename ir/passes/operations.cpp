@@ -1,0 +1,59 @@
+// What an expression costs to evaluate once, counted in operations: loops by their turns, calls by
+// what they call. So that what could not be answered in any time is refused before it is asked.
+#include "ir/lower/lower.h"
+
+#include <unordered_set>
+
+namespace fathom::ir {
+namespace {
+
+class Counter {
+  public:
+    explicit Counter(const Graph &graph) : graph_(graph) {}
+
+    // A node that several share counts once; a loop's body once a turn.
+    double operator()(std::vector<NodeId> todo) {
+        double operations = 0;
+        std::unordered_set<NodeId> seen;
+        while (!todo.empty()) {
+            const NodeId id = todo.back();
+            todo.pop_back();
+            if (!id || !seen.insert(id).second) continue;
+            const Node &node = graph_[id];
+            operations += 1;
+            if (node.op == Op::Call) operations += function(FunctionId{node.payload});
+            if (node.op == Op::Cached)
+                operations += function(graph_.cache(CacheId{node.payload}).field);
+            if (node.op == Op::Fold) operations += fold(FoldId{node.payload});
+            for (NodeId arg : graph_.args(id)) todo.push_back(arg);
+        }
+        return operations;
+    }
+
+  private:
+    double function(FunctionId id) {
+        if (const auto known = functions_.find(id); known != functions_.end()) return known->second;
+        const double operations = (*this)({graph_.function(id).result});
+        functions_[id] = operations;
+        return operations;
+    }
+    double fold(FoldId id) {
+        if (const auto known = folds_.find(id); known != folds_.end()) return known->second;
+        const Fold &fold = graph_.fold(id);
+        std::vector<NodeId> body = fold.next;
+        body.push_back(fold.condition);
+        const double operations = fold.max_count * (*this)(std::move(body));
+        folds_[id] = operations;
+        return operations;
+    }
+
+    const Graph &graph_;
+    std::unordered_map<FunctionId, double> functions_;
+    std::unordered_map<FoldId, double> folds_;
+};
+
+} // namespace
+
+double operations(const Graph &graph, NodeId root) { return Counter(graph)({root}); }
+
+} // namespace fathom::ir

@@ -1,0 +1,358 @@
+// Borders by substitution: where the condition compares u with v, the arms are rewritten for u = v
+// and compared as polynomials in whatever they are made of.
+#include "proof/continuity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+namespace fathom::proof {
+namespace {
+
+using ir::Graph;
+using ir::NodeId;
+using ir::Op;
+
+// Sum of coefficient * product of atoms; an atom is a node that is not itself a sum or product of
+// numbers.
+using Monomial = std::vector<NodeId>; // sorted, repeats allowed
+using Polynomial = std::map<Monomial, double>;
+constexpr std::size_t most_terms = 64;
+
+NodeId rebuilt(Graph &graph, const Polynomial &polynomial) {
+    NodeId sum = graph.number(0);
+    for (const auto &[m, c] : polynomial) {
+        if (c == 0) continue;
+        NodeId term = graph.number(c);
+        for (NodeId f : m) term = graph.mul(term, f);
+        sum = graph.add(sum, term);
+    }
+    return sum;
+}
+
+std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth = 0);
+
+// A factor that stands twice in a product, and what its square is: |a|^2 = a^2, cos^2 = 1 - sin^2.
+std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Polynomial &b);
+bool has_square(const Graph &graph, NodeId factor) {
+    return graph[factor].op == Op::Abs || graph[factor].op == Op::Cos;
+}
+std::optional<Polynomial> squared(Graph &graph, NodeId factor) {
+    const NodeId x = graph.arg(factor, 0);
+    if (graph[factor].op == Op::Cos) {
+        const NodeId sine = graph.make(Op::Sin, {x});
+        return Polynomial{{{}, 1.0}, {{sine, sine}, -1.0}};
+    }
+    const auto inner = polynomial(graph, x);
+    return inner ? multiply(graph, *inner, *inner) : std::nullopt;
+}
+
+std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Polynomial &b) {
+    Polynomial out;
+    for (const auto &[m, x] : a)
+        for (const auto &[n, y] : b) {
+            Monomial product = m;
+            product.insert(product.end(), n.begin(), n.end());
+            std::sort(product.begin(), product.end());
+            const auto twice =
+                std::adjacent_find(product.begin(), product.end(), [&](NodeId u, NodeId v) {
+                    return u == v && has_square(graph, u);
+                });
+            if (twice != product.end()) {
+                const NodeId factor = *twice;
+                product.erase(twice, twice + 2);
+                const auto square = squared(graph, factor);
+                if (!square) return {};
+                auto whole = multiply(graph, *square, Polynomial{{product, x * y}});
+                if (!whole) return {};
+                for (const auto &[k, z] : *whole) out[k] += z;
+            } else {
+                out[product] += x * y;
+            }
+            if (out.size() > most_terms || product.size() > 8) return {};
+        }
+    return out;
+}
+
+bool by_component(Op op) {
+    return ir::info(op).rule == ir::TypeRule::Same && op != Op::Cross && op != Op::Normalize &&
+           op != Op::Transpose;
+}
+
+std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
+    const ir::Node node = graph[id];
+    if (auto c = graph.as_number(id)) return Polynomial{{{}, *c}};
+    if (depth > 32) return {};
+    auto sub = [&](int i) { return polynomial(graph, graph.arg(id, i), depth + 1); };
+    if (node.type == ir::Type::Float) {
+        if (node.op == Op::Neg) {
+            auto a = sub(0);
+            if (!a) return {};
+            for (auto &[m, x] : *a) x = -x;
+            return a;
+        }
+        if (node.op == Op::Add || node.op == Op::Sub) {
+            auto a = sub(0), b = sub(1);
+            if (!a || !b) return {};
+            for (auto &[m, x] : *b) (*a)[m] += node.op == Op::Add ? x : -x;
+            return a->size() > most_terms ? std::optional<Polynomial>() : a;
+        }
+        if (node.op == Op::Mul) {
+            auto a = sub(0), b = sub(1);
+            if (!a || !b) return {};
+            return multiply(graph, *a, *b);
+        }
+        if (node.op == Op::Div)
+            if (auto c = graph.as_number(graph.arg(id, 1)); c && *c != 0) {
+                auto a = sub(0);
+                if (!a) return {};
+                for (auto &[m, x] : *a) x /= *c;
+                return a;
+            }
+        if (node.op == Op::Pow)
+            if (auto c = graph.as_number(graph.arg(id, 1));
+                c && std::floor(*c) == *c && *c >= 1 && *c <= 6) {
+                auto a = sub(0);
+                auto out = a;
+                for (int i = 1; a && out && i < int(*c); ++i) out = multiply(graph, *out, *a);
+                return out;
+            }
+        if (node.op == Op::Dot) {
+            NodeId u = graph.arg(id, 0), v = graph.arg(id, 1);
+            Polynomial sum;
+            for (int i = 0; i < ir::components(graph[u].type); ++i) {
+                auto a = polynomial(graph, component_of(graph, u, i), depth + 1);
+                auto b = polynomial(graph, component_of(graph, v, i), depth + 1);
+                if (!a || !b) return {};
+                auto product = multiply(graph, *a, *b);
+                if (!product) return {};
+                for (const auto &[m, x] : *product) sum[m] += x;
+            }
+            return sum;
+        }
+        if (node.op == Op::Swizzle) {
+            NodeId inner =
+                component_of(graph, graph.arg(id, 0), ir::swizzle_component(node.payload, 0));
+            if (inner != id) return polynomial(graph, inner, depth + 1);
+        }
+        if (by_component(node.op) && node.count > 0) { // the same function of arguments in one form
+            std::vector<NodeId> args;
+            for (int i = 0; i < int(node.count); ++i) {
+                auto a = sub(i);
+                args.push_back(a ? rebuilt(graph, *a) : graph.arg(id, i));
+            }
+            return Polynomial{{{graph.make(node.op, node.type, args, node.payload)}, 1.0}};
+        }
+    }
+    return Polynomial{{{id}, 1.0}};
+}
+
+} // namespace
+
+// Sums of products of doubles that are equal in exact arithmetic may differ by rounding of this
+// relative size.
+constexpr double rounding = 1e-12;
+
+bool same(Graph &graph, NodeId a, NodeId b) {
+    if (a == b) return true;
+    const ir::Node x = graph[a], y = graph[b];
+    if (x.type != y.type) return false;
+    const bool alike = x.op == y.op && x.count == y.count && x.payload == y.payload && x.count > 0;
+    // of one op of one argument, or of vectors: the same of the same
+    if (alike && (x.count == 1 || x.type != ir::Type::Float)) {
+        bool all = true;
+        for (int i = 0; i < int(x.count); ++i)
+            all = all && same(graph, graph.arg(a, i), graph.arg(b, i));
+        if (all) return true;
+    }
+    if (x.type != ir::Type::Float) return false;
+    auto p = polynomial(graph, a), q = polynomial(graph, b);
+    if (!p || !q) return false;
+    double size = 0;
+    for (const auto &[m, c] : *p) size = std::max(size, std::fabs(c));
+    for (const auto &[m, c] : *q) (*p)[m] -= c;
+    // not without end: beside 1e13 y^8 a jump by 5 is one
+    const double granted = rounding * std::clamp(size, 1e-30, 1e3);
+    for (const auto &[m, c] : *p)
+        if (std::fabs(c) > granted) return false;
+    return true;
+}
+
+namespace {
+
+// The arms for u = v: u replaced by v, v by u, or one atom of u - v by what the others make it.
+bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b) {
+    auto agree = [&](NodeId from, NodeId to) {
+        ir::Substitution map{{from, to}};
+        return same(graph, ir::substitute(graph, a, map), ir::substitute(graph, b, map));
+    };
+    if (same(graph, a, b)) return true;
+    if (!graph.is_constant(u) && agree(u, v)) return true;
+    if (!graph.is_constant(v) && agree(v, u)) return true;
+    auto p = polynomial(graph, u), q = polynomial(graph, v);
+    if (!p || !q) return false;
+    for (const auto &[m, c] : *q) (*p)[m] -= c;
+    for (const auto &[atom, c] : *p) {
+        if (atom.size() != 1 || c == 0 || graph.is_constant(atom[0])) continue;
+        bool elsewhere = false; // the atom must occur in this one term only
+        for (const auto &[m, k] : *p)
+            if (m != atom && k != 0)
+                for (NodeId f : m) elsewhere = elsewhere || f == atom[0];
+        if (elsewhere) continue;
+        NodeId rest = graph.number(0);
+        for (const auto &[m, k] : *p) {
+            if (m == atom || k == 0) continue;
+            NodeId term = graph.number(-k / c);
+            for (NodeId f : m) term = graph.mul(term, f);
+            rest = graph.add(rest, term);
+        }
+        if (agree(atom[0], rest)) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+std::optional<Solved> solved(Graph &graph, NodeId scalar, NodeId is) {
+    const auto sum = polynomial(graph, scalar);
+    if (!sum) return {};
+    for (const auto &[atom, c] : *sum) {
+        if (atom.size() != 1 || c == 0) continue;
+        const ir::Node node = graph[atom[0]];
+        if (node.op != Op::Swizzle) continue;
+        bool elsewhere = false; // the coordinate must occur in this one term only
+        for (const auto &[m, k] : *sum)
+            for (NodeId f : m) elsewhere = elsewhere || (m != atom && k != 0 && f == atom[0]);
+        if (elsewhere) continue;
+        Polynomial rest;
+        for (const auto &[m, k] : *sum)
+            if (m != atom && k != 0) rest[m] = -k / c;
+        const NodeId value = graph.add(graph.mul(is, graph.number(1 / c)), rebuilt(graph, rest));
+        return Solved{graph.arg(atom[0], 0), ir::swizzle_component(node.payload, 0), value};
+    }
+    return {};
+}
+
+std::optional<std::vector<double>> combination(Graph &graph, NodeId scalar,
+                                               std::span<const NodeId> atoms) {
+    const auto sum = polynomial(graph, scalar);
+    if (!sum) return {};
+    std::vector<double> out(atoms.size() + 1, 0.0);
+    for (const auto &[factors, c] : *sum) {
+        if (c == 0) continue;
+        if (factors.size() > 1) return {};
+        const auto at =
+            factors.empty() ? atoms.end() : std::find(atoms.begin(), atoms.end(), factors[0]);
+        if (at == atoms.end() && !factors.empty()) return {};
+        out[static_cast<std::size_t>(at - atoms.begin())] += c;
+    }
+    return out;
+}
+
+std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {
+    auto p = polynomial(graph, a), q = polynomial(graph, b);
+    if (!p || !q) return {};
+    for (const auto &[m, c] : *q) (*p)[m] -= c;
+    return rebuilt(graph, *p);
+}
+
+NodeId component_of(Graph &graph, NodeId vector, int i) {
+    const ir::Node node = graph[vector];
+    if (node.op == Op::Swizzle)
+        return component_of(graph, graph.arg(vector, 0), ir::swizzle_component(node.payload, i));
+    if (node.op == Op::Splat) return graph.arg(vector, 0);
+    if (ir::is_vector(node.type) && node.count > 0 &&
+        ir::info(node.op).rule == ir::TypeRule::Same && node.op != Op::Cross &&
+        node.op != Op::Normalize) {
+        std::vector<NodeId> parts;
+        for (int k = 0; k < int(node.count); ++k)
+            parts.push_back(component_of(graph, graph.arg(vector, k), i));
+        return graph.make(node.op, ir::Type::Float, parts, node.payload);
+    }
+    return graph.component(vector, i);
+}
+
+NodeId in_one_form(Graph &graph, NodeId scalar) {
+    auto p = polynomial(graph, scalar);
+    return p ? rebuilt(graph, *p) : scalar;
+}
+
+NodeId without_turns(Graph &graph, NodeId angle) {
+    auto sum = polynomial(graph, angle);
+    if (!sum) return angle;
+    constexpr double turn = 2 * std::numbers::pi, grain = 4294967296.0;
+    for (auto &[factors, c] : *sum) {
+        const bool whole = std::all_of(factors.begin(), factors.end(), [&](NodeId f) {
+            return graph[f].op == Op::ToFloat && graph[graph.arg(f, 0)].type == ir::Type::Int;
+        });
+        if (!whole || std::fabs(c) > 1e6) continue;
+        c = std::round((c - turn * std::round(c / turn)) * grain) / grain;
+        if (c == -std::round(turn / 2 * grain) / grain) c = -c; // half a turn, either way
+    }
+    return rebuilt(graph, *sum);
+}
+
+std::optional<double> number_of(Graph &graph, NodeId scalar) {
+    const auto sum = polynomial(graph, scalar);
+    if (!sum) return {};
+    double number = 0, rest = 0;
+    for (const auto &[factors, c] : *sum) {
+        const bool small = std::all_of(factors.begin(), factors.end(), [&](NodeId f) {
+            return graph[f].op == Op::Sin || graph[f].op == Op::Cos;
+        });
+        if (!small) {
+            if (c == 0) continue;
+            return {};
+        }
+        (factors.empty() ? number : rest) += factors.empty() ? c : std::fabs(c);
+    }
+    if (rest > rounding * std::max(std::fabs(number), 1e-3)) return {};
+    return number < 0 ? number - rest : number + rest;
+}
+
+bool keeps_length(Graph &graph, NodeId q) {
+    NodeId p = graph.point(graph[q].type);
+    Polynomial sum;
+    for (int i = 0; i < ir::components(graph[q].type); ++i) {
+        auto a = polynomial(graph, component_of(graph, q, i)),
+             b = polynomial(graph, graph.component(p, i));
+        if (!a || !b) return false;
+        auto x = multiply(graph, *a, *a), y = multiply(graph, *b, *b);
+        if (!x || !y) return false;
+        for (const auto &[m, c] : *x) sum[m] += c;
+        for (const auto &[m, c] : *y) sum[m] -= c;
+    }
+    for (const auto &[m, c] : sum)
+        if (std::fabs(c) > rounding) return false;
+    return true;
+}
+
+bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b) {
+    const ir::Node node = graph[condition];
+    switch (node.op) {
+    case Op::Less:
+    case Op::LessEqual: {
+        NodeId u = graph.arg(condition, 0), v = graph.arg(condition, 1);
+        if (graph[u].type != ir::Type::Float) return false;
+        if (agree_where_equal(graph, u, v, a, b)) return true;
+        if (!ir::is_vector(graph[a].type)) return false;
+        for (int i = 0; i < ir::components(graph[a].type); ++i)
+            if (!agree_where_equal(graph, u, v, component_of(graph, a, i),
+                                   component_of(graph, b, i)))
+                return false;
+        return true;
+    }
+    case Op::Not: return arms_agree(graph, graph.arg(condition, 0), b, a);
+    case Op::And:
+    case Op::Or: { // the border is part of the two borders together
+        NodeId left = graph.arg(condition, 0), right = graph.arg(condition, 1);
+        return arms_agree(graph, left, a, b) && arms_agree(graph, right, a, b);
+    }
+    default: return false; // a border that is not given by a comparison
+    }
+}
+
+} // namespace fathom::proof

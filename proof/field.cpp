@@ -1,0 +1,332 @@
+// Branch and bound: the cell with the greatest bound is cut in two until the bound is near the
+// largest slope seen.
+#include "proof/field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+namespace fathom::proof {
+
+using ir::rounding::infinity;
+
+double Dice::next() { // splitmix64
+    state += 0x9e3779b97f4a7c15u;
+    std::uint64_t z = state;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return double((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+Cell outer_box(const Zone &zone) {
+    Cell cell;
+    switch (zone.kind) {
+    case ir::RegionKind::Everywhere: break;
+    case ir::RegionKind::Ball:
+        for (std::size_t i = 0; i < 3; ++i)
+            cell.p[i] = zone.center[i] + Interval(-zone.half[0].hi, zone.half[0].hi);
+        break;
+    case ir::RegionKind::Box:
+        for (std::size_t i = 0; i < 3; ++i)
+            cell.p[i] = zone.center[i] + Interval(-zone.half[i].hi, zone.half[i].hi);
+        break;
+    case ir::RegionKind::Tube:
+        for (std::size_t i = 0; i < 3; ++i)
+            if (int(i) != zone.axis) cell.p[i] = Interval(-zone.half[0].hi, zone.half[0].hi);
+        break;
+    }
+    return cell;
+}
+
+namespace {
+
+Interval distance_squared(const Zone &zone, const Cell &cell) {
+    Interval sum;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (zone.kind != ir::RegionKind::Tube || int(i) != zone.axis)
+            sum +=
+                square(zone.kind == ir::RegionKind::Tube ? cell.p[i] : cell.p[i] - zone.center[i]);
+    return sum;
+}
+bool inside(const Zone &zone, const Cell &cell) { // certainly all of the cell
+    switch (zone.kind) {
+    case ir::RegionKind::Everywhere: return true;
+    case ir::RegionKind::Ball:
+    case ir::RegionKind::Tube:
+        return distance_squared(zone, cell).hi < zone.half[0].lo * zone.half[0].lo * (1 - 1e-12);
+    case ir::RegionKind::Box:
+        for (std::size_t i = 0; i < 3; ++i)
+            if ((cell.p[i] - zone.center[i]).magnitude() >= zone.half[i].lo) return false;
+        return true;
+    }
+    return false;
+}
+
+struct Candidate { // small: heaps move them about
+    double bound;
+    int depth;
+    std::uint32_t at; // of the cell and its values
+};
+struct Worse { // finite bounds: the greatest first; infinite ones: the deepest, so that trouble is
+               // found soon
+    bool operator()(const Candidate &a, const Candidate &b) const {
+        if (a.bound != b.bound) return a.bound < b.bound;
+        return a.depth < b.depth;
+    }
+};
+
+std::array<double, 3> middle(const Cell &cell) {
+    return {cell.p[0].middle(), cell.p[1].middle(), cell.p[2].middle()};
+}
+Cell at_point(const std::array<double, 3> &p) {
+    return {{Interval(p[0]), Interval(p[1]), Interval(p[2])}};
+}
+
+double widest(const Cell &cell, const std::array<bool, 3> &reads, int *axis) {
+    double most = -1;
+    for (int i = 0; i < 3; ++i) {
+        auto k = static_cast<std::size_t>(i);
+        if (!reads[k]) continue;
+        double w = cell.p[k].hi - cell.p[k].lo;
+        if (w > most) most = w, *axis = i;
+    }
+    return most;
+}
+
+// Two near points with different values, for the report of a jump.
+void find_sides(Machine &machine, FieldBound &out, double scale, const std::array<bool, 3> &reads) {
+    double most = -1;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (!reads[i]) continue;
+        std::array<double, 3> a = out.where, b = out.where;
+        a[i] -= scale, b[i] += scale;
+        machine.run(at_point(a));
+        Interval x = machine.value(0);
+        machine.run(at_point(b));
+        Interval y = machine.value(0);
+        if (!x.finite() || !y.finite()) continue;
+        double gap = std::fabs(x.middle() - y.middle());
+        if (gap > most) {
+            most = gap;
+            out.side_a = a, out.side_b = b, out.value_a = x.middle(), out.value_b = y.middle();
+        }
+    }
+}
+
+} // namespace
+
+bool misses(const Zone &zone, const Cell &cell) {
+    switch (zone.kind) {
+    case ir::RegionKind::Everywhere: break;
+    case ir::RegionKind::Ball:
+    case ir::RegionKind::Tube:
+        if (distance_squared(zone, cell).lo > zone.half[0].hi * zone.half[0].hi * (1 + 1e-12))
+            return true;
+        break;
+    case ir::RegionKind::Box:
+        for (std::size_t i = 0; i < 3; ++i)
+            if ((cell.p[i] - zone.center[i]).mignitude() > zone.half[i].hi) return true;
+        break;
+    }
+    return std::any_of(zone.less.begin(), zone.less.end(),
+                       [&](const Zone &z) { return inside(z, cell); });
+}
+
+namespace {
+
+// A domain that is its own mirror image is cut down to the part where coordinates are not below 0,
+// as far as the field is as steep on both sides; true where its values there are the others
+// negated.
+bool keep_half(const Tape &tape, Cell &whole, const Zone *zone) {
+    auto centred = [&](std::size_t i) {
+        if (zone && (!zone->less.empty() || zone->kind == ir::RegionKind::Everywhere ||
+                     (zone->kind != ir::RegionKind::Tube && !(zone->center[i] == Interval(0.0)))))
+            return false;
+        // Of a period the upper end lies a little further out.
+        return whole.p[i].lo < 0 && -whole.p[i].lo <= whole.p[i].hi;
+    };
+    bool halved = false, negated = false;
+    auto try_axes = [&](const std::array<bool, 3> &axes, std::size_t cut) {
+        const Reflected how = reflected(tape, axes);
+        if (how == Reflected::Unknown) return;
+        whole.p[cut].lo = 0;
+        halved = true;
+        negated = negated || how == Reflected::Negated;
+    };
+    for (std::size_t i = 0; i < 3; ++i)
+        if (centred(i)) try_axes({i == 0, i == 1, i == 2}, i);
+    if (!halved && centred(0) && centred(1) && centred(2)) try_axes({true, true, true}, 0);
+    return negated;
+}
+
+} // namespace
+
+FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
+                       const Domain &domain, const Budget &budget) {
+    FieldBound out;
+    Tape tape = flatten(context, field);
+    if (tape.too_large) {
+        out.lipschitz = infinity;
+        out.value = Interval::everything();
+        out.too_large = true;
+        return out;
+    }
+    Machine machine(tape, ranges);
+    Periods periods = periods_of(tape, context.graph);
+    Cell whole = domain.box;
+    bool reduced = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        double period = periods.period[i];
+        if (periods.reads[i] && period > 0 && whole.p[i].width() > period) {
+            whole.p[i] = Interval(-period / 2, period / 2 * (1 + 1e-9));
+            reduced = true;
+        }
+        if (!periods.reads[i] && !whole.p[i].finite()) whole.p[i] = 0.0;
+    }
+    const Zone *zone = reduced ? nullptr : domain.zone; // a shifted copy need not lie in the zone
+    const bool negated = keep_half(tape, whole, zone);
+
+    auto outside = [&](const Cell &cell) { return zone && misses(*zone, cell); };
+    auto sample = [&](const std::array<double, 3> &p) {
+        if (outside(at_point(p))) return;
+        machine.run(at_point(p));
+        ++out.evaluations;
+        if (machine.norm() != infinity)
+            out.sampled = std::max(out.sampled, machine.norm() * (1 - 1e-9));
+    };
+    Dice dice{0x5eed};
+    for (int k = 0; k < 24; ++k) {
+        std::array<double, 3> p{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            double lo = std::max(whole.p[i].lo, -8.0), hi = std::min(whole.p[i].hi, 8.0);
+            if (lo > hi) lo = hi = whole.p[i].middle();
+            p[i] = lo + (hi - lo) * dice.next();
+        }
+        sample(p);
+    }
+
+    std::priority_queue<Candidate, std::vector<Candidate>, Worse> queue;
+    std::vector<std::pair<Cell, Interval>> cells;
+    auto push = [&](const Cell &cell, int depth) {
+        if (outside(cell)) return;
+        machine.run(cell);
+        ++out.evaluations;
+        queue.push({machine.norm(), depth, static_cast<std::uint32_t>(cells.size())});
+        cells.emplace_back(cell, machine.value(0));
+    };
+    push(whole, 0);
+    double settled = 0; // of cells that cannot be cut any more
+    Interval settled_value{infinity, -infinity};
+    std::size_t limit = std::max(budget.instructions, 200 * tape.length());
+    while (!queue.empty()) {
+        Candidate top = queue.top();
+        if (top.bound <= std::max(out.sampled * budget.tolerance, settled)) break;
+        if (out.sampled > budget.hopeless) break;
+        if (top.bound != infinity && machine.work() > limit) break;
+        queue.pop();
+        const auto [cell, value] = cells[top.at];
+        int axis = 0;
+        double width = widest(cell, periods.reads, &axis);
+        auto k = static_cast<std::size_t>(axis);
+        std::array<double, 3> centre = middle(cell);
+        double size =
+            std::max({std::fabs(centre[0]), std::fabs(centre[1]), std::fabs(centre[2]), 1.0});
+        bool endless = !std::isfinite(width);
+        if (top.bound == infinity &&
+            (width <= 1e-7 * size || (endless && top.depth > 60) || machine.work() > 4 * limit)) {
+            machine.run(cell);
+            out.lipschitz = infinity;
+            out.value = hull(settled_value, value);
+            out.trouble = machine.trouble();
+            out.at_infinity = endless;
+            out.cause = machine.cause();
+            out.where = centre;
+            if (!endless) find_sides(machine, out, std::max(1e-5 * size, width), periods.reads);
+            out.value = Interval::everything();
+            return out;
+        }
+        if (width <= 1e-9 * size) {
+            settled = std::max(settled, top.bound);
+            settled_value = hull(settled_value, value);
+            continue;
+        }
+        sample(centre);
+        Cell left = cell, right = cell;
+        double cut = cell.p[k].middle();
+        left.p[k].hi = cut, right.p[k].lo = cut;
+        push(left, top.depth + 1);
+        push(right, top.depth + 1);
+    }
+    out.value = settled_value;
+    out.lipschitz = settled;
+    if (!queue.empty()) out.lipschitz = std::max(settled, queue.top().bound);
+    while (!queue.empty()) {
+        out.value = hull(out.value, cells[queue.top().at].second);
+        queue.pop();
+    }
+    if (out.value.lo > out.value.hi) out.value = Interval::everything(); // an empty region
+    if (negated) out.value = hull(out.value, -out.value);
+    out.sampled = std::min(out.sampled, out.lipschitz);
+    return out;
+}
+
+double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
+                       const Domain &domain, const Budget &budget) {
+    Tape tape = flatten(context, scalar);
+    if (tape.too_large) return infinity;
+    Machine machine(tape, ranges);
+    const std::array<bool, 3> all{true, true, true};
+    std::priority_queue<Candidate, std::vector<Candidate>, Worse> queue;
+    std::vector<Cell> cells;
+    double seen = 0;
+    auto push = [&](const Cell &cell, int depth) {
+        if (domain.zone && misses(*domain.zone, cell)) return;
+        machine.run(cell);
+        Interval value = machine.value(0);
+        double reach =
+            0; // by the mean value theorem no value is further from the middle's than that
+        for (std::size_t i = 0; i < 3; ++i)
+            reach += ir::rounding::times(machine.row(0)[i].magnitude(),
+                                         (cell.p[i] - Interval(cell.p[i].middle())).magnitude());
+        if (machine.norm() != infinity && std::isfinite(reach)) {
+            machine.run(at_point(middle(cell)));
+            seen = std::max(seen, machine.value(0).mignitude());
+            value = meet(machine.value(0) + Interval(-reach, reach), value);
+        }
+        queue.push({value.magnitude(), depth, static_cast<std::uint32_t>(cells.size())});
+        cells.push_back(cell);
+    };
+    push(domain.box, 0);
+    while (!queue.empty()) {
+        Candidate top = queue.top();
+        if (top.bound <= seen * budget.tolerance || machine.work() > budget.instructions)
+            return top.bound;
+        queue.pop();
+        const Cell cell = cells[top.at];
+        int axis = 0;
+        if (widest(cell, all, &axis) <= 1e-9) return top.bound;
+        auto k = static_cast<std::size_t>(axis);
+        Cell left = cell, right = cell;
+        left.p[k].hi = right.p[k].lo = cell.p[k].middle();
+        push(left, top.depth + 1);
+        push(right, top.depth + 1);
+    }
+    return 0;
+}
+
+std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, NodeId expression,
+                                  const Cell &cell) {
+    std::array<Interval, 16> out{};
+    Tape tape = flatten(context, expression);
+    if (tape.too_large) {
+        out.fill(Interval::everything());
+        return out;
+    }
+    Machine machine(tape, ranges);
+    machine.run(cell);
+    for (int i = 0; i < machine.size() && i < 16; ++i)
+        out[static_cast<std::size_t>(i)] = machine.value(i);
+    return out;
+}
+
+} // namespace fathom::proof

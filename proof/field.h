@@ -1,0 +1,80 @@
+// The bound of a field over a region: branch and bound on the machine's norms, best first, by a
+// counted budget. Knows nothing of shapes.
+#pragma once
+
+#include "proof/machine.h"
+
+namespace fathom::proof {
+
+// A region with its numbers as intervals over all params and times.
+struct Zone {
+    ir::RegionKind kind = ir::RegionKind::Everywhere;
+    std::array<Interval, 3> center{};
+    std::array<Interval, 3> half{}; // Box: half its size; Ball, Tube: half[0] is the radius
+    int axis = 1;
+    std::vector<Zone> less;
+};
+Cell outer_box(const Zone &zone);
+bool misses(const Zone &zone, const Cell &cell); // certainly no common point
+
+struct Domain {
+    Cell box;
+    const Zone *zone = nullptr; // narrower than the box
+};
+
+struct Budget {
+    std::size_t instructions = 250'000;
+    double tolerance = 1.05; // the bound over the largest slope seen, at which to stop
+    double hopeless = ir::rounding::infinity; // a slope seen from which on the bound is of no use
+};
+
+struct FieldBound {
+    double lipschitz = 0; // >= the true constant; infinity where none was proved
+    double sampled = 0;   // <= the true constant: the largest slope seen
+    Interval value;       // holds every value
+    Trouble trouble = Trouble::None;
+    bool at_infinity = false; // the slope grows without bound on an unbounded region
+    bool too_large = false;   // the field was cut off while flattening
+    NodeId cause;
+    std::array<double, 3> where{};
+    std::array<double, 3> side_a{}, side_b{}; // of a jump: two near points and the values there
+    double value_a = 0, value_b = 0;
+    std::size_t evaluations = 0;
+};
+
+FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
+                       const Domain &domain, const Budget &budget);
+
+// Bounds by cells of a bounded region, where the field is mostly far less steep than `whole`, its
+// bound over all of it; else empty. By counted work.
+ir::CellBounds bound_cells(Flattening &context, const Ranges &ranges, NodeId field,
+                           const Zone &zone, double whole, const Budget &budget);
+
+// An upper bound of |value| over the domain.
+double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
+                       const Domain &domain, const Budget &budget);
+
+// All components of an expression that reads no point (or reads it over `cell`).
+std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, NodeId expression,
+                                  const Cell &cell = {});
+
+// The axis' smallest known period of a field, 0 where it is not known to have one; `reads` is false
+// where the field does not depend on that coordinate at all.
+struct Periods {
+    std::array<double, 3> period{};
+    std::array<bool, 3> reads{true, true, true};
+};
+Periods periods_of(const Tape &tape, const ir::Graph &graph);
+
+// Where p -> p with these coordinates' signs changed, each component of the field keeps its value
+// or changes its sign (then its Jacobian has the same norm there): which, of the first one.
+enum class Reflected { Unknown, Same, Negated };
+Reflected reflected(const Tape &tape, const std::array<bool, 3> &axes);
+
+// Deterministic points: the same everywhere.
+struct Dice {
+    std::uint64_t state;
+    double next(); // 0 <= x < 1
+};
+
+} // namespace fathom::proof

@@ -1,0 +1,480 @@
+// Fields of the user's own: their bounds over the region where they are asked, what is assumed of
+// them, and the reports that say where and why there is none.
+#include "proof/prover.h"
+
+#include "ir/lower/lower.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <unordered_set>
+
+namespace fathom::proof {
+
+using ir::FieldKind;
+using ir::NodeId;
+using ir::Op;
+using ir::Shape;
+using ir::ShapeId;
+using ir::ShapeKind;
+using ir::rounding::infinity;
+
+std::string number_text(double x) {
+    if (std::isinf(x)) return x > 0 ? "infinity" : "-infinity";
+    if (x == 0 || std::fabs(x) < 1e-12) return "0";
+    return fmt::format("{:.3g}", x);
+}
+std::string point_text(const std::array<double, 3> &p, int dims) {
+    // What is nothing beside the others is the width of the cell where a search ended.
+    const double nothing = 1e-6 * std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+    std::string out = "[";
+    for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
+        out += (i > 0 ? ", " : "") + number_text(std::fabs(p[i]) < nothing ? 0 : p[i]);
+    return out + "]";
+}
+
+Diagnostic *Prover::report(ShapeId id, Code code, std::string message) {
+    if (!place(id).audible) return nullptr;
+    return &diagnostics.add(code, scene.shapes[id].origin, std::move(message));
+}
+
+namespace {
+
+// A product as a number times the rest.
+struct Scaled {
+    double by = 1;
+    NodeId rest; // invalid: 1
+};
+Scaled split(ir::Graph &graph, NodeId id) {
+    if (auto number = graph.as_number(id)) return {*number, {}};
+    const ir::Node node = graph[id];
+    if (node.type == ir::Type::Float && node.op == Op::Neg) {
+        Scaled out = split(graph, graph.arg(id, 0));
+        return {-out.by, out.rest};
+    }
+    if (node.type == ir::Type::Float && node.op == Op::Mul) {
+        const Scaled a = split(graph, graph.arg(id, 0)), b = split(graph, graph.arg(id, 1));
+        return {a.by * b.by, !a.rest ? b.rest : !b.rest ? a.rest : graph.mul(a.rest, b.rest)};
+    }
+    return {1, id};
+}
+
+} // namespace
+
+// Fields that differ by a factor are analysed once.
+FieldBound Prover::bound_once(NodeId field, const Place &here) {
+    Budget budget;
+    budget.instructions = options.field_instructions;
+    const Scaled parts = split(graph, field);
+    const double by = std::fabs(parts.by);
+    if (here.zone || !parts.rest || !(by > 0) || !std::isfinite(by))
+        return bound_field(flattening, ranges, field, {to_cell(here.box), here.zone}, budget);
+    const auto key = std::tuple(parts.rest, here.box.lo, here.box.hi);
+    auto found = bounds.find(key);
+    if (found == bounds.end())
+        found = bounds
+                    .emplace(key, bound_field(flattening, ranges, parts.rest,
+                                              {to_cell(here.box), nullptr}, budget))
+                    .first;
+    FieldBound out = found->second;
+    out.lipschitz = ir::rounding::up(out.lipschitz * by, 4);
+    out.sampled *= by * (1 - 1e-15);
+    out.value = out.value * Interval(parts.by);
+    out.value_a *= parts.by, out.value_b *= parts.by;
+    return out;
+}
+
+FieldBound Prover::bound(ShapeId id, NodeId field, const std::string &what, bool report_it) {
+    const Place &here = place(id);
+    FieldBound out;
+    if (!here.audible) { // inside a body whose claims are taken
+        out.lipschitz = 1;
+        out.value = Interval::everything();
+        return out;
+    }
+    out = bound_once(field, here);
+    if (!std::isfinite(out.lipschitz) && report_it) report_field(id, out, what);
+    return out;
+}
+
+std::optional<NodeId> Prover::expression(ShapeId id, int depth) {
+    const Shape shape = scene.shapes[id];
+    // What is proved in its own box alone is another field: joined with the way to the box.
+    if (depth > 16 || of(id).fact.local) return {};
+    auto inner = [&](std::size_t i) { return expression(shape.children[i], depth + 1); };
+    switch (shape.kind) {
+    case ShapeKind::Leaf: return shape.args[0];
+    case ShapeKind::Library:
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint:
+    case ShapeKind::Mixed:
+    case ShapeKind::Contract: return inner(0);
+    case ShapeKind::Complement:
+        if (auto f = inner(0)) return graph.neg(*f);
+        return {};
+    case ShapeKind::Union:
+    case ShapeKind::Intersection: {
+        auto sum = inner(0);
+        for (std::size_t i = 1; sum && i < shape.children.size(); ++i) {
+            auto f = inner(i);
+            if (!f) return {};
+            sum = graph.make(shape.kind == ShapeKind::Union ? Op::Min : Op::Max, {*sum, *f});
+        }
+        return sum;
+    }
+    case ShapeKind::Map: {
+        auto f = inner(0);
+        if (!f) return {};
+        NodeId point = graph.point(scene.shapes[shape.children[0]].dims == 2 ? ir::Type::Vec2
+                                                                             : ir::Type::Vec3);
+        return graph.mul(ir::substitute(graph, *f, {{point, shape.args[0]}}), shape.args[1]);
+    }
+    case ShapeKind::Offset:
+    case ShapeKind::Displace:
+        if (auto f = inner(0)) return graph.sub(*f, shape.args[0]);
+        return {};
+    case ShapeKind::Extrude: { // the distance to a corner in the plane of f(p.xy) and |z| - h
+        auto f = inner(0);
+        if (!f) return {};
+        const NodeId p = graph.point();
+        const NodeId flat = ir::substitute(
+            graph, *f, {{graph.point(ir::Type::Vec2), graph.swizzle(p, std::array{0, 1})}});
+        const NodeId half = graph.mul(shape.args[0], graph.number(0.5));
+        const NodeId cap = graph.sub(graph.make(Op::Abs, {graph.component(p, 2)}), half);
+        const NodeId zero = graph.number(0);
+        const NodeId both = graph.make(Op::Make, ir::Type::Vec2, {flat, cap});
+        const NodeId out = graph.make(
+            Op::Length, {graph.make(Op::Max, {both, graph.constant({ir::Type::Vec2, {}})})});
+        return graph.add(out, graph.make(Op::Min, {graph.make(Op::Max, {flat, cap}), zero}));
+    }
+    case ShapeKind::Empty:
+    case ShapeKind::Xor:
+    case ShapeKind::Blend:
+    case ShapeKind::Seam:
+    case ShapeKind::Lerp:
+    case ShapeKind::PseudoNorm:
+    case ShapeKind::Shell:
+    case ShapeKind::Repeat:
+    case ShapeKind::Within:
+    case ShapeKind::Many: break;
+    }
+    return {};
+}
+
+namespace {
+
+std::string cause_text(const ir::Graph &graph, NodeId cause) {
+    if (!cause) return "an operation";
+    switch (graph[cause].op) {
+    case Op::Div: return "a division by 0";
+    case Op::Sqrt: return "a square root at 0";
+    case Op::InverseSqrt: return "`inversesqrt` at 0";
+    case Op::Pow: return "a power at 0";
+    case Op::Log:
+    case Op::Log2: return "a logarithm at 0";
+    case Op::Tan: return "`tan` at its pole";
+    case Op::Asin: return "`asin` at -1 or 1";
+    case Op::Acos: return "`acos` at -1 or 1";
+    case Op::Atan2: return "`atan` of two arguments at the origin";
+    case Op::Normalize: return "`normalize` at 0";
+    case Op::Mod: return "`%`";
+    case Op::Floor: return "`floor`";
+    case Op::Ceil: return "`ceil`";
+    case Op::Round: return "`round`";
+    case Op::Trunc:
+    case Op::ToInt: return "`int` or `trunc`";
+    case Op::Fract: return "`fract`";
+    case Op::Step: return "`step`";
+    case Op::Sign: return "`sign`";
+    case Op::Hash: return "`hash` of the point";
+    case Op::Select: return "an `if`";
+    case Op::Fold: return "a loop that ends early";
+    case Op::TableRead: return "an index that depends on the point";
+    case Op::Smoothstep: return "`smoothstep` with equal edges";
+    case Op::Sub:
+    case Op::Add: return "a wave made with `%`";
+    case Op::Mul:
+    case Op::MatMul: return "a product";
+    case Op::Make:
+    case Op::Swizzle:
+    case Op::Splat:
+    case Op::Neg: return "an expression";
+    case Op::Perlin: return "`noise`";
+    case Op::ValueNoise: return "`value_noise`";
+    case Op::SpotNoise: return "`spot_noise`";
+    default: break; // NOLINT: the others are called in the language as their ops are
+    }
+    std::string name(ir::info(graph[cause].op).name);
+    for (char &c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return "`" + name + "`";
+}
+
+// Smooth at every point: what has no bound by one of these has outgrown all numbers.
+bool only_grows(const ir::Graph &graph, NodeId cause) {
+    if (!cause) return false;
+    switch (graph[cause].op) {
+    case Op::Mul:
+    case Op::MatMul:
+    case Op::Dot:
+    case Op::Cross:
+    case Op::Exp:
+    case Op::Exp2:
+    case Op::Sinh:
+    case Op::Cosh: return true;
+    default: return false;
+    }
+}
+
+} // namespace
+
+namespace {
+
+// Whether a list is read at a place that follows from the point.
+bool reads_list_by_point(const ir::Graph &graph, const std::vector<NodeId> &roots) {
+    std::vector<NodeId> todo = roots;
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!id || !seen.insert(id).second) continue;
+        const ir::Node node = graph[id];
+        if (node.op == Op::TableRead) {
+            const ir::Graph::Reads reads = graph.reads(graph.arg(id, 0));
+            if (reads.point || reads.free_vars) return true;
+        }
+        if (node.op == Op::Call)
+            todo.push_back(graph.function(ir::FunctionId{node.payload}).result);
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    return false;
+}
+
+} // namespace
+
+void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &what) {
+    int dims = scene.shapes[id].dims;
+    const bool leaf = scene.shapes[id].kind == ShapeKind::Leaf;
+    const bool has_region = leaf || what == "the map"; // an argument `within:`
+    const std::string assume =
+        leaf ? "or state a bound that you know with `lipschitz:`, which is then tested"
+             : "or limit it";
+    if (b.too_large) {
+        if (Diagnostic *d =
+                report(id, Code::LipschitzUnbounded, what + " is too large to be analysed"))
+            d->help("make its loops shorter, " + assume);
+        return;
+    }
+    std::string cause = cause_text(graph, b.cause);
+    const bool endless = !place(id).box.finite() && !place(id).zone;
+    const bool grows = b.trouble == Trouble::None || b.trouble == Trouble::Overflow ||
+                       (b.trouble == Trouble::Singular && only_grows(graph, b.cause));
+    if (b.at_infinity || (grows && endless)) {
+        const bool jumps = b.trouble == Trouble::Jump;
+        if (Diagnostic *d =
+                report(id, Code::LipschitzUnbounded,
+                       jumps ? "it cannot be proved that " + what + " does not jump"
+                             : what + " grows steeper without limit, as it is asked everywhere"))
+            d->note(jumps ? cause + " jumps, and that both sides meet is not seen"
+                          : "no bound on its slope holds for all points" +
+                                (b.cause ? "; far from the origin " + cause + " has none" : ""))
+                .help((has_region ? "give it a region, as in `within: ball(3)`, "
+                                  : "write `.within(…)` after it, as in `.within(ball(3))`, ") +
+                      assume);
+        return;
+    }
+    if (grows) {
+        if (Diagnostic *d =
+                report(id, Code::LipschitzUnbounded,
+                       what + " is too steep to be bounded near " + point_text(b.where, dims)))
+            d->note("its numbers grow beyond all limits there")
+                .help("choose a smaller region or smaller numbers, " + assume);
+        return;
+    }
+    switch (b.trouble) {
+    case Trouble::Jump: {
+        const bool by_list = reads_list_by_point(graph, scene.shapes[id].args);
+        const std::string between =
+            "go from one entry of a list to the next without a jump, with the place limited before "
+            "`floor`: `let x = clamp(…, 0, last)`, then `mix(list[int(floor(x))], "
+            "list[int(floor(x)) + 1], fract(x))`; ";
+        bool seen = std::fabs(b.value_a - b.value_b) >
+                    1e-4 * std::max({1.0, std::fabs(b.value_a), std::fabs(b.value_b)});
+        if (seen) {
+            if (Diagnostic *d =
+                    report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))
+                d->note("it is " + number_text(b.value_a) + " at " + point_text(b.side_a, dims) +
+                        " and " + number_text(b.value_b) + " at " + point_text(b.side_b, dims) +
+                        ": " + cause)
+                    .help((by_list ? between : "make both sides agree there, ") +
+                          "keep the jump out of the region with " +
+                          (has_region ? "`within:`, " : "`.within(…)`, ") + assume);
+        } else if (Diagnostic *d = report(id, Code::LipschitzUnbounded,
+                                          "it cannot be proved that " + what +
+                                              " does not jump near " + point_text(b.where, dims)))
+            d->note(cause + " chooses there; its sides meet where they were tried (" +
+                    number_text(b.value_a) + " and " + number_text(b.value_b) +
+                    "), but that they meet everywhere is not seen")
+                .help((by_list ? between
+                               : "write it with `min`, `max`, `clamp` or `abs`, whose continuity "
+                                 "is known, ") +
+                      assume);
+        return;
+    }
+    case Trouble::Overflow: // told above
+    case Trouble::Singular:
+    case Trouble::None:
+        if (Diagnostic *d = report(id, Code::FieldSingular,
+                                   what + " is undefined or infinitely steep near " +
+                                       point_text(b.where, dims)))
+            d->note(cause + " happens there, and the field is asked in all of its region")
+                .help(std::string(has_region
+                                      ? "choose a region that avoids it, as in `within: ball(2) - "
+                                        "tube(Y, 0.1)`, "
+                                      : "keep it out with a region behind it, as in "
+                                        "`.within(ball(2) - tube(Y, 0.1))`, ") +
+                      "keep it off with `max(…, 0.001)`, " + assume);
+        return;
+    }
+}
+
+Known Prover::know_leaf(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    Known k;
+    k.fact.kind = FieldKind::Bound;
+    k.fact.lever = {infinity, infinity, infinity};
+    if (shape.dims == 2) k.fact.bounds.lo[2] = k.fact.bounds.hi[2] = 0;
+    if (const Tape &tape = tape_of(shape.args[0]); !tape.too_large)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            std::array<bool, 3> across{};
+            across[axis] = true;
+            k.fact.symmetric[axis] = reflected(tape, across) == Reflected::Same;
+        }
+    if (shape.assumed > 0 || shape.estimate > 0) {
+        bool assumed = shape.assumed > 0;
+        set_lipschitz(k, assumed ? shape.assumed : shape.estimate);
+        k.fact.status = assumed ? ir::ProofStatus::Assumed : ir::ProofStatus::Estimated;
+        if (!assumed) k.fact.kind = FieldKind::Estimate;
+        test_assumed(id, shape.args[0], k.fact.lipschitz_sup, !assumed);
+        return k;
+    }
+    FieldBound b = bound(id, shape.args[0], "this field");
+    if (!std::isfinite(b.lipschitz)) {
+        fail(k);
+        return k;
+    }
+    set_lipschitz(k, b.lipschitz * options.rules[Rule::Field]);
+    k.leaf = shape.args[0];
+    if (b.lipschitz == 0) set_lipschitz(k, 1); // a constant
+    return k;
+}
+
+// Pairs of points at all distances, and gradient ascent from the steepest: two points that refute
+// the limit, if any are found.
+void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate) {
+    const Place &here = place(id);
+    if (!here.audible || !options.test_assumptions) return;
+    const Tape &tape = tape_of(field);
+    if (tape.too_large) return;
+    Machine machine(tape, ranges);
+    Dice dice{0xa55e55};
+    int dims = scene.shapes[id].dims;
+    auto random_point = [&] {
+        std::array<double, 3> p{};
+        for (int tries = 0; tries < 64; ++tries) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                double lo = std::max(here.box.lo[i], -4.0), hi = std::min(here.box.hi[i], 4.0);
+                if (lo > hi)
+                    lo = hi = std::isfinite(here.box.lo[i]) ? here.box.lo[i] : here.box.hi[i];
+                p[i] = dims == 2 && i == 2 ? 0 : lo + (hi - lo) * dice.next();
+            }
+            if (!here.zone ||
+                !misses(*here.zone, {{Interval(p[0]), Interval(p[1]), Interval(p[2])}}))
+                break;
+        }
+        return p;
+    };
+    using Values = std::array<Interval, 4>;
+    auto ask = [&](const std::array<double, 3> &p) {
+        machine.run({{Interval(p[0]), Interval(p[1]), Interval(p[2])}});
+        Values v{Interval(0), Interval(0), Interval(0), Interval(0)};
+        for (int i = 0; i < std::min(machine.size(), 4); ++i)
+            v[static_cast<std::size_t>(i)] = machine.value(i);
+        return v;
+    };
+    // The rise is what lies between the two intervals: where rounding leaves a choice open, both of
+    // its branches are in there, and nothing is refuted.
+    auto slope = [&](const std::array<double, 3> &p, const std::array<double, 3> &q) {
+        Values a = ask(p), b = ask(q);
+        double rise = 0, run = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            double gap = std::max({0.0, a[i].lo - b[i].hi, b[i].lo - a[i].hi});
+            if (!a[i].finite() || !b[i].finite()) return 0.0;
+            rise += gap * gap;
+        }
+        for (std::size_t i = 0; i < 3; ++i) run += (p[i] - q[i]) * (p[i] - q[i]);
+        return run > 0 ? std::sqrt(rise / run) : 0.0;
+    };
+    // fewer where a field has long loops, so that the work is bounded: about 5 million operations
+    const double share = std::min(1.0, 1e3 / ir::operations(scene.graph, field));
+    const int pairs = std::max(10, static_cast<int>(2000 * share));
+    int violations = 0;
+    double worst = 0;
+    std::array<double, 3> worst_a{}, worst_b{};
+    auto keep = [&](double s, const std::array<double, 3> &a, const std::array<double, 3> &b) {
+        if (s > worst) worst = s, worst_a = a, worst_b = b;
+    };
+    for (int n = 0; n < pairs; ++n) {
+        auto a = random_point(), b = random_point();
+        double reach = std::pow(
+            10.0, -4 * dice.next()); // from the whole region down to a ten-thousandth of it
+        for (std::size_t i = 0; i < 3; ++i) b[i] = a[i] + (b[i] - a[i]) * reach;
+        double s = slope(a, b);
+        violations += s > limit * (1 + 1e-6);
+        keep(s, a, b);
+    }
+    // Ascent: small moves of a short pair that make it steeper.
+    std::array<double, 3> a = worst_a, b = worst_b;
+    double step = 0.1;
+    for (int n = 0; n < static_cast<int>(400 * share); ++n) {
+        auto c = a, d = b;
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (dims == 2 && i == 2) continue;
+            double move = step * (2 * dice.next() - 1);
+            c[i] += move, d[i] += move;
+            d[i] += step * 0.1 * (2 * dice.next() - 1);
+            c[i] = std::clamp(c[i], here.box.lo[i], here.box.hi[i]);
+            d[i] = std::clamp(d[i], here.box.lo[i], here.box.hi[i]);
+        }
+        if (here.zone && (misses(*here.zone, {{Interval(c[0]), Interval(c[1]), Interval(c[2])}}) ||
+                          misses(*here.zone, {{Interval(d[0]), Interval(d[1]), Interval(d[2])}})))
+            continue;
+        double s = slope(c, d);
+        if (s > worst) {
+            keep(s, c, d);
+            a = c, b = d;
+        } else {
+            step = std::max(step * 0.98, 1e-4);
+        }
+    }
+    std::string witness = "between " + point_text(worst_a, dims) + " and " +
+                          point_text(worst_b, dims) + " its slope is " + number_text(worst);
+    if (estimate) {
+        if (Diagnostic *d = report(id, Code::EstimatedField,
+                                   "this field is marched by an estimate, which is not a proof: "
+                                   "thin parts may be missed"))
+            d->note(fmt::format("{:.2g} % of {} pairs of points are steeper than {}; ",
+                                100.0 * violations / pairs, pairs, number_text(limit)) +
+                    (worst > 0 ? witness : "none of them is steep at all"));
+    } else if (worst > limit * (1 + 1e-6)) {
+        if (Diagnostic *d =
+                report(id, Code::LipschitzViolated,
+                       "the field is steeper than `lipschitz: " + number_text(limit) + "` says"))
+            d->note(witness).help("state at least " + number_text(std::ceil(worst * 100) / 100) +
+                                  ", or leave `lipschitz:` out to have it proved");
+        // The picture is refused; what depends on it is not reported again.
+    }
+}
+
+} // namespace fathom::proof

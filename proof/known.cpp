@@ -1,0 +1,116 @@
+#include "proof/known.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::proof {
+
+using ir::rounding::infinity;
+using ir::rounding::up;
+
+namespace {
+Interval side(const Box &box, std::size_t i) { return {box.lo[i], box.hi[i]}; }
+void set(Box &box, std::size_t i, Interval x) { box.lo[i] = x.lo, box.hi[i] = x.hi; }
+} // namespace
+
+Cell to_cell(const Box &box) { return {{side(box, 0), side(box, 1), side(box, 2)}}; }
+Box from_cell(const Cell &cell, int dims) {
+    Box box;
+    for (std::size_t i = 0; i < 3; ++i)
+        set(box, i, dims == 2 && i == 2 ? Interval(0.0) : cell.p[i]);
+    return box;
+}
+
+Box grow(const Box &box, const std::array<double, 3> &by) {
+    if (box.empty()) return box;
+    Box out = box;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (by[i] != 0) set(out, i, side(box, i) + Interval(-by[i], by[i]));
+    return out;
+}
+Box grow(const Box &box, double by) { return grow(box, {by, by, by}); }
+Box reached(const Box &box, double swell, double t) {
+    if (t <= 0 || swell == 0) return box;
+    if (!std::isfinite(swell) || !std::isfinite(t)) return Box::everything();
+    return grow(box, up(swell * t));
+}
+// Of sides a.hi < b.lo, grown by w*t: [b.lo - w*t, a.hi + w*t] lies within w*t of the middle.
+Box meeting(const Box &a, const Box &b) {
+    if (a.empty() || b.empty()) return empty_box();
+    Box out;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double lo = std::max(a.lo[i], b.lo[i]), hi = std::min(a.hi[i], b.hi[i]);
+        set(out, i, lo <= hi ? Interval(lo, hi) : Interval(Interval(hi, lo).middle()));
+    }
+    return out;
+}
+Box moved(const Box &box, const Vec &by) {
+    if (box.empty()) return box;
+    Box out;
+    for (std::size_t i = 0; i < 3; ++i) set(out, i, side(box, i) + by[i]);
+    return out;
+}
+Box times(const Box &box, const Vec &by) {
+    if (box.empty()) return box;
+    Box out;
+    for (std::size_t i = 0; i < 3; ++i) set(out, i, side(box, i) * by[i]);
+    return out;
+}
+
+// The image of the box, and, since the matrix is an isometry, of the ball that holds it.
+Box turned(const Box &box, const std::array<Interval, 16> &matrix, int side_length) {
+    if (box.empty()) return box;
+    Box out = box;
+    auto n = static_cast<std::size_t>(side_length);
+    double r = norm_of(box);
+    for (std::size_t i = 0; i < n; ++i) {
+        Interval sum;
+        for (std::size_t j = 0; j < n; ++j)
+            sum += meet(Interval(-1, 1), matrix[j * n + i]) * side(box, j);
+        set(out, i, std::isfinite(r) ? meet(Interval(-r, r), sum) : sum);
+    }
+    return out;
+}
+
+bool disjoint(const Box &a, const Box &b) {
+    if (a.empty() || b.empty()) return true;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (a.lo[i] > b.hi[i] || b.lo[i] > a.hi[i]) return true;
+    return false;
+}
+bool holds(const Box &outer, const Box &inner) {
+    if (inner.empty()) return true;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (inner.lo[i] < outer.lo[i] || inner.hi[i] > outer.hi[i]) return false;
+    return true;
+}
+bool everywhere(const Box &box) {
+    for (std::size_t i = 0; i < 3; ++i)
+        if (std::isfinite(box.lo[i]) || std::isfinite(box.hi[i])) return false;
+    return true;
+}
+double radius_about(const Box &box, int axis) {
+    if (box.empty()) return 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (int(i) != axis) sum += std::pow(side(box, i).magnitude(), 2);
+    return up(std::sqrt(sum), 4);
+}
+double norm_of(const Box &box) {
+    if (box.empty()) return 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i) sum += std::pow(side(box, i).magnitude(), 2);
+    return up(std::sqrt(sum), 4);
+}
+Box padded(const Box &box) {
+    if (box.empty()) return box;
+    Box out = box;
+    for (std::size_t i = 0; i < 3; ++i) {
+        double by =
+            slack * std::max({std::fabs(box.lo[i]), std::fabs(box.hi[i]), box.hi[i] - box.lo[i]});
+        if (std::isfinite(by)) out.lo[i] -= by, out.hi[i] += by;
+    }
+    return out;
+}
+
+} // namespace fathom::proof

@@ -1,0 +1,65 @@
+// What is known of a shape while the proof runs: its fact, and what only the rules for its parents
+// need. And the arithmetic of boxes. Every statement is for all params and times.
+#pragma once
+
+#include "ir/scene.h"
+#include "proof/field.h"
+
+namespace fathom::proof {
+
+using ir::Box;
+using Vec = std::array<Interval, 3>;
+
+// Beside the box: a turn inflates a box and leaves a ball as it is.
+struct Ball {
+    std::array<double, 3> centre{};
+    double radius = ir::rounding::infinity;
+    double swell = 0; // {f < t} lies in it grown by swell*t, t >= 0
+};
+
+struct Known {
+    ir::ShapeFact fact;
+    // Distance exact outside the solid: an offset or shell of it is what it says.
+    bool exact_outside = false;
+    // A tree of min and max over exact fields, rigidly moved: its value is a part's true distance.
+    bool parts_exact = false;
+    // The field's gradient is everywhere a convex mean of vectors L*n, n the unit gradient of an
+    // exact part whose nearest surface point lies in this box (lipschitz.md, 5.1).
+    // Everything: unknown.
+    Box parts = Box::everything();
+    // {f < t} lies in fact.bounds grown by swell*t, t >= 0; {f > -t} in outer grown by swell_out*t.
+    double swell = 0, swell_out = 0;
+    Box outer = Box::everything();
+    Ball ball; // set anew after every rule (balls.cpp)
+    // By how much the field may differ from that of a part that makes its gradient: an offset by r
+    // moves surfaces, and not what gradients point away from.
+    double drift = 0;
+    double lowered = 0;  // outside, an exact field and at most this much (offsets by less than 0)
+    NodeId leaf;         // of a field of one's own, that field
+    bool failed = false; // reported, here or below
+};
+
+inline Box empty_box() { return {}; }
+Box from_cell(const Cell &cell, int dims);
+Cell to_cell(const Box &box);
+Box grow(const Box &box, double by); // outward on all sides; an empty box stays empty
+Box grow(const Box &box, const std::array<double, 3> &by);
+// What holds {f < t}, t >= 0, of a field whose solid lies in `box` and that swells so.
+Box reached(const Box &box, double swell, double t);
+// What holds {max(f, g) < t} for all t >= 0, as the boxes grow: their meet, and in axes where they
+// are apart the middle between them. Nowhere empty, unless one of them is.
+Box meeting(const Box &a, const Box &b);
+Box moved(const Box &box, const Vec &by);
+Box times(const Box &box, const Vec &by);
+Box turned(const Box &box, const std::array<Interval, 16> &matrix, int side); // column-major
+bool disjoint(const Box &a, const Box &b);
+bool holds(const Box &outer, const Box &inner);
+bool everywhere(const Box &box);
+double radius_about(const Box &box, int axis); // the largest distance of its points from the axis
+double norm_of(const Box &box);                // the largest distance of its points from the origin
+Box padded(const Box &box);                    // by the float32 slack
+
+constexpr double slack =
+    1e-6; // relative: what float32 evaluation of a proved bound may lose (docs/lipschitz.md, 2)
+
+} // namespace fathom::proof

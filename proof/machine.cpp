@@ -1,0 +1,290 @@
+// The machine's frame: ranges, norms, loops, what happens to trouble. The rules for the ops:
+// machine_ops.cpp and machine_vectors.cpp.
+#include "proof/machine_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::proof {
+
+using ir::rounding::infinity;
+using ir::rounding::times;
+using ir::rounding::up;
+
+namespace {
+
+// Bilinear (trilinear) interpolation is affine along each axis in a cell, so its partial
+// derivatives are means of the adjacent differences: |grad| <= sqrt(sum of (largest difference /
+// spacing)^2).
+Ranges::Sampled sampled_image(const ir::ImageData &image) {
+    Ranges::Sampled out{{0, 0}, 0};
+    if (image.rgba.empty()) return out;
+    auto at = [&](int x, int y, int c) {
+        return double(image.rgba[static_cast<std::size_t>(
+            ((y % image.height) * image.width + x % image.width) * 4 + c)]);
+    };
+    out.values = {infinity, -infinity};
+    double dx = 0, dy = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            for (int c = 0; c < 4; ++c) {
+                double v = at(x, y, c);
+                out.values = hull(out.values, Interval(v));
+                dx = std::max(dx, std::fabs(at(x + 1, y, c) - v)); // repeated: the seam counts
+                dy = std::max(dy, std::fabs(at(x, y + 1, c) - v));
+            }
+    out.slope = up(std::hypot(dx * image.width, dy * image.height), 8);
+    return out;
+}
+
+Ranges::Sampled sampled_grid(const ir::GridData &grid) {
+    Ranges::Sampled out{{0, 0}, 0};
+    if (grid.values.empty()) return out;
+    auto at = [&](int x, int y, int z) {
+        return double(
+            grid.values[static_cast<std::size_t>((z * grid.size[1] + y) * grid.size[0] + x)]);
+    };
+    out.values = {infinity, -infinity};
+    double d[3] = {0, 0, 0};
+    for (int z = 0; z < grid.size[2]; ++z)
+        for (int y = 0; y < grid.size[1]; ++y)
+            for (int x = 0; x < grid.size[0]; ++x) {
+                double v = at(x, y, z);
+                out.values = hull(out.values, Interval(v));
+                if (x + 1 < grid.size[0]) d[0] = std::max(d[0], std::fabs(at(x + 1, y, z) - v));
+                if (y + 1 < grid.size[1]) d[1] = std::max(d[1], std::fabs(at(x, y + 1, z) - v));
+                if (z + 1 < grid.size[2]) d[2] = std::max(d[2], std::fabs(at(x, y, z + 1) - v));
+            }
+    double sum = 0;
+    // Samples lie at cell centres or corners: the spacing is at least 1/size.
+    for (int i = 0; i < 3; ++i) sum += std::pow(d[i] * grid.size[static_cast<std::size_t>(i)], 2);
+    out.slope = up(std::sqrt(sum), 8);
+    return out;
+}
+
+} // namespace
+
+Ranges ranges_of(const ir::Scene &scene) {
+    Ranges ranges;
+    ranges.scene = &scene;
+    ranges.time = {0, scene.render.time_end};
+    for (const ir::ImageData &image : scene.images) ranges.images.push_back(sampled_image(image));
+    for (const ir::GridData &grid : scene.grids) ranges.grids.push_back(sampled_grid(grid));
+    return ranges;
+}
+
+// A = M^T M for the middle matrix M; its largest eigenvalue by the closed form for symmetric 3x3
+// matrices, plus the Frobenius norm of the radii. Where an entry is unbounded the answer is
+// infinity.
+double spectral_norm(const Row *rows, int count) {
+    // Often each row has one entry, in a column of its own: then the largest entry is the norm.
+    int used[3] = {0, 0, 0};
+    double largest_entry = 0;
+    bool apart = true;
+    for (int i = 0; apart && i < count; ++i) {
+        int entries = 0;
+        for (std::size_t j = 0; j < 3; ++j) {
+            const Interval x = rows[i][j];
+            if (x.lo == 0 && x.hi == 0) continue;
+            ++entries, ++used[j];
+            largest_entry = std::max(largest_entry, x.magnitude());
+        }
+        apart = entries <= 1;
+    }
+    if (apart && used[0] <= 1 && used[1] <= 1 && used[2] <= 1) return largest_entry;
+    double mid[16][3], radius = 0, frobenius = 0;
+    for (int i = 0; i < count; ++i)
+        for (int j = 0; j < 3; ++j) {
+            Interval x = rows[i][static_cast<std::size_t>(j)];
+            if (!x.finite()) return infinity;
+            mid[i][j] = x.lo + (x.hi - x.lo) / 2;
+            double r = std::max(x.hi - mid[i][j], mid[i][j] - x.lo);
+            radius += r * r;
+            frobenius += x.magnitude() * x.magnitude();
+        }
+    if (count == 1) return up(std::sqrt(frobenius), 4);
+    double a[3][3] = {};
+    for (int i = 0; i < count; ++i)
+        for (int j = 0; j < 3; ++j)
+            for (int k = j; k < 3; ++k) a[j][k] += mid[i][j] * mid[i][k];
+    double off = a[0][1] * a[0][1] + a[0][2] * a[0][2] + a[1][2] * a[1][2];
+    double q = (a[0][0] + a[1][1] + a[2][2]) / 3, largest = std::max({a[0][0], a[1][1], a[2][2]});
+    if (off > 1e-30 * q * q) {
+        double x = a[0][0] - q, y = a[1][1] - q, z = a[2][2] - q;
+        double p = std::sqrt((x * x + y * y + z * z + 2 * off) / 6);
+        x /= p, y /= p, z /= p;
+        double u = a[0][1] / p, v = a[0][2] / p, w = a[1][2] / p;
+        double half_det = 0.5 * (x * (y * z - w * w) - u * (u * z - w * v) + v * (u * w - y * v));
+        double angle = std::acos(std::clamp(half_det, -1.0, 1.0)) / 3;
+        largest = q + 2 * p * std::cos(angle) +
+                  1e-8 * p; // the closed form is good to half the digits at double roots
+    }
+    double norm = std::sqrt(std::max(largest, 0.0)) * (1 + 1e-14) + std::sqrt(radius);
+    return up(std::min(norm, std::sqrt(frobenius)), 8);
+}
+
+Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
+    : tape_(tape), ranges_(ranges), value_(tape.components), grad_(tape.components),
+      odd_(tape.components), norm_(tape.first.size()), bend_(bends ? tape.first.size() : 0),
+      trouble_(tape.first.size(), Trouble::None), cause_(tape.first.size()) {
+    run(tape.once);
+}
+
+void Machine::run(const Cell &cell) {
+    constexpr double far = 1e6; // further off whatever grows has left single precision
+    cell_ = cell;
+    in_reach_ = tape_.grows && std::all_of(cell.p.begin(), cell.p.end(),
+                                           [](const Interval &x) { return x.magnitude() <= far; });
+    run(tape_.each);
+    Slot s = tape_.result;
+    result_norm_ = norm_[s];
+    for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
+        if (in_reach_ && result_norm_ > 0 && value_[tape_.first[s] + i].magnitude() > single_most) {
+            result_norm_ = infinity;
+            trouble_[s] = Trouble::Overflow;
+        }
+    for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
+        if (odd_[tape_.first[s] + i]) { // a wave that nothing made even
+            result_norm_ = infinity;
+            trouble_[s] = Trouble::Jump;
+        }
+}
+
+void Machine::run(const std::vector<Instruction> &block) {
+    for (const Instruction &instruction : block) {
+        ++work_;
+        if (instruction.form == Form::Loop)
+            run_loop(instruction);
+        else
+            step(instruction);
+    }
+}
+
+void Machine::copy(Slot from, Slot to) {
+    std::uint32_t a = tape_.first[from], b = tape_.first[to];
+    for (std::uint32_t i = 0; i < tape_.size[to]; ++i) {
+        value_[b + i] = value_[a + i];
+        grad_[b + i] = grad_[a + i];
+        odd_[b + i] = odd_[a + i];
+    }
+    norm_[to] = norm_[from];
+    if (!bend_.empty()) bend_[to] = bend_[from];
+    trouble_[to] = trouble_[from];
+    cause_[to] = cause_[from];
+}
+
+// `into` becomes what holds both; a jump from one to the other may lie in the cell.
+void Machine::join(Slot into, Slot other, bool jump, NodeId cause) {
+    std::uint32_t a = tape_.first[into], b = tape_.first[other];
+    for (std::uint32_t i = 0; i < tape_.size[into]; ++i) {
+        value_[a + i] = hull(value_[a + i], value_[b + i]);
+        odd_[a + i] = odd_[a + i] | odd_[b + i];
+        for (std::size_t j = 0; j < 3; ++j)
+            grad_[a + i][j] = hull(grad_[a + i][j], grad_[b + i][j]);
+    }
+    if (norm_[other] > norm_[into]) {
+        norm_[into] = norm_[other];
+        trouble_[into] = trouble_[other];
+        cause_[into] = cause_[other];
+    }
+    if (!bend_.empty()) bend_[into] = jump ? infinity : std::max(bend_[into], bend_[other]);
+    if (jump && norm_[into] != infinity) {
+        for (std::uint32_t i = 0; i < tape_.size[into]; ++i)
+            grad_[a + i] = {Interval::everything(), Interval::everything(), Interval::everything()};
+        norm_[into] = infinity;
+        trouble_[into] = Trouble::Jump;
+        cause_[into] = cause;
+    }
+}
+
+void Machine::run_loop(const Instruction &instruction) {
+    const Loop &loop = tape_.loops[instruction.payload];
+    Interval count = value_[tape_.first[loop.count]];
+    double most = std::clamp(count.hi, 0.0, double(loop.most));
+    bool count_varies = norm_[loop.count] > 0;
+    for (std::size_t k = 0; k < loop.vars.size(); ++k) copy(loop.start[k], loop.vars[k]);
+    bool ended = false;
+    auto may_end = [&](bool jump) {
+        for (std::size_t k = 0; k < loop.vars.size(); ++k)
+            if (ended)
+                join(loop.ends[k], loop.vars[k], jump, instruction.node);
+            else
+                copy(loop.vars[k], loop.ends[k]);
+        ended = true;
+    };
+    bool split = false; // some point of the cell may have left earlier
+    for (int turn = 0;; ++turn) {
+        if (turn >= count.lo || turn >= most) {
+            may_end(split || count_varies);
+            if (turn >= most) break;
+        }
+        value_[tape_.first[loop.index]] = double(turn);
+        run(loop.body);
+        if (loop.has_condition) {
+            Interval go = value_[tape_.first[loop.condition]];
+            if (go.hi < 0.5) {
+                may_end(split);
+                break;
+            }
+            if (go.lo < 0.5) {
+                may_end(split);
+                split = split || loop.condition_varies;
+            }
+        }
+        for (std::size_t k = 0; k < loop.vars.size(); ++k) copy(loop.next[k], loop.scratch[k]);
+        for (std::size_t k = 0; k < loop.vars.size(); ++k) copy(loop.scratch[k], loop.vars[k]);
+    }
+}
+
+void Machine::fail(const Instruction &instruction, Trouble why) {
+    Slot s = instruction.out;
+    for (std::uint32_t i = 0; i < tape_.size[s]; ++i) {
+        grad_[tape_.first[s] + i] = {Interval::everything(), Interval::everything(),
+                                     Interval::everything()};
+        odd_[tape_.first[s] + i] = 0;
+    }
+    norm_[s] = infinity;
+    trouble_[s] = why;
+    cause_[s] = instruction.node;
+    for (Slot a : instruction.args) // what fed it was in trouble before
+        if (trouble_[a] != Trouble::None) {
+            trouble_[s] = trouble_[a];
+            cause_[s] = cause_[a];
+            return;
+        }
+    if (why == Trouble::Jump)
+        for (Slot a : instruction.args) // a wave that jumps
+            if (cause_[a]) cause_[s] = cause_[a];
+}
+
+// The rule's norm or the box's, whichever is less.
+void Machine::finish(const Instruction &instruction, double rule, bool odd_used) {
+    Slot s = instruction.out;
+    std::uint32_t at = tape_.first[s];
+    if (odd_used) {
+        fail(instruction, Trouble::Jump);
+        return;
+    }
+    int n = tape_.size[s];
+    if (!instruction.turned.empty() && rule < infinity) { // M v + c: |M| |J_v|, M and c being still
+        bool still = true;
+        for (std::size_t i = 1; i < instruction.turned.size(); ++i)
+            still = still && norm_[instruction.turned[i]] == 0;
+        if (still)
+            rule = std::min(rule, up(times(instruction.norm, norm_[instruction.turned[0]]), 4));
+    }
+    double box = 0;
+    if (rule > 0) box = spectral_norm(&grad_[at], n);
+    norm_[s] = std::min(std::isnan(rule) ? infinity : rule, box);
+    trouble_[s] = Trouble::None;
+    cause_[s] = NodeId();
+    if (norm_[s] == infinity) fail(instruction, Trouble::Singular);
+}
+
+Interval Machine::box_length(Slot s) const {
+    Interval sum;
+    for (std::uint32_t i = 0; i < tape_.size[s]; ++i) sum += square(value_[tape_.first[s] + i]);
+    return sqrt(sum);
+}
+
+} // namespace fathom::proof

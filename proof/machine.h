@@ -1,0 +1,111 @@
+// Runs a tape over a box of points: for every value an interval for each component, one for each
+// partial derivative, and beside them a bound on the Jacobian's spectral norm (the hull of two unit
+// gradients has norm sqrt 3; max and min of two fields of norm 1 have norm 1). Derivatives are
+// Clarke's: at a kink the hull of both sides', which bounds the slope of everything continuous.
+// What may jump or be infinitely steep in the box has norm infinity and says why.
+#pragma once
+
+#include "base/ids.h"
+#include "ir/scene.h"
+#include "proof/tape.h"
+
+#include <array>
+
+namespace fathom::proof {
+
+// What the numbers that are not the point may be.
+struct Ranges {
+    const ir::Scene *scene = nullptr;
+    Interval time;
+    std::unordered_map<std::uint32_t, std::array<Interval, 4>>
+        vars; // by Var payload: ids of cells, rows of families
+    // By image and grid: least and greatest value, and a bound on the slope in the unit square or
+    // cube.
+    struct Sampled {
+        Interval values;
+        double slope = 0;
+    };
+    std::vector<Sampled> images, grids;
+    // By cached field, where its values may be kept: what holds of the kept ones, too (caches.cpp).
+    // Else nothing, and its own text is looked at.
+    struct Cached {
+        bool kept = false;
+        std::array<Interval, 4> values{};
+        double slope = 0; // of all components together
+    };
+    std::vector<Cached> caches;
+};
+Ranges ranges_of(const ir::Scene &scene);
+
+enum class Trouble : std::uint8_t { None, Jump, Singular, Overflow };
+
+struct Cell {
+    std::array<Interval, 3> p{Interval::everything(), Interval::everything(),
+                              Interval::everything()};
+};
+
+using Row = std::array<Interval, 3>;
+
+// A bound on the spectral norm of every matrix whose rows lie in `rows`.
+double spectral_norm(const Row *rows, int count);
+
+class Machine {
+  public:
+    // bends: bounds second derivatives too (machine_bend.cpp).
+    Machine(const Tape &tape, const Ranges &ranges, bool bends = false);
+    void run(const Cell &cell);
+
+    int size() const { return tape_.size[tape_.result]; }
+    Interval value(int i) const {
+        return value_[tape_.first[tape_.result] + static_cast<std::uint32_t>(i)];
+    }
+    const Row &row(int i) const {
+        return grad_[tape_.first[tape_.result] + static_cast<std::uint32_t>(i)];
+    }
+    double norm() const {
+        return result_norm_;
+    } // infinity where the field may jump or be infinitely steep here
+    // Of second derivatives along straight lines, all components together; infinity where the slope
+    // may jump, or nothing is known.
+    double bend() const { return result_norm_ == infinity_ ? infinity_ : bend_[tape_.result]; }
+    // … and of any value on the way, with what else is known of it.
+    double bend(Slot s) const { return bend_[s]; }
+    double norm(Slot s) const { return norm_[s]; }
+    Interval value(Slot s, int i) const {
+        return value_[tape_.first[s] + static_cast<std::uint32_t>(i)];
+    }
+    const Row &row(Slot s, int i) const {
+        return grad_[tape_.first[s] + static_cast<std::uint32_t>(i)];
+    }
+    Trouble trouble() const { return trouble_[tape_.result]; }
+    NodeId cause() const { return cause_[tape_.result]; } // the first node that is in trouble
+    std::size_t work() const { return work_; }            // instructions run so far
+
+  private:
+    static constexpr double infinity_ = ir::rounding::infinity;
+    friend struct Step; // the rules of one instruction (machine_step.h)
+    void run(const std::vector<Instruction> &block);
+    void run_loop(const Instruction &instruction);
+    void step(const Instruction &instruction);
+    void finish(const Instruction &instruction, double norm, bool odd_used);
+    void fail(const Instruction &instruction, Trouble why);
+    void copy(Slot from, Slot to);
+    void join(Slot into, Slot other, bool jump, NodeId cause);
+    Interval box_length(Slot s) const;
+
+    const Tape &tape_;
+    const Ranges &ranges_;
+    Cell cell_;
+    bool in_reach_ = false; // the cell is where rays go, and values may leave single precision
+    std::vector<Interval> value_;
+    std::vector<Row> grad_;
+    std::vector<std::uint8_t> odd_; // by component: may jump, but only from x to -x
+    std::vector<double> norm_;      // by slot
+    std::vector<double> bend_;      // by slot, or none
+    std::vector<Trouble> trouble_;
+    std::vector<NodeId> cause_;
+    double result_norm_ = 0;
+    std::size_t work_ = 0;
+};
+
+} // namespace fathom::proof

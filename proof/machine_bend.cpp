@@ -1,0 +1,171 @@
+// How much a field can bend: for every value v of a tape a bound on |d²v/ds²| along straight lines,
+// s the length, beside the machine's norm n. A line's derivative of v is Lipschitz with it, so
+// kinks have none. Only what displacements are made of has a rule; all else is infinity, which is
+// true.
+//
+// With n the norms, b the bends, by the product and chain rules (docs/lipschitz.md, 4):
+//   a + b         ba + bb
+//   a * b         max|a| bb + max|b| ba + 2 na nb, by component: |u o v| <= |u| |v|
+//   f(a)          max|f'| ba + max|f''| na^2
+//   |a|           ba + na^2 / min|a|
+//   M a, M fixed  |M|_F ba
+//   noise of q    c bq + c2 nq^2, with the certified slope c and bend c2 of ir/noise.h
+#include "ir/noise.h"
+#include "proof/machine_step.h"
+
+namespace fathom::proof {
+
+using ir::rounding::infinity;
+using ir::rounding::times;
+using ir::rounding::up;
+
+namespace {
+
+double above(double x) { return x == 0 ? 0 : up(x, 8); } // what is straight stays so
+bool fixed(double norm, double bend) { return norm == 0 && bend == 0; }
+
+} // namespace
+
+double Step::bend() const {
+    if (machine.norm_[out] == infinity) return infinity;
+    if (machine.norm_[out] == 0) return 0; // the same at all points of a convex cell
+    const auto bend_of = [&](int arg) {
+        return machine.bend_[in.args[static_cast<std::size_t>(arg)]];
+    };
+    const auto most = [&](int arg) { // of the components
+        double all = 0;
+        for (int c = 0; c < size(arg); ++c) all = std::max(all, value(arg, c).magnitude());
+        return all;
+    };
+    const auto long_at_most = [&](int arg) {
+        return machine.box_length(in.args[static_cast<std::size_t>(arg)]).hi;
+    };
+    const auto product = [&](double a, double b) {
+        return above(times(a, bend_of(1)) + times(b, bend_of(0)) + 2 * times(norm(0), norm(1)));
+    };
+    const auto through = [&](double slope, double second) { // of a function of argument 0
+        return above(times(slope, bend_of(0)) + times(second, norm(0) * norm(0)));
+    };
+    const auto length = [&] {
+        const Interval l = machine.box_length(in.args[0]);
+        if (in.args.size() > 1 || !(l.lo > 0)) return infinity;
+        return above(bend_of(0) + norm(0) * norm(0) / l.lo);
+    };
+    switch (in.form) {
+    case Form::Square: return above(2 * times(most(0), bend_of(0)) + 2 * norm(0) * norm(0));
+    case Form::Norm: return length();
+    case Form::Wave:
+    case Form::Sinc:
+    case Form::Corner:
+    case Form::OddPower:
+    case Form::Smooth:
+    case Form::LogSum:
+    case Form::Joined:
+    case Form::Loop: return infinity;
+    case Form::Plain: break;
+    }
+    switch (in.op) {
+    case Op::Point: return 0;
+    case Op::Neg:
+    case Op::Swizzle: return bend_of(0);
+    case Op::Splat: return above(std::sqrt(double(n)) * bend_of(0));
+    case Op::Add:
+    case Op::Sub: return above(bend_of(0) + bend_of(1));
+    case Op::Mul: return product(most(0), most(1));
+    case Op::Div: {
+        double least = infinity;
+        for (int c = 0; c < size(1); ++c) least = std::min(least, value(1, c).mignitude());
+        return fixed(norm(1), bend_of(1)) && least > 0 ? above(bend_of(0) / least) : infinity;
+    }
+    case Op::Make: {
+        double squares = 0;
+        for (int a = 0; a < int(in.args.size()); ++a) squares += bend_of(a) * bend_of(a);
+        return above(std::sqrt(squares));
+    }
+    case Op::Dot: return product(long_at_most(0), long_at_most(1));
+    case Op::MatMul:
+        if (fixed(norm(0), bend_of(0))) return above(times(long_at_most(0), bend_of(1)));
+        if (fixed(norm(1), bend_of(1))) return above(times(long_at_most(1), bend_of(0)));
+        return infinity;
+    case Op::Length: return length();
+    case Op::Sin:
+    case Op::Cos: return through(1, 1);
+    case Op::Perlin: return through(ir::sem::perlin_slope, ir::sem::perlin_bend);
+    case Op::ValueNoise: return through(ir::sem::value_noise_slope, ir::sem::value_noise_bend);
+    case Op::Const:
+    case Op::Normal:
+    case Op::Direction:
+    case Op::Time:
+    case Op::Param:
+    case Op::Var:
+    case Op::Mod:
+    case Op::Pow:
+    case Op::Min:
+    case Op::Max:
+    case Op::Step:
+    case Op::Atan2:
+    case Op::Abs:
+    case Op::Sign:
+    case Op::Floor:
+    case Op::Ceil:
+    case Op::Round:
+    case Op::Trunc:
+    case Op::Fract:
+    case Op::Sqrt:
+    case Op::InverseSqrt:
+    case Op::Exp:
+    case Op::Exp2:
+    case Op::Log:
+    case Op::Log2:
+    case Op::Tan:
+    case Op::Asin:
+    case Op::Acos:
+    case Op::Atan:
+    case Op::Sinh:
+    case Op::Cosh:
+    case Op::Tanh:
+    case Op::Clamp:
+    case Op::Mix:
+    case Op::Smoothstep:
+    case Op::Cross:
+    case Op::Normalize:
+    case Op::Less:
+    case Op::LessEqual:
+    case Op::Equal:
+    case Op::NotEqual:
+    case Op::And:
+    case Op::Or:
+    case Op::Not:
+    case Op::Select:
+    case Op::ToFloat:
+    case Op::ToInt:
+    case Op::Column:
+    case Op::Transpose:
+    case Op::TableRead:
+    case Op::Hash:
+    case Op::Simplex:
+    case Op::Worley:
+    case Op::SpotNoise:
+    case Op::Image:
+    case Op::Grid:
+    case Op::Call:
+    case Op::Fold:
+    case Op::FoldResult:
+    case Op::Cached:
+    case Op::Union:
+    case Op::Intersection:
+    case Op::Blend:
+    case Op::MakeHit:
+    case Op::HitDistance:
+    case Op::HitPaint:
+    case Op::HitPoint:
+    case Op::HitExtra:
+    case Op::NearestHit:
+    case Op::FarthestHit:
+    case Op::HitWith:
+    case Op::FillPaint: return infinity;
+    }
+    return infinity;
+}
+
+} // namespace fathom::proof

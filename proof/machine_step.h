@@ -1,0 +1,178 @@
+// One step of the machine in progress: what its rules read and write, and the shapes that many
+// rules share. For machine_ops.cpp and machine_vectors.cpp alone.
+#pragma once
+
+#include "proof/machine.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::proof {
+
+// Evaluators count in single precision: beyond the one is infinity, below the other 0.
+constexpr double single_most = 1e38, single_least = 1.2e-38;
+
+inline Row scaled(Interval factor, const Row &row) {
+    return {factor * row[0], factor * row[1], factor * row[2]};
+}
+inline Row sum(const Row &a, const Row &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Row joined(const Row &a, const Row &b) {
+    return {hull(a[0], b[0]), hull(a[1], b[1]), hull(a[2], b[2])};
+}
+inline bool zero(const Row &row) {
+    return row[0] == Interval(0.0) && row[1] == Interval(0.0) && row[2] == Interval(0.0);
+}
+
+// Whether a, b or both may be the greater.
+struct Choice {
+    bool first, second;
+};
+inline Choice greater(Interval a, Interval b) { return {a.hi >= b.lo, b.hi >= a.lo}; }
+
+// One instruction being run, with its arguments and its place for the result in the machine.
+struct Step {
+    Machine &machine;
+    const Instruction &in;
+    const Slot out;
+    const std::uint32_t at;
+    const int n; // components of the result
+    static constexpr Row none{};
+    bool any_odd = false; // an argument is odd, and the op does not know what becomes of it
+
+    Step(Machine &of, const Instruction &instruction);
+    void run();
+    bool overflows() const;
+    double bend() const; // machine_bend.cpp
+
+    // -- what mixes components (machine_vectors.cpp)
+    double together() const;
+    void splat();
+    void make();
+    void swizzle();
+    void column();
+    void transpose();
+    void length();
+    void corner();
+    void smooth();
+    void log_sum();
+    void dot();
+    void cross();
+    void normalize();
+    void multiply();
+
+    // -- arguments and results, by component
+    std::uint32_t first(int arg) const {
+        return machine.tape_.first[in.args[static_cast<std::size_t>(arg)]];
+    }
+    const Interval &value(int arg, int c) const {
+        return machine.value_[first(arg) + static_cast<std::uint32_t>(c)];
+    }
+    const Row &grad(int arg, int c) const {
+        return machine.grad_[first(arg) + static_cast<std::uint32_t>(c)];
+    }
+    bool odd(int arg, int c) const {
+        return machine.odd_[first(arg) + static_cast<std::uint32_t>(c)] != 0;
+    }
+    int size(int arg) const {
+        return int(machine.tape_.size[in.args[static_cast<std::size_t>(arg)]]);
+    }
+    // The axes along which an argument may change, a bit for each. Where they are other ones for A
+    // than for B, |(A + B) v| <= hypot(|A|, |B|) |v|, as each asks a part of v of its own.
+    unsigned axes(int arg) const {
+        unsigned bits = 0;
+        for (int c = 0; c < size(arg); ++c)
+            for (unsigned j = 0; j < 3; ++j)
+                if (grad(arg, c)[j] != Interval(0.0)) bits |= 1u << j;
+        return bits;
+    }
+    double norm(int arg) const { return machine.norm_[in.args[static_cast<std::size_t>(arg)]]; }
+    void set(int c, Interval v, const Row &g, bool is_odd = false) {
+        machine.value_[at + static_cast<std::uint32_t>(c)] = v;
+        machine.grad_[at + static_cast<std::uint32_t>(c)] = g;
+        machine.odd_[at + static_cast<std::uint32_t>(c)] = is_odd;
+    }
+    void finish(double norm, bool odd_used) { machine.finish(in, norm, odd_used); }
+    void fail(Trouble why) { machine.fail(in, why); }
+
+    // -- shapes of rules
+    // f by component with the derivative's interval; norm(diag(D) J) <= max |D| * norm(J).
+    template <class F, class D> void unary(F f, D derivative) {
+        double most = 0;
+        for (int c = 0; c < n; ++c) {
+            Interval x = value(0, c);
+            Interval d = zero(grad(0, c)) ? Interval(0.0) : derivative(x);
+            most = std::max(most, d.magnitude());
+            set(c, f(x), scaled(d, grad(0, c)));
+        }
+        finish(ir::rounding::times(most, norm(0)), any_odd);
+    }
+    // Constant by pieces: fine where one piece holds the cell.
+    template <class F> void stepped(F f) {
+        bool jumps = false;
+        for (int c = 0; c < n; ++c) {
+            Interval v = f(c);
+            jumps = jumps || (!v.is_point() && !zero(grad(0, c)));
+            set(c, v, none);
+        }
+        if (jumps && !in.cancels)
+            fail(Trouble::Jump);
+        else
+            finish(0, any_odd && !jumps);
+    }
+    // A truth. Where it may turn within the cell its norm is 1, so that a number made of it jumps
+    // there; a choice by it need not (Joined). It is 0 where all points of the cell have the same.
+    void truth(Interval v) {
+        constexpr Interval all = Interval::everything();
+        double norms = 0;
+        for (int a = 0; a < int(in.args.size()); ++a) norms = std::max(norms, norm(a));
+        const bool turns = !v.is_point() && (norms > 0 || any_odd);
+        set(0, v, turns ? Row{all, all, all} : none);
+        if (turns && (norms == ir::rounding::infinity || any_odd)) return fail(Trouble::Jump);
+        finish(turns ? 1 : 0, false);
+    }
+    template <class AV, class AG, class BV, class BG> double
+    extremum(int sign, AV a_value, AG a_grad, BV b_value, BG b_grad, double a_norm, double b_norm) {
+        bool some_a = false, some_b = false;
+        for (int c = 0; c < n; ++c) {
+            Interval a = a_value(c), b = b_value(c);
+            Choice which = sign > 0 ? greater(a, b) : greater(-a, -b);
+            some_a = some_a || which.first, some_b = some_b || which.second;
+            Interval v = sign > 0 ? max(a, b) : min(a, b);
+            if (!which.second)
+                set(c, v, a_grad(c));
+            else if (!which.first)
+                set(c, v, b_grad(c));
+            else
+                set(c, v, joined(a_grad(c), b_grad(c)));
+        }
+        if (!some_b) return a_norm;
+        if (!some_a) return b_norm;
+        if (n == 1 || a_norm == 0 || b_norm == 0) return std::max(a_norm, b_norm);
+        return ir::rounding::up(std::hypot(a_norm, b_norm), 4);
+    }
+    // The slope of a function of a vector that is `slope`-Lipschitz in it, for output component c.
+    Row through(double slope, int arg) const {
+        Row g;
+        for (std::size_t j = 0; j < 3; ++j) {
+            double column = 0;
+            for (int c = 0; c < size(arg); ++c) column += std::pow(grad(arg, c)[j].magnitude(), 2);
+            double m = column == 0
+                           ? 0
+                           : ir::rounding::times(slope, ir::rounding::up(std::sqrt(column), 4));
+            g[j] = {-m, m};
+        }
+        return g;
+    }
+    bool is_int() const { return in.type == ir::Type::Int; }
+    // ints have no slope; where one varies with the point, it jumps
+    void settle_int() {
+        bool jumps = false;
+        for (int a = 0; a < int(in.args.size()); ++a) jumps = jumps || norm(a) > 0;
+        if (jumps)
+            fail(Trouble::Jump);
+        else
+            finish(0, any_odd);
+    }
+};
+
+} // namespace fathom::proof

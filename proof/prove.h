@@ -1,0 +1,51 @@
+// The Lipschitz analysis: proves, for every shape of a scene, how steep its raw field can be over
+// all points, params and times, and what else the lowering may rely on (ir::ShapeFact). Rules and
+// proofs: docs/lipschitz.md. Knows nothing of syntax; places come from Shape::origin.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "ir/scene.h"
+#include "proof/rules.h"
+
+#include <string>
+#include <vector>
+
+namespace fathom::proof {
+
+struct Options {
+    Rules rules;                              // tests weaken one to see it caught
+    std::size_t field_instructions = 250'000; // work per field: interval instructions, never time
+    bool tighten = true; // deformed shapes by their own expressions, too; tests ask for rules alone
+    bool test_assumptions = true; // sample `lipschitz:` and `estimate:`
+};
+
+// Fills scene.facts (one a shape), scene.bounds and scene.far. A shape without a proof is reported
+// once, gets lipschitz_sup = infinity and facts that can be used all the same. The scene's graph
+// grows by the bounds' formulas.
+void prove(ir::Scene &scene, Diagnostics &diagnostics, const Options &options = {});
+
+// Why a shape's bound is what it is: what `check --explain` prints. Children in order.
+struct Explanation {
+    ir::ShapeId shape;
+    std::string operation; // "twist", "union", "sphere"
+    std::string rule;      // in words: "shear by rate * lever arm: sigma(2 * 0.6)"
+    double factor = 1;     // the operation's own: lipschitz_sup over the largest child's
+    double lipschitz = 1;  // of the result
+    double share =
+        0; // of the final bound: log(factor) / log(the root's), 0..1; 0 where the root's is 1
+    std::string region; // where it was proved: "everywhere", "ball(4)", …
+    Span place;
+    bool worst = false; // on the chain of steepest children
+    std::vector<Explanation> children;
+};
+Explanation explain(const ir::Scene &scene);
+
+// What a top-level report needs: the largest bound and the worst status (semantics.md, 19).
+struct Summary {
+    double lipschitz = 0; // before division; 0 when there is no shape
+    ir::ProofStatus status = ir::ProofStatus::Proved;
+    bool exact = false; // all are
+};
+Summary summarize(const ir::Scene &scene);
+
+} // namespace fathom::proof

@@ -1,0 +1,149 @@
+// The working state of one proof, and the rules by group (walk.cpp calls those in
+// shapes.cpp, maps.cpp, repeat.cpp, fields.cpp).
+#pragma once
+
+#include "proof/known.h"
+#include "proof/prove.h"
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <tuple>
+
+namespace fathom::proof {
+
+// Where a shape is asked at all, in its own space.
+struct Place {
+    bool reached = false, audible = false; // audible: not only inside a body whose claims are taken
+    Box box;                               // the hull over all uses
+    const Zone *zone =
+        nullptr; // the region, where there is one use and it is the shape's own space
+    bool shared = false;
+};
+
+struct Prover {
+    ir::Scene &scene;
+    Diagnostics &diagnostics;
+    const Options &options;
+    ir::Graph &graph;
+    Flattening flattening;
+    Ranges ranges;
+    std::vector<Known> known;
+    std::vector<Place> places;
+    std::deque<Zone> zones;              // stable addresses
+    double outward = 0;                  // ShapeFact::outward of the shape at hand
+    double inward = 0;                   // ShapeFact::inward
+    double round = 0;                    // ShapeFact::round
+    std::vector<ir::PartialSum> partial; // ShapeFact::partial
+    std::size_t deformed = 0;            // how many shapes are twisted, bent, tapered or distorted
+    bool local = false; // the shape at hand is proved in its own box alone (ShapeFact::local)
+
+    Prover(ir::Scene &s, Diagnostics &d, const Options &o)
+        : scene(s), diagnostics(d), options(o), graph(s.graph), flattening{s.graph, {}},
+          ranges(ranges_of(s)) {}
+
+    void run();
+
+    // -- numbers
+    Interval number(ir::NodeId id); // of a closed scalar
+    Vec vector(ir::NodeId id);      // of a closed vector (a flat one's z is 0)
+    std::array<Interval, 16> numbers(ir::NodeId id);
+    bool reads_point(ir::NodeId id) const { return graph.reads(id).point; }
+    const Known &of(ir::ShapeId id) const { return known[id.index]; }
+    const Known &child(const ir::Shape &shape, std::size_t i = 0) const {
+        return of(shape.children[i]);
+    }
+    const Place &place(ir::ShapeId id) const { return places[id.index]; }
+    Zone zone_of(const ir::Region &region);
+    bool is_field(ir::ShapeId id) const;
+
+    void test_conditions(); // conditions.cpp
+    void know_caches();     // caches.cpp
+    void report_not_kept(ir::CacheId id);
+
+    // -- places, from the root down
+    void find_places();
+    void visit(ir::ShapeId child, const Box &box, const Zone *zone, bool audible);
+
+    // -- rules, from the leaves up
+    Known know(ir::ShapeId id);
+    Known know_leaf(ir::ShapeId id);
+    Known know_set(ir::ShapeId id); // union, intersection, xor, blend, seam, pseudo-norm
+    Known know_lerp(ir::ShapeId id);
+    Known know_displaced(ir::ShapeId id); // displace, offset, shell
+    Known know_extrude(ir::ShapeId id);
+    Known know_map(ir::ShapeId id);
+    Known know_deformed(ir::ShapeId id); // twist, bend, taper, distort
+    Known know_repeat(ir::ShapeId id);
+    Known know_within(ir::ShapeId id);
+    Known know_many(ir::ShapeId id);
+    Known know_library(ir::ShapeId id);
+    Known know_contract(ir::ShapeId id);
+
+    Ball ball_of(ir::ShapeId id, const Known &k); // from the children's balls, where that says more
+    void keep_in_ball(ir::ShapeId id, Known &k);  // sets the ball, and cuts the box to it
+
+    double bend(ir::NodeId field, const Box &box); // curvature.cpp
+    double core_of_leaf(ir::NodeId field);
+    // c, where f'' <= 1/(f + c) along lines wherever f > -c; -infinity: unknown. Asked for what is
+    // displaced alone.
+    double core_of(ir::ShapeId id, int depth = 0);
+    double core_made(ir::ShapeId id, int depth);
+    std::map<ir::ShapeId, double> cores;
+    double curvature_of(ir::ShapeId id, const Known &k); // ShapeFact::curvature
+
+    std::vector<ir::PartialSum> partial_sums(ir::ShapeId displaced, double slope); // octaves.cpp
+    void tighten(ir::ShapeId id, Known &k); // a deformed shape's bound, by its own expression
+    double region_radius(ir::ShapeId id, int axis) const;
+
+    // -- folds: q is p by component, |p_i|, or p less something limited
+    Box fold_preimage(ir::NodeId q, const Box &box);
+    bool fold_is_clean(ir::NodeId q,
+                       const Box &box); // the box lies on the near side of every mirror
+    std::array<bool, 3> fold_symmetry(ir::NodeId q, std::array<bool, 3> child);
+    std::optional<ir::NodeId> shift_of(ir::NodeId q, int i);
+    std::optional<Vec> whole_shift(ir::NodeId q); // the interval of p - q, where limited
+    Interval number_anywhere(ir::NodeId id);
+
+    const Tape &tape_of(ir::NodeId field); // flattened once
+    std::map<ir::NodeId, Tape> tapes;
+
+    // What values the raw field may have in a box of its own space; and how far from 0 they are.
+    Interval values(ir::ShapeId id, const Cell &cell, int depth = 0);
+    double magnitude(ir::ShapeId id, const Box &box);
+    Box extent(ir::ShapeId id); // holds the solid, wherever its field's values say so
+    void find_extent(ir::ShapeId id, Known &k); // sets the box of what has none
+
+    // The raw field as one expression in Point, where the shape is made of leaves, maps, min and
+    // max; else nothing.
+    std::optional<ir::NodeId> expression(ir::ShapeId id, int depth = 0);
+
+    FieldBound bound_once(ir::NodeId field, const Place &here);
+    std::map<std::tuple<ir::NodeId, std::array<double, 3>, std::array<double, 3>>, FieldBound>
+        bounds; // by field and box
+
+    // The bound of an expression of the point over where the shape is asked. Reports failures.
+    FieldBound bound(ir::ShapeId id, ir::NodeId field, const std::string &what, bool report = true);
+
+    void keep_local(Known &k, double sup,
+                    ir::NodeId formula);        // the bound of a field that is joined with its box
+    void set_lipschitz(Known &k, double value); // a constant
+    void set_lipschitz(Known &k, ir::NodeId formula,
+                       double sup);        // an expression in params; constant where it reads none
+    void fail(Known &k);                   // no proof: infinity, facts usable
+    void finish(ir::ShapeId id, Known &k); // guards, notes
+
+    // -- reports; silent where the shape is not audible
+    static std::string cheaper(const ir::Shape &shape);
+    Diagnostic *report(ir::ShapeId id, Code code, std::string message);
+    void report_field(ir::ShapeId id, const FieldBound &bound, const std::string &what);
+    void test_assumed(ir::ShapeId id, ir::NodeId field, double limit, bool estimate);
+    std::vector<std::string>
+    chain(ir::ShapeId id); // the operations that make a bound, steepest child first
+};
+
+std::string number_text(double x); // three significant digits: "2.37", "1.2e+03"
+std::string point_text(const std::array<double, 3> &p, int dims = 3);
+std::string operation_name(const ir::Scene &scene, ir::ShapeId id); // "twist", "sphere", …
+
+} // namespace fathom::proof

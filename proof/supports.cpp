@@ -1,0 +1,105 @@
+// Let the base b have Jacobian s Q, Q orthogonal, and let parts f_i depend on different components
+// of b. Their gradients are s Q^T g_i with g_i at right angles, so the vector of them all has a
+// Jacobian whose norm is the greatest |s g_i|, the greatest norm of a part alone.
+#include "proof/supports.h"
+
+#include <algorithm>
+
+namespace fathom::proof {
+
+Supports::Support Supports::both(Support a, Support b) {
+    if (a.mask == 0) return b;
+    if (b.mask == 0) return a;
+    if (a.base != b.base || a.base == none) return {none, 0xff};
+    return {a.base, static_cast<std::uint8_t>(a.mask | b.mask)};
+}
+bool Supports::apart(Support a, Support b) {
+    if (a.mask == 0 || b.mask == 0) return true;
+    return a.base == b.base && a.base != none && (a.mask & b.mask) == 0;
+}
+
+Supports::Support Supports::at(Slot s, int component) const {
+    const std::size_t i = tape_.first[s] + static_cast<std::uint32_t>(component);
+    return i < known_.size() ? known_[i] : Support{none, 0xff};
+}
+Supports::Support Supports::all(Slot s) const {
+    Support sum;
+    for (int c = 0; c < int(tape_.size[s]); ++c) sum = both(sum, at(s, c));
+    return sum;
+}
+void Supports::set(Slot s, int component, Support support) {
+    const std::size_t i = tape_.first[s] + static_cast<std::uint32_t>(component);
+    if (known_.size() <= i) known_.resize(tape_.components, Support{none, 0xff});
+    known_[i] = support;
+}
+
+bool Supports::is_base(Slot s) const {
+    for (int c = 0; c < int(tape_.size[s]); ++c)
+        if (const Support a = at(s, c); a.base != s || a.mask != 1u << c) return false;
+    return true;
+}
+void Supports::make_base(Slot s) {
+    for (int c = 0; c < int(tape_.size[s]); ++c) set(s, c, {s, static_cast<std::uint8_t>(1u << c)});
+}
+void Supports::make_unknown(Slot s) {
+    for (int c = 0; c < int(tape_.size[s]); ++c) set(s, c, {none, 0xff});
+}
+
+void Supports::follow(const Instruction &in) {
+    const int n = tape_.size[in.out];
+    if (!in.varies) {
+        for (int c = 0; c < n; ++c) set(in.out, c, {});
+        return;
+    }
+    if (in.op == Op::Point) return make_base(in.out);
+    const bool matrices = n > 4;
+    if (in.op == Op::Make && !matrices) {
+        int c = 0;
+        for (Slot s : in.args)
+            for (int k = 0; k < int(tape_.size[s]) && c < n; ++k) set(in.out, c++, at(s, k));
+        return;
+    }
+    if (in.op == Op::Swizzle) {
+        for (int c = 0; c < n; ++c)
+            set(in.out, c, at(in.args[0], ir::swizzle_component(in.payload, c)));
+        return;
+    }
+    const bool by_component = ir::info(in.op).rule == ir::TypeRule::Same && in.op != Op::Cross &&
+                              in.op != Op::Normalize && in.op != Op::Transpose &&
+                              in.form != Form::Norm && in.form != Form::Corner && !matrices;
+    Support everything;
+    for (Slot s : in.args) everything = both(everything, all(s));
+    for (int c = 0; c < n; ++c) {
+        Support own = everything;
+        if (by_component) {
+            own = {};
+            for (Slot s : in.args) own = both(own, int(tape_.size[s]) == n ? at(s, c) : all(s));
+        }
+        set(in.out, c, own);
+    }
+}
+
+std::uint32_t Supports::groups(const std::vector<Slot> &args) const {
+    if (args.size() > 16) return 0;
+    std::vector<int> group(args.size());
+    for (std::size_t i = 0; i < args.size(); ++i) group[i] = static_cast<int>(i);
+    for (std::size_t i = 0; i < args.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (!apart(all(args[i]), all(args[j]))) {
+                const int from = group[i], into = group[j];
+                std::replace(group.begin(), group.end(), from, into);
+            }
+    std::uint32_t out = 0;
+    std::vector<int> names;
+    for (std::size_t i = 0; i < args.size(); ++i) {
+        if (all(args[i]).mask == 0) continue; // of no slope: in any group
+        auto found = std::find(names.begin(), names.end(), group[i]);
+        const auto name = static_cast<std::uint32_t>(found - names.begin());
+        if (found == names.end()) names.push_back(group[i]);
+        if (name > 3) return 0;
+        out |= name << (2 * i);
+    }
+    return out;
+}
+
+} // namespace fathom::proof

@@ -1,0 +1,440 @@
+// The walk: places from the root down, facts from the leaves up, and what every fact is told at its
+// end. The rules themselves stand by group beside it.
+#include "proof/prover.h"
+
+#include "ir/maps.h"
+#include "ir/view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fathom::proof {
+
+using ir::FieldKind;
+using ir::MapKind;
+using ir::NodeId;
+using ir::Op;
+using ir::Shape;
+using ir::ShapeId;
+using ir::ShapeKind;
+using ir::rounding::infinity;
+using ir::rounding::up;
+
+void prove(ir::Scene &scene, Diagnostics &diagnostics, const Options &options) {
+    Prover prover(scene, diagnostics, options);
+    prover.run();
+}
+
+void Prover::run() {
+    std::size_t count = scene.shapes.size();
+    known.assign(count, {});
+    places.assign(count, {});
+    scene.facts.assign(count, {});
+    for (std::size_t i = 0; i < count; ++i) { // variables that shapes bind
+        const Shape &shape = scene.shapes[ShapeId{i}];
+        if (shape.kind == ShapeKind::Many) {
+            const ir::Family &family = scene.shapes.families[shape.payload];
+            ranges.vars[graph[family.index].payload] = {Interval(0, std::max(family.count - 1, 0))};
+        }
+        if (shape.kind == ShapeKind::Repeat) {
+            const ir::Repetition &repetition = scene.shapes.repetitions[shape.payload];
+            if (!repetition.id) continue;
+            std::array<Interval, 4> id{};
+            if (repetition.polar) {
+                id[0] = Interval(0, std::max(number(shape.args[0]).hi - 1, 0.0));
+            } else {
+                Vec counts = vector(shape.args[1]);
+                for (std::size_t a = 0; a < 3; ++a) {
+                    if (!repetition.along[a]) continue;
+                    id[a] = counts[a].hi >= 1e8 ? Interval::everything()
+                                                : Interval(0, std::max(counts[a].hi - 1, 0.0));
+                }
+            }
+            ranges.vars[graph[repetition.id].payload] = id;
+        }
+    }
+    test_conditions();
+    find_places();
+    know_caches(); // before the shapes that read them
+    for (std::size_t i = 0; i < count; ++i) {
+        const Shape &shape = scene.shapes[ShapeId{i}];
+        deformed += shape.kind == ShapeKind::Map &&
+                    (shape.map == MapKind::Twist || shape.map == MapKind::Bend ||
+                     shape.map == MapKind::Taper || shape.map == MapKind::Distort);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        Known k;
+        set_lipschitz(k, 1);
+        if (places[i].reached) { // what no one asks keeps facts that say nothing
+            local = false;
+            outward = inward = round = infinity;
+            partial.clear();
+            k = know(ShapeId{i});
+            if (!is_field(ShapeId{i})) k.leaf = {};
+            find_extent(ShapeId{i}, k);
+            keep_in_ball(ShapeId{i}, k);
+            k.fact.local = local;
+            k.fact.outward = outward;
+            k.fact.inward = inward;
+            k.fact.round = round;
+            k.fact.partial = partial;
+            k.fact.curvature = curvature_of(ShapeId{i}, k);
+            finish(ShapeId{i}, k);
+        }
+        known[i] = k;
+        scene.facts[i] = k.fact; // padded there alone, so that the slack does not add up
+        scene.facts[i].bounds = padded(k.fact.bounds);
+        scene.facts[i].repeat.copy = padded(k.fact.repeat.copy);
+    }
+    scene.bounds = {};
+    double radius = 0;
+    for (const ir::TopLevel &top : scene.top_level) {
+        const Box &box = scene.facts[top.shape.index].bounds;
+        if (box.finite() && !box.empty()) scene.bounds = ir::hull(scene.bounds, box);
+    }
+    std::array<double, 3> centre{};
+    if (!scene.bounds.empty()) {
+        double sum = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            centre[i] = (scene.bounds.lo[i] + scene.bounds.hi[i]) / 2;
+            sum += std::pow((scene.bounds.hi[i] - scene.bounds.lo[i]) / 2, 2);
+        }
+        radius = std::sqrt(sum);
+    }
+    // semantics.md, 23. Without a camera the framing stands at radius / sin(45 degrees / 2).
+    double distance = radius / 0.3826834323650898;
+    if (scene.camera.given) {
+        auto at = ir::value_of(scene, scene.camera.at, 0);
+        distance = std::sqrt(std::pow(at[0] - centre[0], 2) + std::pow(at[1] - centre[1], 2) +
+                             std::pow(at[2] - centre[2], 2));
+    }
+    scene.far = scene.render.far > 0 ? scene.render.far : 100 * std::max({radius, distance, 1e-6});
+    if (scene.bounds.empty() && scene.render.far <= 0) scene.far = std::max(scene.far, 100.0);
+}
+
+// A leaf, and what is only written round it.
+bool Prover::is_field(ShapeId id) const {
+    const Shape &shape = scene.shapes[id];
+    switch (shape.kind) {
+    case ShapeKind::Leaf:
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint:
+    case ShapeKind::Contract: return true;
+    case ShapeKind::Library: return !scene.shapes.libraries[shape.payload].has_claims;
+    case ShapeKind::Empty:
+    case ShapeKind::Union:
+    case ShapeKind::Intersection:
+    case ShapeKind::Complement:
+    case ShapeKind::Xor:
+    case ShapeKind::Blend:
+    case ShapeKind::Seam:
+    case ShapeKind::Lerp:
+    case ShapeKind::PseudoNorm:
+    case ShapeKind::Map:
+    case ShapeKind::Offset:
+    case ShapeKind::Shell:
+    case ShapeKind::Displace:
+    case ShapeKind::Extrude:
+    case ShapeKind::Repeat:
+    case ShapeKind::Within:
+    case ShapeKind::Mixed:
+    case ShapeKind::Many: return false;
+    }
+    return false;
+}
+
+// -- numbers
+
+std::array<Interval, 16> Prover::numbers(NodeId id) {
+    std::array<Interval, 16> out{};
+    if (!id) return out;
+    if (graph.is_constant(id)) {
+        const ir::Constant &c = graph.constant_of(id);
+        for (std::size_t i = 0; i < 16; ++i) out[i] = c.value[i];
+        return out;
+    }
+    return range_of(flattening, ranges, id);
+}
+Interval Prover::number(NodeId id) { return numbers(id)[0]; }
+Vec Prover::vector(NodeId id) {
+    auto all = numbers(id);
+    if (id && graph[id].type == ir::Type::Float) all[1] = all[2] = all[0];
+    return {all[0], all[1], all[2]};
+}
+
+void Prover::set_lipschitz(Known &k, double value) {
+    // Rounding outward leaves 1 + a few units in the last place where the truth is 1; the float32
+    // slack covers them.
+    if (value > 1 && value <= 1 + slack) value = 1;
+    k.fact.lipschitz_sup = value;
+    k.fact.lipschitz = graph.number(value);
+}
+void Prover::set_lipschitz(Known &k, NodeId formula, double sup) {
+    ir::Graph::Reads reads = graph.reads(formula);
+    bool in_params = (reads.params || reads.time) && !reads.point && !reads.free_vars;
+    set_lipschitz(k, sup);
+    if (in_params && std::isfinite(sup)) k.fact.lipschitz = formula;
+}
+// Within the box the field; outside sqrt(|p-q|^2 + max(f(q), 0)^2), whose two gradients are
+// perpendicular: max(L, 1).
+void Prover::keep_local(Known &k, double sup, NodeId formula) {
+    local = true;
+    k.swell = 1;
+    k.fact.lever = {infinity, infinity, infinity};
+    for (std::size_t a = 0; a < 3; ++a)
+        k.fact.symmetric[a] = k.fact.symmetric[a] && k.fact.bounds.lo[a] == -k.fact.bounds.hi[a];
+    set_lipschitz(k, graph.make(Op::Max, {formula, graph.number(1)}), std::max(sup, 1.0));
+}
+void Prover::fail(Known &k) {
+    k.failed = true;
+    k.fact.lipschitz_sup = infinity;
+    k.fact.lipschitz = graph.number(1);
+}
+
+// -- places
+
+Zone Prover::zone_of(const ir::Region &region) {
+    Zone zone;
+    zone.kind = region.kind;
+    zone.axis = region.axis;
+    if (region.center) zone.center = vector(region.center);
+    if (region.kind == ir::RegionKind::Box) {
+        Vec size = vector(region.size);
+        for (std::size_t i = 0; i < 3; ++i) zone.half[i] = abs(size[i]) * Interval(0.5);
+    } else if (region.size) {
+        zone.half[0] = number(region.size);
+    }
+    for (const ir::Region &less : region.less) zone.less.push_back(zone_of(less));
+    return zone;
+}
+
+void Prover::visit(ShapeId id, const Box &box, const Zone *zone, bool audible) {
+    Place &place = places[id.index];
+    if (!place.reached) {
+        place.box = box;
+        place.zone = zone;
+    } else {
+        place.box = ir::hull(place.box, box);
+        if (place.zone != zone) place.zone = nullptr;
+        place.shared = true;
+    }
+    place.reached = true;
+    place.audible = place.audible || audible;
+}
+
+void Prover::find_places() {
+    for (const ir::TopLevel &top : scene.top_level)
+        visit(top.shape, Box::everything(), nullptr, true);
+    if (scene.root) visit(scene.root, Box::everything(), nullptr, true);
+    for (std::size_t i = scene.shapes.size(); i-- > 0;) {
+        ShapeId id{i};
+        const Shape &shape = scene.shapes[id];
+        Place here = places[i];
+        if (!here.reached) continue;
+        for (ShapeId child : shape.children) {
+            switch (shape.kind) {
+            case ShapeKind::Within: {
+                zones.push_back(zone_of(scene.shapes.regions[shape.payload]));
+                Box region = from_cell(outer_box(zones.back()), shape.dims);
+                visit(child, ir::intersect(here.box, region), &zones.back(), here.audible);
+                break;
+            }
+            case ShapeKind::Map: {
+                Box box = Box::everything();
+                if (!everywhere(here.box)) {
+                    auto q = range_of(flattening, ranges, shape.args[0], to_cell(here.box));
+                    box = from_cell({{q[0], q[1], q[2]}}, scene.shapes[child].dims);
+                    if (shape.map == MapKind::Twist ||
+                        shape.map == MapKind::Bend) { // turns about an axis keep the radius
+                        int axis = shape.map == MapKind::Twist ? shape.axis
+                                                               : 3 - shape.axis - shape.towards;
+                        double r = radius_about(here.box, axis);
+                        for (std::size_t a = 0; a < 3; ++a)
+                            if (int(a) != axis)
+                                box.lo[a] = std::max(box.lo[a], -r),
+                                box.hi[a] = std::min(box.hi[a], r);
+                    }
+                }
+                visit(child, box, nullptr, here.audible);
+                break;
+            }
+            case ShapeKind::Repeat: visit(child, Box::everything(), nullptr, here.audible); break;
+            case ShapeKind::Extrude: visit(child, here.box, nullptr, here.audible); break;
+            case ShapeKind::Library: {
+                const ir::Library &library = scene.shapes.libraries[shape.payload];
+                bool taken = library.has_claims && library.claims.lipschitz;
+                visit(child, here.box, here.zone, here.audible && !taken);
+                break;
+            }
+            case ShapeKind::Empty:
+            case ShapeKind::Leaf:
+            case ShapeKind::Union:
+            case ShapeKind::Intersection:
+            case ShapeKind::Complement:
+            case ShapeKind::Xor:
+            case ShapeKind::Blend:
+            case ShapeKind::Seam:
+            case ShapeKind::Lerp:
+            case ShapeKind::PseudoNorm:
+            case ShapeKind::Offset:
+            case ShapeKind::Shell:
+            case ShapeKind::Displace:
+            case ShapeKind::Paint:
+            case ShapeKind::Repaint:
+            case ShapeKind::Mixed:
+            case ShapeKind::Many:
+            case ShapeKind::Contract: visit(child, here.box, here.zone, here.audible); break;
+            }
+        }
+    }
+}
+
+// -- facts
+
+Known Prover::know(ShapeId id) {
+    const Shape shape = scene.shapes[id];
+    switch (shape.kind) {
+    case ShapeKind::Empty: {
+        Known k;
+        k.fact.kind = FieldKind::Exact;
+        k.fact.bounds = k.parts = empty_box();
+        k.fact.symmetric = {true, true, true};
+        k.exact_outside = k.parts_exact = true;
+        set_lipschitz(k, 1);
+        return k;
+    }
+    case ShapeKind::Leaf: return know_leaf(id);
+    case ShapeKind::Union:
+    case ShapeKind::Intersection:
+    case ShapeKind::Xor:
+    case ShapeKind::Blend:
+    case ShapeKind::Seam:
+    case ShapeKind::PseudoNorm: return know_set(id);
+    case ShapeKind::Complement: {
+        Known k = child(shape);
+        std::swap(k.fact.bounds, k.outer);
+        std::swap(k.swell, k.swell_out);
+        k.exact_outside = k.fact.kind == FieldKind::Exact;
+        k.fact.repeat = {};
+        return k;
+    }
+    case ShapeKind::Lerp: return know_lerp(id);
+    case ShapeKind::Map: return know_map(id);
+    case ShapeKind::Offset:
+    case ShapeKind::Shell:
+    case ShapeKind::Displace: return know_displaced(id);
+    case ShapeKind::Extrude: return know_extrude(id);
+    case ShapeKind::Repeat: return know_repeat(id);
+    case ShapeKind::Within: return know_within(id);
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint:
+    case ShapeKind::Mixed: {
+        Known k = child(shape);
+        k.fact.repeat = {};
+        return k;
+    }
+    case ShapeKind::Many: return know_many(id);
+    case ShapeKind::Library: return know_library(id);
+    case ShapeKind::Contract: return know_contract(id);
+    }
+    return {};
+}
+
+// -- guards
+
+void Prover::finish(ShapeId id, Known &k) {
+    const Shape &shape = scene.shapes[id];
+    // Each rule says for itself why it has no bound. Whatever comes to no number without saying so
+    // is not marched either: nothing may be proved by a bound that is none.
+    if (!k.failed && !std::isfinite(k.fact.lipschitz_sup)) {
+        if (Diagnostic *d =
+                report(id, Code::LipschitzUnbounded,
+                       "no bound was found for the slope of " + operation_name(scene, id)))
+            d->help("write `.within(…)` after it, with a region that holds what you want to see, "
+                    "as in `.within(ball(3))`, or smaller numbers");
+        fail(k);
+    }
+    bool everywhere_valid = everywhere(place(id).box);
+    bool deformed = shape.kind == ShapeKind::Displace || shape.kind == ShapeKind::Many ||
+                    (shape.kind == ShapeKind::Map &&
+                     (shape.map == MapKind::Twist || shape.map == MapKind::Bend ||
+                      shape.map == MapKind::Taper || shape.map == MapKind::Distort));
+    k.fact.guard = !k.failed && everywhere_valid && k.fact.bounds.finite() &&
+                   !k.fact.bounds.empty() && shape.dims == 3 &&
+                   (k.fact.lipschitz_sup > 1.3 || deformed) && shape.kind != ShapeKind::Within;
+    if (k.fact.guard && std::isfinite(k.fact.round)) { // where the box says more, it is the guard
+        const auto a = static_cast<std::size_t>(ir::turning_axis(shape));
+        double section = 1;
+        for (std::size_t i = 0; i < 3; ++i)
+            if (i != a) section *= k.fact.bounds.hi[i] - k.fact.bounds.lo[i];
+        if (std::numbers::pi * k.fact.round * k.fact.round >= section) k.fact.round = infinity;
+    }
+    if (k.failed) return;
+    if (!std::isfinite(k.fact.lipschitz_sup)) { // no rule gave a bound, and none said so
+        if (Diagnostic *d = report(id, Code::NeedsRegion,
+                                   operation_name(scene, id) + " here has no bound on its slope"))
+            d->help("write `.within(…)` after it, with a region that holds what you want to see, "
+                    "as in `.within(ball(3))`");
+        return fail(k);
+    }
+    double below = 1;
+    for (ShapeId c : shape.children) below = std::max(below, of(c).fact.lipschitz_sup);
+    if (!shape.children.empty() && std::isfinite(below) && k.fact.lipschitz_sup > 4 * below &&
+        shape.kind != ShapeKind::Library)
+        if (Diagnostic *d =
+                report(id, Code::Costly,
+                       operation_name(scene, id) + " makes this shape cost up to " +
+                           number_text(k.fact.lipschitz_sup / below) + " times the steps"))
+            d->note("its field is at most " + number_text(k.fact.lipschitz_sup) +
+                    " times as steep as a distance, and every step is divided by that")
+                .help(cheaper(shape));
+}
+
+// What would make an operation's bound less.
+std::string Prover::cheaper(const Shape &shape) {
+    switch (shape.kind) {
+    case ShapeKind::Leaf:
+        return "keep the region where the field is steep out with a smaller `within:`, or cut the "
+               "field off where it is large, as in `min(…, 0.5)`";
+    case ShapeKind::Displace: return "displace by less, or by a field that changes more slowly";
+    case ShapeKind::Lerp:
+        return "let the weight change more slowly, or blend shapes that differ by less";
+    case ShapeKind::Within: return "keep holes of a region out of where an offset or a blend is";
+    case ShapeKind::Blend: return "let the radius change more slowly";
+    case ShapeKind::Map:
+        switch (shape.map) {
+        case MapKind::Twist: return "twist by a lower rate, or a shape that is nearer to the axis";
+        case MapKind::Bend: return "bend by a lower rate, or a shape that is nearer to the origin";
+        case MapKind::Taper:
+            return "taper by less, or over a longer stretch with `from:` and `to:`";
+        case MapKind::Distort: return "prove the map over less, with a smaller `within:`";
+        case MapKind::Translate:
+        case MapKind::Rotate:
+        case MapKind::Scale:
+        case MapKind::Fold:
+        case MapKind::Revolve: break;
+        }
+        break;
+    case ShapeKind::Empty:
+    case ShapeKind::Union:
+    case ShapeKind::Intersection:
+    case ShapeKind::Complement:
+    case ShapeKind::Xor:
+    case ShapeKind::Seam:
+    case ShapeKind::PseudoNorm:
+    case ShapeKind::Offset:
+    case ShapeKind::Shell:
+    case ShapeKind::Extrude:
+    case ShapeKind::Repeat:
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint:
+    case ShapeKind::Mixed:
+    case ShapeKind::Many:
+    case ShapeKind::Library:
+    case ShapeKind::Contract: break;
+    }
+    return "use shapes with a lower bound";
+}
+
+} // namespace fathom::proof

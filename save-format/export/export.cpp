@@ -1,0 +1,327 @@
+// The main list of a save file, written: version, textures, materials, tree, lighting, and the
+// unlabelled rest. What was kept from an import goes back to its place; what the scene says by now
+// goes before it.
+#include "ir/view.h"
+#include "save-format/export/looks.h"
+#include "save-format/export/tree.h"
+#include "save-format/program.h"
+#include "save-format/save_format.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace fathom::save {
+namespace {
+
+Value *find(Value &mapping, std::string_view key) {
+    return const_cast<Value *>(std::as_const(mapping).find(key));
+}
+
+Value node_value(const TreeNode &node, std::map<std::string, int> &ordinals) {
+    if (node.verbatim) return *node.verbatim;
+    Value properties;
+    properties.kind = Value::Kind::Mapping;
+    properties.entries = node.properties;
+    const NodeTypeRow *row = find_node_type(node.type);
+    std::vector<Value> children;
+    for (const TreeNode &child : node.children) children.push_back(node_value(child, ordinals));
+    if (!children.empty() || !row || row->children != Arity::Leaf)
+        properties.entries.emplace_back("Children", yaml_list(std::move(children)));
+    std::string name = node.name;
+    if (!node.head) { // as import/tree.cpp counts
+        const int ordinal = ++ordinals[node.type];
+        if (!node.named) name = node.type + " " + std::to_string(ordinal);
+    }
+    Value type;
+    type.text = node.type;
+    type.plain = true;
+    std::vector<Value> items{std::move(type), yaml_word(name), std::move(properties)};
+    items.insert(items.end(), node.extra.begin(), node.extra.end());
+    return yaml_list(std::move(items));
+}
+
+Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> kept,
+                   bool imported) {
+    // A kept light without a place is the language's own; the others stand for the scene's lights,
+    // in order.
+    std::vector<Value> lights;
+    std::size_t next = 0;
+    const auto place = [](const Value &light) {
+        return light.kind == Value::Kind::Sequence && light.items.size() > 2 &&
+               (light.items[2].find("Position") || light.items[2].find("Direction"));
+    };
+    const auto refresh = [&](Value light, const ir::Light &source) {
+        Value &properties = light.items[2];
+        const auto set = [&](const char *key, Value value) {
+            if (Value *present = find(properties, key))
+                *present = std::move(value);
+            else
+                properties.entries.emplace(properties.entries.begin(), key, std::move(value));
+        };
+        const auto at = numbers.vector(source.position);
+        const char *key = source.directional ? "Direction" : "Position";
+        const Value *old = properties.find(key);
+        bool same = old != nullptr && at.has_value();
+        double old_length = 0;
+        std::array<double, 3> old_at{};
+        for (std::size_t i = 0; i < 3 && same; ++i) {
+            static constexpr const char *axes[] = {"X", "Y", "Z"};
+            const Value *part = old->find(axes[i]);
+            old_at[i] = part ? number_of(*part).value_or(0) : 0;
+            old_length += old_at[i] * old_at[i];
+        }
+        for (std::size_t i = 0; i < 3 && same; ++i)
+            same = std::abs(old_at[i] / (source.directional ? std::sqrt(old_length) : 1) -
+                            (*at)[i]) < 1e-12;
+        if (at && !same) set(key, yaml_xyz((*at)[0], (*at)[1], (*at)[2]));
+        if (const auto color = numbers.vector(source.color)) {
+            const double intensity = std::max({(*color)[0], (*color)[1], (*color)[2], 1.0});
+            std::array<double, 3> channels{};
+            for (std::size_t i = 0; i < 3; ++i) channels[i] = channel_of((*color)[i] / intensity);
+            const Value *old_color = properties.find("Color"),
+                        *old_intensity = properties.find("Intensity");
+            double was = old_intensity ? number_of(*old_intensity).value_or(1) : 1;
+            std::array<double, 3> had{255, 255, 255};
+            static constexpr const char *names[] = {"Red", "Green", "Blue"};
+            for (std::size_t i = 0; i < 3 && old_color; ++i) {
+                const Value *part = old_color->find(names[i]);
+                had[i] = part ? number_of(*part).value_or(255) : 255;
+            }
+            const auto linear = [](double channel) {
+                const double c = channel / 255;
+                return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+            };
+            bool unchanged = true;
+            for (std::size_t i = 0; i < 3; ++i)
+                unchanged = unchanged && std::abs(linear(had[i]) * was - (*color)[i]) <
+                                             1e-9 * std::max(1.0, was);
+            if (!unchanged) {
+                set("Color", color_value(channels, 255));
+                set("Intensity", yaml_scalar(intensity));
+            }
+        }
+        return light;
+    };
+    const auto fresh = [&](std::size_t number) {
+        Value light;
+        light.kind = Value::Kind::Sequence;
+        light.items = {yaml_word("Generic"), yaml_word("Light " + std::to_string(number)),
+                       yaml_mapping({{"Children", yaml_list({})}})};
+        return light;
+    };
+    for (Value &light : kept) {
+        if (!place(light))
+            lights.push_back(std::move(light));
+        else if (next < scene.lights.size())
+            lights.push_back(refresh(std::move(light), scene.lights[next++]));
+    }
+    while (next < scene.lights.size()) {
+        lights.push_back(refresh(fresh(lights.size() + 1), scene.lights[next]));
+        ++next;
+    }
+    if (lights.empty() && !imported) lights.push_back(fresh(1));
+    return yaml_list(std::move(lights));
+}
+
+Value lighting_value(const ir::Scene &scene, Numbers &numbers, KeptItems &kept) {
+    const ir::Lighting &l = scene.lighting;
+    const auto ambient = numbers.vector(l.ambient).value_or(std::array<double, 3>{});
+    const auto number = [&](ir::NodeId id) { return yaml_scalar(numbers.number(id).value_or(0)); };
+    Value properties = yaml_mapping({{"Ambient R", yaml_scalar(ambient[0])},
+                                     {"Ambient G", yaml_scalar(ambient[1])},
+                                     {"Ambient B", yaml_scalar(ambient[2])},
+                                     {"Ambient Occlusion", number(l.ambient_occlusion)},
+                                     {"Shadow Darkness", number(l.shadow_darkness)},
+                                     {"Soft Shadows", number(l.soft_shadows)},
+                                     {"Specular Intensity", number(l.specular_intensity)},
+                                     {"Specular Exponent", yaml_scalar(128)},
+                                     {"Skip Shadows & Shading", yaml_switch(l.skip)}});
+    Value name = yaml_word("Lighting");
+    if (kept.lighting && kept.lighting->items.size() == 3) {
+        name = kept.lighting->items[1];
+        const NodeTypeRow &row = row_of(NodeType::Lighting);
+        for (const auto &[key, value] : kept.lighting->items[2].entries) {
+            Value *present = find(properties, key);
+            const PropertyType *type = find_property(row, key);
+            if (!present)
+                properties.entries.emplace_back(key, value);
+            else if (type &&
+                     (type->kind == PropertyKind::Carried || number_of(*present) == type->fallback))
+                *present = value;
+        }
+    }
+    properties.entries.emplace_back("Children", lights_value(scene, numbers, std::move(kept.lights),
+                                                             kept.lighting || !kept.items.empty()));
+    return yaml_list({yaml_word("LightingNode"), std::move(name), std::move(properties)});
+}
+
+struct Pose {
+    std::array<double, 3> target{};
+    double yaw = 0, pitch = 0, distance = 30, fov = 50;
+    bool orthographic = false;
+};
+
+Pose pose_of(const ir::Scene &scene, Numbers &numbers) {
+    constexpr double degree = std::numbers::pi / 180;
+    std::array<double, 3> at{}, target{};
+    double fov = 45 * degree;
+    Pose pose;
+    if (scene.camera.given) {
+        at = numbers.vector(scene.camera.at).value_or(std::array<double, 3>{0, 0, 30});
+        target = numbers.vector(scene.camera.look_at).value_or(target);
+        fov = numbers.number(scene.camera.fov).value_or(fov);
+        pose.orthographic = scene.camera.orthographic;
+    } else { // the frame that the scene is shown in
+        const ir::View view = ir::view_of(scene, 0, 1.5);
+        at = view.origin;
+        for (std::size_t i = 0; i < 3; ++i)
+            target[i] = view.origin[i] + view.focus * view.forward[i];
+    }
+    const std::array<double, 3> away{at[0] - target[0], at[1] - target[1], at[2] - target[2]};
+    const double distance = std::sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
+    pose.target = target;
+    pose.distance = distance > 0 ? distance : 1;
+    pose.pitch = distance > 0 ? -std::asin(std::clamp(away[1] / distance, -1.0, 1.0)) / degree : 0;
+    pose.yaw = std::atan2(away[0], away[2]) / degree;
+    pose.fov = fov / degree;
+    for (double *value : {&pose.pitch, &pose.yaw, &pose.fov, &pose.distance})
+        *value = std::round(*value * 1e9) / 1e9;
+    return pose;
+}
+
+Value camera_value(const Pose &pose, const char *second, const char *third) {
+    std::vector<Value> items;
+    for (const double v : {pose.target[0], pose.target[1], pose.target[2], pose.yaw, pose.pitch,
+                           pose.distance, pose.fov})
+        items.push_back(yaml_scalar(v));
+    for (const char *flag : {pose.orthographic ? "true" : "false", second, third}) {
+        Value value;
+        value.text = flag;
+        value.plain = true;
+        items.push_back(std::move(value));
+    }
+    return yaml_list(std::move(items));
+}
+
+bool close(const Pose &pose, const Value &camera) {
+    double number[7];
+    for (std::size_t i = 0; i < 7; ++i) {
+        const auto part = number_of(camera.items[i]);
+        if (!part) return true; // what made no sense stays
+        number[i] = *part;
+    }
+    constexpr double degree = std::numbers::pi / 180;
+    const auto at = [&](std::array<double, 3> target, double yaw, double pitch, double distance) {
+        yaw *= degree, pitch *= degree;
+        return std::array<double, 3>{target[0] + distance * std::cos(pitch) * std::sin(yaw),
+                                     target[1] - distance * std::sin(pitch),
+                                     target[2] + distance * std::cos(pitch) * std::cos(yaw)};
+    };
+    const auto was = at({number[0], number[1], number[2]}, number[3], number[4], number[5]),
+               is = at(pose.target, pose.yaw, pose.pitch, pose.distance);
+    double off = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        off = std::max({off, std::abs(was[i] - is[i]), std::abs(number[i] - pose.target[i])});
+    return off <= 1e-5 * std::max(1.0, pose.distance) && std::abs(number[6] - pose.fov) < 1e-6 &&
+           switch_of(camera.items[7]).value_or(pose.orthographic) == pose.orthographic;
+}
+
+std::vector<Value> settings_values(const ir::Scene &scene, Numbers &numbers,
+                                   const KeptItems &kept) {
+    std::vector<Value> values;
+    const Pose pose = pose_of(scene, numbers);
+    if (kept.items.empty()) { // a scene that was in no save file
+        values.push_back(yaml_scalar(scene.render.max_steps));
+        values.push_back(parse_text("false").value);
+        for (const double value : {1.0, 0.5, 0.0, 0.5, 0.5}) values.push_back(yaml_scalar(value));
+        Pose side = pose;
+        values.push_back(camera_value(pose, "false", "false"));
+        side.orthographic = true;
+        side.yaw = side.pitch = 0;
+        values.push_back(camera_value(side, "true", "false"));
+        side.yaw = -90;
+        values.push_back(camera_value(side, "false", "true"));
+        side.yaw = 0, side.pitch = -90;
+        values.push_back(camera_value(side, "false", "false"));
+        for (int i = 0; i < 4; ++i)
+            values.push_back(parse_text("[" + std::to_string(i) + ", false, false]").value);
+        return values;
+    }
+    double chosen = 0;
+    for (const MainItem &item : kept.items) {
+        if (item.label != "view") continue;
+        if (item.value.kind == Value::Kind::Sequence && !item.value.items.empty())
+            chosen = number_of(item.value.items[0]).value_or(0);
+        break;
+    }
+    double camera = 0;
+    for (const MainItem &item : kept.items) {
+        Value value = item.value;
+        if (item.label == "steps") {
+            const auto steps = number_of(value);
+            const bool legal =
+                steps && *steps >= 1 && *steps <= 100000 && *steps == std::floor(*steps);
+            if (legal && *steps != scene.render.max_steps)
+                value = yaml_scalar(scene.render.max_steps);
+        } else if (item.label == "camera" && value.items.size() == 10) {
+            if (camera++ == chosen && scene.camera.given && !close(pose, value)) {
+                const Value second = value.items[8], third = value.items[9];
+                value = camera_value(pose, "false", "false");
+                value.items[8] = second;
+                value.items[9] = third;
+            }
+        }
+        values.push_back(std::move(value));
+    }
+    return values;
+}
+
+} // namespace
+
+std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
+    KeptItems kept = read_kept(scene.kept);
+    Numbers numbers(scene);
+    Looks looks(scene, numbers, std::move(kept.textures), std::move(kept.materials));
+    TreeNode root;
+    root.type = "Generic";
+    root.name = "Distance field";
+    root.named = root.head = true;
+    root.children = export_tree(scene, numbers, looks, diagnostics);
+    for (const TreeRecord *record : apply_records(kept.tree, root)) {
+        std::string place;
+        for (const std::size_t index : record->path)
+            place += (place.empty() ? "" : "/") + std::to_string(index);
+        unsaved(diagnostics, {},
+                "the kept `" + record->label + " " + place +
+                    "` no longer has a place in the scene");
+    }
+    for (const std::string &statement : kept.unread) {
+        unsaved(diagnostics, {}, "the kept `" + statement.substr(0, 60) + "` cannot be read");
+    }
+
+    std::string out = "---\n";
+    Value version;
+    version.text = written_version;
+    version.plain = true;
+    write_item(kept.version.value_or(version), 0, out);
+    write_item(looks.textures(), 0, out);
+    write_item(yaml_list(looks.materials()), 0, out);
+    std::map<std::string, int> ordinals;
+    Value tree = node_value(root, ordinals);
+    Value lighting = lighting_value(scene, numbers, kept);
+    const bool beside = kept.lighting && !kept.lighting->items.empty() &&
+                        switch_of(kept.lighting->items[0]).value_or(false);
+    if (beside && !tree.items[2].entries.empty()) { // as the file had it: among the root's children
+        tree.items[2].entries.back().second.items.push_back(std::move(lighting));
+        write_item(tree, 0, out);
+    } else {
+        write_item(tree, 0, out);
+        write_item(lighting, 0, out);
+    }
+    for (const Value &value : settings_values(scene, numbers, kept)) write_item(value, 0, out);
+    return out + "...\n";
+}
+
+} // namespace fathom::save

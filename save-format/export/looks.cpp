@@ -1,0 +1,242 @@
+// Textures and materials of a save file; see looks.h.
+#include "save-format/export/looks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::save {
+
+// The inverse of sRGB's curve (IEC 61966-2-1).
+double channel_of(double linear) {
+    linear = std::clamp(linear, 0.0, 1.0);
+    const double encoded =
+        linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    const double channel = encoded * 255;
+    return std::abs(channel - std::round(channel)) < 1e-4 ? std::round(channel)
+                                                          : std::round(channel * 1e6) / 1e6;
+}
+
+Value color_value(const std::array<double, 3> &c, double alpha) {
+    return yaml_mapping({{"Red", yaml_scalar(c[0])},
+                         {"Green", yaml_scalar(c[1])},
+                         {"Blue", yaml_scalar(c[2])},
+                         {"Alpha", yaml_scalar(alpha)}});
+}
+
+namespace {
+
+// In whichever of the material's mappings it stands.
+const Value *entry(const Value &item, std::string_view key) {
+    if (item.kind == Value::Kind::Mapping) return item.find(key);
+    for (const Value &part : item.items) {
+        if (const Value *found = part.find(key)) return found;
+    }
+    return nullptr;
+}
+Value *entry(Value &item, std::string_view key) {
+    return const_cast<Value *>(entry(std::as_const(item), key));
+}
+
+Value plain(std::string_view text) {
+    Value value;
+    value.text = text;
+    value.plain = true;
+    return value;
+}
+
+Value xy(const std::array<double, 2> &v) {
+    return yaml_mapping({{"X", yaml_scalar(v[0])}, {"Y", yaml_scalar(v[1])}});
+}
+
+std::string texture_of(const Value &item, std::string_view key) {
+    const Value *name = entry(item, key);
+    return name && name->kind == Value::Kind::Scalar && !is_none(name->text) ? name->text
+                                                                             : std::string();
+}
+
+std::array<double, 2> scale_of(const Value &item, std::string_view key) {
+    const Value *scale = entry(item, key);
+    std::array<double, 2> result{1, 1};
+    for (std::size_t i = 0; scale && i < 2; ++i) {
+        const Value *part = scale->find(i == 0 ? "X" : "Y");
+        result[i] = part ? number_of(*part).value_or(1) : 1;
+    }
+    return result;
+}
+
+bool same_color(const Value *value, const std::array<double, 3> &color) {
+    static constexpr const char *names[] = {"Red", "Green", "Blue"};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Value *part = value ? value->find(names[i]) : nullptr;
+        const auto number = part ? number_of(*part) : std::nullopt;
+        if (!number || std::abs(*number - color[i]) > 1e-3) return false;
+    }
+    return true;
+}
+
+// The last part of a path, without its ending: what a texture is called that no file named.
+std::string stem(std::string_view file) {
+    file.remove_prefix(file.find_last_of('/') + 1);
+    return std::string(file.substr(0, file.find_last_of('.')));
+}
+
+} // namespace
+
+Looks::Looks(const ir::Scene &scene, Numbers &numbers, std::vector<Value> textures,
+             std::vector<Value> materials)
+    : scene_(scene), numbers_(numbers), materials_(std::move(materials)) {
+    for (Value &texture : textures) {
+        for (Entry &item : texture.entries) textures_.push_back(std::move(item));
+    }
+    for (std::size_t i = 0; i < materials_.size(); ++i) {
+        const Value *name = entry(materials_[i], "Name");
+        if (name && name->kind == Value::Kind::Scalar && !name->text.empty())
+            by_name_.try_emplace(name->text, i);
+    }
+}
+
+// A kept texture is found by its file, to which an import may have put the way from the .sdf.
+std::string Looks::texture(std::int32_t image) {
+    if (image < 0 || static_cast<std::size_t>(image) >= scene_.images.size()) return {};
+    const std::string &file = scene_.images[static_cast<std::size_t>(image)].name;
+    const auto is_taken = [&](const std::string &name) {
+        return std::any_of(textures_.begin(), textures_.end(),
+                           [&](const Entry &item) { return item.first == name; });
+    };
+    for (const auto &[name, value] : textures_) {
+        if (value.kind == Value::Kind::Scalar && !value.text.empty() &&
+            (file == value.text || file.ends_with("/" + value.text)))
+            return name;
+    }
+    std::string name = stem(file);
+    for (int i = 2; name.empty() || is_none(name) || is_taken(name); ++i)
+        name = stem(file) + " " + std::to_string(i);
+    textures_.emplace_back(name, yaml_word(file));
+    return name;
+}
+
+std::string Looks::material(std::uint32_t index) {
+    const ir::Material &material = scene_.shapes.materials[index];
+    const std::optional<Look> look = look_of(material);
+    if (!look) return {};
+    if (const auto kept = by_name_.find(material.name); kept != by_name_.end()) {
+        update(materials_[kept->second], *look);
+        return material.name;
+    }
+    for (const auto &[name, i] : by_name_) {
+        if (same(materials_[i], *look)) return name;
+    }
+    std::string name = material.name;
+    for (int i = 1; name.empty() || by_name_.contains(name); ++i)
+        name = "Material " + std::to_string(i);
+    by_name_.emplace(name, materials_.size());
+    Value specular = color_value(look->specular, 255);
+    specular.entries.emplace_back("Exponent", yaml_scalar(look->exponent));
+    Value first = yaml_mapping({{"Name", yaml_word(name)},
+                                {"Diffuse", color_value(look->diffuse, 255)},
+                                {"Specular", std::move(specular)}});
+    if (look->emission != std::array<double, 3>{})
+        first.entries.emplace_back("Emission", color_value(look->emission, 255));
+    materials_.push_back(yaml_list(
+        {std::move(first),
+         yaml_mapping(
+             {{"Color Texture", look->texture.empty() ? plain("<None>") : yaml_word(look->texture)},
+              {"Texture Scale", xy(look->texture_scale)},
+              {"Displacement Map", plain("<None>")},
+              {"Displacement Amount", yaml_scalar(0.1)},
+              {"Displacement Scale", xy({1, 1})}})}));
+    return name;
+}
+
+bool Looks::displaces(const std::string &material, const ir::DisplacementMap &map,
+                      double by) const {
+    const auto found = by_name_.find(material);
+    if (found == by_name_.end()) return false;
+    const Value &item = materials_[found->second];
+    const Value *amount = entry(item, "Displacement Amount");
+    const std::string name = texture_of(item, "Displacement Map");
+    const auto file = std::find_if(textures_.begin(), textures_.end(),
+                                   [&](const Entry &texture) { return texture.first == name; });
+    if (name.empty() || file == textures_.end()) return false;
+    const std::string &image = scene_.images[static_cast<std::size_t>(map.map.image)].name;
+    return image.ends_with(file->second.text) &&
+           (amount ? number_of(*amount).value_or(0.1) : 0.1) == by &&
+           scale_of(item, "Displacement Scale") == map.map.scale;
+}
+
+Value Looks::textures() const {
+    Value value;
+    value.kind = Value::Kind::Mapping;
+    value.entries = textures_;
+    return value;
+}
+
+// Of a texture `diffuse` is what shows where the image is transparent: the first of what is mixed.
+std::optional<Looks::Look> Looks::look_of(const ir::Material &material) {
+    Look look;
+    const auto read = [&](ir::NodeId id, std::array<double, 3> &out) {
+        const auto value = numbers_.vector(id);
+        if (value)
+            for (std::size_t i = 0; i < 3; ++i) out[i] = channel_of((*value)[i]);
+        return value.has_value();
+    };
+    ir::NodeId diffuse = material.diffuse;
+    if (material.texture.image >= 0) {
+        look.texture = texture(material.texture.image);
+        look.texture_scale = material.texture.scale;
+        if (scene_.graph[diffuse].op == ir::Op::Mix) diffuse = scene_.graph.arg(diffuse, 0);
+    }
+    const auto exponent = numbers_.number(material.exponent);
+    if (!read(diffuse, look.diffuse) || !read(material.specular, look.specular) ||
+        !read(material.emission, look.emission) || !exponent)
+        return std::nullopt;
+    look.exponent = *exponent;
+    return look;
+}
+
+bool Looks::same(const Value &item, const Look &look) const {
+    const Value *specular = entry(item, "Specular"), *emission = entry(item, "Emission");
+    const Value *exponent = specular ? specular->find("Exponent") : nullptr;
+    const bool glows = look.emission != std::array<double, 3>{};
+    return same_color(entry(item, "Diffuse"), look.diffuse) &&
+           same_color(specular, look.specular) && exponent &&
+           number_of(*exponent) == look.exponent &&
+           (glows ? same_color(emission, look.emission) : emission == nullptr) &&
+           texture_of(item, "Color Texture") == look.texture &&
+           (look.texture.empty() || scale_of(item, "Texture Scale") == look.texture_scale) &&
+           texture_of(item, "Displacement Map").empty();
+}
+
+// What the scene says by now. A value that made no sense in the file stays where its default is
+// still in use.
+void Looks::update(Value &item, const Look &look) const {
+    const auto channels = [&](const char *what, const std::array<double, 3> &color,
+                              const std::array<double, 3> &fallback) {
+        Value *value = entry(item, what);
+        if (!value || value->kind != Value::Kind::Mapping) return;
+        static constexpr const char *names[] = {"Red", "Green", "Blue"};
+        for (std::size_t i = 0; i < 3; ++i) {
+            Value *part = const_cast<Value *>(std::as_const(*value).find(names[i]));
+            const auto number = part ? number_of(*part) : std::nullopt;
+            const bool legal = number && *number >= 0 && *number <= 255;
+            if (part && (legal ? std::abs(*number - color[i]) > 1e-3 : color[i] != fallback[i]))
+                *part = yaml_scalar(color[i]);
+        }
+    };
+    channels("Diffuse", look.diffuse, {128, 128, 128});
+    channels("Specular", look.specular, {255, 255, 255});
+    channels("Emission", look.emission, {0, 0, 0});
+    const Value *specular = entry(item, "Specular");
+    Value *exponent = specular ? const_cast<Value *>(specular->find("Exponent")) : nullptr;
+    const auto number = exponent ? number_of(*exponent) : std::nullopt;
+    if (exponent && (number ? *number != look.exponent : look.exponent != 32))
+        *exponent = yaml_scalar(look.exponent);
+    if (look.texture.empty()) return;
+    if (Value *name = entry(item, "Color Texture"); name && name->text != look.texture)
+        *name = yaml_word(look.texture);
+    if (Value *scale = entry(item, "Texture Scale");
+        scale && scale_of(item, "Texture Scale") != look.texture_scale)
+        *scale = xy(look.texture_scale);
+}
+
+} // namespace fathom::save

@@ -1,0 +1,350 @@
+// One node a shape. Unions dissolve among siblings that are united anyway, and what changes nothing
+// is left out: so the importer can foretell the nodes that its own text will give
+// (import/tree.cpp), and record the rest.
+#include "save-format/export/tree.h"
+
+#include "save-format/export/looks.h"
+#include "save-format/export/tree_writer.h"
+#include "save-format/program.h"
+
+#include <algorithm>
+
+namespace fathom::save {
+
+Remark unsaved(Diagnostics &diagnostics, Span place, std::string message) {
+    return {diagnostics,
+            Diagnostic{
+                Code::Unsupported, Severity::Warning, std::move(message), {place, {}}, {}, {}, {}}};
+}
+
+TreeNode made(NodeType type) {
+    TreeNode node;
+    node.type = row_of(type).name;
+    return node;
+}
+
+void add(TreeNode &node, const char *name, Value value) {
+    node.properties.emplace_back(name, std::move(value));
+}
+
+ShapeId TreeWriter::bare(ShapeId id) const {
+    while (shape(id).kind == ShapeKind::Contract) id = shape(id).children[0];
+    return id;
+}
+
+std::optional<Value> TreeWriter::steps(NodeId expression) {
+    const std::string flow = numbers_.program(expression);
+    if (flow.empty()) return std::nullopt;
+    return parse_text(flow).value;
+}
+
+void TreeWriter::united(ShapeId id, const Paint &paint, std::vector<TreeNode> &out) {
+    id = bare(id);
+    if (displaced(id, paint, out)) return;
+    const Shape &s = shape(id);
+    if (const auto listed = scene_.shapes.listed.find(id);
+        listed != scene_.shapes.listed.end() && s.args.empty()) {
+        const std::vector<ShapeId> parts = listed->second;
+        for (const ShapeId part : parts) united(part, paint, out);
+        return;
+    }
+    switch (s.kind) {
+    case ShapeKind::Empty: return;
+    case ShapeKind::Union:
+        for (const ShapeId child : s.children) united(child, paint, out);
+        return;
+    case ShapeKind::Many: {
+        const ir::Family &family = scene_.shapes.families[s.payload];
+        if (family.smooth) break;
+        for (int i = 0; i < family.count; ++i) {
+            numbers_.set(family.index, {ir::Type::Int, {double(i)}});
+            united(s.children[0], paint, out);
+        }
+        return;
+    }
+    case ShapeKind::Map: return map(id, paint, out);
+    case ShapeKind::Repeat: return repeat(id, paint, out);
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint: return painted(id, paint, out);
+    case ShapeKind::Offset:
+        if (numbers_.number(s.args[0]) == 0.0) return united(s.children[0], paint, out);
+        break;
+    case ShapeKind::Leaf:
+    case ShapeKind::Intersection:
+    case ShapeKind::Complement:
+    case ShapeKind::Xor:
+    case ShapeKind::Blend:
+    case ShapeKind::Seam:
+    case ShapeKind::Lerp:
+    case ShapeKind::PseudoNorm:
+    case ShapeKind::Shell:
+    case ShapeKind::Displace:
+    case ShapeKind::Extrude:
+    case ShapeKind::Within:
+    case ShapeKind::Mixed:
+    case ShapeKind::Library:
+    case ShapeKind::Contract: break;
+    }
+    if (auto made_node = node(id, paint)) out.push_back(std::move(*made_node));
+}
+
+std::optional<TreeNode> TreeWriter::single(ShapeId id, const Paint &paint) {
+    std::vector<TreeNode> nodes;
+    united(id, paint, nodes);
+    if (nodes.empty()) return std::nullopt;
+    if (nodes.size() == 1) return std::move(nodes[0]);
+    TreeNode group = made(NodeType::Union);
+    group.children = std::move(nodes);
+    return group;
+}
+
+std::optional<TreeNode> TreeWriter::one_child(NodeType type, ShapeId child, const Paint &paint) {
+    TreeNode result = made(type);
+    united(child, paint, result.children);
+    if (result.children.empty()) return std::nullopt;
+    return result;
+}
+
+// A displacement map lies on the base shapes, but is said where it was given: at the whole that
+// they are of, or by the material that has it.
+bool TreeWriter::displaced(ShapeId id, const Paint &paint, std::vector<TreeNode> &out) {
+    const auto found = maps_.find(id);
+    if (found == maps_.end() || open_maps_.contains(found->second)) return false;
+    const ir::DisplacementMap &map = scene_.shapes.displacement_maps[found->second];
+    const auto amount = numbers_.number(map.amount);
+    const std::string texture = looks_.texture(map.map.image);
+    if (!amount || texture.empty()) return false;
+    open_maps_.insert(found->second);
+    if (looks_.displaces(paint.fill, map, *amount))
+        united(id, paint, out);
+    else if (auto result = map_node(map, *amount, id, paint))
+        out.push_back(std::move(*result));
+    open_maps_.erase(found->second);
+    return true;
+}
+
+std::optional<TreeNode> TreeWriter::map_node(const ir::DisplacementMap &map, double amount,
+                                             ShapeId child, const Paint &paint) {
+    auto result = one_child(NodeType::Displacement, child, paint);
+    if (!result) return result;
+    add(*result, "Map", yaml_word(looks_.texture(map.map.image)));
+    add(*result, "Amount", yaml_scalar(amount));
+    add(*result, "Scale",
+        yaml_mapping({{"X", yaml_scalar(map.map.scale[0])}, {"Y", yaml_scalar(map.map.scale[1])}}));
+    return result;
+}
+
+// A base shape's own part of a map whose whole was taken apart since, by a texture that lies below:
+// the amount is here what the transforms between have made of it.
+std::optional<TreeNode> TreeWriter::displaced_base(ShapeId id, const Paint &paint) {
+    const Shape &s = shape(id);
+    const ir::DisplacementMap &map = scene_.shapes.displacement_maps[s.payload - 1];
+    const NodeId moved = numbers_.reduced(s.args[0]);
+    const ir::Graph &graph = numbers_.graph();
+    double amount = graph[moved].op == ir::Op::Neg ? -1 : 1;
+    if (graph[moved].op == ir::Op::Mul) {
+        for (int i = 0; i < 2; ++i) amount = graph.as_number(graph.arg(moved, i)).value_or(amount);
+    }
+    const ShapeId child = s.children[0];
+    std::string name = paint.fill;
+    if (shape(child).kind == ShapeKind::Paint) name = looks_.material(shape(child).payload);
+    if (looks_.displaces(name, map, amount)) return single(child, paint);
+    return map_node(map, amount, child, paint);
+}
+
+void TreeWriter::painted(ShapeId id, Paint paint, std::vector<TreeNode> &out) {
+    const Shape &s = shape(id);
+    if (paint.forced) return united(s.children[0], paint, out);
+    const std::string name = looks_.material(s.payload);
+    if (!name.empty()) {
+        paint.fill = name;
+        paint.forced = s.kind == ShapeKind::Repaint;
+        return united(s.children[0], paint, out);
+    }
+    // Looks that depend on the point: a group that says so, whose shapes a 0.3 reader shows
+    // plainly.
+    const ir::Material &m = scene_.shapes.materials[s.payload];
+    TreeNode group = made(NodeType::Generic);
+    Value looks;
+    looks.kind = Value::Kind::Mapping;
+    const auto part = [&](const char *key, NodeId expression) {
+        auto program = steps(expression);
+        if (program) looks.entries.emplace_back(key, std::move(*program));
+        return program.has_value();
+    };
+    bool whole = part("Diffuse", m.diffuse);
+    whole = part("Specular", m.specular) && whole;
+    whole = part("Exponent", m.exponent) && whole;
+    whole = part("Emission", m.emission) && whole;
+    if (!whole)
+        unsaved(diagnostics_, s.origin,
+                "the save format has no words for a part of this material: " + no_words)
+            .note("it is left out of the file");
+    looks.entries.emplace_back("Repaint", yaml_switch(s.kind == ShapeKind::Repaint));
+    add(group, "Paint", std::move(looks));
+    paint.fill.clear();
+    united(s.children[0], paint, group.children);
+    if (!group.children.empty()) out.push_back(std::move(group));
+}
+
+std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
+    const Shape &s = shape(id);
+    switch (s.kind) {
+    case ShapeKind::Leaf: return field(id, nullptr, paint);
+    case ShapeKind::Within: {
+        const ShapeId child = bare(s.children[0]);
+        const ir::Region &limits = scene_.shapes.regions[s.payload];
+        if (shape(child).kind == ShapeKind::Leaf) return field(child, &limits, paint);
+        if (shape(child).kind == ShapeKind::Map) {
+            auto result = single(child, paint);
+            auto value = region(limits);
+            const bool takes_region =
+                result && (result->type == "Distortion" || result->type == "Hyperize");
+            if (takes_region && value) {
+                add(*result, "Within", std::move(*value));
+                return result;
+            }
+        }
+        return otherwise(id, paint, "this use of `within:`");
+    }
+    case ShapeKind::Intersection: return intersection(id, paint);
+    case ShapeKind::Complement: {
+        const ShapeId child = bare(s.children[0]);
+        if (shape(child).kind == ShapeKind::Blend || shape(child).kind == ShapeKind::Many) {
+            if (shape(child).args.size() > 0)
+                if (auto blend = profile_blend(child, true, paint)) return blend;
+        }
+        return one_child(NodeType::Complement, s.children[0], paint);
+    }
+    case ShapeKind::Blend:
+    case ShapeKind::Many: return profile_blend(id, false, paint);
+    case ShapeKind::Xor: {
+        TreeNode result = made(NodeType::ProfileBlend);
+        add(result, "Operation", yaml_word("Xor"));
+        for (const ShapeId child : s.children) {
+            if (auto operand = single(child, paint)) result.children.push_back(std::move(*operand));
+        }
+        return result;
+    }
+    case ShapeKind::Mixed: {
+        auto result = single(s.children[0], paint);
+        if (result && result->type == row_of(NodeType::ProfileBlend).name)
+            add(*result, "Mix", yaml_switch(true));
+        return result;
+    }
+    case ShapeKind::Lerp: return lerp(id, paint);
+    case ShapeKind::PseudoNorm: {
+        const auto exponent = numbers_.number(s.args[0]);
+        auto first = single(s.children[0], paint);
+        std::vector<TreeNode> rest;
+        united(s.children[1], paint, rest);
+        if (!exponent || !first || rest.empty())
+            return otherwise(id, paint, "this pseudo-norm blend");
+        TreeNode result = made(NodeType::PseudoNormBlend);
+        add(result, "Exponent", yaml_scalar(*exponent));
+        result.children.push_back(std::move(*first));
+        for (TreeNode &other : rest) result.children.push_back(std::move(other));
+        return result;
+    }
+    case ShapeKind::Offset: {
+        const auto distance = numbers_.number(s.args[0]);
+        if (!distance) return otherwise(id, paint, "an offset that is no number");
+        auto result = one_child(NodeType::Offset, s.children[0], paint);
+        if (result) add(*result, "Distance", yaml_scalar(*distance));
+        return result;
+    }
+    case ShapeKind::Shell: {
+        const auto thickness = numbers_.number(s.args[0]);
+        if (!thickness) return otherwise(id, paint, "a shell that is no number");
+        auto result = one_child(NodeType::Deformation, s.children[0], paint);
+        if (!result) return result;
+        add(*result, "Function", yaml_word("shell"));
+        add(*result, "Arguments", yaml_mapping({{"thickness", yaml_scalar(*thickness)}}));
+        return result;
+    }
+    case ShapeKind::Displace: {
+        if (s.payload > 0 && open_maps_.contains(s.payload - 1))
+            return single(s.children[0], paint); // said by `displaced`
+        if (s.payload > 0 &&
+            !looks_.texture(scene_.shapes.displacement_maps[s.payload - 1].map.image).empty())
+            return displaced_base(id, paint);
+        auto field_steps = steps(s.args[0]);
+        if (!field_steps) { // the shape itself stays
+            unsaved(diagnostics_, s.origin,
+                    "the save format has no words for this displacement: " + no_words)
+                .note("the shape is written without it");
+            return single(s.children[0], paint);
+        }
+        auto result = one_child(NodeType::Displacement, s.children[0], paint);
+        if (result) add(*result, "Field", std::move(*field_steps));
+        return result;
+    }
+    case ShapeKind::Library: return library(id, paint);
+    case ShapeKind::Seam: return seam(id, paint);
+    case ShapeKind::Extrude: return otherwise(id, paint, "flat shapes");
+    case ShapeKind::Empty:
+    case ShapeKind::Union:
+    case ShapeKind::Map:
+    case ShapeKind::Repeat:
+    case ShapeKind::Paint:
+    case ShapeKind::Repaint:
+    case ShapeKind::Contract: return single(id, paint);
+    }
+    return std::nullopt;
+}
+
+Numbers::Numbers(const ir::Scene &scene) : graph_(scene.graph) {
+    for (std::size_t i = 0; i < scene.graph.size(); ++i) {
+        const ir::Node &node = scene.graph[NodeId{i}];
+        if (node.op == ir::Op::Param && node.payload < scene.params.size()) {
+            ir::Constant value{node.type, {}};
+            const auto &present = scene.params[node.payload].value;
+            std::copy(present.begin(), present.end(), value.value.begin());
+            values_[NodeId{i}] = graph_.constant(value);
+        } else if (node.op == ir::Op::Time) {
+            values_[NodeId{i}] = graph_.number(0);
+        }
+    }
+}
+
+NodeId Numbers::reduced(NodeId id) {
+    return values_.empty() ? id : ir::substitute(graph_, id, values_);
+}
+
+std::string Numbers::program(NodeId id) { return program_flow(graph_, id, values_); }
+
+std::optional<ir::Constant> Numbers::constant(NodeId id) {
+    if (!id) return std::nullopt;
+    const NodeId node = graph_.is_constant(id) ? id : reduced(id);
+    if (!graph_.is_constant(node)) return std::nullopt;
+    return graph_.constant_of(node);
+}
+
+std::optional<double> Numbers::number(NodeId id) {
+    const auto value = constant(id);
+    return value && ir::components(value->type) == 1 ? std::optional(value->value[0])
+                                                     : std::nullopt;
+}
+
+std::optional<std::array<double, 3>> Numbers::vector(NodeId id) {
+    const auto value = constant(id);
+    if (!value) return std::nullopt;
+    const int size = ir::components(value->type);
+    if (size == 1) return std::array<double, 3>{value->value[0], value->value[0], value->value[0]};
+    if (size > 3) return std::nullopt;
+    return std::array<double, 3>{value->value[0], value->value[1], size == 3 ? value->value[2] : 0};
+}
+
+void Numbers::set(NodeId variable, const ir::Constant &value) {
+    values_[variable] = graph_.constant(value);
+}
+
+std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers, Looks &looks,
+                                  Diagnostics &diagnostics) {
+    TreeWriter writer(scene, numbers, looks, diagnostics);
+    std::vector<TreeNode> nodes;
+    for (const ir::TopLevel &top : scene.top_level) writer.united(top.shape, {}, nodes);
+    return nodes;
+}
+
+} // namespace fathom::save

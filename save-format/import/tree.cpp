@@ -1,0 +1,531 @@
+// The scene tree: one pass over its nodes, each written as an expression when its last property was
+// read. What an export of the written text would not give back by itself (groups that unions
+// dissolve, names, nodes left out) is recorded.
+#include "save-format/import/importer.h"
+#include "save-format/import/node_text.h"
+
+#include "base/suggest.h"
+#include "base/text.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace fathom::save {
+namespace {
+
+// Where a node stands decides what an export makes of a union there: see export/tree.cpp.
+enum class Place : std::uint8_t {
+    United,      // among siblings that are united: a union dissolves
+    Intersected, // an intersection dissolves
+    Alone        // an operand by itself
+};
+
+struct Result {
+    bool contributed = false;
+    std::size_t base = 0; // nodes that an export has at this place before the records are applied
+    std::string display;  // what a person would call it
+    std::optional<Place> dissolves; // it would, where it stood at such a place
+};
+
+// How the children of a node came out.
+struct Children {
+    bool given = false;
+    std::size_t read = 0;   // in the file
+    std::size_t pieces = 0; // expressions
+    std::size_t base = 0;
+    std::optional<Place> dissolves; // of the only one
+    bool first = false;             // the first one contributed (differences and blends need it)
+    std::size_t first_base = 0, first_end = 0; // its nodes, and the piece behind it
+    std::size_t rest_mark = 0;                 // the held piece before the second one
+    std::size_t rest_pieces = 0;
+    std::string display; // of the only one
+};
+
+class TreeReader {
+  public:
+    explicit TreeReader(Importer &importer) : in_(importer) {}
+
+    void root(const Event &first);
+
+  private:
+    Result node(const Event &first, Place place, Body &body, bool top);
+    void top_level(const Event &first);
+    void children(const Event &key, const NodeTypeRow *row, Body &body, Children &into,
+                  Properties &properties);
+    void read_properties(Event event, const NodeTypeRow *row, const std::string &type, Body &body,
+                         Children &into, Properties &properties);
+    void keep(const char *label, std::string flow) {
+        in_.keep(label, path_text(), std::move(flow));
+    }
+    std::string path_text() const;
+
+    Importer &in_;
+    struct Statement { // written before the present one, for a part of it
+        std::string identifier;
+        Body body;
+        std::size_t begin = 0, end = 0; // in Importer::out
+    };
+    std::optional<Statement> last_;
+    std::vector<std::size_t> path_;
+    std::size_t blocks_ = 0; // that are open in the present statement
+};
+
+std::string TreeReader::path_text() const {
+    std::string text;
+    for (const std::size_t index : path_) {
+        if (!text.empty()) text += '/';
+        text += std::to_string(index);
+    }
+    return text;
+}
+
+// "Sphere 12" says no more than that it is a sphere.
+bool is_default_name(std::string_view name, std::string_view type) {
+    if (name.empty()) return true;
+    if (name.substr(0, type.size()) != type) return false;
+    return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(type.size()), name.end(),
+                       [](char c) { return c == ' ' || (c >= '0' && c <= '9'); });
+}
+
+void add_comment(Piece &piece, std::string_view comment) {
+    if (!piece.comment.empty()) piece.comment += ", ";
+    piece.comment += printable(comment.substr(0, 200));
+}
+
+// Statements nest as deep as blocks do; the language reads 256 levels, and people fewer.
+constexpr std::size_t block_limit = 24;
+
+void TreeReader::children(const Event &key, const NodeTypeRow *row, Body &body, Children &into,
+                          Properties &properties) {
+    Event list = in_.reader.next();
+    if (list.kind == EventKind::Broken) return;
+    const bool null = list.kind == EventKind::Scalar && list.plain && is_none(list.text);
+    if (list.kind != EventKind::SequenceStart || into.given) {
+        if (!null)
+            in_.report.content(key.span, into.given ? "`Children` is given twice"
+                                                    : "`Children` has to be a list of nodes");
+        std::string flow;
+        take_flow(in_.reader, std::move(list), flow);
+        if (!into.given && !null) properties.keep("Children", flow);
+        return;
+    }
+    into.given = true;
+    const NodeType type = row ? row->type : NodeType::Generic;
+    const bool first_alone = type == NodeType::Difference || type == NodeType::Blend ||
+                             type == NodeType::PseudoNormBlend || type == NodeType::Seam;
+    for (;; ++into.read) {
+        Event event = in_.reader.next();
+        if (event.kind == EventKind::SequenceEnd || event.kind == EventKind::Broken ||
+            event.kind == EventKind::End) {
+            // the last piece has to be the one that a transform's call is appended to
+            if (into.read > 1 && body.size() == into.rest_mark + 1) body.pop_back();
+            return;
+        }
+        Place place = Place::United;
+        if (type == NodeType::Intersection) place = Place::Intersected;
+        if (type == NodeType::ProfileBlend || (first_alone && into.read == 0)) place = Place::Alone;
+        if (into.read == 1) {
+            into.rest_mark = body.size();
+            body.emplace_back();
+        }
+        path_.push_back(into.read);
+        Result result = node(event, place, body, false);
+        path_.pop_back();
+        if (!result.contributed) continue;
+        into.display = into.pieces == 0 ? result.display : std::string();
+        into.dissolves = into.pieces == 0 ? result.dissolves : std::nullopt;
+        ++into.pieces;
+        into.base += result.base;
+        if (into.read == 0) {
+            into.first = true;
+            into.first_base = result.base;
+            into.first_end = body.size();
+        } else {
+            ++into.rest_pieces;
+        }
+    }
+}
+
+void TreeReader::read_properties(Event event, const NodeTypeRow *row, const std::string &type,
+                                 Body &body, Children &into, Properties &properties) {
+    static const NodeTypeRow nothing{NodeType::Generic, "", Arity::Many, {}};
+    const std::string of = "`" + printable(type.substr(0, 80)) + "`";
+    for (;;) {
+        event = in_.reader.next();
+        if (event.kind == EventKind::MappingEnd || event.kind == EventKind::Broken ||
+            event.kind == EventKind::End)
+            return;
+        const bool has_children = !row || row->children != Arity::Leaf;
+        if (event.kind == EventKind::Scalar && has_children &&
+            spelling_key(event.text) == "children") {
+            children(event, row, body, into, properties);
+        } else if (!row) { // already reported as a whole
+            std::string key, value;
+            const std::string name = event.text;
+            const bool scalar = event.kind == EventKind::Scalar;
+            take_flow(in_.reader, std::move(event), key);
+            take_flow(in_.reader, in_.reader.next(), value);
+            if (scalar) {
+                properties.keep(name, value);
+            } else {
+                properties.unknown +=
+                    (properties.unknown.empty() ? "? " : ", ? ") + key + ": " + value;
+            }
+        } else {
+            in_.read_property(row ? *row : nothing, event, properties, of);
+        }
+    }
+}
+
+Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
+    if (first.kind == EventKind::Broken || first.kind == EventKind::End) return {};
+    if (first.kind != EventKind::SequenceStart) {
+        in_.report.content(first.span, "a node has to be a list of its type, name and properties")
+            .note("it is left out, and kept for an export");
+        std::string flow;
+        take_flow(in_.reader, first, flow);
+        keep("node", std::move(flow));
+        return {};
+    }
+    const std::size_t kept_mark = in_.kept.size(), out_mark = in_.out.size();
+    const auto ordinals_mark = in_.ordinals;
+    const std::size_t slot = kept_mark;
+    in_.kept.emplace_back(); // a group's record has to stand before those of its children
+
+    Event event = in_.reader.next();
+    if (event.kind != EventKind::Scalar) {
+        in_.report.content(event.span, "a node's type has to be text")
+            .note("the node is left out, and kept for an export");
+        std::string flow = "[";
+        if (event.kind != EventKind::SequenceEnd) {
+            take_flow(in_.reader, std::move(event), flow);
+            in_.rest_of_sequence(flow);
+        } else {
+            flow += ']';
+        }
+        keep("node", std::move(flow));
+        return {};
+    }
+    const std::string type = event.text;
+    const Span type_span = event.span;
+    const NodeTypeRow *row = find_node_type(type);
+    if (row && row->type == NodeType::Lighting) {
+        if (top && !in_.lighting_seen) {
+            in_.read_lighting(true);
+            return {};
+        }
+        row = nullptr;
+    }
+    ++in_.nodes;
+    if (!row) {
+        std::vector<std::string> known;
+        for (const NodeTypeRow &other : node_types()) known.emplace_back(other.name);
+        Remark remark = in_.report.content(type_span, "there is no node type `" +
+                                                          printable(type.substr(0, 80)) + "`");
+        remark.note(
+            "its children, if it has any, are united in its place; it is kept for an export");
+        const std::string near = nearest_name(type, known);
+        if (!near.empty()) remark.help("did you mean `" + near + "`?");
+    }
+
+    std::string name;
+    bool name_plain = true;
+    event = in_.reader.next();
+    if (event.kind == EventKind::Scalar) {
+        name = event.text;
+        name_plain = event.plain;
+        event = in_.reader.next();
+    } else {
+        in_.report.content(type_span, "this node has no name");
+    }
+
+    // A block that has a name of its own, or stands too deep, becomes a statement of its own.
+    const bool block = !row || row->children != Arity::Leaf;
+    const bool custom =
+        !is_default_name(name, row ? std::string_view(row->name) : std::string_view(type));
+    const bool hoisted =
+        block && !top && (blocks_ >= block_limit || (custom && row && row->children != Arity::One));
+    Body own;
+    Body &target = hoisted ? own : body;
+    const std::size_t blocks_mark = blocks_;
+    if (block) blocks_ = hoisted ? 1 : blocks_ + 1;
+    const std::size_t begin = target.size();
+    if (block) target.emplace_back();
+
+    Properties properties;
+    properties.values.resize(row ? row->properties.size() : 0);
+    Children kids;
+    if (event.kind == EventKind::MappingStart) {
+        read_properties(std::move(event), row, type, target, kids, properties);
+        event = in_.reader.next();
+    }
+    Span end = event.span;
+    if (event.kind != EventKind::SequenceEnd && event.kind != EventKind::Broken &&
+        event.kind != EventKind::End) {
+        in_.report
+            .content(event.span,
+                     "a node has a type, a name and one mapping of properties, and no more")
+            .note("the rest is kept for an export");
+        std::string flow = "[";
+        take_flow(in_.reader, std::move(event), flow);
+        in_.rest_of_sequence(flow);
+        end = Span{in_.source_id, type_span.begin, type_span.begin};
+        keep("extra", std::move(flow));
+    }
+    blocks_ = blocks_mark;
+
+    const std::string name_flow = flow_scalar(name, name_plain);
+    const auto keep_given = [&] {
+        for (std::size_t i = 0; row && i < row->properties.size(); ++i) {
+            const PropertyType &property = row->properties[i];
+            if (properties.values[i].given && property.kind != PropertyKind::Carried)
+                properties.keep(property.name, property_flow(property, properties.values[i]));
+        }
+    };
+    // A head that an export cannot know is recorded with all that it said.
+    const auto as_group = [&](std::size_t base) {
+        keep_given();
+        in_.kept[slot] = {"group",
+                          path_text(),
+                          "[" + std::to_string(base) + ", " + flow_scalar(type, true) + ", " +
+                              name_flow + ", {" + properties.unknown + "}]",
+                          {},
+                          true};
+    };
+
+    Result result;
+    result.display = name;
+    bool based = false; // an export has a node of this type here
+    std::string base_type = row ? row->name : type;
+    const auto unite = [&] { // the children, in their united form, as this node's expression
+        if (kids.pieces > 1) {
+            target[begin] = {Piece::Kind::Open, "union {", {}};
+            target.push_back({Piece::Kind::Close, "}", {}});
+        }
+        result.contributed = kids.pieces > 0;
+    };
+    // A node that means no more than the union of its children.
+    const auto group = [&](std::size_t base) {
+        if (place == Place::United || base == 1) {
+            as_group(base);
+            result.base = base;
+        } else {
+            if (base_type != "Union")
+                in_.kept[slot] = {"type", path_text(), flow_scalar(type, true), {}, true};
+            based = true;
+        }
+    };
+
+    // An operator of which one operand is left is no more than that; but a group that would
+    // dissolve in its new place needs something to stand in.
+    const auto hold = [&] {
+        target[begin] = {Piece::Kind::Open, "difference {", {}};
+        target.push_back({Piece::Kind::Line, "empty", {}});
+        target.push_back({Piece::Kind::Close, "}", {}});
+        keep_given();
+        if (base_type != "Difference")
+            in_.kept[slot] = {"type", path_text(), flow_scalar(type, true), {}, true};
+        based = true;
+    };
+
+    if (!row || row->children == Arity::Many || row->children == Arity::Two) {
+        const NodeType kind = row ? row->type : NodeType::Generic;
+        if (kind == NodeType::Generic || kind == NodeType::Union) {
+            unite();
+            const std::string paint = row && result.contributed
+                                          ? paint_call(in_, *row, properties, type_span)
+                                          : std::string();
+            if (!paint.empty()) {
+                target.back().text += chain_mark + paint;
+                based = true;
+            } else if (result.contributed) {
+                group(kids.base);
+            }
+        } else if (kind == NodeType::Intersection) {
+            result.contributed = kids.pieces > 0;
+            if (kids.pieces > 1) {
+                target[begin] = {Piece::Kind::Open, "intersection {", {}};
+                target.push_back({Piece::Kind::Close, "}", {}});
+            }
+            if (kids.pieces == 1 && kids.dissolves == place) {
+                hold();
+            } else if (kids.base == 1 || (place == Place::Intersected && result.contributed)) {
+                as_group(kids.base);
+                result.base = kids.base;
+            } else {
+                based = result.contributed;
+            }
+        } else if (!kids.first && kind != NodeType::ProfileBlend) {
+            // Without its first operand there is nothing that the rest could be taken from or
+            // blended with.
+            if (kids.pieces > 0)
+                in_.report.content(
+                    type_span, "the first child of this node is missing, so that it is left out");
+        } else if (kids.pieces == 1) {
+            result.contributed = true;
+            if (kids.dissolves == place)
+                hold();
+            else
+                group(kids.base);
+        } else if (kids.pieces > 1) {
+            result.contributed = based = true;
+            operator_text(in_, *row, properties, target, begin, kids.first_end, kids.rest_mark,
+                          kids.rest_pieces, type_span);
+        }
+    } else if (row->children == Arity::One) {
+        unite();
+        const std::string call = transform_call(in_, *row, properties, type_span);
+        if (!result.contributed) {
+        } else if (call.empty()) {
+            group(kids.base);
+        } else {
+            target.back().text += chain_mark;
+            target.back().text += call;
+            based = true;
+        }
+        if (kids.pieces == 1 && !custom) result.display = kids.display;
+    } else {
+        std::string text = leaf_text(in_, *row, properties, type_span);
+        if (!text.empty()) {
+            target.push_back({Piece::Kind::Line, std::move(text), {}});
+            result.contributed = based = true;
+        }
+    }
+
+    if (!result.contributed) {
+        in_.kept.resize(kept_mark);
+        in_.ordinals = ordinals_mark;
+        in_.out.resize(out_mark);
+        target.resize(begin);
+        const std::uint32_t stop = std::max(end.end, type_span.end);
+        in_.kept.push_back(
+            {"node",
+             path_text(),
+             {},
+             Span{in_.source_id, first.span.begin,
+                  in_.reader.broken() ? static_cast<std::uint32_t>(in_.source.text.size()) : stop},
+             true});
+        return {};
+    }
+    const bool held = based && target[begin].text == "difference {";
+    if (!based)
+        result.dissolves = kids.dissolves;
+    else if (!held && (!row || row->type == NodeType::Generic || row->type == NodeType::Union))
+        result.dissolves = Place::United;
+    else if (!held && row->type == NodeType::Intersection)
+        result.dissolves = Place::Intersected;
+    if (based) {
+        result.base = 1;
+        // An export names nodes by their type and its ordinal among the nodes that it finds itself,
+        // children first.
+        const bool named =
+            row && name == base_type + " " +
+                               std::to_string(++in_.ordinals[static_cast<std::size_t>(row->type)]);
+        if (!named) keep("name", name_flow);
+        if (!properties.unknown.empty()) keep("properties", "{" + properties.unknown + "}");
+    }
+    if (hoisted) {
+        const std::string identifier =
+            in_.names.unique(result.display.empty() ? type : result.display, "shape");
+        const std::size_t out_begin = in_.out.size();
+        print_body(own, "let " + identifier + " = ", in_.out);
+        in_.out += '\n';
+        last_ = Statement{identifier, std::move(own), out_begin, in_.out.size()};
+        body.push_back({Piece::Kind::Line, identifier, {}});
+    } else if (custom && !top) {
+        add_comment(target[begin].kind == Piece::Kind::Open ? target[begin] : target.back(), name);
+    }
+    return result;
+}
+
+void TreeReader::top_level(const Event &first) {
+    Body body;
+    blocks_ = 0;
+    last_.reset();
+    Result result = node(first, Place::United, body, true);
+    if (!result.contributed) return;
+    // A chain of calls on one named block continues that block's own statement.
+    std::erase_if(body, [](const Piece &piece) { return piece.kind == Piece::Kind::Nothing; });
+    const bool continues = last_ && last_->end == in_.out.size() && body.size() == 1 &&
+                           body[0].text.starts_with(last_->identifier + chain_mark);
+    if (continues) {
+        in_.out.resize(last_->begin);
+        last_->body.back().text += body[0].text.substr(last_->identifier.size());
+        last_->body.back().comment = body[0].comment;
+        body = std::move(last_->body);
+    }
+    for (Piece &piece : body) // the statement's own name says it
+        if (piece.comment == result.display) piece.comment.clear();
+    const std::string identifier =
+        continues ? last_->identifier : in_.names.unique(result.display, "shape");
+    print_body(body, "let " + identifier + " = ", in_.out);
+    in_.scene.push_back(identifier);
+}
+
+void TreeReader::root(const Event &first) {
+    Event event = in_.reader.next();
+    const NodeTypeRow *row = event.kind == EventKind::Scalar ? find_node_type(event.text) : nullptr;
+    if (!row || row->type != NodeType::Generic) {
+        in_.reader.break_off(first.span,
+                             "the scene tree has to begin with its root, a `Generic` node");
+        return;
+    }
+    event = in_.reader.next();
+    std::string unknown;
+    if (event.kind == EventKind::Scalar) {
+        if (event.text != "Distance field") keep("name", flow_scalar(event.text, event.plain));
+        event = in_.reader.next();
+    }
+    if (event.kind == EventKind::MappingStart) {
+        Properties properties;
+        bool given = false;
+        for (;;) {
+            event = in_.reader.next();
+            if (event.kind == EventKind::MappingEnd || event.kind == EventKind::Broken ||
+                event.kind == EventKind::End)
+                break;
+            if (event.kind != EventKind::Scalar || spelling_key(event.text) != "children" ||
+                given) {
+                in_.read_property(*row, event, properties, "the root");
+                continue;
+            }
+            given = true;
+            Event list = in_.reader.next();
+            if (list.kind != EventKind::SequenceStart) {
+                if (!(list.kind == EventKind::Scalar && list.plain && is_none(list.text))) {
+                    in_.report.content(list.span, "`Children` has to be a list of nodes");
+                }
+                skip_value(in_.reader, list);
+                continue;
+            }
+            for (std::size_t index = 0;; ++index) {
+                Event child = in_.reader.next();
+                if (child.kind == EventKind::SequenceEnd || child.kind == EventKind::Broken ||
+                    child.kind == EventKind::End)
+                    break;
+                path_.assign(1, index);
+                top_level(child);
+            }
+            path_.clear();
+        }
+        if (!properties.unknown.empty()) keep("properties", "{" + properties.unknown + "}");
+        event = in_.reader.next();
+    }
+    if (event.kind != EventKind::SequenceEnd && event.kind != EventKind::Broken &&
+        event.kind != EventKind::End) {
+        in_.report
+            .content(event.span,
+                     "a node has a type, a name and one mapping of properties, and no more")
+            .note("the rest is kept for an export");
+        std::string flow = "[";
+        take_flow(in_.reader, std::move(event), flow);
+        in_.rest_of_sequence(flow);
+        keep("extra", std::move(flow));
+    }
+}
+
+} // namespace
+
+void Importer::read_tree(const Event &first) { TreeReader(*this).root(first); }
+
+} // namespace fathom::save
