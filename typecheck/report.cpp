@@ -79,7 +79,8 @@ Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message) {
 }
 
 void require(Evaluator &ev, ir::NodeId condition, Span place, std::string wanted) {
-    if (ev.quiet > 0) return;
+    const ir::Graph::Reads reads = ev.scene.graph.reads(condition);
+    if (ev.quiet > 0 || reads.point || reads.normal || reads.direction) return;
     const Shown where = shown(ev, place);
     ev.scene.conditions.push_back(
         {condition, where.at, with_place(std::move(wanted), where.inside)});

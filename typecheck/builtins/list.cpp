@@ -266,10 +266,7 @@ static Value check_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     const std::string wanted = args[1].kind == ValueKind::String ? ev.strings[args[1].id]
                                                                  : "this argument cannot be taken";
     if (is_numeric(args[0]) && args[0].kind == ValueKind::Field) {
-        const ir::NodeId condition = to_node(ev, args[0]);
-        const ir::Graph::Reads reads = ev.scene.graph.reads(condition);
-        if (!reads.point && !reads.normal && !reads.direction) // a field's are the proof's own
-            require(ev, condition, site.call, wanted);
+        require(ev, to_node(ev, args[0]), site.call, wanted);
         return unit();
     }
     auto holds = want_known_bool(ev, args[0], site.arg(0), "this");
