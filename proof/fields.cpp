@@ -186,6 +186,7 @@ std::string cause_text(const ir::Graph &graph, NodeId cause) {
     case Op::Trunc:
     case Op::ToInt: return "`int` or `trunc`";
     case Op::Fract: return "`fract`";
+    case Op::ToFloat: return "a condition made into a number";
     case Op::Step: return "`step`";
     case Op::Sign: return "`sign`";
     case Op::Hash: return "`hash` of the point";
