@@ -3,7 +3,7 @@
 // to them, at 0, over params' ends and inside, over time. FATHOM_SCENES and FATHOM_SEED in the
 // environment make it longer, or another; FATHOM_SHOW says what each scene came to.
 #include "driver/compile.h"
-#include "ir/lower.h"
+#include "ir/lower/lower.h"
 #include "tests/support/slopes.h"
 
 #include <catch2/catch.hpp>
