@@ -12,8 +12,9 @@
 namespace fathom {
 
 struct Source {
-    std::string name; // as the user wrote it on the command line or in `import`; printed as is
-    std::string text; // UTF-8, as read
+    std::string
+        name; // as the user wrote it on the command line or in `import`; raw bytes (encode.h)
+    std::string text;                       // UTF-8, as read
     std::vector<std::uint32_t> line_starts; // byte offsets; filled by Sources::add
 };
 using SourceId = Id<Source>;

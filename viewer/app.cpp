@@ -70,6 +70,8 @@ void App::take(std::unique_ptr<Build> build) {
     if (!build->compilation.usage_errors.empty() && !structural.empty()) return rebuild({});
     record_next = true;
     told = false;
+    saved = driver::last_saved(read_files, build->compilation.files);
+    read_files = build->compilation.files;
     const bool good = build->good() && adopt(*build);
     errors = build->errors;
     remarks = build->remarks;

@@ -78,6 +78,8 @@ struct App {
     int frames_due = 3;             // the panels settle within a few frames after an event
     int recorded = 0, sequence = 0; // pictures so far; of a sequence, 0 where none is taken
     std::filesystem::path sequence_folder;
+    driver::Stamps read_files;   // by the newest build
+    std::filesystem::path saved; // the file whose save brought that build; empty: none did
     bool record_next = false, picture_asked = false, told = true;
     double cursor_x = 0, cursor_y = 0, pressed_x = 0, pressed_y = 0;
     bool click_asked = false;

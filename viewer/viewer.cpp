@@ -2,6 +2,7 @@
 // otherwise.
 #include "viewer/viewer.h"
 
+#include "base/encode.h"
 #include "viewer/app.h"
 
 #include <GLFW/glfw3.h>
@@ -13,6 +14,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <utility>
 
 namespace fathom::viewer {
@@ -61,22 +63,27 @@ void install_callbacks(GLFWwindow *window) {
     });
 }
 
-// One line for each save that is on the screen now: what took how long, and how long ago the file
-// was written.
+// One line for each build that is on the screen now: what took how long, and how long ago the file
+// that brought it was saved, of all that the scene reads. A file's change of state counts, since a
+// file that is moved into place keeps the time at which it was written.
 void tell_reload(App &app) {
     if (std::exchange(app.told, true) || !app.settings.tell) return;
-    std::timespec now{};
-    std::timespec_get(&now, TIME_UTC);
-    const driver::FileStamp file = driver::stamp_of(app.settings.file);
-    const double since = static_cast<double>(now.tv_sec - file.seconds) * 1e3 +
-                         static_cast<double>(now.tv_nsec - file.nanoseconds) * 1e-6;
-    app.settings.tell(
-        fmt::format("reload: {}, front end {:.2f} ms, {}, on the screen {:.2f} ms after the save",
-                    app.errors.empty() ? "good" : "error", app.status.front_end_ms,
-                    app.errors.empty() && app.status.linked_anew
-                        ? fmt::format("driver {:.2f} ms", app.status.driver_ms)
-                        : std::string("driver untouched"),
-                    since));
+    std::string since;
+    struct stat file {};
+    if (!app.saved.empty() && ::stat(app.saved.c_str(), &file) == 0) {
+        std::timespec now{};
+        std::timespec_get(&now, TIME_UTC);
+        const double milliseconds = static_cast<double>(now.tv_sec - file.st_ctim.tv_sec) * 1e3 +
+                                    static_cast<double>(now.tv_nsec - file.st_ctim.tv_nsec) * 1e-6;
+        since = fmt::format(" {:.2f} ms after the save of {}", milliseconds,
+                            app.saved.filename().string());
+    }
+    app.settings.tell(fmt::format("reload: {}, front end {:.2f} ms, {}, on the screen{}",
+                                  app.errors.empty() ? "good" : "error", app.status.front_end_ms,
+                                  app.errors.empty() && app.status.linked_anew
+                                      ? fmt::format("driver {:.2f} ms", app.status.driver_ms)
+                                      : std::string("driver untouched"),
+                                  since));
 }
 
 // Until the window is closed; an empty text, or why it cannot go on.
@@ -182,7 +189,8 @@ std::string run(const Settings &settings) {
     }
     glfwSetErrorCallback(note_error);
     if (!glfwInit()) return no_window_sentence();
-    const Opened opened = open_window(settings, settings.file.filename().string() + " - Fathom");
+    const Opened opened =
+        open_window(settings, for_terminal(settings.file.filename().string()) + " - Fathom");
     if (!opened.window) {
         glfwTerminate();
         return fmt::format(

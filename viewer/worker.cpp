@@ -1,5 +1,6 @@
 #include "viewer/worker.h"
 
+#include "base/encode.h"
 #include "driver/edit.h"
 #include "render-gl/pruning.h"
 
@@ -111,8 +112,12 @@ std::unique_ptr<Build> Worker::build() {
     const driver::Compilation &compilation = result->compilation;
     sort_out(compilation.diagnostics, compilation.sources, *result);
     if (!compilation.unreadable.empty())
-        result->errors.push_back("cannot read `" + file_.string() + "`: " + compilation.unreadable);
-    for (const std::string &error : compilation.usage_errors) result->errors.push_back(error);
+        result->errors.push_back(
+            driver::stamp_of(file_).exists
+                ? "cannot read `" + for_terminal(file_.string()) + "`: " + compilation.unreadable
+                : "there is no `" + for_terminal(file_.string()) + "`; this window waits for it");
+    for (const std::string &error : compilation.usage_errors)
+        result->errors.push_back(for_terminal(error));
     if (result->good()) {
         glsl::Options target;
         target.target = glsl::Target::Glsl330;

@@ -1,5 +1,7 @@
 // The viewer's parts that need no window: cameras, values, literals, editors, edits of the text.
+#include "base/encode.h"
 #include "driver/edit.h"
+#include "scratch_folder.h"
 #include "viewer/camera.h"
 #include "viewer/editor.h"
 #include "viewer/frame_times.h"
@@ -9,8 +11,11 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <sys/stat.h>
+#include <unistd.h>
 
 using namespace fathom;
+namespace fs = std::filesystem;
 
 TEST_CASE("a camera is kept by its view and written as a line of the scene") {
     ir::View view = ir::look_at({3, 2, 5}, {0, 1, 0}, std::tan(0.3), false);
@@ -109,16 +114,69 @@ TEST_CASE("a literal that is edited becomes data, once") {
 
 TEST_CASE("editors are told the line in their own way") {
     using Words = std::vector<std::string>;
-    CHECK(viewer::editor_command("gedit", "a b.sdf", 7, 3) == Words{"gedit", "+7", "a b.sdf"});
-    CHECK(viewer::editor_command("code --wait", "a.sdf", 7, 3) ==
-          Words{"code", "--wait", "-g", "a.sdf:7:3"});
-    CHECK(viewer::editor_command("/usr/bin/subl", "a.sdf", 7, 3) ==
-          Words{"/usr/bin/subl", "a.sdf:7:3"});
+    CHECK(viewer::editor_command("gedit", "/s/a b.sdf", 7, 3) ==
+          Words{"gedit", "+7", "/s/a b.sdf"});
+    CHECK(viewer::editor_command("code --wait", "/s/a.sdf", 7, 3) ==
+          Words{"code", "--wait", "-g", "/s/a.sdf:7:3"});
+    CHECK(viewer::editor_command("/usr/bin/subl", "/s/a.sdf", 7, 3) ==
+          Words{"/usr/bin/subl", "/s/a.sdf:7:3"});
+    CHECK(viewer::editor_command("kate", "/s/a.sdf", 7, 3) ==
+          Words{"kate", "--line", "7", "--column", "3", "/s/a.sdf"});
     CHECK(viewer::needs_terminal("vim"));
     CHECK(viewer::needs_terminal("/usr/bin/emacsclient -t"));
     CHECK_FALSE(viewer::needs_terminal("emacsclient -n"));
     CHECK(viewer::open_in_editor("no-such-editor-here", "a.sdf", 7, 3) ==
           "cannot start `no-such-editor-here`; it is at a.sdf:7");
+    CHECK(viewer::in_terminal("xterm -fs 12", {"vim", "+7", "/s/a.sdf"}) ==
+          Words{"xterm", "-fs", "12", "-e", "vim", "+7", "/s/a.sdf"});
+    CHECK(viewer::in_terminal("terminator", {"vim", "/s/a b.sdf"}) ==
+          Words{"terminator", "-x", "vim", "/s/a b.sdf"});
+}
+
+TEST_CASE("no name of a file is an option or a command to an editor, and no shell sees it") {
+    const ScratchFolder folder;
+    const std::string touch = "touch " + (folder / "pwned").string();
+    const std::vector<std::string> names{
+        "+call system('" + touch + "')|q.sdf",
+        "+!" + touch,
+        "-c" + touch,
+        "--cmd=" + touch,
+        "-",
+        "scp://host/a.sdf",
+        "$(" + touch + ")",
+        "`" + touch + "`",
+        "; " + touch + " #",
+        "a\n" + touch + "\n",
+        "'; " + touch + "; '",
+        "{line}{column}{file}{}",
+        "%s",
+    };
+    const std::string here = fs::current_path().string() + "/";
+    for (const char *editor : {"vim", "gedit", "code", "subl", "hx", "kate", "emacs -nw", "nano"})
+        for (const std::string &name : names) {
+            const std::vector<std::string> words = viewer::editor_command(editor, name, 7, 3);
+            INFO(editor << " " << name);
+            // One word holds the name, and begins with the way from the root.
+            CHECK(std::ranges::count_if(words, [&](const std::string &word) {
+                      return word.starts_with(here + name);
+                  }) == 1);
+            CHECK(words ==
+                  viewer::editor_command(editor, here + name, 7, 3)); // which is told as it is
+        }
+    // Run: an editor that writes down its words, by itself and in a terminal that starts it.
+    const std::string log = (folder / "log").string();
+    const fs::path program = folder.write(
+        "editor", "#!/bin/sh\nfor word; do printf '%s\\0' \"$word\" >> '" + log + "'; done\n");
+    ::chmod(program.c_str(), 0755);
+    for (const std::string &name : names) {
+        fs::remove(log);
+        CHECK(viewer::open_in_editor(program.string(), name, 7, 3) ==
+              "opened " + for_terminal(name) + ":7");
+        const std::string wanted = std::string("+7") + '\0' + here + name + '\0';
+        for (int i = 0; i < 500 && folder.read("log") != wanted; ++i) ::usleep(10000);
+        CHECK(folder.read("log") == wanted);
+    }
+    CHECK_FALSE(fs::exists(folder / "pwned"));
 }
 
 TEST_CASE("a param's value and a camera are written where they stand, and nowhere else") {

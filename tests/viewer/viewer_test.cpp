@@ -13,6 +13,13 @@ const std::string camera = "camera(at: [0, 0, 6], look_at: [0, 0, 0])\n";
 bool red(const std::array<float, 3> &p) { return p[0] > 2 * p[1]; }
 bool blue(const std::array<float, 3> &p) { return p[2] > 2 * p[0]; }
 
+// Milliseconds from the save of that file, by a line of --times.
+double since_save(const std::string &line, const std::string &file) {
+    INFO(line);
+    REQUIRE(line.ends_with(" ms after the save of " + file));
+    return std::stod(line.substr(line.find("on the screen ") + 14));
+}
+
 bool touched_driver(const std::string &line) { return line.find("driver untouched") == line.npos; }
 
 } // namespace
@@ -25,11 +32,14 @@ TEST_CASE(
     const Picture first = window.picture();
     CHECK(first.width == 480);
     CHECK(red(pixel(first, 240, 160)));
+    // Nothing was saved yet.
+    CHECK(window.lines().back().ends_with("on the screen"));
 
     // An import that is saved is a save.
     window.folder.write("parts/a.sdf", "fn ball() -> shape = box(2).paint(blue)\n");
     REQUIRE(window.reloads(2));
     const Picture second = window.picture();
+    CHECK(since_save(window.lines().back(), "a.sdf") < 30e3);
     CHECK(blue(pixel(second, 240, 160)));
 
     // An error: the picture stays, the message lies over its upper left.
@@ -41,9 +51,13 @@ TEST_CASE(
     CHECK(blue(pixel(third, 240, 220)));
 
     // The mended file, by an editor's atomic rename: the very picture of before.
-    fs::rename(window.folder.write("scene.tmp", "import \"parts/a.sdf\"\nball()\n" + camera),
-               window.folder / "scene.sdf");
+    // What is moved into place may have been written long ago.
+    const fs::path moved =
+        window.folder.write("scene.tmp", "import \"parts/a.sdf\"\nball()\n" + camera);
+    fs::last_write_time(moved, fs::file_time_type::clock::now() - std::chrono::hours(24 * 365));
+    fs::rename(moved, window.folder / "scene.sdf");
     REQUIRE(window.reloads(4));
+    CHECK(since_save(window.lines().back(), "scene.sdf") < 30e3);
     CHECK(difference(second, window.picture()) == 0);
 
     // The file goes, and comes back.
@@ -159,6 +173,7 @@ TEST_CASE("a click names the shape, outlines it and opens its line") {
     ::unsetenv("EDITOR");
     opened = &window;
     CHECK(outlined(opened->picture(), 0, 480) == 0);
+    const std::string scene = (window.folder / "scene.sdf").string();
     const Picture bare = window.picture();
     window.hands("mousemove 340 160");
     const Picture hovering =
@@ -170,13 +185,13 @@ TEST_CASE("a click names the shape, outlines it and opens its line") {
     CHECK(outlined(right, 0, 240) == 0);
     CHECK(outlined(right, 240, 480) > 100);
     REQUIRE(waited([&] { return fs::exists(tools / "log"); }));
-    CHECK(waited([&] { return tools.read("log") == "+3 scene.sdf\n"; }));
+    CHECK(waited([&] { return tools.read("log") == "+3 " + scene + "\n"; }));
     window.hands("mousemove 150 160");
     window.hands("click 1");
     const Picture left = window.picture();
     CHECK(outlined(left, 0, 240) > 100);
     CHECK(outlined(left, 240, 480) == 0);
-    CHECK(waited([&] { return tools.read("log") == "+3 scene.sdf\n+2 scene.sdf\n"; }));
+    CHECK(waited([&] { return tools.read("log") == "+3 " + scene + "\n+2 " + scene + "\n"; }));
     // The selection survives a reload that moves its line.
     window.reload(
         "\nlet a = sphere(1)\na.translate([-1.5, 0, 0])\nbox(1.5)\n  .translate([1.5, 0, 0])\n" +
@@ -405,6 +420,25 @@ TEST_CASE("a still scene costs less than a hundredth of a core") {
     const long before = ticks();
     std::this_thread::sleep_for(std::chrono::seconds(4));
     CHECK(ticks() - before <= 4);
+}
+
+TEST_CASE("a file that does not exist yet is waited for") {
+    Display::need();
+    ScratchFolder folder;
+    Process process({FATHOM_PROGRAM, "view", "new.sdf", "--times", "--still", "--size", "320x240"},
+                    {-1, folder / "errors.txt", folder.path()});
+    const auto told = [&](const std::string &words) {
+        return waited([&] {
+                   return folder.read("errors.txt").find(words) != std::string::npos ||
+                          !process.runs();
+               }) &&
+               process.runs();
+    };
+    REQUIRE(told("there is no `new.sdf` yet; the window waits for it"));
+    REQUIRE(told("reload: error"));
+    folder.write("new.sdf", "sphere(1)\n");
+    REQUIRE(told("reload: good"));
+    CHECK(told("after the save of new.sdf"));
 }
 
 TEST_CASE("what stands in the way is said in a sentence") {

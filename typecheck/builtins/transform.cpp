@@ -313,16 +313,22 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
             count.value[i] = std::isfinite(k->num[i]) ? k->num[i] : 1e9;
     }
     // which axes repeat is structure: a param that can reach 0 decides it at its present value
-    Value known_cell = from_node(ev, *cell);
-    Value k = known_cell;
-    if (known_cell.kind == ValueKind::Field) {
-        auto present = element_as_known(ev, known_cell, site.arg(1), "`cell`");
+    std::array<double, 3> size{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const ir::NodeId part = g.component(*cell, static_cast<int>(i));
+        const ir::Param *param =
+            g[part].op == ir::Op::Param ? &ev.scene.params[g[part].payload] : nullptr;
+        if (param && param->has_range && param->lo[0] > 0) {
+            size[i] = param->lo[0];
+            continue;
+        }
+        auto present = element_as_known(ev, from_node(ev, part), site.arg(1), "`cell`");
         if (!present) return poison();
-        k = *present;
+        size[i] = present->num[0];
     }
     for (std::size_t i = 0; i < 3; ++i) {
-        r.along[i] = k.num[i] != 0 && !(dims == 2 && i == 2);
-        if (k.num[i] < 0) {
+        r.along[i] = size[i] != 0 && !(dims == 2 && i == 2);
+        if (size[i] < 0) {
             report(ev, Code::BadArgument, site.arg(1), "a cell's size cannot be negative");
             return poison();
         }
