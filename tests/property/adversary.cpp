@@ -483,7 +483,8 @@ Verdict judge(const std::string &text, Adversary &random, int pairs) {
     for (ir::ShapeFact &fact : c.scene.facts) fact.cells = {};
     ir::lower(c.scene);
     for (const double part : {0.0, 1.0, 0.5, 0.37, 1.0 / 3}) {
-        for (ir::Param &k : c.scene.params) k.value[0] = k.lo[0] + (k.hi[0] - k.lo[0]) * part;
+        for (ir::Param &k : c.scene.params) // those that decide what there is are compiled in
+            if (!k.structural) k.value[0] = k.lo[0] + (k.hi[0] - k.lo[0]) * part;
         const double time = std::min(c.scene.render.time_end, 10.0) * part;
         out.wrong = measured(c.scene, time, random, pairs);
         if (!out.wrong.empty()) {
