@@ -411,7 +411,7 @@ class Adversary {
 bool is_of_the_proof(Code code) {
     return code == Code::LipschitzUnbounded || code == Code::FieldJump ||
            code == Code::FieldSingular || code == Code::NeedsRegion || code == Code::BadArgument ||
-           code == Code::RepeatLimit || code == Code::StageMismatch;
+           code == Code::RepeatLimit || code == Code::StageMismatch || code == Code::NumberRange;
 }
 
 struct Verdict {
