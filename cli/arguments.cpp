@@ -1,5 +1,6 @@
 // The command line, read with CLI11, which no other file includes.
 #include "base/encode.h"
+#include "base/single.h"
 #include "base/suggest.h"
 #include "base/text.h"
 #include "cli/outputs.h"
@@ -171,7 +172,7 @@ void add_time(CLI::App *app, double &time, const std::string &help) {
         app, "--time",
         [&time](const std::string &word) {
             const std::optional<double> number = parse_number(word);
-            if (!number || !std::isfinite(*number))
+            if (!number || !fits_single(*number))
                 return fmt::format("wants seconds, as 2.5, not `{}`", word);
             time = *number;
             return std::string();

@@ -1,5 +1,6 @@
 #include "driver/compile.h"
 
+#include "driver/edit.h"
 #include "driver/scene_files.h"
 #include "ir/lower/lower.h"
 #include "proof/prove.h"
@@ -106,10 +107,6 @@ void run_phases(Compilation &out, SceneFiles &files, const std::string &identity
 
 // A save file stands for the text that an import makes of it; what is to be said of the file itself
 // joins the diagnostics.
-bool is_save_file(const std::filesystem::path &file) {
-    return file.extension() == ".yaml" || file.extension() == ".yml";
-}
-
 // Notes the parts of the save file that errors of its text belong to; false where none is new.
 bool note_unusable(const Compilation &out, SourceId text, const save::ImportResult &result,
                    std::map<std::uint32_t, std::string> &unusable) {
@@ -140,7 +137,8 @@ Compilation compile_imported(const std::string &name, const std::string &text, S
         const SourceId save_file = out.sources.add(name, text);
         save::ImportResult result =
             save::import_yaml(out.sources, save_file, out.diagnostics, import);
-        const SourceId root = out.sources.add(name + " (imported)", std::move(result.sdf));
+        const SourceId root =
+            out.sources.add(name + " (imported)", std::move(result.sdf), save_file);
         run_phases(out, files, identity, root, options);
         if (result.structural_error || attempt == most_attempts ||
             !note_unusable(out, root, result, import.unusable))

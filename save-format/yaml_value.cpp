@@ -5,8 +5,11 @@
 #include "save-format/node_types.h"
 
 #include "base/encode.h"
+#include "base/single.h"
+#include "base/text.h"
 
 #include <cctype>
+#include <cmath>
 #include <utility>
 
 namespace fathom::save {
@@ -226,8 +229,8 @@ std::optional<double> number_of(const Value &value) {
         return std::nullopt;
     auto number = parse_number(text[0] == '.' ? "0" + std::string(text) : std::string(text));
     if (!number && text.back() == '.') number = parse_number(text.substr(0, text.size() - 1));
-    if (!number || !std::isfinite(*number)) return std::nullopt;
-    return negative ? -*number : *number;
+    if (!number || std::abs(*number) > longest) return std::nullopt;
+    return flushed(negative ? -*number : *number);
 }
 
 std::optional<bool> switch_of(const Value &value) {

@@ -66,8 +66,9 @@ std::optional<TreeNode> TreeWriter::generalised(ShapeId id, const ir::Library &l
         set_number("Scale", "a_scale");
         set_number("Second Scale", "b_scale");
         set_number("Second Exponent", "b_exponent");
-        if (!whole || (turned && (straight || !scene_.images.empty())))
-            return otherwise(id, paint, "`" + name + "` with these arguments");
+        if (!whole) return otherwise(id, paint, "`" + name + "` with these arguments");
+        if (turned && (straight || !scene_.images.empty()))
+            return std::nullopt; // a call, with its numbers
     } else {
         const VectorSet *set = nullptr;
         for (const VectorSet &other : sets) {

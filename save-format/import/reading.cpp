@@ -90,7 +90,7 @@ std::string library_call(Importer &in, const Reading &reading, Properties &prope
             .note("the node is left out, and kept for an export");
         return {};
     }
-    std::string call = function + "(";
+    std::string call = (function == "gdf_pair" ? "dfmodel." : "") + function + "(";
     for (const auto &[name, value] : reading["Arguments"].tree.entries) {
         const bool is_name =
             !name.empty() &&

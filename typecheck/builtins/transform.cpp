@@ -190,6 +190,7 @@ static Value taper_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
         if (!ends[0]) ends[0] = ev.scene.graph.number(extent->first);
         if (!ends[1]) ends[1] = ev.scene.graph.number(extent->second);
     }
+    if (!node_in_range(ev, ev.scene.graph.sub(*ends[1], *ends[0]), site.call)) return poison();
     return added(ev, ir::tapered(ev.scene.graph, *s, *ratio, *ends[0], *ends[1], *axis), site, 3);
 }
 
@@ -289,15 +290,15 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
     int dims = args[0].size;
     ir::Graph &g = ev.scene.graph;
     // a flat shape's cell may be a vec2; the third axis does not repeat
-    auto as_cell = [&](const Value &v, std::size_t i, const char *what,
-                       double third) -> std::optional<ir::NodeId> {
-        if (dims == 3) return want_vec_node(ev, v, 3, site.arg(i), what);
-        auto two = want_vec_node(ev, v, 2, site.arg(i), what);
+    auto as_cell = [&](const Value &v, std::size_t i, const char *what, double third,
+                       Limit limit) -> std::optional<ir::NodeId> {
+        if (dims == 3) return want_vec_node(ev, v, 3, site.arg(i), what, limit);
+        auto two = want_vec_node(ev, v, 2, site.arg(i), what, limit);
         if (!two) return std::nullopt;
         return g.make(Op::Make, Type::Vec3,
                       {g.component(*two, 0), g.component(*two, 1), g.number(third)});
     };
-    auto cell = as_cell(args[1], 1, "`cell`", 0);
+    auto cell = as_cell(args[1], 1, "`cell`", 0, Limit::Size);
     if (!cell) return poison();
     ir::Repetition r;
     r.mirrored = mirrored;
@@ -305,7 +306,7 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
     count.type = Type::Vec3;
     count.value = {1e9, 1e9, 1e9};
     if (!mirrored && given(args[2])) {
-        auto c = as_cell(args[2], 2, "`count`", 1);
+        auto c = as_cell(args[2], 2, "`count`", 1, Limit::None);
         if (!c) return poison();
         Value known = from_node(ev, *c);
         auto k = element_as_known(ev, known, site.arg(2), "`count`");
@@ -385,13 +386,18 @@ static Value region_value(Evaluator &ev, ir::Region region) {
 }
 
 static bool positive_sizes(Evaluator &ev, const CallSite &site, ir::NodeId node, std::size_t i) {
-    if (!ev.scene.graph.is_constant(node)) return true;
-    const ir::Constant &c = ev.scene.graph.constant_of(node);
-    for (int k = 0; k < ir::components(c.type); ++k)
-        if (!(c.value[std::size_t(k)] > 0)) {
-            report(ev, Code::BadArgument, site.arg(i), "a region needs a size above 0");
+    ir::Graph &g = ev.scene.graph;
+    const std::string wanted = "a region needs a size above 0";
+    for (int k = 0; k < ir::components(g.type(node)); ++k) {
+        const ir::NodeId part = ir::components(g.type(node)) > 1 ? g.component(node, k) : node;
+        const std::optional<double> number = g.as_number(part);
+        if (!number) {
+            require(ev, g.make(Op::Less, {g.number(0), part}), site.arg(i), wanted);
+        } else if (!(*number > 0)) {
+            report(ev, Code::BadArgument, site.arg(i), wanted);
             return false;
         }
+    }
     return true;
 }
 
@@ -414,9 +420,11 @@ static Value aabb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     ir::Graph &g = ev.scene.graph;
     ir::Region region;
     region.kind = ir::RegionKind::Box;
-    region.center = g.mul(g.add(*lo, *hi), g.number(0.5));
-    region.size = g.sub(*hi, *lo);
-    if (!positive_sizes(ev, site, region.size, 1)) return poison();
+    const ir::NodeId half = g.number(0.5);
+    region.center = g.add(g.mul(*lo, half), g.mul(*hi, half));
+    auto size = node_in_range(ev, g.sub(*hi, *lo), site.call);
+    if (!size || !positive_sizes(ev, site, *size, 1)) return poison();
+    region.size = *size;
     return region_value(ev, region);
 }
 
