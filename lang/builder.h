@@ -18,6 +18,7 @@ namespace fathom::lang {
 // Names that other languages have for what is spelled otherwise here: `True`, `None`; `math`.
 bool is_foreign_value(std::string_view name);
 bool is_foreign_module(std::string_view name);
+bool is_foreign_transform(std::string_view name); // what OpenSCAD writes before a shape
 
 // A text as it can stand in a message: of one line and not long, else `…`.
 std::string brief(std::string_view text);
@@ -83,6 +84,7 @@ class Builder {
     Mark mark() const;
     bool ends_statement(Index at) const;
     Index junk(const Mark &mark, Index first, Index at);
+    bool foreign_statement(Index first); // true: reported, and to be abandoned
     Index abandon(const Mark &mark, Index first);
 
     // Types.
@@ -242,6 +244,19 @@ class Builder {
     bool separated_unit(Index at);
     std::string parameters_text(Index open) const;
     bool foreign_junk(Index first, Index at);
+    bool foreign_import(Index at);
+    std::string transform_text(Index name) const;
+    bool joined_by_space(Index at, bool list);
+
+    // Words and blocks of theirs (foreign_words.cpp).
+    void declare_poison(Index name);
+    bool indented_body(Index colon, std::vector<Edit> &edits);
+    void foreign_colon(Index at);
+    void foreign_choice(Index start, Index at);
+    Index value_start(Index first, Index at) const;
+    void foreign_pipe(Index at);
+    bool foreign_concat(Index at);
+    bool foreign_record(Index brace);
     bool juxtaposed_calls(Index first, Index at);
     void settle_foreign_names();
 
@@ -282,6 +297,7 @@ class Builder {
     bool body_missing_ = false;         // of an `if` that was just abandoned: an `else` may follow
     bool expression_body_ = false;      // of the function whose body was just read
     std::uint32_t last_too_tall_ = ~0u; // where the chain began that was reported
+    std::vector<Index> lost_; // names that it would have declared, beside its first
     Index failed_ = 0;                  // where the statement that is being abandoned broke
 
     // Names that other languages have, to be reported unless the file declares them.

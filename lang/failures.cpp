@@ -127,6 +127,7 @@ std::string Builder::describe(Index at) const {
 void Builder::generic_failure(Wanted wanted, Index at) {
     const Tok found = kind(at);
     const bool exists = at < tokens_.tokens.size();
+    if (exists && found == Tok::StrayBrace && foreign_record(at)) return;
     if (exists && found == Tok::StrayBrace) {
         diagnostics_.add(Code::SyntaxError, span(at), "a block cannot stand here")
             .note("`{` opens a block behind a callee, a header, a function's head or `=>`")

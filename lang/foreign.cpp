@@ -27,6 +27,10 @@ constexpr std::array<std::string_view, 6> function_words = {"def", "function", "
 constexpr std::array<std::string_view, 11> transforms = {
     "translate", "rotate",         "scale",          "mirror",     "color", "resize",
     "offset",    "linear_extrude", "rotate_extrude", "multmatrix", "twist"};
+// What OpenSCAD calls the shapes and transforms that are juxtaposed there.
+constexpr std::pair<std::string_view, std::string_view> scad_names[] = {
+    {"linear_extrude", "extrude"}, {"rotate_extrude", "revolve"}, {"color", "paint"},
+    {"mirror", "reflect"},         {"cube", "box"},               {"square", "rectangle"}};
 constexpr std::array<std::string_view, 5> math_modules = {"math", "Math", "np", "numpy", "glm"};
 constexpr std::array<std::string_view, 9> value_words = {
     "True", "False", "TRUE", "FALSE", "None", "null", "NULL", "nil", "undefined"};
@@ -41,8 +45,11 @@ std::string brief(std::string_view text) {
                                                                               : std::string(text);
 }
 
+bool is_foreign_transform(std::string_view name) { return is_one_of(name, transforms); }
 bool is_foreign_value(std::string_view name) { return is_one_of(name, value_words); }
-bool is_foreign_module(std::string_view name) { return is_one_of(name, math_modules); }
+bool is_foreign_module(std::string_view name) {
+    return name == "console" || is_one_of(name, math_modules);
+}
 
 // `True`, `None`, `math.sin`, unless the file has such a name of its own.
 void Builder::settle_foreign_names() {
@@ -54,6 +61,19 @@ void Builder::settle_foreign_names() {
         Expr &expr = ast_.exprs[foreign_name.expr];
         if (const Member *member = std::get_if<Member>(&expr.kind)) {
             const Span qualifier{id_, foreign_name.span.begin, member->name.span.begin};
+            const Span all{id_, qualifier.begin, member->name.span.end};
+            if (name == "console") {
+                foreign(all, "a value is shown by `print`").help("write `print`", {{all, "print"}});
+                expr.kind = Name{"print", word("print")};
+                continue;
+            }
+            if (member->name.text == "PI" || member->name.text == "TAU") {
+                const std::string ours = member->name.text == "PI" ? "pi" : "tau";
+                foreign(all, "the mathematical constants need no module")
+                    .help("write " + code(ours), {{all, ours}});
+                expr.kind = Name{ours, word(ours == "pi" ? "pi" : "tau")};
+                continue;
+            }
             foreign(foreign_name.span, "the mathematical functions need no module")
                 .help("write " + code(member->name.text), {{qualifier, ""}});
             expr.kind = Name{member->name.text, member->name.word};
@@ -90,10 +110,23 @@ bool Builder::foreign_loop(Index at) {
     };
     Diagnostic &d = foreign(span(at - 1, close), "a loop is written `for i in 0..8 { … }`");
     const auto propose = [&](const std::string &head) {
-        d.help("write `for " + head + "`", {{span(at, close), head}});
+        std::vector<Edit> edits{{span(at, close), head}};
+        Index end = close + 1; // of a body without braces
+        while (!ends_statement(end) && kind(end) != Tok::ListClose && kind(end) != Tok::Close)
+            end = tokens_.match[end] > end ? tokens_.match[end] + 1 : end + 1;
+        if (kind(close + 1) != Tok::Body && end > close + 1) {
+            edits.push_back({{id_, token(close + 1).begin, token(close + 1).begin}, "{ "});
+            edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, " }"});
+        }
+        d.help("write `for " + head + " { … }`", std::move(edits));
         return true;
     };
     Index i = at + 1;
+    while (kind(i) == Tok::Let || kind(i) == Tok::Var ||
+           (kind(i) == Tok::Name && kind(i + 1) == Tok::Name && text(i + 1) != "of"))
+        ++i;
+    if (kind(i) == Tok::Name && kind(i + 1) == Tok::Name && text(i + 1) == "of")
+        return propose(std::string(text(i)) + " in " + inside(i + 2, close));
     if (kind(i) == Tok::Name && kind(i + 1) == Tok::In) return propose(inside(i, close));
     while (i < close && kind(i + 1) != Tok::Assign) ++i;
     if (i >= close || kind(i) != Tok::Name) return true;
@@ -170,13 +203,23 @@ bool Builder::foreign_head(Index first) {
         std::string head = "fn " + declared + "(" + parameters_text(name + 1) + ")";
         if (has_type) head += " -> " + type;
         if (colon) {
+            std::vector<Edit> edits{{span(first, close), head}};
+            if (!indented_body(close + 1, edits)) edits.clear();
             foreign(span(first, name),
                     "a function is declared with `fn`, and its body stands in braces")
-                .help("write `" + head + " { … }`");
+                .help("write `" + head + " { … }`", std::move(edits));
             return true;
         }
         foreign(span(first, name), "a function is declared with `fn`")
             .help("write " + code(head), {{span(first, close), head}});
+        return true;
+    }
+    const bool curv = name == first + 1 && !is_one_of(word, qualifiers) &&
+                      !is_one_of(word, type_words) && !is_one_of(word, function_words);
+    if (kind(name + 1) == Tok::Assign && curv) {
+        const std::string head = "fn " + word + "(" + declared + ")";
+        foreign(span(first, name), "a function is declared with `fn`")
+            .help("write " + code(head), {{span(first, name), head}});
         return true;
     }
     if (kind(name + 1) == Tok::Assign) {
@@ -190,10 +233,38 @@ bool Builder::foreign_head(Index first) {
     }
     if (is_one_of(type, type_words) && ends_statement(name + 1)) {
         foreign(span(first, name), "a name is bound together with its value")
-            .help("write `let " + declared + ": " + type + " = …`");
+            .help(word == "uniform" ? "a number from outside is `param " + declared +
+                                          " = 1 in 0..2`, the seconds are `time`"
+                                    : "write `let " + declared + ": " + type + " = …`");
         return true;
     }
     return false;
+}
+
+// A transform of OpenSCAD as it is written here: angles in degrees, `:` behind names.
+std::string Builder::transform_text(Index name) const {
+    const Index open = name + 1, close = tokens_.match[open];
+    std::string out(text(name));
+    const bool rotate = out == "rotate", color = out == "color";
+    if (rotate && kind(open + 1) == Tok::ListOpen) out = "rotate_euler";
+    for (const auto &[theirs, ours] : scad_names)
+        if (out == theirs) out = ours;
+    std::uint32_t end = token(name).end;
+    for (Index i = open; i <= close; ++i) {
+        const bool assign = kind(i) == Tok::Assign;
+        if (!assign) out += text(end, token(i).begin);
+        const std::string_view word = text(i);
+        const bool in_degrees = rotate && kind(i) == Tok::Number && word != "0" &&
+                                word.find_first_not_of("0123456789.") == std::string_view::npos;
+        if (assign)
+            out += ":";
+        else if (color && kind(i) == Tok::String)
+            out += word.substr(1, word.size() - 2);
+        else
+            out += std::string(word) + (in_degrees ? "deg" : "");
+        end = token(i).end;
+    }
+    return out;
 }
 
 // `translate([1, 2, 3]) rotate(…) sphere(1)`: transforms stand behind what they move.
@@ -209,16 +280,19 @@ bool Builder::juxtaposed_calls(Index first, Index at) {
          kind(tokens_.match[shape + 1] + 1) == Tok::Name;
          ++links) {
         const Index close = tokens_.match[shape + 1];
-        chain.insert(0, "." + std::string(text(token(shape).begin, token(close).end)));
+        chain.insert(0, "." + transform_text(shape));
         shape = close + 1;
     }
     if (shape < at) return false;
     failed_ = shape;
     const Index end = statement_end(first);
+    std::string moved(text(shape));
+    for (const auto &[theirs, ours] : scad_names)
+        if (moved == theirs) moved = ours;
     foreign(span(first, tokens_.match[first + 1]),
             "a transform stands behind the shape that it moves")
-        .help("write " + code(std::string(text(shape)) + "(…)" + chain),
-              {{{id_, token(first).begin, token(shape).begin}, ""},
+        .help("write " + code(moved + "(…)" + chain),
+              {{{id_, token(first).begin, token(shape).end}, moved},
                {{id_, token(end - 1).end, token(end - 1).end}, chain}});
     return true;
 }
@@ -247,14 +321,24 @@ bool Builder::foreign_junk(Index first, Index at) {
         return true;
     }
     if (foreign_lambda(at) || separated_unit(at)) return true;
+    if (found == Tok::In && kind(first) == Tok::Let) {
+        foreign(span(at), "a name is known to the end of its block, without `in`")
+            .help("end the `let`, with a line's end or `;`",
+                  {{{id_, token(at - 1).end, token(at).end}, ";"}});
+        return true;
+    }
+    if (found == Tok::String && kind(at - 1) == Tok::Name && token(at - 1).end == token(at).begin)
+        return joined_by_space(at, false);
     const std::string name(text(first));
     const bool literal = found == Tok::Number || found == Tok::String || found == Tok::Color;
     if (literal && kind(first) == Tok::Name && at == first + 1) {
         Diagnostic &d = foreign(span(first, at), "a call's arguments stand in parentheses");
-        if (ends_statement(at + 1))
-            d.help("write " + code(name + "(" + std::string(text(at)) + ")"),
-                   {{{id_, token(first).end, token(at).begin}, "("},
-                    {{id_, token(at).end, token(at).end}, ")"}});
+        const bool all = name == "assert" || name == "print" || name == "echo";
+        const Index last = all ? statement_end(first) - 1 : at; // `assert 1 < 2`
+        d.help("write " + code(name + "(" + std::string(text(token(at).begin, token(last).end)) +
+                               ")"),
+               {{{id_, token(first).end, token(at).begin}, "("},
+                {{id_, token(last).end, token(last).end}, ")"}});
         return true;
     }
     switch (found) {
@@ -272,6 +356,12 @@ bool Builder::foreign_junk(Index first, Index at) {
         return true;
     case Tok::Colon:
         if (kind(first) != Tok::Name || at != first + 1) return false;
+        if (first > 0 && kind(first - 1) == Tok::Trailing) { // `torus{major: 2}`
+            const Index open = first - 1;
+            foreign(span(open), "a call's arguments stand in parentheses")
+                .help("write `( … )`", {{span(open), "("}, {span(tokens_.match[open]), ")"}});
+            return true;
+        }
         foreign(span(first), "a new name is bound with `let`")
             .help("write `let " + name + "`",
                   {{{id_, token(first).begin, token(first).begin}, "let "}});
@@ -286,13 +376,18 @@ bool Builder::foreign_junk(Index first, Index at) {
         return true;
     }
     case Tok::Comma:
+        if (kind(first) == Tok::Name && at == first + 1 && kind(at + 1) == Tok::Name) {
+            foreign(span(first, at + 1), "each name is bound by a `let` of its own")
+                .help("write `let " + name + " = …`");
+            for (Index i = first; kind(i) == Tok::Name; i += 2) lost_.push_back(i);
+            return true;
+        }
         if (kind(first) != Tok::Let && kind(first) != Tok::Var) return false;
-        foreign(span(at), "each name is bound by a `let` of its own");
+        if (kind(at + 1) == Tok::Name) lost_.push_back(at + 1);
+        foreign(span(at), "each name is bound by a `let` of its own")
+            .help("write `; let`", {{span(at), "; " + std::string(text(first))}});
         return true;
-    case Tok::If:
-        foreign(span(at), "a choice begins with its condition")
-            .help("write `if c { a } else { b }`");
-        return true;
+    case Tok::If: foreign_choice(value_start(first, at), at); return true;
     case Tok::In: foreign(span(at), "there is no operator `in`"); return true;
     default: return false;
     }
@@ -358,8 +453,23 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
         }
         if (found == Tok::Greater && kind(before) == Tok::Bar &&
             token(before).end == token(at).begin) {
-            foreign(span(before, at), "there is no operator `|>`")
-                .help("write `a.f(b)` for `f(a, b)`");
+            foreign_pipe(at);
+            return true;
+        }
+        if (found == Tok::Greater && kind(before) == Tok::Greater &&
+            token(before).end == token(at).begin) {
+            foreign_pipe(at);
+            return true;
+        }
+        if (wanted == Wanted::Statement && found == Tok::In) {
+            foreign(span(at), "a name is known to the end of its block, without `in`")
+                .help("leave it away", {{span(at), ""}});
+            return true;
+        }
+        if (wanted == Wanted::Statement && (found == Tok::Star || found == Tok::Percent) &&
+            kind(at + 1) == Tok::Name) {
+            foreign(span(at), "there are no modifiers of shapes")
+                .help("leave it away; what `//` stands before is not drawn", {{span(at), ""}});
             return true;
         }
         if (found == Tok::Fn) {
@@ -399,8 +509,21 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
             return true;
         }
         if (found == Tok::If) {
-            foreign(span(at), "a choice begins with its condition")
-                .help("write `if c { a } else { b }`");
+            foreign_choice(value_start(open + 1, at), at);
+            return true;
+        }
+        if (found == Tok::DotDot && text(at) == ".." && kind(at + 1) == Tok::Dot) {
+            foreign(span(at, at + 1), "a list is not spread out")
+                .help("lists are joined by `concat(a, b)`");
+            return true;
+        }
+        if (foreign_concat(at) || joined_by_space(at, wanted == Wanted::CloseList)) return true;
+        const bool grouping = open > 0 && kind(open) == Tok::Open && kind(open - 1) != Tok::Name &&
+                              kind(open - 1) != Tok::Close && kind(open - 1) != Tok::ListClose;
+        if (grouping && found == Tok::Comma) { // a tuple
+            const Index close = tokens_.match[open];
+            foreign(span(open), "a vector or a list stands in brackets")
+                .help("write `[ … ]`", {{span(open), "["}, {span(close), "]"}});
             return true;
         }
         if (found == Tok::Arrow)
@@ -438,6 +561,11 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
         if (found == Tok::Assign) return missing("a loop runs over what stands behind `in`", "in");
         if (found == Tok::Name && text(at) == "of")
             return missing("a loop runs over what stands behind `in`", "in");
+        if (found == Tok::Comma) {
+            foreign(span(at), "a loop has one variable")
+                .help("loop over the places: `for i in 0..len(list) { let x = list[i] … }`");
+            return true;
+        }
         return false;
     case Wanted::FunctionBody:
         if (found == Tok::Colon) {
@@ -453,13 +581,7 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
         return false;
     case Wanted::Block: return foreign_body(at);
     case Wanted::ImportPath:
-        if (found == Tok::Name) {
-            const std::string path = "\"" + std::string(text(at)) + ".sdf\"";
-            foreign(span(at), "a module is named by its file")
-                .help("write `import " + path + "`", {{span(at), path}});
-            return true;
-        }
-        return false;
+        return foreign_import(at);
     case Wanted::CloseBrace:
     case Wanted::ParameterName:
     case Wanted::OpenParen:
@@ -472,6 +594,63 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
     case Wanted::StatementEnd: return false;
     }
     return false;
+}
+
+// `import parts/arch.sdf`, `import math`.
+bool Builder::foreign_import(Index at) {
+    if (kind(at) != Tok::Name && kind(at) != Tok::Dot && kind(at) != Tok::DotDot) return false;
+    Index end = at;
+    while (!ends_statement(end) && kind(end) != Tok::As && text(end) != "as") ++end;
+    const std::string written(text(token(at).begin, token(end - 1).end));
+    if (is_one_of(written, math_modules)) {
+        failed_ = end;
+        foreign(span(at), "the mathematical functions need no module")
+            .help("leave the line away",
+                  {{{id_, token(at - 1).begin, token(statement_end(at) - 1).end}, ""}});
+        return true;
+    }
+    const std::string path = "\"" + written + (written.ends_with(".sdf") ? "\"" : ".sdf\"");
+    foreign(span(at, end - 1), "a module is named by its file, in double quotes")
+        .help("write `import " + path + "`", {{span(at, end - 1), path}});
+    return true;
+}
+
+// Two values with nothing between them: `translate(y 1)`, `[sphere 1, box 2]`, `f"text"`.
+bool Builder::joined_by_space(Index at, bool list) {
+    const Tok found = kind(at);
+    const Index name = at - 1;
+    const bool value = found == Tok::Number || found == Tok::String || found == Tok::Color ||
+                       found == Tok::ListOpen || (found == Tok::Name && !token(at).first_on_line);
+    if (at < 2 || kind(name) != Tok::Name || !value) return false;
+    const Tok before = kind(name - 1);
+    const std::uint32_t end = token(name).end;
+    if (found == Tok::String && end == token(at).begin) {
+        foreign(span(name, at), "a string holds no values")
+            .help("join it to them: `\"r = \" + r`");
+        return true;
+    }
+    if (text(name) == "new") {
+        foreign(span(name), "nothing is made with `new`")
+            .help("leave it away", {{{id_, token(name).begin, token(at).begin}, ""}});
+        return true;
+    }
+    if (found == Tok::Name || (before != Tok::Comma && before != Tok::Open &&
+                               before != Tok::ListOpen && before != Tok::FreshListOpen))
+        return false;
+    const Index open = enclosing(at);
+    const bool argument =
+        !list && open > 0 && kind(open - 1) == Tok::Name && !is_declared(std::string(text(name)));
+    if (argument) {
+        foreign(span(name, at), "an argument is named with `:`")
+            .help("write " + code(std::string(text(name)) + ": " + std::string(text(at))),
+                  {{{id_, end, end}, ":"}});
+        return true;
+    }
+    if (found == Tok::ListOpen) return false;
+    foreign(span(name, at), "a call's arguments stand in parentheses")
+        .help("write " + code(std::string(text(name)) + "(" + std::string(text(at)) + ")"),
+              {{{id_, end, token(at).begin}, "("}, {{id_, token(at).end, token(at).end}, ")"}});
+    return true;
 }
 
 // `if a then b else c`, `for i in 0..3 do b`.
@@ -517,7 +696,7 @@ bool Builder::foreign_body(Index at) {
         return true;
     }
     if (found == Tok::Colon) {
-        foreign(span(at), "a body stands in braces").help("write `{ … }`");
+        foreign_colon(at);
         return true;
     }
     if (found == Tok::Name && (text(at) == "then" || text(at) == "do")) {
@@ -530,10 +709,26 @@ bool Builder::foreign_body(Index at) {
     Index end = at;
     while (!ends_statement(end) && kind(end) != Tok::Else)
         end = tokens_.match[end] > end ? tokens_.match[end] + 1 : end + 1;
-    foreign(span(at), "a body stands in braces")
-        .help("write `{ " + std::string(text(token(at).begin, token(end - 1).end)) + " }`",
-              {{{id_, token(at).begin, token(at).begin}, "{ "},
-               {{id_, token(end - 1).end, token(end - 1).end}, " }"}});
+    std::string told = "{ " + std::string(text(token(at).begin, token(end - 1).end)) + " }";
+    std::vector<Edit> edits{{{id_, token(at).begin, token(at).begin}, "{ "},
+                            {{id_, token(end - 1).end, token(end - 1).end}, " }"}};
+    // `; else b`
+    Index other = end;
+    while (kind(other) == Tok::End && other < tokens_.tokens.size() && text(other) == ";") ++other;
+    if (kind(other) == Tok::Else && kind(other + 1) != Tok::If && kind(other + 1) != Tok::Body) {
+        const Index begin = other + 1;
+        Index last = begin;
+        while (!ends_statement(last))
+            last = tokens_.match[last] > last ? tokens_.match[last] + 1 : last + 1;
+        if (other > end) edits.push_back({span(end, other - 1), ""});
+        if (last > begin) {
+            edits.push_back({{id_, token(begin).begin, token(begin).begin}, "{ "});
+            edits.push_back({{id_, token(last - 1).end, token(last - 1).end}, " }"});
+            told += " else { " + std::string(text(token(begin).begin, token(last - 1).end)) + " }";
+            failed_ = last - 1;
+        }
+    }
+    foreign(span(at), "a body stands in braces").help("write `" + told + "`", std::move(edits));
     return true;
 }
 

@@ -1,6 +1,6 @@
 // Calls: overloads of the library, running a body, and functions of the graph for calls with
 // numbers that are known only at field time.
-#include "typecheck/binding.h"
+#include "typecheck/remedies.h"
 
 #include "base/suggest.h"
 
@@ -85,9 +85,53 @@ static Value result_of(Evaluator &ev, const Outcome &out, Span place) {
     return poison();
 }
 
+// True, and reported, where a body ends with a `let`, `var` or assignment: its writer took that for
+// its value.
+static bool report_unfinished(Evaluator &ev, const Closure &c, const lang::Function &f,
+                              std::string_view name) {
+    if (c.ast->blocks[f.body].stmts.empty()) return false;
+    const lang::Stmt &last = c.ast->blocks[f.body].stmts.back();
+    const auto say = [&](std::string_view what, std::string help, Edit edit) {
+        report(ev, Code::MissingValue, last.span,
+               fmt::format("{} ends with {}, and so has no value",
+                           f.name ? fmt::format("`{}`", name) : "this function", what))
+            .help(std::move(help), {std::move(edit)});
+        return true;
+    };
+    const auto without_head = [&](lang::ExprId value) {
+        return Edit{{last.span.source, last.span.begin, c.ast->exprs[value].span.begin}, ""};
+    };
+    if (auto *l = std::get_if<lang::Let>(&last.kind))
+        return say("a `let`", fmt::format("leave `let {} =` away: the last expression is the value",
+                                          l->name.text),
+                   without_head(l->value));
+    if (auto *v = std::get_if<lang::Var>(&last.kind))
+        return say("a `var`", fmt::format("leave `var {} =` away: the last expression is the value",
+                                          v->name.text),
+                   without_head(v->value));
+    if (auto *a = std::get_if<lang::Assign>(&last.kind)) {
+        lang::ExprId target = a->target;
+        while (true) {
+            const lang::ExprKind &kind = c.ast->exprs[target].kind;
+            if (auto *m = std::get_if<lang::Member>(&kind))
+                target = m->object;
+            else if (auto *i = std::get_if<lang::Index>(&kind))
+                target = i->object;
+            else
+                break;
+        }
+        const std::string variable(text(ev.sources, c.ast->exprs[target].span));
+        return say("an assignment", fmt::format("end it with the value: `{}`", variable),
+                   {{last.span.source, last.span.end, last.span.end}, "; " + variable});
+    }
+    return false;
+}
+
 static Value finish(Evaluator &ev, const Closure &c, Value v, const lang::Function &f,
                     std::string_view name) {
     Span place = f.span;
+    if (v.kind == ValueKind::Unit && !c.library && report_unfinished(ev, c, f, name))
+        return poison();
     if (v.kind == ValueKind::Unit && f.result) {
         const bool unread = std::ranges::any_of(c.ast->blocks[f.body].stmts, [](const auto &stmt) {
             return std::holds_alternative<lang::Bad>(stmt.kind);
@@ -258,6 +302,8 @@ static Value call_closure(Evaluator &ev, const Value &callee, std::string_view n
     const Closure c = ev.closures[callee.id];
     const lang::Function &f = c.ast->functions[c.function];
     const std::span<const Formal> formals = formals_of(ev, c);
+    if (c.library && !inside_library(ev) && shape_out_of_place(ev, name, f, formals, args, call))
+        return poison();
     auto bound = bind_arguments(ev, name, formals, args, call, callee_span);
     if (!bound) return poison();
     // defaults are evaluated where the function stands, and see the parameters before them
@@ -435,6 +481,16 @@ Value call_with(Evaluator &ev, const Value &callee, const std::vector<Value> &va
     return call_value(ev, callee, name, args, place, place);
 }
 
+// A number without a unit, or a list of such.
+static bool is_plain_literal(const File &ast, const lang::Expr &e) {
+    if (auto *n = std::get_if<lang::Number>(&e.kind)) return n->unit.empty();
+    auto *list = std::get_if<lang::List>(&e.kind);
+    return list && !list->items.empty() && std::ranges::all_of(list->items, [&](lang::ExprId id) {
+        auto *n = std::get_if<lang::Number>(&ast.exprs[id].kind);
+        return n && n->unit.empty();
+    });
+}
+
 static void read_arguments(Evaluator &ev, const File &ast, const lang::Call &call,
                            std::uint32_t frame, std::vector<Argument> &args) {
     for (const lang::Argument &a : call.arguments) {
@@ -443,7 +499,7 @@ static void read_arguments(Evaluator &ev, const File &ast, const lang::Call &cal
         if (a.name) arg.name = &*a.name, arg.symbol = symbol_of(ast, *a.name);
         arg.span = e.span;
         arg.value = eval(ev, ast, a.value, frame);
-        if (auto *n = std::get_if<lang::Number>(&e.kind)) arg.plain_literal = n->unit.empty();
+        arg.plain_literal = is_plain_literal(ast, e);
         args.push_back(arg);
     }
     if (call.trailing) {
@@ -453,8 +509,13 @@ static void read_arguments(Evaluator &ev, const File &ast, const lang::Call &cal
         pop_frame(ev, inner);
         std::vector<Value> values;
         for (const Contribution &item : items) values.push_back(item.value);
+        const auto &stmts = ast.blocks[*call.trailing].stmts;
+        const bool unread =
+            !stmts.empty() && std::ranges::all_of(stmts, [](const lang::Stmt &stmt) {
+                return std::holds_alternative<lang::Bad>(stmt.kind);
+            });
         Argument arg;
-        arg.value = list_value(ev, std::move(values));
+        arg.value = unread ? poison() : list_value(ev, std::move(values));
         arg.span = ast.blocks[*call.trailing].span;
         arg.trailing = true;
         args.push_back(arg);
@@ -505,6 +566,8 @@ Value eval_call(Evaluator &ev, const File &ast, lang::ExprId id, const lang::Cal
                                    fmt::format("there is no function `{}` for {}", m->name.text,
                                                describe(ev, object)));
             if (object.kind == ValueKind::Shape) help_with_shape(d, m->name.text);
+            if (const auto way = way_from_elsewhere(m->name.text); !d.fix && !way.empty())
+                d.help(std::string(way));
             if (!d.fix && !near.empty())
                 d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
             return poison();

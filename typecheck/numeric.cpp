@@ -354,6 +354,14 @@ static Value combined(Evaluator &ev, lang::BinaryOp op, const Value &left, const
                                            describe(ev, left_wrong ? a : b)));
         const Value &wrong = left_wrong ? a : b;
         if (is_function(wrong)) d.help("call it with a point: `f(p)`");
+        const auto is_list = [&](const Value &v) {
+            return v.kind == ValueKind::List || (is_numeric(v) && ir::is_vector(numeric_type(ev, v)));
+        };
+        if (op == BinaryOp::Add && is_list(a) && is_list(b) && !is_library_place(ev, a_place))
+            d.help("lists are joined by `concat(a, b)`",
+                   {{{a_place.source, a_place.begin, a_place.begin}, "concat("},
+                    {{a_place.source, a_place.end, b_place.begin}, ", "},
+                    {{a_place.source, b_place.end, b_place.end}, ")"}});
         if (wrong.kind == ValueKind::Shape && op == BinaryOp::Add)
             d.help("shapes are united with `|`");
         if (wrong.kind == ValueKind::Shape && op == BinaryOp::Mul)

@@ -30,7 +30,7 @@ bool run_simple(Evaluator &ev, const File &ast, const lang::Stmt &stmt, std::uin
         if (ev.frames[frame].index)
             report(ev, Code::WrongPlace, stmt.span,
                    "`var` stands inside a function; at the top of a file names do not change")
-                .help("write `let`");
+                .help("write `let`", {{{stmt.span.source, stmt.span.begin, stmt.span.begin + 3}, "let"}});
         Value value = declared_value(ev, ast, v->value, v->type, v->name.text, frame);
         value.ints = false;
         declare(ev, frame, symbol_of(ast, v->name), value, true, v->name.span);
