@@ -329,7 +329,7 @@ void Builder::argument_name(Index at) {
     // all of one call are one mistake
     const Index open = enclosing(at), close = tokens_.match[open];
     std::vector<Edit> edits;
-    for (Index i = open + 1; i < close; i = tokens_.match[i] > i ? tokens_.match[i] + 1 : i + 1) {
+    for (Index i = open + 1; i<close; i = tokens_.match[i]> i ? tokens_.match[i] + 1 : i + 1) {
         const bool begins = kind(i - 1) == Tok::Comma || i == open + 1;
         if (!begins || kind(i) != Tok::Name || kind(i + 1) != Tok::Assign) continue;
         if (i < at) return;

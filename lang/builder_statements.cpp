@@ -325,8 +325,8 @@ void Builder::replace_bad_statement(Index first) {
     default: break;
     }
     const Tok behind = kind(name + 1);
-    const bool declares = kind(first) != Tok::Name || behind == Tok::Assign ||
-                          (name > first && (behind == Tok::Open || ends_statement(name + 1)));
+    const bool declares =
+        kind(first) != Tok::Name || behind == Tok::Assign || (name > first && behind == Tok::Open);
     if (kind(first) == Tok::Name && name == first && declares && kind(name) == Tok::Name &&
         !is_declared(std::string(text(name)))) {
         declare_poison(name);

@@ -46,8 +46,6 @@ constexpr ForeignWord statement_words[] = {
     {"match", "a choice is written with `if`", "write `if a { … } else if b { … } else { … }`"},
     {"do", "a loop begins with its condition", "write `while condition limit n { … }`"}};
 
-std::string in_code(std::string_view text) { return "`" + brief(text) + "`"; }
-
 } // namespace
 
 // -- statements ----------------------------------------------------------------------------------
@@ -64,10 +62,12 @@ bool Builder::foreign_statement(Index first) {
         const Index close = tokens_.match[first + 1];
         if (kind(close + 1) != Tok::Assign) return false;
         failed_ = close + 1;
-        for (Index i = first + 2; i < close; ++i)
+        const bool library = kind(close + 2) == Tok::Name && text(close + 2) == "require";
+        for (Index i = first + 2; i < close && !library; ++i)
             if (kind(i) == Tok::Name) declare_poison(i);
+        withdraw_quotes(first);
         Diagnostic &d = foreign(span(first, close), "each name is bound by a `let` of its own");
-        if (kind(close + 2) == Tok::Name && text(close + 2) == "require")
+        if (library)
             d.help("the library needs no import: leave the line away",
                    {{{id_, token(first).begin, token(statement_end(first) - 1).end}, ""}});
         else
@@ -79,6 +79,7 @@ bool Builder::foreign_statement(Index first) {
         failed_ = first + 1;
         const Index end = statement_end(first);
         if (begins_record(first + 1)) {
+            withdraw_quotes(first);
             foreign(span(first), "`import` brings all names of a file, and the library needs none")
                 .help("leave the line away, or write `import \"file.sdf\"`",
                       {{{id_, token(first).begin, token(end - 1).end}, ""}});
@@ -120,6 +121,12 @@ bool Builder::foreign_statement(Index first) {
     else
         d.help(std::string(row->help));
     return true;
+}
+
+// What was said of the strings in a statement that goes as a whole.
+void Builder::withdraw_quotes(Index first) {
+    for (Index i = first, end = statement_end(first); i < end; ++i)
+        if (kind(i) == Tok::String) diagnostics_.withdraw(Code::ForeignSyntax, span(i));
 }
 
 // A statement that is not in the tree still declares the name, so that its uses are no new errors.
@@ -181,6 +188,87 @@ void Builder::foreign_colon(Index at) {
     d.help("write `{ … }`", whole ? std::move(edits) : std::vector<Edit>{});
 }
 
+// -- bodies without braces ---------------------------------------------------------------------------
+
+// `if a then b else c`, `for i in 0..3 do b`.
+void Builder::foreign_then(Index at) {
+    Diagnostic &d = foreign(span(at), "a body stands in braces");
+    const auto end_of = [&](Index i) { // of the branch that begins there
+        while (!ends_statement(i) && kind(i) != Tok::Else && kind(i) != Tok::Close &&
+               kind(i) != Tok::ListClose && kind(i) != Tok::Comma)
+            i = tokens_.match[i] > i ? tokens_.match[i] + 1 : i + 1;
+        return i;
+    };
+    const auto before = [&](Index i) { return Span{id_, token(i).begin, token(i).begin}; };
+    const auto behind = [&](Index i) { return Span{id_, token(i - 1).end, token(i - 1).end}; };
+    const Index first = at + 1, end = end_of(first);
+    if (end == first || kind(first) == Tok::Body) {
+        d.help("write `{ … }`");
+        return;
+    }
+    std::string told = "`{ " + std::string(text(token(first).begin, token(end - 1).end)) + " }";
+    std::vector<Edit> edits{{span(at), "{"}, {behind(end), " }"}};
+    const Index other = end + 1;
+    if (kind(end) == Tok::Else && kind(other) != Tok::If && kind(other) != Tok::Body) {
+        if (const Index last = end_of(other); last > other) {
+            told += " else { " + std::string(text(token(other).begin, token(last - 1).end)) + " }";
+            edits.push_back({before(other), "{ "});
+            edits.push_back({behind(last), " }"});
+        }
+    }
+    d.help("write " + told + "`", std::move(edits));
+}
+
+// A header without its `{`: `if a = b {`, `if x:`, `if (c) return 1`.
+bool Builder::foreign_body(Index at) {
+    const Tok found = kind(at);
+    body_missing_ = true;
+    if (at < tokens_.tokens.size() && found == Tok::End) {
+        foreign(place(at), "a body stands in braces, which begin on the line of its header")
+            .help("write `{ … }`");
+        return true;
+    }
+    if (found == Tok::Assign) {
+        foreign(span(at), "a comparison is written `==`").help("write `==`", {{span(at), "=="}});
+        return true;
+    }
+    if (found == Tok::Colon) {
+        foreign_colon(at);
+        return true;
+    }
+    if (found == Tok::Name && (text(at) == "then" || text(at) == "do")) {
+        foreign_then(at);
+        return true;
+    }
+    const bool statement =
+        found == Tok::Return || found == Tok::Break || found == Tok::Name || found == Tok::Number;
+    if (!statement) return false;
+    Index end = at;
+    while (!ends_statement(end) && kind(end) != Tok::Else)
+        end = tokens_.match[end] > end ? tokens_.match[end] + 1 : end + 1;
+    std::string told = "{ " + std::string(text(token(at).begin, token(end - 1).end)) + " }";
+    std::vector<Edit> edits{{{id_, token(at).begin, token(at).begin}, "{ "},
+                            {{id_, token(end - 1).end, token(end - 1).end}, " }"}};
+    // `; else b`
+    Index other = end;
+    while (kind(other) == Tok::End && other < tokens_.tokens.size() && text(other) == ";") ++other;
+    if (kind(other) == Tok::Else && kind(other + 1) != Tok::If && kind(other + 1) != Tok::Body) {
+        const Index begin = other + 1;
+        Index last = begin;
+        while (!ends_statement(last))
+            last = tokens_.match[last] > last ? tokens_.match[last] + 1 : last + 1;
+        if (other > end) edits.push_back({span(end, other - 1), ""});
+        if (last > begin) {
+            edits.push_back({{id_, token(begin).begin, token(begin).begin}, "{ "});
+            edits.push_back({{id_, token(last - 1).end, token(last - 1).end}, " }"});
+            told += " else { " + std::string(text(token(begin).begin, token(last - 1).end)) + " }";
+            failed_ = last - 1;
+        }
+    }
+    foreign(span(at), "a body stands in braces").help("write `" + told + "`", std::move(edits));
+    return true;
+}
+
 // -- operators -----------------------------------------------------------------------------------
 
 // `a if c else b`, at the `if`; `start` is where `a` begins.
@@ -233,11 +321,12 @@ void Builder::foreign_pipe(Index at) {
                                                 in_code(text(token(sign).begin, token(at).end)));
     const bool call = kind(sign - 1) == Tok::Close && kind(start) == Tok::Name;
     bool chain = call; // of calls: an operand by itself
-    for (Index i = start; chain && i < sign; i = tokens_.match[i] > i ? tokens_.match[i] + 1 : i + 1)
+    for (Index i = start; chain && i<sign; i = tokens_.match[i]> i ? tokens_.match[i] + 1 : i + 1)
         chain = kind(i) == Tok::Name || kind(i) == Tok::Dot || kind(i) == Tok::Open;
     const Index name = at + 1, open = at + 2;
     const bool argument = kind(open) == Tok::Number || kind(open) == Tok::Name;
-    const bool ready = kind(name) == Tok::Name && (kind(open) == Tok::Open || argument);
+    const bool ready = kind(name) == Tok::Name &&
+                       (kind(open) == Tok::Open || kind(open) == Tok::Trailing || argument);
     if (!chain || !ready) {
         d.help("a function is applied by a dot: `s.rotate(30deg)` for `rotate(s, 30deg)`");
         return;
@@ -260,10 +349,9 @@ bool Builder::foreign_concat(Index at) {
         end = tokens_.match[end] > end ? tokens_.match[end] + 1 : end + 1;
     if (end == at + 1) return false;
     foreign(span(at), "lists are joined by `concat`")
-        .help("write `concat(a, b)`",
-              {{{id_, token(start).begin, token(start).begin}, "concat("},
-               {{id_, token(at - 1).end, token(at + 1).begin}, ", "},
-               {{id_, token(end - 1).end, token(end - 1).end}, ")"}});
+        .help("write `concat(a, b)`", {{{id_, token(start).begin, token(start).begin}, "concat("},
+                                       {{id_, token(at - 1).end, token(at + 1).begin}, ", "},
+                                       {{id_, token(end - 1).end, token(end - 1).end}, ")"}});
     return true;
 }
 

@@ -157,8 +157,9 @@ void Lexer::add(Tok kind, std::uint32_t begin, std::uint32_t end) {
 
 Diagnostic &Lexer::foreign(std::uint32_t begin, std::uint32_t end, std::string message,
                            std::string replacement) {
-    std::string help =
-        "write " + quoted_code(std::string_view(replacement).substr(0, replacement.find(' ')));
+    std::string_view shown = replacement;
+    if (shown.ends_with(' ')) shown.remove_suffix(1);
+    std::string help = "write " + quoted_code(shown);
     return report(Code::ForeignSyntax, begin, end, std::move(message))
         .help(std::move(help), {{span(begin, end), std::move(replacement)}});
 }

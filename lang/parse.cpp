@@ -56,8 +56,8 @@ struct number : sor<seq<plus<digit>, opt<sor<fraction, lonely_point, suffix_poin
 struct string_char : sor<pegtl::not_one<'"', '\\', '\n'>, seq<one<'\\'>, pegtl::not_one<'\n'>>> {};
 struct text : seq<one<'"'>, star<string_char>, one<'"'>> {};
 struct unclosed_text : seq<one<'"'>, rest_of_line> {};
-template <char sign>
-struct quoted_by : seq<one<sign>, star<pegtl::not_one<sign, '\n'>>, one<sign>> {};
+template <char sign> struct quoted_by
+    : seq<one<sign>, star<pegtl::not_one<sign, '\n'>>, one<sign>> {};
 struct quoted : sor<quoted_by<'\''>, quoted_by<'`'>> {};
 struct hash : seq<one<'#'>, star<word_char>> {};
 struct sign

@@ -323,8 +323,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             if (Diagnostic *d =
                     report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))
                 d->note("it is " + number_text(b.value_a) + " at " + one_side + " and " +
-                        number_text(b.value_b) + " at " + other_side +
-                        ": " + cause)
+                        number_text(b.value_b) + " at " + other_side + ": " + cause)
                     .help((by_list ? between : "make both sides agree there, ") +
                           "keep the jump out of the region with " +
                           (has_region ? "`within:`, " : "`.within(…)`, ") + assume);

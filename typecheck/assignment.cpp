@@ -192,17 +192,21 @@ void run_assign(Evaluator &ev, const File &ast, const lang::Assign &node, Span p
     if (!found) {
         Diagnostic &d = report(ev, Code::UnknownName, base.span,
                                fmt::format("nothing here is called `{}`", name->text));
-        if (!node.op && path.empty())
+        if (!node.op && path.empty()) {
+            const bool in_body = !ev.frames[frame].index;
             d.help(fmt::format("declare it: `let {} = …`, or `var {} = …` where it changes",
-                               name->text, name->text));
+                               name->text, name->text),
+                   {{{place.source, place.begin, place.begin}, in_body ? "var " : "let "}});
+            declare(ev, frame, symbol_of(ast, *name), poison(), in_body, base.span);
+        }
         return;
     }
     const Binding binding = ev.frames[found->frame].bindings[found->slot];
     if (!binding.is_var) {
         const Span declared = binding.declared;
-        const bool by_let = declared.source && declared.begin >= 4 &&
-                            text(ev.sources, {declared.source, declared.begin - 4,
-                                              declared.begin}) == "let ";
+        const bool by_let =
+            declared.source && declared.begin >= 4 &&
+            text(ev.sources, {declared.source, declared.begin - 4, declared.begin}) == "let ";
         const bool in_body = !ev.frames[found->frame].index;
         const bool is_argument = in_body && !by_let && ev.frames[frame].parent == found->frame;
         Diagnostic &d =

@@ -22,11 +22,14 @@ static void report_unknown_arguments(Evaluator &ev, std::string_view name,
                                      const std::vector<std::size_t> &unknown, Span callee) {
     std::string list;
     for (std::size_t i = 0; i < unknown.size(); ++i)
-        list += fmt::format("{}`{}`", i == 0 ? "" : i + 1 == unknown.size() ? " and " : ", ",
+        list += fmt::format("{}`{}`",
+                            i == 0                    ? ""
+                            : i + 1 == unknown.size() ? " and "
+                                                      : ", ",
                             args[unknown[i]].name->text);
-    Diagnostic &d = report(ev, Code::UnknownArgument, args[unknown[0]].name->span,
-                           fmt::format("`{}` has no argument{} {}", name,
-                                       unknown.size() == 1 ? "" : "s", list));
+    Diagnostic &d = report(
+        ev, Code::UnknownArgument, args[unknown[0]].name->span,
+        fmt::format("`{}` has no argument{} {}", name, unknown.size() == 1 ? "" : "s", list));
     const Fix fix = remedy_of_arguments(ev, name, formals, args, unknown, callee);
     if (!fix.message.empty()) d.help(fix.message, fix.edits);
     d.note(fmt::format("it is `{}`", signature_text(name, formals)));
@@ -36,6 +39,8 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
                                                  std::span<const Formal> formals,
                                                  std::span<const Argument> args, Span call,
                                                  Span callee) {
+    // a block that could not be read: reported, and perhaps the arguments
+    if (!args.empty() && args.back().trailing && is_poison(args.back().value)) return std::nullopt;
     Given nothing;
     nothing.span = callee;
     std::vector<Given> bound(formals.size(), nothing);
@@ -53,7 +58,7 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
                 ev, Code::DuplicateArgument, a.name ? a.name->span : a.span,
                 fmt::format("`{}` is given twice in this call of `{}`", formals[i].name, name));
             d.label(bound[i].span, by_place[i] < args.size() && a.name ? "given here, by its place"
-                                                                        : "given here");
+                                                                       : "given here");
             if (i == 0 && by_place[0] < args.size() && a.name)
                 if (Fix fix = remedy_of_duplicate(ev, name, args, a, call); !fix.message.empty())
                     d.help(fix.message, fix.edits);
@@ -119,7 +124,8 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
                      })) {
                 const Fix fix = remedy_of_row(args, formals[0].vector_size);
                 d.help(fix.message, fix.edits);
-            }
+            } else if (name == "cylinder")
+                d.help("a cone without its tip is `capped_cone(bottom, top, height)`");
             return std::nullopt;
         }
         give(next++, a);

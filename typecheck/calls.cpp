@@ -85,48 +85,6 @@ static Value result_of(Evaluator &ev, const Outcome &out, Span place) {
     return poison();
 }
 
-// True, and reported, where a body ends with a `let`, `var` or assignment: its writer took that for
-// its value.
-static bool report_unfinished(Evaluator &ev, const Closure &c, const lang::Function &f,
-                              std::string_view name) {
-    if (c.ast->blocks[f.body].stmts.empty()) return false;
-    const lang::Stmt &last = c.ast->blocks[f.body].stmts.back();
-    const auto say = [&](std::string_view what, std::string help, Edit edit) {
-        report(ev, Code::MissingValue, last.span,
-               fmt::format("{} ends with {}, and so has no value",
-                           f.name ? fmt::format("`{}`", name) : "this function", what))
-            .help(std::move(help), {std::move(edit)});
-        return true;
-    };
-    const auto without_head = [&](lang::ExprId value) {
-        return Edit{{last.span.source, last.span.begin, c.ast->exprs[value].span.begin}, ""};
-    };
-    if (auto *l = std::get_if<lang::Let>(&last.kind))
-        return say("a `let`", fmt::format("leave `let {} =` away: the last expression is the value",
-                                          l->name.text),
-                   without_head(l->value));
-    if (auto *v = std::get_if<lang::Var>(&last.kind))
-        return say("a `var`", fmt::format("leave `var {} =` away: the last expression is the value",
-                                          v->name.text),
-                   without_head(v->value));
-    if (auto *a = std::get_if<lang::Assign>(&last.kind)) {
-        lang::ExprId target = a->target;
-        while (true) {
-            const lang::ExprKind &kind = c.ast->exprs[target].kind;
-            if (auto *m = std::get_if<lang::Member>(&kind))
-                target = m->object;
-            else if (auto *i = std::get_if<lang::Index>(&kind))
-                target = i->object;
-            else
-                break;
-        }
-        const std::string variable(text(ev.sources, c.ast->exprs[target].span));
-        return say("an assignment", fmt::format("end it with the value: `{}`", variable),
-                   {{last.span.source, last.span.end, last.span.end}, "; " + variable});
-    }
-    return false;
-}
-
 static Value finish(Evaluator &ev, const Closure &c, Value v, const lang::Function &f,
                     std::string_view name) {
     Span place = f.span;
@@ -486,9 +444,9 @@ static bool is_plain_literal(const File &ast, const lang::Expr &e) {
     if (auto *n = std::get_if<lang::Number>(&e.kind)) return n->unit.empty();
     auto *list = std::get_if<lang::List>(&e.kind);
     return list && !list->items.empty() && std::ranges::all_of(list->items, [&](lang::ExprId id) {
-        auto *n = std::get_if<lang::Number>(&ast.exprs[id].kind);
-        return n && n->unit.empty();
-    });
+               auto *n = std::get_if<lang::Number>(&ast.exprs[id].kind);
+               return n && n->unit.empty();
+           });
 }
 
 static void read_arguments(Evaluator &ev, const File &ast, const lang::Call &call,

@@ -109,8 +109,7 @@ static void report_joined_shapes(Evaluator &ev, const lang::Binary &b) {
         edits.push_back({op, is_and ? "&" : "|"});
     }
     report(ev, Code::TypeMismatch, b.op_spans[0],
-           is_and ? "what shapes have in common is written with `&`"
-                  : "shapes are united with `|`")
+           is_and ? "what shapes have in common is written with `&`" : "shapes are united with `|`")
         .help(is_and ? "write `&`" : "write `|`", std::move(edits));
 }
 
@@ -234,8 +233,9 @@ static Value eval_index(Evaluator &ev, const File &ast, const lang::Index &node,
                                         size, size - 1));
             const Span list = ast.exprs[node.object].span;
             if (*i < 0 && -*i <= size && list.end - list.begin < 40)
-                d.help(fmt::format("from the end it is `len({}) - {}`", text(ev.sources, list), -*i),
-                       {{index_place, fmt::format("len({}) - {}", text(ev.sources, list), -*i)}});
+                d.help(
+                    fmt::format("from the end it is `len({}) - {}`", text(ev.sources, list), -*i),
+                    {{index_place, fmt::format("len({}) - {}", text(ev.sources, list), -*i)}});
             return poison();
         }
         if (object.kind == ValueKind::Range) return integer(object.num[0] + *i * object.num[2]);
@@ -365,8 +365,8 @@ static Value eval_unary(Evaluator &ev, const File &ast, const lang::Unary &u, Sp
     if (u.op == lang::UnaryOp::Not && v.kind == ValueKind::Shape) {
         const Span sign{place.source, place.begin, ast.exprs[u.operand].span.begin};
         if (ev.quiet == 0)
-            ev.diagnostics.withdraw(Code::ForeignSyntax, {place.source, place.begin,
-                                                          place.begin + 1});
+            ev.diagnostics.withdraw(Code::ForeignSyntax,
+                                    {place.source, place.begin, place.begin + 1});
         report(ev, Code::TypeMismatch, place, "a shape is no condition")
             .help("the space around a shape is `complement(s)`",
                   {{sign, "complement("}, {{place.source, place.end, place.end}, ")"}});

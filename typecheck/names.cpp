@@ -130,6 +130,17 @@ bool lacking(const Evaluator &ev, const std::string &name, const std::string &ne
     return ev.modules[ev.current_module].lacks_names && (near.empty() || name.size() < 5);
 }
 
+// `45*deg`: the unit touches its number.
+static std::vector<Edit> unit_edit(const Evaluator &ev, const std::string &name, Span place) {
+    if (name != "deg") return {};
+    const std::string_view before = text(ev.sources, {place.source, 0, place.begin});
+    const std::size_t sign = before.find_last_not_of(" \t");
+    if (sign == before.npos || before[sign] != '*' || sign == 0) return {};
+    const std::size_t digit = before.find_last_not_of(" \t", sign - 1);
+    if (digit == before.npos || before[digit] < '0' || before[digit] > '9') return {};
+    return {{{place.source, static_cast<std::uint32_t>(digit + 1), place.begin}, ""}};
+}
+
 void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place) {
     const std::string near = likely_name(ev, frame, name);
     if (lacking(ev, name, near)) return; // one cause, one report
@@ -140,7 +151,7 @@ void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &
         return;
     }
     const std::string_view way = way_from_elsewhere(name);
-    if (!way.empty()) d.help(std::string(way));
+    if (!way.empty()) d.help(std::string(way), unit_edit(ev, name, place));
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});
 }
 

@@ -50,6 +50,8 @@ std::string_view name_from_elsewhere(std::string_view name) {
         {"iTime", "time"},
         {"iGlobalTime", "time"},
         {"u_time", "time"},
+        {"Vector3", "vec3"},
+        {"Vector2", "vec2"},
         {"count", "len"},
         {"size", "len"},
         {"nothing", "empty"},
@@ -108,6 +110,7 @@ std::string_view way_from_elsewhere(std::string_view name) {
         {"String", "a string shows a value where it is joined to it: `\"r = \" + r`"},
         {"deg", "the unit touches its number, `45deg`; a name is converted by `radians(x)`"},
         {"rad", "an angle is in radians as it is"},
+        {"iChannel0", "an image is `image(\"file.png\")`, called with a vec2"},
         {"pass", "an empty body is `{ }`; leave the word away"},
         {"append", "a list is made longer by `concat(list, [x])`, which gives a new one"},
         {"push", "a list is made longer by `concat(list, [x])`, which gives a new one"},
@@ -158,22 +161,54 @@ void help_with_shape(Diagnostic &d, std::string_view name) {
 namespace {
 
 constexpr std::pair<std::string_view, std::string_view> argument_names[] = {
-    {"color", "diffuse"},    {"colour", "diffuse"},      {"albedo", "diffuse"},
-    {"ambient", "diffuse"},  {"shininess", "exponent"},  {"emissive", "emission"},
-    {"position", "at"},      {"pos", "at"},              {"center", "at"},
-    {"eye", "at"},           {"target", "look_at"},      {"lookat", "look_at"},
-    {"dir", "direction"},    {"h", "height"},            {"r", "radius"},
-    {"r1", "bottom"},        {"r2", "top"},              {"bottom_radius", "bottom"},
-    {"top_radius", "top"},   {"radius1", "major"},       {"radius2", "minor"},
-    {"radius", "r"},         {"radius", "k"},            {"r", "k"},
-    {"amount", "r"},         {"distance", "r"},          {"n", "sides"},
-    {"n", "count"},          {"count", "n"},             {"factor", "by"},
-    {"v", "by"},             {"vector", "by"},           {"a", "angle"},
-    {"degrees", "angle"},    {"faces", "sides"},         {"width", "size"},
-    {"dimensions", "size"},  {"thick", "thickness"},     {"width", "thickness"},
-    {"step", "cell"},        {"spacing", "cell"},        {"period", "cell"},
-    {"size", "cell"},        {"material", "material"},   {"normal", "axis"},
-    {"rounding", "radius"},  {"round_radius", "radius"}, {"length", "height"},
+    {"color", "diffuse"},
+    {"colour", "diffuse"},
+    {"albedo", "diffuse"},
+    {"ambient", "diffuse"},
+    {"shininess", "exponent"},
+    {"emissive", "emission"},
+    {"position", "at"},
+    {"pos", "at"},
+    {"center", "at"},
+    {"eye", "at"},
+    {"target", "look_at"},
+    {"lookat", "look_at"},
+    {"dir", "direction"},
+    {"h", "height"},
+    {"r", "radius"},
+    {"r1", "bottom"},
+    {"r2", "top"},
+    {"bottom_radius", "bottom"},
+    {"top_radius", "top"},
+    {"radius1", "major"},
+    {"radius2", "minor"},
+    {"radius", "r"},
+    {"radius", "k"},
+    {"r", "k"},
+    {"amount", "r"},
+    {"distance", "r"},
+    {"n", "sides"},
+    {"n", "count"},
+    {"count", "n"},
+    {"factor", "by"},
+    {"v", "by"},
+    {"vector", "by"},
+    {"a", "angle"},
+    {"degrees", "angle"},
+    {"faces", "sides"},
+    {"width", "size"},
+    {"dimensions", "size"},
+    {"thick", "thickness"},
+    {"width", "thickness"},
+    {"step", "cell"},
+    {"spacing", "cell"},
+    {"period", "cell"},
+    {"size", "cell"},
+    {"material", "material"},
+    {"normal", "axis"},
+    {"rounding", "radius"},
+    {"round_radius", "radius"},
+    {"length", "height"},
     {"roundRadius", "radius"}};
 
 // What only other ways of making shapes need.
@@ -324,9 +359,8 @@ bool shape_out_of_place(Evaluator &ev, std::string_view name, const lang::Functi
                         std::span<const Formal> formals, std::span<const Argument> args,
                         Span call) {
     if (args.size() < 2 || function.parameters.empty() || !function.parameters[0].type ||
-        std::ranges::any_of(args, [](const Argument &a) {
-            return a.trailing || is_poison(a.value);
-        }))
+        std::ranges::any_of(args,
+                            [](const Argument &a) { return a.trailing || is_poison(a.value); }))
         return false;
     using lang::TypeName;
     const lang::TypeExpr &type = *function.parameters[0].type;
@@ -349,19 +383,18 @@ bool shape_out_of_place(Evaluator &ev, std::string_view name, const lang::Functi
     if (takes_shape && !args[0].name && !is_shape(args[0])) {
         const auto shape = std::ranges::find_if(args, is_shape);
         if (shape == args.end() || shape->name) return false;
-        return say(fmt::format("the shape stands first, before what `{}` does to it", name),
-                   fmt::format("{}.{}({})", operand_text(ev, shape->span), name,
-                               join_others(*shape)));
+        return say(
+            fmt::format("the shape stands first, before what `{}` does to it", name),
+            fmt::format("{}.{}({})", operand_text(ev, shape->span), name, join_others(*shape)));
     }
     if (formals.back().takes_rest && type.named == TypeName::Float && !args[0].name &&
         is_shape(args[0])) {
         const auto number = std::ranges::find_if(
             args, [&](const Argument &a) { return !a.name && is_scalar(ev, a.value); });
         if (number == args.end()) return false;
-        return say(fmt::format("`{}` of `{}` stands first, before the shapes", formals[0].name,
-                               name),
-                   fmt::format("{}({}, {})", name, text_of(ev, number->span),
-                               join_others(*number)));
+        return say(
+            fmt::format("`{}` of `{}` stands first, before the shapes", formals[0].name, name),
+            fmt::format("{}({}, {})", name, text_of(ev, number->span), join_others(*number)));
     }
     return false;
 }
@@ -388,6 +421,50 @@ void help_with_value(Evaluator &ev, Diagnostic &d, const Value &v, lang::TypeNam
     if (wanted == TypeName::Color || wanted == TypeName::Material)
         d.help("colours are written without quotes: `red`, `#ff0000`",
                known ? std::vector<Edit>{{place, inside}} : std::vector<Edit>{});
+}
+
+// -- bodies ----------------------------------------------------------------------------------------
+
+bool report_unfinished(Evaluator &ev, const Closure &c, const lang::Function &f,
+                       std::string_view name) {
+    if (c.ast->blocks[f.body].stmts.empty()) return false;
+    const lang::Stmt &last = c.ast->blocks[f.body].stmts.back();
+    const auto say = [&](std::string_view what, std::string help, Edit edit) {
+        report(ev, Code::MissingValue, last.span,
+               fmt::format("{} ends with {}, and so has no value",
+                           f.name ? fmt::format("`{}`", name) : "this function", what))
+            .help(std::move(help), {std::move(edit)});
+        return true;
+    };
+    const auto without_head = [&](lang::ExprId value) {
+        return Edit{{last.span.source, last.span.begin, c.ast->exprs[value].span.begin}, ""};
+    };
+    if (auto *l = std::get_if<lang::Let>(&last.kind))
+        return say(
+            "a `let`",
+            fmt::format("leave `let {} =` away: the last expression is the value", l->name.text),
+            without_head(l->value));
+    if (auto *v = std::get_if<lang::Var>(&last.kind))
+        return say(
+            "a `var`",
+            fmt::format("leave `var {} =` away: the last expression is the value", v->name.text),
+            without_head(v->value));
+    if (auto *a = std::get_if<lang::Assign>(&last.kind)) {
+        lang::ExprId target = a->target;
+        while (true) {
+            const lang::ExprKind &kind = c.ast->exprs[target].kind;
+            if (auto *m = std::get_if<lang::Member>(&kind))
+                target = m->object;
+            else if (auto *i = std::get_if<lang::Index>(&kind))
+                target = i->object;
+            else
+                break;
+        }
+        const std::string variable(text(ev.sources, c.ast->exprs[target].span));
+        return say("an assignment", fmt::format("end it with the value: `{}`", variable),
+                   {{last.span.source, last.span.end, last.span.end}, "; " + variable});
+    }
+    return false;
 }
 
 } // namespace fathom::typecheck

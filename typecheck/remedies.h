@@ -32,4 +32,9 @@ bool shape_out_of_place(Evaluator &ev, std::string_view name, const lang::Functi
 void help_with_value(Evaluator &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,
                      Span place);
 
+// True, and reported, where a body ends with a `let`, `var` or assignment: its writer took that for
+// its value.
+bool report_unfinished(Evaluator &ev, const Closure &c, const lang::Function &f,
+                       std::string_view name);
+
 } // namespace fathom::typecheck
