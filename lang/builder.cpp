@@ -387,7 +387,7 @@ void Builder::trailing(Index first, Index last) {
     }
     if (const Name *name = std::get_if<Name>(&ast_.exprs[call->callee].kind);
         name && !call->arguments.empty() && is_foreign_transform(name->text) &&
-        !is_declared(name->text)) {
+        !may_be_declared(name->text)) {
         const Index open = tokens_.match[first - 1];
         const Span head{id_, token(open - 1).begin, token(first - 1).end};
         const std::string chain = "." + transform_text(open - 1);
@@ -417,6 +417,11 @@ void Builder::step(Index at) {
         throw Abandon{};
     }
     const std::string name = brief(text(item.begin, item.end));
+    if (!is_target(item.id)) {
+        foreign(span(at), up ? "there is no `++`" : "there is no `--`")
+            .help("lists are joined by `concat(a, b)`");
+        return push(Poison{}, {id_, item.begin, token(at).end}, 1);
+    }
     foreign(span(at), up ? "there is no `++`" : "there is no `--`")
         .help("write `" + name + (up ? " += 1`" : " -= 1`"), {{span(at), up ? " += 1" : " -= 1"}});
     push(Poison{}, {id_, item.begin, token(at).end}, 1);

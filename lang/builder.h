@@ -260,6 +260,7 @@ class Builder {
     // Words and blocks of theirs (foreign_words.cpp).
     void declare_poison(Index name);
     void withdraw_quotes(Index first);
+    bool may_be_declared(std::string_view name);
     bool indented_body(Index colon, std::vector<Edit> &edits);
     void foreign_colon(Index at);
     void foreign_choice(Index start, Index at);
@@ -320,6 +321,8 @@ class Builder {
     std::vector<std::string_view> declared_;
     std::unordered_set<std::string_view> known_names_; // the first known_ of them
     std::size_t known_ = 0;
+    std::optional<std::unordered_set<std::string_view>> all_declared_; // made when it is asked for
+    bool has_import_ = false;
 };
 
 } // namespace fathom::lang

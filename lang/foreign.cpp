@@ -260,8 +260,14 @@ bool Builder::foreign_junk(Index first, Index at) {
         return true;
     }
     if (found == Tok::String && kind(at - 1) == Tok::String &&
-        token(at - 1).end == token(at).begin) {
-        foreign(span(at - 1, at), "a comment begins with `//`"); // `"""…"""`
+        token(at - 1).end == token(at).begin) { // `"""…"""`
+        const bool whole = kind(at + 1) == Tok::String && ends_statement(at + 2);
+        std::vector<Edit> edits;
+        if (whole)
+            edits.push_back({span(at - 1, at + 1),
+                             "// " + std::string(text(token(at).begin + 1, token(at).end - 1))});
+        foreign(span(at - 1, whole ? at + 1 : at), "a comment begins with `//`")
+            .help("write `// …`", std::move(edits));
         return true;
     }
     if (found == Tok::In && kind(first) == Tok::Let) {
@@ -399,7 +405,8 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
             return true;
         }
         if (found == Tok::Fn) {
-            foreign(span(at), "a function without a name is written `p => …`");
+            Diagnostic &d = foreign(span(at), "a function without a name is written `p => …`");
+            if (kind(at + 1) == Tok::LambdaOpen) d.help("leave `fn` away", {{span(at), ""}});
             return true;
         }
         if (found == Tok::Less && kind(before) == Tok::Import) return false;

@@ -34,14 +34,19 @@ std::string Builder::transform_text(Index name) const {
     for (const auto &[theirs, ours] : scad_names)
         if (out == theirs) out = ours;
     std::uint32_t end = token(name).end;
+    int depth = 0;
+    bool angle = true; // in the first argument
     for (Index i = open; i <= close; ++i) {
+        if (tokens_.match[i] > i) ++depth;
+        if (tokens_.match[i] < i) --depth;
+        if (kind(i) == Tok::Comma && depth == 1) angle = false;
         const bool assign = kind(i) == Tok::Assign;
         if (!assign) out += text(end, token(i).begin);
         const std::string_view word = text(i);
-        const bool in_degrees = rotate && kind(i) == Tok::Number && word != "0" &&
+        const bool in_degrees = rotate && angle && kind(i) == Tok::Number && word != "0" &&
                                 word.find_first_not_of("0123456789.") == std::string_view::npos;
         if (assign)
-            out += ":";
+            out += token(i).end < token(i + 1).begin ? ":" : ": ";
         else if (color && kind(i) == Tok::String)
             out += word.substr(1, word.size() - 2);
         else
@@ -127,6 +132,7 @@ bool Builder::foreign_import(Index at) {
     if (kind(at) != Tok::Name && kind(at) != Tok::Dot && kind(at) != Tok::DotDot) return false;
     Index end = at;
     while (!ends_statement(end) && kind(end) != Tok::As && text(end) != "as") ++end;
+    if (kind(end - 1) != Tok::Name) return false;
     const std::string written(text(token(at).begin, token(end - 1).end));
     if (is_foreign_module(written)) {
         failed_ = end;

@@ -93,15 +93,17 @@ bool Builder::foreign_statement(Index first) {
         }
         return false;
     }
-    if (kind(first) != Tok::Name || is_declared(std::string(text(first)))) return false;
+    if (kind(first) != Tok::Name) return false;
     const auto *row = std::ranges::find(statement_words, text(first), &ForeignWord::word);
-    if (row == std::end(statement_words)) return false;
+    if (row == std::end(statement_words) || is_declared(std::string(text(first)))) return false;
     const Tok next = kind(first + 1);
-    const bool called = text(first) == "switch" || text(first) == "match";
+    const bool called = (text(first) == "switch" || text(first) == "match") &&
+                        kind(tokens_.match[first + 1] + 1) == Tok::Trailing;
+    const bool block = text(first) == "try" || text(first) == "do";
     const bool applies = next == Tok::Name || next == Tok::Fn || next == Tok::Less ||
-                         next == Tok::True || next == Tok::False || next == Tok::Trailing ||
-                         (next == Tok::Open && called);
-    if (!applies) return false;
+                         next == Tok::True || next == Tok::False ||
+                         (next == Tok::Trailing && block) || (next == Tok::Open && called);
+    if (!applies || ((called || block) && may_be_declared(text(first)))) return false;
     failed_ = first + 1;
     std::vector<Edit> unused;
     for (Index i = first + 1; i < tokens_.tokens.size() && !ends_statement(i);
@@ -121,6 +123,20 @@ bool Builder::foreign_statement(Index first) {
     else
         d.help(std::string(row->help));
     return true;
+}
+
+// Whether the file has such a name of its own, above or below, or may bring one by an import.
+bool Builder::may_be_declared(std::string_view name) {
+    if (!all_declared_) {
+        all_declared_.emplace();
+        for (Index i = 0; i + 1 < tokens_.tokens.size(); ++i) {
+            const Tok k = kind(i);
+            has_import_ = has_import_ || k == Tok::Import;
+            const bool declares = k == Tok::Let || k == Tok::Var || k == Tok::Fn || k == Tok::Param;
+            if (declares && kind(i + 1) == Tok::Name) all_declared_->insert(text(i + 1));
+        }
+    }
+    return has_import_ || all_declared_->contains(name) || is_declared(std::string(name));
 }
 
 // What was said of the strings in a statement that goes as a whole.

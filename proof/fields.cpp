@@ -474,9 +474,9 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
             step = std::max(step * 0.98, 1e-4);
         }
     }
-    const auto [here, there] = two_points(worst_a, worst_b, dims);
+    const auto [one_end, other_end] = two_points(worst_a, worst_b, dims);
     std::string witness =
-        "between " + here + " and " + there + " its slope is " + number_text(worst);
+        "between " + one_end + " and " + other_end + " its slope is " + number_text(worst);
     if (estimate) {
         if (Diagnostic *d = report(id, Code::EstimatedField,
                                    "this field is marched by an estimate, which is not a proof: "

@@ -140,7 +140,8 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
     }
     if (!unknown.empty()) report_unknown_arguments(ev, name, formals, args, unknown, callee);
     // `light(1, 2, 3)`: one number fills a size, but is no place
-    for (std::size_t i = 0; ok && i < formals.size(); ++i) {
+    const bool of_user = !ev.modules[ev.current_module].library;
+    for (std::size_t i = 0; ok && of_user && i < formals.size(); ++i) {
         const std::size_t first = by_place[i];
         std::size_t end = first;
         while (end < args.size() && !args[end].name && !args[end].trailing &&

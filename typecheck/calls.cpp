@@ -480,6 +480,25 @@ static void read_arguments(Evaluator &ev, const File &ast, const lang::Call &cal
     }
 }
 
+// For `s.color(red)`, `s.rotateX(a)` and the like, where `s` is a shape.
+static void help_with_method(Diagnostic &d, const lang::Member &member, const File &ast,
+                             const lang::Call &call) {
+    help_with_shape(d, member.name.text);
+    const std::string_view name = member.name.text;
+    if (name == "color" || name == "colour" || name == "colorize")
+        d.help("a shape is given a colour or a material by `.paint(…)`",
+               {{member.name.span, "paint"}});
+    const char axis = name.empty() ? ' ' : name.back();
+    const bool turns = name.starts_with("rotate") && name.size() <= 8;
+    if (!turns || call.arguments.size() != 1 || call.arguments[0].name) return;
+    const char upper = axis >= 'x' && axis <= 'z' ? static_cast<char>(axis - 'x' + 'X') : axis;
+    if (upper < 'X' || upper > 'Z') return;
+    const Span angle = ast.exprs[call.arguments[0].value].span;
+    d.help(fmt::format("write `.rotate(angle, axis: {})`", upper),
+           {{member.name.span, "rotate"},
+            {{angle.source, angle.end, angle.end}, fmt::format(", axis: {}", upper)}});
+}
+
 Value eval_call(Evaluator &ev, const File &ast, lang::ExprId id, const lang::Call &call,
                 std::uint32_t frame) {
     Span place = ast.exprs[id].span;
@@ -523,7 +542,7 @@ Value eval_call(Evaluator &ev, const File &ast, lang::ExprId id, const lang::Cal
             Diagnostic &d = report(ev, Code::UnknownMember, m->name.span,
                                    fmt::format("there is no function `{}` for {}", m->name.text,
                                                describe(ev, object)));
-            if (object.kind == ValueKind::Shape) help_with_shape(d, m->name.text);
+            if (object.kind == ValueKind::Shape) help_with_method(d, *m, ast, call);
             if (const auto way = way_from_elsewhere(m->name.text); !d.fix && !way.empty())
                 d.help(std::string(way));
             if (!d.fix && !near.empty())

@@ -90,6 +90,7 @@ std::string_view name_from_elsewhere(std::string_view name) {
 
 std::string_view way_from_elsewhere(std::string_view name) {
     static const std::unordered_map<std::string_view, std::string_view> ways = {
+        {"smooth", "shapes flow together in `smooth_union(k) { … }`"},
         {"hull", "there is no convex hull; `smooth_union(r) { … }` joins shapes, `round_cone` and "
                  "`capsule` join two balls"},
         {"minkowski", "there is no Minkowski sum; with a ball it is `.offset(r)`"},
@@ -191,6 +192,7 @@ constexpr std::pair<std::string_view, std::string_view> argument_names[] = {
     {"n", "count"},
     {"count", "n"},
     {"factor", "by"},
+    {"v", "axis"},
     {"v", "by"},
     {"vector", "by"},
     {"a", "angle"},
@@ -256,7 +258,11 @@ bool letters_remedy(Evaluator &ev, std::string_view function, std::span<const Fo
     parts.fill(function == "scale" ? "1" : "0");
     for (std::size_t i : letters) parts[std::size_t(letter(i) - 'x')] = text_of(ev, args[i].span);
     std::string vector = "[" + parts[0] + ", " + parts[1] + ", " + parts[2] + "]";
+    const auto named = [&](const Argument &a) {
+        return a.name && (a.name->text == "angle" || a.name->text == "axis");
+    };
     const bool turns = has(formals, "angle") && has(formals, "axis");
+    if (turns && std::ranges::any_of(args, named)) return false;
     if (turns && letters.size() == 1) {
         const std::string axis(1, static_cast<char>(letter(letters[0]) - 'x' + 'X'));
         const std::string value = text_of(ev, first.span) + ", axis: " + axis;
@@ -298,6 +304,12 @@ Fix remedy_of_arguments(Evaluator &ev, std::string_view function, std::span<cons
         const bool is_letter = name == "x" || name == "y" || name == "z";
         (is_letter ? letters : others).push_back(i);
     }
+    std::vector<std::string> proposed; // each of our arguments once
+    const auto is_free = [&](std::string_view ours) {
+        return std::ranges::find(proposed, ours) == proposed.end() &&
+               std::ranges::none_of(
+                   args, [&](const Argument &b) { return b.name && b.name->text == ours; });
+    };
     if (!letters.empty() && !letters_remedy(ev, function, formals, args, letters, callee, fix))
         others.insert(others.begin(), letters.begin(), letters.end());
     const auto say = [&](std::string help) {
@@ -310,7 +322,8 @@ Fix remedy_of_arguments(Evaluator &ev, std::string_view function, std::span<cons
         if (std::ranges::find(needless, name) != needless.end() && !has(formals, "at")) {
             say(fmt::format("shapes are centred and smooth: leave `{}` away", name));
             fix.edits.push_back({with_comma(args, i, callee), ""});
-        } else if (diameter && has(formals, "radius")) {
+        } else if (diameter && has(formals, "radius") && is_free("radius")) {
+            proposed.emplace_back("radius");
             const std::string value = operand_text(ev, a.span) + " / 2";
             say(fmt::format("write `radius: {}`", value));
             fix.edits.push_back({a.name->span, "radius"});
@@ -321,9 +334,8 @@ Fix remedy_of_arguments(Evaluator &ev, std::string_view function, std::span<cons
         } else if (name == "within" && function != "within") {
             say("a region stands behind the whole: `.within(ball(3))`");
         } else if (const std::string ours = our_argument(name, formals);
-                   !ours.empty() && std::ranges::none_of(args, [&](const Argument &b) {
-                       return b.name && b.name->text == ours;
-                   })) {
+                   !ours.empty() && is_free(ours)) {
+            proposed.push_back(ours);
             say(others.size() == 1 ? fmt::format("did you mean `{}`?", ours)
                                    : fmt::format("write `{}` for `{}`", ours, name));
             fix.edits.push_back({a.name->span, ours});
@@ -404,7 +416,11 @@ bool shape_out_of_place(Evaluator &ev, std::string_view name, const lang::Functi
 void help_with_value(Evaluator &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,
                      Span place) {
     using lang::TypeName;
-    if (!place.source || is_library_place(ev, place)) return;
+    if (!place.source || is_library_place(ev, place)) {
+        if (v.kind == ValueKind::String && wanted == TypeName::Color)
+            d.help("colours are written without quotes: `red`, `#ff0000`");
+        return;
+    }
     const std::string written = text_of(ev, place);
     const bool list = written.starts_with('[') && written.ends_with(']');
     if (wanted == TypeName::Vec3 && list && is_numeric(v) && numeric_type(ev, v) == ir::Type::Vec2)
