@@ -279,11 +279,12 @@ bool Builder::foreign_junk(Index first, Index at) {
     if (found == Tok::String && kind(at - 1) == Tok::Name && token(at - 1).end == token(at).begin)
         return joined_by_space(at, false);
     const std::string name(text(first));
-    const bool literal = found == Tok::Number || found == Tok::String || found == Tok::Color;
+    const bool all = name == "assert" || name == "print" || name == "echo"; // `assert 1 < 2`
+    const bool literal = found == Tok::Number || found == Tok::String || found == Tok::Color ||
+                         (all && found == Tok::Name);
     if (literal && kind(first) == Tok::Name && at == first + 1) {
         Diagnostic &d = foreign(span(first, at), "a call's arguments stand in parentheses");
-        const bool all = name == "assert" || name == "print" || name == "echo";
-        const Index last = all ? statement_end(first) - 1 : at; // `assert 1 < 2`
+        const Index last = all ? statement_end(first) - 1 : at;
         d.help("write " +
                    in_code(name + "(" + std::string(text(token(at).begin, token(last).end)) + ")"),
                {{{id_, token(first).end, token(at).begin}, "("},
@@ -500,7 +501,8 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
         }
         return false;
     case Wanted::Name:
-        if (kind(before) == Tok::Let && (found == Tok::End || found == Tok::Open)) {
+        if (kind(before) == Tok::Let && at < tokens_.tokens.size() &&
+            (found == Tok::End || found == Tok::Open)) {
             const Index close = tokens_.match[at];
             std::vector<Edit> edits;
             if (found == Tok::End) // Curv's: the names follow on lines of their own

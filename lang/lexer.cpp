@@ -297,6 +297,8 @@ std::uint32_t Lexer::hash(std::uint32_t begin, std::uint32_t end) {
                    digits.empty() ? "a comment begins with `//`" : "there is no preprocessor");
         if (digits.empty())
             d.help("write `//`", {{span(begin, begin + 1), "//"}});
+        else if (digits == "define")
+            d.help("a value is bound by `let name = …`, a function by `fn name(x) = …`");
         else
             d.help(
                 "other files are brought in by `import \"file.sdf\"`; a comment begins with `//`");
