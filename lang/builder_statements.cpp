@@ -310,6 +310,7 @@ Builder::Index Builder::statement_end(Index first) const {
 // What stands for the statement in the tree. Its name stays declared, so that its uses are no new
 // errors.
 void Builder::replace_bad_statement(Index first) {
+    for (const Index name : std::exchange(lost_, {})) declare_poison(name);
     const Index end = statement_end(first);
     const Span whole = span(first, end > first ? end - 1 : first);
     Index name = first;
@@ -318,11 +319,19 @@ void Builder::replace_bad_statement(Index first) {
     case Tok::Var:
     case Tok::Fn:
     case Tok::Param: name = first + 1; break;
-    case Tok::Name: name = first + 1; break; // `vec2 x = …`, `def f(…)`
+    case Tok::Name: // `x = …`, `const float x = …`, `def f(…)`
+        while (kind(name + 1) == Tok::Name) ++name;
+        break;
     default: break;
     }
+    const Tok behind = kind(name + 1);
     const bool declares =
-        kind(first) != Tok::Name || kind(first + 2) == Tok::Assign || kind(first + 2) == Tok::Open;
+        kind(first) != Tok::Name || behind == Tok::Assign || (name > first && behind == Tok::Open);
+    if (kind(first) == Tok::Name && name == first && declares && kind(name) == Tok::Name &&
+        !is_declared(std::string(text(name)))) {
+        declare_poison(name);
+        return;
+    }
     if (name == first || kind(name) != Tok::Name || !declares) {
         add_stmt(Bad{}, whole, 1);
         return;
