@@ -65,6 +65,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
         {"POOL", "fathom_cache_pool"},
         {"PART", ".x"},
         {"TEXT", ""},
+        {"NUMBER", "1"},
     };
     values["HIT"] =
         name == "field" ? "Hit fathom_hit(vec3 p) { return Hit(1.0); }\n" : "fathom_hit";
@@ -98,7 +99,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
           "HIGH_MASK", "PLACE_BITS", "HEAD",     "TAIL",         "LIMIT",       "INSERTED",
           "EVICTED",   "DELETED",    "CROWDED",  "FULL",         "SWEPT",       "CHANGED",
           "PAID",      "WASTED",     "LEFT",     "STEPS",        "MANY",        "REFUSED",
-          "STRIDE",    "NUMBER",     "LAST"})
+          "STRIDE",    "LAST"})
         values.emplace(count, "2");
     for (const char *word : {"EMPTY", "NOWHERE", "PLACES"}) values.emplace(word, "7u");
     for (const std::string &flag : flags) values.emplace(flag, is(flag.c_str()) ? "1" : "");
