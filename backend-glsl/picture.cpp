@@ -127,7 +127,7 @@ std::string field_text(const Module &module, const SceneText &scene) {
             bound = std::max(bound, module.scene.facts[top.shape.index].lipschitz_sup);
     Inputs inputs(module);
     const std::string declared = inputs.of_field();
-    return expand("field", {{"HEAD", head(module) + inputs.defaults()},
+    return expand("field", {{"BEGIN", head(module) + inputs.defaults()},
                             {"INPUTS", declared},
                             {"BOUND", float_literal(bound > 0 ? bound : 1)},
                             {"FUNCTIONS", scene.tables + scene.functions},

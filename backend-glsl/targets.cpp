@@ -1,5 +1,7 @@
 #include "backend-glsl/targets.h"
 
+#include <cstddef>
+
 namespace fathom::glsl {
 
 namespace {
@@ -21,11 +23,5 @@ constexpr Target targets[] = {
 const TargetTraits &traits_of(Target target) { return rows[static_cast<std::size_t>(target)]; }
 
 std::span<const Target> all_targets() { return targets; }
-
-std::optional<Target> target_by_name(std::string_view name) {
-    for (const Target target : targets)
-        if (name == traits_of(target).name) return target;
-    return std::nullopt;
-}
 
 } // namespace fathom::glsl

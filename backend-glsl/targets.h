@@ -2,9 +2,7 @@
 // it. Code asks the row and names no target.
 #pragma once
 
-#include <optional>
 #include <span>
-#include <string_view>
 
 namespace fathom::glsl {
 
@@ -46,6 +44,5 @@ struct TargetTraits {
 
 const TargetTraits &traits_of(Target target);
 std::span<const Target> all_targets(); // in the table's order
-std::optional<Target> target_by_name(std::string_view name);
 
 } // namespace fathom::glsl

@@ -6,7 +6,7 @@
 
 namespace fathom::glsl {
 
-// Made from the files by cmake/Embed.cmake.
+// Made from the files by cmake/embed.cmake.
 const std::vector<std::pair<std::string_view, std::string_view>> &embedded_templates();
 
 namespace {

@@ -1,5 +1,5 @@
 $# The whole text of a field alone.
-$HEAD
+$BEGIN
 
 $INPUTS
 

@@ -141,8 +141,9 @@ TEST_CASE("what cannot be written is refused, with what to write") {
     refused("fathom render good.sdf" + small + "-o ''", "wants a name");
     refused("fathom compile good.sdf -o ''", "wants a name");
     refused("fathom view good.sdf --record ''", "wants a name");
-    refused("fathom compile good.sdf --target HTML", "spirv or html, not `HTML`");
-    refused("fathom compile good.sdf --target ''", "spirv or html, not ``");
+    const std::string last = std::string(" or ") + glsl::traits_of(glsl::all_targets().back()).name;
+    refused("fathom compile good.sdf --target HTML", last + ", not `HTML`");
+    refused("fathom compile good.sdf --target ''", last + ", not ``");
     refused("fathom compile good.sdf --target html --field-only", "--target es300 --field-only");
     refused("fathom compile good.sdf --noise-cache -o -", "name the first by -o");
     refused("fathom compile good.sdf --noise-cache", "name the first by -o");

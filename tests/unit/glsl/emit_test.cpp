@@ -3,8 +3,11 @@
 #include "tests/unit/glsl/scenes.h"
 
 #include "backend-glsl/emit.h"
+#include "backend-glsl/names.h"
 
 #include <catch2/catch.hpp>
+
+#include <sstream>
 
 using namespace fathom;
 using namespace fathom::scenes;
@@ -240,6 +243,23 @@ TEST_CASE("params are uniforms where there is a host, constants where there is n
     CHECK(count(emitted(scene, {.target = glsl::Target::Shadertoy}).text,
                 "const float param_radius = 1.25;") == 1);
     CHECK(count(emitted(scene, {.target = glsl::Target::Html}).text, "param_radius") > 1);
+}
+
+TEST_CASE("what a target's row reserves is no name in any text") {
+    std::size_t checked = 0;
+    for (const glsl::Target target : glsl::all_targets()) {
+        std::istringstream words(glsl::traits_of(target).reserved);
+        for (std::string word; words >> word; ++checked) {
+            CAPTURE(word);
+            CHECK(glsl::is_reserved(word));
+            CHECK_FALSE(glsl::is_reserved(word + "x"));
+            CHECK_FALSE(glsl::is_reserved(word.substr(1)));
+            CHECK(glsl::Names().unique(word) == word + "_2");
+        }
+    }
+    CHECK(checked > 10);
+    CHECK_FALSE(glsl::is_reserved(""));
+    CHECK_FALSE(glsl::is_reserved("iTime iTimeDelta"));
 }
 
 TEST_CASE("many plain materials are a table") {

@@ -46,7 +46,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
         {"WRITTEN_BY", "// a scene\n"},
         {"USE", "what to do"},
         {"FIXED_PARAMS", ""},
-        {"HEAD", "#version 450\n"},
+        {"BEGIN", "#version 450\n"},
         {"INPUTS", "const float one = 1.0;\n"},
         {"FUNCTIONS", "struct Hit { float distance; };\n"
                       "struct fathom_Material { vec3 diffuse; };\n"
