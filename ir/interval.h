@@ -185,11 +185,11 @@ inline Interval sin(Interval a) {
 }
 
 // x^n for a whole n >= 0.
-inline Interval whole_power(Interval a, int n) {
+inline Interval whole_power(Interval a, double n) {
     if (n == 0) return 1.0;
     if (n == 1) return a;
     if (n == 2) return square(a);
-    Interval base = n % 2 == 0 ? abs(a) : a;
+    Interval base = std::fmod(n, 2) == 0 ? abs(a) : a;
     return outward(std::pow(base.lo, n), std::pow(base.hi, n), rounding::library);
 }
 // x^y for x >= 0 (the part of `a` below 0 is left out).

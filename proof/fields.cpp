@@ -186,6 +186,7 @@ std::string cause_text(const ir::Graph &graph, NodeId cause) {
     case Op::Trunc:
     case Op::ToInt: return "`int` or `trunc`";
     case Op::Fract: return "`fract`";
+    case Op::ToFloat: return "a condition made into a number";
     case Op::Step: return "`step`";
     case Op::Sign: return "`sign`";
     case Op::Hash: return "`hash` of the point";
@@ -268,7 +269,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     }
     std::string cause = cause_text(graph, b.cause);
     const bool endless = !place(id).box.finite() && !place(id).zone;
-    const bool grows = b.trouble == Trouble::None ||
+    const bool grows = b.trouble == Trouble::None || b.trouble == Trouble::Overflow ||
                        (b.trouble == Trouble::Singular && only_grows(graph, b.cause));
     if (b.at_infinity || (grows && endless)) {
         const bool jumps = b.trouble == Trouble::Jump;
@@ -322,6 +323,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                       assume);
         return;
     }
+    case Trouble::Overflow: // told above
     case Trouble::Singular:
     case Trouble::None:
         if (Diagnostic *d = report(id, Code::FieldSingular,

@@ -34,10 +34,8 @@ static Value eval_list(Evaluator &ev, const File &ast, const lang::List &list, S
         numbers = numbers && is_scalar(ev, items.back());
     }
     if (wrong && items.size() <= 4) return poison();
-    if (numbers) {
-        const Value v = make_vector(ev, items, static_cast<int>(items.size()), place);
-        return computed(ev, v, items, place, "a vector of field time");
-    }
+    // `inf` may stand beside what is computed: the limits of a box, or of `clamp`
+    if (numbers) return make_vector(ev, items, static_cast<int>(items.size()), place);
     return list_value(ev, std::move(items));
 }
 

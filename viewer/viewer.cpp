@@ -67,6 +67,7 @@ void install_callbacks(GLFWwindow *window) {
 // that brought it was saved, of all that the scene reads. A file's change of state counts, since a
 // file that is moved into place keeps the time at which it was written.
 void tell_reload(App &app) {
+    if (app.errors.empty() && !app.on_screen) return;
     if (std::exchange(app.told, true) || !app.settings.tell) return;
     std::string since;
     struct stat file {};
@@ -97,15 +98,29 @@ std::string loop(App &app) {
                           app.sequence > 0 || app.frames_due > 0 || app.pending() ||
                           app.fading() > 0 ||
                           (app.controls.cache && app.cached.ready() && !app.cached.settled());
+        const bool working = app.worker->work().stage != Stage::Rest;
         if (busy && !hidden)
             glfwPollEvents();
         else if (settling && !hidden)
             glfwWaitEventsTimeout(0.05);
+        else if (working)
+            glfwWaitEventsTimeout(0.2); // its seconds are told
+        else if (!app.status.note.empty())
+            glfwWaitEventsTimeout(app.note_seconds_left());
         else
             glfwWaitEvents(); // a still scene costs nothing
         const double seconds = milliseconds_since(before) / 1000;
         before = Clock::now();
-        if (std::unique_ptr<Build> build = app.worker->take()) app.take(std::move(build));
+        if (working) app.frames_due = std::max(app.frames_due, 1);
+        app.drop_old_note();
+        if (std::unique_ptr<Build> build = app.worker->take()) {
+            if (build->good() && !build->linked) { // by this thread: it says so before
+                app.linking = true;
+                app.draw(0);
+                app.linking = false;
+            }
+            app.take(std::move(build));
+        }
         if (app.scene && !app.cached.asked())
             if (auto kept = app.worker->take_kept(app.scene->number)) {
                 app.cached.take(std::move(*kept));
@@ -205,7 +220,6 @@ std::string run(const Settings &settings) {
         App app(settings); // its programs and canvas end before their context
         app.window = opened.window;
         app.running = !settings.still;
-        app.status.note = "the first picture is on its way";
         glfwSetWindowUserPointer(opened.window, &app);
         install_callbacks(opened.window);
         start_panels(app);
@@ -220,8 +234,7 @@ std::string run(const Settings &settings) {
         app.worker = std::make_unique<Worker>(settings.file, settings.options, std::move(hooks));
         error = loop(app);
         if (error.empty() && settings.save_view && app.scene) {
-            app.write_view();
-            if (!app.status.note.starts_with("wrote")) error = app.status.note;
+            if (!app.write_view()) error = app.status.note;
         }
         app.worker.reset();
         end_panels();

@@ -60,6 +60,43 @@ NodeId simple_make(Graph &graph, Type type, std::span<const NodeId> args) {
     return {};
 }
 
+// sin(u)/u is 1 at 0, and not 0/0: u is taken no nearer to it than sin(u)/u is 1 in single
+// precision.
+NodeId sine_ratio(Graph &graph, NodeId u) {
+    const Type type = graph[u].type;
+    const NodeId least = graph.splat(graph.number(1e-3), type);
+    if (graph[u].op == Op::Max && (graph.arg(u, 0) == least || graph.arg(u, 1) == least)) return {};
+    const NodeId off = graph.make(Op::Max, type, {graph.make(Op::Abs, type, {u}), least});
+    return graph.make(Op::Div, type, {graph.make(Op::Sin, type, {off}), off});
+}
+
+bool exponents_of(const Graph &graph, NodeId sum, Op exponential, std::vector<NodeId> &out) {
+    if (graph[sum].op == exponential)
+        out.push_back(graph.arg(sum, 0));
+    else if (graph[sum].op != Op::Add)
+        return false;
+    else
+        return exponents_of(graph, graph.arg(sum, 0), exponential, out) &&
+               exponents_of(graph, graph.arg(sum, 1), exponential, out);
+    return true;
+}
+// log(exp(a) + exp(b) + …), two by two as max(a, b) + log(1 + exp(-|a - b|)): the exponentials of
+// numbers beyond 88 have no place in single precision.
+NodeId log_of_exponentials(Graph &graph, Op log, Type type, NodeId sum) {
+    const Op exponential = log == Op::Log ? Op::Exp : Op::Exp2;
+    std::vector<NodeId> terms;
+    if (!exponents_of(graph, sum, exponential, terms)) return {};
+    NodeId all = terms.front();
+    const NodeId one = graph.splat(graph.number(1), type);
+    for (std::size_t i = 1; i < terms.size(); ++i) {
+        const NodeId way = graph.make(Op::Abs, type, {graph.sub(all, terms[i])});
+        const NodeId rest = graph.make(exponential, type, {graph.neg(way)});
+        all = graph.add(graph.make(Op::Max, type, {all, terms[i]}),
+                        graph.make(log, type, {graph.add(one, rest)}));
+    }
+    return all;
+}
+
 bool is_identity(const Constant &matrix) {
     const int n = side(matrix.type);
     for (int c = 0; c < n; ++c)
@@ -132,6 +169,7 @@ NodeId Graph::simplified(Op op, Type type, std::span<const NodeId> args, std::ui
         return {};
     case Op::Div:
         if (is(1, 1)) return args[0];
+        if (op_of(0) == Op::Sin && arg(args[0], 0) == args[1]) return sine_ratio(*this, args[1]);
         if (is(1, -1)) return make(Op::Neg, type, {args[0]});
         if (!whole && is_constant(args[1]) && !is_constant(args[0])) {
             // By a power of two exactly, else division stays: it rounds once.
@@ -215,6 +253,9 @@ NodeId Graph::simplified(Op op, Type type, std::span<const NodeId> args, std::ui
     case Op::HitWith:
     case Op::FillPaint: return simple_hit(*this, op, args);
 
+    case Op::Log:
+    case Op::Log2: return log_of_exponentials(*this, op, type, args[0]);
+
     case Op::Length:
         return type == nodes_[args[0]].type ? make(Op::Abs, type, {args[0]}) : NodeId{};
 
@@ -234,8 +275,6 @@ NodeId Graph::simplified(Op op, Type type, std::span<const NodeId> args, std::ui
     case Op::InverseSqrt:
     case Op::Exp:
     case Op::Exp2:
-    case Op::Log:
-    case Op::Log2:
     case Op::Sin:
     case Op::Cos:
     case Op::Tan:

@@ -1,6 +1,7 @@
 // The viewer's parts that need no window: cameras, values, literals, editors, edits of the text.
 #include "base/encode.h"
 #include "driver/edit.h"
+#include "save-format/save_format.h"
 #include "scratch_folder.h"
 #include "viewer/camera.h"
 #include "viewer/editor.h"
@@ -9,8 +10,11 @@
 #include "viewer/slots.h"
 #include "viewer/views.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fmt/format.h>
+#include <sstream>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -192,6 +196,71 @@ TEST_CASE("a param's value and a camera are written where they stand, and nowher
     CHECK(with == "box(1)\n// view 2: camera(at: [0, 9, 0])\n// view 3: camera(at: [9, 0, 0])\n");
     CHECK(driver::views_in(with) == two);
     CHECK(driver::with_views(with, {}) == "box(1)\n");
+}
+
+TEST_CASE("a value is written as the text writes it: hex stays hex, degrees degrees") {
+    const auto written = [](const std::string &value, auto change) {
+        const std::string text = "param p = " + value + "\nsphere(1)\n";
+        driver::Compilation made = driver::compile_text("scene.sdf", text, "", {});
+        INFO(value);
+        REQUIRE(made.scene.params.size() == 1);
+        ir::Param param = made.scene.params[0];
+        change(param);
+        return viewer::value_text(param, driver::notation_of_param(text, "p"));
+    };
+    const auto same = [](ir::Param &) {};
+    for (const char *value :
+         {"#d08030", "#000000", "#ffffff", "rgb(0.5, 0.25, 1)", "30deg", "-45deg", "0.25turn",
+          "1.5", "[1, 2, 3]", "[30deg, 45deg, 90deg]", "true"})
+        CHECK(written(value, same) == value);
+    CHECK(written("#fff", same) == "#ffffff");
+    CHECK(written("#d0803080", same) == "#d08030");
+    CHECK(written("tomato", same).starts_with("rgb("));
+    CHECK(written("1.5rad", same) == "1.5");
+    const auto to = [](double x) { return [x](ir::Param &param) { param.value[0] = x; }; };
+    CHECK(written("#d08030", to(1)) == "#ff8030");
+    CHECK(written("#d08030", to(1.5)).starts_with("rgb(")); // brighter than hex can say
+    CHECK(written("30deg", to(0.5235988f)) == "30deg");
+    CHECK(written("30deg", to(1)) == "57.29578deg");
+    CHECK(written("30deg", to(0)) == "0");
+    // All values that eight bits a channel hold come back as they were.
+    for (int channel = 0; channel < 256; ++channel) {
+        const std::string value = fmt::format("#{0:02x}{0:02x}{0:02x}", channel);
+        CHECK(written(value, same) == value);
+    }
+}
+
+TEST_CASE("a text that is half written takes no camera") {
+    CHECK(driver::can_be_read("box(1)\ncamera(at: [1, 2, 3])\n"));
+    CHECK(driver::can_be_read("bxo(1)\n")); // a wrong name is in nobody's way
+    CHECK_FALSE(driver::can_be_read("for i in 0..3 {\n  box(1)\n"));
+    CHECK_FALSE(driver::can_be_read("sphere(1).translate([1,\n"));
+    CHECK_FALSE(driver::can_be_read("/* box(1)\n"));
+}
+
+TEST_CASE("a save file is seen from a camera, and is a save file still") {
+    const driver::Compilation scene = driver::compile_text(
+        "scene.sdf",
+        "smooth_union(0.2) { sphere(0.8).paint(#d08030); box(1).translate([1.2, 0, 0]) }\n"
+        "camera(at: [0, 0, 6], look_at: [0, 0, 0])\n",
+        "", {});
+    REQUIRE(scene.good());
+    Diagnostics diagnostics;
+    const std::string yaml = save::export_yaml(scene.scene, diagnostics);
+    const auto lines_that_differ = [&](const std::string &camera) {
+        const auto made = driver::save_file_with_camera(yaml, camera, "", {});
+        REQUIRE(std::holds_alternative<std::string>(made));
+        std::istringstream a(yaml), b(std::get<std::string>(made));
+        CHECK(std::count(yaml.begin(), yaml.end(), '\n') ==
+              std::ranges::count(std::get<std::string>(made), '\n'));
+        int differing = 0;
+        for (std::string x, y; std::getline(a, x) && std::getline(b, y);) differing += x != y;
+        return differing;
+    };
+    CHECK(lines_that_differ("camera(at: [0, 0, 6], look_at: [0, 0, 0], fov: 45deg)") == 0);
+    CHECK(lines_that_differ("camera(at: [6, 0, 0], look_at: [0, 0, 0], fov: 45deg)") == 1);
+    const auto broken = driver::save_file_with_camera("--- {", "camera(at: [6, 0, 0])", "", {});
+    CHECK(std::holds_alternative<driver::EditError>(broken));
 }
 
 TEST_CASE("views share the window and each has its place") {
