@@ -107,8 +107,10 @@ Value computed(Evaluator &ev, const Value &v, std::span<const Value> of, Span pl
         for (const Value &a : of)
             if (is_infinite(ev, a)) {
                 report_infinite(ev, place,
-                                fmt::format("{} of a field wants finite numbers, one is {}", what,
-                                            print_value(ev, a)));
+                                fmt::format("{} of a field wants finite numbers, one {}", what,
+                                            a.kind == ValueKind::Field
+                                                ? "holds `inf`"
+                                                : "is " + print_value(ev, a)));
                 return poison();
             }
     return in_range(ev, v, of, place);
