@@ -11,6 +11,7 @@
 #include "backend-glsl/validate.h"
 #include "base/text.h"
 #include "ir/lower/lower.h"
+#include "ir/passes/operations.h"
 #include "ir/view.h"
 
 #include <algorithm>

@@ -257,12 +257,12 @@ bool Builder::foreign_junk(Index first, Index at) {
                     {{id_, token(at).end, token(at).end}, ")"}});
         return true;
     }
-    switch (found) {
-    case Tok::Arrow:
+    if (found == Tok::Arrow) {
         foreign(span(at), "a function without a name is written with `=>`")
             .help("write `=>`", {{span(at), "=>"}});
         return true;
-    case Tok::FatArrow:
+    }
+    if (found == Tok::FatArrow) {
         if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open ||
             tokens_.match[first + 1] + 1 != at)
             return false;
@@ -270,13 +270,15 @@ bool Builder::foreign_junk(Index first, Index at) {
             .help("write `fn " + std::string(text(token(first).begin, token(at - 1).end)) + " = …`",
                   {{{id_, token(first).begin, token(first).begin}, "fn "}, {span(at), "="}});
         return true;
-    case Tok::Colon:
+    }
+    if (found == Tok::Colon) {
         if (kind(first) != Tok::Name || at != first + 1) return false;
         foreign(span(first), "a new name is bound with `let`")
             .help("write `let " + name + "`",
                   {{{id_, token(first).begin, token(first).begin}, "let "}});
         return true;
-    case Tok::OtherAssign: {
+    }
+    if (found == Tok::OtherAssign) {
         if (kind(first) != Tok::Name) return false;
         const std::string target(text(token(first).begin, token(at - 1).end));
         const std::string op(text(at).substr(0, 1));
@@ -285,17 +287,19 @@ bool Builder::foreign_junk(Index first, Index at) {
                   {{span(at), "= " + target + " " + op}});
         return true;
     }
-    case Tok::Comma:
+    if (found == Tok::Comma) {
         if (kind(first) != Tok::Let && kind(first) != Tok::Var) return false;
         foreign(span(at), "each name is bound by a `let` of its own");
         return true;
-    case Tok::If:
+    }
+    if (found == Tok::If) {
         foreign(span(at), "a choice begins with its condition")
             .help("write `if c { a } else { b }`");
         return true;
-    case Tok::In: foreign(span(at), "there is no operator `in`"); return true;
-    default: return false;
     }
+    if (found != Tok::In) return false;
+    foreign(span(at), "there is no operator `in`");
+    return true;
 }
 
 // Python's `lambda p: …`, at the `p`.

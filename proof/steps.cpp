@@ -6,8 +6,10 @@
 // across it, and a bound of its slope on each side bounds it on both.
 #include "proof/steps.h"
 
+#include "ir/passes/inline.h"
 #include "proof/continuity.h"
 
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -24,10 +26,7 @@ using ir::Op;
 constexpr std::size_t most_nodes = 4'000; // of a field that is looked at
 constexpr int most_depth = 400;
 
-bool is_step(Op op) {
-    return op == Op::Floor || op == Op::Ceil || op == Op::Round || op == Op::Fract ||
-           op == Op::Mod || op == Op::Atan2;
-}
+constexpr ir::OpSet is_step{Op::Floor, Op::Ceil, Op::Round, Op::Fract, Op::Mod, Op::Atan2};
 
 // -- one form for equal expressions --------------------------------------------------------------
 
@@ -96,45 +95,28 @@ struct Canonical {
         std::vector<NodeId> args;
         for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
             args.push_back(of(a, depth + 1));
-        switch (node.op) {
-        case Op::Mix:
-            if (auto t = number(args[2])) {
-                if (*t == 0) return args[0];
-                if (*t == 1) return args[1];
-            }
-            break;
-        case Op::ToFloat:
-            if (graph[args[0]].type == ir::Type::Int) return scalar(as_float(args[0]));
-            break;
-        case Op::ToInt:
-        case Op::Floor:
-        case Op::Ceil:
-        case Op::Round:
+        constexpr ir::OpSet rounds{Op::Floor, Op::Ceil, Op::Round}, turns{Op::Sin, Op::Cos};
+        if (node.op == Op::Mix)
+            if (auto t = number(args[2]); t && (*t == 0 || *t == 1)) return args[*t == 0 ? 0 : 1];
+        if (node.op == Op::ToFloat && graph[args[0]].type == ir::Type::Int)
+            return scalar(as_float(args[0]));
+        if (node.op == Op::ToInt || rounds[node.op])
             if (auto w = whole(args[0])) return node.op == Op::ToInt ? *w : args[0];
-            break;
-        case Op::Fract:
-            if (whole(args[0])) return graph.number(0);
-            break;
-        case Op::Mod: { // at a multiple of the divisor, up to the rounding of the numbers that say
-                        // so
+        if (node.op == Op::Fract && whole(args[0])) return graph.number(0);
+        if (node.op == Op::Mod) { // at a multiple of the divisor, up to the rounding of the numbers
+                                  // that say so
             auto x = number(args[0]), m = number(args[1]);
             if (x && m && *m != 0 && std::fabs(*x / *m - std::round(*x / *m)) < 1e-9)
                 return zero(node.type);
-            break;
         }
-        case Op::Sin:
-        case Op::Cos:
-            if (node.type == ir::Type::Float) args[0] = without_turns(graph, args[0]);
-            break;
-        case Op::Length: {
+        if (turns[node.op] && node.type == ir::Type::Float) args[0] = without_turns(graph, args[0]);
+        if (node.op == Op::Length) {
             NodeId sum = graph.number(0);
             for (int i = 0; i < ir::components(graph[args[0]].type); ++i) {
                 NodeId part = scalar(component_of(graph, args[0], i));
                 sum = graph.add(sum, graph.mul(part, part));
             }
             return graph.make(Op::Sqrt, ir::Type::Float, {scalar(sum)});
-        }
-        default: break; // NOLINT: every other op is made again of its arguments
         }
         NodeId made = graph.make(node.op, node.type, args, node.payload);
         if (node.type == ir::Type::Float) return scalar(made);
@@ -186,18 +168,18 @@ NodeId with_component(Graph &graph, NodeId id, int component, NodeId value) {
 // What a step gives left of a border (`after` false) and on it, where its argument is `border` = K
 // + half / 2.
 NodeId limit(Graph &graph, NodeId step, int component, NodeId whole, bool half, bool after) {
-    switch (graph[step].op) {
-    case Op::Floor: return after || half ? whole : graph.sub(whole, graph.number(1));
-    case Op::Ceil: return after || half ? graph.add(whole, graph.number(1)) : whole;
-    case Op::Round: return half && after ? graph.add(whole, graph.number(1)) : whole;
-    case Op::Fract: return half ? graph.number(0.5) : graph.number(after ? 0 : 1);
-    case Op::Mod: {
+    const auto one = [&] { return graph.number(1); };
+    const Op op = graph[step].op;
+    if (op == Op::Floor) return after || half ? whole : graph.sub(whole, one());
+    if (op == Op::Ceil) return after || half ? graph.add(whole, one()) : whole;
+    if (op == Op::Round) return half && after ? graph.add(whole, one()) : whole;
+    if (op == Op::Fract) return half ? graph.number(0.5) : graph.number(after ? 0 : 1);
+    if (op == Op::Mod) {
         NodeId m = component_of(graph, graph.arg(step, 1), component);
         return half ? graph.mul(m, graph.number(0.5)) : after ? graph.number(0) : m;
     }
-    case Op::Atan2: return graph.number(after ? -std::numbers::pi : std::numbers::pi);
-    default: return step; // no step: is_step
-    }
+    assert(op == Op::Atan2); // the last that is_step knows
+    return graph.number(after ? -std::numbers::pi : std::numbers::pi);
 }
 
 bool cancels(Graph &graph, NodeId root, const Group &group) {
@@ -248,49 +230,17 @@ std::vector<NodeId> reached(const Graph &graph, NodeId root, bool enter_calls) {
     return out;
 }
 
-struct WritingOut {
-    Graph &graph;
-    std::map<NodeId, NodeId> known{};
-    bool too_large = false;
-
-    NodeId of(NodeId id, int depth = 0) {
-        if (auto it = known.find(id); it != known.end()) return it->second;
-        if (depth > most_depth || known.size() > most_nodes) too_large = true;
-        if (too_large) return id;
-        const ir::Node node = graph[id];
-        std::vector<NodeId> args;
-        bool changed = false;
-        for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end())) {
-            args.push_back(of(a, depth + 1));
-            changed = changed || args.back() != a;
-        }
-        NodeId out = id;
-        if (node.op == Op::Call) {
-            const ir::Function function = graph.function(ir::FunctionId{node.payload});
-            ir::Substitution map;
-            for (std::size_t i = 0; i < function.params.size(); ++i)
-                map[function.params[i]] = args[i];
-            out = of(ir::substitute(graph, function.result, map), depth + 1);
-        } else if (changed) {
-            out = graph.make(node.op, node.type, args, node.payload);
-        }
-        known[id] = out;
-        return out;
-    }
-};
-
 } // namespace
 
 bool has_steps(const Graph &graph, NodeId root) {
     for (NodeId id : reached(graph, root, true))
-        if (is_step(graph[id].op) && graph[id].type != ir::Type::Int) return true;
+        if (is_step[graph[id].op] && graph[id].type != ir::Type::Int) return true;
     return false;
 }
 
-NodeId without_calls(Graph &graph, NodeId root) {
-    WritingOut writing{graph};
-    const NodeId out = writing.of(root);
-    return writing.too_large ? root : out;
+NodeId written_out(Graph &graph, NodeId root) {
+    const ir::WithoutCalls out = ir::without_calls(graph, root, most_nodes);
+    return out.all ? out.root : root;
 }
 
 std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
@@ -300,7 +250,7 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
     std::unordered_set<NodeId> steps;
     for (NodeId id : nodes) {
         const ir::Node node = graph[id];
-        if (!is_step(node.op) || !graph.reads(id).point || graph.reads(id).free_vars) continue;
+        if (!is_step[node.op] || !graph.reads(id).point || graph.reads(id).free_vars) continue;
         if (node.type != ir::Type::Float && !ir::is_vector(node.type)) continue;
         NodeId turning = graph.arg(id, 0);
         if (node.op == Op::Mod) turning = graph.div(turning, graph.arg(id, 1));

@@ -1,6 +1,7 @@
 // Arithmetic on numbers of both stages. What is known is computed through the graph's own constant
 // folding (so that an op has one meaning); the everyday operations on plain numbers have a short
 // way. What is not known becomes a node.
+#include "ir/passes/walk.h"
 #include "typecheck/evaluator.h"
 
 #include <fmt/format.h>

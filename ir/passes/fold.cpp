@@ -51,6 +51,13 @@ double sine(double x, int quarters) {
     return quarters == 0 ? std::sin(x) : std::cos(x);
 }
 
+// The functions of the op table on numbers: ir::sem's, but for those that stand here.
+namespace of_number {
+using namespace sem;
+double sin(double x) { return sine(x, 0); }
+double cos(double x) { return sine(x, 1); }
+} // namespace of_number
+
 // The arithmetic of ints where it differs from that of floats.
 template <class I, class F> Constant arithmetic(Type type, Args a, I of_int, F of_float) {
     if (type == Type::Int) return scalar(type, of_int(whole(a[0].value[0]), whole(a[1].value[0])));
@@ -195,21 +202,11 @@ std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload
     case Op::Round: return each(sem::round<D>);
     case Op::Trunc: return each([](D v) { return std::trunc(v); });
     case Op::Fract: return each(sem::fract<D>);
-    case Op::Sqrt: return each(sem::sqrt<D>);
-    case Op::InverseSqrt: return each(sem::inverse_sqrt<D>);
-    case Op::Exp: return each([](D v) { return std::exp(v); });
-    case Op::Exp2: return each([](D v) { return std::exp2(v); });
-    case Op::Log: return each(sem::log<D>);
-    case Op::Log2: return each(sem::log2<D>);
-    case Op::Sin: return each([](D v) { return sine(v, 0); });
-    case Op::Cos: return each([](D v) { return sine(v, 1); });
-    case Op::Tan: return each([](D v) { return std::tan(v); });
-    case Op::Asin: return each(sem::asin<D>);
-    case Op::Acos: return each(sem::acos<D>);
-    case Op::Atan: return each([](D v) { return std::atan(v); });
-    case Op::Sinh: return each([](D v) { return std::sinh(v); });
-    case Op::Cosh: return each([](D v) { return std::cosh(v); });
-    case Op::Tanh: return each([](D v) { return std::tanh(v); });
+#define FATHOM_FUNCTION(name, function, ...)                                                       \
+    case Op::name: {                                                                               \
+        return each([](D v) { return of_number::function(v); });                                   \
+    }
+#include "ir/ops.def"
     case Op::Clamp: return map3(type, a, sem::clamp<D>);
     case Op::Mix: return map3(type, a, sem::mix<D>);
     case Op::Smoothstep: return map3(type, a, sem::smoothstep<D>);
