@@ -1,39 +1,11 @@
 // See cache_text.h.
 #include "backend-glsl/cache_text.h"
 
-#include "backend-glsl/fill.h"
+#include "backend-glsl/template.h"
 
 namespace fathom::glsl {
 
 namespace {
-
-constexpr const char *hashing_text = R"(
-const ivec3 fathom_cache_shifts[$AGES] = ivec3[]($SHIFTS);
-
-// Where the key (cell, field) lies at that age.
-ivec3 fathom_cache_slot(ivec4 key, int age) {
-    int last = (1 << fathom_cache_bits) - 1;
-    return (key.xyz + fathom_cache_shifts[age] + key.w * $FIELD_SHIFT) & last;
-}
-
-ivec3 fathom_cache_place(uint index) {
-    int last = (1 << fathom_cache_bits) - 1;
-    int place = int(index & $PLACES);
-    return ivec3(place, place >> fathom_cache_bits, place >> (2 * fathom_cache_bits)) & last;
-}
-)";
-
-constexpr const char *known_text = R"(// Whether the key had a place before this frame.
-bool fathom_known(ivec4 key) {
-    ivec3 high = key.xyz >> fathom_cache_bits & $HIGH_MASK;
-    uint tag = uint(high.x | high.y << $HIGH_BITS | high.z << (2 * $HIGH_BITS));
-    for (int age = 0; age < fathom_cache_ages; ++age) {
-        uvec2 found = texelFetch(fathom_cache_index, fathom_cache_slot(key, age), 0).xy;
-        if ((found.x & 0x7fffffffu) == tag && found.y >> $PLACE_BITS == uint(key.w | age << 8)) return true;
-    }
-    return false;
-}
-)";
 
 std::string whole(const std::array<int, 3> &v) {
     return "ivec3(" + std::to_string(v[0]) + ", " + std::to_string(v[1]) + ", " +
@@ -77,8 +49,5 @@ Values cache_numbers() {
             {"WISHES", std::to_string(cache_wishes)},
             {"MANY", std::to_string(cache_many)}};
 }
-
-std::string cache_hashing() { return fill(hashing_text, cache_numbers()); }
-std::string cache_known() { return fill(known_text, cache_numbers()); }
 
 } // namespace fathom::glsl

@@ -2,12 +2,11 @@
 #include "backend-glsl/emit.h"
 
 #include "backend-glsl/assemble.h"
-#include "backend-glsl/fill.h"
 #include "backend-glsl/html.h"
 #include "backend-glsl/marcher.h"
-#include "backend-glsl/probe.h"
 #include "backend-glsl/prune.h"
 #include "backend-glsl/roll.h"
+#include "backend-glsl/template.h"
 #include "backend-glsl/validate.h"
 #include "base/text.h"
 #include "ir/lower/lower.h"

@@ -1,4 +1,4 @@
-// From a lowered scene to shader text, for each target of cli.md. What is given out has been
+// From a lowered scene to shader text, for each target (docs/shaders.md). What is given out has been
 // checked by glslang. Sees expressions, functions, folds and tables only; knows no language, opens
 // no file, calls no GL.
 #pragma once
@@ -26,7 +26,7 @@ enum class Instruments {
     None,
     Pick, // a second output, fathom_pick: (part, t, steps, slope of the marched field at the hit);
           // (0, -1, steps, 0) where the ray hits nothing
-    Probe // no picture: fathom_pick is, by fathom_mode, what probe.h says
+    Probe // no picture: fathom_pick is, by fathom_mode, what marcher.h says
 };
 
 struct Options {

@@ -1,6 +1,6 @@
 #include "backend-glsl/html.h"
 
-#include "backend-glsl/fill.h"
+#include "backend-glsl/template.h"
 #include "base/text.h"
 #include "ir/view.h"
 

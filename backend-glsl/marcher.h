@@ -5,12 +5,15 @@
 //   fathom_lighting(), fathom_Light fathom_light(int), vec3 fathom_background(vec3)
 // and the host as these inputs (uniforms; where a target has no host of ours, globals that its main
 // sets):
-//   vec2 fathom_resolution          the whole picture's size in pixels
-//   vec2 fathom_offset              the sample's place in the pixel, from its top left, 0..1
-//   (ir::sample_offset) vec3 fathom_origin, fathom_right, fathom_up, fathom_forward; float
-//   fathom_extent, fathom_focus; int fathom_orthographic         ir::View vec3 fathom_sun towards
-//   the default sun, where the scene has no light float fathom_time int fathom_mode 0 the picture,
-//   sRGB; 1 steps as a heat map; 2 (steps, t, paint, hit) as numbers; 3 linear colour
+//   vec2 fathom_resolution   the whole picture's size in pixels
+//   vec2 fathom_offset       the sample's place in the pixel, from its top left, 0..1
+//                            (ir::sample_offset)
+//   vec3 fathom_origin, fathom_right, fathom_up, fathom_forward; float fathom_extent, fathom_focus;
+//   int fathom_orthographic  ir::View
+//   vec3 fathom_sun          towards the default sun, where the scene has no light
+//   float fathom_time        seconds
+//   int fathom_mode          0 the picture, sRGB; 1 steps as a heat map; 2 (steps, t, paint, hit) as
+//                            numbers; 3 linear colour
 #pragma once
 
 #include <string>
@@ -40,9 +43,13 @@ struct MarcherOptions {
 
 std::string marcher_text(const MarcherOptions &options);
 
-// Parts of it, for probe.h: lengths, gradient and the march itself; and the statements that make
-// the ray of a `place`: origin, direction, begin and end.
-std::string march_text(const MarcherOptions &options);
-std::string ray_text(const MarcherOptions &options);
+// A shader that shows the field itself and not a picture of it, for the viewer's analysis. It knows
+// nothing of materials and lights, and writes as fathom_pick
+//   fathom_mode 4, the slice: (distance, t, 0, 1) where the ray meets the plane fathom_plane (unit
+//                  normal, offset), else 0
+//   fathom_mode 5, the check of steps: (verdict, t of the march, t of the check, steps). Verdict 0:
+//                  they agree; 1: the march passed a surface; 2: the march ran out of steps; 3: the
+//                  check did
+std::string probe_text(const MarcherOptions &options);
 
 } // namespace fathom::glsl

@@ -84,7 +84,7 @@ class Diagnostics {
 // related labels, notes and the help. `color` adds ANSI colours.
 std::string to_text(const Diagnostic &diagnostic, const Sources &sources, bool color);
 
-// The JSON object of cli.md, without a trailing line end: "code severity message file line column
+// One JSON object, as `check --json` prints it, without a trailing line end: "code severity message file line column
 // end_line end_column label labels notes fix". Ends are one past the last code point. Without a
 // place, file and numbers are null.
 std::string to_json(const Diagnostic &diagnostic, const Sources &sources);

@@ -1,4 +1,4 @@
-// Diagnostics as JSON, for editors and scripts; the form is fixed in docs (cli).
+// Diagnostics as JSON, for editors and scripts; the form is fixed in diagnostic.h.
 #include "base/diagnostic.h"
 #include "base/text.h"
 

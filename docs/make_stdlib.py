@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import textwrap
 
 root = pathlib.Path(__file__).resolve().parent.parent
 files = [
@@ -28,14 +29,17 @@ unframed = {"gdf", "dfmodel_gdf_pair", "columns_difference", "columns_intersecti
 no_shape = {"dfmodel_keep"}  # its example makes none
 introduction = """# The standard library
 
-Made by `docs/make_stdlib.py` from the comments in `stdlib/*.sdf`; `fathom doc NAME` prints an entry. *Exact* fields are the
-distance to the surface, *lower bounds* never exceed it; the *bound* is the Lipschitz constant before the compiler divides by it.
-Sizes are full, outer lengths unless said; shapes are centred at the origin; y is up; angles are in radians (`30deg` writes them
-in degrees). A number stands for a vector of equal components. A last argument `shapes` takes a block, a list, or shapes.
+Made by `docs/make_stdlib.py` from the comments in `stdlib/*.sdf`; `fathom doc NAME` prints an
+entry. *Exact* fields are the distance to the surface, *lower bounds* never exceed it; the *bound*
+is the Lipschitz bound before the compiler divides by it. Sizes are full, outer lengths unless said;
+shapes are centred at the origin; y is up; angles are in radians (`30deg` writes them in degrees). A
+number stands for a vector of equal components. A last argument `shapes` takes a block, a list, or
+shapes.
 
-Faces in one plane: `round_union`, `chamfer_union` and their like add material wherever two surfaces are near, so two boxes whose
-tops lie in one plane get a swelling along their seam (left). Unite such parts plainly, and blend the result with the others (right):
-`round_union(0.2, a | b, c)`; or move one top by the blend's radius.
+Faces in one plane: `round_union`, `chamfer_union` and the like add material wherever two surfaces
+are near, so two boxes whose tops lie in one plane get a swelling along their seam (left). Unite
+such parts plainly, and blend the result with the others (right): `round_union(0.2, a | b, c)`; or
+move one top by the blend's radius.
 
 ![Left a swelling where two tops meet, right none](stdlib/coplanar.png)
 
@@ -43,6 +47,13 @@ tops lie in one plane get a swelling along their seam (left). Unite such parts p
 COPLANAR
 ```
 """
+
+
+def wrapped(text, indent=""):
+    """A paragraph within 100 columns; code between backticks stays on one line."""
+    held = re.sub(r"`[^`]*`", lambda code: code.group().replace(" ", "\0"), text)
+    lines = textwrap.fill(held, 100, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+    return lines.replace("\0", " ")
 
 
 def entries(path):
@@ -106,7 +117,7 @@ def main():
             if (root / "docs" / "stdlib" / f"{key}.png").exists():
                 page.append(f"![{name}](stdlib/{key}.png)\n")
             words = " ".join(d for d in doc if not d.startswith("Example:"))
-            page.append(words + "\n")
+            page.append(wrapped(words) + "\n")
             if example:
                 page.append(f"```\n{example}\n```\n")
     page.append("\n## Built in\n\nWhat the language itself cannot say. `fathom doc NAME` prints these, too.\n")
@@ -117,7 +128,7 @@ def main():
         if name in own:
             continue
         lines = subprocess.run([program, "doc", name], check=True, capture_output=True, text=True).stdout.strip().split("\n\n")
-        page.append(f"- `{lines[0]}`: {' '.join(lines[1:])}")
+        page.append(wrapped(f"- `{lines[0]}`: {' '.join(lines[1:])}", "  "))
     (root / "docs" / "stdlib.md").write_text("\n".join(page).rstrip() + "\n")
 
 

@@ -32,7 +32,7 @@ bool is_vector(Type type);  // Vec2, Vec3, Vec4
 bool is_matrix(Type type);
 const char *type_name(Type type); // the language's and GLSL's name: "vec3"
 
-// The blend profiles of two distances a and b within r of the seam (lipschitz.md, 4); n: steps or
+// The blend profiles of two distances a and b within r of the seam (lipschitz.md, 3); n: steps or
 // columns. Each is exactly min(a, b) outside its compact support.
 enum class Profile : std::uint8_t { Smooth, Round, Chamfer, Stairs, Columns };
 

@@ -89,8 +89,8 @@ template <class T> T smoothstep(T lo, T hi, T x) {
 // Defined for all arguments:
 //   x > 0   exp(y log x)
 //   x = 0   1 for y = 0, 0 for y > 0, +infinity for y < 0
-//   x < 0   whole y: |x|^y, negated where y is odd (so x^2 and x^3 are what they look like); other
-//   y: 0
+//   x < 0   whole y: |x|^y, negated where y is odd (so x^2 and x^3 are what they look like);
+//           other y: 0
 template <class T> T pow(T x, T y) {
     using std::floor;
     using std::pow;

@@ -124,7 +124,7 @@ struct Material {
     std::string name{}; // of the `let` that named it, where one did: the save format's name for it
 };
 
-// What may be said of a field (lipschitz.md, 0), best first.
+// What may be said of a field (lipschitz.md, 1), best first.
 enum class FieldKind : std::uint8_t {
     Exact,   // E: |f| is the distance to the surface, on both sides; L = 1
     Bound,   // B: |f| never exceeds that distance
@@ -157,7 +157,7 @@ struct Claims {
                   // unknown
     std::array<bool, 3> symmetric{}; // mirror symmetry across x = 0, y = 0, z = 0
     std::array<NodeId, 3>
-        lever{}; // sup |(p x grad f)_axis| (lipschitz.md, 2 and 11); invalid: derived from the box
+        lever{}; // sup |(p x grad f)_axis| (lipschitz.md, 5.1); invalid: derived from the box
 };
 
 struct Library {

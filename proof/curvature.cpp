@@ -1,5 +1,5 @@
 // Bounds of second derivatives from above, for the second rule by which rays step (lipschitz.md,
-// curvature): of a distance less a number, and of what is displaced from one.
+// 4): of a distance less a number, and of what is displaced from one.
 #include "proof/prover.h"
 
 #include <algorithm>

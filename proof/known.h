@@ -24,7 +24,7 @@ struct Known {
     // A tree of min and max over exact fields, rigidly moved: its value is a part's true distance.
     bool parts_exact = false;
     // The field's gradient is everywhere a convex mean of vectors L*n, n the unit gradient of an
-    // exact part whose nearest surface point lies in this box (lipschitz.md, lever arms).
+    // exact part whose nearest surface point lies in this box (lipschitz.md, 5.1).
     // Everything: unknown.
     Box parts = Box::everything();
     // {f < t} lies in fact.bounds grown by swell*t, t >= 0; {f > -t} in outer grown by swell_out*t.
@@ -60,6 +60,6 @@ double norm_of(const Box &box);                // the largest distance of its po
 Box padded(const Box &box);                    // by the float32 slack
 
 constexpr double slack =
-    1e-6; // relative: what float32 evaluation of a proved bound may lose (docs/lipschitz.md)
+    1e-6; // relative: what float32 evaluation of a proved bound may lose (docs/lipschitz.md, 2)
 
 } // namespace fathom::proof

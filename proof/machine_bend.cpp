@@ -3,7 +3,7 @@
 // kinks have none. Only what displacements are made of has a rule; all else is infinity, which is
 // true.
 //
-// With n the norms, b the bends, by the product and chain rules (docs/lipschitz.md, curvature):
+// With n the norms, b the bends, by the product and chain rules (docs/lipschitz.md, 4):
 //   a + b         ba + bb
 //   a * b         max|a| bb + max|b| ba + 2 na nb, by component: |u o v| <= |u| |v|
 //   f(a)          max|f'| ba + max|f''| na^2

@@ -1,5 +1,5 @@
 // One rule an op: the value's interval, the partial derivatives' intervals, the norm; what mixes
-// components stands in machine_vectors.cpp. Proofs: docs/lipschitz.md.
+// components stands in machine_vectors.cpp. Proofs: docs/lipschitz.md, 2.
 #include "ir/noise.h"
 #include "proof/machine_step.h"
 

@@ -1,5 +1,5 @@
 // The rules of what mixes components: moves between vectors, lengths and products. Proofs:
-// docs/lipschitz.md.
+// docs/lipschitz.md, 2.
 #include "proof/machine_step.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // The rules for maps: rigid motions, scales, folds, and the deformations with their lever arms.
-// Proofs: docs/lipschitz.md.
+// Proofs: docs/lipschitz.md, 5.
 #include "ir/maps.h"
 #include "proof/deformed.h"
 #include "proof/prover.h"

@@ -1,6 +1,6 @@
 // Displacements that are sums, as octaves of noise are: with the first terms alone, and the most
-// that the others can add, a ray may step by a bound that is less steep (lipschitz.md, nested
-// octaves).
+// that the others can add, a ray may step by a bound that is less steep (lipschitz.md, 3,
+// nested octaves).
 #include "ir/passes/inline.h"
 #include "proof/prover.h"
 
@@ -65,7 +65,7 @@ struct Unrolled {
         std::vector<NodeId> state(graph.args(fold_node).begin(), graph.args(fold_node).end());
         failed = failed || !count || *count < 0 || *count > double(most_octaves) || fold.condition;
         for (int turn = 0; !failed && turn < int(*count); ++turn)
-            state = ir::after_turn(graph, fold, turn, state);
+            state = ir::after_iteration(graph, fold, turn, state);
         return state;
     }
 };

@@ -1,5 +1,5 @@
 // Repetition: how many copies have to be evaluated so that the least of them bounds the distance to
-// all, continuously. Proofs: docs/lipschitz.md, repetition.
+// all, continuously. Proofs: docs/lipschitz.md, 7.
 #include "proof/prover.h"
 
 #include <algorithm>

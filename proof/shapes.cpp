@@ -1,5 +1,5 @@
 // The rules of the kinds that combine, displace, repeat as a family, or claim. Proofs:
-// docs/lipschitz.md.
+// docs/lipschitz.md, 3.
 #include "proof/prover.h"
 
 #include <algorithm>

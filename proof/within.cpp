@@ -1,5 +1,5 @@
 // The rule for what is confined to a region: ways round its holes, the raw field in them, and
-// bounds by cells for fields that are steep in places. Proofs: docs/lipschitz.md, regions.
+// bounds by cells for fields that are steep in places. Proofs: docs/lipschitz.md, 6.
 #include "proof/prover.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using ir::rounding::up;
 
 namespace {
 
-// The longest way round the holes over the straight line through them (lipschitz.md, regions): pi/2
+// The longest way round the holes over the straight line through them (lipschitz.md, 6): pi/2
 // for a ball or a tube, 1 + the second smallest side over the smallest for a box. Infinity where
 // the way round may leave the region.
 double detour_of(const Zone &zone) {
@@ -76,7 +76,7 @@ double detour_of(const Zone &zone) {
 
 // In a hole the raw field goes from its value at the way out to the mean of two opposite ones, by
 // the part s of the way (ir/lower/shapes.cpp): its slope over that of the field (lipschitz.md,
-// regions).
+// 6).
 double slope_in_holes(const Zone &zone) {
     const double quarter = 1.5707963267948968;
     double worst = 1;

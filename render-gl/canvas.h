@@ -66,7 +66,7 @@ class Canvas {
 
     Pick pick(int x, int y) const; // from the top left
     // Rows from the top, four floats a pixel: the picks as pick() reads them, the probe as glsl's
-    // probe.h says.
+    // marcher.h says.
     std::vector<float> read_picks() const { return read(picks_framebuffer_); }
     std::vector<float> read_probe() const { return read(probe_framebuffer_); }
     Picture read_picture() const; // what is shown, without a window

@@ -86,9 +86,9 @@ class StepWriter {
         for (int turn = 0; turn < static_cast<int>(*turns); ++turn) {
             if (graph_.size() > most_nodes_) return nullptr;
             if (loop.condition)
-                running = graph_.make(
-                    Op::And, {running, ir::in_turn(graph_, loop, turn, values, loop.condition)});
-            const std::vector<NodeId> next = ir::after_turn(graph_, loop, turn, values);
+                running = graph_.make(Op::And, {running, ir::in_iteration(graph_, loop, turn,
+                                                                          values, loop.condition)});
+            const std::vector<NodeId> next = ir::after_iteration(graph_, loop, turn, values);
             for (std::size_t k = 0; k < values.size(); ++k)
                 values[k] = graph_.make(Op::Select, {running, next[k], values[k]});
         }

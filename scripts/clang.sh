@@ -1,6 +1,11 @@
 #!/bin/sh
-# Everything with clang++, warnings as errors, in build-clang/, and the whole test suite with it. Arguments go to ctest.
+# Builds everything with clang++ in build-clang/, warnings as errors, and runs the tests with it.
+#   scripts/clang.sh build             only builds
+#   scripts/clang.sh [CTEST OPTIONS]   builds and tests
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
-cmake -G Ninja -S "$root" -B "$root/build-clang" -DCMAKE_CXX_COMPILER=clang++ || exit 3
-ninja -C "$root/build-clang" || exit 3
-exec ctest --test-dir "$root/build-clang" --output-on-failure "$@"
+. "$root/scripts/setup.sh"
+install_packages "$build_packages" "$test_packages" || exit 3
+use_ccache
+cd "$root" && cmake --preset clang >&2 && cmake --build --preset clang >&2 || exit 1
+[ "${1:-}" = build ] && exit 0
+exec ctest --preset clang "$@"

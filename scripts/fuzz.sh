@@ -14,10 +14,10 @@ yaml_fuzz) length=4096 words=yaml.dict seeds=$fuzz/yaml_seeds ;;
 all) ;;
 *) echo "there is no target $target" >&2; exit 2 ;;
 esac
-launcher=""
-command -v ccache >/dev/null && launcher=-DCMAKE_CXX_COMPILER_LAUNCHER=ccache
-[ -e "$build/build.ninja" ] ||
-    cmake -G Ninja -S "$root" -B "$build" -DCMAKE_CXX_COMPILER=clang++ -DFATHOM_FUZZ=ON -DCMAKE_UNITY_BUILD=ON $launcher || exit 3
+. "$root/scripts/setup.sh"
+use_ccache
+cd "$root" || exit 3
+[ -e "$build/build.ninja" ] || cmake --preset fuzz || exit 3
 if [ "$target" = all ]; then
     exec flock "$build" ninja -C "$build" parse_fuzz compile_fuzz yaml_fuzz
 fi

@@ -1,9 +1,9 @@
 #!/bin/sh
-# The unit tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build-sanitize/. Takes about ten minutes.
-# COMPILER=clang++ scripts/sanitize.sh takes the other compiler; arguments go to ctest.
+# Runs the unit, golden and conformance tests under AddressSanitizer and
+# UndefinedBehaviorSanitizer, in build-sanitize/. Arguments go to ctest. Takes about ten minutes.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
-cmake -G Ninja -S "$root" -B "$root/build-sanitize" -DFATHOM_SANITIZE=ON -DCMAKE_UNITY_BUILD=ON -DCMAKE_BUILD_TYPE=Debug \
-    -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
-    ${COMPILER:+-DCMAKE_CXX_COMPILER=$COMPILER} ${CCACHE:+-DCMAKE_CXX_COMPILER_LAUNCHER=ccache} || exit 3
-ninja -C "$root/build-sanitize" || exit 3
-exec ctest --test-dir "$root/build-sanitize" --output-on-failure -R 'unit_|golden|conformance' "$@"
+. "$root/scripts/setup.sh"
+install_packages "$build_packages" "$test_packages" || exit 3
+use_ccache
+cd "$root" && cmake --preset sanitize >&2 && cmake --build --preset sanitize >&2 || exit 1
+exec ctest --preset sanitize -R 'unit_|golden|conformance' "$@"

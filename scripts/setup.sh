@@ -4,7 +4,7 @@
 # To build and to run. Mesa draws without a graphics card and without a display.
 build_packages="g++ cmake ninja-build ccache pkg-config libfmt-dev tao-pegtl-dev libcli11-dev libglfw3-dev libimgui-dev
 libepoxy-dev libegl-dev libyaml-dev glslang-dev spirv-tools libpng-dev libjpeg-dev catch2 libegl1 libgl1-mesa-dri"
-# To test: a display of our own for the viewer, a second compiler for the fuzzers.
+# To test: a display of our own for the viewer, a second compiler for the fuzzers and for .ci/run.
 test_packages="xvfb xauth xdotool clang"
 
 say() { printf '%s\n' "fathom: $*" >&2; }
@@ -36,6 +36,12 @@ install_packages() {
     }
 }
 
+# use_ccache: what is configured from here on compiles through ccache, where there is one.
+use_ccache() {
+    command -v ccache >/dev/null && export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+    return 0
+}
+
 # changed_since STAMP: did a source, or a folder's list of files, change after it?
 changed_since() {
     [ -e "$1" ] || return 0
@@ -52,9 +58,8 @@ build() {
     touch "$root/build/.started"
     if [ ! -e "$root/build/build.ninja" ]; then
         say "configuring (into build/)"
-        launcher=""
-        command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
-        cmake -G Ninja -S "$root" -B "$root/build" -DCMAKE_UNITY_BUILD=ON $launcher >"$root/build/configure.log" 2>&1 || {
+        use_ccache
+        cmake -G Ninja -S "$root" -B "$root/build" -DCMAKE_UNITY_BUILD=ON >"$root/build/configure.log" 2>&1 || {
             cat "$root/build/configure.log" >&2
             rm -f "$root/build/build.ninja"
             return 1

@@ -16,7 +16,7 @@ namespace fathom::cpu {
 struct Work {
     std::uint64_t rays = 0; // from the eye
     std::uint64_t hits = 0;
-    std::uint64_t steps = 0; // of rays from the eye: evaluations on their way, looks.h's `steps`
+    std::uint64_t steps = 0; // of rays from the eye: evaluations on their way, look.h's `steps`
     std::uint64_t shadow_steps = 0;
     std::uint64_t evaluations = 0; // of the distance, for whatever purpose
     // With pruning: of those, how many a far cell answered; what cells near the surface keep of the

@@ -83,7 +83,7 @@ NodeId Lowering::divided_by_cells(ShapeId id, NodeId field, NodeId q) {
 
 // How far it reaches by curvature: sqrt(2 f/M), as far as the cell's M holds and the field is the
 // region's. Where the least of the field on a way lies nearer than that, it lies within both, and
-// the slope along the way is 0 there (lipschitz.md, curvature).
+// the slope along the way is 0 there (lipschitz.md, 4).
 NodeId Lowering::bent_by_cells(ShapeId id, Where frame) {
     Graph &g = graph_;
     const NodeId p = frame.p;

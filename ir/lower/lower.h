@@ -1,15 +1,15 @@
 // Shapes to functions. The one place that knows what each ShapeKind computes; after it a back end
 // sees only expressions, functions and folds.
 //
-// Four readings of a shape (semantics.md, 10 and 11); looks (normals, occlusion, |f|/|grad f|) use
-// the marched one, normalised by its gradient:
+// Four readings of a shape (semantics.md, 10 and 11). What looks at a picture (normals, occlusion,
+// |f|/|grad f|) uses the marched one, normalised by its gradient.
 //   raw      the field itself, which offsets, blends and displacements consume
-//   marched  through the outermost min/max tree (Union, Intersection, Complement, Xor, Paint,
-//   Repeat, Many, Library without
-//            claims, and Maps that keep or undo lengths: rigid, uniformly scaled, Fold, Revolve;
-//            Extrude) down to its leaves, each divided there by its own bound (facts[s].lipschitz);
-//            Within answers by its region, with its child's bound, which is to hold in the region;
-//            `guard`ed shapes by max with their box's distance
+//   marched  the distance that rays use. It goes through the outermost min/max tree (Union,
+//            Intersection, Complement, Xor, Paint, Repeat, Many, Library without claims, Extrude,
+//            and Maps that keep or undo lengths: rigid, uniformly scaled, Fold, Revolve) down to
+//            its leaves, each divided there by its own bound (facts[s].lipschitz). Within answers
+//            by its region, with its child's bound, which has to hold in the region; `guard`ed
+//            shapes by max with their box's distance
 //   hit      marched, carrying which surface decides
 //   reach    marched, and how far that reaches by curvature (look.h); only where some displacement
 //            has it, and through what reach.cpp names

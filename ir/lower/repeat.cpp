@@ -1,5 +1,5 @@
 // Unions of many copies: lattices, rings, and families whose members differ by a row of numbers.
-// (semantics.md, 14; lipschitz.md, 3: the nearest copy and the next on the side of the fraction.)
+// (semantics.md, 14; lipschitz.md, 7: the nearest copy and the next on the side of the fraction.)
 // How many copies are asked is the analysis's.
 #include "ir/lower/lowering.h"
 

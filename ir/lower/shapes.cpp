@@ -125,7 +125,7 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Where frame) {
 // the others can add. The greatest of all of these is the marched field; what is left of a dear sum
 // is asked only where it can be greater than what is known already. The reach is more than that
 // where all of the field is asked: sqrt(2 f/M), with no rounding of f worth counting
-// (lipschitz.md).
+// (lipschitz.md, 4).
 NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     const ShapeFact &known = fact(id);
     const bool reaches = reading == Reading::Reach;
@@ -335,7 +335,7 @@ NodeId Lowering::pseudonorm(const Shape &s, Where frame) {
     return g.sub(g.make(Op::Max, {one, g.make(Op::Union, {a, b})}), norm);
 }
 
-// -- within (semantics.md, 11; lipschitz.md, 9)
+// -- within (semantics.md, 11; lipschitz.md, 6)
 
 namespace {
 template <class F> Region map_region(const Region &region, F read) {

@@ -44,21 +44,22 @@ NodeId called(Graph &graph, NodeId call) {
 }
 
 namespace {
-Substitution of_turn(Graph &graph, const Fold &fold, int turn, std::span<const NodeId> values) {
-    Substitution map{{fold.index, graph.integer(turn)}};
+Substitution of_iteration(Graph &graph, const Fold &fold, int iteration,
+                          std::span<const NodeId> values) {
+    Substitution map{{fold.index, graph.integer(iteration)}};
     for (std::size_t i = 0; i < values.size(); ++i) map[fold.vars[i]] = values[i];
     return map;
 }
 } // namespace
 
-NodeId in_turn(Graph &graph, const Fold &fold, int turn, std::span<const NodeId> values,
-               NodeId expression) {
-    return substitute(graph, expression, of_turn(graph, fold, turn, values));
+NodeId in_iteration(Graph &graph, const Fold &fold, int iteration, std::span<const NodeId> values,
+                    NodeId expression) {
+    return substitute(graph, expression, of_iteration(graph, fold, iteration, values));
 }
 
-std::vector<NodeId> after_turn(Graph &graph, const Fold &fold, int turn,
-                               std::span<const NodeId> values) {
-    const Substitution map = of_turn(graph, fold, turn, values);
+std::vector<NodeId> after_iteration(Graph &graph, const Fold &fold, int iteration,
+                                    std::span<const NodeId> values) {
+    const Substitution map = of_iteration(graph, fold, iteration, values);
     std::vector<NodeId> after;
     for (NodeId next : fold.next) after.push_back(substitute(graph, next, map));
     return after;

@@ -1,4 +1,4 @@
-// Calls and turns of loops written out where they stand. In come a graph and a call, a loop or an
+// Inlining: calls and iterations of loops written out where they stand. In come a graph and a call, a loop or an
 // expression; out go nodes of the same graph with the same values. Names that a function or a loop
 // binds are replaced by what is given for them. It never enters the body of a loop that it is not
 // asked for, and removes nothing.
@@ -16,12 +16,12 @@ NodeId called(Graph &graph, FunctionId function, std::span<const NodeId> args,
               const Substitution &also = {});
 NodeId called(Graph &graph, NodeId call); // of a Call node
 
-// An expression of a loop's body in one turn, by the values that the loop carries into it; and
+// An expression of a loop's body in one iteration, by the values that the loop carries into it; and
 // these values after it. Its condition is not asked.
-NodeId in_turn(Graph &graph, const Fold &fold, int turn, std::span<const NodeId> values,
-               NodeId expression);
-std::vector<NodeId> after_turn(Graph &graph, const Fold &fold, int turn,
-                               std::span<const NodeId> values);
+NodeId in_iteration(Graph &graph, const Fold &fold, int iteration, std::span<const NodeId> values,
+                    NodeId expression);
+std::vector<NodeId> after_iteration(Graph &graph, const Fold &fold, int iteration,
+                                    std::span<const NodeId> values);
 
 // The expression with every call written out, loops' bodies apart. Where more than `most` nodes
 // would have to be looked at, the rest stays as it is, and `all` is false.

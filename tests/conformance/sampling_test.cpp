@@ -124,7 +124,7 @@ TEST_CASE("images and grids: the tape samples by the rule") {
 }
 
 TEST_CASE("images and grids: a shader samples by the rule") {
-    if (!has_context()) return;
+    require_context();
     ir::Scene data;
     add_data(data);
     const Asked ask = asked(data);

@@ -1,6 +1,5 @@
 // The shader as an evaluator: every op by the GLSL that is written for it, run off screen. Drivers
-// may be less exact than a processor, so it has a measure of its own; where no GL context can be
-// had it says so and skips.
+// may be less exact than a processor, so it has a measure of its own.
 #include "tests/conformance/questions.h"
 #include "tests/unit/glsl/scenes.h"
 #include "tests/unit/render_gl/harness.h"
@@ -168,7 +167,7 @@ std::string fault_in_shader(const Question &question, std::size_t index, const C
 } // namespace
 
 TEST_CASE("a shader gives every op its meaning") {
-    if (!has_context()) return;
+    require_context();
     for (const Question &question : questions()) {
         INFO(question.name());
         const std::vector<Constant> answers = in_shader(question);

@@ -1,6 +1,6 @@
 // Runs every case below tests/golden/cases; FATHOM_UPDATE=1 rewrites what differs, and fails that
 // run. And what each code owes: a case that reports it, and a page whose wrong example reports it
-// and whose mended one does not.
+// and whose fixed one does not.
 #include "base/diagnostic.h"
 #include "driver/compile.h"
 #include "golden/runner.h"
@@ -115,22 +115,22 @@ TEST_CASE("each code has a golden case that reports it") {
     }
 }
 
-TEST_CASE("each code has a page, whose wrong example reports it and whose mended one does not") {
+TEST_CASE("each code has a page, whose wrong example reports it and whose fixed one does not") {
     for (Code code : all_codes()) {
         std::string name(code_name(code));
         std::string page = read(root / "docs/diagnostics" / (name + ".md"));
         INFO("docs/diagnostics/" << name << ".md");
         CHECK(page.starts_with("# " + name + "\n"));
         if (without_scene.count(name)) continue;
-        std::vector<std::string> wrong = examples(page, "Wrong"), mended = examples(page, "Mended");
+        std::vector<std::string> wrong = examples(page, "Wrong"), fixed = examples(page, "Fixed");
         CHECK(!wrong.empty());
-        CHECK(!mended.empty());
+        CHECK(!fixed.empty());
         for (const std::string &program : wrong) {
             INFO("wrong:\n" << program);
             CHECK(codes_of(program).count(name) == 1);
         }
-        for (const std::string &program : mended) {
-            INFO("mended:\n" << program);
+        for (const std::string &program : fixed) {
+            INFO("fixed:\n" << program);
             CHECK(codes_of(program).empty());
         }
     }

@@ -70,7 +70,7 @@ TEST_CASE("every entry of the library is marched safely, and its bound is not fa
                                               {"spot_noise", 0.07},
                                               {"displace_map", 0.45}};
     int safe = 0, shapes = 0;
-    const bool gl = has_context();
+    require_context();
     for (const Entry &entry : entries()) {
         INFO(entry.name << ": " << entry.text);
         driver::Compilation c = compiled(entry.text);
@@ -87,11 +87,9 @@ TEST_CASE("every entry of the library is marched safely, and its bound is not fa
                        << " times the way to " << place(march.unsafe_point));
             CHECK(march.unsafe == 0);
             safe += march.unsafe == 0;
-            if (gl) {
-                const ShaderBalls shader = shader_balls(c.scene, lo, hi, 1 << 17);
-                INFO(shader.worst);
-                CHECK(shader.unsafe == 0);
-            }
+            const ShaderBalls shader = shader_balls(c.scene, lo, hi, 1 << 17);
+            INFO(shader.worst);
+            CHECK(shader.unsafe == 0);
         }
         driver::Compilation raw = compiled(grown(entry.text));
         if (!raw.good() || estimated) continue; // flat, or a list of shapes

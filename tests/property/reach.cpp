@@ -1,4 +1,4 @@
-// The rule of curvature in whole scenes (lipschitz.md, curvature): random shapes displaced by noise
+// The rule of curvature in whole scenes (lipschitz.md, 4): random shapes displaced by noise
 // and waves, alone, moved, and in unions. Segments that it says are free are free, rays land where
 // a march at a tenth of the ball's step lands, and the shader's reach is the processor's.
 #include "backend-cpu/trace/march.h"
@@ -166,7 +166,7 @@ implicit(p => pow(p.x * p.x + p.y * p.y - w, 3) + 4 * p.z * p.z * p.z * p.z, wit
 }
 
 TEST_CASE("the shader reaches as far as the processor") {
-    if (!has_context()) return;
+    require_context();
     test::Dice dice{43};
     for (int i = 0; i < 8; ++i) {
         const std::string text = rough_scene(dice);

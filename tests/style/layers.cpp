@@ -172,7 +172,8 @@ TEST_CASE("a switch over ops, kinds or codes has no default") {
                 const std::string &line = file.lines[k];
                 if (indentation(line) != at) continue;
                 if (line.compare(at, 1, "}") == 0) break;
-                enumeration |= line.compare(at, 5, "case ") == 0 && line.find("::") != line.npos;
+                const std::string label = line.substr(at, line.find(' ', at + 5) - at);
+                enumeration |= label.starts_with("case ") && label.find("::") != label.npos;
                 if (line.compare(at, 8, "default:") == 0) fallback = k + 1;
             }
             INFO(file.file << ":" << fallback);

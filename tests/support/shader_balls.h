@@ -1,6 +1,6 @@
 // The safe ball, asked of the shader: its marched distance neither exceeds the processor's nor
 // changes its sign within it. Points lie in a table, and one pass answers for all of them. Needs a
-// GL context (has_context()); where there is none, callers skip.
+// GL context (gl_context.h).
 #pragma once
 
 #include "ir/lower/lower.h"

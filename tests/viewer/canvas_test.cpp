@@ -5,6 +5,7 @@
 #include "render-gl/context.h"
 #include "render-gl/render.h"
 #include "render-gl/timer.h"
+#include "tests/support/gl_context.h"
 #include "viewer/pick.h"
 
 #include <catch2/catch.hpp>
@@ -18,13 +19,6 @@
 using namespace fathom;
 
 namespace {
-
-bool has_context() {
-    static const auto context = gl::Context::make();
-    if (const auto *reason = std::get_if<std::string>(&context))
-        std::cerr << "skipped: no GL context: " << *reason << "\n";
-    return std::holds_alternative<gl::Context>(context);
-}
 
 struct Drawn {
     driver::Compilation compilation;
@@ -84,7 +78,7 @@ gl::PostSettings settings(gl::Look look, bool fxaa) {
 } // namespace
 
 TEST_CASE("four samples on the canvas are the picture that render takes with four") {
-    if (!has_context()) return;
+    require_context();
     Drawn drawn("(sphere(1) | box(1).translate([1, 0.5, 0])).paint(orange)\n" + camera);
     drawn.draw(120, 80, {drawn.view({0, 0, 120, 80})}, 4);
     drawn.canvas.finish(settings(gl::Look::Picture, true));
@@ -107,7 +101,7 @@ TEST_CASE("four samples on the canvas are the picture that render takes with fou
 }
 
 TEST_CASE("a tile holds what the whole canvas would at its size") {
-    if (!has_context()) return;
+    require_context();
     Drawn drawn("sphere(1).paint(orange)\nbox(1).translate([1.5, 0.5, 0])\n" + camera);
     drawn.draw(60, 40, {drawn.view({0, 0, 60, 40})});
     drawn.canvas.finish(settings(gl::Look::Picture, false));
@@ -128,7 +122,7 @@ TEST_CASE("a tile holds what the whole canvas would at its size") {
 
 TEST_CASE(
     "a pixel knows the part it shows: of unions, of what cuts, of blends, under paint, in loops") {
-    if (!has_context()) return;
+    require_context();
     Drawn drawn(
         "let two = sphere(0.6).translate([-2.5, 0, 0]) | box(1).paint(red).translate([-1, 0, 0])\n"
         "two.paint(blue)\n"
@@ -183,7 +177,7 @@ TEST_CASE("a part's box lies where the part stands in the world") {
 }
 
 TEST_CASE("FXAA brings edges nearer to the picture of many samples, and leaves flat parts alone") {
-    if (!has_context()) return;
+    require_context();
     Drawn drawn("box(1.6).rotate(8deg, axis: Z).paint(black)\nrender(epsilon: 1e-4)\n" + camera);
     const std::vector<gl::TileView> view{drawn.view({0, 0, 120, 120})};
     drawn.draw(120, 120, view, 16);
@@ -208,7 +202,7 @@ TEST_CASE("FXAA brings edges nearer to the picture of many samples, and leaves f
 }
 
 TEST_CASE("the slice is the marched field on its plane") {
-    if (!has_context()) return;
+    require_context();
     Drawn drawn("sphere(1)\n" + camera);
     drawn.draw(80, 80, {drawn.view({0, 0, 80, 80})});
     REQUIRE(drawn.canvas.probe(*drawn.probe,
@@ -228,7 +222,7 @@ TEST_CASE("the slice is the marched field on its plane") {
 
 TEST_CASE("the check of steps marks nothing where the bound is proved, and what a false promise "
           "makes it miss") {
-    if (!has_context()) return;
+    require_context();
     const auto verdicts = [](const std::string &text) {
         Drawn drawn(text);
         const gl::Tile all{0, 0, 160, 120};
@@ -252,7 +246,7 @@ TEST_CASE("the check of steps marks nothing where the bound is proved, and what 
 }
 
 TEST_CASE("the card's own clock answers in order") {
-    if (!has_context()) return;
+    require_context();
     Drawn drawn("sphere(1)\n" + camera);
     gl::Timer timer;
     for (int i = 0; i < 3; ++i) {
@@ -305,7 +299,7 @@ TEST_CASE("every example has a shader with parts, and every part a place in a fi
 }
 
 TEST_CASE("to know its parts changes no pixel of a scene") {
-    if (!has_context()) return;
+    require_context();
     for (const char *name : {"still_life", "02_csg", "repetition", "bolts"}) {
         INFO(name);
         const std::filesystem::path file =
@@ -332,7 +326,7 @@ TEST_CASE("to know its parts changes no pixel of a scene") {
 // From kept values to exact ones no pixel jumps: each frame of a fade lies between both pictures by
 // its share, so two that follow one another differ by that share of their difference.
 TEST_CASE("a picture fades into the next by shares") {
-    if (!has_context()) return;
+    require_context();
     constexpr int side = 48;
     Drawn kept(camera + "sphere(1.6).paint(#ff8040)\n"),
         exact(camera + "sphere(1.7).paint(#4080ff)\n");

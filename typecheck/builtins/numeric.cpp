@@ -250,7 +250,7 @@ static Value div_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
 }
 
 static Value rgb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
-    // sRGB in the text, linear inside (Meanings in language.md)
+    // sRGB in the text, linear inside (docs/language.md)
     auto linear = [&](const Value &v) {
         if (v.kind != ValueKind::Field) {
             double c = v.num[0];

@@ -54,7 +54,7 @@ constexpr double tolerance = 0.02;
 
 TEST_CASE(
     "every frame, from the first to the last miss, is within the stated bound of the exact field") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     const double bound = ir::kept_error(c.scene, ir::CacheId{0});
     CHECK(bound < 0.2);
@@ -74,7 +74,7 @@ TEST_CASE(
 }
 
 TEST_CASE("halving the cell of a smooth field divides its error by about four") {
-    if (!has_context()) return;
+    require_context();
     // Interpolation between the corners errs by cell^2/8 times the second derivatives.
     std::vector<double> means;
     for (const char *cell : {"0.2", "0.1", "0.05"}) {
@@ -99,7 +99,7 @@ TEST_CASE("halving the cell of a smooth field divides its error by about four") 
 }
 
 TEST_CASE("the shader with the cache's hooks and no cache draws the exact picture") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     Diagnostics diagnostics;
     const glsl::Output hooked =

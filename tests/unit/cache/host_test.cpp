@@ -276,7 +276,7 @@ double apart(const std::vector<float> &top, const std::vector<float> &bottom) {
 } // namespace
 
 TEST_CASE("a host that follows the page draws what ours draws") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     Diagnostics diagnostics;
     const glsl::Options exported{.computed = true, .noise_cache = true};

@@ -47,7 +47,7 @@ void check_values(const gl::CachedView &view, const ir::Scene &scene, std::uint3
 } // namespace
 
 TEST_CASE("a still view is learnt, and then nothing is missed any more") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     gl::CachedView view;
     use(view, c.scene);
@@ -74,7 +74,7 @@ TEST_CASE("a still view is learnt, and then nothing is missed any more") {
 }
 
 TEST_CASE("no place is lost and no value torn, however small the cache") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     for (const int age : {1, 4, glsl::cache_ages}) {
         gl::CachedView view;
@@ -92,7 +92,7 @@ TEST_CASE("no place is lost and no value torn, however small the cache") {
 }
 
 TEST_CASE("a cache that is too small for a view grows, and then holds it") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     const gl::FrameInputs inputs = frame_of(c.scene, 24);
     gl::CachedView small, growing;
@@ -112,7 +112,7 @@ TEST_CASE("a cache that is too small for a view grows, and then holds it") {
 }
 
 TEST_CASE("old keys move on, and are given up at the largest age") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     gl::CachedView view;
     use(view, c.scene, {.bits = 4});
@@ -134,7 +134,7 @@ TEST_CASE("old keys move on, and are given up at the largest age") {
 }
 
 TEST_CASE("a lower maximum age gives up what is older") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     gl::CachedView view;
     use(view, c.scene, {.bits = 3});
@@ -146,7 +146,7 @@ TEST_CASE("a lower maximum age gives up what is older") {
 }
 
 TEST_CASE("ten thousand frames", "[.soak]") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     gl::CachedView view;
     use(view, c.scene, {.bits = 3});
@@ -159,7 +159,7 @@ TEST_CASE("ten thousand frames", "[.soak]") {
 }
 
 TEST_CASE("beyond the cells that can be counted, a field is computed") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(R"(
 let bumps = cached(p => 0.1 * fbm(2 * (p - [40000, 0, 0]), octaves: 5), cell: 0.05)
 sphere(1).translate(x: 40000).displace(bumps)
@@ -179,7 +179,7 @@ camera(at: [40000, 0, 4], look_at: [40000, 0, 0])
 }
 
 TEST_CASE("numbers and colours share one cache, told apart by their keys") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(R"(
 let bumps = cached(p => 0.1 * fbm(2 * p, octaves: 5), cell: 0.05)
 let tint = cached(p => mix(#203040, #f0c080, saturate(0.5 + fbm(3 * p, octaves: 5))), cell: 0.05)
@@ -201,7 +201,7 @@ camera(at: [0, 0, 4], look_at: [0, 0, 0])
 }
 
 TEST_CASE("an edit invalidates the fields that it changes alone") {
-    if (!has_context()) return;
+    require_context();
     const auto text = [](const std::string &radius, const std::string &octaves) {
         return R"(
 param depth = 0.1 in 0.05..0.2
@@ -300,7 +300,7 @@ double steepest(const gl::CacheStore::Dump &dump, std::uint32_t place, double ce
 }
 
 TEST_CASE("cells that are steeper than proved are not read") {
-    if (!has_context()) return;
+    require_context();
     // Worley noise is as steep as proved nearly everywhere, and has ridges; two of them seldom
     // meet.
     const driver::Compilation c = compiled(R"(
@@ -345,7 +345,7 @@ sphere(1).displace(f)
 }
 
 TEST_CASE("misses are shown in red, and nothing else is") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     gl::CachedView view;
     use(view, c.scene);
@@ -368,7 +368,7 @@ TEST_CASE("misses are shown in red, and nothing else is") {
 }
 
 TEST_CASE("cells that are narrower than a pixel are not looked for") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock); // cells of 0.05, pixels of about 0.1
     gl::CachedView view;
     use(view, c.scene);
@@ -383,7 +383,7 @@ TEST_CASE("cells that are narrower than a pixel are not looked for") {
 }
 
 TEST_CASE("a field that is cheap or moves is not kept") {
-    if (!has_context()) return;
+    require_context();
     for (const char *field :
          {"0.1 * noise(2 * p)", "0.1 * fbm(2 * p + [time, 0, 0], octaves: 6)"}) {
         const driver::Compilation c = compiled("let f = cached(p => " + std::string(field) +

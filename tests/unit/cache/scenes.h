@@ -3,7 +3,7 @@
 
 #include "driver/compile.h"
 #include "render-gl/cache_passes.h"
-#include "tests/unit/render_gl/context.h"
+#include "tests/support/gl_context.h"
 
 #include <catch2/catch.hpp>
 

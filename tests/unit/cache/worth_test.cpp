@@ -69,7 +69,7 @@ TEST_CASE("a cache that keeps nothing for long is too small, one that gives up a
 }
 
 TEST_CASE("a view whose cells are narrower than pixels is drawn exactly, a nearer one is not") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     gl::CachedView view;
     use(view, c.scene);
@@ -98,7 +98,7 @@ TEST_CASE("a view whose cells are narrower than pixels is drawn exactly, a neare
 }
 
 TEST_CASE("two runs look values up in the same frames") {
-    if (!has_context()) return;
+    require_context();
     const driver::Compilation c = compiled(rock);
     std::string runs[2];
     for (std::string &run : runs) {
@@ -116,7 +116,7 @@ TEST_CASE("two runs look values up in the same frames") {
 }
 
 TEST_CASE("what kept values leave over is drawn as if there were none, to the last bit") {
-    if (!has_context()) return;
+    require_context();
     // It goes on where the picture of kept values first asked for one.
     const driver::Compilation c = compiled(rock);
     for (const gl::Mode mode : {gl::Mode::Linear, gl::Mode::Heat, gl::Mode::Numbers}) {

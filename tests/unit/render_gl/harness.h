@@ -2,7 +2,7 @@
 #pragma once
 
 #include "backend-glsl/emit.h"
-#include "tests/unit/render_gl/context.h"
+#include "tests/support/gl_context.h"
 
 #include <catch2/catch.hpp>
 #include <epoxy/gl.h>

@@ -1,8 +1,8 @@
 // Pruned loops draw the same picture to the bit, by fewer rows; rays land the same through far
 // cells.
+#include "tests/support/gl_context.h"
 #include "tests/support/reference_eval.h"
 #include "tests/unit/glsl/scenes.h"
-#include "tests/unit/render_gl/context.h"
 
 #include "render-gl/pruning.h"
 #include "render-gl/render.h"
@@ -84,12 +84,15 @@ Apart apart(const gl::Program &a, const gl::Program &b, const Scene &scene, doub
     return result;
 }
 
-bool can_test() { return has_context() && gl::can_prune(); }
+void require_pruning() {
+    require_context();
+    REQUIRE(gl::can_prune());
+}
 
 } // namespace
 
 TEST_CASE("what is drawn by lists of rows is the same to the bit") {
-    if (!can_test()) return;
+    require_pruning();
     for (bool smooth : {false, true})
         for (int count : {128, 500}) {
             CAPTURE(smooth, count);
@@ -110,7 +113,7 @@ TEST_CASE("what is drawn by lists of rows is the same to the bit") {
 }
 
 TEST_CASE("rays land where they did, through far cells that promise no more than there is") {
-    if (!can_test()) return;
+    require_pruning();
     for (bool smooth : {false, true}) {
         CAPTURE(smooth);
         const Scene scene = table_of_spheres(300, smooth);
@@ -154,7 +157,7 @@ TEST_CASE("rays land where they did, through far cells that promise no more than
 }
 
 TEST_CASE("far cells follow the time, by the rows' old lists") {
-    if (!can_test()) return;
+    require_pruning();
     Scene scene = table_of_spheres(200);
     Graph &g = scene.graph;
     // A ball that goes through the others, beside their loop.
@@ -176,7 +179,7 @@ TEST_CASE("far cells follow the time, by the rows' old lists") {
 }
 
 TEST_CASE("a ground that goes on beyond the cells is drawn, lit and shaded as it was") {
-    if (!can_test()) return;
+    require_pruning();
     for (bool smooth : {false, true}) {
         CAPTURE(smooth);
         Scene scene = table_of_spheres(300, smooth);
@@ -218,7 +221,7 @@ TEST_CASE("a ground that goes on beyond the cells is drawn, lit and shaded as it
 }
 
 TEST_CASE("moved rows have fresh lists without a fresh program") {
-    if (!can_test()) return;
+    require_pruning();
     const Scene scene = table_of_spheres(300);
     gl::Program pruned = built(emitted(scene, true), scene),
                 far = built(emitted(scene, true, true), scene);
@@ -249,7 +252,7 @@ TEST_CASE("moved rows have fresh lists without a fresh program") {
 }
 
 TEST_CASE("rows that move have the lists of their time") {
-    if (!can_test()) return;
+    require_pruning();
     const auto made = [](bool steep) {
         return of_field([&](Graph &graph, NodeId p) {
             Table table{200, 1, {}};

@@ -1,6 +1,6 @@
 // Pictures of scenes whose look is known by calculation.
+#include "tests/support/gl_context.h"
 #include "tests/unit/glsl/scenes.h"
-#include "tests/unit/render_gl/context.h"
 
 #include "render-gl/render.h"
 
@@ -64,7 +64,7 @@ double aspect() { return static_cast<double>(width) / height; }
 } // namespace
 
 TEST_CASE("a sphere's silhouette and depth stand where geometry puts them") {
-    if (!has_context()) return;
+    require_context();
     for (bool orthographic : {false, true}) {
         Scene scene = sphere();
         scene.camera.orthographic = orthographic;
@@ -91,7 +91,7 @@ TEST_CASE("a sphere's silhouette and depth stand where geometry puts them") {
 }
 
 TEST_CASE("a sphere's normals point away from its middle") {
-    if (!has_context()) return;
+    require_context();
     Scene scene = sphere();
     Graph &g = scene.graph;
     Surface &s = scene.surfaces.back();
@@ -116,7 +116,7 @@ TEST_CASE("a sphere's normals point away from its middle") {
 }
 
 TEST_CASE("a bound that was divided out does not change the look") {
-    if (!has_context()) return;
+    require_context();
     const auto scaled = [](double by) {
         Scene scene = of_field(
             [&](Graph &g, NodeId p) {
@@ -137,7 +137,7 @@ TEST_CASE("a bound that was divided out does not change the look") {
 }
 
 TEST_CASE("a point in a shadow is darker, by as much as is asked") {
-    if (!has_context()) return;
+    require_context();
     const auto ground = [](double darkness) {
         Scene scene = of_field(
             [](Graph &g, NodeId p) {
@@ -167,7 +167,7 @@ TEST_CASE("a point in a shadow is darker, by as much as is asked") {
 }
 
 TEST_CASE("samples are averaged, strips join, and a picture can be stopped") {
-    if (!has_context()) return;
+    require_context();
     const Scene scene = table_of_spheres(30);
     const gl::Program program = built(scene);
     double last = 0;
@@ -205,7 +205,7 @@ TEST_CASE("samples are averaged, strips join, and a picture can be stopped") {
 }
 
 TEST_CASE("params move the picture without a new program") {
-    if (!has_context()) return;
+    require_context();
     Scene scene = of_field(
         [](Graph &g, NodeId p) { return g.sub(g.make(Op::Length, {p}), g.param(0, Type::Float)); });
     Param radius;
@@ -228,7 +228,7 @@ TEST_CASE("params move the picture without a new program") {
 }
 
 TEST_CASE("what a driver says is brought back to our line") {
-    if (!has_context()) return;
+    require_context();
     const Scene scene = sphere();
     Diagnostics diagnostics;
     glsl::Output output = glsl::emit(scene, {.target = glsl::Target::Glsl330}, diagnostics);

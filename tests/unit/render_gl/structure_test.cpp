@@ -21,7 +21,7 @@ std::vector<float> values(const Scene &scene, int count, bool buffers = false, i
 } // namespace
 
 TEST_CASE("a loop's values are all of the turn before") {
-    if (!has_context()) return;
+    require_context();
     // Fibonacci: (a, b) = (b, a + b), as often as p.x says.
     const auto found =
         values(of_field([](Graph &g, NodeId p) {
@@ -38,7 +38,7 @@ TEST_CASE("a loop's values are all of the turn before") {
 }
 
 TEST_CASE("a loop ends before the turn whose condition fails") {
-    if (!has_context()) return;
+    require_context();
     // Powers of two until one exceeds p.x.
     const auto found =
         values(of_field([](Graph &g, NodeId p) {
@@ -54,7 +54,7 @@ TEST_CASE("a loop ends before the turn whose condition fails") {
 }
 
 TEST_CASE("one loop begun twice is two loops") {
-    if (!has_context()) return;
+    require_context();
     const auto found =
         values(of_field([](Graph &g, NodeId p) {
                    const NodeId x = g.fresh_var(Type::Float), i = g.fresh_var(Type::Int);
@@ -71,7 +71,7 @@ TEST_CASE("one loop begun twice is two loops") {
 }
 
 TEST_CASE("loops nest, and what does not change in them is computed before") {
-    if (!has_context()) return;
+    require_context();
     // The sum of x^2 + i*j over i < 3, j < 2.
     const auto found = values(
         of_field([](Graph &g, NodeId p) {
@@ -92,7 +92,7 @@ TEST_CASE("loops nest, and what does not change in them is computed before") {
 }
 
 TEST_CASE("tables are read alike from a buffer and from the text, and never beside their rows") {
-    if (!has_context()) return;
+    require_context();
     const Scene scene = of_field([](Graph &g, NodeId p) {
         Table table{20, 7, {}};
         for (int i = 0; i < 140; ++i) table.data.push_back(static_cast<float>(i));
@@ -115,7 +115,7 @@ TEST_CASE("tables are read alike from a buffer and from the text, and never besi
 }
 
 TEST_CASE("a chain of choices takes the arm that it should") {
-    if (!has_context()) return;
+    require_context();
     const auto found = values(
         of_field([](Graph &g, NodeId p) {
             const NodeId x = g.component(p, 0);
@@ -135,7 +135,7 @@ TEST_CASE("a chain of choices takes the arm that it should") {
 }
 
 TEST_CASE("hits choose as they should") {
-    if (!has_context()) return;
+    require_context();
     // Rows of the picture are the cases; what is read back is paint + 10*distance.
     const auto hit = [](Graph &g, double distance, int paint) {
         return g.make(Op::MakeHit, Type::Hit,

@@ -1,16 +1,8 @@
-#include "backend-glsl/probe.h"
+$# The slice and the check of steps (marcher.h). The check walks the same field at a tenth of the
+$# step. Where the field's slope is at most ten times what was promised, it cannot pass a surface
+$# even if the promise is broken; so a march that met nothing before the point where the check
+$# stands inside overstepped. Steps shorter than half the tolerance find nothing that counts.
 
-#include "backend-glsl/fill.h"
-
-namespace fathom::glsl {
-
-namespace {
-
-// The check walks the same field at a tenth of the step. Where the field's slope is at most ten
-// times what was promised, it cannot pass a surface even if the promise is broken; so a march that
-// met nothing before the point where the check stands inside overstepped. Steps shorter than half
-// the tolerance find nothing that counts.
-constexpr const char *probe = R"(
 layout(location = 0) out vec4 fathom_color;
 layout(location = 1) out vec4 fathom_pick;
 uniform vec4 fathom_plane;
@@ -20,7 +12,10 @@ vec4 fathom_slice(vec3 origin, vec3 direction) {
     if (abs(along) < 1e-6) return vec4(0.0);
     float t = (fathom_plane.w - dot(fathom_plane.xyz, origin)) / along;
     if (t <= 0.0 || t > fathom_far) return vec4(0.0);
-$ASK_EXACT    return vec4(sdf(origin + t * direction), t, 0.0, 1.0);
+$if AROUND
+    fathom_exact = true;
+$end
+    return vec4(sdf(origin + t * direction), t, 0.0, 1.0);
 }
 
 vec4 fathom_check(vec3 origin, vec3 direction, float begin, float end) {
@@ -44,21 +39,7 @@ vec4 fathom_check(vec3 origin, vec3 direction, float begin, float end) {
 
 void main() {
     vec2 place = vec2(gl_FragCoord.x, fathom_resolution.y - gl_FragCoord.y) + fathom_offset - 0.5;
-$RAY    fathom_color = vec4(0.0);
+$include ray
+    fathom_color = vec4(0.0);
     fathom_pick = fathom_mode == 4 ? fathom_slice(origin, direction) : fathom_check(origin, direction, begin, end);
 }
-)";
-
-constexpr int check_steps_a_step = 40;
-
-} // namespace
-
-std::string probe_text(const MarcherOptions &options) {
-    return march_text(options) +
-           fill(probe, {{"RAY", ray_text(options)},
-                        {"ASK_EXACT", options.around ? "    fathom_exact = true;\n" : ""},
-                        {"MAX_STEPS", std::to_string(options.max_steps)},
-                        {"CHECK_STEPS", std::to_string(check_steps_a_step * options.max_steps)}});
-}
-
-} // namespace fathom::glsl

@@ -1,0 +1,30 @@
+// GLSL templates: the files of backend-glsl/templates, built into the program. A template is GLSL
+// with holes and directives:
+//   $NAME          a hole; what fills it is not looked through again
+//   $if NAME       the lines up to $else or $end, where NAME is filled by some text; `$if !NAME`
+//                  where it is filled by none. They nest
+//   $include name  another template's lines
+//   $# …           a remark that is left out
+// A directive has its line to itself. `tests/unit/glsl` compiles each template on its own.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fathom::glsl {
+
+// What fills the holes, by name. A flag is a name that is filled by "1" or by nothing.
+using Values = std::map<std::string, std::string, std::less<>>;
+
+// The template NAME.glsl, filled. Every name that it reads has to be among the values.
+std::string expand(std::string_view name, const Values &values);
+
+// Text of one's own, filled alike; without directives.
+std::string fill(std::string_view form, const Values &values);
+
+// The names of all templates.
+std::vector<std::string_view> template_names();
+
+} // namespace fathom::glsl

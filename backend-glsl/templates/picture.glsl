@@ -1,0 +1,25 @@
+$# The colour of a place in the picture, or what fathom_mode asks of it (marcher.h).
+
+vec3 fathom_encode(vec3 linear) {
+    vec3 c = clamp(linear, 0.0, 1.0);
+    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
+}
+
+// Blue for few steps, through green and yellow to red for all that are allowed.
+vec3 fathom_heat(int steps) {
+    float x = log2(1.0 + float(steps)) / log2(1.0 + float($MAX_STEPS));
+    return clamp(vec3(2.0 * x - 0.6, 1.6 - abs(3.2 * x - 1.6), 1.0 - 2.2 * x), 0.0, 1.0);
+}
+
+// `place`: in pixels from the top left of the picture.
+vec4 fathom_picture(vec2 place) {
+$include ray
+    float t = end < begin ? -1.0 : fathom_march(origin, direction, begin, end);
+$if PICK
+    fathom_pick = vec4(0.0, t, float(fathom_steps), 0.0);
+$end
+    if (fathom_mode == 1) return vec4(fathom_heat(fathom_steps), 1.0);
+    vec3 color = t < 0.0 ? fathom_background(direction) : fathom_shade(origin, direction, t);
+    if (fathom_mode == 2) return vec4(float(fathom_steps), t, float(fathom_paint), t < 0.0 ? 0.0 : 1.0);
+    return vec4(fathom_mode == 3 ? color : fathom_encode(color), 1.0);
+}

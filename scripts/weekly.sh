@@ -1,0 +1,20 @@
+#!/bin/sh
+# The checks that take too long for every change: the tests by clang++, the sanitizers, clang-tidy,
+# ten minutes of each fuzzer, and the coverage of the front end. Each leaves its output in
+# build-weekly/; the last lines say what passed. Takes some hours on two cores.
+root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
+cd "$root" && mkdir -p build-weekly || exit 3
+failed=0
+try() { # NAME COMMAND…
+    name=$1
+    shift
+    if "$@" >"build-weekly/$name.log" 2>&1; then result=passed; else result=FAILED failed=1; fi
+    printf '%-16s %s\n' "$name" "$result" | tee -a build-weekly/summary
+}
+: >build-weekly/summary
+try clang scripts/clang.sh
+try sanitize scripts/sanitize.sh
+try tidy scripts/tidy.sh
+for target in parse_fuzz compile_fuzz yaml_fuzz; do try $target scripts/fuzz.sh $target 600; done
+try coverage scripts/coverage.sh
+exit $failed

@@ -1,0 +1,199 @@
+// Every template on its own: filled with harmless values, in a frame of what it needs around it, it
+// is a shader that glslang takes, whatever flags are set.
+#include "backend-glsl/template.h"
+#include "backend-glsl/validate.h"
+
+#include <catch2/catch.hpp>
+
+#include <random>
+#include <set>
+
+using namespace fathom;
+using glsl::Stage;
+using glsl::Values;
+
+namespace {
+
+const std::vector<std::string> flags{"BOXED",        "STEEP",         "REACHES",   "APART",
+                                     "SKIP_SHADING", "LOCAL_NORMALS", "PICK",      "KEPT",
+                                     "FAR_CELLS",    "AROUND",        "ONE_LIGHT", "BLENDED"};
+
+// What a flag decides beside its own `$if`, as the emitter has it.
+Values values_with(const std::set<std::string> &on) {
+    const auto is = [&](const char *flag) { return on.contains(flag); };
+    Values values{
+        {"NEAR", is("STEEP") ? "near" : "d"},
+        {"AND_PRESENT", is("KEPT") ? " && !fathom_absent" : ""},
+        {"UNLIT", is("ONE_LIGHT") ? "return color" : "continue"},
+        {"SUN_REACH", is("BOXED") ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
+        {"OUTSIDE", "fathom_off(p)"},
+        {"HIT", "fathom_hit"},
+        {"VALUES", "    if (which == 0) return vec4(p.x);\n"},
+        {"SHIFTS", "ivec3(0), ivec3(1)"},
+        {"FIELD_SHIFT", "ivec3(5)"},
+        {"CELLS", "float[2](1.0, 1.0)"},
+        {"SLOPES", "float[2](1.0, 1.0)"},
+        {"WIDE", "bool[2](true, false)"},
+        {"SDF", "sdf"},
+        {"VALUE", "value"},
+        {"START", "start"},
+        {"JOINED", "joined"},
+        {"BLEND_RADIUS", "radius"},
+        {"ZERO", "fathom_zero"},
+    };
+    for (const char *vector : {"LO", "HI"}) values.emplace(vector, "vec3(1.0)");
+    for (const char *number :
+         {"FAR", "EPSILON", "FLOAT_SLACK", "NORMAL_SLACK", "LEAST_SLOPE", "RELAXATION", "FLATTEST",
+          "NEARER_PART", "BENT_RELAXATION", "OCCLUSION_TOTAL", "OCCLUSION_REACH", "SHADOW_BIAS",
+          "LEAST_ANGLE", "LEAST_WAY", "FAR_FROM", "RADIUS", "SLOPE"})
+        values.emplace(number, "0.5");
+    for (const char *count :
+         {"LIGHTS",    "MAX_STEPS",  "ALL_TAPS", "SHADOW_STEPS", "CHECK_STEPS", "AGES",
+          "ROWS",      "COUNT",      "WISHES",   "SAMPLED",      "HIGHEST",     "HIGH_BITS",
+          "HIGH_MASK", "PLACE_BITS", "HEAD",     "TAIL",         "LIMIT",       "INSERTED",
+          "EVICTED",   "DELETED",    "CROWDED",  "FULL",         "SWEPT",       "CHANGED",
+          "PAID",      "WASTED",     "LEFT",     "STEPS",        "MANY",        "REFUSED"})
+        values.emplace(count, "2");
+    for (const char *word : {"EMPTY", "NOWHERE", "PLACES"}) values.emplace(word, "7u");
+    for (const std::string &flag : flags) values.emplace(flag, is(flag.c_str()) ? "1" : "");
+    return values;
+}
+
+// What stands before and after a template to make a shader of it.
+struct Frame {
+    std::string before, after;
+    Stage stage = Stage::Fragment;
+};
+
+const std::string version = "#version 450\n";
+const std::string end = "void main() {}\n";
+const std::string inputs = R"(
+layout(location = 0) out vec4 out_color;
+uniform vec2 fathom_resolution, fathom_offset;
+uniform vec3 fathom_origin, fathom_right, fathom_up, fathom_forward;
+uniform float fathom_extent, fathom_focus;
+uniform int fathom_orthographic, fathom_mode, fathom_zero;
+struct Hit { float distance; int paint; vec3 point; vec4 extra; };
+struct fathom_Material { vec3 diffuse, specular, emission; float exponent; };
+struct fathom_Lighting { vec3 ambient; float ambient_occlusion, soft_shadows, shadow_darkness, specular_intensity; };
+struct fathom_Light { bool directional; vec3 position, color; };
+float sdf(vec3 p) { return length(p) - 1.0; }
+vec2 fathom_reach(vec3 p) { return vec2(sdf(p)); }
+Hit fathom_hit(vec3 p) { return Hit(sdf(p), 0, p, vec4(0.0)); }
+fathom_Material fathom_material(Hit s, vec3 n) { return fathom_Material(n, n, n, 1.0); }
+fathom_Lighting fathom_lighting() { return fathom_Lighting(vec3(0.0), 0.0, 0.0, 0.0, 0.0); }
+fathom_Light fathom_light(int i) { return fathom_Light(true, vec3(1.0), vec3(1.0)); }
+vec3 fathom_background(vec3 d) { return d; }
+int fathom_part = 0;
+)";
+const std::string cells = R"(
+bool fathom_exact;
+vec2 fathom_clear(vec3 p, vec3 d, float margin) { return vec2(0.0); }
+bool fathom_outside(vec3 p) { return false; }
+float fathom_off(vec3 p) { return 0.0; }
+float fathom_endless(vec3 p) { return 1.0; }
+)";
+const std::string cache = R"(
+bool fathom_absent = false;
+float fathom_width;
+void fathom_step(float t, float before, float stride, int steps) {}
+void fathom_resume(inout float t, inout float before, inout float stride, inout int steps) {}
+)";
+const std::string pick = "layout(location = 1) out vec4 fathom_pick;\n";
+const std::string grid = R"(
+uniform vec3 fathom_grid_lo, fathom_grid_size;
+uniform int fathom_grid_side;
+)";
+const std::string sampling = R"(
+uniform int fathom_cache_bits = 0, fathom_cache_ages = 4;
+uniform usampler3D fathom_cache_index;
+)";
+
+Frame frame_of(std::string_view name, const Values &values) {
+    const std::string scene = version + inputs + cells + cache;
+    const auto expanded = [&](const char *other) { return glsl::expand(other, values); };
+    const bool steep = !values.at("STEEP").empty();
+    if (name == "march") return {scene, end};
+    if (name == "corner") return {version, end};
+    if (name == "ray") return {scene + expanded("march") + "void ray(vec2 place) {\n", "}\n" + end};
+    const std::string marched =
+        scene + pick + expanded("march") + (steep ? "" : expanded("corner"));
+    if (name == "shade") return {marched, end};
+    if (name == "picture") return {marched + expanded("shade"), end};
+    if (name == "probe")
+        return {version + inputs.substr(inputs.find("uniform")) + cells + cache + expanded("march"),
+                ""};
+    if (name == "prune_rows") return {version, end};
+    if (name == "prune_far") return {version + expanded("prune_rows"), end};
+    if (name == "prune_around")
+        return {version +
+                    "struct Hit { float distance; };\n"
+                    "float fathom_endless(vec3 p) { return 1.0; }\n"
+                    "float fathom_all(vec3 p) { return 1.0; }\n"
+                    "Hit fathom_all_hit(vec3 p) { return Hit(1.0); }\n"
+                    "Hit fathom_endless_hit(vec3 p) { return Hit(1.0); }\n" +
+                    expanded("prune_rows"),
+                end};
+    if (name == "prune_make_far")
+        return {version + grid + "float sdf(vec3 p) { return p.x; }\n", "", Stage::Compute};
+    if (name == "prune_kernel")
+        return {version + "float value(vec3 p, int row) { return p.x; }\n"
+                          "float start(vec3 p) { return p.x; }\n"
+                          "float joined(float acc, vec3 p, int row) { return acc; }\n"
+                          "float radius(vec3 p) { return 0.0; }\n",
+                "", Stage::Compute};
+    if (name == "cache_hashing") return {version + sampling, end};
+    if (name == "cache_known") return {version + sampling + expanded("cache_hashing"), end};
+    if (name == "cache_counts")
+        return {version + sampling +
+                    "layout(r32ui) writeonly uniform uimage3D fathom_cache_free, "
+                    "fathom_cache_changed;\n"
+                    "layout(r32ui) coherent uniform uimageBuffer "
+                    "fathom_cache_counts;\n" +
+                    expanded("cache_hashing"),
+                end};
+    if (name == "cache_fill") return {version, ""};
+    if (name == "cache_look_up" || name == "cache_outputs") return {version, end};
+    if (name == "cache_output")
+        return {version + "layout(location = 0) out vec4 color;\n" + expanded("cache_look_up") +
+                    expanded("cache_outputs") + "int fathom_steps = 0;\nvoid main() {\n",
+                "}\n"};
+    return {}; // a whole shader
+}
+
+} // namespace
+
+TEST_CASE("every template is a shader on its own, whatever flags are set") {
+    std::mt19937 random(1);
+    for (const std::string_view name : glsl::template_names()) {
+        // none, each alone, each left out, all, and some at random
+        std::vector<std::set<std::string>> choices{{}, {flags.begin(), flags.end()}};
+        for (const std::string &flag : flags) {
+            choices.push_back({flag});
+            choices.push_back({flags.begin(), flags.end()});
+            choices.back().erase(flag);
+        }
+        for (int i = 0; i < 40; ++i) {
+            choices.emplace_back();
+            for (const std::string &flag : flags)
+                if (random() % 2) choices.back().insert(flag);
+        }
+        std::set<std::string> tried;
+        for (std::set<std::string> &on : choices) {
+            if (!on.contains("STEEP")) on.erase("REACHES"); // only a steep field reaches
+            const Values values = values_with(on);
+            for (const char *cached :
+                 {"", "#define FATHOM_CACHE\n", "#define FATHOM_CACHE_LEARN\n"}) {
+                if (*cached && !name.starts_with("cache_")) continue;
+                const Frame frame = frame_of(name, values);
+                std::string text = frame.before + glsl::expand(name, values) + frame.after;
+                text.insert(text.find("#version") == 0 ? text.find('\n') + 1 : 0, cached);
+                if (!tried.insert(text).second) continue;
+                CAPTURE(name, text);
+                const auto complaint = glsl::validate(text, frame.stage);
+                if (complaint) FAIL(complaint->line << ": " << complaint->message);
+            }
+        }
+        CHECK(!tried.empty());
+    }
+}
