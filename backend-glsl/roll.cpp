@@ -104,14 +104,14 @@ std::optional<NodeId> loop_of(Graph &graph, NodeId id) {
     fold.vars = {graph.fresh_var(node.type)};
     const ir::TableId data = graph.add_table(std::move(table));
     const auto value_of = [&](std::size_t k) {
-        std::vector<NodeId> reads;
-        for (std::size_t c = 0; c < kinds[k].column.size(); ++c)
-            reads.push_back(kinds[k].column[c] < 0
-                                ? NodeId{}
-                                : ir::read_table(graph, kinds[k].rows[0][c].type, fold.index,
-                                                 ir::table_slot(data, kinds[k].column[c])));
+        const std::vector<int> &column = kinds[k].column;
+        const auto read = [&](std::size_t c, NodeId constant) {
+            return column[c] < 0 ? constant
+                                 : ir::read_table(graph, graph.type(constant), fold.index,
+                                                  ir::table_slot(data, column[c]));
+        };
         std::size_t next = 0;
-        return ir::put_together(graph, args[first + kinds[k].members[0]], reads, next);
+        return ir::put_together(graph, args[first + kinds[k].members[0]], read, next);
     };
     NodeId value = value_of(kinds.size() - 1);
     const NodeId which =

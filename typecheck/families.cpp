@@ -195,9 +195,12 @@ ShapeId make_family(Evaluator &ev, const std::vector<ShapeId> &members,
     read.flip();
     if (!add_columns(ev, rows, read, family.index, replacement)) return {};
     if (!add_columns(ev, rows, stated, family.index, replacement)) return {};
+    const auto read_or_kept = [&](std::size_t c, NodeId constant) {
+        return replacement[c] ? replacement[c] : constant;
+    };
     std::size_t next = 0;
     Rebuild rebuild{
-        ev, [&](NodeId id) { return ir::put_together(ev.scene.graph, id, replacement, next); }};
+        ev, [&](NodeId id) { return ir::put_together(ev.scene.graph, id, read_or_kept, next); }};
     return add_family(ev, family, rebuild.shape(members[0]), k, dims);
 }
 

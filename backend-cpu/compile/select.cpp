@@ -148,7 +148,7 @@ std::vector<Value> select(Builder &builder, const Node &node, Arguments args,
     case Op::Abs: return either(Kernel::AbsF, Kernel::AbsI);
     case Op::Sign: return either(Kernel::SignF, Kernel::SignI);
     case Op::Clamp: return either(Kernel::ClampF, Kernel::ClampI);
-    case Op::Pow: return either(Kernel::PowF, Kernel::PowI);
+    case Op::Pow: return each(Kernel::PowF);
     case Op::Step: return each(Kernel::StepF);
     case Op::Atan2: return each(Kernel::Atan2F);
     case Op::Floor: return each(Kernel::FloorF);

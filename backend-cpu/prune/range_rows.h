@@ -56,11 +56,6 @@ FATHOM_RANGE(ModI, (R a, R b), const float n = std::floor(a.lo / b.lo), m = size
              if (b.lo == b.hi && b.lo > 0 && n == std::floor(a.hi / b.lo) &&
                  size(a) <= whole) return integer(a.lo - n * b.lo, a.hi - n * b.lo);
              return integer(b.lo > 0 ? R{0, m} : hull(R{-m, m}, a));)
-FATHOM_RANGE(PowI, (R a, R b),
-             return points(a, b) && size(a) <= whole && size(b) <= whole
-                        ? integer(std::trunc(static_cast<float>(sem::pow<double>(a.lo, b.lo))),
-                                  std::trunc(static_cast<float>(sem::pow<double>(a.lo, b.lo))))
-                        : everything();)
 FATHOM_RANGE(MinI, (R a, R b), return least(a, b);)
 FATHOM_RANGE(MaxI, (R a, R b), return greatest(a, b);)
 FATHOM_RANGE(AbsI, (R a), return abs(a);)

@@ -153,29 +153,9 @@ std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload
     const auto flag = [](bool value) { return scalar(Type::Bool, value ? 1 : 0); };
     const auto number = [](double value) { return scalar(Type::Float, value); };
     switch (op) {
-    case Op::Const:
-    case Op::Point:
-    case Op::Normal:
-    case Op::Direction:
-    case Op::Time:
-    case Op::Param:
-    case Op::Var:
-    case Op::TableRead:
-    case Op::Image:
-    case Op::Grid:
-    case Op::Call:
-    case Op::Fold:
-    case Op::FoldResult:
-    case Op::Cached:
-    case Op::MakeHit:
-    case Op::HitDistance:
-    case Op::HitPaint:
-    case Op::HitPoint:
-    case Op::HitExtra:
-    case Op::NearestHit:
-    case Op::FarthestHit:
-    case Op::HitWith:
-    case Op::FillPaint: return std::nullopt;
+#define FATHOM_BOUND(name, ...) case Op::name:
+#include "ir/ops.def"
+        return std::nullopt;
 
     case Op::Neg:
         if (type == Type::Int) return scalar(type, sem::int_neg(whole(x(0))));
@@ -185,10 +165,7 @@ std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload
     case Op::Mul: return arithmetic(type, a, sem::int_mul, [](D u, D v) { return u * v; });
     case Op::Div: return arithmetic(type, a, sem::int_div, [](D u, D v) { return u / v; });
     case Op::Mod: return arithmetic(type, a, sem::int_mod, sem::mod<D>);
-    case Op::Pow:
-        return arithmetic(
-            type, a, [](std::int32_t u, std::int32_t v) { return whole(sem::pow<D>(u, v)); },
-            sem::pow<D>);
+    case Op::Pow: return map2(type, a[0], a[1], sem::pow<D>);
     case Op::Min: return map2(type, a[0], a[1], sem::min<D>);
     case Op::Max: return map2(type, a[0], a[1], sem::max<D>);
     case Op::Step: return map2(type, a[0], a[1], sem::step<D>);

@@ -22,16 +22,12 @@ bool take_apart(const Graph &graph, NodeId id, std::size_t most, Skeleton &out) 
                                [&](NodeId arg) { return take_apart(graph, arg, most, out); });
 }
 
-NodeId put_together(Graph &graph, NodeId id, const std::vector<NodeId> &replacement,
-                    std::size_t &next) {
+NodeId put_together(Graph &graph, NodeId id, const OtherConstant &other, std::size_t &next) {
     if (!id) return id;
     const Node node = graph[id];
-    if (node.op == Op::Const) {
-        const NodeId other = replacement[next++];
-        return other ? other : id;
-    }
+    if (node.op == Op::Const) return other(next++, id);
     std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
-    for (NodeId &arg : args) arg = put_together(graph, arg, replacement, next);
+    for (NodeId &arg : args) arg = put_together(graph, arg, other, next);
     return graph.make(node.op, node.type, args, node.payload);
 }
 

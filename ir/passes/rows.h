@@ -7,6 +7,7 @@
 
 #include "ir/graph.h"
 
+#include <functional>
 #include <vector>
 
 namespace fathom::ir {
@@ -20,10 +21,10 @@ struct Skeleton {
 // a word of its own.
 bool take_apart(const Graph &graph, NodeId id, std::size_t most, Skeleton &out);
 
-// The tree again, with replacement[next], replacement[next + 1], … for its constants in the order
-// of the same walk; an invalid one keeps the constant. `next` moves on.
-NodeId put_together(Graph &graph, NodeId id, const std::vector<NodeId> &replacement,
-                    std::size_t &next);
+// The tree again, with what `other` gives for the number and the node of each constant in the order
+// of the same walk. `next`, the number of the first, moves on.
+using OtherConstant = std::function<NodeId(std::size_t, NodeId)>;
+NodeId put_together(Graph &graph, NodeId id, const OtherConstant &other, std::size_t &next);
 
 bool same(const Constant &a, const Constant &b);
 

@@ -163,10 +163,9 @@ class Verifier {
 #define FATHOM_BY_COMPONENT(name, ...) case Op::name:
 #include "ir/ops.def"
             want(id,
-                 is_float(id) || (op.takes == Takes::Numbers &&
-                                  (node.type == Type::Int || is_matrix(node.type))),
-                 op.takes == Takes::Numbers ? "its type has no arithmetic"
-                                            : "its type is no float or vector");
+                 is_float(id) || is_matrix(node.type) ||
+                     (op.takes == Takes::Numbers && node.type == Type::Int),
+                 "it does not take this type");
             break;
         case Op::Normalize: want(id, is_float(id), "its type is no float or vector"); break;
         case Op::Dot:

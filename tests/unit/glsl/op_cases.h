@@ -32,29 +32,9 @@ inline std::vector<Case> cases_of(Op op) {
         for (Type t : types) cases.push_back({op, std::vector<Type>(arity, t), t});
     };
     switch (op) {
-    case Op::Const:
-    case Op::Point:
-    case Op::Normal:
-    case Op::Direction:
-    case Op::Time:
-    case Op::Param:
-    case Op::Var:
-    case Op::TableRead:
-    case Op::Image:
-    case Op::Grid:
-    case Op::Call:
-    case Op::Fold:
-    case Op::FoldResult:
-    case Op::Cached:
-    case Op::MakeHit:
-    case Op::HitDistance:
-    case Op::HitPaint:
-    case Op::HitPoint:
-    case Op::HitExtra:
-    case Op::NearestHit:
-    case Op::FarthestHit:
-    case Op::HitWith:
-    case Op::FillPaint: break;
+#define FATHOM_BOUND(name, ...) case Op::name:
+#include "ir/ops.def"
+        break;
 #define FATHOM_BY_COMPONENT(name, ...) case Op::name:
 #include "ir/ops.def"
         same(static_cast<std::size_t>(ir::info(op).arity),

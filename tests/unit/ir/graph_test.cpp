@@ -125,7 +125,6 @@ TEST_CASE("ints saturate, and division by zero is 0") {
     CHECK(value(Op::Mod, -1, 3) == 2);
     CHECK(value(Op::Mod, 1, -3) == -2);
     CHECK(value(Op::Mod, 5, 0) == 5);
-    CHECK(value(Op::Pow, 2, 40) == 2147483647);
     CHECK(*g.as_number(g.make(Op::ToInt, Type::Int, {g.number(1e30)})) == 2147483647);
     CHECK(*g.as_number(g.make(Op::ToInt, Type::Int, {g.number(-2.9)})) == -2);
 }

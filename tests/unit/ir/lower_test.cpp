@@ -207,7 +207,8 @@ TEST_CASE("maps act on the object") {
             return f({std::abs(p[0]), p[1], p[2]});
         });
         Builder u;
-        const NodeId q = elongate_point(u.g, u.g.point(), u.v(1, 0, 0));
+        const NodeId q = u.g.sub(
+            u.g.point(), u.g.make(Op::Clamp, {u.g.point(), u.v(-0.5, 0, 0), u.v(0.5, 0, 0)}));
         agrees(u.lowered(u.add(folded(u.g, u.sphere(0.5), q))), [](P p) {
             return length({p[0] - std::clamp(p[0], -0.5, 0.5), p[1], p[2]}) - 0.5;
         });
