@@ -132,7 +132,7 @@ class Assembler {
     std::string place(const ir::Function &f) const {
         if (!module_.options.place || !f.origin.source) return "";
         const std::string where = module_.options.place(f.origin);
-        return where.empty() ? "" : "// " + f.name + ", " + where + "\n";
+        return where.empty() ? "" : comment(f.name + ", " + where);
     }
 
     // -- materials

@@ -4,10 +4,12 @@
 #include "backend-glsl/assemble.h"
 #include "backend-glsl/html.h"
 #include "backend-glsl/marcher.h"
+#include "backend-glsl/params.h"
 #include "backend-glsl/prune.h"
 #include "backend-glsl/roll.h"
 #include "backend-glsl/template.h"
 #include "backend-glsl/validate.h"
+#include "base/encode.h"
 #include "base/text.h"
 #include "ir/lower/lower.h"
 #include "ir/passes/operations.h"
@@ -74,9 +76,8 @@ class Emitter {
         const auto name = [&](ir::FunctionId id) { return module_.functions.at(id.index); };
         Output output = gathered();
         PruneKernel kernel{"", output.tables, output.uniforms, loop.rows, output.reads_time};
-        const std::string text = "#version 430 core\n// " + options_.title +
-                                 ": written by fathom.\n\n" + scene_inputs() + scene.tables +
-                                 scene.functions +
+        const std::string text = "#version 430 core\n" + written_by() + "\n" + scene_inputs() +
+                                 scene.tables + scene.functions +
                                  prune_kernel(loop, {name(loop.value), name(loop.start),
                                                      name(loop.joined), name(loop.radius)});
         if (check(text, output, Stage::Compute)) kernel.text = text;
@@ -89,8 +90,7 @@ class Emitter {
         Output output = gathered();
         if (!output.images.empty() || !output.grids.empty()) return {};
         PruneKernel kernel{"", output.tables, output.uniforms, 0, output.reads_time};
-        const std::string text = "#version 430 core\n// " + options_.title +
-                                 ": written by fathom.\n\n" + scene_inputs() +
+        const std::string text = "#version 430 core\n" + written_by() + "\n" + scene_inputs() +
                                  prune_look_up(scene_.bounds) + scene.tables + scene.functions +
                                  far_kernel(module_.functions.at(scene_.distance.index));
         if (check(text, output, Stage::Compute)) kernel.text = text;
@@ -110,8 +110,8 @@ class Emitter {
                             scene_.graph.cache(ir::CacheId{caches[i]}).cell,
                             scene_.caches[caches[i]].slope});
         Output output = gathered();
-        output.text = "#version 420 core\n// " + options_.title + ": written by fathom.\n\n" +
-                      scene_inputs() + scene.tables + scene.functions + cache_fill(kept);
+        output.text = "#version 420 core\n" + written_by() + "\n" + scene_inputs() + scene.tables +
+                      scene.functions + cache_fill(kept);
         if (!check(output.text, output)) return {};
         return output;
     }
@@ -151,7 +151,8 @@ class Emitter {
         output.tables = module_.texels;
         output.reads_time = module_.reads_time;
         for (const auto &[index, name] : module_.params)
-            output.uniforms.push_back({name, scene_.params[index].type, index, -1});
+            if (!is_fixed(scene_.params[index]))
+                output.uniforms.push_back({name, scene_.params[index].type, index, -1});
         for (const auto &[index, name] : module_.images) output.images.push_back({name, index});
         for (const auto &[index, name] : module_.grids) output.grids.push_back({name, index});
         return output;
@@ -218,7 +219,8 @@ class Emitter {
         marcher.kept = !module_.kept.empty();
         marcher.far_cells = far_cells_;
         marcher.around = module_.around;
-        std::string before = head() + inputs(view);
+        const std::string declared = inputs(view);
+        std::string before = head() + defaults() + declared;
         if (!module_.pruned.empty()) before += prune_look_up(scene_.bounds);
         before += scene.tables + scene.functions;
         if (far_cells_) before += far_look_up(marcher.boxed ? "fathom_off(p)" : "0.0");
@@ -259,6 +261,8 @@ class Emitter {
         return "min(fathom_mode, 0)";
     }
 
+    std::string written_by() const { return comment(options_.title + ": written by fathom."); }
+
     std::string head() const {
         std::string text;
         switch (options_.target) {
@@ -274,25 +278,46 @@ class Emitter {
         case Target::Spirv: text = "#version 450 core\n"; break;
         case Target::Shadertoy: break;
         }
-        text += "// " + options_.title + ": written by fathom.\n";
+        text += written_by();
         if (options_.field_only) {
             text += "// For a renderer of one's own: a step of sdf(p) never passes a surface.\n";
         } else if (options_.target == Target::Shadertoy) {
             text += "// For shadertoy.com: paste it into the Image tab. Drag to look around.\n";
         } else if (options_.target == Target::GlslViewer) {
             text += "// For glslViewer: glslViewer FILE.frag. Drag to look around.\n";
+        } else if (options_.target == Target::Html) {
+            text += "// The page around this text draws one triangle, and sets the uniforms.\n";
+        } else if (options_.target == Target::Es300) {
+            text += "// Draw one triangle over the picture.\n";
         } else {
             text += "// Draw one triangle over the picture. The uniforms' defaults show the "
                     "scene's first view.\n";
         }
+        if (options_.instruments == Instruments::None)
+            text += fixed_params_comment(scene_, [&](Span span) {
+                return options_.place ? for_comment(options_.place(span)) : std::string();
+            });
         if (options_.target == Target::Es300 || options_.target == Target::Html)
             text += "precision highp float;\nprecision highp int;\nprecision highp "
                     "sampler2D;\nprecision highp sampler3D;\n";
         return text;
     }
 
-    std::string uniform(const std::string &type, const std::string &name,
-                        const std::string &value) {
+    // A host of ours makes the text anew where such a param moves; any other keeps this one.
+    bool is_fixed(const ir::Param &param) const {
+        return param.structural && options_.instruments == Instruments::None;
+    }
+
+    // Of the uniforms declared so far, where the declarations cannot say it.
+    std::string defaults() const {
+        return options_.target == Target::Es300 && options_.instruments == Instruments::None
+                   ? defaults_comment(declared_)
+                   : "";
+    }
+
+    std::string uniform(const std::string &type, const std::string &name, const std::string &value,
+                        const std::string &range = "") {
+        declared_.push_back({type, name, value, range});
         if (options_.target == Target::Spirv)
             return "layout(location = " + std::to_string(location_++) + ") uniform " + type + " " +
                    name + ";\n";
@@ -323,9 +348,9 @@ class Emitter {
             const ir::Param &param = scene_.params[index];
             const std::string value = param_value(param), type = glsl_type(param.type);
             if (!param.label.empty() && options_.instruments == Instruments::None)
-                text += "// " + one_line(param.label) + "\n";
-            if (is_hosted(options_.target))
-                text += uniform(type, name, value);
+                text += comment(param.label);
+            if (is_hosted(options_.target) && !is_fixed(param))
+                text += uniform(type, name, value, range_text(param));
             else
                 text += "const " + type + " " + name + " = " + value + ";\n";
         }
@@ -334,12 +359,6 @@ class Emitter {
                     sampler("samplerBuffer", "fathom_tables");
         for (const auto &[index, name] : module_.images) text += sampler("sampler2D", name);
         for (const auto &[index, name] : module_.grids) text += sampler("sampler3D", name);
-        return text;
-    }
-
-    static std::string one_line(std::string text) {
-        std::ranges::replace_if(
-            text, [](char c) { return c == '\n' || c == '\r' || c == '\\'; }, ' ');
         return text;
     }
 
@@ -451,7 +470,8 @@ class Emitter {
         for (const ir::TopLevel &top : scene_.top_level)
             if (top.shape.index < scene_.facts.size())
                 bound = std::max(bound, scene_.facts[top.shape.index].lipschitz_sup);
-        std::string text = head() + "\n" + scene_inputs();
+        const std::string declared = scene_inputs();
+        std::string text = head() + defaults() + "\n" + declared;
         text += "\n// The largest slope of a shape's field before it was divided by it; that of "
                 "sdf is at most 1.\n"
                 "const float sdf_lipschitz = " +
@@ -511,6 +531,7 @@ class Emitter {
     const Options &options_;
     Diagnostics &diagnostics_;
     Module module_;
+    std::vector<Default> declared_; // uniforms, in order
     int location_ = 0, binding_ = 0;
     bool far_cells_ = false;
 };

@@ -102,6 +102,10 @@ struct Output {
 
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics);
 
+// Notes each param that decides what there is. A text can hold it only as a constant: it has no
+// uniform, no slider, no line to edit that would rebuild the scene.
+void note_fixed_params(const ir::Scene &scene, Target target, Diagnostics &diagnostics);
+
 // By loop that `pruning` would make lists for: its rows.
 std::vector<int> prunable_rows(const ir::Scene &scene);
 

@@ -1,35 +1,14 @@
 #include "backend-glsl/html.h"
 
+#include "backend-glsl/params.h"
 #include "backend-glsl/template.h"
+#include "base/encode.h"
 #include "base/text.h"
 #include "ir/view.h"
 
 namespace fathom::glsl {
 
 namespace {
-
-std::string escaped(const std::string &text) {
-    std::string out;
-    for (char c : text) {
-        if (c == '<')
-            out += "&lt;";
-        else if (c == '&')
-            out += "&amp;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
-    }
-    return out;
-}
-
-// A JavaScript string that a page's own end tag cannot end.
-std::string script_string(const std::string &text) {
-    std::string quoted = json_string(text);
-    for (std::size_t at = 0; (at = quoted.find("</", at)) != std::string::npos; at += 3)
-        quoted.replace(at, 2, "<\\/");
-    return quoted;
-}
 
 std::string array(const double *values, std::size_t count) {
     std::string text = "[";
@@ -44,8 +23,8 @@ std::string controls(const ir::Scene &scene, const std::vector<Uniform> &uniform
         const ir::Param &p = scene.params[u.param];
         const std::size_t size = static_cast<std::size_t>(ir::components(p.type));
         if (text.size() > 1) text += ",\n  ";
-        text += "{name: " + script_string(u.name) +
-                ", label: " + script_string(p.label.empty() ? p.name : p.label) + ", type: \"" +
+        text += "{name: " + for_script(u.name) +
+                ", label: " + for_script(p.label.empty() ? p.name : p.label) + ", type: \"" +
                 ir::type_name(p.type) + "\", color: " + (p.is_color ? "true" : "false") +
                 ", range: " + (p.has_range ? "true" : "false") +
                 ", value: " + array(p.value.data(), size) + ", lo: " + array(p.lo.data(), size) +
@@ -54,7 +33,19 @@ std::string controls(const ir::Scene &scene, const std::vector<Uniform> &uniform
     return text + "]";
 }
 
-constexpr const char *page_head = R"(<!DOCTYPE html>
+// What the page has no control for: names and numbers, which hold nothing that could end a comment.
+std::string fixed_params(const ir::Scene &scene) {
+    std::string text;
+    for (const ir::Param &p : scene.params)
+        if (p.structural)
+            text += (text.empty() ? "" : ", ") + p.name + " = " + value_text(p) +
+                    (p.has_range ? " in " + range_text(p) : "");
+    return text.empty() ? ""
+                        : "\n<!-- Constants here, since they decide what there is: " + text +
+                              ". `fathom compile -D NAME=VALUE` writes the page for others. -->";
+}
+
+constexpr const char *page_head = R"(<!DOCTYPE html>$FIXED
 <html lang="en">
 <head>
 <meta charset="utf-8">
@@ -218,7 +209,8 @@ std::string html_page(const ir::Scene &scene, const Options &options,
         back[i] = -view.forward[i];
     }
     const std::string head =
-        fill(page_head, {{"TITLE", escaped(options.title)},
+        fill(page_head, {{"TITLE", for_html(options.title)},
+                         {"FIXED", fixed_params(scene)},
                          {"PARAMS", controls(scene, uniforms)},
                          {"TARGET", array(target.data(), 3)},
                          {"BACK", array(back.data(), 3)},
@@ -231,7 +223,7 @@ std::string html_page(const ir::Scene &scene, const Options &options,
                                           ? "true"
                                           : "false"},
                          {"SECONDS", format_shortest(scene.render.time_end)},
-                         {"FRAGMENT", script_string(fragment)}});
+                         {"FRAGMENT", for_script(fragment)}});
     return head + page_tail;
 }
 

@@ -1,6 +1,7 @@
 // What a text needs (functions, tables, images, params), their names, and constants as text.
 #include "backend-glsl/module.h"
 
+#include "base/encode.h"
 #include "base/text.h"
 #include "ir/passes/cost.h"
 
@@ -39,6 +40,8 @@ std::string float_literal(float value) {
     if (text.find_first_of(".e") == std::string::npos) text += ".0";
     return text;
 }
+
+std::string comment(std::string_view text) { return "// " + for_comment(text) + "\n"; }
 
 std::string literal(const ir::Constant &constant) {
     const auto number = [&](std::size_t i) {

@@ -51,6 +51,7 @@ struct Module {
 };
 
 const char *glsl_type(ir::Type type);
+std::string comment(std::string_view text); // a line of its own: what comes from outside is encoded
 std::string literal(const ir::Constant &constant); // "1.0", "vec3(0.0, 1.0, 0.0)"
 std::string float_literal(float value);
 inline std::string float_literal(double value) { return float_literal(static_cast<float>(value)); }

@@ -2,6 +2,7 @@
 // as the line would read with it. Safe for any bytes: bad UTF-8, control characters, lines of a
 // megabyte.
 #include "base/diagnostic.h"
+#include "base/encode.h"
 #include "base/text.h"
 
 #include <algorithm>
@@ -102,7 +103,7 @@ ShownLine show_line(std::string_view line, std::size_t focus) {
         if (c.value == '\t')
             shown.text.append(width, ' ');
         else
-            shown.text += printable(line.substr(byte, c.length));
+            shown.text += for_terminal(line.substr(byte, c.length));
         shown.columns.insert(shown.columns.end(), c.length, column);
         column += width;
         byte += c.length;
@@ -262,7 +263,7 @@ void Printer::marked_line(const Source &source, std::uint32_t line, std::vector<
     for (const Mark &mark : marks) {
         const std::size_t begin = shown.column(mark.begin);
         placed.push_back({begin, std::max(begin + 1, shown.column(mark.end)), mark.primary,
-                          printable(mark.message)});
+                          for_terminal(mark.message)});
     }
 
     row(std::to_string(line), shown.text);
@@ -290,7 +291,7 @@ void Printer::remark(std::string_view word, std::string_view style, std::string_
     std::size_t begin = 0;
     for (bool first = true; begin <= message.size(); first = false) {
         const std::size_t end = std::min(message.find('\n', begin), message.size());
-        const std::string line = printable(message.substr(begin, end - begin));
+        const std::string line = for_terminal(message.substr(begin, end - begin));
         if (first) {
             gutter("", "= ");
             out_ += style;
@@ -376,7 +377,8 @@ std::size_t gutter_width(const Diagnostic &diagnostic, const Sources &sources) {
 
 std::string place_text(const Source &source, std::uint32_t offset) {
     const Position at = position(source, offset);
-    return printable(source.name) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
+    return for_terminal(source.name) + ":" + std::to_string(at.line) + ":" +
+           std::to_string(at.column);
 }
 
 } // namespace
@@ -400,7 +402,7 @@ std::string to_text(const Diagnostic &diagnostic, const Sources &sources, bool c
     out += "]";
     out += style.end;
     out += style.bold;
-    out += ": " + printable(diagnostic.message);
+    out += ": " + for_terminal(diagnostic.message);
     out += style.end;
     out += '\n';
 

@@ -13,8 +13,8 @@ Span join(Span a, Span b) {
     return {a.source, std::min(a.begin, b.begin), std::max(a.end, b.end)};
 }
 
-SourceId Sources::add(std::string name, std::string text) {
-    Source source{std::move(name), std::move(text), {0}};
+SourceId Sources::add(std::string name, std::string text, SourceId made_from) {
+    Source source{std::move(name), std::move(text), {0}, made_from};
     for (std::size_t i = source.text.find('\n'); i != std::string::npos;
          i = source.text.find('\n', i + 1))
         source.line_starts.push_back(static_cast<std::uint32_t>(i + 1));

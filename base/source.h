@@ -11,12 +11,16 @@
 
 namespace fathom {
 
-struct Source {
-    std::string name; // as the user wrote it on the command line or in `import`; printed as is
-    std::string text; // UTF-8, as read
-    std::vector<std::uint32_t> line_starts; // byte offsets; filled by Sources::add
-};
+struct Source;
 using SourceId = Id<Source>;
+
+struct Source {
+    std::string
+        name; // as the user wrote it on the command line or in `import`; raw bytes (encode.h)
+    std::string text;                       // UTF-8, as read
+    std::vector<std::uint32_t> line_starts; // byte offsets; filled by Sources::add
+    SourceId made_from; // the source that was imported as this text, which then is no file itself
+};
 
 // Bytes [begin, end) of one source.
 struct Span {
@@ -38,7 +42,7 @@ struct Position {
 
 class Sources {
   public:
-    SourceId add(std::string name, std::string text);
+    SourceId add(std::string name, std::string text, SourceId made_from = {});
     const Source &operator[](SourceId id) const { return sources_[id]; }
     std::size_t size() const { return sources_.size(); }
 

@@ -55,12 +55,6 @@ constexpr CodeRange wide[] = {
     {0x1F6CC, 0x1F6CC}, {0x1F6D0, 0x1F6D2}, {0x1F6EB, 0x1F6EC}, {0x1F6F4, 0x1F6FC},
     {0x1F7E0, 0x1F7EB}, {0x1F90C, 0x1FAFF}, {0x20000, 0x3FFFD}};
 
-// C0, DEL, C1; line separators; the marks, embeddings and isolates that turn the reading direction.
-bool disturbs_terminal(std::uint32_t c) {
-    return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x061C || c == 0x200E || c == 0x200F ||
-           (c >= 0x2028 && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
-}
-
 } // namespace
 
 std::string format_shortest(double value) { return shortest(value); }
@@ -117,44 +111,13 @@ int display_width(std::uint32_t c) {
     return in_ranges(wide, c) ? 2 : 1;
 }
 
-std::string printable(std::string_view text) {
-    std::string out;
-    out.reserve(text.size());
-    for (std::size_t i = 0; i < text.size();) {
-        const CodePoint c = decode_utf8(text, i);
-        i += c.length;
-        if (c.value == '\t' || c.value == '\n')
-            out.push_back(' ');
-        else
-            append_utf8(out, disturbs_terminal(c.value) ? 0xFFFD : c.value);
-    }
-    return out;
-}
-
-std::string json_string(std::string_view text) {
-    static constexpr char hex[] = "0123456789abcdef";
-    std::string out = "\"";
-    for (std::size_t i = 0; i < text.size();) {
-        const CodePoint c = decode_utf8(text, i);
-        i += c.length;
-        switch (c.value) {
-        case '"': out += "\\\""; break;
-        case '\\': out += "\\\\"; break;
-        case '\n': out += "\\n"; break;
-        case '\r': out += "\\r"; break;
-        case '\t': out += "\\t"; break;
-        default:
-            if (c.value < 0x20 || c.value == 0x7F) {
-                out += "\\u00";
-                out.push_back(hex[c.value >> 4 & 15]);
-                out.push_back(hex[c.value & 15]);
-            } else {
-                append_utf8(out, c.value);
-            }
-        }
-    }
-    out.push_back('"');
-    return out;
+std::string_view cut(std::string_view text, std::size_t bytes) {
+    if (text.size() <= bytes) return text;
+    const auto continues = [&](std::size_t at) {
+        return (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
+    };
+    while (bytes > 0 && continues(bytes)) --bytes;
+    return text.substr(0, bytes);
 }
 
 } // namespace fathom

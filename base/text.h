@@ -13,7 +13,6 @@ namespace fathom {
 std::string format_shortest(double value); // shortest form that reads back equal: "0.1", "1e+30"
 std::string format_shortest(float value);
 std::optional<double> parse_number(std::string_view text); // the whole text, or nothing
-std::string json_string(std::string_view text);            // quoted and escaped; bad UTF-8 replaced
 
 // The code point that begins at `offset` (which must lie inside the text). What is not UTF-8 is one
 // U+FFFD a byte, with `valid` false, so that reading always moves on.
@@ -28,8 +27,7 @@ void append_utf8(std::string &out, std::uint32_t code_point);
 // Columns that a code point takes on a terminal: 0 (combining), 1 or 2 (East Asian wide, emoji).
 int display_width(std::uint32_t code_point);
 
-// The text with everything that could disturb a terminal (control characters, bidirectional
-// overrides, bad UTF-8) replaced by U+FFFD, and tabs and line ends by a space.
-std::string printable(std::string_view text);
+// The text, or as much of its begin as fits into so many bytes without a part of a code point.
+std::string_view cut(std::string_view text, std::size_t bytes);
 
 } // namespace fathom

@@ -1,7 +1,9 @@
 // The command line, read with CLI11, which no other file includes.
+#include "base/encode.h"
+#include "base/single.h"
 #include "base/suggest.h"
 #include "base/text.h"
-#include "cli/command.h"
+#include "cli/outputs.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -48,7 +50,8 @@ std::string read_point(const std::string &word, std::array<double, 3> &point) {
         std::size_t comma = i < 2 ? rest.find(',') : rest.size();
         std::optional<double> number =
             comma == rest.npos ? std::nullopt : parse_number(rest.substr(0, comma));
-        if (!number) return fmt::format("a point is X,Y,Z, as 0,1.5,-2, not `{}`", word);
+        if (!number || !std::isfinite(*number))
+            return fmt::format("a point is X,Y,Z, as 0,1.5,-2, not `{}`", word);
         point[i] = *number;
         rest.remove_prefix(std::min(comma + 1, rest.size()));
     }
@@ -123,17 +126,38 @@ template <class T> CLI::Option *choice(CLI::App *app, const std::string &name, T
         help);
 }
 
-void add_scene(CLI::App *app, SceneArguments &scene) {
-    app->add_option("FILE", scene.file, "the scene, `-` for standard input")->required();
+// The help says in words what is allowed, so that CLI11 need not add it in its own.
+CLI::Validator quiet(CLI::Validator validator) { return validator.description(""); }
+
+// Some commands read their file more than once, which standard input does not bear.
+enum class Read { Once, Again };
+
+void add_scene(CLI::App *app, SceneArguments &scene, Read read = Read::Once) {
+    app->add_option("FILE", scene.file,
+                    read == Read::Once ? "the scene, `-` for standard input" : "the scene")
+        ->type_name("")
+        ->required();
     option(
         app, "-D", [&](const std::string &word) { return read_override(word, scene.overrides); },
         "set a param of the scene")
         ->type_name("NAME=VALUE");
     app->add_option("-I", scene.include_folders, "look here too for imports, images and grids")
         ->type_name("DIR")
+        ->check(quiet(CLI::ExistingDirectory))
         ->expected(1)
         ->allow_extra_args(false) // the word behind it may be the scene
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+// An empty name is a script's variable that was never set.
+CLI::Validator named() {
+    return CLI::Validator(
+        [](const std::string &word) { return std::string(word.empty() ? "wants a name" : ""); },
+        "");
+}
+
+CLI::Option *add_out(CLI::App *app, std::string &out, const std::string &help) {
+    return app->add_option("-o", out, help)->check(named());
 }
 
 void add_size(CLI::App *app, int &width, int &height) {
@@ -148,7 +172,7 @@ void add_time(CLI::App *app, double &time, const std::string &help) {
         app, "--time",
         [&time](const std::string &word) {
             const std::optional<double> number = parse_number(word);
-            if (!number || !std::isfinite(*number))
+            if (!number || !fits_single(*number))
                 return fmt::format("wants seconds, as 2.5, not `{}`", word);
             time = *number;
             return std::string();
@@ -156,9 +180,6 @@ void add_time(CLI::App *app, double &time, const std::string &help) {
         help)
         ->type_name("T");
 }
-
-// The help says in words what is allowed, so that CLI11 need not add it in its own.
-CLI::Validator quiet(CLI::Validator validator) { return validator.description(""); }
 
 struct Reader {
     CLI::App app{"Fathom: scenes as text, distance fields whose step is proved.", "fathom"};
@@ -201,10 +222,11 @@ struct Reader {
             "2 the command line is wrong, 3 a file named on it or the device cannot be used.");
 
         CLI::App *sub = command("view", "open a window that follows the file", view);
-        add_scene(sub, view.scene);
+        add_scene(sub, view.scene, Read::Again);
         add_size(sub, view.width, view.height);
         sub->add_option("--record", view.record,
                         "save a picture of the window here after every reload")
+            ->check(named())
             ->type_name("DIR");
         sub->add_flag("--save-view", view.save_view,
                       "write the view into FILE when the window closes");
@@ -222,15 +244,16 @@ struct Reader {
 
         sub = command("compile", "write the scene's shader, validated", compile);
         add_scene(sub, compile.scene);
-        sub->add_option(
-               "-o", compile.out,
-               "write here, not to standard output; for glsl450, large tables to OUT.tables")
+        add_out(sub, compile.out,
+                "write here, not to standard output; for glsl450, large tables to OUT.tables")
             ->type_name("OUT");
-        sub->add_option(
-               "--target", compile.target,
-               "glsl450 (unless said), glsl330, es300, shadertoy, glslviewer, spirv or html")
-            ->check(CLI::IsMember(
-                {"glsl450", "glsl330", "es300", "shadertoy", "glslviewer", "spirv", "html"}))
+        std::vector<std::pair<std::string, std::string>> targets;
+        for (const char *name :
+             {"glsl450", "glsl330", "es300", "shadertoy", "glslviewer", "spirv", "html"})
+            targets.emplace_back(name, name);
+        choice<std::string>(
+            sub, "--target", compile.target, targets,
+            "glsl450 (unless said), glsl330, es300, shadertoy, glslviewer, spirv or html")
             ->type_name("TARGET");
         sub->add_flag("--field-only", compile.field_only,
                       "the field functions alone, for a renderer of your own");
@@ -241,8 +264,9 @@ struct Reader {
 
         sub = command("render", "make a picture, without a window", render);
         add_scene(sub, render.scene);
-        sub->add_option("-o", render.out,
-                        "the PNG; for --frames, `#`s stand for the frame's number")
+        add_out(sub, render.out,
+                "the picture, a PNG or JPEG by its suffix (`-`: a PNG to standard output); for "
+                "--frames, `#`s stand for the frame's number")
             ->type_name("OUT.png")
             ->required();
         add_size(sub, render.width, render.height);
@@ -267,7 +291,10 @@ struct Reader {
         sub->add_option("--samples", render.samples, "rays a pixel, 1 to 256")
             ->check(quiet(CLI::Range(1, 256)))
             ->type_name("N");
-
+        sub->add_option("--quality", render.quality,
+                        fmt::format("of a JPEG, 1 to 100, {} unless said", render.quality))
+            ->check(quiet(CLI::Range(1, 100)))
+            ->type_name("N");
         sub->add_flag("--cache", render.cache,
                       "read cached fields through the noise cache, as a moving view does");
 
@@ -293,32 +320,32 @@ struct Reader {
 
         sub = command("import", "turn a YAML save file into the language", import);
         sub->add_option("IN.yaml", import.file, "the save file, `-` for standard input")
+            ->type_name("")
             ->required();
-        sub->add_option("-o", import.out, "write here, not to standard output")
-            ->type_name("OUT.sdf");
+        add_out(sub, import.out, "write here, not to standard output")->type_name("OUT.sdf");
         sub->add_flag("--strict", import.strict, "take nothing that is not understood");
         sub->add_flag("--partial", import.partial,
                       "write what was read of a file whose structure is broken");
 
         sub = command("export", "turn a scene into a YAML save file", export_);
         add_scene(sub, export_.scene);
-        sub->add_option("-o", export_.out, "write here, not to standard output")
-            ->type_name("OUT.yaml");
+        add_out(sub, export_.out, "write here, not to standard output")->type_name("OUT.yaml");
 
         sub = command("fmt", "format scenes, in place", fmt);
         sub->add_option("FILE", fmt.files, "the scenes; `-`: standard input to standard output")
+            ->type_name("")
             ->required();
         sub->add_flag("--check", fmt.check,
                       "change nothing; name the files that are not formatted, and exit with 1");
 
         sub = command("doc", "print the library's entry of a name", doc);
-        sub->add_option("NAME", doc.name, "left out: list all names");
+        sub->add_option("NAME", doc.name, "left out: list all names")->type_name("");
 
         sub = command("explain", "print a diagnostic's page", explain);
-        sub->add_option("CODE", explain.code, "left out: list all codes");
+        sub->add_option("CODE", explain.code, "left out: list all codes")->type_name("");
 
         sub = command("bench", "measure the phases and a frame of a scene", bench);
-        add_scene(sub, bench.scene);
+        add_scene(sub, bench.scene, Read::Again);
         add_size(sub, bench.width, bench.height);
         sub->add_flag("--noise-cache", bench.noise_cache,
                       "measure the noise cache against exact frames");
@@ -340,11 +367,13 @@ struct Reader {
             ->type_name("N");
 
         help = app.add_subcommand("help", "show this, or a command's options");
-        help->add_option("COMMAND", help_about, "");
+        help->add_option("COMMAND", help_about, "left out: list the commands")->type_name("");
     }
 };
 
-Answer wrong(const std::string &words) { return {usage_error, "", "fathom: " + words}; }
+Answer wrong(const std::string &words) {
+    return {usage_error, "", "fathom: " + for_terminal(words)};
+}
 
 std::string help_hint(const CLI::App &app) {
     std::vector<CLI::App *> chosen = app.get_subcommands();
@@ -364,6 +393,48 @@ CLI::App *find_command(CLI::App &app, const std::string &name) {
     std::vector<CLI::App *> found =
         app.get_subcommands([&](CLI::App *sub) { return sub->get_name() == name; });
     return found.empty() ? nullptr : found.front();
+}
+
+// Options that do not go together, or that nothing would read; empty where there are none.
+std::string contradiction(const Reader &reader) {
+    const CLI::App &app = reader.app;
+    const CLI::App &command = *app.get_subcommands().front();
+    const auto is = [&](const char *name) { return command.get_name() == name; };
+    const auto given = [&](const char *option) { return command.count(option) > 0; };
+    const bool watches =
+        (is("check") && reader.check.watch) || (is("compile") && reader.compile.watch);
+    const std::string &watched = is("check") ? reader.check.scene.file : reader.compile.scene.file;
+    if (watches && watched == "-") return "--watch follows a file, and standard input is none";
+    if (is("check") && reader.check.json && reader.check.explain)
+        return "--explain is for people, --json for programs: ask for one of them";
+    if (is("compile") && reader.compile.field_only && reader.compile.target == "html")
+        return "--field-only leaves out the picture that a page shows; `--target es300 "
+               "--field-only` "
+               "writes the text that a page of your own can use";
+    if (is("compile") && reader.compile.noise_cache) {
+        if (reader.compile.target != "glsl450" || reader.compile.field_only)
+            return "--noise-cache is for whole pictures by `--target glsl450`";
+        if (reader.compile.out.empty() || reader.compile.out == "-")
+            return "--noise-cache writes several files: name the first by -o";
+    }
+    if (is("render") && reader.render.cache && reader.render.backend == Backend::Cpu)
+        return "--cache needs GL, which --backend cpu leaves out";
+    if (is("render") && reader.render.frames && reader.render.out == "-")
+        return "--frames writes several files: name them by -o, as frame_###.png";
+    if (is("render") && given("--quality") &&
+        picture_format(reader.render.out) != PictureFormat::Jpeg)
+        return "--quality is of a JPEG: -o OUT.jpg writes one";
+    if (is("render") && given("--fps") && !reader.render.frames)
+        return "--fps is for --frames: one picture has no rate";
+    if (is("bench") && !reader.bench.noise_cache)
+        for (const char *option : {"--figure", "--cells", "--frames"})
+            if (given(option))
+                return fmt::format("{} is for the measures of `bench --noise-cache`", option);
+    if (is("eval") && reader.eval.at.empty() && !reader.eval.points)
+        return "eval wants points: --at X,Y,Z or --points -";
+    if (is("eval") && reader.eval.points && reader.eval.scene.file == "-")
+        return "the scene and the points cannot both come from standard input";
+    return "";
 }
 
 Answer unknown_command(CLI::App &app, const std::string &word) {
@@ -395,27 +466,15 @@ std::variant<Invocation, Answer> read_arguments(int count, const char *const *ar
     }
     if (reader.version) return Answer{done, version_text, ""};
     if (reader.help->parsed()) {
-        if (reader.help_about.empty()) return Answer{done, app.help(), ""};
+        // CLI11 gives the help of a command that was read, `help` itself here; a fresh reader has
+        // read none.
+        if (reader.help_about.empty()) return Answer{done, Reader().app.help(), ""};
         const CLI::App *about = find_command(app, reader.help_about);
         if (!about) return unknown_command(app, reader.help_about);
         return Answer{done, about->help("fathom"), ""};
     }
     if (app.get_subcommands().empty()) return Answer{usage_error, "", app.help()};
-    if (reader.eval.scene.file == "-" && reader.eval.points)
-        return wrong("the scene and the points cannot both come from standard input");
-    if (app.got_subcommand("compile") && reader.compile.noise_cache) {
-        if (reader.compile.target != "glsl450" || reader.compile.field_only)
-            return wrong("--noise-cache is for whole pictures by `--target glsl450`");
-        if (reader.compile.out.empty())
-            return wrong("--noise-cache writes several files: name the first by -o");
-    }
-    if (app.got_subcommand("render") && reader.render.cache &&
-        reader.render.backend == Backend::Cpu)
-        return wrong("--cache needs GL, which --backend cpu leaves out");
-    if (app.got_subcommand("bench") && !reader.bench.figure.empty() && !reader.bench.noise_cache)
-        return wrong("--figure is one of the measures of `bench --noise-cache`");
-    if (app.got_subcommand("eval") && reader.eval.at.empty() && !reader.eval.points)
-        return wrong("eval wants points: --at X,Y,Z or --points -");
+    if (const std::string why = contradiction(reader); !why.empty()) return wrong(why);
     return reader.invocation;
 }
 

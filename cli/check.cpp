@@ -1,6 +1,7 @@
 // fathom check: parses, types, proves; says what it found to people, or to editors as JSON.
 #include "backend-cpu/trace/march.h"
 #include "backend-glsl/emit.h"
+#include "base/encode.h"
 #include "cli/terminal.h"
 #include "driver/verdict.h"
 #include "proof/prove.h"
@@ -34,7 +35,7 @@ void explain(const proof::Explanation &node, const Sources &sources, const std::
         const Source &source = sources[node.place.source];
         line += fmt::format("  [{}:{}]", source.name, position(source, node.place.begin).line);
     }
-    terminal.put(line + "\n");
+    terminal.put(for_terminal(line) + "\n");
     for (std::size_t i = 0; i < node.children.size(); ++i) {
         bool last = i + 1 == node.children.size();
         explain(node.children[i], sources, below + (last ? "`-" : "|-"),

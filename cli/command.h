@@ -51,6 +51,7 @@ struct RenderCommand {
     std::optional<std::pair<int, int>> frames; // first, one past the last
     double frame_rate = 30;
     int samples = 1;
+    int quality = 90;   // of a JPEG
     bool cache = false; // through the noise cache
 };
 struct EvalCommand {
@@ -104,7 +105,7 @@ struct Invocation {
 // A line that is answered at once: help, the version, or what is wrong with it.
 struct Answer {
     Exit exit = done;
-    std::string results, words; // to standard output, to standard error
+    std::string results, words; // to standard output, to standard error; encoded for a terminal
 };
 
 std::variant<Invocation, Answer> read_arguments(int count, const char *const *arguments);

@@ -1,12 +1,25 @@
 // fathom compile: a scene's shader, for one of the targets, and the data of its buffer. Nothing is
 // written unless all went well.
 #include "backend-glsl/emit.h"
-#include "cli/terminal.h"
+#include "cli/outputs.h"
 
 #include <fmt/format.h>
 
 namespace fathom::cli {
 namespace {
+
+Content content_of(glsl::Target target) {
+    switch (target) {
+    case glsl::Target::Glsl450:
+    case glsl::Target::Glsl330:
+    case glsl::Target::Es300:
+    case glsl::Target::Shadertoy:
+    case glsl::Target::GlslViewer: return Content::Shader;
+    case glsl::Target::Spirv: return Content::SpirV;
+    case glsl::Target::Html: return Content::Page;
+    }
+    return Content::Shader;
+}
 
 // The noise cache's passes, beside the picture's shader: OUT.frag, OUT.reserve.frag, …
 Exit write_passes(const std::string &out, const ir::Scene &scene, const glsl::Options &options,
@@ -36,6 +49,7 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
           Terminal &terminal) {
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
+    if (overwrites(compilation, command.out, terminal)) return usage_error;
     glsl::Options options;
     options.target = *glsl::target_by_name(command.target);
     options.field_only = command.field_only;
@@ -52,6 +66,7 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
     };
     options.noise_cache = command.noise_cache;
     Diagnostics diagnostics;
+    glsl::note_fixed_params(compilation.scene, options.target, diagnostics);
     glsl::Output output = glsl::emit(compilation.scene, options, diagnostics);
     print_diagnostics(diagnostics, compilation.sources, terminal);
     if (diagnostics.has_errors()) return scene_error;
@@ -72,7 +87,9 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
 } // namespace
 
 Exit run(const CompileCommand &command, Terminal &terminal) {
-    if (overwrites(command.scene.file, command.out, terminal)) return usage_error;
+    if (overwrites(command.scene.file, command.out, terminal) ||
+        misnamed(command.out, content_of(*glsl::target_by_name(command.target)), terminal))
+        return usage_error;
     auto act = [&](const driver::Compilation &compilation) {
         return emit(command, compilation, terminal);
     };

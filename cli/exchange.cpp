@@ -1,5 +1,5 @@
 // fathom import and fathom export: the YAML save format, both ways.
-#include "cli/terminal.h"
+#include "cli/outputs.h"
 #include "save-format/save_format.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,9 @@ std::string way(const std::filesystem::path &from_file, const std::filesystem::p
 } // namespace
 
 Exit run(const ImportCommand &command, Terminal &terminal) {
-    if (overwrites(command.file, command.out, terminal)) return usage_error;
+    if (overwrites(command.file, command.out, terminal) ||
+        misnamed(command.out, Content::Scene, terminal))
+        return usage_error;
     bool standard_input = command.file == "-";
     std::string error;
     std::optional<std::string> text =
@@ -52,11 +54,14 @@ Exit run(const ImportCommand &command, Terminal &terminal) {
 }
 
 Exit run(const ExportCommand &command, Terminal &terminal) {
-    if (overwrites(command.scene.file, command.out, terminal)) return usage_error;
+    if (overwrites(command.scene.file, command.out, terminal) ||
+        misnamed(command.out, Content::SaveFile, terminal))
+        return usage_error;
     driver::Compilation compilation =
         driver::compile_file(command.scene.file, compile_options(command.scene));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
+    if (overwrites(compilation, command.out, terminal)) return usage_error;
     Diagnostics diagnostics;
     std::string yaml = save::export_yaml(compilation.scene, diagnostics);
     print_diagnostics(diagnostics, compilation.sources, terminal);

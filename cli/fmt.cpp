@@ -1,5 +1,5 @@
 // fathom fmt: the one style. Writes only what changes; a file with a syntax error is left alone.
-#include "cli/terminal.h"
+#include "cli/outputs.h"
 #include "lang/format.h"
 #include "lang/parse.h"
 

@@ -10,7 +10,7 @@ int main(int count, char **arguments) {
     if (const auto *answer = std::get_if<Answer>(&line)) {
         Terminal terminal(ColorChoice::Auto);
         terminal.put(answer->results);
-        if (!answer->words.empty()) terminal.say(answer->words);
+        if (!answer->words.empty()) terminal.say_text(answer->words);
         Exit flushed = terminal.flush();
         return flushed != done ? flushed : answer->exit;
     }

@@ -4,8 +4,9 @@
 #include "backend-cpu/trace/march.h"
 #include "base/picture.h"
 #include "cli/interrupt.h"
+#include "cli/outputs.h"
 #include "cli/preview.h"
-#include "cli/terminal.h"
+#include "driver/image.h"
 #include "render-gl/cache_passes.h"
 #include "render-gl/context.h"
 #include "render-gl/pruning.h"
@@ -213,16 +214,31 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
     return Picture{made.width, made.height, std::move(made.rgba)};
 }
 
+std::string encoded(const Picture &picture, const std::string &out, int quality) {
+    return picture_format(out) == PictureFormat::Jpeg
+               ? driver::encode_jpeg(picture.width, picture.height, picture.rgba, quality)
+               : encode_png(picture);
+}
+
 } // namespace
 
 Exit run(const RenderCommand &command, Terminal &terminal) {
-    if (overwrites(command.scene.file, command.out, terminal)) return usage_error;
+    const std::pair<int, int> frames = command.frames.value_or(std::pair(0, 1));
+    const int first = frames.first, last = frames.second;
+    const auto out_of = [&](int frame) {
+        return command.frames ? frame_name(command.out, frame) : command.out;
+    };
+    if (overwrites(command.scene.file, out_of(first), terminal) ||
+        misnamed(out_of(first), Content::Picture, terminal))
+        return usage_error;
+    for (int frame = first; frame < last; ++frame)
+        if (unwritable(out_of(frame), terminal)) return device_error;
     driver::Compilation compilation =
         driver::compile_file(command.scene.file, compile_options(command.scene));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
-    const std::pair<int, int> frames = command.frames.value_or(std::pair(0, 1));
-    const int first = frames.first, last = frames.second;
+    for (int frame = first; frame < last; ++frame)
+        if (overwrites(compilation, out_of(frame), terminal)) return usage_error;
     const auto time_of = [&](int frame) {
         return command.time + (command.frames ? frame / command.frame_rate : 0);
     };
@@ -234,7 +250,7 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
 
     const Interrupts interrupts;
     for (int frame = first; frame < last; ++frame) {
-        std::string out = command.frames ? frame_name(command.out, frame) : command.out;
+        const std::string out = out_of(frame);
         const double time = time_of(frame);
         std::string status; // what is worth knowing of how it was drawn
         std::optional<Picture> picture = paint(
@@ -254,7 +270,7 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
                                      command.width, command.height));
             return device_error;
         }
-        exit = write_result(out, encode_png(*picture), terminal);
+        exit = write_result(out, encoded(*picture, out, command.quality), terminal);
         if (exit != done) return exit;
     }
     terminal.finish_progress();

@@ -1,5 +1,6 @@
 #include "cli/terminal.h"
 
+#include "base/encode.h"
 #include "base/text.h"
 #include "driver/watch.h"
 
@@ -20,6 +21,18 @@ long long milliseconds_now() {
     return std::chrono::duration_cast<std::chrono::milliseconds>(
                std::chrono::steady_clock::now().time_since_epoch())
         .count();
+}
+
+std::string lines_for_terminal(std::string_view text) {
+    std::string out;
+    while (!text.empty()) {
+        const std::size_t end = text.find('\n');
+        out += for_terminal(text.substr(0, end));
+        if (end == text.npos) break;
+        out += '\n';
+        text.remove_prefix(end + 1);
+    }
+    return out;
 }
 
 } // namespace
@@ -43,7 +56,8 @@ void Terminal::put(std::string_view results) {
 
 Exit Terminal::flush() {
     if (!failure_ && !gone_ && !buffer_.empty()) {
-        int error = driver::write_all(STDOUT_FILENO, buffer_);
+        const bool shown = ::isatty(STDOUT_FILENO) != 0;
+        int error = driver::write_all(STDOUT_FILENO, shown ? lines_for_terminal(buffer_) : buffer_);
         if (error == EPIPE)
             gone_ = true;
         else if (error) {
@@ -56,9 +70,11 @@ Exit Terminal::flush() {
     return failure_ ? device_error : done;
 }
 
-void Terminal::say(std::string_view words) {
+void Terminal::say(std::string_view words) { say_text(for_terminal(words)); }
+
+void Terminal::say_text(std::string_view text) {
     finish_progress();
-    std::string line(words);
+    std::string line(text);
     if (line.empty() || line.back() != '\n') line += '\n';
     (void)driver::write_all(STDERR_FILENO,
                             line); // where words cannot be said, nothing can be said about it
@@ -72,8 +88,8 @@ void Terminal::progress(std::string_view what, double share) {
     constexpr int width = 30;
     int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * width);
     (void)driver::write_all(STDERR_FILENO,
-                            fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %", what, "", full, "",
-                                        width - full, 100 * share));
+                            fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %", for_terminal(what),
+                                        "", full, "", width - full, 100 * share));
     bar_shown_ = true;
 }
 
@@ -107,7 +123,7 @@ driver::CompileOptions compile_options(const SceneArguments &scene) {
 
 void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, Terminal &terminal) {
     for (const Diagnostic &diagnostic : diagnostics.sorted())
-        terminal.say(to_text(diagnostic, sources, terminal.color()));
+        terminal.say_text(to_text(diagnostic, sources, terminal.color()));
     if (diagnostics.dropped() > 0)
         terminal.say(fmt::format("({} more are not shown)", diagnostics.dropped()));
 }
@@ -133,26 +149,6 @@ bool in_proved_time(const ir::Scene &scene, double first, double last, Terminal 
                              "`render(time: …)` in it says to which time",
                              format_shortest(first < 0 ? first : last), format_shortest(end)));
     return false;
-}
-
-bool overwrites(const std::string &file, const std::string &out, Terminal &terminal) {
-    std::error_code none;
-    if (file == "-" || out.empty() || out == "-" || !std::filesystem::equivalent(file, out, none))
-        return false;
-    terminal.say(
-        fmt::format("fathom: -o {}: that is the file that is read; write to another", out));
-    return true;
-}
-
-Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal) {
-    if (out.empty() || out == "-") {
-        terminal.put(bytes);
-        return done; // a failed write is told when the results are flushed
-    }
-    std::string error = driver::write_file(out, bytes);
-    if (error.empty()) return done;
-    terminal.say(fmt::format("fathom: cannot write `{}`: {}", out, error));
-    return device_error;
 }
 
 Exit watch_scene(const SceneArguments &scene, Terminal &terminal,

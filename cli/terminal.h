@@ -15,8 +15,11 @@ class Terminal {
   public:
     explicit Terminal(ColorChoice color);
 
-    void put(std::string_view results); // buffered
-    void say(std::string_view words);   // a line, at once
+    // Buffered. Where standard output is a terminal its lines are encoded for that, so that no
+    // bytes of a result steer it; a file or a pipe gets them as they are.
+    void put(std::string_view results);
+    void say(std::string_view words);     // a line, at once, encoded for a terminal
+    void say_text(std::string_view text); // lines that are encoded already, with colours of ours
     Exit flush(); // of the results; device_error where they could not be written
 
     bool color() const { return color_; }             // on standard error
@@ -50,12 +53,6 @@ Exit report(const driver::Compilation &compilation, const SceneArguments &scene,
 // False, with the reason, where `first` to `last` leave them and the field reads the time.
 bool in_proved_time(const ir::Scene &scene, double first, double last, Terminal &terminal);
 void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, Terminal &terminal);
-
-// Whether a result would be written over the very file that it is made from; says so.
-bool overwrites(const std::string &file, const std::string &out, Terminal &terminal);
-
-// Writes a result to a file, or to standard output where `out` is empty or `-`.
-Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal);
 
 // Compiles, acts, and does both again after every save of a file that the scene read; ends by an
 // interrupt alone.

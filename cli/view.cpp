@@ -5,6 +5,20 @@
 #include <fmt/format.h>
 
 namespace fathom::cli {
+namespace {
+
+// A scene that an editor is about to write: its folder is there, and nothing of its name.
+bool to_come(const std::string &file) {
+    std::error_code none;
+    std::filesystem::path path = std::filesystem::absolute(file, none);
+    const std::string suffix = path.extension().string();
+    return (suffix == ".sdf" || suffix == ".yaml" || suffix == ".yml") &&
+           std::filesystem::is_directory(path.parent_path(), none) &&
+           std::filesystem::symlink_status(path, none).type() ==
+               std::filesystem::file_type::not_found;
+}
+
+} // namespace
 
 Exit run(const ViewCommand &command, Terminal &terminal) {
     if (command.scene.file == "-") {
@@ -16,7 +30,10 @@ Exit run(const ViewCommand &command, Terminal &terminal) {
         // until it is mended.
         driver::Compilation first =
             driver::compile_file(command.scene.file, compile_options(command.scene));
-        if (!first.unreadable.empty() || !first.usage_errors.empty())
+        if (to_come(command.scene.file))
+            terminal.say(fmt::format("fathom: there is no `{}` yet; the window waits for it",
+                                     command.scene.file));
+        else if (!first.unreadable.empty() || !first.usage_errors.empty())
             return report(first, command.scene, terminal);
     }
     viewer::Settings settings;

@@ -58,7 +58,10 @@ def wrapped(text, indent=""):
 
 def entries(path):
     doc = []
-    for line in path.read_text().splitlines():
+    # A head that goes over several lines is read as one.
+    text = re.sub(r"^fn \w+\(\n[^)]*\n\)", lambda head: re.sub(r"\n\s*", " ", head[0]).replace("( ", "(").replace(" )", ")"),
+                  path.read_text(), flags=re.MULTILINE)
+    for line in text.splitlines():
         if line.startswith("///"):
             doc.append(line[3:].strip())
             continue

@@ -1,5 +1,6 @@
 #include "driver/compile.h"
 
+#include "driver/edit.h"
 #include "driver/scene_files.h"
 #include "ir/lower/lower.h"
 #include "ir/passes/operations.h"
@@ -107,13 +108,10 @@ void run_phases(Compilation &out, SceneFiles &files, const std::string &identity
 
 // A save file stands for the text that an import makes of it; what is to be said of the file itself
 // joins the diagnostics.
-bool is_save_file(const std::filesystem::path &file) {
-    return file.extension() == ".yaml" || file.extension() == ".yml";
-}
-
 SourceId imported(Compilation &out, SourceId save_file) {
     save::ImportResult result = save::import_yaml(out.sources, save_file, out.diagnostics);
-    return out.sources.add(out.sources[save_file].name + " (imported)", std::move(result.sdf));
+    return out.sources.add(out.sources[save_file].name + " (imported)", std::move(result.sdf),
+                           save_file);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "driver/edit.h"
 
 #include "lang/parse.h"
+#include "save-format/save_format.h"
 
 #include <algorithm>
 
@@ -10,10 +11,10 @@ namespace {
 struct Tree {
     Sources sources;
     lang::Ast ast;
+    Diagnostics diagnostics; // told elsewhere
     explicit Tree(const std::string &text) {
         const SourceId source = sources.add("", text);
-        Diagnostics unheard;
-        ast = lang::parse(sources, source, unheard);
+        ast = lang::parse(sources, source, diagnostics);
     }
     const std::vector<lang::Stmt> &statements() const { return ast.blocks[ast.root].stmts; }
 };
@@ -25,6 +26,24 @@ std::string replaced(std::string text, Span span, std::string_view by) {
 std::string ended(std::string text) {
     if (!text.empty() && text.back() != '\n') text += '\n';
     return text;
+}
+
+const lang::Param *param_named(const Tree &tree, std::string_view name) {
+    for (const lang::Stmt &statement : tree.statements())
+        if (const auto *param = std::get_if<lang::Param>(&statement.kind))
+            if (param->name.text == name) return param;
+    return nullptr;
+}
+
+// The unit of the first number in an expression that has one: `-30deg`, `[0, 45deg, 0]`.
+std::string unit_in(const lang::Ast &ast, lang::ExprId id) {
+    const lang::ExprKind &kind = ast.exprs[id].kind;
+    if (const auto *number = std::get_if<lang::Number>(&kind)) return number->unit;
+    if (const auto *unary = std::get_if<lang::Unary>(&kind)) return unit_in(ast, unary->operand);
+    if (const auto *list = std::get_if<lang::List>(&kind))
+        for (const lang::ExprId item : list->items)
+            if (std::string unit = unit_in(ast, item); !unit.empty()) return unit;
+    return "";
 }
 
 constexpr std::string_view view_mark = "// view ";
@@ -56,11 +75,22 @@ std::string_view without_end(std::string_view line) {
 std::optional<std::string> with_param(const std::string &text, std::string_view name,
                                       std::string_view value) {
     const Tree tree(text);
-    for (const lang::Stmt &statement : tree.statements())
-        if (const auto *param = std::get_if<lang::Param>(&statement.kind))
-            if (param->name.text == name)
-                return replaced(text, tree.ast.exprs[param->value].span, value);
-    return std::nullopt;
+    const lang::Param *param = param_named(tree, name);
+    if (!param) return std::nullopt;
+    return replaced(text, tree.ast.exprs[param->value].span, value);
+}
+
+bool can_be_read(const std::string &text) { return !Tree(text).diagnostics.has_errors(); }
+
+Notation notation_of_param(const std::string &text, std::string_view name) {
+    const Tree tree(text);
+    const lang::Param *param = param_named(tree, name);
+    if (!param) return {};
+    Notation notation;
+    notation.hex = std::holds_alternative<lang::Color>(tree.ast.exprs[param->value].kind);
+    notation.unit = unit_in(tree.ast, param->value);
+    if (notation.unit == "rad") notation.unit.clear();
+    return notation;
 }
 
 std::string with_camera(const std::string &text, std::string_view camera) {
@@ -96,6 +126,35 @@ std::vector<std::string> views_in(const std::string &text) {
         if (auto camera = view_of_line(without_end(line))) views.push_back(std::move(*camera));
     });
     return views;
+}
+
+bool is_save_file(const std::filesystem::path &file) {
+    return file.extension() == ".yaml" || file.extension() == ".yml";
+}
+
+// The language's text is the middle of the way, so all that an import keeps is in the file again.
+std::variant<std::string, EditError> save_file_with_camera(const std::string &yaml,
+                                                           std::string_view camera,
+                                                           const std::filesystem::path &folder,
+                                                           const CompileOptions &options) {
+    const auto first_error = [](const Diagnostics &diagnostics) {
+        for (const Diagnostic &diagnostic : diagnostics.sorted())
+            if (diagnostic.severity == Severity::Error) return diagnostic.message;
+        return std::string("it holds no scene");
+    };
+    Sources sources;
+    Diagnostics reading;
+    const SourceId source = sources.add("", yaml);
+    const save::ImportResult imported = save::import_yaml(sources, source, reading);
+    if (reading.has_errors()) return EditError{first_error(reading)};
+    const Compilation compilation =
+        compile_text("", with_camera(imported.sdf, camera), folder, options);
+    if (!compilation.good()) return EditError{first_error(compilation.diagnostics)};
+    Diagnostics writing;
+    std::string text = save::export_yaml(compilation.scene, writing);
+    if (const auto remarks = writing.sorted(); !remarks.empty())
+        return EditError{"the save format has no place for all of it: " + remarks[0].message};
+    return text;
 }
 
 } // namespace fathom::driver

@@ -93,6 +93,19 @@ FileStamp stamp_of(const std::filesystem::path &file) {
             status.st_mtim.tv_nsec};
 }
 
+std::filesystem::path last_saved(const Stamps &before, const Stamps &after) {
+    std::filesystem::path newest;
+    std::pair<std::int64_t, std::int64_t> when;
+    if (before.empty()) return newest;
+    for (const auto &[file, stamp] : after) {
+        const auto old = before.find(file);
+        if (!stamp.exists || (old != before.end() && old->second == stamp)) continue;
+        const std::pair written{stamp.seconds, stamp.nanoseconds};
+        if (newest.empty() || written > when) newest = file, when = written;
+    }
+    return newest;
+}
+
 std::optional<std::string> read_file(const std::filesystem::path &path, std::size_t limit,
                                      std::string &error) {
     // Without O_NONBLOCK the open of a pipe that no one writes to would wait for ever.

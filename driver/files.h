@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,12 @@ struct FileStamp {
     friend bool operator==(const FileStamp &, const FileStamp &) = default;
 };
 FileStamp stamp_of(const std::filesystem::path &file);
+
+using Stamps = std::map<std::filesystem::path, FileStamp>;
+
+// Of the files of `after`, the one that was written last among those that are not as in `before`;
+// an empty path where there is none, or where nothing was read before.
+std::filesystem::path last_saved(const Stamps &before, const Stamps &after);
 
 // The bytes of a regular file, or nothing and the reason ("no such file", "is a directory", …).
 std::optional<std::string> read_file(const std::filesystem::path &path, std::size_t limit,

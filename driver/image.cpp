@@ -4,6 +4,7 @@
 #include <cmath>
 #include <csetjmp>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <jpeglib.h>
 #include <png.h>
@@ -135,7 +136,58 @@ std::optional<ir::ImageData> decode_jpeg(std::string_view bytes, std::string &er
     return image;
 }
 
+struct JpegBytes {
+    unsigned char *bytes = nullptr; // malloc
+    unsigned long size = 0;
+};
+
+// `rgb` has three bytes a pixel.
+bool write_jpeg(int width, int height, const std::uint8_t *rgb, int quality, JpegBytes *out,
+                JpegErrors *errors) {
+    jpeg_compress_struct info;
+    info.err = jpeg_std_error(&errors->base);
+    errors->base.error_exit = leave_jpeg;
+    errors->base.emit_message = no_message;
+    errors->message[0] = 0;
+    if (setjmp(errors->leave)) {
+        jpeg_destroy_compress(&info);
+        return false;
+    }
+    jpeg_create_compress(&info);
+    jpeg_mem_dest(&info, &out->bytes, &out->size);
+    info.image_width = static_cast<JDIMENSION>(width);
+    info.image_height = static_cast<JDIMENSION>(height);
+    info.input_components = 3;
+    info.in_color_space = JCS_RGB;
+    jpeg_set_defaults(&info);
+    jpeg_set_quality(&info, quality, TRUE);
+    info.comp_info[0].h_samp_factor = info.comp_info[0].v_samp_factor = 1;
+    jpeg_start_compress(&info, TRUE);
+    while (info.next_scanline < info.image_height) {
+        JSAMPROW row = const_cast<JSAMPROW>(rgb + std::size_t{info.next_scanline} * 3 *
+                                                      static_cast<std::size_t>(width));
+        jpeg_write_scanlines(&info, &row, 1);
+    }
+    jpeg_finish_compress(&info);
+    jpeg_destroy_compress(&info);
+    return true;
+}
+
 } // namespace
+
+std::string encode_jpeg(int width, int height, std::span<const std::uint8_t> rgba, int quality) {
+    std::vector<std::uint8_t> rgb;
+    rgb.reserve(rgba.size() / 4 * 3);
+    for (std::size_t i = 0; i < rgba.size(); ++i)
+        if (i % 4 != 3) rgb.push_back(rgba[i]);
+    JpegBytes out;
+    JpegErrors errors;
+    std::string bytes;
+    if (write_jpeg(width, height, rgb.data(), quality, &out, &errors))
+        bytes.assign(reinterpret_cast<const char *>(out.bytes), out.size);
+    std::free(out.bytes);
+    return bytes;
+}
 
 std::optional<ir::ImageData> decode_image(std::string_view bytes, std::string &error) {
     if (bytes.starts_with("\x89PNG")) return decode_png(bytes, error);

@@ -1,5 +1,6 @@
 #include "driver/verdict.h"
 
+#include "base/encode.h"
 #include "base/text.h"
 
 #include <algorithm>
@@ -40,7 +41,7 @@ std::string json_span(Span span, const Sources &sources) {
     Position begin = position(source, span.begin), end = position(source, span.end);
     return fmt::format(
         R"({{"file": {}, "line": {}, "column": {}, "end_line": {}, "end_column": {}}})",
-        json_string(source.name), begin.line, begin.column, end.line, end.column);
+        for_json(source.name), begin.line, begin.column, end.line, end.column);
 }
 
 std::string json_point(const std::array<double, 3> &point) {

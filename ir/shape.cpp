@@ -94,10 +94,18 @@ ShapeId Shapes::add(Shape shape) {
     const std::uint64_t h = hash_of(shape);
     const auto [first, last] = interned_.equal_range(h);
     for (auto it = first; it != last; ++it)
-        if (equal(shapes_[it->second], shape)) return it->second;
+        if (equal(shapes_[it->second], shape)) {
+            Span &origin = shapes_[it->second].origin;
+            if (!origin.source) origin = shape.origin;
+            return it->second;
+        }
     const ShapeId id = shapes_.add(std::move(shape));
     interned_.emplace(h, id);
     return id;
+}
+
+void Shapes::forget_origins(std::size_t from) {
+    for (std::size_t i = from; i < shapes_.size(); ++i) shapes_[ShapeId{i}].origin = {};
 }
 
 } // namespace fathom::ir

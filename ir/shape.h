@@ -184,12 +184,15 @@ struct Shape {
     // Leaf and Map/Distort of the user's own: what he assumes (`lipschitz:`, `estimate:`); 0 is
     // nothing
     double assumed = 0, estimate = 0;
-    Span origin; // the call that made it; the first one where equal shapes were merged
+    Span origin; // the call that made it; the first one where equal shapes were merged,
+                 // trials apart
 };
 
 class Shapes {
   public:
     ShapeId add(Shape shape); // hash-consed, the origin apart
+    // Shapes from that one on were made for a trial: who makes them in earnest says where.
+    void forget_origins(std::size_t from);
     const Shape &operator[](ShapeId id) const { return shapes_[id]; }
     std::size_t size() const { return shapes_.size(); }
 

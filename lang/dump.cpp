@@ -2,6 +2,7 @@
 // Two programs with the same dump have the same tree.
 #include "lang/format.h"
 
+#include "base/encode.h"
 #include "base/text.h"
 
 namespace fathom::lang {
@@ -89,7 +90,7 @@ void Dump::function(FunctionId id, std::string_view head) {
     std::string text(head);
     if (f.name) text += " " + f.name->text;
     if (f.result) text += " -> " + type_text(*f.result);
-    if (!f.doc.empty()) text += " doc " + json_string(f.doc);
+    if (!f.doc.empty()) text += " doc " + for_json(f.doc);
     node(text, [&] {
         for (const Parameter &p : f.parameters) {
             node("parameter " + p.name.text + type_suffix(p.type), [&] {
@@ -119,7 +120,7 @@ void Dump::expr(ExprId id) {
                        if (!n.unit.empty()) text += " from " + n.unit;
                        line(text);
                    },
-                   [&](const String &s) { line("string " + json_string(s.value)); },
+                   [&](const String &s) { line("string " + for_json(s.value)); },
                    [&](const Bool &b) { line(b.value ? "true" : "false"); },
                    [&](const Color &c) {
                        std::string text = "color";
@@ -178,7 +179,7 @@ void Dump::stmt(const Stmt &stmt) {
                    [&](const ExprStmt &s) { expr(s.value); },
                    [&](const Let &s) {
                        std::string text = "let " + s.name.text + type_suffix(s.type);
-                       if (!s.doc.empty()) text += " doc " + json_string(s.doc);
+                       if (!s.doc.empty()) text += " doc " + for_json(s.doc);
                        part(text, s.value);
                    },
                    [&](const Var &s) { part("var " + s.name.text + type_suffix(s.type), s.value); },
@@ -192,7 +193,7 @@ void Dump::stmt(const Stmt &stmt) {
                    [&](const FunctionDecl &s) { function(s.function, "fn"); },
                    [&](const Param &s) {
                        std::string text = "param " + s.name.text + type_suffix(s.type);
-                       if (s.label) text += " " + json_string(*s.label);
+                       if (s.label) text += " " + for_json(*s.label);
                        node(text, [&] {
                            expr(s.value);
                            if (s.low) part("low", *s.low);
@@ -200,7 +201,7 @@ void Dump::stmt(const Stmt &stmt) {
                        });
                    },
                    [&](const Import &s) {
-                       line("import " + json_string(s.path) + (s.as ? " as " + s.as->text : ""));
+                       line("import " + for_json(s.path) + (s.as ? " as " + s.as->text : ""));
                    },
                    [&](const For &s) {
                        node("for " + s.variable.text, [&] {

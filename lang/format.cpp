@@ -66,7 +66,9 @@ class Formatter {
         Tok kind = Tok::Body;
         std::size_t line_indent = 0;
         bool is_file = true;
-        int continuation = -1; // further levels of the statement's later lines, once known
+        std::size_t head = 0;  // where the last line that begins no `.name(…)` begins
+        std::size_t chain = 0; // where those that do begin
+        bool in_chain = false;
     };
 
     const Piece &at(std::size_t i) const { return pieces_[i]; }
@@ -258,21 +260,26 @@ std::size_t Formatter::indent_of(std::size_t begin) {
     if (is_close(p.kind) && !p.is_comment) return level.line_indent;
     const std::size_t base = level.is_file ? 0 : level.line_indent + step;
     const std::size_t before = previous_word(begin);
-    const bool after_block =
-        before < begin && at(before).kind == Tok::BraceClose && at(before).breaks;
+    // Calls stand under what they are calls of: a step to the right, or right below its `}`.
+    if (p.kind == Tok::Dot && !p.is_comment) {
+        const bool after_block =
+            before < begin && at(before).kind == Tok::BraceClose && at(before).breaks;
+        if (!level.in_chain) level.chain = std::max(level.head, base) + (after_block ? 0 : step);
+        level.in_chain = true;
+        return level.chain;
+    }
+    const auto begins_at = [&](std::size_t indent) {
+        if (p.is_comment) return indent;
+        level.in_chain = false;
+        return level.head = indent;
+    };
     if (is_group_open(level.kind)) {
-        if (p.is_comment || before >= begin) return base;
+        if (p.is_comment || before >= begin) return begins_at(base);
         const bool item = at(before).kind == Tok::Comma || is_open(at(before).kind);
-        return item || (p.kind == Tok::Dot && after_block) ? base : base + step;
+        return begins_at(item ? base : base + step);
     }
     const bool fresh = p.is_comment ? edge_[begin] : p.starts_statement;
-    if (fresh) {
-        level.continuation = -1;
-        return base;
-    }
-    if (p.kind == Tok::Else) return base;
-    if (level.continuation < 0) level.continuation = p.kind == Tok::Dot && after_block ? 0 : 1;
-    return base + step * static_cast<std::size_t>(level.continuation);
+    return begins_at(fresh || p.kind == Tok::Else ? base : base + step);
 }
 
 void Formatter::walk(std::size_t begin, std::size_t end, std::size_t indent) {
@@ -280,9 +287,10 @@ void Formatter::walk(std::size_t begin, std::size_t end, std::size_t indent) {
         const Piece &p = at(i);
         if (p.is_comment) continue;
         if (is_close(p.kind)) levels_.pop_back();
-        if (p.starts_statement) levels_.back().continuation = -1;
+        if (p.starts_statement) levels_.back().head = 0, levels_.back().in_chain = false;
         if (is_open(p.kind))
-            levels_.push_back({is_block_open(p.kind) ? Tok::Body : p.kind, indent, false, -1});
+            levels_.push_back(
+                {is_block_open(p.kind) ? Tok::Body : p.kind, indent, false, 0, 0, false});
     }
 }
 
@@ -343,20 +351,21 @@ bool Formatter::break_up(std::size_t begin, std::size_t end, std::size_t indent)
     }
     const auto outer = [&](std::size_t i) { return depths[i - begin] == outermost; };
 
-    // A block on this line gets lines of its own; all those of one `if` together.
+    // A block on this line gets lines of its own; all those of one `if` together. One that stands
+    // in brackets waits until there is nothing better.
     const auto opens_here = [&](std::size_t i) {
         return is_block_open(at(i).kind) && at(i).inline_block && i + 1 < at(i).match;
     };
-    int block_depth = std::numeric_limits<int>::max();
-    for (std::size_t i = begin; i < end; ++i)
-        if (opens_here(i)) block_depth = std::min(block_depth, depths[i - begin]);
-    bool opened = false;
-    for (std::size_t i = begin; i < end; ++i) {
-        if (!opens_here(i) || depths[i - begin] != block_depth) continue;
-        open_block(i);
-        opened = true;
-    }
-    if (opened) return true;
+    const auto open_blocks = [&](int block_depth) {
+        bool opened = false;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (!opens_here(i) || depths[i - begin] != block_depth) continue;
+            open_block(i);
+            opened = true;
+        }
+        return opened;
+    };
+    if (open_blocks(outermost)) return true;
 
     bool added = false;
     int loosest = 0;
@@ -402,6 +411,8 @@ bool Formatter::break_up(std::size_t begin, std::size_t end, std::size_t indent)
         const std::size_t columns = width(i, std::min(end, at(i).match + 1));
         if (columns > group_width) group = i, group_width = columns;
     }
+    // What follows the group on this line would follow its bracket on a line of its own.
+    const bool ends_line = group < end && (at(group).match + 1 >= end || header);
     const auto break_at_operators = [&] {
         for (std::size_t i = begin + 1; i + 1 < end; ++i)
             if (outer(i) && !at(i).is_prefix && !at(i).in_type && loosest > 0 &&
@@ -409,15 +420,41 @@ bool Formatter::break_up(std::size_t begin, std::size_t end, std::size_t indent)
                 added |= add_break(i + 1);
         return added;
     };
+    // A body, or a value that no bracket could end, goes below its `=` where it fits there.
+    const auto break_at_assign = [&](bool must_fit) {
+        for (std::size_t i = begin; i + 1 < end; ++i) {
+            if (!outer(i) || is_block_open(at(i + 1).kind)) continue;
+            if (at(i).kind != Tok::Assign && (must_fit || at(i).kind != Tok::FatArrow)) continue;
+            if (must_fit && (width(begin, i + 1) > room || width(i + 1, end) + step > room))
+                continue;
+            if (add_break(i + 1)) return true;
+        }
+        return false;
+    };
+    if (!header && (at(begin).kind == Tok::Fn || !ends_line) && break_at_assign(true)) return true;
+    const bool sum = loosest >= looseness(Tok::Plus) && group_width + step <= room;
+    if (!ends_line && !header && sum && break_at_operators()) return true;
+    if (ends_line) {
+        // A lambda's block, or one that is all there is, opens where its bracket stands.
+        const std::size_t last = std::min(end, at(group).match) - 1;
+        const std::size_t block = at(last).kind == Tok::BraceClose ? at(last).match : begin;
+        bool alone = true;
+        for (std::size_t i = group + 1; i < last; ++i)
+            alone = alone &&
+                    !(at(i).kind == Tok::Comma && depths[i - begin] == depths[group - begin] + 1);
+        if (block > group && opens_here(block) && (alone || at(block - 1).kind == Tok::FatArrow) &&
+            open_blocks(depths[block - begin]))
+            return true;
+    }
     constexpr std::size_t wide_group = 40;
     if (group < end && group_width >= wide_group && break_group(group)) return true;
     if (!header && break_at_operators()) return true;
     if (group < end && break_group(group)) return true;
-    for (std::size_t i = begin; i + 1 < end; ++i)
-        if (outer(i) && (at(i).kind == Tok::Assign || at(i).kind == Tok::FatArrow) &&
-            !is_block_open(at(i + 1).kind))
-            if (add_break(i + 1)) return true;
-    return false;
+    if (break_at_assign(false)) return true;
+    int block_depth = std::numeric_limits<int>::max();
+    for (std::size_t i = begin; i < end; ++i)
+        if (opens_here(i)) block_depth = std::min(block_depth, depths[i - begin]);
+    return open_blocks(block_depth);
 }
 
 } // namespace

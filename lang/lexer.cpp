@@ -1,6 +1,7 @@
 // Kinds of words, and the answers to words of other languages.
 #include "lang/lexer.h"
 
+#include "base/single.h"
 #include "base/text.h"
 #include "lang/parse.h"
 
@@ -187,10 +188,14 @@ void Lexer::word(std::uint32_t begin, std::uint32_t end) {
 void Lexer::number(std::uint32_t begin, std::uint32_t end) {
     const std::string_view word = slice(begin, end);
     const std::optional<NumberWord> number = read_number(word);
-    if (number && std::isfinite(number->value)) return add(Tok::Number, begin, end);
+    const bool held =
+        number && fits_single(number->value) && (number->value == 0 || flushed(number->value) != 0);
+    if (held) return add(Tok::Number, begin, end);
     add(Tok::Bad, begin, end);
     if (is_digit(word[0]) && number_length(word) == word.size()) {
-        report(Code::BadNumber, begin, end, "this number is too large or too small to be held");
+        report(Code::BadNumber, begin, end,
+               "this number is too large or too small for single precision")
+            .help("write 0, a number from 1.2e-38 to 3.4e38, or `inf` where there is no limit");
         return;
     }
     const char left = begin > 0 ? source_.text[begin - 1] : ' ';

@@ -128,9 +128,10 @@ struct Prover {
                     ir::NodeId formula);        // the bound of a field that is joined with its box
     void set_lipschitz(Known &k, double value); // a constant
     void set_lipschitz(Known &k, ir::NodeId formula,
-                       double sup);        // an expression in params; constant where it reads none
-    void fail(Known &k);                   // no proof: infinity, facts usable
-    void finish(ir::ShapeId id, Known &k); // guards, notes
+                       double sup); // an expression in params; constant where it reads none
+    void fail(Known &k);            // no proof: infinity, facts usable
+    void check_size(ir::ShapeId id, Known &k); // too large or too small for single precision
+    void finish(ir::ShapeId id, Known &k);     // guards, notes
 
     // -- reports; silent where the shape is not audible
     static std::string cheaper(const ir::Shape &shape);

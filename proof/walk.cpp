@@ -2,6 +2,7 @@
 // end. The rules themselves stand by group beside it.
 #include "proof/prover.h"
 
+#include "base/single.h"
 #include "ir/maps.h"
 #include "ir/view.h"
 
@@ -166,6 +167,7 @@ void Prover::set_lipschitz(Known &k, double value) {
     // Rounding outward leaves 1 + a few units in the last place where the truth is 1; the float32
     // slack covers them.
     if (value > 1 && value <= 1 + slack) value = 1;
+    if (value > 0) value = std::max(value, shortest); // by which a field can be divided
     k.fact.lipschitz_sup = value;
     k.fact.lipschitz = graph.number(value);
 }
@@ -354,6 +356,7 @@ void Prover::finish(ShapeId id, Known &k) {
                     "as in `.within(ball(3))`, or smaller numbers");
         fail(k);
     }
+    check_size(id, k);
     bool everywhere_valid = everywhere(place(id).box);
     bool deformed = shape.kind == ShapeKind::Displace || shape.kind == ShapeKind::Many ||
                     (shape.kind == ShapeKind::Map &&

@@ -4,9 +4,12 @@
 
 #include "save-format/node_types.h"
 
+#include "base/encode.h"
+#include "base/single.h"
 #include "base/text.h"
 
 #include <cctype>
+#include <cmath>
 
 namespace fathom::save {
 namespace {
@@ -97,35 +100,7 @@ template <class Visit> void walk(YamlReader &reader, Event first, std::string *f
 std::string flow_scalar(std::string_view text, bool plain) {
     if (plain && text.empty()) return "~";
     if (plain && plain_in_flow(text)) return std::string(text);
-    bool printable = true;
-    for (const char c : text)
-        printable = printable && static_cast<unsigned char>(c) >= 0x20 && c != 0x7F;
-    std::string out;
-    if (printable) { // single quotes need no escapes but their own
-        out += '\'';
-        for (const char c : text) out.append(c == '\'' ? 2 : 1, c);
-        out += '\'';
-        return out;
-    }
-    static const char *hex = "0123456789ABCDEF";
-    out += '"';
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\') {
-            out += '\\';
-            out += c;
-        } else if (c == '\n') {
-            out += "\\n";
-        } else if (byte < 0x20 || byte == 0x7F) {
-            out += "\\x";
-            out += hex[byte >> 4];
-            out += hex[byte & 15];
-        } else {
-            out += c;
-        }
-    }
-    out += '"';
-    return out;
+    return for_yaml(text);
 }
 
 TakenValue take_value(YamlReader &reader, Event first, std::size_t limit) {
@@ -249,8 +224,8 @@ std::optional<double> number_of(const Value &value) {
         return std::nullopt;
     auto number = parse_number(text[0] == '.' ? "0" + std::string(text) : std::string(text));
     if (!number && text.back() == '.') number = parse_number(text.substr(0, text.size() - 1));
-    if (!number || !std::isfinite(*number)) return std::nullopt;
-    return negative ? -*number : *number;
+    if (!number || std::abs(*number) > longest) return std::nullopt;
+    return flushed(negative ? -*number : *number);
 }
 
 std::optional<bool> switch_of(const Value &value) {

@@ -10,8 +10,9 @@ namespace {
 
 bool looks_like_more_than_text(std::string_view text) {
     const std::string key = spelling_key(text);
-    static constexpr std::string_view words[] = {"true", "false", "yes", "no", "on",   "off",
-                                                 "null", "~",     "y",   "n",  ".nan", ".inf"};
+    static constexpr std::string_view words[] = {"true", "false", "yes", "no", "on",
+                                                 "off",  "null",  "~",   "y",  "n",
+                                                 ".nan", ".inf",  "<<",  "="};
     if (std::find(std::begin(words), std::end(words), key) != std::end(words)) return true;
     return !text.empty() && ((text[0] >= '0' && text[0] <= '9') || text[0] == '-' ||
                              text[0] == '+' || text[0] == '.');
@@ -27,7 +28,7 @@ bool on_one_line(const Value &value, int depth) {
 }
 
 std::string key_text(std::string_view key) {
-    std::string text = flow_scalar(key, !looks_like_more_than_text(key) || !key.empty());
+    std::string text = flow_scalar(key, !looks_like_more_than_text(key) && !key.empty());
     return key.size() > 200 ? "? " + text : text;
 }
 

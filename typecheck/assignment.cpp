@@ -210,10 +210,7 @@ void run_assign(Evaluator &ev, const File &ast, const lang::Assign &node, Span p
         return;
     }
     Value old = binding.value;
-    if (is_poison(value)) {
-        assign(ev, found->frame, found->slot, poison());
-        return;
-    }
+    if (is_poison(value)) return assign(ev, found->frame, found->slot, value);
     if (node.op) {
         Value current = old;
         for (const Accessor &step : path) {
@@ -231,10 +228,10 @@ void run_assign(Evaluator &ev, const File &ast, const lang::Assign &node, Span p
         }
         value = arithmetic(ev, *node.op, current, value, place, ast.exprs[node.target].span,
                            ast.exprs[node.value].span);
-        if (is_poison(value)) return;
     }
-    if (!path.empty()) value = store(ev, old, path, 0, value, ast.exprs[node.value].span);
-    if (is_poison(value)) return;
+    if (!path.empty() && !is_poison(value))
+        value = store(ev, old, path, 0, value, ast.exprs[node.value].span);
+    if (is_poison(value)) return assign(ev, found->frame, found->slot, value);
     if (!same_type(ev, old, value)) {
         Diagnostic &d = report(ev, Code::TypeMismatch, ast.exprs[node.value].span,
                                fmt::format("`{}` holds {}, this is {}", name->text,

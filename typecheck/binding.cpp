@@ -157,6 +157,10 @@ std::span<const Formal> formals_of(Evaluator &ev, const Closure &c) {
         formal.is_angle = is_angle(p.name.text);
         formal.is_vector = p.type && (p.type->named == lang::TypeName::Vec2 ||
                                       p.type->named == lang::TypeName::Vec3);
+        if (p.default_value) {
+            const auto *name = std::get_if<lang::Name>(&c.ast->exprs[*p.default_value].kind);
+            formal.no_limit = name && name->text == "inf";
+        }
         formal.declared = p.name.span;
         formals->push_back(formal);
     }

@@ -287,6 +287,8 @@ static Value call_closure(Evaluator &ev, const Value &callee, std::string_view n
             misplaced = !ok && given.value.kind == ValueKind::Shape; // so are those behind it
         }
         warn_of_degrees(ev, formals[i], given, v);
+        if (c.library && !formals[i].no_limit && !inside_library(ev))
+            v = sized(ev, v, given.span, quoted(p.name.text, name));
         ok = ok && !is_poison(v);
         values.push_back(v);
         if (frame) declare(ev, *frame, formals[i].symbol, v, false, formals[i].declared);
@@ -326,7 +328,9 @@ static Value call_builtin(Evaluator &ev, const Value &callee, std::span<const Ar
         site.args.push_back(given.span);
         warn_of_degrees(ev, formals[i], given, given.value);
     }
-    return b.call(ev, site, values);
+    const Value v = b.call(ev, site, values);
+    return b.computes ? computed(ev, v, values, call, quoted(b.name))
+                      : in_range(ev, v, values, call);
 }
 
 static Value call_overloads(Evaluator &ev, const Value &callee, std::string_view name,

@@ -98,27 +98,20 @@ void add_top_level(Evaluator &ev, const Value &v, Span span, std::vector<ir::Sha
         d.help("name it with `let`, or look at it with `print(…)`");
 }
 
-// A number that reaches a shape's form needs a range, since the proof holds for all its values
-// (semantics.md, 18); what only paints does not.
-class GeometryParams {
+// The params that shapes and expressions read.
+class ParamReads {
   public:
-    explicit GeometryParams(const ir::Scene &scene)
-        : scene_(scene), used_(scene.params.size(), false) {
-        shape(scene.root);
-    }
+    explicit ParamReads(const ir::Scene &scene)
+        : scene_(scene), used_(scene.params.size(), false) {}
     bool used(std::size_t param) const { return used_[param]; }
 
-  private:
-    void shape(ir::ShapeId id) {
+    // What decides the form, without the materials.
+    void form(ir::ShapeId id) {
         if (!id || !shapes_.insert(id.index).second) return;
         const ir::Shape &s = scene_.shapes[id];
         for (ir::NodeId arg : s.args) node(arg);
         if (s.kind == ir::ShapeKind::Within) region(scene_.shapes.regions[s.payload]);
-        for (ir::ShapeId child : s.children) shape(child);
-    }
-    void region(const ir::Region &r) {
-        node(r.center), node(r.size);
-        for (const ir::Region &less : r.less) region(less);
+        for (ir::ShapeId child : s.children) form(child);
     }
     void node(ir::NodeId root) {
         std::vector<ir::NodeId> todo{root};
@@ -142,13 +135,22 @@ class GeometryParams {
             for (ir::NodeId arg : scene_.graph.args(id)) todo.push_back(arg);
         }
     }
+
+  private:
+    void region(const ir::Region &r) {
+        node(r.center), node(r.size);
+        for (const ir::Region &less : r.less) region(less);
+    }
     const ir::Scene &scene_;
     std::vector<bool> used_;
     std::set<std::uint32_t> shapes_, nodes_;
 };
 
+// A number that reaches a shape's form needs a range, since the proof holds for all its values
+// (semantics.md, 18); what only paints does not.
 void demand_ranges(Evaluator &ev) {
-    GeometryParams geometry(ev.scene);
+    ParamReads geometry(ev.scene);
+    geometry.form(ev.scene.root);
     for (std::size_t i = 0; i < ev.scene.params.size(); ++i) {
         const ir::Param p = ev.scene.params[i];
         if (p.has_range || p.is_color || p.type == ir::Type::Bool || !geometry.used(i)) continue;
@@ -157,6 +159,31 @@ void demand_ranges(Evaluator &ev) {
                    "`{}` shapes the scene, so it needs a range: the proof holds for all its values",
                    p.name))
             .help(fmt::format("write `param {} = … in 0.5..2.0`", p.name));
+    }
+}
+
+// A param of the scene's own file that neither forms, colours, lights nor frames anything. An
+// imported file may have some that this scene has no use for, and a file that makes no shape is
+// there to be imported. `only` leaves shapes out for a while.
+void tell_unused_params(Evaluator &ev, SourceId root) {
+    const ir::Scene &scene = ev.scene;
+    if (ev.diagnostics.has_errors() || scene.top_level.empty() || !ev.only_shapes.empty()) return;
+    ParamReads reads(scene);
+    reads.form(scene.root);
+    for (const ir::Material &m : scene.shapes.materials)
+        for (ir::NodeId id : {m.diffuse, m.specular, m.exponent, m.emission}) reads.node(id);
+    for (const ir::Light &light : scene.lights) reads.node(light.position), reads.node(light.color);
+    const ir::Lighting &l = scene.lighting;
+    for (ir::NodeId id :
+         {l.ambient, l.ambient_occlusion, l.shadow_darkness, l.soft_shadows, l.specular_intensity,
+          scene.camera.at, scene.camera.look_at, scene.camera.fov, scene.background})
+        reads.node(id);
+    for (std::size_t i = 0; i < scene.params.size(); ++i) {
+        const ir::Param &p = scene.params[i];
+        if (p.structural || reads.used(i) || p.origin.source != root) continue;
+        report(ev, Code::UnusedParam, p.origin,
+               fmt::format("nothing in the scene reads `{}`: moving it changes nothing", p.name))
+            .help("use it, or leave it out");
     }
 }
 
@@ -193,6 +220,7 @@ void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions, 
     }
     scene.root = unite(ev, std::move(shapes), 3, ast.blocks[ast.root].span);
     demand_ranges(ev);
+    tell_unused_params(ev, ast.source);
 }
 
 } // namespace
@@ -239,6 +267,18 @@ static std::string text_of(const Sources &sources, SourceId source, Span span) {
     return sources[source].text.substr(span.begin, span.end - span.begin);
 }
 
+// A function's head on one line, however it is laid out.
+static std::string on_one_line(const std::string &head) {
+    std::string out;
+    for (char c : head) {
+        const bool blank = c == ' ' || c == '\n';
+        if (blank && (out.empty() || out.back() == ' ' || out.back() == '(')) continue;
+        if (c == ')' && !out.empty() && out.back() == ' ') out.pop_back();
+        out += blank ? ' ' : c;
+    }
+    return out;
+}
+
 std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &library) {
     std::vector<LibraryEntry> out;
     Sources sources;
@@ -251,7 +291,7 @@ std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &librar
             if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind)) {
                 const lang::Function &fn = ast.functions[f->function];
                 if (!fn.name || fn.name->text[0] == '_') continue;
-                std::string head = text_of(sources, id, fn.head);
+                std::string head = on_one_line(text_of(sources, id, fn.head));
                 out.push_back({fn.name->text, head.starts_with("fn ") ? head.substr(3) : head,
                                fn.doc, std::string(file.name), module});
             } else if (auto *l = std::get_if<lang::Let>(&s.kind)) {

@@ -249,13 +249,26 @@ static void want(Evaluator &ev, const Value &v, Span place, What what, std::stri
     if (v.kind == ValueKind::Shape && wanted == "a color") help_with_shape(d, "color");
 }
 
-std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what) {
+// The number, or nothing after a report.
+static Value limited(Evaluator &ev, const Value &v, Span place, What what, Limit limit) {
+    switch (limit) {
+    case Limit::Size: return sized(ev, v, place, what);
+    case Limit::Finite: return finite_number(ev, v, place, what) ? v : poison();
+    case Limit::None: return v;
+    }
+    return v;
+}
+
+std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what,
+                                        Limit limit) {
     if (!is_scalar(ev, v)) {
         want(ev, v, place, what, "a number");
         return std::nullopt;
     }
     auto known = element_as_known(ev, v, place, what);
-    return known ? std::optional(known->num[0]) : std::nullopt;
+    if (!known) return std::nullopt;
+    const Value x = limited(ev, *known, place, what, limit);
+    return is_poison(x) ? std::nullopt : std::optional(x.num[0]);
 }
 
 std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, What what) {
@@ -288,16 +301,22 @@ std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place
     return std::nullopt;
 }
 
-std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what) {
-    if (is_scalar(ev, v)) return to_node(ev, to_float(ev, v));
+std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what,
+                                           Limit limit) {
+    if (is_scalar(ev, v)) {
+        const Value x = limited(ev, to_float(ev, v), place, what, limit);
+        return is_poison(x) ? std::nullopt : std::optional(to_node(ev, x));
+    }
     want(ev, v, place, what, "a number");
     return std::nullopt;
 }
 
 std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int size, Span place,
-                                        What what) {
+                                        What what, Limit limit) {
     Value v = vector_of_list(ev, raw);
     if (is_numeric(v)) {
+        v = limited(ev, v, place, what, limit);
+        if (is_poison(v)) return std::nullopt;
         Type t = numeric_type(ev, v);
         if (t == Type::Int || t == Type::Float)
             return to_node(ev, make_vector(ev, {to_float(ev, v)}, size, place));
@@ -309,6 +328,7 @@ std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int siz
 
 std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, What what) {
     const Value c = or_color(vector_of_list(ev, v));
+    if (is_poison(sized(ev, c, place, what))) return std::nullopt;
     if (is_numeric(c) && numeric_type(ev, c) != Type::Bool)
         if (auto color = as_color(ev, c, numeric_type(ev, c))) return to_node(ev, *color);
     want(ev, v, place, what, "a color");

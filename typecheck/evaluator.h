@@ -48,6 +48,7 @@ struct Formal {
     bool opens_list = true;  // a single list among the rest is the rest
     bool is_angle = false;   // in radians, so that a plain literal beyond a turn looks like degrees
     bool is_vector = false;
+    bool no_limit = false; // its default is `inf`, which so has a meaning
     Span declared;
 };
 
@@ -131,6 +132,7 @@ struct Builtin {
     bool library_only = false;
     Value (*call)(Evaluator &, const CallSite &, std::vector<Value> &) = nullptr;
     std::string signature, doc; // for `fathom doc`
+    bool computes = false;      // with its arguments, so that at field time none may be infinite
 };
 
 // How a statement list was left before its end, as conditions that may be nodes (Bool or a Field of
@@ -321,6 +323,19 @@ std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place,
                                       What what); // scene time demanded
 Value to_float(Evaluator &ev, const Value &v);
 
+// -- range.cpp: which numbers there are
+bool is_infinite(Evaluator &ev, Value v); // a known number, or one of a known vector's
+// What was computed of the numbers `of`: 0 where it is smaller than single precision holds, and
+// refused where it is larger or none. Infinite it may be where one of those is.
+Value in_range(Evaluator &ev, Value v, std::span<const Value> of, Span place);
+// The same, where `of` may not be infinite if the result is only known at field time.
+Value computed(Evaluator &ev, const Value &v, std::span<const Value> of, Span place, What what);
+bool finite_number(Evaluator &ev, const Value &v, Span place, What what); // else reported
+// What a shape or a setting may be made of: numbers up to `longest`, 0 where they are below
+// `shortest` (base/single.h). Poison after a report.
+Value sized(Evaluator &ev, Value v, Span place, What what);
+std::optional<ir::NodeId> node_in_range(Evaluator &ev, ir::NodeId node, Span place);
+
 // -- facts.cpp
 std::vector<NameFact> name_facts(const Evaluator &ev, std::uint32_t frame, SourceId source);
 
@@ -330,13 +345,17 @@ Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span pl
 bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type);
 std::string type_text(const lang::TypeExpr &type);
 bool check_type(Evaluator &ev, const lang::TypeExpr &type); // reports a name that is none
-std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what);
+// Which numbers are wanted: those that make shapes (`sized`), all that are finite, or `inf` too.
+enum class Limit { Size, Finite, None };
+std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what,
+                                        Limit limit = Limit::Size);
 std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, What what);
 std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, What what);
 std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place, What what);
-std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what);
+std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what,
+                                           Limit limit = Limit::Size);
 std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &v, int size, Span place,
-                                        What what);
+                                        What what, Limit limit = Limit::Size);
 std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, What what);
 std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place, What what,
                                       int dims = 0);

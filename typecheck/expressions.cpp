@@ -22,7 +22,7 @@ static Value eval_name(Evaluator &ev, const File &ast, const lang::Name &name, S
     return poison();
 }
 
-static Value eval_list(Evaluator &ev, const File &ast, const lang::List &list,
+static Value eval_list(Evaluator &ev, const File &ast, const lang::List &list, Span place,
                        std::uint32_t frame) {
     std::vector<Value> items;
     items.reserve(list.items.size());
@@ -34,7 +34,10 @@ static Value eval_list(Evaluator &ev, const File &ast, const lang::List &list,
         numbers = numbers && is_scalar(ev, items.back());
     }
     if (wrong && items.size() <= 4) return poison();
-    if (numbers) return make_vector(ev, items, static_cast<int>(items.size()), {});
+    if (numbers) {
+        const Value v = make_vector(ev, items, static_cast<int>(items.size()), place);
+        return computed(ev, v, items, place, "a vector of field time");
+    }
     return list_value(ev, std::move(items));
 }
 
@@ -384,7 +387,7 @@ static Value eval_kind(Evaluator &ev, const File &ast, lang::ExprId id, std::uin
                          linear_of_srgb(c.rgba[2]));
         }
         Value operator()(const lang::Name &n) { return eval_name(ev, ast, n, span, frame); }
-        Value operator()(const lang::List &l) { return eval_list(ev, ast, l, frame); }
+        Value operator()(const lang::List &l) { return eval_list(ev, ast, l, span, frame); }
         Value operator()(const lang::Comprehension &c) {
             std::vector<Contribution> items;
             std::uint32_t inner = push_frame(ev, frame);

@@ -52,6 +52,7 @@ std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field,
                            ir::type_name(result), describe(ev, value)));
         return std::nullopt;
     }
+    if (!finite_number(ev, value, place, what)) return std::nullopt;
     Type type = numeric_type(ev, value);
     if (is_color) *is_color = value.color;
     if (type == result) return to_node(ev, value);

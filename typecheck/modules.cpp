@@ -441,6 +441,8 @@ static std::optional<Value> param_number(Evaluator &ev, const File &ast, lang::E
                "a parameter's value and range are known when the scene is read");
         return std::nullopt;
     }
+    c = sized(ev, c, ast.exprs[id].span, quoted(p.name));
+    if (is_poison(c)) return std::nullopt;
     return c;
 }
 
@@ -464,8 +466,10 @@ static std::optional<Value> override_value(Evaluator &ev, const Override &o, con
     ev.quiet_errors = errors;
     --ev.quiet;
     if (!failed) return v;
-    ev.usage_errors.push_back(fmt::format("-D {}={}: `{}` is a {}", o.name, o.text, p.name,
-                                          p.is_color ? "color" : ir::type_name(p.type)));
+    const bool sizes = !p.is_color && (p.type == ir::Type::Float || ir::is_vector(p.type));
+    ev.usage_errors.push_back(fmt::format("-D {}={}: `{}` is a {}{}", o.name, o.text, p.name,
+                                          p.is_color ? "color" : ir::type_name(p.type),
+                                          sizes ? ", from -1e18 to 1e18" : ""));
     return std::nullopt;
 }
 
@@ -496,6 +500,8 @@ void declare_param(Evaluator &ev, const File &ast, const lang::Param &param, std
                            describe(ev, value)));
         return fail();
     }
+    value = sized(ev, value, ast.exprs[param.value].span, quoted(p.name));
+    if (is_poison(value)) return fail();
     p.type = numeric_type(ev, value);
     p.is_color = value.color;
     auto fill = [&](const Value &v) { return v.num; };

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -259,8 +260,14 @@ static Value compare(Evaluator &ev, lang::BinaryOp op, const Value &a, const Val
     return poison();
 }
 
+static bool holds_zero(const Value &v) {
+    const std::size_t size = v.kind == ValueKind::Vec ? v.size : known_scalar(v) ? 1 : 0;
+    return std::ranges::count(std::span(v.num).first(size), 0.0) > 0;
+}
+
 static Value division_by_zero(Evaluator &ev, Span place, const char *what) {
-    report(ev, Code::NumberRange, place, fmt::format("{} by zero", what));
+    report(ev, Code::NumberRange, place, fmt::format("{} by zero", what))
+        .help("divide by another number, or ask with `if` before");
     return poison();
 }
 
@@ -292,10 +299,9 @@ static Value as_vector(Evaluator &ev, const Value &v) {
     return make_vector(ev, items, static_cast<int>(items.size()), {});
 }
 
-Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Value &right,
-                 Span place, Span a_place, Span b_place) {
+static Value combined(Evaluator &ev, lang::BinaryOp op, const Value &left, const Value &right,
+                      Span place, Span a_place, Span b_place) {
     using lang::BinaryOp;
-    if (is_poison(left) || is_poison(right)) return poison();
     if (known_scalar(left) && known_scalar(right)) {
         double x = left.num[0], y = right.num[0];
         bool whole = left.kind == ValueKind::Int && right.kind == ValueKind::Int;
@@ -311,12 +317,7 @@ Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Valu
         }
         case BinaryOp::Pow: {
             double r = std::pow(x, y);
-            if (whole && y >= 0) return checked_int(ev, r, place);
-            if (!std::isfinite(r)) {
-                report(ev, Code::NumberRange, place, fmt::format("{} ^ {} is not a number", x, y));
-                return poison();
-            }
-            return number(r);
+            return whole && y >= 0 ? checked_int(ev, r, place) : number(r);
         }
         case BinaryOp::Union:
         case BinaryOp::Intersection:
@@ -356,6 +357,10 @@ Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Valu
     }
     if (op == BinaryOp::Mul)
         if (auto product = matrix_product(ev, a, b, place)) return *product;
+    const bool divides = op == BinaryOp::Div || op == BinaryOp::Mod;
+    if (divides && a.kind != ValueKind::Field && holds_zero(b))
+        return division_by_zero(ev, place,
+                                op == BinaryOp::Div ? "division" : "remainder of a division");
     switch (op) {
     case BinaryOp::Add: return apply_op(ev, Op::Add, {a, b}, place, "+");
     case BinaryOp::Sub: return apply_op(ev, Op::Sub, {a, b}, place, "-");
@@ -385,6 +390,15 @@ Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Valu
     case BinaryOp::GreaterEqual: break;
     }
     return poison();
+}
+
+Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Value &right,
+                 Span place, Span a_place, Span b_place) {
+    if (is_poison(left) || is_poison(right)) return poison();
+    const Value v = combined(ev, op, left, right, place, a_place, b_place);
+    if (v.kind == ValueKind::Bool || v.kind == ValueKind::Int) return v;
+    if (v.kind == ValueKind::Field && numeric_type(ev, v) == Type::Bool) return v; // a comparison
+    return computed(ev, v, std::array{left, right}, place, quoted(operator_text(op)));
 }
 
 Value negate(Evaluator &ev, const Value &v, Span place) {

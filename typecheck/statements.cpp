@@ -261,12 +261,14 @@ static Outcome run_branches(Evaluator &ev, const File &ast, const lang::If &node
         // value decides
         if (ev.quiet == 0) {
             ++ev.quiet;
+            const std::size_t shapes = ev.scene.shapes.size();
             std::size_t errors = std::exchange(ev.quiet_errors, 0);
             auto both = run_both(ev, ast, node, branch, *condition, frame, place);
             bool failed = ev.quiet_errors > 0 || !both || !is_numeric(both->value);
             ev.quiet_errors = errors;
             --ev.quiet;
             if (!failed) return *both;
+            ev.scene.shapes.forget_origins(shapes);
         }
         auto known = element_as_known(
             ev, *condition, ast.exprs[node.branches[branch].condition].span, "this condition");

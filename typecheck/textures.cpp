@@ -110,8 +110,14 @@ std::optional<ir::Texture> want_texture(Evaluator &ev, const Value &image, Span 
         return std::nullopt;
     }
     if (!times) return std::nullopt;
-    return ir::Texture{static_cast<std::int32_t>(image.id),
-                       {(*times)[0] * image.num[0], (*times)[1] * image.num[0]}};
+    const Value sizes = in_range(
+        ev, vec(2, {(*times)[0] * image.num[0], (*times)[1] * image.num[0]}), {}, scale_place);
+    if (is_poison(sizes)) return std::nullopt;
+    if (sizes.num[0] == 0 || sizes.num[1] == 0) {
+        report(ev, Code::NumberRange, scale_place, "the image's size is too small, it becomes 0");
+        return std::nullopt;
+    }
+    return ir::Texture{static_cast<std::int32_t>(image.id), {sizes.num[0], sizes.num[1]}};
 }
 
 // How many images lie along a coordinate of 0..1; round what closes upon itself a whole number.

@@ -29,7 +29,26 @@ double milliseconds_since(Clock::time_point start) {
 
 void App::note(std::string words) {
     status.note = std::move(words);
+    noted = Clock::now();
     frames_due = std::max(frames_due, 2);
+}
+
+// What was done is news for some seconds, and then it is not.
+double App::note_seconds_left() const {
+    constexpr double news_ms = 6000;
+    return std::max(news_ms - milliseconds_since(noted), 1.0) / 1000;
+}
+
+void App::drop_old_note() {
+    if (!status.note.empty() && note_seconds_left() <= 0.001) note("");
+}
+
+std::string App::text_of(const ir::Param &param) const {
+    driver::Notation notation;
+    if (scene && param.origin.source)
+        notation = driver::notation_of_param(scene->compilation.sources[param.origin.source].text,
+                                             param.name);
+    return value_text(param, notation);
 }
 
 // True where the build's picture can be drawn. The same text keeps the same program: only numbers
@@ -45,6 +64,7 @@ bool App::adopt(Build &build) {
         mine->set_edited(link.edited);
     };
     status.linked_anew = build.picture_link.program.has_value();
+    if (status.linked_anew) measured = false;
     if (status.linked_anew) status.driver_ms = build.picture_link.driver_ms;
     use(program, build.picture_link, build.picture);
     status.lists.clear();
@@ -65,23 +85,29 @@ void App::rebuild(std::vector<driver::Override> values) {
 
 void App::take(std::unique_ptr<Build> build) {
     frames_due = 3;
-    if (!scene) status.note.clear(); // that said that nothing is here yet
     // A slider's value that the changed text has no place for any more: the text's own counts.
     if (!build->compilation.usage_errors.empty() && !structural.empty()) return rebuild({});
     record_next = true;
     told = false;
+    saved = driver::last_saved(read_files, build->compilation.files);
+    read_files = build->compilation.files;
     const bool good = build->good() && adopt(*build);
     errors = build->errors;
     remarks = build->remarks;
     status.front_end_ms = build->front_end_ms;
-    if (const std::string complaint = worker->complaint(); !complaint.empty()) note(complaint);
+    status.trouble = worker->complaint();
     if (!good) return; // the last good picture stays
+    on_screen = false;
+    picks.clear(); // by the numbers of the scene before
+    // What was said a while ago is of the text before; just now, of this one: "wrote it".
+    if (milliseconds_since(noted) > 3000) note("");
 
     std::vector<ir::Param> before = std::move(params);
     params = build->compilation.scene.params;
     carry_over(before, params);
     if (drop_outdated(before, params, structural)) rebuild(structural);
     const std::vector<std::string> old_views = scene ? scene->views : std::vector<std::string>{};
+    if (scene) selected = found_again(scene->compilation, selected, build->compilation);
     scene = std::move(build);
     cached.scene_changed();
     stale = true;
@@ -100,7 +126,6 @@ void App::take(std::unique_ptr<Build> build) {
             if (const auto camera = camera_of_line(scene->views[i])) views.cameras[i + 1] = *camera;
     }
 
-    selected = found_again(scene->compilation, selected);
     hovered = {};
     controls.chosen = params.empty() ? 0 : std::min(controls.chosen, params.size() - 1);
     const driver::Verdict verdict = driver::judge(s);
@@ -111,6 +136,7 @@ void App::take(std::unique_ptr<Build> build) {
 
 void App::param_changed(const ir::Param &param) {
     stale = true;
+    note("");              // it may have told the value before
     cached.view_changed(); // fields that read it are given up by the cache itself
     touched = Clock::now();
     frames_due = 3;
@@ -122,17 +148,19 @@ void App::param_changed(const ir::Param &param) {
 
 namespace {
 
-// Reads, edits and writes a file; the sentence that says what came of it.
-template <class Edit>
-std::string edit_file(const std::filesystem::path &file, const std::string &done, Edit edit) {
+using Edited = std::variant<std::string, driver::EditError>;
+
+// Reads, edits and writes a file; empty, or the sentence that says why not.
+template <class Edit> std::string edit_file(const std::filesystem::path &file, Edit edit) {
     std::string error;
     const std::optional<std::string> text =
         driver::read_file(file, driver::max_source_bytes, error);
     if (!text) return fmt::format("cannot read {}: {}", file.string(), error);
-    const std::optional<std::string> edited = edit(*text);
-    if (!edited) return file.string() + " has no place for it any more";
-    error = driver::write_file(file, *edited);
-    return error.empty() ? done : fmt::format("cannot write {}: {}", file.string(), error);
+    const Edited edited = edit(*text);
+    if (const auto *why_not = std::get_if<driver::EditError>(&edited))
+        return fmt::format("cannot write into {}: {}", file.string(), why_not->sentence);
+    error = driver::write_file(file, std::get<std::string>(edited));
+    return error.empty() ? "" : fmt::format("cannot write {}: {}", file.string(), error);
 }
 
 } // namespace
@@ -142,22 +170,36 @@ void App::write_param(const ir::Param &param) {
     std::filesystem::path file = settings.file;
     if (scene && origin.source && origin.source.index < scene->compilation.sources.size())
         file = scene->compilation.sources[origin.source].name;
-    const std::string value = value_text(param);
-    note(edit_file(
-        file, fmt::format("wrote {} = {} into {}", param.name, value, file.string()),
-        [&](const std::string &text) { return driver::with_param(text, param.name, value); }));
+    std::string value;
+    const std::string error = edit_file(file, [&](const std::string &text) -> Edited {
+        value = value_text(param, driver::notation_of_param(text, param.name));
+        if (auto with = driver::with_param(text, param.name, value)) return std::move(*with);
+        return driver::EditError{fmt::format("it declares no param `{}` any more", param.name)};
+    });
+    note(error.empty() ? fmt::format("wrote {} = {} into {}", param.name, value, file.string())
+                       : error);
 }
 
-void App::write_view() {
-    note(edit_file(settings.file, "wrote the view into " + settings.file.string(),
-                   [&](const std::string &text) {
-                       std::vector<std::string> others;
-                       for (int i = 1; i < views.count; ++i)
-                           others.push_back(
-                               camera_line(views.cameras[static_cast<std::size_t>(i)]));
-                       return std::optional(driver::with_views(
-                           driver::with_camera(text, camera_line(views.cameras[0])), others));
-                   }));
+bool App::write_view() {
+    const std::string camera = camera_line(views.cameras[0]);
+    const std::filesystem::path &file = settings.file;
+    const bool save_file = driver::is_save_file(file);
+    const std::string error = edit_file(file, [&](const std::string &text) -> Edited {
+        if (save_file)
+            return driver::save_file_with_camera(text, camera, file.parent_path(),
+                                                 settings.options);
+        if (!driver::can_be_read(text))
+            return driver::EditError{"mend its errors first, so that a place for it is found"};
+        std::vector<std::string> others;
+        for (int i = 1; i < views.count; ++i)
+            others.push_back(camera_line(views.cameras[static_cast<std::size_t>(i)]));
+        return driver::with_views(driver::with_camera(text, camera), others);
+    });
+    const char *what = !save_file         ? "the view"
+                       : views.count == 1 ? "the camera"
+                                          : "the camera, and no other view: save files hold one,";
+    note(error.empty() ? fmt::format("wrote {} into {}", what, file.string()) : error);
+    return error.empty();
 }
 
 } // namespace fathom::viewer

@@ -1,5 +1,6 @@
 // The window's state, and what is done to it: builds are taken (app.cpp), the scene is drawn
-// (draw.cpp), keys and the mouse are heard (input.cpp). For those files and viewer.cpp alone.
+// (draw_scene.cpp, draw.cpp), keys and the mouse are heard (input.cpp). For those files and
+// viewer.cpp alone.
 #pragma once
 
 #include "render-gl/timer.h"
@@ -22,6 +23,7 @@ using Clock = std::chrono::steady_clock;
 double milliseconds_since(Clock::time_point start);
 
 // All that a picture depends on, program and params apart: while it stays, nothing is drawn anew.
+// The size is the window's.
 struct Shot {
     Views views;
     double time = 0;
@@ -49,15 +51,24 @@ struct App {
     int kept_frames = 0;            // since it was at rest
     Clock::time_point fade_begin{}; // from the last such picture to the exact one
     std::optional<Shot> drawn;
-    bool stale = true;     // the program or a value changed since `drawn`
-    bool drew_now = false; // in this turn of the loop
-    bool probed = false;   // the probe shows what is drawn
-    bool finished = false; // what is shown is what was drawn
-    bool drawing = false;  // a sample is drawn in part: so many rows, which took so long
+    int drawn_width = 0, drawn_height = 0; // of it, in pixels
+    double drawn_scale = 0;                // to those of the window
+    bool stale = true;                     // the program or a value changed since `drawn`
+    bool measured = false;                 // it is known what a picture by this program takes
+    bool resting = false;                  // the picture that is drawn is not moved
+    int coarse = 1;         // then: it is drawn in every so-manieth pixel first, 1 is in full
+    bool drew_now = false;  // in this turn of the loop
+    bool probed = false;    // the probe shows what is drawn
+    bool finished = false;  // what is shown is what was drawn
+    bool on_screen = false; // something of the newest good build was shown
+    bool drawing = false;   // a sample is drawn in part: so many rows, which took so long
     int next_sample = 0, next_row = 0;
     double sample_ms = 0, gpu_ms = 0;
     std::vector<bool> bands_asked; // of the timer's answers to come: whether it is a sample's last
+    static constexpr int samples_at_rest = 4;
     int samples_drawn = 0, frames_drawn = 0;
+    std::vector<float> picks; // of what is shown at rest, while the next picture is drawn over it
+    int picks_width = 0, picks_height = 0;
 
     std::vector<std::string> errors, remarks; // of the newest build, good or not
     std::vector<driver::Override> structural; // what the worker builds with
@@ -73,11 +84,16 @@ struct App {
 
     bool running = true; // time passes, where the scene reads it
     double time = 0;
+    double held_back = 0;        // seconds that pass when the present picture is whole
+    bool linking = false;        // on this thread
+    Clock::time_point noted{};   // when the note was written
     Clock::time_point touched{}; // the last time the picture was moved by hand
     Clock::time_point last_draw{};
     int frames_due = 3;             // the panels settle within a few frames after an event
     int recorded = 0, sequence = 0; // pictures so far; of a sequence, 0 where none is taken
     std::filesystem::path sequence_folder;
+    driver::Stamps read_files;   // by the newest build
+    std::filesystem::path saved; // the file whose save brought that build; empty: none did
     bool record_next = false, picture_asked = false, told = true;
     double cursor_x = 0, cursor_y = 0, pressed_x = 0, pressed_y = 0;
     bool click_asked = false;
@@ -92,8 +108,12 @@ struct App {
     bool animated() const { return scene && running && scene->picture.reads_time; }
     void param_changed(const ir::Param &param);
     void write_param(const ir::Param &param);
-    void write_view();
+    bool write_view(); // false where it could not be; the note says why
     void note(std::string words);
+    double note_seconds_left() const; // at least a little
+    void drop_old_note();
+    std::string doing() const;                         // what takes its time now, in words
+    std::string text_of(const ir::Param &param) const; // its value, as its text writes it
 
     // input.cpp
     void key(int key, int mods);
@@ -105,24 +125,32 @@ struct App {
     void frame_box(const ir::Box &box);
     void frame_all();
     void select(bool open);
+    void open_selected();
+    void escape();
     void step_param(double by);
     void toggle_look(gl::Look look);
 
+    // draw_scene.cpp
+    bool pending() const; // more samples are wanted, or something was not shown yet
+    void draw_scene(int width, int height, bool moving, bool drew_before);
+    void measure(int width, int height);
+    int first_coarseness(bool same_view) const;
+    void picture_is_whole(double scale, bool moving, bool drew_before);
+    bool draw_rows(bool whole);
+    void keep_picks();
+    void finish_picture(double scale);
+    bool draw_kept(double scale);
+    bool keeps(bool by_hand) const; // whether the next picture may come through the noise cache
+
     // draw.cpp
     void draw(double seconds);
-    void draw_scene(int width, int height, bool moving, bool drew_before);
-    bool draw_rows(bool whole);
-    void finish_picture(double scale);
     void draw_probe();
     bool draw_cached(int width, int height); // false where there is nothing to show
-    bool draw_kept(const Shot &shot, double scale);
-    bool keeps(bool by_hand) const; // whether the next picture may come through the noise cache
-    double fading() const;          // the share of the picture before, 0 where it is gone
+    double fading() const;                   // the share of the picture before, 0 where it is gone
     void draw_panels(int width, int height);
     void save_pictures(int width, int height, bool moving);
     bool save_window(const std::filesystem::path &file, int width, int height);
     double aspect() const; // of the first view
-    bool pending() const;  // more samples are wanted, or something was not shown yet
     std::vector<gl::TileView> tile_views(int width, int height) const;
     gl::Pick pick_at_cursor() const;
 };

@@ -103,4 +103,12 @@ std::string camera_line(const Camera &camera) {
                        camera.orthographic ? ", orthographic: true" : "");
 }
 
+double isoline_step(const Camera &camera) {
+    const double wanted = camera.slope * camera.distance / 12;
+    const double power = std::pow(10, std::floor(std::log10(wanted)));
+    for (double step : {2.0, 5.0})
+        if (wanted <= step * power) return step * power;
+    return 10 * power;
+}
+
 } // namespace fathom::viewer

@@ -33,4 +33,8 @@ void frame(Camera &camera, const ir::Triple &center, double radius, double aspec
 // `camera(at: […], look_at: […], fov: …deg)`: a line to paste into the scene.
 std::string camera_line(const Camera &camera);
 
+// How far apart isolines stand: 1, 2 or 5 times a power of ten, about twelve from the middle of the
+// picture to its edge.
+double isoline_step(const Camera &camera);
+
 } // namespace fathom::viewer

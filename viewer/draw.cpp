@@ -18,9 +18,9 @@
 namespace fathom::viewer {
 namespace {
 
-constexpr int samples_at_rest = 4;
 constexpr double turns_a_second = 0.1; // auto-rotate
 constexpr double fade_ms = 250;        // from kept values to exact ones, when it comes to rest
+constexpr double slow_ms = 300;        // what takes longer is said
 
 std::filesystem::path free_name(const std::filesystem::path &scene, const char *form) {
     for (int i = 1;; ++i) {
@@ -29,16 +29,6 @@ std::filesystem::path free_name(const std::filesystem::path &scene, const char *
         std::error_code error;
         if (!std::filesystem::exists(name, error)) return name;
     }
-}
-
-// Isolines 1, 2 or 5 times a power of ten apart, about twelve from the middle of the window to its
-// edge.
-double isoline_step(const Camera &camera) {
-    const double wanted = camera.slope * camera.distance / 12;
-    const double power = std::pow(10, std::floor(std::log10(wanted)));
-    for (double step : {2.0, 5.0})
-        if (wanted <= step * power) return step * power;
-    return 10 * power;
 }
 
 // Along a few rows and columns of the probe, where the distance passes a multiple of the step: not
@@ -106,159 +96,27 @@ std::vector<gl::TileView> App::tile_views(int width, int height) const {
     return result;
 }
 
-bool App::pending() const {
-    if (!program || controls.cache) return false;
-    if (drawn_kept) return true; // the exact picture comes when nothing moves any more
-    if (stale || !drawn || drawing || !finished) return true;
-    return controls.accumulate && controls.look == gl::Look::Picture && !animated() &&
-           !controls.always && !controls.rotate && samples_drawn < samples_at_rest;
-}
-
-// One sample of the picture, or as many of its rows as fit into a turn of the loop: a slow scene
-// does not keep events waiting, and what was shown stays until the new picture is whole. True when
-// it is.
-bool App::draw_rows(bool whole) {
-    constexpr double turn_ms = 30, band_ms = 10;
-    const Clock::time_point start = Clock::now();
-    const std::vector<gl::TileView> tiles = tile_views(drawn->width, drawn->height);
-    const double expected = status.frame_ms > 0 ? status.frame_ms : 16 * band_ms;
-    const int band =
-        whole ? drawn->height
-              : std::clamp(static_cast<int>(drawn->height * band_ms / expected), 8, drawn->height);
-    while (next_row < drawn->height) {
-        const bool measured = timer.begin();
-        const bool good = canvas.draw(*program, drawn->width, drawn->height, tiles, params,
-                                      next_sample, next_row, band);
-        timer.end();
-        if (!good) {
-            drawing = false;
-            note("the graphics card has no memory for this size");
-            return false;
-        }
-        next_row += band;
-        if (measured) bands_asked.push_back(next_row >= drawn->height);
-        while (const auto milliseconds = timer.poll()) {
-            gpu_ms += *milliseconds;
-            const bool last = bands_asked.front();
-            bands_asked.erase(bands_asked.begin());
-            if (last) gpu_times.add(std::exchange(gpu_ms, 0));
-        }
-        if (milliseconds_since(start) > turn_ms) break;
-    }
-    sample_ms += milliseconds_since(start);
-    return next_row >= drawn->height;
-}
-
-// While it is moved by hand, the picture is drawn as coarsely as it takes to keep up; at rest in
-// full, then smoothed by more samples.
-void App::draw_scene(int width, int height, bool moving, bool drew_before) {
-    constexpr double wanted_ms = 30;
-    double scale = 1;
-    if (moving && controls.keep && !cached.asked() && !worker->lent() &&
-        scene->compilation.scene.graph.cache_count() > 0)
-        cached.build(scene->compilation.scene, scene->compilation.parts.stride);
-    const double expected_ms = drawn_kept && cached.choice.state == gl::CacheChoice::State::Kept
-                                   ? cached.choice.kept_ms
-                                   : status.frame_ms;
-    if (moving && expected_ms > wanted_ms)
-        scale = std::clamp(std::sqrt(wanted_ms / expected_ms), 0.125, 1.0);
-    const Shot shot{views, time, std::max(1, static_cast<int>(width * scale)),
-                    std::max(1, static_cast<int>(height * scale))};
-    const bool kept = keeps(moving);
-    const bool anew =
-        stale || drawn != shot || (controls.always && !drawing) || (drawn_kept && !kept);
-    if (anew) {
-        drawn = shot;
-        stale = probed = false;
-        const bool before = std::exchange(drawn_kept, false);
-        if (kept && gl::keeps_next(cached.choice) && draw_kept(shot, scale)) {
-            drawn_kept = true;
-            ++kept_frames;
-            drawing = false;
-            fade_begin = {};
-            if (drew_before) frame_times.add(milliseconds_since(last_draw));
-            last_draw = Clock::now();
-            drew_now = true;
-            return;
-        }
-        if (kept_frames > 0 && !kept && settings.tell)
-            settings.tell(
-                fmt::format("moved: {} frames through the noise cache, the last {:.1f} ms, "
-                            "exact {:.1f} ms",
-                            kept_frames, cached.choice.kept_ms, cached.choice.exact_ms));
-        if (!kept) kept_frames = 0;
-        if (before && !kept) {
-            canvas.keep_before();
-            fade_begin = Clock::time_point::max(); // begins when the exact picture is there
-        }
-    }
-    const bool more = !anew && !drawing && finished && pending() && !moving;
-    if (anew || more) {
-        drawing = true;
-        next_sample = anew ? 0 : samples_drawn;
-        next_row = 0;
-        sample_ms = 0;
-    }
-    if (!drawing && finished) return;
-    const bool first = drawing && next_sample == 0;
-    if (drawing) {
-        drew_now = true;
-        if (!draw_rows(moving || controls.always || controls.rotate || sequence > 0)) return;
-        drawing = false;
-        samples_drawn = next_sample + 1;
-        // What a full frame would take: the measure that decides how coarse the next may be.
-        status.frame_ms = sample_ms / (scale * scale);
-        if (first) gl::took(cached.choice, false, status.frame_ms);
-        // Frames that follow one another; what came after a rest says nothing of speed.
-        if (drew_before) frame_times.add(milliseconds_since(last_draw));
-        last_draw = Clock::now();
-    }
-    draw_probe();
-    finish_picture(scale);
-    if (fade_begin == Clock::time_point::max()) fade_begin = Clock::now();
-    if (first && (!moving || frames_drawn++ % 32 == 0)) {
-        double sum = 0;
-        const std::vector<float> picks = canvas.read_picks();
-        for (std::size_t i = 2; i < picks.size(); i += 4) sum += picks[i];
-        status.mean_steps = picks.empty() ? 0 : sum / (static_cast<double>(picks.size()) / 4);
-    }
-}
-
-void App::finish_picture(double scale) {
-    gl::PostSettings post;
-    post.look = controls.look;
-    post.fxaa = controls.fxaa;
-    post.max_steps = scene->compilation.scene.render.max_steps;
-    post.outlined = selected.number;
-    post.hovered = hovered.number;
-    post.thickness = std::max(1, static_cast<int>(std::lround(2 * font_scale * scale)));
-    post.isolines = isoline_step(views.cameras[0]);
-    canvas.finish(post);
-    finished = true;
-}
-
-// A picture that is recorded, looked at in other colours or drawn for its time is exact; so are
-// several views.
-bool App::keeps(bool moving) const {
-    return (moving || controls.rotate) && controls.keep && cached.ready() && views.count == 1 &&
-           controls.look == gl::Look::Picture && !controls.always && sequence == 0;
-}
-
-bool App::draw_kept(const Shot &shot, double scale) {
-    gl::FrameInputs inputs = tile_views(shot.width, shot.height)[0].inputs;
-    inputs.width = shot.width;
-    inputs.height = shot.height;
-    inputs.mode = gl::Mode::Linear;
-    gl::finish();
-    const Clock::time_point start = Clock::now();
-    if (!cached.draw(inputs, params, false)) return false;
-    gl::finish();
-    gl::took(cached.choice, cached.looked_up(), milliseconds_since(start) / (scale * scale));
-    if (controls.analysis) cached.count();
-    if (!canvas.take(cached.framebuffer(), shot.width, shot.height)) return false;
-    samples_drawn = 1;
-    finish_picture(scale);
-    return true;
+std::string App::doing() const {
+    std::string words;
+    const auto say = [&](const std::string &more) { words += (words.empty() ? "" : " | ") + more; };
+    if (sequence > 0)
+        say(fmt::format("every frame goes to {}; M ends it", sequence_folder.string()));
+    if (controls.cache && cached.ready()) say(cached.words());
+    const Work work = worker->work();
+    if (linking)
+        say(stage_words(Stage::Linking));
+    else if (work.stage != Stage::Rest && (work.seconds * 1000 > slow_ms || !program))
+        say(fmt::format("{}, {:.1f} s", stage_words(work.stage), work.seconds));
+    if (!drawing || controls.cache || status.frame_ms < slow_ms) return words;
+    const int percent = 100 * next_row / std::max(drawn_height, 1);
+    if (next_sample > 0)
+        say(fmt::format("smoothing, sample {} of {}: {} %", next_sample + 1, App::samples_at_rest,
+                        percent));
+    else if (resting && coarse > 1)
+        say(fmt::format("drawing at 1/{}: {} %", coarse, percent));
+    else if (resting)
+        say(fmt::format("drawing: {} %", percent));
+    return words;
 }
 
 double App::fading() const {
@@ -290,9 +148,9 @@ bool App::draw_cached(int width, int height) {
             return false;
         }
         cached.count();
-        note(cached.words());
     }
     gl::show_in_window(cached.framebuffer(), width, height);
+    on_screen = true;
     return true;
 }
 
@@ -331,7 +189,7 @@ void App::save_pictures(int width, int height, bool moving) {
         const std::filesystem::path name = free_name(settings.file, "{}-{}.png");
         if (save_window(name, width, height)) note("saved " + name.string());
     }
-    if (sequence > 0 && finished) {
+    if (sequence > 0 && finished && !drawing) {
         const std::string name = fmt::format("{:05}.png", sequence++);
         const std::string error =
             driver::write_file(sequence_folder / name, encode_png(canvas.read_picture()));
@@ -355,13 +213,20 @@ void App::draw_panels(int width, int height) {
         width > 0 ? static_cast<float>(window_width) / static_cast<float>(width) : 1;
     status.width = width;
     status.height = height;
-    Shown shown{status,      settings.file.string(),
-                errors,      remarks,
-                {},          {},
-                {},          labels,
-                frame_times, gpu_times,
-                verdicts,    cached.ready() ? &cached.figures() : nullptr,
-                256,         1};
+    Shown shown{.status = status,
+                .file = settings.file.string(),
+                .errors = errors,
+                .remarks = remarks,
+                .doing = doing(),
+                .picture = !canvas.empty() || controls.cache,
+                .selected = {},
+                .hovered = {},
+                .view_names = {},
+                .labels = labels,
+                .frame_times = frame_times,
+                .gpu_times = gpu_times,
+                .verdicts = verdicts,
+                .cache = cached.ready() ? &cached.figures() : nullptr};
     if (selected.number) shown.selected = part_line(selected);
     if (hovered.number) {
         const gl::Pick pick = pick_at_cursor();
@@ -388,9 +253,9 @@ void App::draw_panels(int width, int height) {
     const Asked asked = show_panels(controls, shown, params);
     for (std::size_t i : asked.changed) param_changed(params[i]);
     for (std::size_t i : asked.write) write_param(params[i]);
-    if (!asked.copy.empty()) {
-        glfwSetClipboardString(window, asked.copy.c_str());
-        note("copied " + asked.copy);
+    for (std::size_t i : asked.copy) {
+        glfwSetClipboardString(window, text_of(params[i]).c_str());
+        note("copied " + text_of(params[i]));
     }
     if (asked.look) {
         finished = probed = false;
@@ -404,13 +269,18 @@ void App::draw(double seconds) {
     int width = 0, height = 0;
     glfwGetFramebufferSize(window, &width, &height);
     if (width == 0 || height == 0) return; // minimised
-    const double passed =
-        sequence > 0 ? 1.0 / 30 : seconds; // a sequence's frames are a thirtieth of a second apart
-    if (animated()) {                      // beyond the span of the proof the time begins anew
-        const double end = scene->compilation.scene.render.time_end;
-        time = std::fmod(time + passed, end);
+    // What is drawn in full is not moved on before it is whole.
+    const bool in_full = controls.always || controls.rotate || sequence > 0;
+    held_back += seconds;
+    if (!in_full || !drawing) {
+        const double passed = sequence > 0 ? 1.0 / 30 : held_back; // its frames are that far apart
+        held_back = 0;
+        if (animated()) { // beyond the span of the proof the time begins anew
+            const double end = scene->compilation.scene.render.time_end;
+            time = std::fmod(time + passed, end);
+        }
+        if (controls.rotate) orbit(views.camera(), -2 * turns_a_second * passed, 0);
     }
-    if (controls.rotate) orbit(views.camera(), -2 * turns_a_second * passed, 0);
     fly_by_keys(seconds);
     const bool by_hand = milliseconds_since(touched) < 150;
     const bool moving =
@@ -439,6 +309,13 @@ gl::Pick App::pick_at_cursor() const {
     int width = 0, height = 0;
     glfwGetWindowSize(window, &width, &height);
     if (width <= 0 || height <= 0 || canvas.empty()) return {};
+    if (drawing && !picks.empty()) {
+        const int x = static_cast<int>(cursor_x * picks_width / width),
+                  y = static_cast<int>(cursor_y * picks_height / height);
+        if (x < 0 || y < 0 || x >= picks_width || y >= picks_height) return {};
+        const float *at = &picks[4 * static_cast<std::size_t>(y * picks_width + x)];
+        return {static_cast<int>(at[0]), at[1], at[2], at[3]};
+    }
     return canvas.pick(static_cast<int>(cursor_x * canvas.width() / width),
                        static_cast<int>(cursor_y * canvas.height() / height));
 }

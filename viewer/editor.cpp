@@ -1,7 +1,8 @@
 #include "viewer/editor.h"
 
+#include "base/encode.h"
+
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
@@ -15,8 +16,8 @@
 namespace fathom::viewer {
 namespace {
 
-std::vector<std::string> words_of(const std::string &text) {
-    std::istringstream in(text);
+std::vector<std::string> words_of(std::string_view text) {
+    std::istringstream in{std::string(text)};
     std::vector<std::string> words;
     for (std::string word; in >> word;) words.push_back(word);
     return words;
@@ -27,8 +28,64 @@ std::string program_of(const std::string &editor) {
     return words.empty() ? "" : std::filesystem::path(words.front()).filename().string();
 }
 
-bool one_of(const std::string &name, std::initializer_list<const char *> names) {
-    return std::find(names.begin(), names.end(), name) != names.end();
+enum class Lives { InWindow, InTerminal, AsTold }; // AsTold: in a terminal by -nw, -t or -tty
+
+// How an editor is told a place: words, with blanks between them.
+struct EditorRow {
+    std::string_view program, words;
+    Lives lives;
+};
+constexpr EditorRow editors[] = {
+    {"code", "-g {file}:{line}:{column}", Lives::InWindow},
+    {"code-insiders", "-g {file}:{line}:{column}", Lives::InWindow},
+    {"codium", "-g {file}:{line}:{column}", Lives::InWindow},
+    {"cursor", "-g {file}:{line}:{column}", Lives::InWindow},
+    {"windsurf", "-g {file}:{line}:{column}", Lives::InWindow},
+    {"subl", "{file}:{line}:{column}", Lives::InWindow},
+    {"zed", "{file}:{line}:{column}", Lives::InWindow},
+    {"zeditor", "{file}:{line}:{column}", Lives::InWindow},
+    {"kate", "--line {line} --column {column} {file}", Lives::InWindow},
+    {"hx", "{file}:{line}:{column}", Lives::InTerminal},
+    {"helix", "{file}:{line}:{column}", Lives::InTerminal},
+    {"vi", "+{line} {file}", Lives::InTerminal},
+    {"vim", "+{line} {file}", Lives::InTerminal},
+    {"nvim", "+{line} {file}", Lives::InTerminal},
+    {"nano", "+{line} {file}", Lives::InTerminal},
+    {"pico", "+{line} {file}", Lives::InTerminal},
+    {"micro", "+{line} {file}", Lives::InTerminal},
+    {"kak", "+{line} {file}", Lives::InTerminal},
+    {"joe", "+{line} {file}", Lives::InTerminal},
+    {"mg", "+{line} {file}", Lives::InTerminal},
+    {"ne", "+{line} {file}", Lives::InTerminal},
+    {"ed", "+{line} {file}", Lives::InTerminal},
+    {"emacs", "+{line} {file}", Lives::AsTold},
+    {"emacsclient", "+{line} {file}", Lives::AsTold},
+};
+constexpr EditorRow any_other{"", "+{line} {file}", Lives::InWindow};
+
+// What stands between a terminal's name and the command that it runs; each takes the command as
+// words, never as a line for a shell.
+struct TerminalRow {
+    std::string_view program, words;
+};
+constexpr TerminalRow terminals[] = {
+    {"gnome-terminal", "--"}, {"xfce4-terminal", "-x"}, {"mate-terminal", "-x"},
+    {"terminator", "-x"},     {"wezterm", "start --"},
+};
+constexpr TerminalRow any_other_terminal{"", "-e"}; // as Debian's policy wants (11.8.3)
+
+template <std::size_t N, class Row>
+const Row &row_of(const Row (&rows)[N], const Row &other, const std::string &program) {
+    const auto *found = std::ranges::find(rows, program, &Row::program);
+    return found == std::end(rows) ? other : *found;
+}
+
+// A name that no program takes for an option or a command: it begins with `/`, or with `./` where
+// the working folder is gone.
+std::string as_argument(const std::string &file) {
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::absolute(file, error);
+    return error ? "./" + file : path.string();
 }
 
 std::string variable(const char *name) {
@@ -45,43 +102,43 @@ std::string users_editor() {
 
 bool needs_terminal(const std::string &editor) {
     const std::vector<std::string> words = words_of(editor);
-    const std::string program = program_of(editor);
-    if (one_of(program, {"emacs", "emacsclient"}))
-        return std::any_of(words.begin(), words.end(), [](const std::string &word) {
-            return word == "-nw" || word == "-t" || word == "-tty";
-        });
-    return one_of(program, {"vi", "vim", "nvim", "nano", "pico", "micro", "hx", "helix", "kak",
-                            "joe", "mg", "ne", "ed"});
+    switch (row_of(editors, any_other, program_of(editor)).lives) {
+    case Lives::InWindow: return false;
+    case Lives::InTerminal: return true;
+    case Lives::AsTold: break;
+    }
+    return std::ranges::any_of(words, [](const std::string &word) {
+        return word == "-nw" || word == "-t" || word == "-tty";
+    });
 }
 
 std::vector<std::string> editor_command(const std::string &editor, const std::string &file,
                                         unsigned line, unsigned column) {
     std::vector<std::string> words = words_of(editor);
-    const std::string program = program_of(editor);
-    if (one_of(program, {"code", "code-insiders", "codium", "cursor", "windsurf"})) {
-        words.push_back("-g");
-        words.push_back(fmt::format("{}:{}:{}", file, line, column));
-    } else if (one_of(program, {"subl", "hx", "helix", "zed", "zeditor"})) {
-        words.push_back(fmt::format("{}:{}:{}", file, line, column));
-    } else if (program == "kate") {
-        words.insert(words.end(),
-                     {"--line", std::to_string(line), "--column", std::to_string(column), file});
-    } else {
-        words.push_back(fmt::format("+{}", line));
-        words.push_back(file);
-    }
+    for (const std::string &form : words_of(row_of(editors, any_other, program_of(editor)).words))
+        words.push_back(fmt::format(fmt::runtime(form), fmt::arg("file", as_argument(file)),
+                                    fmt::arg("line", line), fmt::arg("column", column)));
+    return words;
+}
+
+std::vector<std::string> in_terminal(const std::string &terminal,
+                                     const std::vector<std::string> &command) {
+    std::vector<std::string> words = words_of(terminal);
+    const auto between =
+        words_of(row_of(terminals, any_other_terminal, program_of(terminal)).words);
+    words.insert(words.end(), between.begin(), between.end());
+    words.insert(words.end(), command.begin(), command.end());
     return words;
 }
 
 std::string open_in_editor(const std::string &editor, const std::string &file, unsigned line,
                            unsigned column) {
-    const std::string place = fmt::format("{}:{}", file, line);
+    const std::string place = for_terminal(fmt::format("{}:{}", file, line));
     if (words_of(editor).empty()) return place + "; set $EDITOR, and a click opens it there";
     std::vector<std::string> words = editor_command(editor, file, line, column);
     if (needs_terminal(editor)) {
-        std::string terminal = variable("TERMINAL");
-        if (terminal.empty()) terminal = "x-terminal-emulator";
-        words.insert(words.begin(), {terminal, "-e"});
+        const std::string terminal = variable("TERMINAL");
+        words = in_terminal(words_of(terminal).empty() ? "x-terminal-emulator" : terminal, words);
     }
     std::vector<char *> arguments;
     for (std::string &word : words) arguments.push_back(word.data());

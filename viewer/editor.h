@@ -7,10 +7,14 @@
 
 namespace fathom::viewer {
 
-// `editor` as in $EDITOR, words and all.
+// `editor` as in $EDITOR, words and all. The file goes as an absolute path, so that no name is
+// taken for an option or a command, and as one word: no shell sees it.
 std::vector<std::string> editor_command(const std::string &editor, const std::string &file,
                                         unsigned line, unsigned column);
 bool needs_terminal(const std::string &editor); // vim, nano, …: it has no window of its own
+// `terminal` as in $TERMINAL.
+std::vector<std::string> in_terminal(const std::string &terminal,
+                                     const std::vector<std::string> &command);
 
 // $VISUAL, else $EDITOR, else nothing.
 std::string users_editor();

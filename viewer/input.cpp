@@ -71,8 +71,21 @@ void App::step_param(double by) {
                 param.value[i] = std::clamp(param.value[i], param.lo[i], param.hi[i]);
         }
     }
-    note(param.name + " = " + value_text(param));
     param_changed(param);
+    note(param.name + " = " + text_of(param));
+}
+
+// What lies on top goes first: a menu or a colour picker, then the keys, then the selection.
+void App::escape() {
+    if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup)) {
+        ImGui::SetWindowFocus(nullptr); // closes them
+    } else if (controls.keys) {
+        controls.keys = false;
+    } else {
+        selected = {};
+        finished = false;
+        note("");
+    }
 }
 
 void App::key(int key, int mods) {
@@ -88,7 +101,7 @@ void App::key(int key, int mods) {
         if (params.empty()) return note("this scene has no params");
         controls.chosen = (controls.chosen + by) % params.size();
         controls.params = true;
-        note(params[controls.chosen].name + " = " + value_text(params[controls.chosen]));
+        note(params[controls.chosen].name + " = " + text_of(params[controls.chosen]));
     };
     const auto chosen = [&]() -> ir::Param * {
         return controls.chosen < params.size() ? &params[controls.chosen] : nullptr;
@@ -123,6 +136,7 @@ void App::key(int key, int mods) {
     case GLFW_KEY_TAB: controls.params = !controls.params; break;
     case GLFW_KEY_BACKSPACE:
         for (ir::Param &param : params) param.value = param.initial;
+        note("all params stand on the text's values");
         stale = true;
         if (!structural.empty()) rebuild({});
         break;
@@ -138,8 +152,8 @@ void App::key(int key, int mods) {
         break;
     case GLFW_KEY_Y:
         if (ir::Param *param = chosen()) {
-            glfwSetClipboardString(window, value_text(*param).c_str());
-            note("copied " + value_text(*param));
+            glfwSetClipboardString(window, text_of(*param).c_str());
+            note("copied " + text_of(*param));
         }
         break;
     case GLFW_KEY_I:
@@ -176,7 +190,7 @@ void App::key(int key, int mods) {
     case GLFW_KEY_G: controls.analysis = !controls.analysis; break;
     case GLFW_KEY_O:
         if (selected.number)
-            note(open_in_editor(users_editor(), selected.file, selected.line, selected.column));
+            open_selected();
         else
             note("nothing is selected: click a shape first");
         break;
@@ -197,16 +211,11 @@ void App::key(int key, int mods) {
                                  error.message()));
             } else {
                 sequence = 1;
-                note("every frame goes to " + sequence_folder.string() + "; M ends it");
             }
         }
         break;
     case GLFW_KEY_F1: controls.keys = !controls.keys; break;
-    case GLFW_KEY_ESCAPE:
-        controls.keys = false;
-        selected = {};
-        finished = false;
-        break;
+    case GLFW_KEY_ESCAPE: escape(); break;
     case GLFW_KEY_EQUAL:
     case GLFW_KEY_KP_ADD: dolly(views.camera(), 1); break;
     case GLFW_KEY_MINUS:
@@ -292,6 +301,11 @@ void App::button(int button, bool down) {
     click_asked |= click; // panels know only with the next frame whether it was theirs
 }
 
+void App::open_selected() {
+    note(open_in_editor(users_editor(), selected.file, std::max(selected.line, 1u),
+                        std::max(selected.column, 1u)));
+}
+
 // An editor with a window of its own jumps to the line at each click; one in a terminal only when
 // asked by its key.
 void App::select(bool open) {
@@ -302,10 +316,9 @@ void App::select(bool open) {
     if (!selected.number) return note("");
     const std::string editor = users_editor();
     if (open && !editor.empty() && !needs_terminal(editor))
-        note(open_in_editor(editor, selected.file, selected.line, selected.column));
+        open_selected();
     else
-        note(fmt::format("{}:{}{}", selected.file, selected.line,
-                         editor.empty() ? "" : " (O opens it)"));
+        note(place_of(selected) + (editor.empty() ? "" : " (O opens it)"));
 }
 
 void App::scroll(double steps) {

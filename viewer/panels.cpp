@@ -76,8 +76,9 @@ float show_status(const Shown &shown) {
     if (remarks)
         parts.insert(parts.begin() + 2,
                      fmt::format("{} remark{} (N)", remarks, remarks == 1 ? "" : "s"));
-    std::vector<std::string> lines{status.note};
-    if (status.note.empty()) lines.clear();
+    std::vector<std::string> lines;
+    for (const std::string &line : {status.trouble, shown.doing, status.note})
+        if (!line.empty()) lines.push_back(line);
     const float room = size.x - 2 * ImGui::GetStyle().WindowPadding.x;
     bool begun = false; // a line of parts
     for (const std::string &part : parts) {
@@ -130,7 +131,7 @@ void show_keys(bool &open) {
         Row{"Space, 0", "stop and run time, set it to 0"},
         Row{"N", "show or hide warnings and notes"},
         Row{"P, M", "save a picture of the window, every frame"},
-        Row{"Esc", "select nothing"},
+        Row{"Esc", "close a menu, these keys; select nothing"},
         Row{"?, F1", "these keys"},
         Row{"Ctrl Q", "close"},
     };
@@ -152,9 +153,13 @@ void show_keys(bool &open) {
     ImGui::End();
 }
 
+const char *label_of(const ir::Param &param) {
+    return param.label.empty() ? param.name.c_str() : param.label.c_str();
+}
+
 // One param's widget; true where its value changed.
 bool edit(ir::Param &param) {
-    const char *label = param.label.empty() ? param.name.c_str() : param.label.c_str();
+    const char *label = label_of(param);
     if (param.type == ir::Type::Bool) {
         bool on = param.value[0] != 0;
         bool edited = ImGui::Checkbox(label, &on);
@@ -202,18 +207,38 @@ bool edit(ir::Param &param) {
     return true;
 }
 
+// Where the buttons of all params stand: behind the longest label.
+float button_column(const std::vector<ir::Param> &params, float item_width) {
+    float longest = 0;
+    for (const ir::Param &param : params) {
+        const bool by_component = !param.is_color && ir::components(param.type) > 1;
+        const std::string label = std::string(label_of(param)) + (by_component ? ".x" : "");
+        longest = std::max(longest, ImGui::CalcTextSize(label.c_str()).x);
+    }
+    const ImGuiStyle &style = ImGui::GetStyle();
+    return style.WindowPadding.x + item_width + style.ItemInnerSpacing.x + longest +
+           style.ItemSpacing.x;
+}
+
 void show_params(Controls &controls, std::vector<ir::Param> &params, Asked &asked) {
     ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos({size.x - 12, 12}, ImGuiCond_Always, {1, 0});
+    // While something is held the panel stays where it is, whatever a reload makes of it.
+    const ImGuiCond place = ImGui::IsAnyItemActive() ? ImGuiCond_Appearing : ImGuiCond_Always;
+    ImGui::SetNextWindowPos({size.x - 12, 12}, place, {1, 0});
     ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 24, std::max(size.y - 80, 50.0f)});
     ImGui::SetNextWindowBgAlpha(0.8f);
     ImGui::Begin("Params", nullptr,
                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoFocusOnAppearing);
-    ImGui::PushItemWidth(ImGui::GetFontSize() * 12);
+    const float item_width = ImGui::GetFontSize() * 12, buttons = button_column(params, item_width);
+    ImGui::PushItemWidth(item_width);
     for (std::size_t i = 0; i < params.size(); ++i) {
         ir::Param &param = params[i];
-        ImGui::PushID(static_cast<int>(i));
+        // Its own, also where a reload moves it in the list; modules may have the same names.
+        ImGui::PushID(param.name.c_str());
+        ImGui::PushID(static_cast<int>(
+            std::count_if(params.begin(), params.begin() + static_cast<std::ptrdiff_t>(i),
+                          [&](const ir::Param &other) { return other.name == param.name; })));
         const bool chosen = i == controls.chosen;
         if (chosen) ImGui::PushStyleColor(ImGuiCol_Text, yellow);
         bool edited = edit(param);
@@ -224,20 +249,23 @@ void show_params(Controls &controls, std::vector<ir::Param> &params, Asked &aske
                 param.value = param.initial;
                 edited = true;
             }
-            if (ImGui::MenuItem("Copy the value")) asked.copy = value_text(param);
+            if (ImGui::MenuItem("Copy the value")) asked.copy.push_back(i);
             if (ImGui::MenuItem("Write it into the file")) asked.write.push_back(i);
             ImGui::EndPopup();
         }
-        if (changed(param)) { // what stands off the text's value can be sent back, or into the text
-            ImGui::SameLine();
-            if (ImGui::SmallButton("reset")) {
-                param.value = param.initial;
-                edited = true;
-            }
-            ImGui::SameLine();
-            if (ImGui::SmallButton("write")) asked.write.push_back(i);
+        // What stands off the text's value can be sent back, or into the text. The buttons have
+        // their room also where they do nothing: a panel that grew would run away under the mouse.
+        ImGui::BeginDisabled(!changed(param));
+        ImGui::SameLine(buttons);
+        if (ImGui::SmallButton("reset")) {
+            param.value = param.initial;
+            edited = true;
         }
+        ImGui::SameLine();
+        if (ImGui::SmallButton("write")) asked.write.push_back(i);
+        ImGui::EndDisabled();
         if (edited) asked.changed.push_back(i);
+        ImGui::PopID();
         ImGui::PopID();
     }
     ImGui::PopItemWidth();
@@ -273,6 +301,11 @@ Asked show_panels(Controls &controls, const Shown &shown, std::vector<ir::Param>
             const ImVec2 size = ImGui::CalcTextSize(words.c_str());
             show_words_at(words, label.x - size.x / 2, label.y - size.y / 2, pale);
         }
+    if (!shown.picture && shown.errors.empty()) {
+        const ImVec2 window = ImGui::GetIO().DisplaySize;
+        const ImVec2 room = ImGui::CalcTextSize(shown.doing.c_str());
+        show_words_at(shown.doing, (window.x - room.x) / 2, (window.y - room.y) / 2, pale);
+    }
     const float status_height = show_status(shown);
     show_picked(shown, status_height, !controls.keys);
     if (controls.params && !params.empty()) show_params(controls, params, asked);

@@ -18,6 +18,7 @@ struct Status {
     std::size_t shader_bytes = 0;
     std::string bound;     // "L 1.25 proved"
     std::string note;      // the last thing done: "camera line copied"
+    std::string trouble;   // what stays wrong: saves are not followed
     double mean_steps = 0; // a ray
     std::string lists;     // how many rows a cell has, where loops are pruned
     bool linked_anew = false;
@@ -34,6 +35,8 @@ struct Shown {
     const Status &status;
     std::string file;
     const std::vector<std::string> &errors, &remarks;
+    std::string doing;             // what takes its time, in words
+    bool picture = false;          // there is one to see
     std::string selected, hovered; // what was picked, in words; empty: nothing
     std::vector<std::pair<std::string, std::array<float, 2>>> view_names; // and where they stand
     const std::vector<IsolineLabel> &labels;
@@ -47,7 +50,7 @@ struct Shown {
 struct Asked {
     std::vector<std::size_t> changed; // params with a new value
     std::vector<std::size_t> write;   // params whose value is to stand in the text
-    std::string copy;                 // text for the clipboard
+    std::vector<std::size_t> copy;    // params whose value goes to the clipboard
     bool look = false;                // a control that the picture depends on changed
     std::array<int, 2> size{0, 0};    // a size for the window
 };

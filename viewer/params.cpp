@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
+#include <numbers>
 
 namespace fathom::viewer {
 namespace {
@@ -17,6 +19,31 @@ bool in_range(const ir::Param &param, const std::array<double, 4> &value) {
     for (std::size_t i = 0; i < count_of(param); ++i)
         if (value[i] < param.lo[i] || value[i] > param.hi[i]) return false;
     return true;
+}
+
+bool in_gamut(const ir::Param &color) { // else eight bits a channel cannot hold it
+    return std::all_of(color.value.begin(), color.value.begin() + 3,
+                       [](double channel) { return channel >= 0 && channel <= 1; });
+}
+
+std::string hex_text(const ir::Param &color) {
+    std::string text = "#";
+    for (std::size_t i = 0; i < 3; ++i)
+        text += fmt::format("{:02x}", std::lround(srgb_of_linear(color.value[i]) * 255));
+    return text;
+}
+
+// The fewest digits that give the same float again, so that 30deg is not 30.0000008deg.
+std::string angle_text(double value, const std::string &unit) {
+    const auto wanted = static_cast<float>(value);
+    if (unit.empty() || value == 0) return format_shortest(wanted);
+    const double of_one = unit == "deg" ? std::numbers::pi / 180 : 2 * std::numbers::pi;
+    for (int digits = 1; digits < 10; ++digits) {
+        const std::string text = fmt::format("{:.{}g}", wanted / of_one, digits);
+        const double again = parse_number(text).value_or(0) * of_one;
+        if (static_cast<float>(again) == wanted && text.find('e') == text.npos) return text + unit;
+    }
+    return format_shortest(wanted);
 }
 
 } // namespace
@@ -53,14 +80,16 @@ std::vector<driver::Override> structural_values(const std::vector<ir::Param> &pa
     return values;
 }
 
-std::string value_text(const ir::Param &param) {
+std::string value_text(const ir::Param &param, const driver::Notation &notation) {
     if (param.type == ir::Type::Bool) return param.value[0] != 0 ? "true" : "false";
+    if (param.type == ir::Type::Int) return format_shortest(param.value[0]);
+    if (param.is_color && notation.hex && in_gamut(param)) return hex_text(param);
     auto number = [&](std::size_t i) {
-        double value = param.is_color ? srgb_of_linear(param.value[i]) : param.value[i];
-        return format_shortest(static_cast<float>(value));
+        if (param.is_color)
+            return format_shortest(static_cast<float>(srgb_of_linear(param.value[i])));
+        return angle_text(param.value[i], notation.unit);
     };
-    if (count_of(param) == 1)
-        return param.type == ir::Type::Int ? format_shortest(param.value[0]) : number(0);
+    if (count_of(param) == 1) return number(0);
     std::string text = param.is_color ? "rgb(" : "[";
     for (std::size_t i = 0; i < count_of(param); ++i) text += (i ? ", " : "") + number(i);
     return text + (param.is_color ? ")" : "]");

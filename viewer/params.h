@@ -2,7 +2,7 @@
 // window.
 #pragma once
 
-#include "driver/compile.h"
+#include "driver/edit.h"
 #include "ir/scene.h"
 
 #include <string>
@@ -24,8 +24,9 @@ bool drop_outdated(const std::vector<ir::Param> &before, const std::vector<ir::P
                    std::vector<driver::Override> &values);
 
 bool changed(const ir::Param &param); // stands on another value than the text's
-std::string
-value_text(const ir::Param &param); // as one would write it: `1.5`, `[1, 2, 3]`, `rgb(1, 0.5, 0)`
+// As one would write it: `1.5`, `[1, 2, 3]`, `rgb(1, 0.5, 0)`; or as the text does: `#d08030`,
+// `30deg`.
+std::string value_text(const ir::Param &param, const driver::Notation &notation = {});
 
 double srgb_of_linear(double value);
 double linear_of_srgb(double value);

@@ -1,9 +1,12 @@
 #include "viewer/pick.h"
 
 #include "driver/verdict.h"
+#include "viewer/lines.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 
 namespace fathom::viewer {
 namespace {
@@ -155,6 +158,20 @@ struct Search {
     }
 };
 
+std::optional<SourceId> source_named(const Sources &sources, const std::string &name) {
+    for (std::size_t i = 0; i < sources.size(); ++i)
+        if (sources[SourceId{i}].name == name) return SourceId{i};
+    return std::nullopt;
+}
+
+std::vector<Part> parts_in(const driver::Compilation &compilation, SourceId source) {
+    std::vector<Part> parts;
+    for (std::size_t i = 1; i <= compilation.parts.shapes.size(); ++i)
+        if (Part part = part_of(compilation, static_cast<int>(i)); part.place.source == source)
+            parts.push_back(std::move(part));
+    return parts;
+}
+
 } // namespace
 
 Part part_of(const driver::Compilation &compilation, int number) {
@@ -165,11 +182,17 @@ Part part_of(const driver::Compilation &compilation, int number) {
     const Span span = written(compilation, id);
     part.number = number;
     if (span.source) {
-        const Position place = position(compilation.sources[span.source], span.begin);
+        const Source &source = compilation.sources[span.source];
         part.words = one_line(text(compilation.sources, span));
-        part.file = compilation.sources[span.source].name;
-        part.line = place.line;
-        part.column = place.column;
+        part.place = span;
+        if (source.made_from) {
+            part.file = compilation.sources[source.made_from].name;
+        } else {
+            const Position place = position(source, span.begin);
+            part.file = source.name;
+            part.line = place.line;
+            part.column = place.column;
+        }
     }
     const ir::ShapeFact &fact = compilation.scene.facts[id.index];
     part.lipschitz = fact.lipschitz_sup;
@@ -178,18 +201,49 @@ Part part_of(const driver::Compilation &compilation, int number) {
     return part;
 }
 
-Part found_again(const driver::Compilation &compilation, const Part &part) {
-    Part best;
-    int best_score = 0;
-    for (std::size_t i = 1; part.number && i <= compilation.parts.shapes.size(); ++i) {
-        Part other = part_of(compilation, static_cast<int>(i));
-        if (other.file != part.file) continue;
-        const int score = 2 * (other.words == part.words) + (other.line == part.line);
-        if (score <= best_score) continue;
-        best_score = score;
-        best = std::move(other);
+Part found_again(const driver::Compilation &before, const Part &part,
+                 const driver::Compilation &now) {
+    if (!part.number || !part.place.source) return {};
+    const Source &old_text = before.sources[part.place.source];
+    const std::optional<SourceId> source = source_named(now.sources, old_text.name);
+    if (!source) return {};
+    const std::vector<std::uint32_t> to = lines_after(old_text.text, now.sources[*source].text);
+    const std::uint32_t old_line = position(old_text, part.place.begin).line;
+    const std::vector<Part> then = parts_in(before, part.place.source),
+                            all = parts_in(now, *source);
+    const auto with = [](const std::vector<Part> &parts, const Sources &sources, std::uint32_t line,
+                         const std::string *words) {
+        std::vector<Part> found;
+        for (const Part &other : parts)
+            if (position(sources[other.place.source], other.place.begin).line == line &&
+                (!words || other.words == *words))
+                found.push_back(other);
+        return found;
+    };
+    // The turn of the part among those before is its turn among those after.
+    const auto by_turn = [&](const std::vector<Part> &old_ones,
+                             const std::vector<Part> &fresh) -> Part {
+        if (fresh.size() != old_ones.size()) return fresh.size() == 1 ? fresh[0] : Part{};
+        for (std::size_t i = 0; i < fresh.size(); ++i)
+            if (old_ones[i].number == part.number) return fresh[i];
+        return {};
+    };
+    if (const std::uint32_t line = to[old_line]) {
+        const std::vector<Part> same = with(all, now.sources, line, &part.words);
+        if (!same.empty()) {
+            const Part found = by_turn(with(then, before.sources, old_line, &part.words), same);
+            return found.number ? found : same[0]; // copies that became more, or fewer
+        }
+        return by_turn(with(then, before.sources, old_line, nullptr),
+                       with(all, now.sources, line, nullptr));
     }
-    return best;
+    std::vector<Part> moved;
+    for (const Part &other : all) {
+        const std::uint32_t line = position(now.sources[*source], other.place.begin).line;
+        if (other.words == part.words && std::find(to.begin(), to.end(), line) == to.end())
+            moved.push_back(other);
+    }
+    return moved.size() == 1 ? moved[0] : Part{};
 }
 
 ir::Box world_box(const ir::Scene &scene, ir::ShapeId part, double time) {
@@ -198,10 +252,14 @@ ir::Box world_box(const ir::Scene &scene, ir::ShapeId part, double time) {
     return search.found;
 }
 
+std::string place_of(const Part &part) {
+    return part.line == 0 ? part.file : fmt::format("{}:{}", part.file, part.line);
+}
+
 std::string part_line(const Part &part) {
     const char *kind = part.kind == ir::FieldKind::Exact ? ", exact" : "";
-    return fmt::format("{} | L {:.4g} {}{} | {}:{}", part.words, part.lipschitz,
-                       driver::status_name(part.status), kind, part.file, part.line);
+    return fmt::format("{} | L {:.4g} {}{} | {}", part.words, part.lipschitz,
+                       driver::status_name(part.status), kind, place_of(part));
 }
 
 } // namespace fathom::viewer

@@ -12,8 +12,9 @@ namespace fathom::viewer {
 struct Part {
     int number = 0;    // 0: none
     std::string words; // "box(2).at(X)", one line of them
-    std::string file;  // as compiled
-    std::uint32_t line = 0, column = 0;
+    Span place;        // of the words, in the compilation's sources
+    std::string file;  // to open: as compiled; of an imported text the file that it was made from
+    std::uint32_t line = 0, column = 0; // in that file; 0 where the words do not stand in it
     double lipschitz = 1;
     ir::ProofStatus status = ir::ProofStatus::Proved;
     ir::FieldKind kind = ir::FieldKind::Bound;
@@ -21,14 +22,17 @@ struct Part {
 
 Part part_of(const driver::Compilation &compilation, int number);
 
-// The same part in a scene that was compiled anew: the same words on the same line, else the same
-// words, else the same line; number 0 where there is none.
-Part found_again(const driver::Compilation &compilation, const Part &part);
+// The same part in a scene that was compiled anew: on the line that was the part's before the edit
+// (lines_after), by its words, else by its turn there. Where that line has gone, the same words on
+// a line that is new; number 0 where there are none or several.
+Part found_again(const driver::Compilation &before, const Part &part,
+                 const driver::Compilation &now);
 
 // A box in the world that holds the part wherever it stands (empty: it does not, or fills no finite
 // box).
 ir::Box world_box(const ir::Scene &scene, ir::ShapeId part, double time);
 
+std::string place_of(const Part &part);  // "scene.sdf:3"
 std::string part_line(const Part &part); // "box(2).at(X) | L 1 proved, exact | scene.sdf:3"
 
 } // namespace fathom::viewer

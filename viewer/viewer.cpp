@@ -2,6 +2,7 @@
 // otherwise.
 #include "viewer/viewer.h"
 
+#include "base/encode.h"
 #include "viewer/app.h"
 
 #include <GLFW/glfw3.h>
@@ -13,6 +14,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <utility>
 
 namespace fathom::viewer {
@@ -61,22 +63,28 @@ void install_callbacks(GLFWwindow *window) {
     });
 }
 
-// One line for each save that is on the screen now: what took how long, and how long ago the file
-// was written.
+// One line for each build that is on the screen now: what took how long, and how long ago the file
+// that brought it was saved, of all that the scene reads. A file's change of state counts, since a
+// file that is moved into place keeps the time at which it was written.
 void tell_reload(App &app) {
+    if (app.errors.empty() && !app.on_screen) return;
     if (std::exchange(app.told, true) || !app.settings.tell) return;
-    std::timespec now{};
-    std::timespec_get(&now, TIME_UTC);
-    const driver::FileStamp file = driver::stamp_of(app.settings.file);
-    const double since = static_cast<double>(now.tv_sec - file.seconds) * 1e3 +
-                         static_cast<double>(now.tv_nsec - file.nanoseconds) * 1e-6;
-    app.settings.tell(
-        fmt::format("reload: {}, front end {:.2f} ms, {}, on the screen {:.2f} ms after the save",
-                    app.errors.empty() ? "good" : "error", app.status.front_end_ms,
-                    app.errors.empty() && app.status.linked_anew
-                        ? fmt::format("driver {:.2f} ms", app.status.driver_ms)
-                        : std::string("driver untouched"),
-                    since));
+    std::string since;
+    struct stat file {};
+    if (!app.saved.empty() && ::stat(app.saved.c_str(), &file) == 0) {
+        std::timespec now{};
+        std::timespec_get(&now, TIME_UTC);
+        const double milliseconds = static_cast<double>(now.tv_sec - file.st_ctim.tv_sec) * 1e3 +
+                                    static_cast<double>(now.tv_nsec - file.st_ctim.tv_nsec) * 1e-6;
+        since = fmt::format(" {:.2f} ms after the save of {}", milliseconds,
+                            app.saved.filename().string());
+    }
+    app.settings.tell(fmt::format("reload: {}, front end {:.2f} ms, {}, on the screen{}",
+                                  app.errors.empty() ? "good" : "error", app.status.front_end_ms,
+                                  app.errors.empty() && app.status.linked_anew
+                                      ? fmt::format("driver {:.2f} ms", app.status.driver_ms)
+                                      : std::string("driver untouched"),
+                                  since));
 }
 
 // Until the window is closed; an empty text, or why it cannot go on.
@@ -90,15 +98,29 @@ std::string loop(App &app) {
                           app.sequence > 0 || app.frames_due > 0 || app.pending() ||
                           app.fading() > 0 ||
                           (app.controls.cache && app.cached.ready() && !app.cached.settled());
+        const bool working = app.worker->work().stage != Stage::Rest;
         if (busy && !hidden)
             glfwPollEvents();
         else if (settling && !hidden)
             glfwWaitEventsTimeout(0.05);
+        else if (working)
+            glfwWaitEventsTimeout(0.2); // its seconds are told
+        else if (!app.status.note.empty())
+            glfwWaitEventsTimeout(app.note_seconds_left());
         else
             glfwWaitEvents(); // a still scene costs nothing
         const double seconds = milliseconds_since(before) / 1000;
         before = Clock::now();
-        if (std::unique_ptr<Build> build = app.worker->take()) app.take(std::move(build));
+        if (working) app.frames_due = std::max(app.frames_due, 1);
+        app.drop_old_note();
+        if (std::unique_ptr<Build> build = app.worker->take()) {
+            if (build->good() && !build->linked) { // by this thread: it says so before
+                app.linking = true;
+                app.draw(0);
+                app.linking = false;
+            }
+            app.take(std::move(build));
+        }
         if (app.scene && !app.cached.asked())
             if (auto kept = app.worker->take_kept(app.scene->number)) {
                 app.cached.take(std::move(*kept));
@@ -182,7 +204,8 @@ std::string run(const Settings &settings) {
     }
     glfwSetErrorCallback(note_error);
     if (!glfwInit()) return no_window_sentence();
-    const Opened opened = open_window(settings, settings.file.filename().string() + " - Fathom");
+    const Opened opened =
+        open_window(settings, for_terminal(settings.file.filename().string()) + " - Fathom");
     if (!opened.window) {
         glfwTerminate();
         return fmt::format(
@@ -197,7 +220,6 @@ std::string run(const Settings &settings) {
         App app(settings); // its programs and canvas end before their context
         app.window = opened.window;
         app.running = !settings.still;
-        app.status.note = "the first picture is on its way";
         glfwSetWindowUserPointer(opened.window, &app);
         install_callbacks(opened.window);
         start_panels(app);
@@ -212,8 +234,7 @@ std::string run(const Settings &settings) {
         app.worker = std::make_unique<Worker>(settings.file, settings.options, std::move(hooks));
         error = loop(app);
         if (error.empty() && settings.save_view && app.scene) {
-            app.write_view();
-            if (!app.status.note.starts_with("wrote")) error = app.status.note;
+            if (!app.write_view()) error = app.status.note;
         }
         app.worker.reset();
         end_panels();

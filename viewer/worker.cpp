@@ -1,5 +1,6 @@
 #include "viewer/worker.h"
 
+#include "base/encode.h"
 #include "driver/edit.h"
 #include "render-gl/pruning.h"
 
@@ -14,6 +15,17 @@ void sort_out(const Diagnostics &diagnostics, const Sources &sources, Build &bui
     for (const Diagnostic &diagnostic : diagnostics.sorted())
         (diagnostic.severity == Severity::Error ? build.errors : build.remarks)
             .push_back(to_text(diagnostic, sources, false));
+}
+
+Stage stage_of(driver::Phase phase) {
+    switch (phase) {
+    case driver::Phase::Read: return Stage::Reading;
+    case driver::Phase::Check: return Stage::Checking;
+    case driver::Phase::Prove: return Stage::Proving;
+    case driver::Phase::Lower: return Stage::Lowering;
+    case driver::Phase::Done: return Stage::Emitting;
+    }
+    return Stage::Emitting;
 }
 
 // What the driver has made for a build that nobody took is not lost: the next one may count on it.
@@ -72,6 +84,30 @@ void Worker::build_kept(const ir::Scene &scene, int part_stride, std::size_t num
     hooks_.ready();
 }
 
+const char *stage_words(Stage stage) {
+    switch (stage) {
+    case Stage::Rest: return "";
+    case Stage::Reading: return "reading the scene";
+    case Stage::Checking: return "checking the scene";
+    case Stage::Proving: return "proving how far a ray may step";
+    case Stage::Lowering: return "lowering shapes to functions";
+    case Stage::Emitting: return "writing the shader";
+    case Stage::Linking: return "the graphics driver compiles the shader";
+    }
+    return "";
+}
+
+Work Worker::work() const {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begun_.load();
+    return {stage_, passed.count()};
+}
+
+void Worker::enter(Stage stage) {
+    if (stage_ == Stage::Rest) begun_ = std::chrono::steady_clock::now();
+    stage_ = stage;
+    hooks_.ready();
+}
+
 std::string Worker::complaint() {
     std::lock_guard lock(mutex_);
     return complaint_;
@@ -99,6 +135,7 @@ std::unique_ptr<Build> Worker::build() {
     auto result = std::make_unique<Build>();
     driver::CompileOptions options = options_;
     options.parts = true;
+    options.entered = [this](driver::Phase phase) { enter(stage_of(phase)); };
     {
         std::lock_guard lock(mutex_);
         for (const driver::Override &value : overrides_) {
@@ -111,8 +148,12 @@ std::unique_ptr<Build> Worker::build() {
     const driver::Compilation &compilation = result->compilation;
     sort_out(compilation.diagnostics, compilation.sources, *result);
     if (!compilation.unreadable.empty())
-        result->errors.push_back("cannot read `" + file_.string() + "`: " + compilation.unreadable);
-    for (const std::string &error : compilation.usage_errors) result->errors.push_back(error);
+        result->errors.push_back(
+            driver::stamp_of(file_).exists
+                ? "cannot read `" + for_terminal(file_.string()) + "`: " + compilation.unreadable
+                : "there is no `" + for_terminal(file_.string()) + "`; this window waits for it");
+    for (const std::string &error : compilation.usage_errors)
+        result->errors.push_back(for_terminal(error));
     if (result->good()) {
         glsl::Options target;
         target.target = glsl::Target::Glsl330;
@@ -147,6 +188,7 @@ void Worker::run() {
             std::unique_ptr<Build> made = build();
             watcher_.watch(made->compilation.files);
             if (lent && made->good()) {
+                enter(Stage::Linking);
                 linkers.link(*made);
                 made->linked = true;
             }
@@ -166,7 +208,7 @@ void Worker::run() {
                 finished_ = std::move(made);
                 if (!watcher_.good()) complaint_ = watcher_.error();
             }
-            hooks_.ready();
+            enter(Stage::Rest);
             if (scene && !ending_ && !asked_) build_kept(*scene, part_stride, number);
             while (!ending_ && !asked_ && !watcher_.wait(std::chrono::hours(1))) {
             }

@@ -10,6 +10,7 @@
 #include "viewer/linker.h"
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -33,6 +34,14 @@ struct Build {
     bool good() const { return errors.empty(); }
 };
 
+// What the worker is at, and for how long it has been at work since the save.
+enum class Stage { Rest, Reading, Checking, Proving, Lowering, Emitting, Linking };
+struct Work {
+    Stage stage = Stage::Rest;
+    double seconds = 0;
+};
+const char *stage_words(Stage stage); // "proving how far a ray may step"; at rest nothing
+
 // One a program kind.
 struct Linkers {
     Linker picture, probe;
@@ -42,7 +51,8 @@ struct Linkers {
 class Worker {
   public:
     struct Hooks {
-        std::function<void()> ready; // on the worker's thread: a build can be taken
+        std::function<void()>
+            ready; // on the worker's thread: a build can be taken, or work() changed
         std::function<bool()>
             take_context; // makes a context current that shares with the window's; empty: none
         std::function<void()> leave_context;
@@ -70,6 +80,8 @@ class Worker {
     // one.
     bool lent() const { return lent_; }
 
+    Work work() const;
+
     // Why saves are not followed (no watches left), or nothing.
     std::string complaint();
 
@@ -78,6 +90,7 @@ class Worker {
     std::unique_ptr<Build> build();
     void build_kept(const ir::Scene &scene, int part_stride, std::size_t number);
     void again();
+    void enter(Stage stage); // and the window hears of it
 
     std::filesystem::path file_;
     driver::CompileOptions options_;
@@ -89,6 +102,8 @@ class Worker {
     std::size_t kept_number_ = 0; // of the build that `kept_` is for
     std::vector<driver::Override> overrides_;
     std::string complaint_;
+    std::atomic<Stage> stage_ = Stage::Rest;
+    std::atomic<std::chrono::steady_clock::time_point> begun_; // the work on the newest save
     std::atomic<bool> lent_ = false;
     std::atomic<bool> asked_ = false, ending_ = false, probe_ = false;
     bool pruning_ = false; // of the thread's own

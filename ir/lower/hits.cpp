@@ -47,7 +47,7 @@ NodeId Lowering::painted(ShapeId id, Where frame) {
     const NodeId paint = graph_.integer(surface_of(s.payload, s.dims == 2));
     const NodeId point = point3(frame.p), extra = pack(packing_of(std::move(vars)), frame);
     const ShapeId child = s.children.front();
-    if (parts_below_[child.index])
+    if (part_[child.index] || parts_below_[child.index])
         return painted_part(ask(Reading::Hit, child, frame),
                             s.kind == ShapeKind::Repaint || !colored_[child.index], paint, point,
                             extra);

@@ -53,7 +53,8 @@ Parts Lowering::run_with_parts() {
 }
 
 // Every operand of a combination, and the root. A mixed shape answers for its operands: its colour
-// is of them all.
+// is of them all. Shapes that are no part of the scene (an arm that a param did not choose) count
+// for nothing.
 void Lowering::find_parts() {
     part_.assign(shapes_.size(), 0);
     parts_below_.assign(shapes_.size(), 0);
@@ -66,7 +67,13 @@ void Lowering::find_parts() {
         parts_.shapes.push_back(id);
         part_[id.index] = static_cast<std::uint32_t>(parts_.shapes.size());
     };
+    std::vector<char> shown(scene_.root.index + 1, 0);
+    shown[scene_.root.index] = 1;
+    for (std::size_t i = scene_.root.index + 1; i-- > 0;)
+        if (shown[i])
+            for (ShapeId child : shape(ShapeId{i}).children) shown[child.index] = 1;
     for (std::size_t i = 0; i <= scene_.root.index; ++i) {
+        if (!shown[i]) continue;
         const Shape &s = shape(ShapeId{i});
         colored_[i] = s.kind == ShapeKind::Paint || s.kind == ShapeKind::Repaint ||
                       s.kind == ShapeKind::Mixed;

@@ -2,6 +2,7 @@
 // rest, in this order; and the layout of the text that comes of it.
 #include "save-format/import/importer.h"
 
+#include "base/encode.h"
 #include "base/text.h"
 
 #include <charconv>
@@ -143,8 +144,8 @@ std::string verbatim_flow(std::string_view text, Span span) {
 }
 
 std::string assemble(Importer &in, std::string_view version) {
-    std::string text = "// From the save file " + printable(in.source.name) + ", version " +
-                       printable(version) + ".\nimport \"dfmodel\" as dfmodel\n\n";
+    std::string text = "// From the save file " + for_comment(in.source.name) + ", version " +
+                       for_comment(version) + ".\nimport \"dfmodel\" as dfmodel\n\n";
     text += in.out;
     if (!in.out.empty() && text.back() == '\n' && !in.scene.empty()) text += '\n';
     for (const std::string &name : in.scene) text += name + "\n";
@@ -195,7 +196,7 @@ void read_main_list(Importer &in, std::string &version) {
     if (!dialect_of(version).known) {
         in.report
             .content(event.span,
-                     "this is version " + printable(version.substr(0, 40)) +
+                     "this is version " + std::string(cut(version, 40)) +
                          ", and what is known is 0.3",
                      Code::YamlVersion)
             .note("the file is read as far as it is understood");

@@ -59,7 +59,7 @@ Channels read_color(Importer &in, const Value *value, const char *what, Channels
         if (!found)
             in.report
                 .content(part.span, std::string("`") + what + "` has no property `" +
-                                        printable(name.substr(0, 80)) + "`")
+                                        std::string(cut(name, 80)) + "`")
                 .note("it is kept for an export");
     }
     return color;
@@ -141,7 +141,7 @@ void read_material(Importer &in, const TakenValue &taken) {
         }
         if (known) continue;
         Remark remark = in.report.content(value.span, "a material has no property `" +
-                                                          printable(name.substr(0, 80)) + "`");
+                                                          std::string(cut(name, 80)) + "`");
         remark.note("it is kept for an export");
         const std::string near = nearest_name(name, names);
         if (!near.empty()) remark.help("did you mean `" + near + "`?");
@@ -154,7 +154,7 @@ void read_material(Importer &in, const TakenValue &taken) {
     }
     if (in.materials.contains(name->text)) {
         in.report.content(name->span, "there is already a material `" +
-                                          printable(name->text.substr(0, 80)) +
+                                          std::string(cut(name->text, 80)) +
                                           "`: the first one counts");
         return;
     }
@@ -228,8 +228,7 @@ void read_light(Importer &in, const TakenValue &taken) {
             found = found || spelling_key(other) == spelling_key(name);
         if (!found)
             in.report
-                .content(value.span,
-                         "a light has no property `" + printable(name.substr(0, 80)) + "`")
+                .content(value.span, "a light has no property `" + std::string(cut(name, 80)) + "`")
                 .note("it is kept for an export");
     }
     const auto vector = [&](const char *what) -> std::string {
@@ -287,7 +286,7 @@ void Importer::read_textures(const Event &) {
             continue;
         }
         if (textures.contains(name)) {
-            report.content(at, "there is already a texture `" + printable(name.substr(0, 80)) +
+            report.content(at, "there is already a texture `" + std::string(cut(name, 80)) +
                                    "`: the first one counts");
             continue;
         }

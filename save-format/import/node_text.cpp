@@ -96,8 +96,7 @@ std::string argument_text(const Value &value) {
 std::string library_call(Importer &in, const Reading &reading, Properties &properties, Span at) {
     const std::string function = reading.word("Function");
     if (!is_library_solid(function)) {
-        in.report
-            .content(at, "`" + printable(function.substr(0, 80)) + "` is no solid of the library")
+        in.report.content(at, "`" + std::string(cut(function, 80)) + "` is no solid of the library")
             .note("the node is left out, and kept for an export");
         return {};
     }
@@ -109,7 +108,7 @@ std::string library_call(Importer &in, const Reading &reading, Properties &prope
             name[0] >= 'a';
         const std::string text = argument_text(value);
         if (!is_name || text.empty()) {
-            in.report.content(value.span, "`" + printable(name.substr(0, 80)) +
+            in.report.content(value.span, "`" + std::string(cut(name, 80)) +
                                               "` is no argument of numbers, and is left out");
             properties.keep(name, "~");
             continue;
@@ -127,7 +126,7 @@ std::string gdf_call(Importer &in, const Reading &reading, Properties &propertie
         const int set = find_vector_set(word);
         if (set >= 0) return set;
         in.report
-            .content(at, "`" + printable(word.substr(0, 80)) + "` is no set of vectors for `" +
+            .content(at, "`" + std::string(cut(word, 80)) + "` is no set of vectors for `" +
                              property + "`")
             .help("the sets are Tetrahedron, Cube, Octahedron, Dodecahedron, Icosahedron, "
                   "Truncated Octahedron and Truncated Icosahedron");
@@ -251,7 +250,7 @@ std::string leaf_text(Importer &in, const NodeTypeRow &row, Properties &properti
     const auto found = in.materials.find(material);
     if (found == in.materials.end()) {
         in.report
-            .content(at, "there is no material `" + printable(material.substr(0, 80)) +
+            .content(at, "there is no material `" + std::string(cut(material, 80)) +
                              "` before this node")
             .note("the name is kept for an export");
         properties.keep("Material", flow_scalar(material, true));
@@ -357,7 +356,7 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
         if (is_none(map)) return {};
         const auto texture = in.textures.find(map);
         if (texture == in.textures.end()) {
-            in.report.content(at, "there is no texture `" + printable(map.substr(0, 80)) + "`");
+            in.report.content(at, "there is no texture `" + std::string(cut(map, 80)) + "`");
             return {};
         }
         if (reading.number("Amount") == 0) return {};

@@ -108,7 +108,7 @@ void Importer::read_property(const NodeTypeRow &row, const Event &key, Propertie
         std::vector<std::string> known;
         for (const PropertyType &property : row.properties) known.emplace_back(property.name);
         std::string message =
-            std::string(of) + " has no property `" + printable(key.text.substr(0, 80)) + "`";
+            std::string(of) + " has no property `" + std::string(cut(key.text, 80)) + "`";
         const std::string near = nearest_name(key.text, known);
         {
             Remark remark = report.content(key.span, std::move(message));
@@ -134,9 +134,8 @@ void Importer::read_property(const NodeTypeRow &row, const Event &key, Propertie
     if (!convert(*type, taken.value, read, wanted)) {
         const bool shown = taken.flow.size() <= 60;
         report
-            .content(taken.value.span,
-                     "`" + std::string(type->name) + "` wants " + wanted +
-                         (shown ? ", not `" + printable(taken.flow) + "`" : std::string()))
+            .content(taken.value.span, "`" + std::string(type->name) + "` wants " + wanted +
+                                           (shown ? ", not `" + taken.flow + "`" : std::string()))
             .note("its default stands in, and the value is kept for an export");
         properties.keep(type->name, taken.flow);
         return;

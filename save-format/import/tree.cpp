@@ -4,6 +4,7 @@
 #include "save-format/import/importer.h"
 #include "save-format/import/node_text.h"
 
+#include "base/encode.h"
 #include "base/suggest.h"
 #include "base/text.h"
 
@@ -89,7 +90,7 @@ bool is_default_name(std::string_view name, std::string_view type) {
 
 void add_comment(Piece &piece, std::string_view comment) {
     if (!piece.comment.empty()) piece.comment += ", ";
-    piece.comment += printable(comment.substr(0, 200));
+    piece.comment += for_comment(cut(comment, 200));
 }
 
 // Statements nest as deep as blocks do; the language reads 256 levels, and people fewer.
@@ -149,7 +150,7 @@ void TreeReader::children(const Event &key, const NodeTypeRow *row, Body &body, 
 void TreeReader::read_properties(Event event, const NodeTypeRow *row, const std::string &type,
                                  Body &body, Children &into, Properties &properties) {
     static const NodeTypeRow nothing{NodeType::Generic, "", Arity::Many, {}};
-    const std::string of = "`" + printable(type.substr(0, 80)) + "`";
+    const std::string of = "`" + std::string(cut(type, 80)) + "`";
     for (;;) {
         event = in_.reader.next();
         if (event.kind == EventKind::MappingEnd || event.kind == EventKind::Broken ||
@@ -221,7 +222,7 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
         std::vector<std::string> known;
         for (const NodeTypeRow &other : node_types()) known.emplace_back(other.name);
         Remark remark = in_.report.content(type_span, "there is no node type `" +
-                                                          printable(type.substr(0, 80)) + "`");
+                                                          std::string(cut(type, 80)) + "`");
         remark.note(
             "its children, if it has any, are united in its place; it is kept for an export");
         const std::string near = nearest_name(type, known);

@@ -297,7 +297,9 @@ TEST_CASE("what is misspelt is answered with what is near") {
     CHECK(shell(folder, "fathom explain unknown-name").out.starts_with("# unknown-name"));
     CHECK(shell(folder, "fathom doc sphere").out.starts_with("sphere(radius"));
     CHECK(shell(folder, "fathom doc dfmodel.sphere").out.starts_with("dfmodel.sphere(radius"));
-    CHECK(shell(folder, "fathom help").exit == 0);
+    // A head is told on one line, however long it is.
+    CHECK(shell(folder, "fathom doc gdf_blend")
+              .out.starts_with("gdf_blend(a: [vec3], b: [vec3], a_scale: float"));
     CHECK(contains(shell(folder, "fathom help render").out, "--backend"));
     CHECK(contains(shell(folder, "fathom render --help").out, "--backend"));
     CHECK(contains(shell(folder, "fathom --version").out, "fathom "));
@@ -337,6 +339,57 @@ TEST_CASE("no display is a sentence and status 3") {
         shell(folder, "env -u DISPLAY -u WAYLAND_DISPLAY '" FATHOM_PROGRAM "' view good.sdf");
     CHECK(result.exit == 3);
     CHECK(contains(result.err, "no display"));
-    CHECK(shell(folder, "fathom view nothing.sdf").exit == 3);
+    CHECK(shell(folder, "fathom view none/nothing.sdf").exit == 3);
+    CHECK(contains(shell(folder, "fathom view none/nothing.sdf").err, "no such file"));
+    CHECK(shell(folder, "fathom view nothing.txt").exit == 3);
+    CHECK(shell(folder, "fathom view ''").exit == 3);
+    CHECK(shell(folder, "fathom view .").exit == 3);
     CHECK(shell(folder, "fathom view -").exit == 2);
+}
+
+TEST_CASE("no name and no -D steers the terminal or adds a line to what is said") {
+    const ScratchFolder folder;
+    const std::string scene = "param r = 1.0 in 0.5..2.0 \"\x1b[31m\"\nsphere(r)\n";
+    const std::string nasty = "a\x1b]0;title\x07\r\u202e\u0085b";
+    folder.write(nasty + ".sdf", scene);
+    folder.write("two\nfathom: all is well.sdf", scene);
+    folder.write("bad\x1b[2J.sdf", "sphere(\n");
+    folder.write("good.sdf", scene);
+    folder.write("ugly\x1b[2J.sdf", "sphere( 1 )\n");
+    const auto lines_of = [&](const std::string &line, long lines) {
+        const Result result = shell(folder, line);
+        INFO(line << "\n" << result.out << result.err);
+        for (const char *byte : {"\x1b", "\x07", "\r", "\u202e", "\u0085"})
+            CHECK_FALSE(contains(result.err, byte));
+        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == lines);
+        return result;
+    };
+    const std::string name = "'" + nasty + ".sdf'", two = "'two\nfathom: all is well.sdf'";
+    CHECK(lines_of("fathom check " + name, 1).exit == 0);
+    CHECK(lines_of("fathom check " + two, 1).exit == 0);
+    CHECK(lines_of("fathom check 'none" + nasty + "'", 1).exit == 3);
+    CHECK(lines_of("fathom check " + two + "x", 1).exit == 3);
+    CHECK(lines_of("fathom check 'bad\x1b[2J.sdf'", 4).exit == 1);
+    CHECK(lines_of("fathom check good.sdf -D 'r=\x1b[31mred\n'", 1).exit == 2);
+    CHECK(lines_of("fathom check good.sdf -D 'r\x1b[31m\r\n=2'", 1).exit == 2);
+    CHECK(lines_of("fathom check good.sdf -D '\x1b[31m\n'", 1).exit == 2);
+    CHECK(lines_of("fathom check good.sdf '--\x1b[31m\n'", 1).exit == 2);
+    CHECK(lines_of("fathom '\x1b[31m\n'", 1).exit == 2);
+    CHECK(lines_of("fathom help '\x1b[31m\n'", 1).exit == 2);
+    CHECK(lines_of("fathom doc '\x1b[31m\n'", 1).exit == 2);
+    CHECK(lines_of("fathom explain '\x1b[31m\n'", 1).exit == 2);
+    CHECK(lines_of("fathom render good.sdf --size 8x8 -o '\x1b[31m/\n.png'", 1).exit == 3);
+    CHECK(lines_of("fathom compile good.sdf --target '\x1b[31m\n'", 1).exit == 2);
+    CHECK(lines_of("fathom view 'none" + nasty + "'", 1).exit == 3);
+    // Results in a pipe are as they are.
+    CHECK(lines_of("fathom fmt --check 'ugly\x1b[2J.sdf'", 0).out == "ugly\x1b[2J.sdf\n");
+    for (const char *target : {"glsl450", "glsl330", "es300", "shadertoy", "glslviewer", "html"}) {
+        const Result by_name =
+            lines_of("fathom compile " + two + " --target " + std::string(target), 0);
+        const Result plain = lines_of("fathom compile good.sdf --target " + std::string(target), 0);
+        CHECK(by_name.exit == 0);
+        CHECK(std::count(by_name.out.begin(), by_name.out.end(), '\n') ==
+              std::count(plain.out.begin(), plain.out.end(), '\n'));
+    }
+    CHECK(lines_of("fathom compile " + two + " --target spirv -o a.spv", 0).exit == 0);
 }

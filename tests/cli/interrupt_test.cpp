@@ -107,3 +107,16 @@ TEST_CASE("a terminal that can shows the picture as it comes, any other the bar 
     CHECK_FALSE(contains(plain.shown, "▀"));
     CHECK(contains(plain.shown, " %"));
 }
+
+TEST_CASE("a result on a terminal does not steer it") {
+    ScratchFolder folder;
+    folder.write("ugly\x1b]0;title\x07.sdf", "sphere( 1 )\n");
+    for (const std::vector<std::string> &line :
+         {std::vector<std::string>{"fmt", "--check", "ugly\x1b]0;title\x07.sdf"},
+          {"check", "--explain", "ugly\x1b]0;title\x07.sdf"}}) {
+        const Session session = run_in_terminal(folder, line, "", "", false);
+        CHECK(WIFEXITED(session.status));
+        CHECK(contains(session.shown, "ugly\uFFFD]0;title\uFFFD.sdf"));
+        CHECK_FALSE(contains(session.shown, "\x1b]0;"));
+    }
+}

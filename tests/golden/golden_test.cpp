@@ -60,9 +60,9 @@ std::vector<std::string> examples(const std::string &page, const std::string &he
 }
 
 // Codes that no text of a scene can raise: save files (their golden cases are those of the save
-// format's tests), and what only a bug of ours can raise.
-const std::set<std::string> without_scene{"yaml-structure", "yaml-value", "yaml-version",
-                                          "shader-invalid", "unsupported"};
+// format's tests), what only `compile` says (tests/cli), and what only a bug of ours can raise.
+const std::set<std::string> without_scene{"yaml-structure", "yaml-value",     "yaml-version",
+                                          "fixed-param",    "shader-invalid", "unsupported"};
 
 std::set<std::string> codes_of(const std::string &program) {
     driver::Compilation compilation =

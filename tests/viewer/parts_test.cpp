@@ -1,5 +1,8 @@
 // The viewer's parts that need no window: cameras, values, literals, editors, edits of the text.
+#include "base/encode.h"
 #include "driver/edit.h"
+#include "save-format/save_format.h"
+#include "scratch_folder.h"
 #include "viewer/camera.h"
 #include "viewer/editor.h"
 #include "viewer/frame_times.h"
@@ -7,10 +10,16 @@
 #include "viewer/slots.h"
 #include "viewer/views.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fmt/format.h>
+#include <sstream>
+#include <sys/stat.h>
+#include <unistd.h>
 
 using namespace fathom;
+namespace fs = std::filesystem;
 
 TEST_CASE("a camera is kept by its view and written as a line of the scene") {
     ir::View view = ir::look_at({3, 2, 5}, {0, 1, 0}, std::tan(0.3), false);
@@ -109,16 +118,69 @@ TEST_CASE("a literal that is edited becomes data, once") {
 
 TEST_CASE("editors are told the line in their own way") {
     using Words = std::vector<std::string>;
-    CHECK(viewer::editor_command("gedit", "a b.sdf", 7, 3) == Words{"gedit", "+7", "a b.sdf"});
-    CHECK(viewer::editor_command("code --wait", "a.sdf", 7, 3) ==
-          Words{"code", "--wait", "-g", "a.sdf:7:3"});
-    CHECK(viewer::editor_command("/usr/bin/subl", "a.sdf", 7, 3) ==
-          Words{"/usr/bin/subl", "a.sdf:7:3"});
+    CHECK(viewer::editor_command("gedit", "/s/a b.sdf", 7, 3) ==
+          Words{"gedit", "+7", "/s/a b.sdf"});
+    CHECK(viewer::editor_command("code --wait", "/s/a.sdf", 7, 3) ==
+          Words{"code", "--wait", "-g", "/s/a.sdf:7:3"});
+    CHECK(viewer::editor_command("/usr/bin/subl", "/s/a.sdf", 7, 3) ==
+          Words{"/usr/bin/subl", "/s/a.sdf:7:3"});
+    CHECK(viewer::editor_command("kate", "/s/a.sdf", 7, 3) ==
+          Words{"kate", "--line", "7", "--column", "3", "/s/a.sdf"});
     CHECK(viewer::needs_terminal("vim"));
     CHECK(viewer::needs_terminal("/usr/bin/emacsclient -t"));
     CHECK_FALSE(viewer::needs_terminal("emacsclient -n"));
     CHECK(viewer::open_in_editor("no-such-editor-here", "a.sdf", 7, 3) ==
           "cannot start `no-such-editor-here`; it is at a.sdf:7");
+    CHECK(viewer::in_terminal("xterm -fs 12", {"vim", "+7", "/s/a.sdf"}) ==
+          Words{"xterm", "-fs", "12", "-e", "vim", "+7", "/s/a.sdf"});
+    CHECK(viewer::in_terminal("terminator", {"vim", "/s/a b.sdf"}) ==
+          Words{"terminator", "-x", "vim", "/s/a b.sdf"});
+}
+
+TEST_CASE("no name of a file is an option or a command to an editor, and no shell sees it") {
+    const ScratchFolder folder;
+    const std::string touch = "touch " + (folder / "pwned").string();
+    const std::vector<std::string> names{
+        "+call system('" + touch + "')|q.sdf",
+        "+!" + touch,
+        "-c" + touch,
+        "--cmd=" + touch,
+        "-",
+        "scp://host/a.sdf",
+        "$(" + touch + ")",
+        "`" + touch + "`",
+        "; " + touch + " #",
+        "a\n" + touch + "\n",
+        "'; " + touch + "; '",
+        "{line}{column}{file}{}",
+        "%s",
+    };
+    const std::string here = fs::current_path().string() + "/";
+    for (const char *editor : {"vim", "gedit", "code", "subl", "hx", "kate", "emacs -nw", "nano"})
+        for (const std::string &name : names) {
+            const std::vector<std::string> words = viewer::editor_command(editor, name, 7, 3);
+            INFO(editor << " " << name);
+            // One word holds the name, and begins with the way from the root.
+            CHECK(std::ranges::count_if(words, [&](const std::string &word) {
+                      return word.starts_with(here + name);
+                  }) == 1);
+            CHECK(words ==
+                  viewer::editor_command(editor, here + name, 7, 3)); // which is told as it is
+        }
+    // Run: an editor that writes down its words, by itself and in a terminal that starts it.
+    const std::string log = (folder / "log").string();
+    const fs::path program = folder.write(
+        "editor", "#!/bin/sh\nfor word; do printf '%s\\0' \"$word\" >> '" + log + "'; done\n");
+    ::chmod(program.c_str(), 0755);
+    for (const std::string &name : names) {
+        fs::remove(log);
+        CHECK(viewer::open_in_editor(program.string(), name, 7, 3) ==
+              "opened " + for_terminal(name) + ":7");
+        const std::string wanted = std::string("+7") + '\0' + here + name + '\0';
+        for (int i = 0; i < 500 && folder.read("log") != wanted; ++i) ::usleep(10000);
+        CHECK(folder.read("log") == wanted);
+    }
+    CHECK_FALSE(fs::exists(folder / "pwned"));
 }
 
 TEST_CASE("a param's value and a camera are written where they stand, and nowhere else") {
@@ -134,6 +196,71 @@ TEST_CASE("a param's value and a camera are written where they stand, and nowher
     CHECK(with == "box(1)\n// view 2: camera(at: [0, 9, 0])\n// view 3: camera(at: [9, 0, 0])\n");
     CHECK(driver::views_in(with) == two);
     CHECK(driver::with_views(with, {}) == "box(1)\n");
+}
+
+TEST_CASE("a value is written as the text writes it: hex stays hex, degrees degrees") {
+    const auto written = [](const std::string &value, auto change) {
+        const std::string text = "param p = " + value + "\nsphere(1)\n";
+        driver::Compilation made = driver::compile_text("scene.sdf", text, "", {});
+        INFO(value);
+        REQUIRE(made.scene.params.size() == 1);
+        ir::Param param = made.scene.params[0];
+        change(param);
+        return viewer::value_text(param, driver::notation_of_param(text, "p"));
+    };
+    const auto same = [](ir::Param &) {};
+    for (const char *value :
+         {"#d08030", "#000000", "#ffffff", "rgb(0.5, 0.25, 1)", "30deg", "-45deg", "0.25turn",
+          "1.5", "[1, 2, 3]", "[30deg, 45deg, 90deg]", "true"})
+        CHECK(written(value, same) == value);
+    CHECK(written("#fff", same) == "#ffffff");
+    CHECK(written("#d0803080", same) == "#d08030");
+    CHECK(written("tomato", same).starts_with("rgb("));
+    CHECK(written("1.5rad", same) == "1.5");
+    const auto to = [](double x) { return [x](ir::Param &param) { param.value[0] = x; }; };
+    CHECK(written("#d08030", to(1)) == "#ff8030");
+    CHECK(written("#d08030", to(1.5)).starts_with("rgb(")); // brighter than hex can say
+    CHECK(written("30deg", to(0.5235988f)) == "30deg");
+    CHECK(written("30deg", to(1)) == "57.29578deg");
+    CHECK(written("30deg", to(0)) == "0");
+    // All values that eight bits a channel hold come back as they were.
+    for (int channel = 0; channel < 256; ++channel) {
+        const std::string value = fmt::format("#{0:02x}{0:02x}{0:02x}", channel);
+        CHECK(written(value, same) == value);
+    }
+}
+
+TEST_CASE("a text that is half written takes no camera") {
+    CHECK(driver::can_be_read("box(1)\ncamera(at: [1, 2, 3])\n"));
+    CHECK(driver::can_be_read("bxo(1)\n")); // a wrong name is in nobody's way
+    CHECK_FALSE(driver::can_be_read("for i in 0..3 {\n  box(1)\n"));
+    CHECK_FALSE(driver::can_be_read("sphere(1).translate([1,\n"));
+    CHECK_FALSE(driver::can_be_read("/* box(1)\n"));
+}
+
+TEST_CASE("a save file is seen from a camera, and is a save file still") {
+    const driver::Compilation scene = driver::compile_text(
+        "scene.sdf",
+        "smooth_union(0.2) { sphere(0.8).paint(#d08030); box(1).translate([1.2, 0, 0]) }\n"
+        "camera(at: [0, 0, 6], look_at: [0, 0, 0])\n",
+        "", {});
+    REQUIRE(scene.good());
+    Diagnostics diagnostics;
+    const std::string yaml = save::export_yaml(scene.scene, diagnostics);
+    const auto lines_that_differ = [&](const std::string &camera) {
+        const auto made = driver::save_file_with_camera(yaml, camera, "", {});
+        REQUIRE(std::holds_alternative<std::string>(made));
+        std::istringstream a(yaml), b(std::get<std::string>(made));
+        CHECK(std::count(yaml.begin(), yaml.end(), '\n') ==
+              std::ranges::count(std::get<std::string>(made), '\n'));
+        int differing = 0;
+        for (std::string x, y; std::getline(a, x) && std::getline(b, y);) differing += x != y;
+        return differing;
+    };
+    CHECK(lines_that_differ("camera(at: [0, 0, 6], look_at: [0, 0, 0], fov: 45deg)") == 0);
+    CHECK(lines_that_differ("camera(at: [6, 0, 0], look_at: [0, 0, 0], fov: 45deg)") == 1);
+    const auto broken = driver::save_file_with_camera("--- {", "camera(at: [6, 0, 0])", "", {});
+    CHECK(std::holds_alternative<driver::EditError>(broken));
 }
 
 TEST_CASE("views share the window and each has its place") {

@@ -1,4 +1,6 @@
 // The viewer for real: saves, keys and clicks, and pictures of the window compared.
+#include "driver/compile.h"
+#include "save-format/save_format.h"
 #include "tests/viewer/window.h"
 
 #include <sys/stat.h>
@@ -13,6 +15,13 @@ const std::string camera = "camera(at: [0, 0, 6], look_at: [0, 0, 0])\n";
 bool red(const std::array<float, 3> &p) { return p[0] > 2 * p[1]; }
 bool blue(const std::array<float, 3> &p) { return p[2] > 2 * p[0]; }
 
+// Milliseconds from the save of that file, by a line of --times.
+double since_save(const std::string &line, const std::string &file) {
+    INFO(line);
+    REQUIRE(line.ends_with(" ms after the save of " + file));
+    return std::stod(line.substr(line.find("on the screen ") + 14));
+}
+
 bool touched_driver(const std::string &line) { return line.find("driver untouched") == line.npos; }
 
 } // namespace
@@ -25,11 +34,14 @@ TEST_CASE(
     const Picture first = window.picture();
     CHECK(first.width == 480);
     CHECK(red(pixel(first, 240, 160)));
+    // Nothing was saved yet.
+    CHECK(window.lines().back().ends_with("on the screen"));
 
     // An import that is saved is a save.
     window.folder.write("parts/a.sdf", "fn ball() -> shape = box(2).paint(blue)\n");
     REQUIRE(window.reloads(2));
     const Picture second = window.picture();
+    CHECK(since_save(window.lines().back(), "a.sdf") < 30e3);
     CHECK(blue(pixel(second, 240, 160)));
 
     // An error: the picture stays, the message lies over its upper left.
@@ -41,9 +53,13 @@ TEST_CASE(
     CHECK(blue(pixel(third, 240, 220)));
 
     // The mended file, by an editor's atomic rename: the very picture of before.
-    fs::rename(window.folder.write("scene.tmp", "import \"parts/a.sdf\"\nball()\n" + camera),
-               window.folder / "scene.sdf");
+    // What is moved into place may have been written long ago.
+    const fs::path moved =
+        window.folder.write("scene.tmp", "import \"parts/a.sdf\"\nball()\n" + camera);
+    fs::last_write_time(moved, fs::file_time_type::clock::now() - std::chrono::hours(24 * 365));
+    fs::rename(moved, window.folder / "scene.sdf");
     REQUIRE(window.reloads(4));
+    CHECK(since_save(window.lines().back(), "scene.sdf") < 30e3);
     CHECK(difference(second, window.picture()) == 0);
 
     // The file goes, and comes back.
@@ -137,12 +153,117 @@ TEST_CASE("sliders: by keys and by the mouse; the value goes into the text, and 
 
     // The slider of the first param, dragged to its right end: 2.
     const Picture before = window.picture();
-    window.hands("mousemove 360 44 mousedown 1");
+    window.hands("mousemove 210 44 mousedown 1");
     window.hands("mousemove 479 44");
     window.hands("mouseup 1");
     CHECK(difference(before, window.picture(), 0, 0.02f) > 0.02);
     window.key("BackSpace");
     CHECK(difference(before, window.picture(), 0.35) == 0);
+}
+
+TEST_CASE("a slider stays under the mouse when its value begins to differ from the text's") {
+    Window window("param size = 1 in 0.5..2\nsphere(size).paint(red)\n" + camera);
+    const auto panel_begins = [&] { // its title is black, far darker than the sky
+        const Picture picture = window.picture();
+        int x = 0;
+        while (x < picture.width && pixel(picture, x, 20)[2] > 0.1f) ++x;
+        return x;
+    };
+    const int begin = panel_begins();
+    CHECK(begin > 50);
+    CHECK(begin < 300);
+    window.key("period");
+    CHECK(panel_begins() == begin);
+    window.key("BackSpace");
+    window.hands("mousemove 300 44 mousedown 1"); // its value differs from here on
+    for (int x : {301, 302, 301, 300}) window.hands("mousemove " + std::to_string(x) + " 44");
+    window.hands("mouseup 1");
+    window.key("i"); // what it holds goes into the text
+    REQUIRE(window.reloads(2));
+    const std::string text = window.folder.read("scene.sdf");
+    const double size = std::stod(text.substr(text.find("= ") + 2));
+    INFO(text);
+    CHECK(size > 0.5);
+    CHECK(size < 1.95); // not run away to either end
+    // Pressed again in the same place, it holds the same: that is where its handle stands.
+    const Picture before = window.picture();
+    window.hands("mousemove 300 44 mousedown 1");
+    window.hands("mouseup 1");
+    CHECK(difference(window.picture(), before, 0.35, 0.02f) == 0);
+}
+
+TEST_CASE("Escape closes what lies on top, and only then selects nothing") {
+    Window window("param tint = #d08030\nsphere(1).paint(tint)\n" + camera);
+    window.hands("mousemove 100 200"); // beside the shape: nothing is named there
+    const Picture bare = window.picture();
+    window.hands("mousemove 240 220 click 1");
+    const Picture selected = window.picture();
+    CHECK(outlined(selected, 0, 480) > 100);
+    window.hands("mousemove 230 44 click 3"); // the menu of the param
+    const Picture menu = window.picture();
+    CHECK(difference(menu, selected) > 0.05);
+    window.key("Escape");
+    CHECK(difference(window.picture(), selected) < 0.04); // its words move with the note below
+    window.key("question");
+    CHECK(difference(window.picture(), selected) > 0.1);
+    window.key("Escape");
+    CHECK(outlined(window.picture(), 0, 480) > 100);
+    window.key("Escape");
+    CHECK(outlined(window.picture(), 0, 480) == 0);
+    CHECK(difference(window.picture(), bare, 0.3) == 0);
+}
+
+TEST_CASE("what was done is told for some seconds, then no more") {
+    Window window("param size = 1 in 0.5..2\nsphere(size)\n" + camera);
+    const auto status_rows = [](const Picture &picture) { // it darkens what it lies on
+        const int x = picture.width - 2;
+        const float sky = pixel(picture, x, picture.height / 2)[2];
+        int rows = 0;
+        while (pixel(picture, x, picture.height - 4 - rows)[2] < sky / 2) ++rows;
+        return rows;
+    };
+    const Picture bare = window.picture();
+    std::this_thread::sleep_for(std::chrono::seconds(8)); // so "saved …" has gone
+    window.key("y");
+    const Picture told = window.picture(); // "copied 1"
+    CHECK(status_rows(told) > status_rows(bare));
+    std::this_thread::sleep_for(std::chrono::seconds(8));
+    CHECK(status_rows(window.picture()) == status_rows(bare));
+}
+
+TEST_CASE("the view of a save file is written as YAML, and the file stays one") {
+    const driver::Compilation scene = driver::compile_text(
+        "scene.sdf",
+        "sun(direction: [1, 2, 3])\nsphere(1).paint(red) | box(1).translate([1, 0, 0])\n" + camera,
+        "", {});
+    Diagnostics diagnostics;
+    const std::string yaml = save::export_yaml(scene.scene, diagnostics);
+    Window window(yaml, {}, {}, "scene.yaml");
+    window.key("3"); // from the right
+    const Picture right = window.picture();
+    window.key("ctrl+s");
+    REQUIRE(window.reloads(2));
+    CHECK(window.lines().back().find("good") != std::string::npos);
+    const std::string saved = window.folder.read("scene.yaml");
+    CHECK(saved != yaml);
+    CHECK(saved.find("camera(") == std::string::npos);
+    CHECK(saved.find("- [0, 0, 0, 90, 0, 6,") != std::string::npos);
+    window.key("r"); // the file's own camera now
+    CHECK(difference(window.picture(), right, 0, 0.02f) < 0.002);
+}
+
+TEST_CASE("a picture that takes its time is on the screen coarsely at once, and events are heard") {
+    // Many seconds of a software driver.
+    const std::string heavy =
+        "let bumps = p => 0.1 * fbm(3 * p, octaves: 6)\n"
+        "for i in 0..4 { sphere(1).displace(bumps).translate([1.5 * i - 2, 0, 0]).paint(orange) }\n"
+        "box([40, 0.1, 40]).translate([0, -1.5, 0])\n" +
+        camera;
+    Window window(heavy, {"--size", "1000x700"}); // its reload was told
+    CHECK(Display::need().colors(400, 500) > 30); // and something is seen of it
+    // Its keys work while it is drawn: it closes at once.
+    window.key("ctrl+q");
+    CHECK(window.process().exit_status() == 0);
 }
 
 TEST_CASE("a click names the shape, outlines it and opens its line") {
@@ -159,6 +280,7 @@ TEST_CASE("a click names the shape, outlines it and opens its line") {
     ::unsetenv("EDITOR");
     opened = &window;
     CHECK(outlined(opened->picture(), 0, 480) == 0);
+    const std::string scene = (window.folder / "scene.sdf").string();
     const Picture bare = window.picture();
     window.hands("mousemove 340 160");
     const Picture hovering =
@@ -170,13 +292,13 @@ TEST_CASE("a click names the shape, outlines it and opens its line") {
     CHECK(outlined(right, 0, 240) == 0);
     CHECK(outlined(right, 240, 480) > 100);
     REQUIRE(waited([&] { return fs::exists(tools / "log"); }));
-    CHECK(waited([&] { return tools.read("log") == "+3 scene.sdf\n"; }));
+    CHECK(waited([&] { return tools.read("log") == "+3 " + scene + "\n"; }));
     window.hands("mousemove 150 160");
     window.hands("click 1");
     const Picture left = window.picture();
     CHECK(outlined(left, 0, 240) > 100);
     CHECK(outlined(left, 240, 480) == 0);
-    CHECK(waited([&] { return tools.read("log") == "+3 scene.sdf\n+2 scene.sdf\n"; }));
+    CHECK(waited([&] { return tools.read("log") == "+3 " + scene + "\n+2 " + scene + "\n"; }));
     // The selection survives a reload that moves its line.
     window.reload(
         "\nlet a = sphere(1)\na.translate([-1.5, 0, 0])\nbox(1.5)\n  .translate([1.5, 0, 0])\n" +
@@ -405,6 +527,25 @@ TEST_CASE("a still scene costs less than a hundredth of a core") {
     const long before = ticks();
     std::this_thread::sleep_for(std::chrono::seconds(4));
     CHECK(ticks() - before <= 4);
+}
+
+TEST_CASE("a file that does not exist yet is waited for") {
+    Display::need();
+    ScratchFolder folder;
+    Process process({FATHOM_PROGRAM, "view", "new.sdf", "--times", "--still", "--size", "320x240"},
+                    {-1, folder / "errors.txt", folder.path()});
+    const auto told = [&](const std::string &words) {
+        return waited([&] {
+                   return folder.read("errors.txt").find(words) != std::string::npos ||
+                          !process.runs();
+               }) &&
+               process.runs();
+    };
+    REQUIRE(told("there is no `new.sdf` yet; the window waits for it"));
+    REQUIRE(told("reload: error"));
+    folder.write("new.sdf", "sphere(1)\n");
+    REQUIRE(told("reload: good"));
+    CHECK(told("after the save of new.sdf"));
 }
 
 TEST_CASE("what stands in the way is said in a sentence") {

@@ -13,6 +13,7 @@
 #include <fcntl.h>
 #include <functional>
 #include <memory>
+#include <set>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -79,20 +80,41 @@ class Process {
 // One for the whole program, without a screen.
 class Display {
   public:
-    static void need() {
+    static const Display &need() {
         static const Display display;
         INFO("this test needs Xvfb and xdotool (./fathom-test installs them)");
         REQUIRE(!display.number_.empty());
+        return display;
+    }
+
+    // What stands on the screen now, finished or not: how many colours the pixels of a rectangle
+    // from the upper left have, of which the window covers a part without panels. Xvfb keeps the
+    // screen in a file of the XWD format: big-endian words, then colours, then rows.
+    std::size_t colors(int width, int height) const {
+        const std::string file = memory_.read("Xvfb_screen0");
+        const auto word = [&](std::size_t i) {
+            std::size_t value = 0;
+            for (std::size_t k = 0; k < 4; ++k)
+                value = value << 8 | static_cast<unsigned char>(file[4 * i + k]);
+            return value;
+        };
+        const std::size_t row = word(12), begin = word(0) + 12 * word(19);
+        std::set<std::string> found;
+        for (std::size_t y = 0; y < static_cast<std::size_t>(height); y += 3)
+            for (std::size_t x = 0; x < static_cast<std::size_t>(width); x += 3)
+                found.insert(file.substr(begin + y * row + 4 * x, 3));
+        return found.size();
     }
 
   private:
+    ScratchFolder memory_;
     Display() {
         int ends[2];
         if (::pipe(ends) != 0) return;
-        server_ = std::make_unique<Process>(std::vector<std::string>{"Xvfb", "-displayfd", "3",
-                                                                     "-screen", "0", "1024x768x24",
-                                                                     "-nolisten", "tcp"},
-                                            Process::Streams{ends[1], {}, {}});
+        server_ = std::make_unique<Process>(
+            std::vector<std::string>{"Xvfb", "-displayfd", "3", "-screen", "0", "1024x768x24",
+                                     "-fbdir", memory_.path().string(), "-nolisten", "tcp"},
+            Process::Streams{ends[1], {}, {}});
         ::close(ends[1]);
         for (char c; ::read(ends[0], &c, 1) == 1 && c != '\n';) number_ += c;
         ::close(ends[0]);
@@ -120,11 +142,12 @@ class Window {
     ScratchFolder folder;
 
     explicit Window(const std::string &scene, std::vector<std::string> options = {},
-                    const std::function<void(const ScratchFolder &)> &prepare = {}) {
+                    const std::function<void(const ScratchFolder &)> &prepare = {},
+                    const std::string &name = "scene.sdf") {
         Display::need();
         if (prepare) prepare(folder);
-        folder.write("scene.sdf", scene);
-        std::vector<std::string> words{FATHOM_PROGRAM, "view", "scene.sdf", "--times", "--still"};
+        folder.write(name, scene);
+        std::vector<std::string> words{FATHOM_PROGRAM, "view", name, "--times", "--still"};
         if (std::find(options.begin(), options.end(), "--size") == options.end())
             options.insert(options.end(), {"--size", "480x320"});
         words.insert(words.end(), options.begin(), options.end());

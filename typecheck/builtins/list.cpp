@@ -120,9 +120,9 @@ static Value sort_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
         if (!spend(ev, site.call)) return poison();
         Value key =
             is(args[1], ValueKind::None) ? item : call_with(ev, args[1], {item}, site.arg(1));
-        auto k = want_known_number(ev, key, site.arg(0),
-                                   is(args[1], ValueKind::None) ? "`sort` without a key"
-                                                                : "`sort`'s key");
+        auto k = want_known_number(
+            ev, key, site.arg(0),
+            is(args[1], ValueKind::None) ? "`sort` without a key" : "`sort`'s key", Limit::None);
         if (!k) return poison();
         keyed.emplace_back(*k, item);
     }
@@ -137,11 +137,11 @@ static Value range_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     bool whole = true;
     for (const Value &a : args)
         whole = whole && (a.kind == ValueKind::Int || a.kind == ValueKind::None);
-    auto a = want_known_number(ev, args[0], site.arg(0), "`range`"),
-         b = want_known_number(ev, args[1], site.arg(1), "`range`");
+    auto a = want_known_number(ev, args[0], site.arg(0), "`range`", Limit::Finite),
+         b = want_known_number(ev, args[1], site.arg(1), "`range`", Limit::Finite);
     std::optional<double> step = 1.0;
     if (!is(args[2], ValueKind::None))
-        step = want_known_number(ev, args[2], site.arg(2), "`range`'s step");
+        step = want_known_number(ev, args[2], site.arg(2), "`range`'s step", Limit::Finite);
     if (!a || !b || !step) return poison();
     if (*step == 0) {
         report(ev, Code::BadArgument, site.arg(2), "`range` wants a step that is not 0");
@@ -185,7 +185,7 @@ static std::optional<double> seed_of(Evaluator &ev, const CallSite &site, const 
             total = random_unit(total, v.num[std::size_t(c)]) * 4294967296.0;
         return total;
     }
-    return want_known_number(ev, v, site.arg(i), "a seed");
+    return want_known_number(ev, v, site.arg(i), "a seed", Limit::Finite);
 }
 
 // random(seed), random(seed, k) in 0..1; random(lo, hi, seed)
@@ -206,14 +206,14 @@ static Value random_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     auto seed = seed_of(ev, site, args[2], 2);
     if (!seed) return poison();
     if (is_scalar(ev, args[0]) && is_scalar(ev, args[1])) {
-        auto lo = want_known_number(ev, args[0], site.arg(0), "`lo`"),
-             hi = want_known_number(ev, args[1], site.arg(1), "`hi`");
+        auto lo = want_known_number(ev, args[0], site.arg(0), "`lo`", Limit::Finite),
+             hi = want_known_number(ev, args[1], site.arg(1), "`hi`", Limit::Finite);
         if (!lo || !hi) return poison();
         return number(*lo + (*hi - *lo) * random_unit(*seed, 0));
     }
     // vectors: each component for itself
-    auto lo = want_vec_node(ev, args[0], 3, site.arg(0), "`lo`"),
-         hi = want_vec_node(ev, args[1], 3, site.arg(1), "`hi`");
+    auto lo = want_vec_node(ev, args[0], 3, site.arg(0), "`lo`", Limit::Finite),
+         hi = want_vec_node(ev, args[1], 3, site.arg(1), "`hi`", Limit::Finite);
     if (!lo || !hi) return poison();
     std::vector<double> t{random_unit(*seed, 1), random_unit(*seed, 2), random_unit(*seed, 3)};
     ir::Graph &g = ev.scene.graph;

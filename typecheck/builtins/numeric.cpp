@@ -219,6 +219,12 @@ static Value int_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
     const Value &v = args[0];
     if (is_numeric(v) && (is_scalar(ev, v) || numeric_type(ev, v) == Type::Bool)) {
         if (numeric_type(ev, v) == Type::Int) return v;
+        if (v.kind == ValueKind::Float && std::abs(v.num[0]) >= 2147483648.0) {
+            report(ev, Code::NumberRange, site.arg(0),
+                   fmt::format("{:.0f} does not fit a whole number of 32 bits", v.num[0]))
+                .help("`floor` and `trunc` cut a float off and keep it one");
+            return poison();
+        }
         return from_node(ev, ev.scene.graph.make(Op::ToInt, Type::Int, {to_node(ev, v)}));
     }
     report(ev, Code::TypeMismatch, site.arg(0),
@@ -341,8 +347,9 @@ static Value axis_index_call(Evaluator &ev, const CallSite &site, std::vector<Va
 void add_numeric_builtins(std::vector<Builtin> &table) {
     auto add = [&](const char *name, std::vector<BuiltinParameter> parameters, auto call,
                    const char *doc, bool variadic = false, bool library = false) {
-        Builtin b{name, std::move(parameters), variadic, library, call, "", doc};
-        table.push_back(std::move(b));
+        const std::string_view word = name; // what compares numbers may compare with `inf`
+        const bool compares = word == "min" || word == "max" || word == "clamp";
+        table.push_back({name, std::move(parameters), variadic, library, call, "", doc, !compares});
     };
 #define FATHOM_FUNCTION(name, function, glsl, weight, cost, parity, trouble, undefined, doc)       \
     if (Op::name != Op::Atan) add(#function, {{"x"}}, function_call<Op::name>, doc);

@@ -87,7 +87,7 @@ static std::optional<ir::NodeId> light_color(Evaluator &ev, const CallSite &site
     auto intensity = given(args[2]) ? want_scalar_node(ev, args[2], site.arg(2), "`intensity`")
                                     : std::optional(g.number(1));
     if (!color || !intensity) return std::nullopt;
-    return g.mul(*color, *intensity);
+    return node_in_range(ev, g.mul(*color, *intensity), site.call);
 }
 
 static Value light_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {

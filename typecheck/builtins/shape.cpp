@@ -81,8 +81,8 @@ static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
         if (l) c.lipschitz = *l;
     }
     if (given(args[3]) && given(args[4])) {
-        auto lo = want_vec_node(ev, args[3], dims, site.arg(3), "`lo`"),
-             hi = want_vec_node(ev, args[4], dims, site.arg(4), "`hi`");
+        auto lo = want_vec_node(ev, args[3], dims, site.arg(3), "`lo`", Limit::None),
+             hi = want_vec_node(ev, args[4], dims, site.arg(4), "`hi`", Limit::None);
         if (lo && hi) c.lo = *lo, c.hi = *hi;
     }
     if (given(args[5])) {
@@ -90,13 +90,13 @@ static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
         for (char a : axes.value_or("")) c.symmetric[static_cast<std::size_t>(a - 'x')] = true;
     }
     if (given(args[6])) {
-        auto lever = want_vec_node(ev, args[6], 3, site.arg(6), "`lever`");
+        auto lever = want_vec_node(ev, args[6], 3, site.arg(6), "`lever`", Limit::None);
         if (lever)
             for (int i = 0; i < 3; ++i)
                 c.lever[static_cast<std::size_t>(i)] = g.component(*lever, i);
     }
     if (given(args[7])) {
-        auto swell = want_scalar_node(ev, args[7], site.arg(7), "`swell`");
+        auto swell = want_scalar_node(ev, args[7], site.arg(7), "`swell`", Limit::None);
         if (swell) c.swell = *swell;
     }
     return library_shape(ev, std::move(library), body, ev.scene.shapes[shape_of(body)].origin);
@@ -337,7 +337,7 @@ static Value lerp_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
 
 static Value pseudonorm_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     auto pair = pair_argument(ev, site, args, 0);
-    auto e = want_scalar_node(ev, args[2], site.arg(2), "`exponent`");
+    auto e = want_scalar_node(ev, args[2], site.arg(2), "`exponent`", Limit::None);
     if (!pair || !e) return poison();
     ir::Shape s;
     s.kind = ShapeKind::PseudoNorm;

@@ -189,6 +189,7 @@ static Value taper_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
         if (!ends[0]) ends[0] = ev.scene.graph.number(extent->first);
         if (!ends[1]) ends[1] = ev.scene.graph.number(extent->second);
     }
+    if (!node_in_range(ev, ev.scene.graph.sub(*ends[1], *ends[0]), site.call)) return poison();
     return added(ev, ir::tapered(ev.scene.graph, *s, *ratio, *ends[0], *ends[1], *axis), site, 3);
 }
 
@@ -288,15 +289,15 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
     int dims = args[0].size;
     ir::Graph &g = ev.scene.graph;
     // a flat shape's cell may be a vec2; the third axis does not repeat
-    auto as_cell = [&](const Value &v, std::size_t i, const char *what,
-                       double third) -> std::optional<ir::NodeId> {
-        if (dims == 3) return want_vec_node(ev, v, 3, site.arg(i), what);
-        auto two = want_vec_node(ev, v, 2, site.arg(i), what);
+    auto as_cell = [&](const Value &v, std::size_t i, const char *what, double third,
+                       Limit limit) -> std::optional<ir::NodeId> {
+        if (dims == 3) return want_vec_node(ev, v, 3, site.arg(i), what, limit);
+        auto two = want_vec_node(ev, v, 2, site.arg(i), what, limit);
         if (!two) return std::nullopt;
         return g.make(Op::Make, Type::Vec3,
                       {g.component(*two, 0), g.component(*two, 1), g.number(third)});
     };
-    auto cell = as_cell(args[1], 1, "`cell`", 0);
+    auto cell = as_cell(args[1], 1, "`cell`", 0, Limit::Size);
     if (!cell) return poison();
     ir::Repetition r;
     r.mirrored = mirrored;
@@ -304,7 +305,7 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
     count.type = Type::Vec3;
     count.value = {1e9, 1e9, 1e9};
     if (!mirrored && given(args[2])) {
-        auto c = as_cell(args[2], 2, "`count`", 1);
+        auto c = as_cell(args[2], 2, "`count`", 1, Limit::None);
         if (!c) return poison();
         Value known = from_node(ev, *c);
         auto k = element_as_known(ev, known, site.arg(2), "`count`");
@@ -313,16 +314,22 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
             count.value[i] = std::isfinite(k->num[i]) ? k->num[i] : 1e9;
     }
     // which axes repeat is structure: a param that can reach 0 decides it at its present value
-    Value known_cell = from_node(ev, *cell);
-    Value k = known_cell;
-    if (known_cell.kind == ValueKind::Field) {
-        auto present = element_as_known(ev, known_cell, site.arg(1), "`cell`");
+    std::array<double, 3> size{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const ir::NodeId part = g.component(*cell, static_cast<int>(i));
+        const ir::Param *param =
+            g[part].op == ir::Op::Param ? &ev.scene.params[g[part].payload] : nullptr;
+        if (param && param->has_range && param->lo[0] > 0) {
+            size[i] = param->lo[0];
+            continue;
+        }
+        auto present = element_as_known(ev, from_node(ev, part), site.arg(1), "`cell`");
         if (!present) return poison();
-        k = *present;
+        size[i] = present->num[0];
     }
     for (std::size_t i = 0; i < 3; ++i) {
-        r.along[i] = k.num[i] != 0 && !(dims == 2 && i == 2);
-        if (k.num[i] < 0) {
+        r.along[i] = size[i] != 0 && !(dims == 2 && i == 2);
+        if (size[i] < 0) {
             report(ev, Code::BadArgument, site.arg(1), "a cell's size cannot be negative");
             return poison();
         }
@@ -407,9 +414,11 @@ static Value aabb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     ir::Graph &g = ev.scene.graph;
     ir::Region region;
     region.kind = ir::RegionKind::Box;
-    region.center = g.mul(g.add(*lo, *hi), g.number(0.5));
-    region.size = g.sub(*hi, *lo);
-    if (!positive_sizes(ev, site, region.size, 1)) return poison();
+    const ir::NodeId half = g.number(0.5);
+    region.center = g.add(g.mul(*lo, half), g.mul(*hi, half));
+    auto size = node_in_range(ev, g.sub(*hi, *lo), site.call);
+    if (!size || !positive_sizes(ev, site, *size, 1)) return poison();
+    region.size = *size;
     return region_value(ev, region);
 }
 

@@ -26,13 +26,6 @@ TEST_CASE("a number is the whole text or nothing") {
         CHECK_FALSE(parse_number(text));
 }
 
-TEST_CASE("JSON strings are escaped, and bad UTF-8 replaced") {
-    CHECK(json_string("a\"b\\c\n\t\x01") == R"("a\"b\\c\n\t\u0001")");
-    CHECK(json_string("dé漢") == "\"dé漢\"");
-    CHECK(json_string("\xff\xc3") == "\"\uFFFD\uFFFD\"");
-    CHECK(json_string(std::string_view("\0", 1)) == R"("\u0000")");
-}
-
 TEST_CASE("decoding refuses what is not UTF-8 and always moves on") {
     CHECK(decode_utf8("é", 0).value == 0xE9);
     CHECK(decode_utf8("😀", 0).length == 4);
@@ -44,13 +37,14 @@ TEST_CASE("decoding refuses what is not UTF-8 and always moves on") {
     }
 }
 
-TEST_CASE("what disturbs a terminal does not get through") {
-    CHECK(printable("a\x1b[31mb") == "a\uFFFD[31mb");
-    CHECK(printable("a\u202Eb\u2066") == "a\uFFFDb\uFFFD");
-    CHECK(printable("a\tb\nc") == "a b c");
+TEST_CASE("columns of code points, and texts cut between them") {
     CHECK(display_width('a') == 1);
     CHECK(display_width(0x6F22) == 2);
     CHECK(display_width(0x0301) == 0);
+    CHECK(cut("abc", 3) == "abc");
+    CHECK(cut("a漢c", 3) == "a");
+    CHECK(cut("漢", 2) == "");
+    CHECK(cut("\x80\x80", 1) == "");
 }
 
 TEST_CASE("positions count lines and code points from 1") {

@@ -97,3 +97,15 @@ TEST_CASE("reading refuses what is no file, and what is too large") {
     CHECK_FALSE(read_file(folder / "pipe", 100, error)); // and does not wait for a writer
     CHECK(error == "is not a regular file");
 }
+
+TEST_CASE("which save brought what is read now: the newest of what changed") {
+    const auto at = [](std::int64_t seconds) { return FileStamp{true, 1, 1, 1, seconds, 0}; };
+    const Stamps before{{"a", at(10)}, {"b", at(20)}, {"c", at(30)}};
+    CHECK(last_saved({}, before).empty());
+    CHECK(last_saved(before, before).empty());
+    CHECK(last_saved(before, {{"a", at(40)}, {"b", at(20)}, {"c", at(30)}}) == "a");
+    CHECK(last_saved(before, {{"a", at(40)}, {"b", at(50)}, {"c", at(30)}}) == "b");
+    CHECK(last_saved(before, {{"a", at(10)}, {"b", at(5)}, {"c", at(30)}}) == "b"); // set back
+    CHECK(last_saved(before, {{"a", at(10)}, {"b", {}}}).empty());                  // removed
+    CHECK(last_saved(before, {{"a", at(10)}, {"d", at(1)}}) == "d"); // another import
+}

@@ -98,6 +98,39 @@ TEST_CASE("long lines are broken") {
                                          ", " + item + ", " + item + ")\n}\n");
 }
 
+TEST_CASE("a long value goes below its `=` where it fits there") {
+    const std::string head = "fn some_function(a: float, b: float, shapes: [shape]) -> shape =",
+                      body = "another_function(a * b, yet_another_one(b, shapes))";
+    CHECK(formatted(head + " " + body) == head + "\n  " + body + "\n");
+    const std::string args = "[0.25, -1.25, 0.125], [0.25, 1.25, 0.125], 0.035";
+    CHECK(formatted("let some_name_of_a_shape = capsule(" + args + ").repeat_polar(some_count)") ==
+          "let some_name_of_a_shape =\n  capsule(" + args + ").repeat_polar(some_count)\n");
+}
+
+TEST_CASE("calls stand a step to the right of what they are calls of") {
+    CHECK(formatted("let x =\na(1)\n.b()\n.c()") == "let x =\n  a(1)\n    .b()\n    .c()\n");
+    CHECK(formatted("let x =\nunion {\na\n}\n.b()") == "let x =\n  union {\n    a\n  }\n  .b()\n");
+    CHECK(formatted("a(1) -\nb(2)\n.c()\n.d() -\ne\n.f()") ==
+          "a(1) -\n  b(2)\n    .c()\n    .d() -\n  e\n    .f()\n");
+    CHECK(formatted("f(\na,\nb\n.c()\n)") == "f(\n  a,\n  b\n    .c()\n)\n");
+}
+
+TEST_CASE("a chain, a sum and the items of a bracket are broken before a block in them") {
+    const std::string long_call = "some_name_of_twenty_x(some_name_of_twenty_y)";
+    CHECK(
+        formatted(long_call + ".translate([1, 2, 3]).paint(if a == b { first } else { second })") ==
+        long_call + "\n  .translate([1, 2, 3])\n  .paint(if a == b { first } else { second })\n");
+    CHECK(formatted("box([2 * " + long_call + ", 1, 2]) - box([2 * " + long_call + ", 1, 2])") ==
+          "box([2 * " + long_call + ", 1, 2]) -\n  box([2 * " + long_call + ", 1, 2])\n");
+    CHECK(formatted("f(" + long_call + ", symmetric: if sides == 2 { \"xy\" } else { \"y\" }, g(" +
+                    long_call + "))") ==
+          "f(\n  " + long_call + ",\n  symmetric: if sides == 2 { \"xy\" } else { \"y\" },\n  g(" +
+              long_call + ")\n)\n");
+    CHECK(formatted("shape_of(p => { let first = " + long_call + "; let second = " + long_call +
+                    "; first })") == "shape_of(p => {\n  let first = " + long_call +
+                                         "\n  let second = " + long_call + "\n  first\n})\n");
+}
+
 TEST_CASE("the laws hold for all files of the project") {
     for (const lang_test::File &file : lang_test::corpus()) {
         INFO(file.path);

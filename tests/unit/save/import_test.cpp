@@ -191,6 +191,10 @@ TEST_CASE("what is wrong in the content is said with its place, and the rest loa
     };
     CHECK(said("[Sphere, a, {Radius: .nan}]") ==
           "5:22 yaml-value `Radius` wants a number, not `.nan`\n");
+    CHECK(said("[Sphere, a, {Radius: 1e39}]") ==
+          "5:22 yaml-value `Radius` wants a number, not `1e39`\n");
+    CHECK(said("[Sphere, a, {Radius: 1e20}]") ==
+          "5:22 yaml-value `Radius` wants a number, not `1e20`\n");
     CHECK(said("[Sphere, a, {Radius: -1}]") ==
           "5:22 yaml-value `Radius` wants a number, above 0, not `-1`\n");
     CHECK(said("[Sphere, a, {Radius: '1'}]") ==

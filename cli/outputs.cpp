@@ -1,0 +1,143 @@
+#include "cli/outputs.h"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+namespace fathom::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Suffix {
+    std::string_view text;
+    Content content;
+};
+
+// The suffixes that promise what a file holds. Others promise nothing and are free.
+constexpr std::array<Suffix, 11> suffixes{{{".png", Content::Picture},
+                                           {".jpg", Content::Picture},
+                                           {".jpeg", Content::Picture},
+                                           {".glsl", Content::Shader},
+                                           {".frag", Content::Shader},
+                                           {".spv", Content::SpirV},
+                                           {".html", Content::Page},
+                                           {".htm", Content::Page},
+                                           {".sdf", Content::Scene},
+                                           {".yaml", Content::SaveFile},
+                                           {".yml", Content::SaveFile}}};
+
+std::string_view name_of(Content content) {
+    switch (content) {
+    case Content::Picture: return "a picture";
+    case Content::Shader: return "a GLSL text";
+    case Content::SpirV: return "a SPIR-V file";
+    case Content::Page: return "a web page";
+    case Content::Scene: return "a scene";
+    case Content::SaveFile: return "a save file";
+    }
+    return "";
+}
+
+std::string_view writer_of(Content content) {
+    switch (content) {
+    case Content::Picture: return "`fathom render`";
+    case Content::Shader: return "`fathom compile`";
+    case Content::SpirV: return "`fathom compile --target spirv`";
+    case Content::Page: return "`fathom compile --target html`";
+    case Content::Scene: return "`fathom import`";
+    case Content::SaveFile: return "`fathom export`";
+    }
+    return "";
+}
+
+std::string suffix_of(const std::string &out) {
+    std::string suffix = fs::path(out).extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return suffix;
+}
+
+bool is_stream(const std::string &out) {
+    std::error_code none;
+    return out.empty() || out == "-" || fs::is_character_file(out, none) || fs::is_fifo(out, none);
+}
+
+bool refuse_overwriting(const std::string &out, Terminal &terminal) {
+    terminal.say(
+        fmt::format("fathom: -o {}: that is the file that is read; write to another", out));
+    return true;
+}
+
+} // namespace
+
+std::optional<PictureFormat> picture_format(const std::string &out) {
+    if (is_stream(out)) return PictureFormat::Png;
+    const std::string suffix = suffix_of(out);
+    if (suffix == ".png") return PictureFormat::Png;
+    if (suffix == ".jpg" || suffix == ".jpeg") return PictureFormat::Jpeg;
+    return std::nullopt;
+}
+
+bool misnamed(const std::string &out, Content content, Terminal &terminal) {
+    if (is_stream(out)) return false;
+    const std::string suffix = suffix_of(out);
+    const auto known = std::find_if(suffixes.begin(), suffixes.end(),
+                                    [&](const Suffix &s) { return s.text == suffix; });
+    if (known != suffixes.end() && known->content != content) {
+        terminal.say(fmt::format("fathom: -o {}: `{}` is {}, and this writes {}; {} writes {}", out,
+                                 suffix, name_of(known->content), name_of(content),
+                                 writer_of(known->content), name_of(known->content)));
+        return true;
+    }
+    if (content == Content::Picture && !picture_format(out)) {
+        terminal.say(
+            fmt::format("fathom: -o {}: pictures are written as .png, .jpg or .jpeg", out));
+        return true;
+    }
+    return false;
+}
+
+bool overwrites(const std::string &file, const std::string &out, Terminal &terminal) {
+    std::error_code none;
+    if (file == "-" || out.empty() || out == "-" || !fs::equivalent(file, out, none)) return false;
+    return refuse_overwriting(out, terminal);
+}
+
+bool overwrites(const driver::Compilation &compilation, const std::string &out,
+                Terminal &terminal) {
+    std::error_code none;
+    if (is_stream(out) || !fs::exists(out, none)) return false;
+    for (const auto &[file, stamp] : compilation.files)
+        if (stamp.exists && fs::equivalent(file, out, none))
+            return refuse_overwriting(out, terminal);
+    return false;
+}
+
+bool unwritable(const std::string &out, Terminal &terminal) {
+    std::error_code none;
+    if (is_stream(out)) return false;
+    fs::path folder = fs::path(out).parent_path();
+    if (folder.empty()) folder = ".";
+    std::string why;
+    if (fs::is_directory(out, none))
+        why = "is a directory";
+    else if (!fs::is_directory(folder, none))
+        why = fmt::format("there is no folder `{}`", folder.string());
+    if (why.empty()) return false;
+    terminal.say(fmt::format("fathom: cannot write `{}`: {}", out, why));
+    return true;
+}
+
+Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal) {
+    if (out.empty() || out == "-") {
+        terminal.put(bytes);
+        return done; // a failed write is told when the results are flushed
+    }
+    std::string error = driver::write_file(out, bytes);
+    if (error.empty()) return done;
+    terminal.say(fmt::format("fathom: cannot write `{}`: {}", out, error));
+    return device_error;
+}
+
+} // namespace fathom::cli

@@ -1,0 +1,33 @@
+// Where a command's result goes: a file whose suffix says what it holds, or standard output. What
+// can be refused is refused before any work is done.
+#pragma once
+
+#include "cli/terminal.h"
+
+namespace fathom::cli {
+
+// What a command writes.
+enum class Content { Picture, Shader, SpirV, Page, Scene, SaveFile };
+
+enum class PictureFormat { Png, Jpeg };
+
+// By the suffix of `out`. Standard output, devices and pipes take PNGs. None: the suffix is of no
+// picture that can be written.
+std::optional<PictureFormat> picture_format(const std::string &out);
+
+// Whether `out` has the suffix of something else than the command writes, and so would lie about
+// what it holds; says so, with the way to what the suffix promises.
+bool misnamed(const std::string &out, Content content, Terminal &terminal);
+
+// Whether a result would be written over the very file that it is made from, or over one that the
+// scene reads; says so.
+bool overwrites(const std::string &file, const std::string &out, Terminal &terminal);
+bool overwrites(const driver::Compilation &compilation, const std::string &out, Terminal &terminal);
+
+// Whether `out` is a folder, or lies in none; says so. For results that take long to make.
+bool unwritable(const std::string &out, Terminal &terminal);
+
+// Writes a result to a file, or to standard output where `out` is empty or `-`.
+Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal);
+
+} // namespace fathom::cli

@@ -1,0 +1,60 @@
+// Sizes that single precision cannot compute with: the square of a length has to fit, and what is
+// divided by it (base/single.h).
+#include "proof/prover.h"
+
+#include "base/single.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace fathom::proof {
+
+using ir::ShapeId;
+using ir::ShapeKind;
+
+constexpr double reach = longest * 1.001; // boxes are rounded outward
+
+static std::string short_text(double x) { return fmt::format("{:.3g}", x); } // also of 1e-20
+
+// How far a finite end of the box lies from the origin.
+static double farthest(const ir::Box &box) {
+    double far = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (const double end : {box.lo[i], box.hi[i]})
+            if (std::isfinite(end)) far = std::max(far, std::abs(end));
+    return far;
+}
+
+// The least width of a box that has one.
+static double thinnest(const ir::Box &box) {
+    double thin = longest;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (const double width = box.hi[i] - box.lo[i]; width > 0) thin = std::min(thin, width);
+    return thin;
+}
+
+void Prover::check_size(ShapeId id, Known &k) {
+    if (k.failed) return;
+    const ir::Shape &shape = scene.shapes[id];
+    const std::string name = operation_name(scene, id);
+    std::string wrong;
+    if (const double far = farthest(k.fact.bounds); far > reach)
+        wrong = name + " reaches " + short_text(far) + " from the origin, and a shape may reach " +
+                short_text(longest);
+    else if (const double thin = thinnest(k.fact.bounds);
+             thin < shortest && (shape.kind == ShapeKind::Leaf || shape.kind == ShapeKind::Map ||
+                                 shape.kind == ShapeKind::Library))
+        wrong = name + " is " + short_text(thin) + " wide, and a shape is at least " +
+                short_text(shortest) + " wide";
+    else if (k.fact.lipschitz_sup > longest)
+        wrong = name + " has a bound of " + short_text(k.fact.lipschitz_sup) +
+                ", and a bound is at most " + short_text(longest);
+    if (wrong.empty()) return;
+    if (Diagnostic *d = report(id, Code::NumberRange, wrong))
+        d->note("fields are computed in single precision, which has to hold the squares of "
+                "lengths")
+            .help("choose another unit of length, so that sizes are near to 1");
+    fail(k);
+}
+
+} // namespace fathom::proof

@@ -1,0 +1,250 @@
+// Results: that a file holds what its name says, that what cannot be written is refused with what
+// to write, and that no option is taken and then not read.
+#include "driver/image.h"
+#include "shell.h"
+
+#include <catch2/catch.hpp>
+
+namespace {
+
+struct OutputScenes : ScratchFolder {
+    OutputScenes() {
+        write("good.sdf", "sphere(1)\n");
+        write("counted.sdf", "param n = 3 in 1..6\nparam size = 0.4 in 0.1..0.5\n"
+                             "for i in 0..n { sphere(size + 0.01 * n).translate(x: i) }\n");
+    }
+    std::size_t files() const {
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(path()), fs::directory_iterator()));
+    }
+};
+
+const std::string small = " --size 8x8 --backend cpu ";
+
+} // namespace
+
+TEST_CASE("a picture is of the kind that its suffix says") {
+    OutputScenes folder;
+    for (const char *name : {"a.png", "a.PNG"}) {
+        CHECK(shell(folder, "fathom render good.sdf" + small + "-o " + name).exit == 0);
+        CHECK(folder.read(name).starts_with("\x89PNG"));
+    }
+    for (const char *name : {"a.jpg", "a.jpeg", "a.JPG"}) {
+        CHECK(shell(folder, "fathom render good.sdf" + small + "-o " + name).exit == 0);
+        CHECK(folder.read(name).starts_with("\xff\xd8\xff"));
+    }
+    CHECK(shell(folder, "fathom render good.sdf" + small + "-o -").out.starts_with("\x89PNG"));
+    CHECK(shell(folder, "fathom render good.sdf" + small + "-o /dev/null").exit == 0);
+    const std::size_t before = folder.files();
+    for (const char *name : {"a.tiff", "a", "a.webp", "a.sdf", "a.png.bak", ".png"}) {
+        INFO(name);
+        const Result refused = shell(folder, "fathom render good.sdf" + small + "-o " + name);
+        CHECK(refused.exit == 2);
+        CHECK(contains(refused.err, "picture"));
+    }
+    CHECK(folder.files() == before);
+}
+
+TEST_CASE("a JPEG shows the picture that the PNG shows, as finely as is asked") {
+    OutputScenes folder;
+    const std::string line = "fathom render good.sdf --size 64x48 --backend cpu ";
+    REQUIRE(shell(folder, line + "-o a.png").exit == 0);
+    REQUIRE(shell(folder, line + "-o a.jpg").exit == 0);
+    REQUIRE(shell(folder, line + "-o b.jpg --quality 90").exit == 0);
+    REQUIRE(shell(folder, line + "-o c.jpg --quality 20").exit == 0);
+    CHECK(folder.read("a.jpg") == folder.read("b.jpg"));
+    CHECK(folder.read("c.jpg").size() < folder.read("a.jpg").size());
+    std::string error;
+    const auto png = fathom::driver::decode_image(folder.read("a.png"), error);
+    const auto jpeg = fathom::driver::decode_image(folder.read("a.jpg"), error);
+    REQUIRE(png);
+    REQUIRE(jpeg);
+    REQUIRE(jpeg->width == 64);
+    REQUIRE(jpeg->height == 48);
+    double sum = 0;
+    for (std::size_t i = 0; i < png->rgba.size(); ++i)
+        sum += std::abs(png->rgba[i] - jpeg->rgba[i]);
+    CHECK(sum / static_cast<double>(png->rgba.size()) < 0.01);
+    CHECK(shell(folder, line + "-o a.png --quality 50").exit == 2);
+    CHECK(shell(folder, line + "-o a.jpg --quality 0").exit == 2);
+}
+
+TEST_CASE("no file holds something else than its suffix says") {
+    OutputScenes folder;
+    folder.write("save.yaml", "[]\n");
+    const std::size_t before = folder.files();
+    for (const char *line :
+         {"fathom compile good.sdf -o a.png", "fathom compile good.sdf -o a.html",
+          "fathom compile good.sdf -o a.HTML", "fathom compile good.sdf -o a.spv",
+          "fathom compile good.sdf --target html -o a.frag",
+          "fathom compile good.sdf --target spirv -o a.glsl", "fathom compile good.sdf -o a.sdf",
+          "fathom export good.sdf -o a.sdf", "fathom import save.yaml -o a.yaml",
+          "fathom compile good.sdf -o a.jpg"}) {
+        INFO(line);
+        const Result refused = shell(folder, line);
+        CHECK(refused.exit == 2);
+        CHECK(contains(refused.err, "writes"));
+    }
+    CHECK(folder.files() == before);
+    CHECK(contains(shell(folder, "fathom compile good.sdf -o a.html").err, "--target html"));
+    for (const char *line :
+         {"fathom compile good.sdf -o a.frag", "fathom compile good.sdf -o a.txt",
+          "fathom compile good.sdf -o a", "fathom compile good.sdf --target html -o a.html",
+          "fathom compile good.sdf --target spirv -o a.spv", "fathom export good.sdf -o a.yaml"}) {
+        INFO(line);
+        CHECK(shell(folder, line).exit == 0);
+    }
+}
+
+TEST_CASE("what cannot be written is refused, with what to write") {
+    OutputScenes folder;
+    const std::size_t before = folder.files();
+    const auto refused = [&](const std::string &line, const std::string &remedy) {
+        INFO(line);
+        const Result result = shell(folder, line);
+        CHECK(result.exit == 2);
+        CHECK(result.out.empty());
+        CHECK_THAT(result.err, Catch::Contains(remedy));
+    };
+    refused("fathom render good.sdf" + small + "--frames 0..2 -o -", "frame_###.png");
+    refused("fathom render good.sdf" + small + "--frames 0..2 -o /dev/null", ".png");
+    refused("fathom render good.sdf" + small + "-o ''", "wants a name");
+    refused("fathom compile good.sdf -o ''", "wants a name");
+    refused("fathom view good.sdf --record ''", "wants a name");
+    refused("fathom compile good.sdf --target HTML", "spirv or html, not `HTML`");
+    refused("fathom compile good.sdf --target ''", "spirv or html, not ``");
+    refused("fathom compile good.sdf --target html --field-only", "--target es300 --field-only");
+    refused("fathom compile good.sdf --noise-cache -o -", "name the first by -o");
+    refused("fathom compile good.sdf --noise-cache", "name the first by -o");
+    CHECK(folder.files() == before);
+}
+
+TEST_CASE("a picture's folder is looked for before the picture is made") {
+    OutputScenes folder;
+    fs::create_directory(folder / "folder.png");
+    for (const char *out : {"none/a.png", "folder.png"}) {
+        INFO(out);
+        // At this size it would take minutes.
+        const Result refused = shell(folder, std::string("timeout 20 '" FATHOM_PROGRAM "' render "
+                                                         "good.sdf --backend cpu --samples 256 "
+                                                         "--size 4096x4096 -o ") +
+                                                 out);
+        CHECK(refused.exit == 3);
+        CHECK(contains(refused.err, "cannot write"));
+    }
+    CHECK(contains(shell(folder, "fathom render good.sdf -o none/a.png").err, "no folder `none`"));
+    // Of all frames, before the first one.
+    fs::create_directory(folder / "f0");
+    CHECK(shell(folder, "fathom render good.sdf" + small + "--frames 0..2 -o f#/a.png").exit == 3);
+    CHECK_FALSE(fs::exists(folder / "f0/a.png"));
+}
+
+TEST_CASE("no option is taken that nothing reads") {
+    OutputScenes folder;
+    for (const char *line :
+         {"render good.sdf --size 8x8 --backend cpu -o a.png --fps 24",
+          "render good.sdf --size 8x8 --backend cpu --cache -o a.png", "bench good.sdf --cells 8",
+          "bench good.sdf --frames 8", "bench good.sdf --figure 8.2",
+          "check good.sdf --json --explain", "check good.sdf -I nowhere",
+          "check good.sdf -I good.sdf", "eval good.sdf --at nan,0,0", "eval good.sdf --at inf,0,0",
+          "eval good.sdf", "help nonsense", "help render check", "check good.sdf -D nothing=1"}) {
+        INFO(line);
+        const Result refused = shell(folder, std::string("fathom ") + line);
+        CHECK(refused.exit == 2);
+        CHECK(refused.out.empty());
+        CHECK(refused.err.starts_with("fathom: "));
+    }
+    for (const char *line : {"check --watch -", "compile --watch -"}) {
+        const Result refused = shell(
+            folder, std::string("echo 'sphere(1)' | timeout 20 '" FATHOM_PROGRAM "' ") + line);
+        CHECK(refused.exit == 2);
+        CHECK(contains(refused.err, "standard input is none"));
+    }
+}
+
+TEST_CASE("no result is written over a file that the scene reads") {
+    OutputScenes folder;
+    REQUIRE(shell(folder, "fathom render good.sdf" + small + "-o tiles_0001.png").exit == 0);
+    const std::string image = folder.read("tiles_0001.png");
+    folder.write("tiled.sdf", "import \"module.frag\"\n"
+                              "box(1).paint(material(texture: image(\"tiles_0001.png\")))\n");
+    folder.write("module.frag", "let one = 1\n");
+    for (const std::string &line : {"render tiled.sdf" + small + "-o tiles_0001.png",
+                                    "render tiled.sdf" + small + "--frames 0..3 -o tiles.png",
+                                    std::string("compile tiled.sdf -o module.frag")}) {
+        INFO(line);
+        const Result refused = shell(folder, "fathom " + line);
+        CHECK(refused.exit == 2);
+        CHECK(contains(refused.err, "that is the file that is read"));
+    }
+    CHECK(folder.read("tiles_0001.png") == image);
+    CHECK_FALSE(fs::exists(folder / "tiles_0000.png"));
+    CHECK(folder.read("module.frag") == "let one = 1\n");
+}
+
+TEST_CASE("a param that a shader holds as a constant is said, with its place and the way out") {
+    OutputScenes folder;
+    for (const char *target : {"glsl450", "glsl330", "es300", "shadertoy", "glslviewer", "html"}) {
+        INFO(target);
+        const Result written =
+            shell(folder, std::string("fathom compile counted.sdf --target ") + target);
+        CHECK(written.exit == 0);
+        CHECK(contains(written.err, "counted.sdf:1:7: note[fixed-param]"));
+        CHECK(contains(written.err, "-D n=…"));
+        CHECK_FALSE(contains(written.err, "size"));
+        CHECK(contains(written.out, "n = 3 in 1..6  (counted.sdf:1)"));
+        CHECK(contains(written.out, "-D NAME=VALUE"));
+        // One value everywhere: the count, and the size that reads it.
+        CHECK(contains(written.out, "const int param_n = 3;"));
+        CHECK_FALSE(contains(written.out, "uniform int param_n"));
+        CHECK_FALSE(contains(written.out, "name: \"param_n\""));
+    }
+    CHECK(contains(shell(folder, "fathom compile counted.sdf --target html").out,
+                   "name: \"param_size\""));
+    const Result other = shell(folder, "fathom compile counted.sdf --target es300 -D n=5");
+    CHECK(contains(other.out, "n = 5 in 1..6"));
+    CHECK(contains(other.out, "const int param_n = 5;"));
+    CHECK(shell(folder, "fathom compile counted.sdf --target spirv -o a.spv").exit == 0);
+    CHECK(shell(folder, "fathom check counted.sdf").err ==
+          "counted.sdf: ok, proved, lipschitz 1, exact\n");
+}
+
+TEST_CASE("a cell that cannot vanish stays a slider, one that can decides what there is") {
+    OutputScenes folder;
+    folder.write("cells.sdf", "param gap = 1 in 0.5..2.0\nparam row = 0 in 0.0..2.0\n"
+                              "sphere(0.2).repeat([gap, 0, row])\n");
+    const Result page = shell(folder, "fathom compile cells.sdf --target html");
+    CHECK(contains(page.out, "name: \"param_gap\""));
+    CHECK_FALSE(contains(page.out, "name: \"param_row\""));
+    CHECK(contains(page.err, "cells.sdf:2:7: note[fixed-param]"));
+}
+
+TEST_CASE("GLSL ES says in words which values its uniforms want") {
+    OutputScenes folder;
+    const std::string text = shell(folder, "fathom compile counted.sdf --target es300").out;
+    CHECK(contains(text, "//   name "));
+    CHECK(contains(text, "//   fathom_resolution  "));
+    CHECK(contains(text, "vec2(1280.0, 720.0)"));
+    CHECK_FALSE(contains(text, "uniforms' defaults"));
+    // Each uniform has a line in the list.
+    std::istringstream lines(text);
+    std::size_t uniforms = 0;
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with("uniform ")) continue;
+        std::istringstream words(line);
+        std::string word, type, name;
+        words >> word >> type >> name;
+        name.pop_back(); // the semicolon
+        INFO(line);
+        CHECK(contains(text, "//   " + name + " "));
+        ++uniforms;
+    }
+    CHECK(uniforms > 10);
+    const std::size_t size = text.find("//   param_size");
+    REQUIRE(size != text.npos);
+    const std::string line = text.substr(size, text.find('\n', size) - size);
+    CHECK(contains(line, "float"));
+    CHECK(contains(line, "0.4"));
+    CHECK(line.ends_with("0.1..0.5"));
+    CHECK(contains(shell(folder, "fathom compile counted.sdf").out, "uniforms' defaults"));
+}
