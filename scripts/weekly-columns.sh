@@ -3,10 +3,10 @@
 # build-ops/, and demands that a test fails or the build does. A column whose entries nobody misses
 # has no reader: it has to go. Arguments name the columns to try; without any, all are tried.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
-cd "$root" && rm -rf build-ops && mkdir build-ops || exit 3
-git ls-files -coz --exclude-standard | tar --null -T - -cf - | tar -xf - -C build-ops || exit 3
-cmake -G Ninja -S build-ops -B build-ops/build -DCMAKE_UNITY_BUILD=ON >/dev/null || exit 3
-table=build-ops/ir/ops.def
+cd "$root" && rm -rf build-ops && mkdir -p build-ops/tree || exit 3
+git ls-files -coz --exclude-standard | tar --null -T - -cf - | tar -xf - -C build-ops/tree || exit 3
+cmake -G Ninja -S build-ops/tree -B build-ops -DCMAKE_UNITY_BUILD=ON >/dev/null || exit 3
+table=build-ops/tree/ir/ops.def
 tests='conformance golden docs ir proof glsl cpu check save stdlib'
 missed=0
 try() { # COLUMN PATTERN REPLACEMENT: of one row of the table
@@ -14,9 +14,9 @@ try() { # COLUMN PATTERN REPLACEMENT: of one row of the table
     cp ir/ops.def "$table" && sed -i "s/$2/$3/" "$table"
     if cmp -s ir/ops.def "$table"; then
         result="NO SUCH ROW" missed=1
-    elif ! ninja -C build-ops/build fathom $(printf 'test_%s ' $tests) >build-ops/log 2>&1; then
+    elif ! ninja -C build-ops fathom $(printf 'test_%s ' $tests) >build-ops/log 2>&1; then
         result="does not compile: $(grep -m1 'error:' build-ops/log)"
-    elif ctest --test-dir build-ops/build >build-ops/log 2>&1 \
+    elif ctest --test-dir build-ops >build-ops/log 2>&1 \
         -R "^(unit_)?($(echo $tests | tr ' ' '|'))\$"; then
         result="NOT NOTICED" missed=1
     else

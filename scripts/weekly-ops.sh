@@ -3,8 +3,8 @@
 # runs what has to hold for any op. Fails where a patch touches more than eight files, or one that
 # docs/adding-an-op.md does not name.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
-cd "$root" && rm -rf build-ops && mkdir build-ops || exit 3
-git ls-files -coz --exclude-standard | tar --null -T - -cf - | tar -xf - -C build-ops || exit 3
+cd "$root" && rm -rf build-ops && mkdir -p build-ops/tree || exit 3
+git ls-files -coz --exclude-standard | tar --null -T - -cf - | tar -xf - -C build-ops/tree || exit 3
 for patch in scripts/ops/*.patch; do
     files=$(sed -n 's|^+++ b/||p' "$patch")
     if [ "$(echo "$files" | wc -l)" -gt 8 ]; then
@@ -18,10 +18,10 @@ for patch in scripts/ops/*.patch; do
             exit 1
         fi
     done
-    git apply --directory=build-ops "$patch" || exit 1
+    git apply --directory=build-ops/tree "$patch" || exit 1
 done
 tests='conformance golden docs style ir proof glsl cpu check save stdlib'
-cmake -G Ninja -S build-ops -B build-ops/build -DCMAKE_UNITY_BUILD=ON || exit 3
-ninja -C build-ops/build fathom $(printf 'test_%s ' $tests) || exit 1
-exec ctest --test-dir build-ops/build --output-on-failure \
+cmake -G Ninja -S build-ops/tree -B build-ops -DCMAKE_UNITY_BUILD=ON || exit 3
+ninja -C build-ops fathom $(printf 'test_%s ' $tests) || exit 1
+exec ctest --test-dir build-ops --output-on-failure \
     -R "^(unit_)?($(echo $tests | tr ' ' '|'))\$"
