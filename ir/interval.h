@@ -46,6 +46,8 @@ inline double times(double a, double b) {
     return a == 0 || b == 0 ? 0 : a * b;
 } // 0 * infinity is 0 here
 constexpr double library = 8;
+// Evaluators count in single precision: beyond the one is infinity, below the other 0.
+constexpr double single_most = 1e38, single_least = 1.2e-38;
 } // namespace rounding
 
 inline double Interval::middle() const {
@@ -204,10 +206,12 @@ inline Interval exp(Interval a) { return ir::exp(a); }
 inline Interval exp2(Interval a) {
     return ir::exp2(a) * Interval(0.69314718055994528, 0.69314718055994534);
 }
-inline Interval log(Interval a) { return a.lo <= 0 ? Interval::everything() : Interval(1.0) / a; }
+inline Interval log(Interval a) {
+    return a.lo < rounding::single_least ? Interval::everything() : Interval(1.0) / a;
+}
 inline Interval log2(Interval a) {
-    return a.lo <= 0 ? Interval::everything()
-                     : Interval(1.4426950408889632, 1.4426950408889636) / a;
+    return a.lo < rounding::single_least ? Interval::everything()
+                                         : Interval(1.4426950408889632, 1.4426950408889636) / a;
 }
 inline Interval sin(Interval a) { return ir::cos(a); }
 inline Interval cos(Interval a) { return -ir::sin(a); }
@@ -230,11 +234,11 @@ inline Interval tanh(Interval a) {
 } // namespace slope
 
 // x^n for a whole n >= 0.
-inline Interval whole_power(Interval a, int n) {
+inline Interval whole_power(Interval a, double n) {
     if (n == 0) return 1.0;
     if (n == 1) return a;
     if (n == 2) return square(a);
-    Interval base = n % 2 == 0 ? abs(a) : a;
+    Interval base = std::fmod(n, 2) == 0 ? abs(a) : a;
     return outward(std::pow(base.lo, n), std::pow(base.hi, n), rounding::library);
 }
 // x^y for x >= 0 (the part of `a` below 0 is left out).

@@ -13,7 +13,9 @@ struct RepeatPlan {
         0, 0, 0};       // copies evaluated along an axis: 0 does not repeat, 1 the own cell, 2 the
                         // nearer neighbour too, 3 both neighbours, 2n+1 more
     bool guard = false; // also the distance to the slab of all cells not evaluated
-    Box copy;           // the child's bounds, for the guard
+    bool hold = false;  // of each copy the greater of its field and the way to its bounds: a field
+                        // that is only a bound may be less than the way to copies not evaluated
+    Box copy;           // the child's bounds, for both
 };
 
 // A field's bound by cells of a box: one number a corner, x first, the largest of the cells that
@@ -120,6 +122,13 @@ struct Surface {
     NodeId diffuse, specular, exponent, emission;
 };
 
+// What a library function asks of its arguments, where they hang on params or time: to be proved.
+struct Condition {
+    NodeId holds; // Bool
+    Span at;      // the user's call
+    std::string wanted;
+};
+
 struct TopLevel {
     ShapeId shape;
     Span span;
@@ -144,6 +153,7 @@ struct Scene {
     Shapes shapes;
     ShapeId root; // the union of the top-level shapes
     std::vector<TopLevel> top_level;
+    std::vector<Condition> conditions;
     std::vector<ShapeFact> facts;  // by ShapeId; filled by the analysis
     std::vector<CacheFact> caches; // by CacheId; filled by the analysis
     std::vector<Param> params;

@@ -176,8 +176,10 @@ bool same(Graph &graph, NodeId a, NodeId b) {
     double size = 0;
     for (const auto &[m, c] : *p) size = std::max(size, std::fabs(c));
     for (const auto &[m, c] : *q) (*p)[m] -= c;
+    // not without end: beside 1e13 y^8 a jump by 5 is one
+    const double granted = rounding * std::clamp(size, 1e-30, 1e3);
     for (const auto &[m, c] : *p)
-        if (std::fabs(c) > rounding * std::max(size, 1e-30)) return false;
+        if (std::fabs(c) > granted) return false;
     return true;
 }
 
@@ -234,6 +236,22 @@ std::optional<Solved> solved(Graph &graph, NodeId scalar, NodeId is) {
         return Solved{graph.arg(atom[0], 0), ir::swizzle_component(node.payload, 0), value};
     }
     return {};
+}
+
+std::optional<std::vector<double>> combination(Graph &graph, NodeId scalar,
+                                               std::span<const NodeId> atoms) {
+    const auto sum = polynomial(graph, scalar);
+    if (!sum) return {};
+    std::vector<double> out(atoms.size() + 1, 0.0);
+    for (const auto &[factors, c] : *sum) {
+        if (c == 0) continue;
+        if (factors.size() > 1) return {};
+        const auto at =
+            factors.empty() ? atoms.end() : std::find(atoms.begin(), atoms.end(), factors[0]);
+        if (at == atoms.end() && !factors.empty()) return {};
+        out[static_cast<std::size_t>(at - atoms.begin())] += c;
+    }
+    return out;
 }
 
 std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {

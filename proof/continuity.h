@@ -5,6 +5,8 @@
 #include "ir/graph.h"
 
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace fathom::proof {
 
@@ -37,6 +39,11 @@ struct Solved {
     ir::NodeId value;
 };
 std::optional<Solved> solved(ir::Graph &graph, ir::NodeId scalar, ir::NodeId is);
+
+// What a scalar is, where it is a sum of these atoms, each with a number for factor, and a number,
+// which comes last.
+std::optional<std::vector<double>> combination(ir::Graph &graph, ir::NodeId scalar,
+                                               std::span<const ir::NodeId> atoms);
 
 // a - b as a sum in which equal terms have cancelled; nothing where the expressions are too large.
 std::optional<ir::NodeId> difference(ir::Graph &graph, ir::NodeId a, ir::NodeId b);

@@ -1,10 +1,10 @@
 // Fields of the user's own: their bounds over the region where they are asked, what is assumed of
 // them, and the reports that say where and why there is none.
+#include "ir/passes/operations.h"
+#include "ir/passes/walk.h"
 #include "proof/prover.h"
 
 #include "ir/lower/lower.h"
-#include "ir/passes/operations.h"
-#include "ir/passes/walk.h"
 
 #include <fmt/format.h>
 
@@ -224,7 +224,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     }
     std::string cause = cause_text(graph, b.cause);
     const bool endless = !place(id).box.finite() && !place(id).zone;
-    const bool grows = b.trouble == Trouble::None ||
+    const bool grows = b.trouble == Trouble::None || b.trouble == Trouble::Overflow ||
                        (b.trouble == Trouble::Singular && only_grows(graph, b.cause));
     if (b.at_infinity || (grows && endless)) {
         const bool jumps = b.trouble == Trouble::Jump;
@@ -278,6 +278,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                       assume);
         return;
     }
+    case Trouble::Overflow: // told above
     case Trouble::Singular:
     case Trouble::None:
         if (Diagnostic *d = report(id, Code::FieldSingular,

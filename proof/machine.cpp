@@ -1,6 +1,6 @@
 // The machine's frame: ranges, norms, loops, what happens to trouble. The rules for the ops:
 // machine_ops.cpp and machine_vectors.cpp.
-#include "proof/machine.h"
+#include "proof/machine_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -131,10 +131,18 @@ Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
 }
 
 void Machine::run(const Cell &cell) {
+    constexpr double far = 1e6; // further off whatever grows has left single precision
     cell_ = cell;
+    in_reach_ = tape_.grows && std::all_of(cell.p.begin(), cell.p.end(),
+                                           [](const Interval &x) { return x.magnitude() <= far; });
     run(tape_.each);
     Slot s = tape_.result;
     result_norm_ = norm_[s];
+    for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
+        if (in_reach_ && result_norm_ > 0 && value_[tape_.first[s] + i].magnitude() > single_most) {
+            result_norm_ = infinity;
+            trouble_[s] = Trouble::Overflow;
+        }
     for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
         if (odd_[tape_.first[s] + i]) { // a wave that nothing made even
             result_norm_ = infinity;

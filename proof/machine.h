@@ -37,7 +37,7 @@ struct Ranges {
 };
 Ranges ranges_of(const ir::Scene &scene);
 
-enum class Trouble : std::uint8_t { None, Jump, Singular };
+enum class Trouble : std::uint8_t { None, Jump, Singular, Overflow };
 
 struct Cell {
     std::array<Interval, 3> p{Interval::everything(), Interval::everything(),
@@ -96,6 +96,7 @@ class Machine {
     const Tape &tape_;
     const Ranges &ranges_;
     Cell cell_;
+    bool in_reach_ = false; // the cell is where rays go, and values may leave single precision
     std::vector<Interval> value_;
     std::vector<Row> grad_;
     std::vector<std::uint8_t> odd_; // by component: may jump, but only from x to -x

@@ -15,7 +15,7 @@ using ir::rounding::up;
 
 namespace {
 
-Interval truth(bool may_be_false, bool may_be_true) {
+Interval truth_of(bool may_be_false, bool may_be_true) {
     return {may_be_false ? 0.0 : 1.0, may_be_true ? 1.0 : 0.0};
 }
 
@@ -48,7 +48,39 @@ void Machine::step(const Instruction &instruction) {
     if (!bend_.empty()) bend_[instruction.out] = step.bend();
 }
 
+// An argument that single precision may not hold is infinity there. What keeps the greater part of
+// it, or says the same of all that is so large, may have it; of anything else the value is another
+// (log), or none (infinity/infinity).
+bool Step::overflows() const {
+    const auto large = [&](int arg) {
+        for (int c = 0; c < size(arg); ++c)
+            if (value(arg, c).magnitude() > single_most) return true;
+        return false;
+    };
+    int many = 0;
+    for (int a = 0; a < int(in.args.size()); ++a) many += large(a);
+    if (many == 0) return false;
+    const auto at_least_one = [&](int arg) {
+        for (int c = 0; c < size(arg); ++c)
+            if (value(arg, c).mignitude() < 1) return false;
+        return true;
+    };
+    if (in.form != Form::Plain && in.form != Form::Joined) return true;
+    constexpr ir::OpSet bear{Op::Neg,          Op::Abs,     Op::Min,       Op::Max,      Op::Union,
+                             Op::Intersection, Op::Clamp,   Op::Exp,       Op::Exp2,     Op::Atan,
+                             Op::Tanh,         Op::Less,    Op::LessEqual, Op::Select,   Op::Make,
+                             Op::Splat,        Op::Swizzle, Op::Column,    Op::Transpose};
+    if (bear[in.op]) return false;
+    if (in.op == Op::Add || in.op == Op::Sub) return many > 1;
+    if (in.op == Op::Mul) return many == 1 && !at_least_one(large(0) ? 1 : 0);
+    return in.op != Op::Div || large(0);
+}
+
 void Step::run() {
+    if (machine.in_reach_ && overflows()) {
+        for (int c = 0; c < n; ++c) set(c, Interval::everything(), none);
+        return fail(Trouble::Overflow);
+    }
     if (in.form == Form::Wave) {
         bool bad = norm(1) > 0;
         for (int c = 0; c < n; ++c) {
@@ -193,7 +225,7 @@ void Step::run() {
                 set(c, x / y, none);
                 continue;
             }
-            if (y.contains(0)) {
+            if (y.mignitude() < single_least) {
                 singular = true;
                 set(c, Interval::everything(), none);
                 continue;
@@ -234,26 +266,26 @@ void Step::run() {
         bool singular = false, odd_left = false;
         for (int c = 0; c < n; ++c) {
             Interval x = value(0, c), y = value(1, c);
-            double whole =
-                y.is_point() && std::floor(y.lo) == y.lo && std::fabs(y.lo) <= 64 ? y.lo : NAN;
+            // as evaluators see it: from 2^24 on every number is whole, and even
+            const double exponent = y.is_point() ? double(float(y.lo)) : NAN,
+                         whole = std::floor(exponent) == exponent ? exponent : NAN;
             odd_left = odd_left || odd(1, c) || (odd(0, c) && !(std::fmod(whole, 2) == 0));
             if (whole >= 0) {
-                int k = int(whole);
-                Interval d = k == 0 ? Interval(0.0) : Interval(double(k)) * whole_power(x, k - 1);
+                Interval d =
+                    whole == 0 ? Interval(0.0) : Interval(whole) * whole_power(x, whole - 1);
                 a = std::max(a, d.magnitude());
-                set(c, whole_power(x, k), scaled(d, grad(0, c)));
+                set(c, whole_power(x, whole), scaled(d, grad(0, c)));
                 continue;
             }
             if (whole < 0) {
-                int k = int(-whole);
                 if (x.contains(0)) {
                     singular = singular || !zero(grad(0, c));
                     set(c, Interval::everything(), none);
                     continue;
                 }
-                Interval d = Interval(whole) / whole_power(x, k + 1);
+                Interval d = Interval(whole) / whole_power(x, 1 - whole);
                 a = std::max(a, d.magnitude());
-                set(c, Interval(1.0) / whole_power(x, k), scaled(d, grad(0, c)));
+                set(c, Interval(1.0) / whole_power(x, -whole), scaled(d, grad(0, c)));
                 continue;
             }
             // x^y for x > 0; 0 for x < 0 (other whole y below 0 aside), so continuous at 0 where y
@@ -332,7 +364,7 @@ void Step::run() {
     case Op::Step:
         stepped([&](int c) {
             Interval edge = value(0, c), x = value(1, c);
-            return truth(x.lo < edge.hi, x.hi >= edge.lo);
+            return truth_of(x.lo < edge.hi, x.hi >= edge.lo);
         });
         for (int c = 0; c < n; ++c)
             if (!machine.value_[at + static_cast<std::uint32_t>(c)].is_point() &&
@@ -479,40 +511,21 @@ void Step::run() {
     case Op::Equal:
     case Op::NotEqual: {
         Interval a = value(0, 0), b = value(1, 0);
-        Interval v;
-        if (in.op == Op::Less)
-            v = truth(a.hi >= b.lo, a.lo < b.hi);
-        else if (in.op == Op::LessEqual)
-            v = truth(a.hi > b.lo, a.lo <= b.hi);
-        else {
-            bool can_equal = a.hi >= b.lo && b.hi >= a.lo, can_differ = !(a.is_point() && a == b);
-            v = in.op == Op::Equal ? truth(can_differ, can_equal) : truth(can_equal, can_differ);
-        }
-        set(0, v, none);
-        bool jumps = norm(0) == infinity || norm(1) == infinity || any_odd;
-        if (jumps && !v.is_point()) return fail(Trouble::Jump);
-        return finish(0, false);
+        if (in.op == Op::Less) return truth(truth_of(a.hi >= b.lo, a.lo < b.hi));
+        if (in.op == Op::LessEqual) return truth(truth_of(a.hi > b.lo, a.lo <= b.hi));
+        bool can_equal = a.hi >= b.lo && b.hi >= a.lo, can_differ = !(a.is_point() && a == b);
+        return truth(in.op == Op::Equal ? truth_of(can_differ, can_equal)
+                                        : truth_of(can_equal, can_differ));
     }
-    case Op::And:
-    case Op::Or: {
-        Interval v =
-            in.op == Op::And ? min(value(0, 0), value(1, 0)) : max(value(0, 0), value(1, 0));
-        set(0, v, none);
-        if (!v.is_point() && (norm(0) == infinity || norm(1) == infinity))
-            return fail(Trouble::Jump);
-        return finish(0, false);
-    }
-    case Op::Not:
-        set(0, Interval(1.0) - value(0, 0), none);
-        machine.value_[at] = {1 - value(0, 0).hi, 1 - value(0, 0).lo};
-        if (norm(0) == infinity) return fail(Trouble::Jump);
-        return finish(0, false);
+    case Op::And: return truth(min(value(0, 0), value(1, 0)));
+    case Op::Or: return truth(max(value(0, 0), value(1, 0)));
+    case Op::Not: return truth({1 - value(0, 0).hi, 1 - value(0, 0).lo});
     case Op::Select: {
         Interval c = value(0, 0);
         if (c.lo > 0.5) return machine.copy(in.args[1], out);
         if (c.hi < 0.5) return machine.copy(in.args[2], out);
         machine.copy(in.args[1], out);
-        bool agree = in.form == Form::Joined && norm(0) != infinity;
+        const bool agree = norm(0) == 0 || (in.form == Form::Joined && norm(0) != infinity);
         machine.join(out, in.args[2], !agree, in.node);
         return;
     }

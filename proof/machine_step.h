@@ -9,6 +9,9 @@
 
 namespace fathom::proof {
 
+using ir::rounding::single_least;
+using ir::rounding::single_most;
+
 inline Row scaled(Interval factor, const Row &row) {
     return {factor * row[0], factor * row[1], factor * row[2]};
 }
@@ -38,6 +41,7 @@ struct Step {
 
     Step(Machine &of, const Instruction &instruction);
     void run();
+    bool overflows() const;
     double bend() const; // machine_bend.cpp
 
     // -- what mixes components (machine_vectors.cpp)
@@ -114,6 +118,17 @@ struct Step {
             fail(Trouble::Jump);
         else
             finish(0, any_odd && !jumps);
+    }
+    // A truth. Where it may turn within the cell its norm is 1, so that a number made of it jumps
+    // there; a choice by it need not (Joined). It is 0 where all points of the cell have the same.
+    void truth(Interval v) {
+        constexpr Interval all = Interval::everything();
+        double norms = 0;
+        for (int a = 0; a < int(in.args.size()); ++a) norms = std::max(norms, norm(a));
+        const bool turns = !v.is_point() && (norms > 0 || any_odd);
+        set(0, v, turns ? Row{all, all, all} : none);
+        if (turns && (norms == ir::rounding::infinity || any_odd)) return fail(Trouble::Jump);
+        finish(turns ? 1 : 0, false);
     }
     template <class AV, class AG, class BV, class BG> double
     extremum(int sign, AV a_value, AG a_grad, BV b_value, BG b_grad, double a_norm, double b_norm) {

@@ -150,8 +150,9 @@ void Step::length() {
 
 // A mean of the two gradients, or the gradient of the one that is less (greater) by k.
 void Step::smooth() {
-    const Interval x = value(0, 0), y = value(1, 0), k = value(2, 0);
-    if ((in.payload & 2) != 0 && k.contains(0)) return fail(Trouble::Singular);
+    const Interval x = value(0, 0), y = value(1, 0), given = value(2, 0);
+    if ((in.payload & 2) != 0 && given.contains(0)) return fail(Trouble::Singular);
+    const Interval k = (in.payload & 4) != 0 ? max(given, Interval(0.0)) : given;
     const double reach = k.magnitude();
     const bool may_be_less = k.lo < 0 ? (in.payload & 1) != 0 || k.hi > 0 : (in.payload & 1) == 0,
                may_be_greater =
@@ -170,19 +171,11 @@ void Step::smooth() {
     finish(std::max(norm(0), norm(1)), any_odd);
 }
 
-// Between the greatest and log(n) more; a mean of the gradients.
+// Between the greater and log(2) more; a mean of the gradients.
 void Step::log_sum() {
-    Interval most = value(0, 0);
-    Row g = grad(0, 0);
-    double norms = norm(0);
-    for (int a = 1; a < int(in.args.size()); ++a) {
-        most = max(most, value(a, 0));
-        g = joined(g, grad(a, 0));
-        norms = std::max(norms, norm(a));
-    }
-    const double terms = double(in.args.size());
-    set(0, most + Interval(0, up(in.op == Op::Log ? std::log(terms) : std::log2(terms), 4)), g);
-    finish(norms, any_odd);
+    const double most = up(in.op == Op::Log ? std::log(2.0) : 1.0, 4);
+    set(0, max(value(0, 0), value(1, 0)) + Interval(0, most), joined(grad(0, 0), grad(1, 0)));
+    finish(std::max(norm(0), norm(1)), any_odd);
 }
 
 void Step::dot() {

@@ -57,7 +57,8 @@ struct Prover {
     Zone zone_of(const ir::Region &region);
     bool is_field(ir::ShapeId id) const;
 
-    void know_caches(); // caches.cpp
+    void test_conditions(); // conditions.cpp
+    void know_caches();     // caches.cpp
     void report_not_kept(ir::CacheId id);
 
     // -- places, from the root down

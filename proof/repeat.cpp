@@ -204,6 +204,7 @@ Known Prover::know_repeat(ShapeId id) {
         k.fact.lever = {infinity, infinity, infinity};
         k.swell = infinity; // the guard may be less than the field
     }
+    plan.hold = plan.guard && !exact;
     k.fact.repeat = plan;
     if (k.failed)
         fail(k);

@@ -94,7 +94,7 @@ std::optional<Smooth> by_mix(Graph &graph, NodeId mix, const Product &bulge) {
     for (NodeId slope : {graph.div(graph.mul(half, way), k), graph.mul(half, graph.div(way, k)),
                          graph.div(way, graph.mul(graph.number(2), k))})
         if (same(graph, graph.arg(h, 0), graph.add(half, slope)))
-            return Smooth{x, y, k, false, true};
+            return Smooth{x, y, k, k, false, true, false};
     return {};
 }
 
@@ -117,8 +117,8 @@ std::optional<Smooth> by_least(Graph &graph, NodeId extremum, const Product &bul
         gather(graph, k, by);
         cancel(graph, by);
         if (by.factors.empty() && std::fabs(by.number - 1) < 1e-12)
-            return Smooth{x, y, k, false, !graph.as_number(k)};
-        // c may be 1/(4 max(k, tiny)): no more than 1/(4 k)
+            return Smooth{x, y, k, k, false, !graph.as_number(k), true};
+        // c may be 1/(4 max(k, tiny)): no more than 1/(4 k), and the same for all points
         for (NodeId f : rest.factors) {
             if (rest.factors.size() != 1 || rest.number != 1 || graph[f].op != Op::Div) continue;
             Product below;
@@ -127,7 +127,8 @@ std::optional<Smooth> by_least(Graph &graph, NodeId extremum, const Product &bul
             const NodeId most = below.factors[0];
             if (graph[most].op == Op::Max)
                 for (int i = 0; i < 2; ++i)
-                    if (same(graph, graph.arg(most, i), k)) return Smooth{x, y, k};
+                    if (same(graph, graph.arg(most, i), k))
+                        return Smooth{x, y, k, most, false, false, true};
         }
     }
     return {};
@@ -159,20 +160,22 @@ std::optional<Smooth> smooth_extremum(Graph &graph, NodeId sum) {
     return {};
 }
 
-std::vector<NodeId> log_of_exponentials(const Graph &graph, NodeId log) {
-    const Op exponential = graph[log].op == Op::Log ? Op::Exp : Op::Exp2;
-    std::vector<NodeId> terms, todo{graph.arg(log, 0)};
-    while (!todo.empty()) {
-        const NodeId id = todo.back();
-        todo.pop_back();
-        if (graph[id].op == exponential)
-            terms.push_back(graph.arg(id, 0));
-        else if (graph[id].op == Op::Add)
-            todo.insert(todo.end(), {graph.arg(id, 0), graph.arg(id, 1)});
-        else
-            return {};
+std::optional<LogSum> log_sum(Graph &graph, NodeId sum) {
+    if (graph[sum].op != Op::Add || graph[sum].type != ir::Type::Float) return {};
+    for (int i = 0; i < 2; ++i) {
+        const NodeId most = graph.arg(sum, i), rest = graph.arg(sum, 1 - i);
+        const Op log = graph[rest].op;
+        if (graph[most].op != Op::Max || (log != Op::Log && log != Op::Log2)) continue;
+        const NodeId a = graph.arg(most, 0), b = graph.arg(most, 1);
+        for (NodeId way : {graph.sub(a, b), graph.sub(b, a)}) {
+            const NodeId less = graph.make(log == Op::Log ? Op::Exp : Op::Exp2,
+                                           {graph.neg(graph.make(Op::Abs, {way}))});
+            if (graph.make(log, {graph.add(graph.number(1), less)}) == rest ||
+                graph.make(log, {graph.add(less, graph.number(1))}) == rest)
+                return LogSum{a, b, log};
+        }
     }
-    return terms;
+    return {};
 }
 
 } // namespace fathom::proof

@@ -15,12 +15,19 @@ namespace fathom::proof {
 // and whatever equals these as sums of products.
 struct Smooth {
     ir::NodeId x, y, k;
-    bool greater = false; // where k > 0; the other where k < 0
+    ir::NodeId divisor; // k, or max(k, …): where it varies with the point, this is another function
+    bool greater = false; // where k > 0
     bool divides = false; // by k: not where k may be 0
+    bool clipped = false; // below 0 k counts as 0; else it makes the other of least and greatest
 };
 std::optional<Smooth> smooth_extremum(ir::Graph &graph, ir::NodeId sum);
 
-// The terms of log(exp(a) + exp(b) + …), or of log2 and exp2; empty where it is none.
-std::vector<ir::NodeId> log_of_exponentials(const ir::Graph &graph, ir::NodeId log);
+// log(exp(a) + exp(b)) as max(a, b) + log(1 + exp(-|a - b|)), which the graph makes of it; or of
+// log2 and exp2.
+struct LogSum {
+    ir::NodeId a, b;
+    ir::Op log;
+};
+std::optional<LogSum> log_sum(ir::Graph &graph, ir::NodeId sum);
 
 } // namespace fathom::proof

@@ -1,14 +1,19 @@
-// A border of floor(u) is where u is a whole number K. Left of it the floor is K - 1, on it K; so
-// the field does not see the jump where it is one expression with K - 1 and with K in the floor's
-// place and K in u's. K is a fresh variable, which stands for all whole numbers at once. All steps
-// that turn at the same border are replaced together. Where a sum of products makes both sides
-// equal (continuity.h), each piece is continuous up to the border, so the field is continuous
-// across it, and a bound of its slope on each side bounds it on both.
+// A border of floor(u) is where u is a whole number K, a fresh variable that stands for all whole
+// numbers at once. The field is written three times: for u a little less than K, for K, and for a
+// little more; "a little" is an infinitesimal, which every other step is asked with, too. A step
+// whose argument is then a number, a whole multiple of K and a multiple of the infinitesimal has
+// one value (floor(u + 1) moves with floor(u)). Any other that the point moves is taken for
+// unknown: one variable for equal arguments. Where a sum of products makes all three equal
+// (continuity.h), the field does not see the jump, whatever the unknown steps are; so where steps
+// turn together without our knowing, their jumps can be taken one after another
+// (docs/lipschitz.md, 2).
 #include "proof/steps.h"
 
 #include "ir/passes/inline.h"
 #include "proof/continuity.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <map>
@@ -32,9 +37,12 @@ constexpr ir::OpSet is_step{Op::Floor, Op::Ceil, Op::Round, Op::Fract, Op::Mod, 
 
 // Rewrites an expression so that equal ones become the same node more often: sums of products,
 // vectors by component, whole numbers as what they are, `mix` at its ends, lengths as roots of
-// sums.
+// sums. Steps are what `border` says of them.
+struct Border;
 struct Canonical {
     Graph &graph;
+    Border *border = nullptr;
+    bool moving = false; // as the border is neared, not what is reached there
     std::map<NodeId, NodeId> known{};
     bool failed = false;
 
@@ -86,30 +94,27 @@ struct Canonical {
         if (failed) return id;
         const ir::Node node = graph[id];
         NodeId out = id;
-        if (node.count > 0) out = rewritten(id, node, depth);
+        if (is_step[node.op] && node.type != ir::Type::Int)
+            out = step(id, node, depth);
+        else if (node.count > 0)
+            out = rewritten(id, node, depth);
         known[id] = out;
         return out;
     }
+    NodeId step(NodeId id, const ir::Node &node, int depth);
 
     NodeId rewritten(NodeId id, const ir::Node &node, int depth) {
         std::vector<NodeId> args;
         for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
             args.push_back(of(a, depth + 1));
-        constexpr ir::OpSet rounds{Op::Floor, Op::Ceil, Op::Round}, turns{Op::Sin, Op::Cos};
         if (node.op == Op::Mix)
             if (auto t = number(args[2]); t && (*t == 0 || *t == 1)) return args[*t == 0 ? 0 : 1];
         if (node.op == Op::ToFloat && graph[args[0]].type == ir::Type::Int)
             return scalar(as_float(args[0]));
-        if (node.op == Op::ToInt || rounds[node.op])
-            if (auto w = whole(args[0])) return node.op == Op::ToInt ? *w : args[0];
-        if (node.op == Op::Fract && whole(args[0])) return graph.number(0);
-        if (node.op == Op::Mod) { // at a multiple of the divisor, up to the rounding of the numbers
-                                  // that say so
-            auto x = number(args[0]), m = number(args[1]);
-            if (x && m && *m != 0 && std::fabs(*x / *m - std::round(*x / *m)) < 1e-9)
-                return zero(node.type);
-        }
-        if (turns[node.op] && node.type == ir::Type::Float) args[0] = without_turns(graph, args[0]);
+        if (node.op == Op::ToInt)
+            if (auto w = whole(args[0])) return *w;
+        if ((node.op == Op::Sin || node.op == Op::Cos) && node.type == ir::Type::Float)
+            args[0] = without_turns(graph, args[0]);
         if (node.op == Op::Length) {
             NodeId sum = graph.number(0);
             for (int i = 0; i < ir::components(graph[args[0]].type); ++i) {
@@ -136,11 +141,6 @@ struct Canonical {
         }
         return made;
     }
-    NodeId zero(ir::Type type) {
-        ir::Constant c;
-        c.type = type;
-        return graph.constant(c);
-    }
 };
 
 // -- borders -------------------------------------------------------------------------------------
@@ -151,7 +151,6 @@ struct Group {
     NodeId turning;
     int component = 0;
     std::vector<NodeId> steps;
-    std::vector<NodeId> dividends; // of the group's Mods: also fixed at the border
     bool is_angle = false;
 };
 
@@ -165,52 +164,161 @@ NodeId with_component(Graph &graph, NodeId id, int component, NodeId value) {
     return graph.make(Op::Make, type, parts);
 }
 
-// What a step gives left of a border (`after` false) and on it, where its argument is `border` = K
-// + half / 2.
-NodeId limit(Graph &graph, NodeId step, int component, NodeId whole, bool half, bool after) {
-    const auto one = [&] { return graph.number(1); };
-    const Op op = graph[step].op;
-    if (op == Op::Floor) return after || half ? whole : graph.sub(whole, one());
-    if (op == Op::Ceil) return after || half ? graph.add(whole, one()) : whole;
-    if (op == Op::Round) return half && after ? graph.add(whole, one()) : whole;
-    if (op == Op::Fract) return half ? graph.number(0.5) : graph.number(after ? 0 : 1);
-    if (op == Op::Mod) {
-        NodeId m = component_of(graph, graph.arg(step, 1), component);
-        return half ? graph.mul(m, graph.number(0.5)) : after ? graph.number(0) : m;
+enum class Side { Before, At, After };
+constexpr double sign_of(Side side) { return side == Side::Before ? -1.0 : 1.0; }
+
+// A step's argument near a border: times K + number + slope * the infinitesimal. On the border
+// itself the slope is that from after it, and rounds nothing.
+struct Near {
+    double times = 0, number = 0, slope = 0;
+};
+
+// One side of a group's borders, where what turns is K, or K + 1/2.
+struct Border {
+    Graph &graph;
+    const Group &group;
+    const NodeId whole, little, little_angle; // K; how far from the border; by which angle
+    std::map<std::vector<std::uint32_t>, NodeId> &unknown; // by op and arguments, of all sides
+    const bool half;
+    const Side side;
+    Canonical limit{graph, this, false}, moving{graph, this, true};
+
+    // What is known there of coordinates, and of the group's own arguments.
+    void enter(Canonical &into, bool moves) {
+        // counting an angle up across its cut, y falls
+        NodeId border = group.is_angle ? graph.number(0)
+                        : half         ? graph.add(whole, graph.number(0.5))
+                                       : whole;
+        if (moves)
+            border = graph.add(
+                border,
+                graph.mul(graph.number(group.is_angle ? -sign_of(side) : sign_of(side)), little));
+        const auto put = [&](NodeId node, NodeId value) {
+            if (!graph.is_constant(node))
+                into.known[node] = with_component(graph, node, group.component, value);
+        };
+        if (auto at = solved(graph, component_of(graph, group.turning, group.component), border))
+            into.known[at->vector] = with_component(graph, at->vector, at->component, at->value);
+        put(group.turning, border);
+        for (NodeId step : group.steps)
+            if (graph[step].op == Op::Mod)
+                put(graph.arg(step, 0),
+                    graph.mul(border, component_of(graph, graph.arg(step, 1), group.component)));
     }
-    assert(op == Op::Atan2); // the last that is_step knows
-    return graph.number(after ? -std::numbers::pi : std::numbers::pi);
+
+    bool is_own(NodeId step, int component) const {
+        return component == group.component &&
+               std::find(group.steps.begin(), group.steps.end(), step) != group.steps.end();
+    }
+
+    // The argument of a step that rounds; nothing where it depends on more than the border.
+    std::optional<Near> near(NodeId step, int component, int depth) {
+        if (is_own(step, component)) return Near{1, half ? 0.5 : 0, sign_of(side)};
+        NodeId t = part(moving, step, 0, component, depth);
+        if (graph[step].op == Op::Mod) t = graph.div(t, part(moving, step, 1, component, depth));
+        const auto sum = combination(graph, t, std::array{whole, little, little_angle});
+        if (!sum) return {};
+        const auto &c = *sum;
+        // of two infinitesimals none is known to be the greater
+        if (std::floor(c[0]) != c[0] || c[1] * c[2] < 0) return {};
+        return Near{c[0], c[3], c[1] + c[2]};
+    }
+    NodeId part(Canonical &of, NodeId step, int arg, int component, int depth) {
+        return component_of(graph, of.of(graph.arg(step, arg), depth + 1), component);
+    }
+
+    // Numbers that are whole but for rounding are whole. Where angles are cut pi may have been
+    // written with few digits, and no evaluator tells 1e-9 from 0; near 0 others do.
+    double snapped(double x) const {
+        const double nearest = std::round(x), rounding = group.is_angle ? 1e-9 : 1e-13;
+        return std::fabs(x - nearest) > rounding ? x : nearest;
+    }
+    // floor(number + slope * the infinitesimal)
+    double floor_of(double number, double slope) const {
+        const double x = snapped(number);
+        return std::floor(x) == x && slope < 0 && side != Side::At ? x - 1 : std::floor(x);
+    }
+
+    NodeId value(NodeId step, int component, bool moves, int depth) {
+        const Op op = graph[step].op;
+        if (op == Op::Atan2) return angle(step, component, moves, depth);
+        const auto t = near(step, component, depth);
+        if (!t) return unknown_of(step, component, depth);
+        const NodeId multiple = graph.mul(graph.number(t->times), whole);
+        const auto rest = [&] { // t - floor(t)
+            const NodeId left = graph.number(snapped(t->number) - floor_of(t->number, t->slope));
+            return moves ? graph.add(left, graph.mul(graph.number(t->slope), little)) : left;
+        };
+        const auto floored = [&](double number, double slope) {
+            return graph.number(floor_of(number, slope));
+        };
+        if (op == Op::Floor) return graph.add(multiple, floored(t->number, t->slope));
+        if (op == Op::Round) return graph.add(multiple, floored(t->number + 0.5, t->slope));
+        if (op == Op::Ceil) return graph.sub(multiple, floored(-t->number, -t->slope));
+        if (op == Op::Fract) return rest();
+        assert(op == Op::Mod); // the last that is_step knows
+        return graph.mul(rest(), part(moves ? moving : limit, step, 1, component, depth));
+    }
+
+    // The angle that is cut here; of any other nothing is known.
+    NodeId angle(NodeId step, int component, bool moves, int depth) {
+        if (!group.is_angle || !is_own(step, component)) return unknown_of(step, component, depth);
+        const bool after = side == Side::After;
+        NodeId out = graph.number(after ? -std::numbers::pi : std::numbers::pi);
+        if (moves) out = graph.add(out, after ? little_angle : graph.neg(little_angle));
+        return out;
+    }
+
+    // Of steps that hang on other steps alone, the value is what it says; else anything, one for
+    // equal arguments.
+    NodeId unknown_of(NodeId step, int component, int depth) {
+        std::vector<NodeId> args;
+        std::vector<std::uint32_t> key{static_cast<std::uint32_t>(graph[step].op)};
+        bool moves = false;
+        for (int i = 0; i < int(graph[step].count); ++i) {
+            args.push_back(limit.scalar(part(limit, step, i, component, depth)));
+            key.push_back(args.back().index);
+            moves = moves || graph.reads(args.back()).point ||
+                    reads_little(part(moving, step, i, component, depth));
+        }
+        if (!moves) return graph.make(graph[step].op, ir::Type::Float, args, graph[step].payload);
+        const auto [it, fresh] = unknown.try_emplace(key);
+        if (fresh) it->second = graph.fresh_var(ir::Type::Float);
+        return it->second;
+    }
+    bool reads_little(NodeId id) const {
+        for (NodeId var : graph.free_vars(id))
+            if (var == little || var == little_angle) return true;
+        return false;
+    }
+};
+
+NodeId Canonical::step(NodeId id, const ir::Node &node, int depth) {
+    std::vector<NodeId> parts;
+    for (int i = 0; i < ir::components(node.type); ++i)
+        parts.push_back(border->value(id, i, moving, depth));
+    failed = failed || border->limit.failed || border->moving.failed;
+    return parts.size() == 1 ? scalar(parts[0]) : graph.make(Op::Make, node.type, parts);
 }
 
 bool cancels(Graph &graph, NodeId root, const Group &group) {
-    const NodeId whole = graph.make(Op::ToFloat, ir::Type::Float, {graph.fresh_var(ir::Type::Int)});
+    const NodeId whole = graph.make(Op::ToFloat, ir::Type::Float, {graph.fresh_var(ir::Type::Int)}),
+                 little = graph.fresh_var(ir::Type::Float),
+                 little_angle = graph.fresh_var(ir::Type::Float);
     bool halves = false, wholes = false;
     for (NodeId step : group.steps) (graph[step].op == Op::Round ? halves : wholes) = true;
     for (const bool half : {false, true}) {
         if (half ? !halves : !wholes) continue;
-        NodeId border = half ? graph.add(whole, graph.number(0.5)) : whole;
-        if (group.is_angle) border = graph.number(0);
-        auto side = [&](bool after) {
-            ir::Substitution map;
-            auto put = [&](NodeId node, NodeId value) {
-                if (!graph.is_constant(node))
-                    map[node] = with_component(graph, node, group.component, value);
-            };
-            if (auto at =
-                    solved(graph, component_of(graph, group.turning, group.component), border))
-                map[at->vector] = with_component(graph, at->vector, at->component, at->value);
-            put(group.turning, border);
-            for (NodeId mod : group.steps)
-                if (graph[mod].op == Op::Mod)
-                    put(graph.arg(mod, 0),
-                        graph.mul(border, component_of(graph, graph.arg(mod, 1), group.component)));
-            for (NodeId step : group.steps)
-                put(step, limit(graph, step, group.component, whole, half, after));
-            return ir::substitute(graph, root, map);
-        };
-        Canonical one{graph};
-        const NodeId left = one.of(side(false)), right = one.of(side(true));
-        if (one.failed || !same(graph, left, right)) return false;
+        std::map<std::vector<std::uint32_t>, NodeId> unknown;
+        std::vector<NodeId> sides;
+        for (const Side side : {Side::Before, Side::At, Side::After}) {
+            Border border{graph, group, whole, little, little_angle, unknown, half, side};
+            border.enter(border.limit, false);
+            border.enter(border.moving, true);
+            sides.push_back(border.limit.of(root));
+            if (border.limit.failed || border.moving.failed) return false;
+            if (sides.size() > 1 && !same(graph, sides.front(), sides.back())) return false;
+        }
     }
     return true;
 }
@@ -227,6 +335,23 @@ std::vector<NodeId> reached(const Graph &graph, NodeId root, bool enter_calls) {
             todo.push_back(graph.function(ir::FunctionId{graph[id].payload}).result);
         for (NodeId a : graph.args(id)) todo.push_back(a);
     }
+    return out;
+}
+
+// All that the body of a loop is made of, the loops in it included.
+std::vector<NodeId> in_body(const Graph &graph, NodeId loop) {
+    std::vector<NodeId> out;
+    const ir::Fold fold = graph.fold(ir::FoldId{graph[loop].payload});
+    std::vector<NodeId> roots = fold.next;
+    roots.push_back(fold.count);
+    if (fold.condition) roots.push_back(fold.condition);
+    for (NodeId root : roots)
+        for (NodeId id : reached(graph, root, true)) {
+            out.push_back(id);
+            if (graph[id].op != Op::Fold) continue;
+            const std::vector<NodeId> inner = in_body(graph, id);
+            out.insert(out.end(), inner.begin(), inner.end());
+        }
     return out;
 }
 
@@ -268,6 +393,9 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
     for (const auto &[key, group] : groups)
         if (!cancels(graph, root, group))
             for (NodeId step : group.steps) steps.erase(step);
+    for (NodeId id : nodes) // in a loop's body no border is entered
+        if (graph[id].op == Op::Fold)
+            for (NodeId inside : in_body(graph, id)) steps.erase(inside);
     return steps;
 }
 

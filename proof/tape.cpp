@@ -26,7 +26,6 @@ enum class Look : std::uint8_t {
     LoopResult,
     Sum,
     Root,
-    Logarithm,
     Length,
     Product,
     Quotient,
@@ -43,8 +42,6 @@ constexpr ir::OpTable<Look> look_of_op{
     {Op::Add, Look::Sum},
     {Op::Sqrt, Look::Root},
     {Op::Pow, Look::Root},
-    {Op::Log, Look::Logarithm},
-    {Op::Log2, Look::Logarithm},
     {Op::Length, Look::Length},
     {Op::Mul, Look::Product},
     {Op::Div, Look::Quotient},
@@ -82,6 +79,11 @@ struct Flattener {
         return static_cast<Slot>(tape.first.size() - 1);
     }
 
+    // Leaves single precision for arguments as scenes have them.
+    static bool grows(Op op) {
+        return op == Op::Exp || op == Op::Exp2 || op == Op::Sinh || op == Op::Cosh || op == Op::Pow;
+    }
+
     Slot emit(Scope &scope, Instruction instruction) {
         if (++count > most_instructions) tape.too_large = true;
         for (Slot s : instruction.args) instruction.varies = instruction.varies || varies[s];
@@ -90,6 +92,7 @@ struct Flattener {
         if (instruction.op == Op::Make || instruction.form == Form::Norm)
             instruction.groups = supports.groups(instruction.args);
         supports.follow(instruction);
+        tape.grows = tape.grows || grows(instruction.op);
         bool hoisted = !scope.loop && !instruction.varies;
         (hoisted ? tape.once : *scope.block).push_back(std::move(instruction));
         return out;
@@ -355,11 +358,19 @@ struct Flattener {
                     out.cancels = out.cancels || cancelling.contains(arg);
                 return emit(scope, out);
             }
-            if (auto smooth = smooth_extremum(graph, id);
-                smooth && !varies[slot(scope, smooth->k)]) {
+            if (auto smooth = smooth_extremum(graph, id); smooth &&
+                                                          !varies[slot(scope, smooth->k)] &&
+                                                          !varies[slot(scope, smooth->divisor)]) {
                 out.form = Form::Smooth;
-                out.payload = (smooth->greater ? 1u : 0u) + (smooth->divides ? 2u : 0u);
+                out.payload = (smooth->greater ? 1u : 0u) + (smooth->divides ? 2u : 0u) +
+                              (smooth->clipped ? 4u : 0u);
                 out.args = {slot(scope, smooth->x), slot(scope, smooth->y), slot(scope, smooth->k)};
+                return emit(scope, out);
+            }
+            if (const auto sum = log_sum(graph, id)) {
+                out.form = Form::LogSum;
+                out.op = sum->log;
+                out.args = {slot(scope, sum->a), slot(scope, sum->b)};
                 return emit(scope, out);
             }
             if (ir::is_vector(node.type)) {
@@ -377,13 +388,6 @@ struct Flattener {
             if (auto parts = norm_parts(id)) {
                 out.form = Form::Norm;
                 for (NodeId part : *parts) out.args.push_back(slot(scope, part));
-                return emit(scope, out);
-            }
-            break;
-        case Look::Logarithm:
-            if (const auto terms = log_of_exponentials(graph, id); !terms.empty()) {
-                out.form = Form::LogSum;
-                for (NodeId term : terms) out.args.push_back(slot(scope, term));
                 return emit(scope, out);
             }
             break;

@@ -24,8 +24,8 @@ enum class Form : std::uint8_t {
     Corner,   // |max(v, 0)| + min(greatest of v, 0): the distance to a corner, 1-Lipschitz in v
     Square,   // x*x, never negative
     OddPower, // x*|x|^c, c > 0, whose slope (c + 1)*|x|^c is finite at 0 where that of |x|^c is not
-    Smooth,   // smooth_extremum: of x, y, k; payload: 1 for the greater, + 2 where k divides
-    LogSum,   // log(exp(a) + exp(b) + …)
+    Smooth,   // smooth_extremum: of x, y, k; payload: 1 greater + 2 divides + 4 clipped
+    LogSum,   // log(exp(a) + exp(b)); the op says of which base
     Joined,   // a Select whose arms were proved to agree on the border
     Loop,
 };
@@ -65,6 +65,7 @@ struct Tape {
     std::vector<std::uint8_t> size;   // by slot: how many
     std::uint32_t components = 0;
     Slot result = 0;
+    bool grows = false;     // some values may leave single precision
     bool too_large = false; // the field was cut off while flattening; nothing may be concluded
     std::size_t length() const;
 };

@@ -55,6 +55,7 @@ void Prover::run() {
             ranges.vars[graph[repetition.id].payload] = id;
         }
     }
+    test_conditions();
     find_places();
     know_caches(); // before the shapes that read them
     for (std::size_t i = 0; i < count; ++i) {

@@ -293,6 +293,9 @@ void check_names(Evaluator &ev, const File &ast, std::uint32_t module_frame);
 
 // -- report.cpp
 Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message);
+// What has to hold for all params and times; the proof says whether it does. What reads the point is
+// the field's own: the proof looks at that as it is.
+void require(Evaluator &ev, ir::NodeId condition, Span place, std::string wanted);
 bool is_library_place(const Evaluator &ev, Span span); // or no place at all
 std::string describe(const Evaluator &ev,
                      const Value &value); // "a float", "a list of 3", "a shape"

@@ -14,8 +14,43 @@ bool is_library_place(const Evaluator &ev, Span span) {
     return false;
 }
 
-// An error inside the library is the caller's: it is shown at the innermost call that the user
+namespace {
+
+// Where something is shown, and of which call of the user's it is true.
+struct Shown {
+    Span at, of_call;
+    std::string_view inside, called;
+};
+
+// What is wrong inside the library is the caller's: it is shown at the innermost call that the user
 // wrote.
+Shown shown(const Evaluator &ev, Span place) {
+    auto of_library = [&](Span span) { return is_library_place(ev, span); };
+    Shown out{place, {}, {}, {}};
+    const bool in_library = of_library(place);
+    for (std::size_t i = ev.calls.size(); i-- > 0;) {
+        const ActiveCall &call = ev.calls[i];
+        if (of_library(call.call)) continue;
+        if (in_library) {
+            out.at = call.call, out.inside = call.name;
+            break;
+        }
+        // a generic body is wrong only for this call: say which
+        if (call.library || call.name.empty() || call.call == place) continue;
+        out.of_call = call.call, out.called = call.name;
+        break;
+    }
+    return out;
+}
+
+std::string with_place(std::string message, std::string_view inside) {
+    if (!inside.empty() && message.find(fmt::format("`{}`", inside)) == std::string::npos)
+        message += fmt::format(", in `{}`", inside);
+    return message;
+}
+
+} // namespace
+
 Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message) {
     static thread_local Diagnostic swallowed;
     if (code_severity(code) == Severity::Error && ev.quiet > 0) {
@@ -23,43 +58,32 @@ Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message) {
         swallowed = {};
         return swallowed;
     }
-    auto of_library = [&](Span span) { return is_library_place(ev, span); };
     if (ev.quiet > 0) {
         swallowed = {};
         return swallowed;
     }
-    // Where it is shown, and of which call of the user's it is true.
-    Span shown = place, of_call;
-    std::string_view inside, called;
-    const bool in_library = of_library(place);
-    for (std::size_t i = ev.calls.size(); i-- > 0;) {
-        const ActiveCall &call = ev.calls[i];
-        if (of_library(call.call)) continue;
-        if (in_library) {
-            shown = call.call, inside = call.name;
-            break;
-        }
-        // a generic body is wrong only for this call: say which
-        if (call.library || call.name.empty() || call.call == place) continue;
-        of_call = call.call, called = call.name;
-        break;
-    }
+    const Shown where = shown(ev, place);
     // In a loop the same thing is wrong in every turn.
-    const std::array<std::uint32_t, 6> key{static_cast<std::uint32_t>(code),
-                                           shown.source.index,
-                                           shown.begin,
-                                           shown.end,
-                                           of_call.source.index,
-                                           of_call.begin};
+    const std::array<std::uint32_t, 6> key{
+        static_cast<std::uint32_t>(code), where.at.source.index, where.at.begin, where.at.end,
+        where.of_call.source.index,       where.of_call.begin};
     if (code_severity(code) != Severity::Note && !ev.reported.insert(key).second) {
         swallowed = {};
         return swallowed;
     }
-    if (!inside.empty() && message.find(fmt::format("`{}`", inside)) == std::string::npos)
-        message += fmt::format(", in `{}`", inside);
-    Diagnostic &d = ev.diagnostics.add(code, shown, std::move(message));
-    if (!called.empty()) d.label(of_call, fmt::format("in this call of `{}`", called));
+    Diagnostic &d =
+        ev.diagnostics.add(code, where.at, with_place(std::move(message), where.inside));
+    if (!where.called.empty())
+        d.label(where.of_call, fmt::format("in this call of `{}`", where.called));
     return d;
+}
+
+void require(Evaluator &ev, ir::NodeId condition, Span place, std::string wanted) {
+    const ir::Graph::Reads reads = ev.scene.graph.reads(condition);
+    if (ev.quiet > 0 || reads.point || reads.normal || reads.direction) return;
+    const Shown where = shown(ev, place);
+    ev.scene.conditions.push_back(
+        {condition, where.at, with_place(std::move(wanted), where.inside)});
 }
 
 static const char *vector_name(int size) {

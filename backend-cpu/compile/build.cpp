@@ -121,8 +121,13 @@ Values FunctionBuilder::node(Frame &frame, NodeId id) {
     if (node.op != Op::FoldResult) // anywhere else a Fold stands for its first carried value
         for (std::size_t k = 0; k < args.size(); ++k)
             args[k].resize(static_cast<std::size_t>(components(types[k])));
+    // Where one coordinate is a point's own, all are: what is read is not asked which are shared.
     auto data = [&](InstructionKind kind) {
-        return builder_.instruction(kind, node.payload, args[0], scalar_types(node.type));
+        Values at = args[0];
+        const auto shared = [&](Value v) { return code_.values[v].shared; };
+        if (!std::ranges::all_of(at, shared))
+            for (Value &v : at) v = builder_.spread(v);
+        return builder_.instruction(kind, node.payload, at, scalar_types(node.type));
     };
 
     if (node.op == Op::Const) {

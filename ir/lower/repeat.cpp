@@ -119,6 +119,14 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
         }
     }
 
+    // What holds a copy, about the middle of its cell.
+    Box held = known.repeat.copy;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (repetition.mirrored && repetition.along[i]) { // a copy or its reflection
+            held.hi[i] = std::max(-held.lo[i], held.hi[i]);
+            held.lo[i] = -held.hi[i];
+        }
+
     // The copy whose offset from the first asked is k, along each axis.
     const auto copy = [&](const std::array<NodeId, 3> &k) {
         std::vector<NodeId> q;
@@ -142,7 +150,11 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
         const NodeId point = g.make(Op::Make, vector_type(dims), q);
         const Where there =
             bind(at(frame, point), repetition.id, g.make(Op::Make, Type::Vec3, cell_id));
-        return ask(reading, s.children.front(), there);
+        const NodeId value = ask(reading, s.children.front(), there);
+        if (!known.repeat.hold) return value;
+        return at_distance(
+            reading, value,
+            g.make(Op::Max, {distance_of(reading, value), box_distance(g, held, point)}));
     };
 
     NodeId result;
@@ -176,12 +188,6 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
     // The copies that were not asked lie, along some axis, beyond the first or the last asked. Each
     // side's are held by a box that is bounded there by the nearest of them, and elsewhere by what
     // all copies together extend to.
-    Box held = known.repeat.copy;
-    for (std::size_t i = 0; i < 3; ++i)
-        if (repetition.mirrored && repetition.along[i]) { // a copy or its reflection
-            held.hi[i] = std::max(-held.lo[i], held.hi[i]);
-            held.lo[i] = -held.hi[i];
-        }
     const auto outside =
         [&](int i) -> NodeId { // how far p is beyond all copies along axis i; invalid: never
         const Axis &a = axes[static_cast<std::size_t>(i)];

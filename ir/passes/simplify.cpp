@@ -90,6 +90,43 @@ NodeId simple_make(Graph &graph, Type type, std::span<const NodeId> args) {
     return {};
 }
 
+// sin(u)/u is 1 at 0, and not 0/0: u is taken no nearer to it than sin(u)/u is 1 in single
+// precision.
+NodeId sine_ratio(Graph &graph, NodeId u) {
+    const Type type = graph[u].type;
+    const NodeId least = graph.splat(graph.number(1e-3), type);
+    if (graph[u].op == Op::Max && (graph.arg(u, 0) == least || graph.arg(u, 1) == least)) return {};
+    const NodeId off = graph.make(Op::Max, type, {graph.make(Op::Abs, type, {u}), least});
+    return graph.make(Op::Div, type, {graph.make(Op::Sin, type, {off}), off});
+}
+
+bool exponents_of(const Graph &graph, NodeId sum, Op exponential, std::vector<NodeId> &out) {
+    if (graph[sum].op == exponential)
+        out.push_back(graph.arg(sum, 0));
+    else if (graph[sum].op != Op::Add)
+        return false;
+    else
+        return exponents_of(graph, graph.arg(sum, 0), exponential, out) &&
+               exponents_of(graph, graph.arg(sum, 1), exponential, out);
+    return true;
+}
+// log(exp(a) + exp(b) + …), two by two as max(a, b) + log(1 + exp(-|a - b|)): the exponentials of
+// numbers beyond 88 have no place in single precision.
+NodeId log_of_exponentials(Graph &graph, Op log, Type type, NodeId sum) {
+    const Op exponential = log == Op::Log ? Op::Exp : Op::Exp2;
+    std::vector<NodeId> terms;
+    if (!exponents_of(graph, sum, exponential, terms)) return {};
+    NodeId all = terms.front();
+    const NodeId one = graph.splat(graph.number(1), type);
+    for (std::size_t i = 1; i < terms.size(); ++i) {
+        const NodeId way = graph.make(Op::Abs, type, {graph.sub(all, terms[i])});
+        const NodeId rest = graph.make(exponential, type, {graph.neg(way)});
+        all = graph.add(graph.make(Op::Max, type, {all, terms[i]}),
+                        graph.make(log, type, {graph.add(one, rest)}));
+    }
+    return all;
+}
+
 bool is_identity(const Constant &matrix) {
     const int n = side(matrix.type);
     for (int c = 0; c < n; ++c)
@@ -163,6 +200,7 @@ NodeId simple_mul(const Made &n) {
 
 NodeId simple_div(const Made &n) {
     if (n.is(1, 1)) return n.args[0];
+    if (n.op_of(0) == Op::Sin && n.inside(0) == n.args[1]) return sine_ratio(n.graph, n.args[1]);
     if (n.is(1, -1)) return n.make(Op::Neg, {n.args[0]});
     if (n.whole() || !n.graph.is_constant(n.args[1]) || n.graph.is_constant(n.args[0])) return {};
     // By a power of two exactly, else division stays: it rounds once.
@@ -175,6 +213,8 @@ NodeId simple_div(const Made &n) {
     }
     return n.make(Op::Mul, {n.args[0], n.graph.constant(inverse)});
 }
+
+NodeId simple_log(const Made &n) { return log_of_exponentials(n.graph, n.op, n.type, n.args[0]); }
 
 NodeId simple_pow(const Made &n) {
     const NodeId x = n.args[0];
@@ -275,6 +315,8 @@ constexpr OpTable<Rule> rules{
     {Op::MatMul, simple_product},
     {Op::Transpose, twice},
     {Op::Length, length_of_number},
+    {Op::Log, simple_log},
+    {Op::Log2, simple_log},
     {Op::FoldResult, [](const Made &n) { return n.payload == 0 ? n.args[0] : NodeId{}; }},
     {Op::Union, only_one},
     {Op::Intersection, only_one},

@@ -123,6 +123,48 @@ TEST_CASE("images and grids: the tape samples by the rule") {
     CHECK(worst < 1e-5);
 }
 
+TEST_CASE("images and grids: a coordinate may be the same for all points") {
+    const Asked ask = [] {
+        ir::Scene scene;
+        add_data(scene);
+        return asked(scene);
+    }();
+    const std::array<float, 3> held{0.3f, 0.6f, 0.8f};
+    for (int which = 1; which < 8; ++which) { // a bit for each coordinate that is held
+        ir::Scene scene;
+        add_data(scene);
+        ir::Graph &g = scene.graph;
+        const NodeId p = g.fresh_var(Type::Vec3);
+        std::vector<NodeId> parts;
+        for (int k = 0; k < 3; ++k)
+            parts.push_back(which >> k & 1 ? g.number(held[static_cast<std::size_t>(k)])
+                                           : g.component(p, k));
+        const std::vector<NodeId> results = readings(g, g.make(Op::Make, Type::Vec3, parts));
+        const cpu::Program program = cpu::compile(scene, std::span(&p, 1), results);
+        cpu::Scratch scratch = cpu::make_scratch(program, {});
+        const std::size_t n = ask.points.size();
+        std::vector<std::vector<float>> in(3, std::vector<float>(n)), out(5, std::vector<float>(n));
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t k = 0; k < 3; ++k) in[k][i] = ask.points[i][k];
+        const float *from[] = {in[0].data(), in[1].data(), in[2].data()};
+        float *to[] = {out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data()};
+        cpu::evaluate(program, scratch, from, to, n);
+        double worst = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            std::array<double, 3> at{};
+            for (std::size_t k = 0; k < 3; ++k)
+                at[k] = which >> k & 1 ? double(held[k]) : double(ask.points[i][k]);
+            for (int c = 0; c < 4; ++c)
+                worst = std::max(worst, std::abs(double(out[static_cast<std::size_t>(c)][i]) -
+                                                 image_by_rule(scene.images[0], at[0], at[1], c)));
+            worst = std::max(worst, std::abs(double(out[4][i]) -
+                                             grid_by_rule(scene.grids[0], at[0], at[1], at[2])));
+        }
+        INFO("held: " << which);
+        CHECK(worst < 1e-5);
+    }
+}
+
 TEST_CASE("images and grids: a shader samples by the rule") {
     require_context();
     ir::Scene data;

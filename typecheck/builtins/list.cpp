@@ -262,40 +262,17 @@ static Value assert_call(Evaluator &ev, const CallSite &site, std::vector<Value>
 }
 
 // The library's own refusal: an error at the user's call.
-// A condition on params is tested where all of them stand at one end of their ranges: sizes and
-// counts, which are what such conditions ask about, are worst there.
-static bool holds_at_the_ends(Evaluator &ev, ir::NodeId condition) {
-    ir::Graph::Reads reads = ev.scene.graph.reads(condition);
-    if (!reads.params || reads.point || reads.normal || reads.direction || reads.time ||
-        reads.free_vars)
-        return true;
-    std::vector<ir::Param> kept = ev.scene.params;
-    bool holds = true;
-    for (bool low : {true, false}) {
-        for (ir::Param &param : ev.scene.params)
-            if (param.has_range) param.value = low ? param.lo : param.hi;
-        holds = holds && ir::value_of(ev.scene, condition, 0)[0] != 0;
-    }
-    ev.scene.params = std::move(kept);
-    return holds;
-}
-
 static Value check_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+    const std::string wanted = args[1].kind == ValueKind::String ? ev.strings[args[1].id]
+                                                                 : "this argument cannot be taken";
     if (is_numeric(args[0]) && args[0].kind == ValueKind::Field) {
-        if (!holds_at_the_ends(ev, to_node(ev, args[0])))
-            report(ev, Code::DegenerateRange, site.call,
-                   "at an end of a param's range " + (args[1].kind == ValueKind::String
-                                                          ? ev.strings[args[1].id]
-                                                          : "this argument cannot be taken"))
-                .help("let the range begin a little further in");
+        require(ev, to_node(ev, args[0]), site.call, wanted);
         return unit();
     }
     auto holds = want_known_bool(ev, args[0], site.arg(0), "this");
     if (!holds) return poison();
     if (!*holds) {
-        report(ev, Code::BadArgument, site.call,
-               args[1].kind == ValueKind::String ? ev.strings[args[1].id]
-                                                 : "this argument cannot be taken");
+        report(ev, Code::BadArgument, site.call, wanted);
         return poison();
     }
     return unit();

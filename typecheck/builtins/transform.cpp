@@ -385,13 +385,18 @@ static Value region_value(Evaluator &ev, ir::Region region) {
 }
 
 static bool positive_sizes(Evaluator &ev, const CallSite &site, ir::NodeId node, std::size_t i) {
-    if (!ev.scene.graph.is_constant(node)) return true;
-    const ir::Constant &c = ev.scene.graph.constant_of(node);
-    for (int k = 0; k < ir::components(c.type); ++k)
-        if (!(c.value[std::size_t(k)] > 0)) {
-            report(ev, Code::BadArgument, site.arg(i), "a region needs a size above 0");
+    ir::Graph &g = ev.scene.graph;
+    const std::string wanted = "a region needs a size above 0";
+    for (int k = 0; k < ir::components(g.type(node)); ++k) {
+        const ir::NodeId part = ir::components(g.type(node)) > 1 ? g.component(node, k) : node;
+        const std::optional<double> number = g.as_number(part);
+        if (!number) {
+            require(ev, g.make(Op::Less, {g.number(0), part}), site.arg(i), wanted);
+        } else if (!(*number > 0)) {
+            report(ev, Code::BadArgument, site.arg(i), wanted);
             return false;
         }
+    }
     return true;
 }
 

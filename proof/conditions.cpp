@@ -1,0 +1,172 @@
+// What library functions ask of arguments that hang on params, time and the ids of copies: proved
+// with intervals, by halving the ranges. Proofs: docs/lipschitz.md, 9.
+#include "ir/passes/walk.h"
+#include "proof/continuity.h"
+#include "proof/prover.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace fathom::proof {
+
+using ir::NodeId;
+using ir::Op;
+
+namespace {
+
+constexpr int most_boxes = 4096;
+constexpr double grain = 1e-6; // by this much an order may be missed: a size is 0 there at worst
+
+// One number that a condition hangs on: a component of a variable that stands for a param, or time,
+// for which the point's first coordinate stands.
+struct Unknown {
+    bool time = false;
+    std::uint32_t variable = 0;
+    std::size_t component = 0;
+    bool whole = false;
+    Interval range;
+};
+
+struct Closed {
+    NodeId holds; // over variables
+    std::vector<Unknown> unknowns;
+    bool endless = false; // a param has no range; that is said elsewhere
+};
+
+Closed closed(const ir::Scene &scene, ir::Graph &graph, Interval time, NodeId condition) {
+    Closed out;
+    ir::Substitution map;
+    std::vector<NodeId> todo{condition};
+    std::set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        const ir::Node node = graph[id];
+        for (NodeId arg : graph.args(id)) todo.push_back(arg);
+        if (node.op == Op::Time) {
+            map[id] = graph.component(graph.point(), 0);
+            out.unknowns.push_back({true, 0, 0, false, time});
+        }
+        if (node.op != Op::Param) continue;
+        const NodeId variable = graph.fresh_var(node.type);
+        map[id] = variable;
+        for (int i = 0; i < ir::components(node.type); ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            const ir::Param &param = scene.params[node.payload];
+            const bool unit = param.is_color || node.type == ir::Type::Bool,
+                       whole = node.type == ir::Type::Int || node.type == ir::Type::Bool;
+            out.endless = out.endless || (!param.has_range && !unit);
+            out.unknowns.push_back(
+                {false, graph[variable].payload, k, whole,
+                 param.has_range ? Interval(param.lo[k], param.hi[k]) : Interval(0, 1)});
+        }
+    }
+    out.holds = ir::substitute(graph, condition, map);
+    return out;
+}
+
+// The same condition with orders that may be missed by a grain; what must not be equal must not.
+NodeId nearly(ir::Graph &graph, NodeId condition) {
+    const ir::Node node = graph[condition];
+    const auto arg = [&](int i) { return graph.arg(condition, i); };
+    const auto ordered = [&](NodeId less, NodeId more) {
+        if (graph[less].type != ir::Type::Float) return condition;
+        return graph.make(Op::LessEqual, {less, graph.add(more, graph.number(grain))});
+    };
+    if (node.op == Op::Less || node.op == Op::LessEqual) return ordered(arg(0), arg(1));
+    if (node.op == Op::And || node.op == Op::Or)
+        return graph.make(node.op, {nearly(graph, arg(0)), nearly(graph, arg(1))});
+    if (node.op == Op::Not && (graph[arg(0)].op == Op::Less || graph[arg(0)].op == Op::LessEqual))
+        return ordered(graph.arg(arg(0), 1), graph.arg(arg(0), 0));
+    return condition;
+}
+
+// Terms that stand on both sides of an order leave each other.
+NodeId in_differences(ir::Graph &graph, NodeId condition) {
+    const ir::Node node = graph[condition];
+    const auto arg = [&](int i) { return graph.arg(condition, i); };
+    if (node.op == Op::And || node.op == Op::Or)
+        return graph.make(node.op, {in_differences(graph, arg(0)), in_differences(graph, arg(1))});
+    if (node.op == Op::Not) return graph.make(node.op, {in_differences(graph, arg(0))});
+    if ((node.op != Op::Less && node.op != Op::LessEqual) || graph[arg(0)].type != ir::Type::Float)
+        return condition;
+    const auto way = difference(graph, arg(1), arg(0));
+    return way ? graph.make(node.op, {graph.number(0), *way}) : condition;
+}
+
+// Is it true for all values? The box that is not decided is halved along its longest side.
+bool always(Flattening &flattening, Ranges &ranges, NodeId condition,
+            const std::vector<Unknown> &unknowns) {
+    const Tape tape = flatten(flattening, condition);
+    if (tape.too_large) return false;
+    const double period = periods_of(tape, flattening.graph).period[0];
+    std::vector<Interval> all;
+    for (const Unknown &one : unknowns) {
+        all.push_back(one.range);
+        if (one.time && period > 0 && all.back().width() > period)
+            all.back().hi = all.back().lo + period * (1 + 1e-9);
+    }
+    std::vector<std::vector<Interval>> boxes{all};
+    for (int asked = 0; !boxes.empty(); ++asked) {
+        if (asked == most_boxes) return false;
+        const std::vector<Interval> box = boxes.back();
+        boxes.pop_back();
+        Cell cell;
+        for (std::size_t i = 0; i < box.size(); ++i)
+            (unknowns[i].time ? cell.p[0]
+                              : ranges.vars[unknowns[i].variable][unknowns[i].component]) = box[i];
+        Machine machine(tape, ranges);
+        machine.run(cell);
+        if (machine.value(0).lo > 0.5) continue;
+        if (machine.value(0).hi < 0.5) return false;
+        std::size_t longest = 0;
+        double most = 0;
+        for (std::size_t i = 0; i < box.size(); ++i) {
+            const double part = box[i].width() / std::max(all[i].width(), 1e-300);
+            if (part > most) most = part, longest = i;
+        }
+        if (most < 1e-9) return false;
+        const double cut = box[longest].middle();
+        const bool whole = unknowns[longest].whole;
+        boxes.resize(boxes.size() + 2, box);
+        boxes.back()[longest].hi = whole ? std::floor(cut) : cut;
+        boxes[boxes.size() - 2][longest].lo = whole ? std::floor(cut) + 1 : cut;
+    }
+    return true;
+}
+
+} // namespace
+
+void Prover::test_conditions() {
+    std::set<std::pair<NodeId, std::uint32_t>> seen;
+    for (std::size_t i = 0; i < scene.conditions.size(); ++i) {
+        const ir::Condition condition = scene.conditions[i];
+        if (!seen.emplace(condition.holds, condition.at.begin).second) continue;
+        bool bound = true; // a loop's own variable is followed turn by turn
+        for (NodeId var : graph.free_vars(condition.holds))
+            bound = bound && ranges.vars.contains(graph[var].payload);
+        const Closed over = closed(scene, graph, ranges.time, condition.holds);
+        if (!bound || over.endless) continue;
+        const auto holds = [&](NodeId node) {
+            return always(flattening, ranges, node, over.unknowns) ||
+                   always(flattening, ranges, in_differences(graph, node), over.unknowns);
+        };
+        if (holds(over.holds)) continue;
+        if (holds(nearly(graph, over.holds)))
+            diagnostics
+                .add(Code::DegenerateRange, condition.at,
+                     "at an end of a param's range " + condition.wanted)
+                .help("let the range begin a little further in");
+        else
+            diagnostics
+                .add(Code::BadArgument, condition.at,
+                     condition.wanted + "; over all params and times it is not")
+                .help(
+                    "narrow the param's range, or hold the argument with `clamp`; the time that is "
+                    "covered ends at `render(time: …)`");
+    }
+}
+
+} // namespace fathom::proof

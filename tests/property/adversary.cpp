@@ -1,0 +1,550 @@
+// An adversary of the proof: random fields and shapes of the kinds that have been proved wrongly
+// before. Whatever the checker accepts is measured where such fields go wrong: on borders and next
+// to them, at 0, over params' ends and inside, over time. FATHOM_SCENES and FATHOM_SEED in the
+// environment make it longer, or another; FATHOM_SHOW says what each scene came to.
+#include "driver/compile.h"
+#include "ir/lower/lower.h"
+#include "tests/support/slopes.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+using namespace fathom;
+using namespace fathom::test;
+
+namespace {
+
+constexpr double reach = 2;
+
+// Shapes of the library with an argument that its conditions are about.
+constexpr std::array library = {
+    "sphere(@)",
+    "box([1, @, 1])",
+    "rounded_box([1, 1, 1], radius: @ * 0.5)",
+    "box_frame([1, 1, 1], thickness: @ * 0.5)",
+    "torus(1, @)",
+    "torus(@, 0.2)",
+    "capped_torus(1, 0.2, angle: @)",
+    "capped_torus(1, 0.2, angle: 3 * @)",
+    "capped_torus(@, 0.2, angle: 2)",
+    "link(1 + 2 * @, 0.4, 0.1)",
+    "link(3, @, 0.2)",
+    "link(3, 0.5, @)",
+    "cylinder(@, 1)",
+    "cylinder(1, @)",
+    "rounded_cylinder(0.7, 1.2, @)",
+    "capsule([-1, 0, 0], [1, 0.5, 0], radius: @)",
+    "capsule([-@, 0, 0], [@, 0, 0], radius: 0.3)",
+    "cone(@, 1)",
+    "cone(1, @)",
+    "capped_cone(@, @, 1)",
+    "capped_cone(@, 0.5, 1)",
+    "capped_cone(0.5, 0.2, @)",
+    "round_cone(@, 0.5, 2)",
+    "round_cone(0.5, 0.5 + @, 1)",
+    "round_cone(0.5, 0.3, @)",
+    "plane([@, 0, 0])",
+    "slab(@)",
+    "ellipsoid([1, @, 0.7])",
+    "superquadric([1, 0.8, 1], @, 1)",
+    "superquadric([1, 0.8, 1], 0.5, 2 * @)",
+    "superquadric([1, @, 1], 0.5, 1)",
+    "helix(@, 0.4, turns: 3, thickness: 0.15)",
+    "helix(0.8, @, turns: 3, thickness: 0.15)",
+    "helix(0.8, 0.4, turns: @, thickness: 0.15)",
+    "helix(0.8, 0.4, turns: 3, thickness: @)",
+    "tubes([[-1, 0, 0], [0, 0.5, 0], [1, 0, 0]], radius: @)",
+    "heightfield(q => sin(q.x) * cos(q.y), [@, 1], depth: 1)",
+    "heightfield(q => sin(q.x) * cos(q.y), [1, 1], depth: @)",
+    "circle(@).extrude(0.5)",
+    "ellipse([1, @]).extrude(0.5)",
+    "rectangle([@, 1]).extrude(0.5)",
+    "rounded_rectangle([1, 1], radius: @).extrude(0.5)",
+    "regular_polygon(5, @).extrude(0.5)",
+    "star(5, 1, @).extrude(0.4)",
+    "star(5, 0.3 + @, 0.3).extrude(0.4)",
+    "segment([-0.5, 0], [0.5, 0.2], thickness: @).extrude(0.4)",
+    "arc(1, @, thickness: 0.2).extrude(0.4)",
+    "arc(@, 2, thickness: 0.2).extrude(0.4)",
+    "ring(1, @).extrude(0.4)",
+    "bezier([-1, 0], [0, 1], [1, @], thickness: 0.2).extrude(0.4)",
+    "circle(1).extrude(@)",
+    "circle(1).extrude(1, taper: @)",
+    "rectangle([1, 0.5]).extrude(@, twist: 1)",
+    "circle(0.3).revolve(@)",
+    "prism(6, 0.8, @)",
+    "prism(6, @, 1)",
+    "pyramid([1, @, 1])",
+    "pyramid([@, 1, 1])",
+    "tetrahedron(@)",
+    "octahedron(@)",
+    "dodecahedron(@)",
+    "icosahedron(@)",
+    "gdf([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], radius: @, exponent: 12)",
+    "gdf_cube(0.8, exponent: 1 + @)",
+    "gdf_octahedron(0.8, exponent: @)",
+    "gdf_blend([X, Y, Z], [[1, 1, 1], [-1, 1, 1]], @, 0.5, radius: 0.8)",
+    "metaballs([[-0.6, 0, 0], [0.5, 0.1, 0], [0, 0.7, 0]], radius: @)",
+    "menger(@, iterations: 2)",
+    "gyroid(@, thickness: 0.1) & sphere(1.4)",
+    "gyroid(1, thickness: @) & sphere(1.4)",
+    "schwarz_p(@, thickness: 0.1) & sphere(1.4)",
+    "box(1).rotate(0.5, axis: [@, 0, 0])",
+    "box(1).orient(Y, [@, 0, 0])",
+    "box(1).scale(@)",
+    "sphere(1).scale([1, @, 0.8])",
+    "dfmodel.scale(sphere(0.5), @ + 0.5)",
+    "box([1, 1, 0.5]).reflect([@, 0, 0])",
+    "box(1).bend(0.3, axis: Y, towards: [@, 0, 0])",
+    "box([1, 1, 1]).taper(@)",
+    "sphere(0.5).elongate([@, 0, 0])",
+    "hyperize(sphere(1), 1 + @)",
+    "box(1).shell(@)",
+    "smooth_union(@) { sphere(0.7); sphere(0.5).translate(x: 0.8) }",
+    "round_union(@) { sphere(0.7); sphere(0.5).translate(x: 0.8) }",
+    "chamfer_difference(@) { box(1.6); cylinder(0.5, 3) }",
+    "stairs_union(@, 3) { box([2, 0.4, 2]); cylinder(0.5, 2) }",
+    "columns_union(@, 3) { box([2, 0.4, 2]); cylinder(0.5, 2) }",
+    "pipe(sphere(1), plane(Y, 0.3), @)",
+    "engrave(sphere(1), slab(0.6), @)",
+    "groove(sphere(1), slab(0.6), width: @, depth: 0.1)",
+    "groove(sphere(1), slab(0.6), width: 0.1, depth: @)",
+    "tongue(sphere(1), slab(0.6), width: @, depth: @)",
+    "blend(box(1.4), sphere(1), @)",
+    "pseudonorm_blend(sphere(0.6).translate(x: -0.5), sphere(0.6).translate(x: 0.5), 1 + @)",
+};
+
+class Adversary {
+  public:
+    explicit Adversary(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u + 1) {}
+
+    std::string scene(std::size_t kind) {
+        static constexpr std::array makers = {
+            &Adversary::truths,      &Adversary::steps,  &Adversary::lattice,
+            &Adversary::choices,     &Adversary::smooth, &Adversary::exponentials,
+            &Adversary::powers,      &Adversary::ratios, &Adversary::conditions,
+            &Adversary::repetitions, &Adversary::loops,  &Adversary::nested,
+            &Adversary::angles,      &Adversary::uses};
+        return (this->*makers[kind % makers.size()])();
+    }
+    static constexpr std::size_t kinds = 14;
+
+    double random() {
+        std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        return double((z ^ (z >> 31)) >> 11) * 0x1p-53;
+    }
+
+  private:
+    using Texts = std::initializer_list<const char *>;
+    std::size_t pick(std::size_t n) { return std::size_t(random() * double(n)); }
+    bool often() { return pick(2) == 0; }
+    std::string of(Texts texts) { return texts.begin()[pick(texts.size())]; }
+    static std::string number(double x) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.4g", x);
+        return text;
+    }
+    std::string between(double lo, double hi) { return number(lo + (hi - lo) * random()); }
+
+    // A linear form whose borders others share.
+    std::string linear() {
+        return "(" +
+               of({"p.x", "p.x + 1", "p.x - 1", "p.x + 0.5", "p.x - 0.5", "2 * p.x", "0.5 * p.x",
+                   "-p.x", "1 - p.x", "p.y", "p.x + p.y", "p.x - p.y", "3 * p.x + 1", "p.x / 0.25",
+                   "p.x + 1e-3", "p.x + time", "p.x + k", "p.x * 1.0000001"}) +
+               ")";
+    }
+    std::string flat() { // the point alone, smooth
+        return of({"p.x", "p.y", "p.z", "(p.x + p.y)", "sin(3 * p.x)", "cos(p.y)", "p.x * p.y",
+                   "length(p)", "(length(p) - 1)", "0.7", "time * 0.001", "k"});
+    }
+    std::string truth(int depth = 1) {
+        if (depth > 0 && pick(4) == 0) {
+            const std::string a = truth(depth - 1), b = truth(depth - 1);
+            return of({"(", "(not "}) + a + of({" and ", " or "}) + b + ")";
+        }
+        return "(" + (often() ? linear() : flat()) + of({" < ", " > ", " <= ", " >= "}) +
+               (often() ? "0" : flat()) + ")";
+    }
+    std::string step() {
+        const std::string u = linear();
+        switch (pick(9)) {
+        case 0: return "floor(" + u + ")";
+        case 1: return "ceil(" + u + ")";
+        case 2: return "round(" + u + ")";
+        case 3: return "fract(" + u + ")";
+        case 4: return "(" + u + " % 1)";
+        case 5: return "(" + u + " % 0.5)";
+        case 6: return "(" + u + " - round(" + u + "))";
+        case 7: return "(" + u + " - floor(" + u + "))";
+        default: return "hash(floor(" + u + "))";
+        }
+    }
+    // Continuous at its own borders, or nearly.
+    std::string tent() {
+        const std::string u = linear();
+        switch (pick(7)) {
+        case 0: return "abs(fract(" + u + ") - 0.5)";
+        case 1: return "abs(" + u + " - round(" + u + "))";
+        case 2: return "fract(" + u + ") * (1 - fract(" + u + "))";
+        case 3: return "sin(pi * fract(" + u + "))";
+        case 4: return "abs(" + u + " % 1 - 0.5)";
+        case 5: return "min(fract(" + u + "), 1 - fract(" + u + "))";
+        default: return "(ceil(" + u + ") - " + u + ") * (" + u + " - floor(" + u + "))";
+        }
+    }
+    std::string param() { return "param k = 0.5 in " + of({"0..1", "-1..1", "0.25..3"}) + "\n"; }
+    std::string field(const std::string &f) {
+        return param() + "implicit(p => " + of({"length(p) - 1", "p.y", "p.x + 0.3"}) +
+               " + 0.2 * (" + f + "), within: " +
+               of({"ball(2)", "aabb([-1.5, -1, -2], [1.5, 2, 1.5])", "everywhere"}) + ")\n";
+    }
+
+    std::string truths() {
+        const std::string number =
+            often() ? "float(" + truth() + ")" : "float(int(" + truth() + ") + 1)";
+        switch (pick(6)) {
+        case 0: return field(number);
+        case 1: return field("hash(vec2(" + number + ", 1))");
+        case 2: return field(flat() + " * " + number);
+        case 3: return field("noise(p + " + number + ")");
+        case 4: return field("mix(" + flat() + ", " + flat() + ", " + number + ")");
+        default: return param() + "sphere(1).displace(p => 0.1 * " + number + ")\n";
+        }
+    }
+    std::string steps() {
+        switch (pick(6)) {
+        case 0: return field(step() + " * " + step());
+        case 1: return field(step() + " * " + tent());
+        case 2: return field(tent() + " * " + tent());
+        case 3: return field(tent() + " + " + step() + " * " + tent());
+        case 4: return field("max(" + tent() + ", " + tent() + ") * " + step());
+        default: return field(step() + " * " + step() + " * " + step());
+        }
+    }
+    std::string lattice() {
+        const std::string u = linear(), v = often() ? u : linear(),
+                          at = of({"floor", "floor", "ceil", "round"}),
+                          next = of({" + 1", " + 1", " - 1", " + 2"});
+        const std::string f = often() ? "fract(" + v + ")" : "smoothstep(0, 1, fract(" + v + "))";
+        const std::string way = pick(4) == 0 ? "(1 - " + f + ")" : f;
+        std::string mixed = "mix(hash(" + at + "(" + u + ")), hash(" + at + "(" + u + ")" + next +
+                            "), " + way + ")";
+        if (pick(3) == 0) mixed += " * " + tent();
+        if (pick(3) == 0) mixed += of({" + ", " * "}) + step();
+        return field(mixed);
+    }
+    std::string choices() {
+        const std::string u = linear(), v = of({"0", "1", "0.5", "p.y"});
+        const std::string a = often() ? u : step(), b = often() ? v : step();
+        const std::string order = of({" < ", " <= ", " > "});
+        switch (pick(3)) {
+        case 0: return field("if " + u + order + v + " { " + a + " } else { " + b + " }");
+        case 1:
+            return field("if " + step() + order + of({"0.5", "0", "1"}) + " { " + tent() +
+                         " } else { " + tent() + " }");
+        default:
+            return field("if " + truth() + " { " + tent() + " } else { " + of({"0", "0.5"}) + " }");
+        }
+    }
+    std::string smooth() {
+        const std::string k = of({"0.9", "k", "0.2", "(k - 0.5)", "(0.5 + p.y * 0.1)", "-0.3"}),
+                          a = "(length(p) - 1)", b = of({"p.y", "p.x", "(length(p - X) - 0.5)"});
+        const std::string width = of({"max(", "max(", "("}),
+                          other = of({"0.001", "20 * abs(p.y)", "abs(p.x)", "2"});
+        const std::string below = width == "(" ? k : "max(" + k + ", " + other + ")";
+        const std::string h = "max(" + k + " - abs(" + a + " - " + b + "), 0)";
+        const std::string sum =
+            often() ? "min(" + a + ", " + b + ") - " : "max(" + a + ", " + b + ") + ";
+        const std::string body =
+            pick(3) == 0 ? "{ let h = clamp(0.5 + 0.5 * (" + b + " - " + a + ") / " + below +
+                               ", 0, 1)\n mix(" + b + ", " + a + ", h) - " + k + " * h * (1 - h) }"
+                         : "{ let h = " + h + "\n" + sum + "h * h / (4 * " + below + ") }";
+        return param() + "implicit(p => " + body + ", within: ball(2))\n";
+    }
+    std::string exponentials() {
+        const std::string n = of({"4", "32", "64", "200", "(30 * k)"}),
+                          u = n + " * " + of({"p.x", "(length(p) - 1)", "(length(p - X) - 0.5)"}),
+                          v = n + " * " + of({"p.y", "(length(p + X) - 0.5)", "p.x"});
+        const std::string within =
+            ", within: " + of({"ball(2)", "aabb([-4, -4, -4], [4, 4, 4])", "everywhere"}) + ")\n";
+        switch (pick(7)) {
+        case 0:
+            return param() + "implicit(p => -log(exp(-" + u + ") + exp(-" + v + ")) / " + n +
+                   within;
+        case 1:
+            return param() + "implicit(p => log2(exp2(" + u + ") + exp2(" + v + ")) / " + n +
+                   within;
+        case 2:
+            return param() + "implicit(p => exp(" + u + ") / (1 + exp(" + u + ")) - 0.5" + within;
+        case 3: return param() + "implicit(p => 1 / (1 + exp(-" + u + ")) - 0.5" + within;
+        case 4: return param() + "implicit(p => log(1 + exp(" + u + ")) - 0.5" + within;
+        case 5:
+            return param() + "implicit(p => log(exp(" + u + ") * exp(" + v + ")) - 0.5" + within;
+        default: return param() + "implicit(p => min(log(exp(" + u + ") + 1), 170) - 0.5" + within;
+        }
+    }
+    std::string powers() {
+        const std::string n = of({"2", "3", "7", "64", "65", "66", "101", "128", "0.5", "2.5", "-1",
+                                  "-3", "65.5", "2.00000001", "16777217"}),
+                          x = of({"p.x", "(p.x - 0.5)", "abs(p.x)", "(0.6 * p.x)", "(-p.y)",
+                                  "(p.x + 2.5)"});
+        return field("pow(" + x + ", " + n + ")" + of({"", " * 0.01", " * p.y"}));
+    }
+    std::string ratios() {
+        const std::string u = of({"p.x", "(5 * p.x)", "length(p)", "(p.x + p.y)", "(p.x * k)",
+                                  "p.x * p.y", "(length(p) - 1)"});
+        switch (pick(4)) {
+        case 0: return field("sin(" + u + ") / " + u);
+        case 1: return field("sin(" + u + ") / (" + u + " + 0.001)");
+        case 2: return field("length(p.xy) * sin(" + u + ") / (" + u + ")");
+        default: return field("p.y * sin(" + u + ") / " + u);
+        }
+    }
+    std::string argument() {
+        return of({"k", "k", "time", "(0.5 + 0.4 * sin(time))", "(k - 1)", "abs(k)", "0.3 * time",
+                   "0.7", "-0.5", "(k + 0.3)"});
+    }
+    std::string conditions() {
+        std::string shape = std::string(library[pick(library.size())]), out;
+        for (char c : shape) out += c == '@' ? argument() : std::string(1, c);
+        if (pick(3) == 0) out = "(" + out + ").offset(0.05)";
+        return "import \"dfmodel\" as dfmodel\n" + param() + out + "\n" +
+               "render(time: " + of({"1", "3", "10"}) + ")\n";
+    }
+    std::string repetitions() {
+        const std::string motif =
+            of({"ellipsoid([0.3, 0.1, 0.5])", "ellipsoid([0.5, 0.2, 0.3])",
+                "sphere(0.4).scale([1, 0.3, 0.6])", "superquadric([0.4, 0.3, 0.5], 0.4, 1.5)",
+                "box([0.5, 0.3, 0.4]).scale([1, 0.4, 1])",
+                "(sphere(0.3) & box(0.4).translate(x: 0.1))"});
+        const std::string turned =
+            "rotate(" + between(0.1, 1.4) + ", axis: " + of({"X", "Y", "Z"}) + ")";
+        std::string shape = motif + "." + turned;
+        if (often())
+            shape += ".translate([" + between(-0.3, 0.3) + ", " + between(-0.2, 0.2) + ", " +
+                     between(-0.3, 0.3) + "])";
+        const std::string cell =
+            "[" + (often() ? "0" : between(0.7, 1.4)) + ", 0, " + between(0.7, 1.5) + "]";
+        shape += ".repeat(" + cell + of({"", "", ", count: [3, 1, 4]"}) + ")";
+        return pick(3) == 0 ? "(" + shape + ").offset(0.02)\n" : shape + "\n";
+    }
+    std::string loops() {
+        const std::string inner =
+            of({"floor(p.x)", "fract(p.x)", "float(p.x > 0)", "i0", "f0", "abs(f0 - 0.5)",
+                "hash(i0)", "sin(pi * f0)", "(s * f0 * (1 - f0))"});
+        return param() +
+               "implicit(p => {\n let i0 = floor(p.x)\n let f0 = fract(p.x)\n var s = 0.0\n"
+               " for i in 0..3 { s = s + 0.1 * " +
+               inner + " * (i + 1) }\n p.y + 0.2 * (s" + of({" + ", " * "}) + tent() +
+               of({"", " + f0", " * f0 * (1 - f0)"}) + ")\n}, within: ball(2))\n";
+    }
+
+    // Steps of steps.
+    std::string nested() {
+        const std::string u = linear(), v = linear();
+        const std::string inner = of({"floor", "fract", "round", "ceil"}) + "(" + v + ")";
+        const std::string t =
+            "(" + u + of({" + ", " - ", " * "}) + of({"", "2 * ", "0.5 * "}) + inner + ")";
+        const std::string at = of({"floor", "round", "fract", "ceil"}) + "(" + t + ")";
+        switch (pick(5)) {
+        case 0: return field("abs(fract(" + t + ") - 0.5)");
+        case 1: return field(at + " * " + tent());
+        case 2:
+            return field("mix(hash(floor(" + t + ")), hash(floor(" + t + ") + 1), fract(" + t +
+                         "))");
+        case 3:
+            return field("mix(hash(" + inner + "), hash(" + inner + " + 1), fract(" + v + ")) * " +
+                         at);
+        default: return field("min(abs(fract(" + t + ") - 0.5), " + tent() + ")");
+        }
+    }
+    // Sectors by the angle, at its cut as at their own borders.
+    std::string angles() {
+        const std::string n = of({"3", "4", "5", "6", "2.5", "5.5", "k"}),
+                          shift = of({"0", "0.3", "pi", "time", "0.5 * s"});
+        const std::string fold =
+            of({"(a + s / 2) % s - s / 2", "a % s - s / 2", "a % s", "a - s * round(a / s)",
+                "a - s * floor(a / s)", "abs(a % s - s / 2)", "floor(a / s) * s"});
+        const std::string motif =
+            of({"length(vec3(r * cos(b) - 1, p.y, r * sin(b))) - 0.2",
+                "length(vec3(r * cos(b) - 1, p.y, r * abs(sin(b)) - 0.1)) - 0.2",
+                "length(vec3(r * cos(b) - 1, p.y, r * sin(b) - 0.2)) - 0.2",
+                "r - 1 - 0.2 * cos(3 * b)", "r - 1 - 0.1 * hash(floor(a / s))",
+                "p.y - 0.2 * fract(a / tau) * (1 - fract(p.x))"});
+        return param() + "implicit(p => {\n let s = tau / " + n + "\n let a = atan(" +
+               of({"p.z, p.x", "p.x, p.z", "p.z, p.x + 0.5", "2 * p.z, p.x"}) + ") + " + shift +
+               "\n let b = " + fold + "\n let r = length(p.xz)\n " + motif + "\n}, within: " +
+               of({"aabb([-2, -1, -1.5], [-0.6, 1, 1.5])",
+                   "aabb([-1.5, -1, -2], [1.5, 1, -0.6])"}) +
+               ")\n";
+    }
+    // What shapes make of fields that jump.
+    std::string uses() {
+        const std::string f = pick(3) == 0   ? "float(" + truth() + ")"
+                              : pick(2) == 0 ? step()
+                                             : tent() + " * " + (often() ? tent() : step());
+        switch (pick(5)) {
+        case 0: return param() + "sphere(1).displace(p => 0.1 * " + f + ")\n";
+        case 1: return param() + "blend(sphere(1), box(1.4), p => clamp(" + f + ", 0, 1))\n";
+        case 2: return param() + "box(1).distort(p => p + vec3(0, 0.1 * " + f + ", 0))\n";
+        case 3:
+            return param() + "heightfield(q => { let p = vec3(q.x, q.y, 0.3)\n 0.1 * " + f +
+                   " }, [3, 3], depth: 1)\n";
+        default:
+            return param() + "sphere(0.4).repeat([1.3, 0, 1.2], (s, id) => s.scale(" +
+                   of({"0.5 + 0.5 * hash(id)", "0.2 * id.x", "1 - hash(id)", "k",
+                       "[1, 0.5 + k * k, 0.8]"}) +
+                   "))\n";
+        }
+    }
+
+    std::uint64_t state_;
+};
+
+// What may be said of a scene that is well formed.
+bool is_of_the_proof(Code code) {
+    return code == Code::LipschitzUnbounded || code == Code::FieldJump ||
+           code == Code::FieldSingular || code == Code::NeedsRegion || code == Code::BadArgument ||
+           code == Code::RepeatLimit || code == Code::StageMismatch || code == Code::NumberRange;
+}
+
+struct Verdict {
+    bool accepted = false;
+    std::string code, wrong;
+};
+
+// Points next to where things turn: coordinates are often a multiple of 1/8, or off by little, but
+// by more than single precision loses between two ways to write one number.
+Point3 near_borders(Adversary &random) {
+    Point3 p;
+    for (double &x : p) {
+        const double at = std::round(8 * reach * (random.random() - 0.5) * 2) / 8;
+        const double off = std::pow(10, -4.5 * random.random()) * (random.random() < 0.5 ? -1 : 1);
+        const double kind = random.random();
+        x = kind < 0.3 ? 2 * reach * (random.random() - 0.5) : kind < 0.55 ? at : at + 0.3 * off;
+        x = float(x);
+    }
+    return p;
+}
+
+std::string text_of(const Point3 &p) {
+    char text[128];
+    std::snprintf(text, sizeof text, "[%.9g, %.9g, %.9g]", p[0], p[1], p[2]);
+    return text;
+}
+
+// Pairs at all distances down to rounding; the marched field is 1-Lipschitz, and a number.
+std::string measured(const ir::Scene &scene, double time, Adversary &random, int pairs) {
+    Sampler sampler(scene, time);
+    std::vector<Point3> p, q;
+    for (int i = 0; i < pairs; ++i) {
+        p.push_back(near_borders(random));
+        Point3 to = p.back();
+        const double far = std::pow(10, -5 + 5 * random.random());
+        const bool along = random.random() < 0.6; // one coordinate alone, so across its borders
+        const auto axis = std::size_t(3 * random.random());
+        for (std::size_t k = 0; k < 3; ++k)
+            if (!along || k == axis) to[k] = float(to[k] + far * (random.random() * 2 - 1));
+        q.push_back(to);
+    }
+    const std::vector<float> a = sampler.values(p), b = sampler.values(q);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        if (!std::isfinite(a[i])) return "it is " + std::to_string(a[i]) + " at " + text_of(p[i]);
+        double way = 0;
+        for (std::size_t k = 0; k < 3; ++k) way += (p[i][k] - q[i][k]) * (p[i][k] - q[i][k]);
+        way = std::sqrt(way);
+        const double rounding = 6e-5 + 2e-6 * std::fabs(double(a[i]));
+        if (std::fabs(double(a[i]) - double(b[i])) > way * 1.002 + rounding)
+            return "it is " + std::to_string(a[i]) + " at " + text_of(p[i]) + " and " +
+                   std::to_string(b[i]) + " at " + text_of(q[i]);
+    }
+    return {};
+}
+
+Verdict judge(const std::string &text, Adversary &random, int pairs) {
+    Verdict out;
+    driver::Compilation c = driver::compile_text("adversary.sdf", text, "", {});
+    if (!c.good()) {
+        for (const Diagnostic &d : c.diagnostics.items())
+            if (d.severity == Severity::Error) {
+                if (out.code.empty()) out.code = std::string(code_name(d.code)) + ": " + d.message;
+                if (!is_of_the_proof(d.code)) out.wrong = "no scene: " + d.message;
+            }
+        return out;
+    }
+    out.accepted = true;
+    // Steps by cells are as long as is safe, and no slope of anything.
+    for (ir::ShapeFact &fact : c.scene.facts) fact.cells = {};
+    ir::lower(c.scene);
+    for (const double part : {0.0, 1.0, 0.5, 0.37, 1.0 / 3}) {
+        for (ir::Param &k : c.scene.params) // those that decide what there is are compiled in
+            if (!k.structural) k.value[0] = k.lo[0] + (k.hi[0] - k.lo[0]) * part;
+        const double time = std::min(c.scene.render.time_end, 10.0) * part;
+        out.wrong = measured(c.scene, time, random, pairs);
+        if (!out.wrong.empty()) {
+            if (!c.scene.params.empty())
+                out.wrong += ", k = " + std::to_string(c.scene.params[0].value[0]);
+            out.wrong += ", time = " + std::to_string(time);
+            return out;
+        }
+    }
+    return out;
+}
+
+int number_from(const char *variable, int otherwise) {
+    const char *text = std::getenv(variable);
+    return text ? std::atoi(text) : otherwise;
+}
+
+} // namespace
+
+TEST_CASE("what an adversary writes is refused, or is as flat as proved") {
+    const int scenes = number_from("FATHOM_SCENES", 700), seed = number_from("FATHOM_SEED", 1);
+    int accepted = 0, wrong = 0;
+    for (int i = 0; i < scenes; ++i) {
+        Adversary random(std::uint64_t(seed) * 1'000'003u + std::uint64_t(i));
+        const std::string text = random.scene(std::size_t(i) % Adversary::kinds);
+        const Verdict verdict = judge(text, random, 3000);
+        accepted += verdict.accepted;
+        wrong += !verdict.wrong.empty();
+        if (std::getenv("FATHOM_SHOW"))
+            std::printf("%s: %s", verdict.accepted ? "taken" : verdict.code.c_str(), text.c_str());
+        if (!verdict.wrong.empty())
+            std::printf("WRONG %d: %s\n%s", i, verdict.wrong.c_str(), text.c_str());
+        std::fflush(stdout);
+    }
+    std::printf("%d of %d accepted\n", accepted, scenes);
+    CHECK(wrong == 0);
+    CHECK(accepted > scenes / 5);
+}
+
+TEST_CASE("a shape of the library is no steeper than proved at the ends of what it takes") {
+    int accepted = 0, wrong = 0;
+    for (const char *shape : library)
+        for (const char *range : {"0..1", "-0.5..1", "0.05..1"})
+            for (const bool raw : {false, true}) {
+                Adversary random(1);
+                std::string text;
+                for (const char c : std::string(shape)) text += c == '@' ? "k" : std::string(1, c);
+                if (raw) text = "(" + text + ").offset(0.01)";
+                text = std::string("import \"dfmodel\" as dfmodel\nparam k = 0.5 in ") + range +
+                       "\n" + text + "\n";
+                const Verdict verdict = judge(text, random, 2000);
+                accepted += verdict.accepted;
+                wrong += !verdict.wrong.empty();
+                if (std::getenv("FATHOM_SHOW"))
+                    std::printf("%s: %s", verdict.accepted ? "taken" : verdict.code.c_str(),
+                                text.c_str());
+                if (!verdict.wrong.empty())
+                    std::printf("WRONG: %s\n%s", verdict.wrong.c_str(), text.c_str());
+            }
+    std::printf("%d accepted\n", accepted);
+    CHECK(wrong == 0);
+    CHECK(accepted > int(library.size()));
+}
