@@ -5,7 +5,7 @@
 #include "backend-glsl/marcher.h"
 #include "backend-glsl/template.h"
 #include "base/encode.h"
-#include "ir/lower/lower.h"
+#include "ir/passes/operations.h"
 #include "ir/view.h"
 
 #include <algorithm>

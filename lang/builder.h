@@ -220,7 +220,6 @@ class Builder {
 
     ExprId add(ExprKind kind, Span span, std::uint32_t height);
     void push(ExprKind kind, Span span, std::uint32_t height);
-    void replace_top(ExprKind kind, Span span, std::uint32_t height);
     Item pop_item();
     std::optional<Item> pop_maybe_item();
     Identifier pop_name();

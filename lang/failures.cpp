@@ -36,46 +36,15 @@ std::string wanted_text(Wanted wanted) {
 }
 
 bool begins_operand(Tok kind) {
-    switch (kind) {
-    case Tok::Name:
-    case Tok::LambdaName:
-    case Tok::Number:
-    case Tok::String:
-    case Tok::Color:
-    case Tok::True:
-    case Tok::False:
-    case Tok::Open:
-    case Tok::FreshOpen:
-    case Tok::LambdaOpen:
-    case Tok::ListOpen:
-    case Tok::FreshListOpen:
-    case Tok::If:
-    case Tok::Not: return true;
-    default: return false;
-    }
+    return is_one_of(kind, {Tok::Name, Tok::LambdaName, Tok::Number, Tok::String, Tok::Color,
+                            Tok::True, Tok::False, Tok::Open, Tok::FreshOpen, Tok::LambdaOpen,
+                            Tok::ListOpen, Tok::FreshListOpen, Tok::If, Tok::Not});
 }
 
 bool is_keyword(Tok kind) {
-    switch (kind) {
-    case Tok::Let:
-    case Tok::Var:
-    case Tok::Fn:
-    case Tok::Param:
-    case Tok::Import:
-    case Tok::For:
-    case Tok::In:
-    case Tok::If:
-    case Tok::Else:
-    case Tok::While:
-    case Tok::Break:
-    case Tok::Return:
-    case Tok::And:
-    case Tok::Or:
-    case Tok::Not:
-    case Tok::True:
-    case Tok::False: return true;
-    default: return false;
-    }
+    return is_one_of(kind, {Tok::Let, Tok::Var, Tok::Fn, Tok::Param, Tok::Import, Tok::For, Tok::In,
+                            Tok::If, Tok::Else, Tok::While, Tok::Break, Tok::Return, Tok::And,
+                            Tok::Or, Tok::Not, Tok::True, Tok::False});
 }
 
 } // namespace

@@ -291,12 +291,12 @@ bool Builder::foreign_junk(Index first, Index at) {
                 {{id_, token(last).end, token(last).end}, ")"}});
         return true;
     }
-    switch (found) {
-    case Tok::Arrow:
+    if (found == Tok::Arrow) {
         foreign(span(at), "a function without a name is written with `=>`")
             .help("write `=>`", {{span(at), "=>"}});
         return true;
-    case Tok::FatArrow:
+    }
+    if (found == Tok::FatArrow) {
         if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open ||
             tokens_.match[first + 1] + 1 != at)
             return false;
@@ -304,7 +304,8 @@ bool Builder::foreign_junk(Index first, Index at) {
             .help("write `fn " + std::string(text(token(first).begin, token(at - 1).end)) + " = …`",
                   {{{id_, token(first).begin, token(first).begin}, "fn "}, {span(at), "="}});
         return true;
-    case Tok::Colon:
+    }
+    if (found == Tok::Colon) {
         if (kind(first) != Tok::Name || at != first + 1) return false;
         if (first > 0 && kind(first - 1) == Tok::Trailing) { // `torus{major: 2}`
             const Index open = first - 1;
@@ -316,7 +317,8 @@ bool Builder::foreign_junk(Index first, Index at) {
             .help("write `let " + name + "`",
                   {{{id_, token(first).begin, token(first).begin}, "let "}});
         return true;
-    case Tok::OtherAssign: {
+    }
+    if (found == Tok::OtherAssign) {
         if (kind(first) != Tok::Name) return false;
         const std::string target(text(token(first).begin, token(at - 1).end));
         const std::string op(text(at).substr(0, 1));
@@ -325,7 +327,7 @@ bool Builder::foreign_junk(Index first, Index at) {
                   {{span(at), "= " + target + " " + op}});
         return true;
     }
-    case Tok::Comma:
+    if (found == Tok::Comma) {
         if (kind(first) == Tok::Name && at == first + 1 && kind(at + 1) == Tok::Name) {
             foreign(span(first, at + 1), "each name is bound by a `let` of its own")
                 .help("write `let " + name + " = …`");
@@ -337,10 +339,14 @@ bool Builder::foreign_junk(Index first, Index at) {
         foreign(span(at), "each name is bound by a `let` of its own")
             .help("write `; let`", {{span(at), "; " + std::string(text(first))}});
         return true;
-    case Tok::If: foreign_choice(value_start(first, at), at); return true;
-    case Tok::In: foreign(span(at), "there is no operator `in`"); return true;
-    default: return false;
     }
+    if (found == Tok::If) {
+        foreign_choice(value_start(first, at), at);
+        return true;
+    }
+    if (found != Tok::In) return false;
+    foreign(span(at), "there is no operator `in`");
+    return true;
 }
 
 // -- where a rule could not go on ----------------------------------------------------------------

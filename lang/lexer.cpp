@@ -94,15 +94,6 @@ BadNumber explain_bad_number(std::string_view word) {
 
 } // namespace
 
-const std::vector<std::string> &keywords() {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        for (const Keyword &k : keyword_table) all.emplace_back(k.text);
-        return all;
-    }();
-    return names;
-}
-
 std::optional<NumberWord> read_number(std::string_view word) {
     const std::size_t length = number_length(word);
     NumberWord number;

@@ -1,5 +1,7 @@
 // Fields of the user's own: their bounds over the region where they are asked, what is assumed of
 // them, and the reports that say where and why there is none.
+#include "ir/passes/operations.h"
+#include "ir/passes/walk.h"
 #include "proof/prover.h"
 
 #include "ir/lower/lower.h"
@@ -184,46 +186,7 @@ namespace {
 
 std::string cause_text(const ir::Graph &graph, NodeId cause) {
     if (!cause) return "an operation";
-    switch (graph[cause].op) {
-    case Op::Div: return "a division by 0";
-    case Op::Sqrt: return "a square root at 0";
-    case Op::InverseSqrt: return "`inversesqrt` at 0";
-    case Op::Pow: return "a power at 0";
-    case Op::Log:
-    case Op::Log2: return "a logarithm at 0";
-    case Op::Tan: return "`tan` at its pole";
-    case Op::Asin: return "`asin` at -1 or 1";
-    case Op::Acos: return "`acos` at -1 or 1";
-    case Op::Atan2: return "`atan` of two arguments at the origin";
-    case Op::Normalize: return "`normalize` at 0";
-    case Op::Mod: return "`%`";
-    case Op::Floor: return "`floor`";
-    case Op::Ceil: return "`ceil`";
-    case Op::Round: return "`round`";
-    case Op::Trunc:
-    case Op::ToInt: return "`int` or `trunc`";
-    case Op::Fract: return "`fract`";
-    case Op::ToFloat: return "a condition made into a number";
-    case Op::Step: return "`step`";
-    case Op::Sign: return "`sign`";
-    case Op::Hash: return "`hash` of the point";
-    case Op::Select: return "an `if`";
-    case Op::Fold: return "a loop that ends early";
-    case Op::TableRead: return "an index that depends on the point";
-    case Op::Smoothstep: return "`smoothstep` with equal edges";
-    case Op::Sub:
-    case Op::Add: return "a wave made with `%`";
-    case Op::Mul:
-    case Op::MatMul: return "a product";
-    case Op::Make:
-    case Op::Swizzle:
-    case Op::Splat:
-    case Op::Neg: return "an expression";
-    case Op::Perlin: return "`noise`";
-    case Op::ValueNoise: return "`value_noise`";
-    case Op::SpotNoise: return "`spot_noise`";
-    default: break; // NOLINT: the others are called in the language as their ops are
-    }
+    if (const char *trouble = ir::info(graph[cause].op).trouble; *trouble) return trouble;
     std::string name(ir::info(graph[cause].op).name);
     for (char &c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return "`" + name + "`";
@@ -232,17 +195,9 @@ std::string cause_text(const ir::Graph &graph, NodeId cause) {
 // Smooth at every point: what has no bound by one of these has outgrown all numbers.
 bool only_grows(const ir::Graph &graph, NodeId cause) {
     if (!cause) return false;
-    switch (graph[cause].op) {
-    case Op::Mul:
-    case Op::MatMul:
-    case Op::Dot:
-    case Op::Cross:
-    case Op::Exp:
-    case Op::Exp2:
-    case Op::Sinh:
-    case Op::Cosh: return true;
-    default: return false;
-    }
+    constexpr ir::OpSet products{Op::Mul, Op::MatMul, Op::Dot, Op::Cross};
+    const ir::OpInfo &op = ir::info(graph[cause].op);
+    return products[graph[cause].op] || (op.function && *op.trouble == '\0');
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "driver/compile.h"
 #include "driver/verdict.h"
+#include "ir/passes/dump.h"
 #include "lang/format.h"
 #include "lang/parse.h"
 

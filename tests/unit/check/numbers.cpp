@@ -122,9 +122,10 @@ const std::vector<Entry> built_in{
 };
 // Functions of one, two and three numbers, asked at both times.
 const std::vector<std::vector<std::string>> functions{
-    {"sin",  "cos",   "tan",  "asin",  "acos",  "atan", "sinh",        "cosh",
-     "tanh", "exp",   "exp2", "log",   "log2",  "sqrt", "inversesqrt", "abs",
-     "sign", "floor", "ceil", "round", "trunc", "fract"},
+    {
+#define FATHOM_FUNCTION(name, function, ...) #function,
+#include "ir/ops.def"
+        "abs", "sign", "floor", "ceil", "round", "trunc", "fract"},
     {"pow", "mod", "min", "max", "step", "atan"},
     {"clamp", "mix", "smoothstep"}};
 

@@ -76,7 +76,7 @@ TEST_CASE("every op is emitted for every target") {
     for (glsl::Target target : glsl::all_targets()) {
         const Scene scene = of_field([](Graph &g, NodeId p) {
             NodeId sum = g.number(0);
-            for (std::size_t index = 0; index < op_count(); ++index) {
+            for (std::size_t index = 0; index < op_count; ++index) {
                 const Op op = static_cast<Op>(index);
                 for (const Case &c : cases_of(op))
                     for (std::uint32_t payload : payloads_of(op)) {
