@@ -464,21 +464,8 @@ class Writer {
         case Op::Round:
         case Op::Trunc:
         case Op::Fract:
-        case Op::Sqrt:
-        case Op::InverseSqrt:
-        case Op::Exp:
-        case Op::Exp2:
-        case Op::Log:
-        case Op::Log2:
-        case Op::Sin:
-        case Op::Cos:
-        case Op::Tan:
-        case Op::Asin:
-        case Op::Acos:
-        case Op::Atan:
-        case Op::Sinh:
-        case Op::Cosh:
-        case Op::Tanh:
+#define FATHOM_FUNCTION(name, ...) case Op::name:
+#include "ir/ops.def"
         case Op::Clamp:
         case Op::Mix:
         case Op::Dot:

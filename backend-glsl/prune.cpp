@@ -1,9 +1,10 @@
 #include "backend-glsl/prune.h"
 
 #include "backend-glsl/module.h"
-#include "backend-glsl/roll.h"
 #include "backend-glsl/slope.h"
 #include "backend-glsl/template.h"
+#include "ir/passes/inline.h"
+#include "ir/passes/walk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +34,8 @@ NodeId distance_of(Graph &graph, NodeId id) {
     }
     return {};
 }
+
+constexpr std::size_t most_written_out = 2000; // nodes of what is differentiated
 
 // In diagonals of a cell.
 constexpr double far_from = 0.625;  // a cell is far whose centre is farther from surfaces
@@ -135,7 +138,9 @@ class Planner {
         });
     }
 
-    double slope(NodeId id) { return slope_of(graph_, without_calls(graph_, id), point_); }
+    double slope(NodeId id) {
+        return slope_of(graph_, ir::without_calls(graph_, id, most_written_out).root, point_);
+    }
 
     PrunePlan plan_;
     Graph &graph_;
@@ -161,11 +166,7 @@ std::optional<PrunePlan> plan_pruning(const ir::Scene &scene,
 }
 
 std::string prune_look_up(const ir::Box &bounds) {
-    const auto corner = [](const std::array<double, 3> &v) {
-        return "vec3(" + float_literal(v[0]) + ", " + float_literal(v[1]) + ", " +
-               float_literal(v[2]) + ")";
-    };
-    return expand("prune_rows", {{"LO", corner(bounds.lo)}, {"HI", corner(bounds.hi)}});
+    return expand("prune_rows", {{"LO", vec3_literal(bounds.lo)}, {"HI", vec3_literal(bounds.hi)}});
 }
 
 std::string far_look_up(const std::string &outside) {

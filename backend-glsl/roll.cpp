@@ -1,5 +1,8 @@
 #include "backend-glsl/roll.h"
 
+#include "ir/passes/inline.h"
+#include "ir/passes/rows.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -22,53 +25,7 @@ constexpr std::size_t least_gain = 4; // so many times shorter, or it stays as i
 // Where kinds are mixed, a machine that takes both ways of a branch (llvmpipe) computes all kinds
 // in every turn: only what else would hardly compile is worth that. Nodes of all operands.
 constexpr std::size_t least_mixed = 6000;
-constexpr int most_columns = 4000;
 constexpr double whole_floats = 16777216; // ints up to here are floats too
-
-// An operand's tree with its constants taken out, in the order of a walk; and these.
-struct Walk {
-    const Graph &graph;
-    std::vector<std::uint64_t> skeleton;
-    std::vector<Constant> row;
-    bool fits = true;
-
-    void node(NodeId id) {
-        if (skeleton.size() > largest_operand) fits = false;
-        if (!fits) return;
-        const ir::Node &n = graph[id];
-        skeleton.push_back(
-            static_cast<std::uint64_t>(n.op) << 56 | static_cast<std::uint64_t>(n.type) << 48 |
-            static_cast<std::uint64_t>(n.count) << 32 | (n.op == Op::Const ? 0 : n.payload));
-        if (n.op == Op::Const) {
-            const Constant &constant = graph.constant_of(id);
-            for (int i = 0; i < ir::components(constant.type) && constant.type == Type::Int; ++i)
-                fits &= std::fabs(constant.value[static_cast<std::size_t>(i)]) <= whole_floats;
-            return row.push_back(constant);
-        }
-        for (NodeId arg : graph.args(id)) node(arg);
-    }
-};
-
-// The expression without calls. Functions that the lowering made of shapes used twice hold each
-// shape's own numbers, which would tell alike shapes apart. (Bodies of loops stay as they are.)
-NodeId without_calls(Graph &graph, NodeId id, std::map<NodeId, NodeId> &done, std::size_t &left) {
-    if (const auto it = done.find(id); it != done.end()) return it->second;
-    if (left == 0) return id;
-    --left;
-    const ir::Node node = graph[id];
-    std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
-    for (NodeId &arg : args) arg = without_calls(graph, arg, done, left);
-    NodeId result;
-    if (node.op == Op::Call) {
-        const ir::Function callee = graph.function(ir::FunctionId{node.payload});
-        ir::Substitution given;
-        for (std::size_t i = 0; i < args.size(); ++i) given[callee.params[i]] = args[i];
-        result = without_calls(graph, ir::substitute(graph, callee.result, given), done, left);
-    } else {
-        result = node.count == 0 ? id : graph.make(node.op, node.type, args, node.payload);
-    }
-    return done[id] = result;
-}
 
 // Operands that differ in constants only: which, and where each constant stands that differs.
 struct Kind {
@@ -78,60 +35,21 @@ struct Kind {
     std::size_t size = 0;
 };
 
-bool same(const Constant &a, const Constant &b) { return a.type == b.type && a.value == b.value; }
-
-// Tables hold ints and bools as floats.
-NodeId read_of(Graph &graph, Type type, NodeId row, std::uint32_t slot) {
-    const bool whole = type == Type::Int || type == Type::Bool;
-    const NodeId read = graph.make(Op::TableRead, whole ? Type::Float : type, {row}, slot);
-    if (type == Type::Int) return graph.make(Op::ToInt, Type::Int, {read});
-    if (type == Type::Bool) return graph.make(Op::NotEqual, {read, graph.number(0)});
-    return read;
-}
-
-// The tree again, its constants in the same order replaced where a column is given for them.
-struct Rebuild {
-    Graph &graph;
-    const Kind &kind;
-    ir::TableId table;
-    NodeId row;
-    std::size_t next = 0;
-
-    NodeId node(NodeId id) {
-        const ir::Node n = graph[id];
-        if (n.op == Op::Const) {
-            const int column = kind.column[next++];
-            return column < 0 ? id : read_of(graph, n.type, row, ir::table_slot(table, column));
-        }
-        std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
-        for (NodeId &arg : args) arg = node(arg);
-        return graph.make(n.op, n.type, args, n.payload);
-    }
-};
-
-// Gives each kind's differing constants columns from `first` on; what is equal in every row stands
-// once. The number of columns.
+// Gives each kind's differing constants columns from `first` on. The number of columns.
 int lay_out(std::vector<Kind> &kinds, int first) {
     int columns = first;
     for (Kind &kind : kinds) {
-        int next = first;
-        const auto equal = [&](std::size_t a, std::size_t b) {
-            return std::ranges::all_of(kind.rows,
-                                       [&](const auto &row) { return same(row[a], row[b]); });
-        };
-        kind.column.assign(kind.rows[0].size(), -1);
-        for (std::size_t c = 0; c < kind.column.size(); ++c) {
-            if (std::ranges::all_of(kind.rows,
-                                    [&](const auto &row) { return same(row[c], kind.rows[0][c]); }))
-                continue;
-            std::size_t twin = 0;
-            while (twin < c && (kind.column[twin] < 0 || !equal(twin, c))) ++twin;
-            kind.column[c] = twin < c ? kind.column[twin] : next;
-            if (twin == c) next += ir::components(kind.rows[0][c].type);
-        }
-        columns = std::max(columns, next);
+        const std::vector<bool> all(kind.rows[0].size(), true);
+        columns = std::max(columns, ir::lay_out(kind.rows, all, first, kind.column));
     }
     return columns;
+}
+
+// Whether tables hold the constants: ints as floats.
+bool fits(const std::vector<Constant> &row) {
+    return std::ranges::all_of(row, [](const Constant &constant) {
+        return constant.type != Type::Int || std::fabs(constant.value[0]) <= whole_floats;
+    });
 }
 
 // The combination as a loop in the order of its operands: it begins with the first, and turn i adds
@@ -145,20 +63,23 @@ std::optional<NodeId> loop_of(Graph &graph, NodeId id) {
     std::vector<Kind> kinds;
     std::size_t all = 0, few = 0;
     for (std::size_t i = first; i < args.size(); ++i) {
-        std::map<NodeId, NodeId> done;
-        std::size_t left = largest_operand;
-        args[i] = without_calls(graph, args[i], done, left);
-        Walk walk{graph, {}, {}};
-        walk.node(args[i]);
-        if (!walk.fits || left == 0) return std::nullopt;
-        const auto [it, fresh] = kind_of.try_emplace(walk.skeleton, kinds.size());
-        all += walk.skeleton.size();
+        // Functions that the lowering made of shapes used twice hold each shape's own numbers,
+        // which would tell alike shapes apart.
+        const ir::WithoutCalls operand = ir::without_calls(graph, args[i], largest_operand);
+        args[i] = operand.root;
+        ir::Skeleton skeleton;
+        if (!operand.all || !ir::take_apart(graph, args[i], largest_operand, skeleton) ||
+            !fits(skeleton.row))
+            return std::nullopt;
+        const std::size_t size = skeleton.words.size();
+        const auto [it, fresh] = kind_of.try_emplace(std::move(skeleton.words), kinds.size());
+        all += size;
         if (fresh) {
-            kinds.push_back({{}, {}, {}, walk.skeleton.size()});
-            few += walk.skeleton.size();
+            kinds.push_back({{}, {}, {}, size});
+            few += size;
         }
         kinds[it->second].members.push_back(i - first);
-        kinds[it->second].rows.push_back(std::move(walk.row));
+        kinds[it->second].rows.push_back(std::move(skeleton.row));
     }
     const bool mixed = kinds.size() > 1;
     if (kinds.size() > most_kinds || few * least_gain > all || (mixed && all < least_mixed))
@@ -166,7 +87,7 @@ std::optional<NodeId> loop_of(Graph &graph, NodeId id) {
     ir::Table table;
     table.rows = static_cast<int>(args.size() - first);
     table.stride = lay_out(kinds, mixed ? 1 : 0);
-    if (table.stride == 0 || table.stride > most_columns) return std::nullopt;
+    if (table.stride == 0 || table.stride > ir::most_columns) return std::nullopt;
     table.data.assign(static_cast<std::size_t>(table.rows) * static_cast<std::size_t>(table.stride),
                       0.0f);
     for (std::size_t k = 0; k < kinds.size(); ++k)
@@ -174,13 +95,7 @@ std::optional<NodeId> loop_of(Graph &graph, NodeId id) {
             float *row =
                 table.data.data() + kinds[k].members[m] * static_cast<std::size_t>(table.stride);
             if (mixed) row[0] = static_cast<float>(k);
-            for (std::size_t c = 0; c < kinds[k].column.size(); ++c) {
-                if (kinds[k].column[c] < 0) continue;
-                const Constant &constant = kinds[k].rows[m][c];
-                for (int i = 0; i < ir::components(constant.type); ++i)
-                    row[kinds[k].column[c] + i] =
-                        static_cast<float>(constant.value[static_cast<std::size_t>(i)]);
-            }
+            ir::fill_row(kinds[k].rows[m], kinds[k].column, row);
         }
     ir::Fold fold;
     fold.count = graph.integer(table.rows);
@@ -189,11 +104,18 @@ std::optional<NodeId> loop_of(Graph &graph, NodeId id) {
     fold.vars = {graph.fresh_var(node.type)};
     const ir::TableId data = graph.add_table(std::move(table));
     const auto value_of = [&](std::size_t k) {
-        return Rebuild{graph, kinds[k], data, fold.index}.node(args[first + kinds[k].members[0]]);
+        const std::vector<int> &column = kinds[k].column;
+        const auto read = [&](std::size_t c, NodeId constant) {
+            return column[c] < 0 ? constant
+                                 : ir::read_table(graph, graph.type(constant), fold.index,
+                                                  ir::table_slot(data, column[c]));
+        };
+        std::size_t next = 0;
+        return ir::put_together(graph, args[first + kinds[k].members[0]], read, next);
     };
     NodeId value = value_of(kinds.size() - 1);
     const NodeId which =
-        mixed ? read_of(graph, Type::Int, fold.index, ir::table_slot(data, 0)) : NodeId{};
+        mixed ? ir::read_table(graph, Type::Int, fold.index, ir::table_slot(data, 0)) : NodeId{};
     for (std::size_t k = kinds.size() - 1; k-- > 0;)
         value = graph.make(Op::Select, {graph.make(Op::Equal, {which, graph.integer(int(k))}),
                                         value_of(k), value});
@@ -249,12 +171,6 @@ std::optional<Rolled> rolled(const ir::Scene &scene) {
         }
     }
     return result;
-}
-
-NodeId without_calls(Graph &graph, NodeId id) {
-    std::map<NodeId, NodeId> done;
-    std::size_t left = largest_operand;
-    return without_calls(graph, id, done, left);
 }
 
 } // namespace fathom::glsl

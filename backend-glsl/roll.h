@@ -20,7 +20,4 @@ struct Rolled {
 // no such list.
 std::optional<Rolled> rolled(const ir::Scene &scene);
 
-// The expression without calls, loops' bodies apart; unchanged below where it would be very large.
-ir::NodeId without_calls(ir::Graph &graph, ir::NodeId id);
-
 } // namespace fathom::glsl

@@ -15,195 +15,15 @@ namespace {
 constexpr int long_text = 90; // an expression that would print longer than this gets a name
 constexpr int cheap_arm = 6;  // what an arm may cost and still be computed before the choice
 
-int own_cost(Op op) {
-    switch (op) {
-    case Op::Const:
-    case Op::Point:
-    case Op::Normal:
-    case Op::Direction:
-    case Op::Time:
-    case Op::Param:
-    case Op::Var:
-    case Op::Swizzle:
-    case Op::Column:
-    case Op::FoldResult:
-    case Op::HitDistance:
-    case Op::HitPaint:
-    case Op::HitPoint:
-    case Op::HitExtra:
-    case Op::Transpose:
-    case Op::Splat:
-    case Op::Make:
-    case Op::MakeHit:
-    case Op::ToFloat:
-    case Op::ToInt:
-    case Op::Neg: return 0;
-    case Op::Add:
-    case Op::Sub:
-    case Op::Mul:
-    case Op::Min:
-    case Op::Max:
-    case Op::Step:
-    case Op::Abs:
-    case Op::Sign:
-    case Op::Floor:
-    case Op::Ceil:
-    case Op::Round:
-    case Op::Trunc:
-    case Op::Fract:
-    case Op::Less:
-    case Op::LessEqual:
-    case Op::Equal:
-    case Op::NotEqual:
-    case Op::And:
-    case Op::Or:
-    case Op::Not:
-    case Op::Select:
-    case Op::HitWith: return 1;
-    case Op::Div:
-    case Op::Mod:
-    case Op::Sqrt:
-    case Op::InverseSqrt:
-    case Op::Clamp:
-    case Op::Mix:
-    case Op::Smoothstep:
-    case Op::Dot:
-    case Op::Length:
-    case Op::Cross:
-    case Op::Normalize:
-    case Op::MatMul:
-    case Op::Union:
-    case Op::Intersection:
-    case Op::NearestHit:
-    case Op::FarthestHit:
-    case Op::FillPaint: return 3;
-    case Op::Pow:
-    case Op::Atan2:
-    case Op::Exp:
-    case Op::Exp2:
-    case Op::Log:
-    case Op::Log2:
-    case Op::Sin:
-    case Op::Cos:
-    case Op::Tan:
-    case Op::Asin:
-    case Op::Acos:
-    case Op::Atan:
-    case Op::Sinh:
-    case Op::Cosh:
-    case Op::Tanh:
-    case Op::TableRead:
-    case Op::Hash:
-    case Op::Blend: return 5;
-    case Op::Perlin:
-    case Op::Simplex:
-    case Op::ValueNoise:
-    case Op::Worley:
-    case Op::SpotNoise:
-    case Op::Image:
-    case Op::Grid:
-    case Op::Call:
-    case Op::Fold:
-    case Op::Cached: return 40;
-    }
-    return 40;
-}
-
-// How often the text of an argument appears in its user's.
+// How often the text of an argument appears in its user's. Of matrices, what is no operator is
+// written column by column.
 int copies(const ir::Graph &graph, NodeId user) {
+    constexpr ir::OpSet operators{Op::Neg, Op::Add, Op::Sub, Op::Mul, Op::Div};
     const ir::Node &node = graph[user];
-    if (!ir::is_matrix(node.type) && node.op != Op::TableRead) return 1;
-    switch (node.op) { // written column by column
-    case Op::Splat:
-    case Op::Mod:
-    case Op::Pow:
-    case Op::Min:
-    case Op::Max:
-    case Op::Step:
-    case Op::Atan2:
-    case Op::Abs:
-    case Op::Sign:
-    case Op::Floor:
-    case Op::Ceil:
-    case Op::Round:
-    case Op::Trunc:
-    case Op::Fract:
-    case Op::Sqrt:
-    case Op::InverseSqrt:
-    case Op::Exp:
-    case Op::Exp2:
-    case Op::Log:
-    case Op::Log2:
-    case Op::Sin:
-    case Op::Cos:
-    case Op::Tan:
-    case Op::Asin:
-    case Op::Acos:
-    case Op::Atan:
-    case Op::Sinh:
-    case Op::Cosh:
-    case Op::Tanh:
-    case Op::Clamp:
-    case Op::Mix:
-    case Op::Smoothstep: return ir::side(node.type);
-    case Op::TableRead: return 2; // may lie in two texels
-    case Op::Const:
-    case Op::Point:
-    case Op::Normal:
-    case Op::Direction:
-    case Op::Time:
-    case Op::Param:
-    case Op::Var:
-    case Op::Neg:
-    case Op::Add:
-    case Op::Sub:
-    case Op::Mul:
-    case Op::Div:
-    case Op::Dot:
-    case Op::Length:
-    case Op::Cross:
-    case Op::Normalize:
-    case Op::Less:
-    case Op::LessEqual:
-    case Op::Equal:
-    case Op::NotEqual:
-    case Op::And:
-    case Op::Or:
-    case Op::Not:
-    case Op::Select:
-    case Op::ToFloat:
-    case Op::ToInt:
-    case Op::Make:
-    case Op::Swizzle:
-    case Op::Column:
-    case Op::MatMul:
-    case Op::Transpose:
-    case Op::Hash:
-    case Op::Perlin:
-    case Op::Simplex:
-    case Op::ValueNoise:
-    case Op::Worley:
-    case Op::SpotNoise:
-    case Op::Image:
-    case Op::Grid:
-    case Op::Call:
-    case Op::Fold:
-    case Op::FoldResult:
-    case Op::Cached:
-    case Op::Union:
-    case Op::Intersection:
-    case Op::Blend:
-    case Op::MakeHit:
-    case Op::HitDistance:
-    case Op::HitPaint:
-    case Op::HitPoint:
-    case Op::HitExtra:
-    case Op::NearestHit:
-    case Op::FarthestHit:
-    case Op::HitWith:
-    case Op::FillPaint: return 1;
-    }
-    return 1;
+    if (node.op == Op::TableRead) return 2; // may lie in two texels
+    const bool by_column = ir::is_matrix(node.type) && !operators[node.op] &&
+                           (ir::info(node.op).takes != ir::Takes::Own || node.op == Op::Splat);
+    return by_column ? ir::side(node.type) : 1;
 }
 
 class Scheduler {
@@ -387,7 +207,7 @@ class Scheduler {
         std::unordered_map<BlockId, int> cost;
         for (NodeId id : nodes_)
             for (BlockId b = result_.home[id]; b != 0; b = block(b).parent)
-                cost[b] += own_cost(graph_[id].op);
+                cost[b] += ir::info(graph_[id].op).weight;
         bool any = false;
         for (const auto &[id, arms] : result_.arms) {
             auto [yes, no] = arms;

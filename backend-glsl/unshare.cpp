@@ -1,5 +1,7 @@
 #include "backend-glsl/unshare.h"
 
+#include "ir/passes/walk.h"
+
 #include <unordered_map>
 #include <unordered_set>
 

@@ -120,11 +120,6 @@ struct Mark {
     std::string message;
 };
 
-struct MarkedLine {
-    std::uint32_t line = 0;
-    std::vector<Mark> marks;
-};
-
 // The lines with marks, file by file, the primary label's file first.
 struct MarkedFile {
     SourceId source;

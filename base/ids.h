@@ -35,9 +35,6 @@ template <class T, class I = Id<T>> class Arena {
     std::size_t size() const { return items_.size(); }
     bool empty() const { return items_.empty(); }
     I next() const { return I{items_.size()}; }
-    void truncate(std::size_t size) {
-        items_.erase(items_.begin() + static_cast<std::ptrdiff_t>(size), items_.end());
-    }
     void reserve(std::size_t size) { items_.reserve(size); }
     auto begin() { return items_.begin(); }
     auto end() { return items_.end(); }

@@ -3,6 +3,8 @@
 #include "driver/edit.h"
 #include "driver/scene_files.h"
 #include "ir/lower/lower.h"
+#include "ir/passes/operations.h"
+#include "ir/passes/verify.h"
 #include "proof/prove.h"
 #include "save-format/save_format.h"
 

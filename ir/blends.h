@@ -77,26 +77,6 @@ template <class T> T blend_columns(T a, T b, T r, T n) {
     return least(least(a, b) - T(0.5) * line, column);
 }
 
-// Seams, as hg_sdf's users know them.
-// A pipe of radius r along the line where both surfaces meet. L = sqrt(La^2 + Lb^2).
-template <class T> T seam_pipe(T a, T b, T r) {
-    using std::sqrt;
-    return sqrt(a * a + b * b) - r;
-}
-// a with a V-shaped notch, r deep, where b's surface meets it. L = max(La, Lb); with hg_sdf's
-// sqrt(1/2) it would be sqrt 2 times that, for the same contour.
-template <class T> T seam_engrave(T a, T b, T r) {
-    return greatest(a, T(0.5) * (a + r - gap(b, T(0))));
-}
-// a with a groove `width` wide and `depth` deep, or a tongue as wide and as high, along b's
-// surface. L = max(La, Lb).
-template <class T> T seam_groove(T a, T b, T width, T depth) {
-    return greatest(a, least(a + depth, T(0.5) * width - gap(b, T(0))));
-}
-template <class T> T seam_tongue(T a, T b, T width, T depth) {
-    return least(a, greatest(a - depth, gap(b, T(0)) - T(0.5) * width));
-}
-
 // Hart 1996: superelliptic union within distance 1 of both: 1 - |((1-a)+, (1-b)+)|_p, and min
 // further out. Written with the greater term divided out, so that no power overflows. By Hoelder L
 // = (La^p + Lb^p)^(1/p). p is at least 1.

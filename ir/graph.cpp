@@ -2,8 +2,9 @@
 // what hangs below it in walk.cpp.
 #include "ir/graph.h"
 
+#include "base/hash.h"
 #include "ir/passes/fold.h"
-#include "ir/stir.h"
+#include "ir/passes/simplify.h"
 
 #include <algorithm>
 #include <bit>
@@ -68,20 +69,11 @@ const char *type_name(Type type) {
 }
 
 namespace {
-constexpr OpInfo infos[] = {
-#define FATHOM_OP(name, arity, rule, glsl) {#name, arity, TypeRule::rule, glsl},
-#include "ir/ops.def"
-#undef FATHOM_OP
-};
-
 bool commutes(Op op) {
     return op == Op::Add || op == Op::Mul || op == Op::Min || op == Op::Max || op == Op::Dot ||
            op == Op::Equal || op == Op::NotEqual || op == Op::And || op == Op::Or;
 }
 } // namespace
-
-const OpInfo &info(Op op) { return infos[static_cast<std::size_t>(op)]; }
-std::size_t op_count() { return std::size(infos); }
 
 // -- packed payloads
 
@@ -109,12 +101,12 @@ int swizzle_component(std::uint32_t mask, int i) { return static_cast<int>(mask 
 namespace {
 
 std::uint64_t hash_of(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
-    std::uint64_t h =
-        stir(static_cast<std::uint64_t>(op) << 8 | static_cast<std::uint64_t>(type), payload);
+    std::uint64_t h = hash_combine(
+        static_cast<std::uint64_t>(op) << 8 | static_cast<std::uint64_t>(type), payload);
     if (commutes(op)) // the same in either order
-        return stir(stir(h, std::min(args[0].index, args[1].index)),
-                    std::max(args[0].index, args[1].index));
-    for (NodeId arg : args) h = stir(h, arg.index);
+        return hash_combine(hash_combine(h, std::min(args[0].index, args[1].index)),
+                            std::max(args[0].index, args[1].index));
+    for (NodeId arg : args) h = hash_combine(h, arg.index);
     return h;
 }
 
@@ -164,7 +156,7 @@ NodeId Graph::make(Op op, Type type, std::span<const NodeId> args, std::uint32_t
     assert(op != Op::Const);
     if (info(op).rule == TypeRule::Same && op != Op::Transpose)
         for ([[maybe_unused]] NodeId arg : args) assert(this->type(arg) == type);
-    if (const NodeId known = simplified(op, type, args, payload)) return known;
+    if (const NodeId known = simplified(*this, op, type, args, payload)) return known;
     if (const NodeId constant = folded(op, type, args, payload)) return constant;
     return intern(op, type, args, payload);
 }
@@ -239,7 +231,7 @@ NodeId Graph::constant(const Constant &wanted) {
     std::uint64_t h = static_cast<std::uint64_t>(value.type);
     for (std::size_t i = 0; i < count; ++i) {
         if (value.value[i] == 0) value.value[i] = 0; // -0 is the same number
-        h = stir(h, std::bit_cast<std::uint64_t>(value.value[i]));
+        h = hash_combine(h, std::bit_cast<std::uint64_t>(value.value[i]));
     }
     std::fill(value.value.begin() + static_cast<std::ptrdiff_t>(count), value.value.end(), 0.0);
     const auto [first, last] = interned_constants_.equal_range(h);
@@ -276,14 +268,6 @@ const Constant &Graph::constant_of(NodeId id) const {
 std::optional<double> Graph::as_number(NodeId id) const {
     if (!is_constant(id) || components(type(id)) != 1) return std::nullopt;
     return constant_of(id).value[0];
-}
-
-bool Graph::is_all(NodeId id, double value) const {
-    if (!is_constant(id)) return false;
-    const Constant &constant = constant_of(id);
-    for (int i = 0; i < components(constant.type); ++i)
-        if (constant.value[static_cast<std::size_t>(i)] != value) return false;
-    return true;
 }
 
 // -- short forms
@@ -323,9 +307,9 @@ NodeId Graph::call(FunctionId id, std::span<const NodeId> args) {
 FunctionId Graph::add_function(Function function) { return functions_.add(std::move(function)); }
 FoldId Graph::add_fold(Fold fold) { return folds_.add(std::move(fold)); }
 TableId Graph::add_table(Table table) {
-    std::uint64_t h =
-        stir(static_cast<std::uint64_t>(table.rows), static_cast<std::uint64_t>(table.stride));
-    for (float x : table.data) h = stir(h, std::bit_cast<std::uint32_t>(x));
+    std::uint64_t h = hash_combine(static_cast<std::uint64_t>(table.rows),
+                                   static_cast<std::uint64_t>(table.stride));
+    for (float x : table.data) h = hash_combine(h, std::bit_cast<std::uint32_t>(x));
     const auto [first, last] = interned_tables_.equal_range(h);
     for (auto it = first; it != last; ++it) {
         const Table &have = tables_[it->second];

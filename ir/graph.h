@@ -9,6 +9,7 @@
 
 #include "base/ids.h"
 #include "base/source.h"
+#include "ir/ops.h"
 
 #include <array>
 #include <cstdint>
@@ -30,23 +31,6 @@ int side(Type matrix);      // Mat3 -> 3
 bool is_vector(Type type);  // Vec2, Vec3, Vec4
 bool is_matrix(Type type);
 const char *type_name(Type type); // the language's and GLSL's name: "vec3"
-
-enum class TypeRule { Given, Same, Last, ToFloat, ToBool };
-
-enum class Op : std::uint8_t {
-#define FATHOM_OP(name, arity, rule, glsl) name,
-#include "ir/ops.def"
-#undef FATHOM_OP
-};
-
-struct OpInfo {
-    const char *name;
-    int arity;
-    TypeRule rule;
-    const char *glsl;
-};
-const OpInfo &info(Op op);
-std::size_t op_count();
 
 // The blend profiles of two distances a and b within r of the seam (lipschitz.md, 3); n: steps or
 // columns. Each is exactly min(a, b) outside its compact support.
@@ -192,12 +176,9 @@ class Graph {
     std::vector<NodeId> free_vars(NodeId id) const; // in order of payload; walks, so ask once
 
   private:
-    NodeId simplified(Op op, Type type, std::span<const NodeId> args,
-                      std::uint32_t payload);                                             // or none
     NodeId folded(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload); // or none
     NodeId intern(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload);
     Reads reads_of(const Node &node) const;
-    bool is_all(NodeId id, double value) const; // a constant with this number in every component
     Arena<Node> nodes_;
     std::vector<NodeId> args_;
     std::vector<Reads> reads_;
@@ -212,15 +193,5 @@ class Graph {
     std::unordered_multimap<std::uint64_t, std::uint32_t> interned_constants_;
     std::unordered_multimap<std::uint64_t, TableId> interned_tables_;
 };
-
-// A copy of `root` in which every node that `map` names is replaced. Fold bodies are entered; calls
-// are not (functions are closed). A copied Fold gets variables of its own.
-using Substitution = std::unordered_map<NodeId, NodeId>;
-NodeId substitute(Graph &graph, NodeId root, const Substitution &map);
-
-// One line a node, numbered in the order of first use; folds and functions indented below; stable,
-// for goldens.
-std::string dump(const Graph &graph, NodeId root);
-std::string dump(const Graph &graph, FunctionId function); // its parameters, then its body
 
 } // namespace fathom::ir

@@ -46,6 +46,8 @@ inline double times(double a, double b) {
     return a == 0 || b == 0 ? 0 : a * b;
 } // 0 * infinity is 0 here
 constexpr double library = 8;
+// Evaluators count in single precision: beyond the one is infinity, below the other 0.
+constexpr double single_most = 1e38, single_least = 1.2e-38;
 } // namespace rounding
 
 inline double Interval::middle() const {
@@ -120,6 +122,9 @@ inline Interval sqrt(Interval a) { // 0 below 0
     Interval r = outward(std::sqrt(lo), std::sqrt(hi));
     return {std::max(r.lo, 0.0), r.hi};
 }
+inline Interval inversesqrt(Interval a) {
+    return a.lo <= 0 ? Interval(0, rounding::infinity) : Interval(1.0) / sqrt(a);
+}
 inline Interval floor(Interval a) { return {std::floor(a.lo), std::floor(a.hi)}; }
 inline Interval ceil(Interval a) { return {std::ceil(a.lo), std::ceil(a.hi)}; }
 inline Interval trunc(Interval a) { return {std::trunc(a.lo), std::trunc(a.hi)}; }
@@ -183,6 +188,50 @@ inline Interval sin(Interval a) {
     if (std::floor(to - 0.5) >= std::ceil(from - 0.5)) r.lo = -1;
     return {std::max(r.lo, -1.0), std::min(r.hi, 1.0)};
 }
+
+inline Interval tan(Interval a) {
+    return cos(a).contains(0) ? Interval::everything() : monotone(std::tan, a);
+}
+
+// The slopes of the functions of ir/ops.def; everything where there is none, or no bound.
+namespace slope {
+inline Interval sqrt(Interval a) {
+    if (a.hi < 0) return 0.0;
+    return a.lo <= 0 ? Interval::everything() : Interval(0.5) / ir::sqrt(a);
+}
+inline Interval inversesqrt(Interval a) {
+    return a.lo <= 0 ? Interval::everything() : Interval(-0.5) / (a * ir::sqrt(a));
+}
+inline Interval exp(Interval a) { return ir::exp(a); }
+inline Interval exp2(Interval a) {
+    return ir::exp2(a) * Interval(0.69314718055994528, 0.69314718055994534);
+}
+inline Interval log(Interval a) {
+    return a.lo < rounding::single_least ? Interval::everything() : Interval(1.0) / a;
+}
+inline Interval log2(Interval a) {
+    return a.lo < rounding::single_least ? Interval::everything()
+                                         : Interval(1.4426950408889632, 1.4426950408889636) / a;
+}
+inline Interval sin(Interval a) { return ir::cos(a); }
+inline Interval cos(Interval a) { return -ir::sin(a); }
+inline Interval tan(Interval a) {
+    const Interval t = ir::tan(a);
+    return t.finite() ? Interval(1.0) + square(t) : Interval::everything();
+}
+inline Interval asin(Interval a) { // of the clamped argument
+    if (a.lo >= 1 || a.hi <= -1) return 0.0;
+    if (a.lo <= -1 || a.hi >= 1) return Interval::everything();
+    return Interval(1.0) / ir::sqrt(Interval(1.0) - square(a));
+}
+inline Interval acos(Interval a) { return -slope::asin(a); }
+inline Interval atan(Interval a) { return Interval(1.0) / (Interval(1.0) + square(a)); }
+inline Interval sinh(Interval a) { return ir::cosh(a); }
+inline Interval cosh(Interval a) { return ir::sinh(a); }
+inline Interval tanh(Interval a) {
+    return meet(Interval(0, 1), Interval(1.0) - square(ir::tanh(a)));
+}
+} // namespace slope
 
 // x^n for a whole n >= 0.
 inline Interval whole_power(Interval a, double n) {

@@ -135,11 +135,6 @@ NodeId mirror_point(Graph &graph, NodeId p, int axis) {
     return graph.make(Op::Make, graph.type(p), std::span(parts).first(static_cast<std::size_t>(n)));
 }
 
-NodeId elongate_point(Graph &graph, NodeId p, NodeId by) {
-    const NodeId half = graph.mul(by, graph.number(0.5));
-    return graph.sub(p, graph.make(Op::Clamp, {p, graph.neg(half), half}));
-}
-
 NodeId hyperize_point(Graph &graph, NodeId p, NodeId v) {
     const NodeId power = graph.splat(graph.sub(v, graph.number(1)), graph.type(p));
     return graph.mul(p, graph.make(Op::Pow, {graph.make(Op::Abs, {p}), power}));
@@ -220,13 +215,6 @@ NodeId rotation_between(Graph &graph, NodeId from, NodeId to) {
         return matrix3(graph, m);
     };
     return graph.make(Op::MatMul, Type::Mat3, {reflected(b), reflected(u)});
-}
-
-NodeId reflection(Graph &graph, int size, int axis) {
-    Constant matrix{matrix_type(size), {}};
-    for (int i = 0; i < size; ++i)
-        matrix.value[static_cast<std::size_t>(i * size + i)] = i == axis ? -1 : 1;
-    return graph.constant(matrix);
 }
 
 } // namespace fathom::ir

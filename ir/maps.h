@@ -45,10 +45,8 @@ NodeId taper_factor(Graph &graph, NodeId height, NodeId ratio, NodeId from, Node
 // fields afterwards.
 Shape distorted(Graph &graph, ShapeId child, NodeId q);
 
-// Points, for `folded`: p with |p.axis|; p - clamp(p, -by/2, by/2), which makes a shape `by`
-// longer.
+// A point, for `folded`: p with |p.axis|.
 NodeId mirror_point(Graph &graph, NodeId p, int axis);
-NodeId elongate_point(Graph &graph, NodeId p, NodeId by);
 // sign(x)*|x|^v by component (thesis 6.3), as x*|x|^(v - 1), for `distorted`.
 NodeId hyperize_point(Graph &graph, NodeId p, NodeId v);
 
@@ -58,7 +56,6 @@ NodeId rotation2(Graph &graph, NodeId angle);             // mat2, counter-clock
 NodeId rotation_euler(Graph &graph, NodeId angles);       // mat3: about x, then y, then z
 NodeId rotation_between(Graph &graph, NodeId from,
                         NodeId to); // mat3: the shortest turn that takes from's direction to to's
-NodeId reflection(Graph &graph, int size, int axis); // mat2 or mat3: p.axis -> -p.axis
 
 // The other two axes, in the cyclic order that makes (first, second, axis) right-handed: of Y they
 // are Z and X.

@@ -104,8 +104,16 @@ template <class T> T sqrt(T x) { // 0 below 0
     using std::sqrt;
     return sqrt(max(x, T(0)));
 }
-template <class T> T inverse_sqrt(T x) { return T(1) / sem::sqrt(x); } // +infinity at 0 and below
-template <class T> T log(T x) {                                        // -infinity at 0 and below
+template <class T> T inversesqrt(T x) { return T(1) / sem::sqrt(x); } // +infinity at 0 and below
+template <class T> T exp(T x) {
+    using std::exp;
+    return exp(x);
+}
+template <class T> T exp2(T x) {
+    using std::exp2;
+    return exp2(x);
+}
+template <class T> T log(T x) { // -infinity at 0 and below
     using std::log;
     return log(max(x, T(0)));
 }
@@ -116,6 +124,18 @@ template <class T> T log2(T x) {
 
 // -- angles
 
+template <class T> T sin(T x) {
+    using std::sin;
+    return sin(x);
+}
+template <class T> T cos(T x) {
+    using std::cos;
+    return cos(x);
+}
+template <class T> T tan(T x) {
+    using std::tan;
+    return tan(x);
+}
 template <class T> T asin(T x) {
     using std::asin;
     return asin(clamp(x, T(-1), T(1)));
@@ -124,11 +144,30 @@ template <class T> T acos(T x) {
     using std::acos;
     return acos(clamp(x, T(-1), T(1)));
 }
+template <class T> T atan(T x) {
+    using std::atan;
+    return atan(x);
+}
 // The angle of (x, y) in (-pi, pi]; 0 at the origin. The sign of a zero means nothing: adding +0
 // takes it away.
 template <class T> T atan2(T y, T x) {
     using std::atan2;
     return atan2(y + T(0), x + T(0));
+}
+
+// -- hyperbolic functions
+
+template <class T> T sinh(T x) {
+    using std::sinh;
+    return sinh(x);
+}
+template <class T> T cosh(T x) {
+    using std::cosh;
+    return cosh(x);
+}
+template <class T> T tanh(T x) {
+    using std::tanh;
+    return tanh(x);
 }
 
 // -- vectors
@@ -140,8 +179,7 @@ template <class T> T normalizer(T squared_length) {
     return T(0) < squared_length ? T(1) / sqrt(some) : T(0);
 }
 
-// The other unary ops (floor, ceil, trunc, exp, exp2, sin, cos, tan, atan, sinh, cosh, tanh) are
-// the functions of those names in <cmath>, or those found by ADL.
+// floor, ceil and trunc are the functions of those names in <cmath>, or those found by ADL.
 
 // A division by zero is IEEE's (an infinity, or NaN for 0/0). NaN in gives an unspecified number
 // out.

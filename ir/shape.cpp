@@ -1,7 +1,7 @@
 // The hash-consed shapes and the boxes that bound them.
 #include "ir/shape.h"
 
-#include "ir/stir.h"
+#include "base/hash.h"
 
 #include <algorithm>
 #include <bit>
@@ -71,14 +71,15 @@ namespace {
 
 std::uint64_t hash_of(const Shape &shape) {
     std::uint64_t h = static_cast<std::uint64_t>(shape.kind);
-    h = stir(h, static_cast<std::uint64_t>(shape.map) << 24 | std::uint64_t{shape.dims} << 16 |
-                    std::uint64_t{shape.axis} << 8 | shape.towards);
-    h = stir(h, shape.payload);
-    for (ShapeId child : shape.children) h = stir(h, child.index);
-    h = stir(h, shape.children.size());
-    for (NodeId arg : shape.args) h = stir(h, arg.index);
-    h = stir(h, std::bit_cast<std::uint64_t>(shape.assumed));
-    return stir(h, std::bit_cast<std::uint64_t>(shape.estimate));
+    h = hash_combine(h, static_cast<std::uint64_t>(shape.map) << 24 |
+                            std::uint64_t{shape.dims} << 16 | std::uint64_t{shape.axis} << 8 |
+                            shape.towards);
+    h = hash_combine(h, shape.payload);
+    for (ShapeId child : shape.children) h = hash_combine(h, child.index);
+    h = hash_combine(h, shape.children.size());
+    for (NodeId arg : shape.args) h = hash_combine(h, arg.index);
+    h = hash_combine(h, std::bit_cast<std::uint64_t>(shape.assumed));
+    return hash_combine(h, std::bit_cast<std::uint64_t>(shape.estimate));
 }
 
 bool equal(const Shape &a, const Shape &b) {

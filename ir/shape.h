@@ -214,7 +214,4 @@ class Shapes {
     std::unordered_multimap<std::uint64_t, ShapeId> interned_;
 };
 
-std::string dump(const Graph &graph, const Shapes &shapes,
-                 ShapeId root); // indented tree; for goldens
-
 } // namespace fathom::ir

@@ -12,17 +12,8 @@ namespace fathom::lang {
 namespace {
 
 bool opens(Tok kind) {
-    switch (kind) {
-    case Tok::Open:
-    case Tok::FreshOpen:
-    case Tok::LambdaOpen:
-    case Tok::ListOpen:
-    case Tok::FreshListOpen:
-    case Tok::Body:
-    case Tok::Trailing:
-    case Tok::StrayBrace: return true;
-    default: return false;
-    }
+    return is_one_of(kind, {Tok::Open, Tok::FreshOpen, Tok::LambdaOpen, Tok::ListOpen,
+                            Tok::FreshListOpen, Tok::Body, Tok::Trailing, Tok::StrayBrace});
 }
 
 } // namespace
@@ -226,13 +217,10 @@ void Builder::assignment() {
         return;
     }
     std::optional<BinaryOp> op;
-    switch (kind(at)) {
-    case Tok::PlusAssign: op = BinaryOp::Add; break;
-    case Tok::MinusAssign: op = BinaryOp::Sub; break;
-    case Tok::StarAssign: op = BinaryOp::Mul; break;
-    case Tok::SlashAssign: op = BinaryOp::Div; break;
-    default: break;
-    }
+    if (kind(at) == Tok::PlusAssign) op = BinaryOp::Add;
+    if (kind(at) == Tok::MinusAssign) op = BinaryOp::Sub;
+    if (kind(at) == Tok::StarAssign) op = BinaryOp::Mul;
+    if (kind(at) == Tok::SlashAssign) op = BinaryOp::Div;
     add_stmt(Assign{target.id, op, value.id}, whole, tall);
 }
 
@@ -310,19 +298,21 @@ Builder::Index Builder::statement_end(Index first) const {
 // What stands for the statement in the tree. Its name stays declared, so that its uses are no new
 // errors.
 void Builder::replace_bad_statement(Index first) {
+    for (const Index name : std::exchange(lost_, {})) declare_poison(name);
     const Index end = statement_end(first);
     const Span whole = span(first, end > first ? end - 1 : first);
     Index name = first;
-    switch (kind(first)) {
-    case Tok::Let:
-    case Tok::Var:
-    case Tok::Fn:
-    case Tok::Param: name = first + 1; break;
-    case Tok::Name: name = first + 1; break; // `vec2 x = …`, `def f(…)`
-    default: break;
-    }
+    if (is_one_of(kind(first), {Tok::Let, Tok::Var, Tok::Fn, Tok::Param})) name = first + 1;
+    if (kind(first) == Tok::Name) // `x = …`, `const float x = …`, `def f(…)`
+        while (kind(name + 1) == Tok::Name) ++name;
+    const Tok behind = kind(name + 1);
     const bool declares =
-        kind(first) != Tok::Name || kind(first + 2) == Tok::Assign || kind(first + 2) == Tok::Open;
+        kind(first) != Tok::Name || behind == Tok::Assign || (name > first && behind == Tok::Open);
+    if (kind(first) == Tok::Name && name == first && declares && kind(name) == Tok::Name &&
+        !is_declared(std::string(text(name)))) {
+        declare_poison(name);
+        return;
+    }
     if (name == first || kind(name) != Tok::Name || !declares) {
         add_stmt(Bad{}, whole, 1);
         return;

@@ -19,60 +19,27 @@ constexpr std::size_t widest = 100;
 constexpr std::size_t step = 2; // columns of one level
 
 bool ends_operand(const Piece &p) {
-    switch (p.kind) {
-    case Tok::Name:
-    case Tok::Number:
-    case Tok::String:
-    case Tok::Color:
-    case Tok::True:
-    case Tok::False:
-    case Tok::Close:
-    case Tok::ListClose:
-    case Tok::BraceClose: return true;
-    default: return false;
-    }
+    return is_one_of(p.kind, {Tok::Name, Tok::Number, Tok::String, Tok::Color, Tok::True,
+                              Tok::False, Tok::Close, Tok::ListClose, Tok::BraceClose});
 }
 
 // How loosely a binary operator binds; 0 for what is none. `..` is no place for a break.
 int looseness(Tok kind) {
-    switch (kind) {
-    case Tok::Bar: return 8;
-    case Tok::Amp: return 7;
-    case Tok::Or: return 6;
-    case Tok::And: return 5;
-    case Tok::EqualEqual:
-    case Tok::NotEqual:
-    case Tok::Less:
-    case Tok::LessEqual:
-    case Tok::Greater:
-    case Tok::GreaterEqual: return 4;
-    case Tok::Plus:
-    case Tok::Minus: return 3;
-    case Tok::Star:
-    case Tok::Slash:
-    case Tok::Percent: return 2;
-    case Tok::Caret: return 1;
-    default: return 0;
-    }
+    if (kind == Tok::Bar) return 8;
+    if (kind == Tok::Amp) return 7;
+    if (kind == Tok::Or) return 6;
+    if (kind == Tok::And) return 5;
+    if (is_one_of(kind, {Tok::EqualEqual, Tok::NotEqual, Tok::Less, Tok::LessEqual, Tok::Greater,
+                         Tok::GreaterEqual}))
+        return 4;
+    if (is_one_of(kind, {Tok::Plus, Tok::Minus})) return 3;
+    if (is_one_of(kind, {Tok::Star, Tok::Slash, Tok::Percent})) return 2;
+    return kind == Tok::Caret ? 1 : 0;
 }
 
 bool is_keyword_before_operand(Tok kind) {
-    switch (kind) {
-    case Tok::Let:
-    case Tok::Var:
-    case Tok::Fn:
-    case Tok::Param:
-    case Tok::Import:
-    case Tok::For:
-    case Tok::In:
-    case Tok::If:
-    case Tok::Else:
-    case Tok::While:
-    case Tok::Limit:
-    case Tok::As:
-    case Tok::Not: return true;
-    default: return false;
-    }
+    return is_one_of(kind, {Tok::Let, Tok::Var, Tok::Fn, Tok::Param, Tok::Import, Tok::For, Tok::In,
+                            Tok::If, Tok::Else, Tok::While, Tok::Limit, Tok::As, Tok::Not});
 }
 
 std::size_t display_columns(std::string_view text) {
@@ -172,17 +139,9 @@ void Formatter::keep_breaks() {
             p.breaks = false;
             if (before > 0 && !at(before - 1).is_line_comment) pieces_[before].breaks = true;
         }
-        switch (p.kind) {
-        case Tok::Colon:
-        case Tok::Assign:
-        case Tok::FatArrow:
-        case Tok::Arrow:
-        case Tok::In:
-        case Tok::Limit:
-        case Tok::As:
-        case Tok::Else: p.breaks = false; break;
-        default: break;
-        }
+        if (is_one_of(p.kind, {Tok::Colon, Tok::Assign, Tok::FatArrow, Tok::Arrow, Tok::In,
+                               Tok::Limit, Tok::As, Tok::Else}))
+            p.breaks = false;
         if (has_before && (at(before).is_prefix || is_keyword_before_operand(at(before).kind)) &&
             !p.starts_statement)
             p.breaks = false;

@@ -21,42 +21,15 @@ struct Level {
 
 // A statement goes on behind these at a line's end.
 bool continues_after(Tok kind) {
-    switch (kind) {
-    case Tok::Comma:
-    case Tok::Colon:
-    case Tok::Dot:
-    case Tok::Assign:
-    case Tok::Bar:
-    case Tok::Amp:
-    case Tok::Less:
-    case Tok::Greater:
-    case Tok::Plus:
-    case Tok::Minus:
-    case Tok::Star:
-    case Tok::Slash:
-    case Tok::Percent:
-    case Tok::Caret:
-    case Tok::Question:
-    case Tok::Arrow:
-    case Tok::FatArrow:
-    case Tok::DotDot:
-    case Tok::DotDotEqual:
-    case Tok::EqualEqual:
-    case Tok::NotEqual:
-    case Tok::LessEqual:
-    case Tok::GreaterEqual:
-    case Tok::PlusAssign:
-    case Tok::MinusAssign:
-    case Tok::StarAssign:
-    case Tok::SlashAssign:
-    case Tok::OtherAssign:
-    case Tok::And:
-    case Tok::Or:
-    case Tok::Not:
-    case Tok::In:
-    case Tok::Else: return true;
-    default: return false;
-    }
+    return is_one_of(kind, {Tok::Comma,       Tok::Colon,      Tok::Dot,          Tok::Assign,
+                            Tok::Bar,         Tok::Amp,        Tok::Less,         Tok::Greater,
+                            Tok::Plus,        Tok::Minus,      Tok::Star,         Tok::Slash,
+                            Tok::Percent,     Tok::Caret,      Tok::Question,     Tok::Arrow,
+                            Tok::FatArrow,    Tok::DotDot,     Tok::DotDotEqual,  Tok::EqualEqual,
+                            Tok::NotEqual,    Tok::LessEqual,  Tok::GreaterEqual, Tok::PlusAssign,
+                            Tok::MinusAssign, Tok::StarAssign, Tok::SlashAssign,  Tok::OtherAssign,
+                            Tok::And,         Tok::Or,         Tok::Not,          Tok::In,
+                            Tok::Else});
 }
 
 // These end an operand, so that a `{` behind them belongs to it.
@@ -69,17 +42,8 @@ bool belongs_to_line_above(Tok kind) {
 }
 
 bool begins_declaration(Tok kind) {
-    switch (kind) {
-    case Tok::Let:
-    case Tok::Var:
-    case Tok::Fn:
-    case Tok::Param:
-    case Tok::Import:
-    case Tok::While:
-    case Tok::Return:
-    case Tok::Break: return true;
-    default: return false;
-    }
+    return is_one_of(kind, {Tok::Let, Tok::Var, Tok::Fn, Tok::Param, Tok::Import, Tok::While,
+                            Tok::Return, Tok::Break});
 }
 
 Tok closer_of(Tok bracket) {
@@ -90,13 +54,7 @@ Tok closer_of(Tok bracket) {
 
 // A line that begins with one of these begins something new, were it not inside brackets.
 bool begins_anew(Tok kind) {
-    switch (kind) {
-    case Tok::Name:
-    case Tok::For:
-    case Tok::If:
-    case Tok::Number: return true;
-    default: return begins_declaration(kind);
-    }
+    return is_one_of(kind, {Tok::Name, Tok::For, Tok::If, Tok::Number}) || begins_declaration(kind);
 }
 
 // Which opening brackets no closing one belongs to, by the same rules as Layout::close.
@@ -342,32 +300,23 @@ void Layout::place(std::size_t i) {
     const Token &t = words_[i];
     if (t.kind == Tok::Name && else_if_of_other_languages(t)) return;
     if (t.first_on_line) line_begins(t);
-    switch (t.kind) {
-    case Tok::Open:
-    case Tok::ListOpen:
-    case Tok::Body: return open(t, i);
-    case Tok::Close:
-    case Tok::ListClose:
-    case Tok::BraceClose: return close(t, i);
-    case Tok::If: level().waits = Header::If; break;
-    case Tok::Else: level().waits = Header::Else; break;
-    case Tok::For: level().waits = Header::For; break;
-    case Tok::While: level().waits = Header::While; break;
-    case Tok::Fn: level().waits = Header::Fn; break;
-    case Tok::End: level().waits = Header::None; break;
-    case Tok::GreaterEqual: {
-        // `s: shape<1>= a`: comparisons do not chain, so that this is a type's end and a `=`.
-        const std::size_t n = out_.tokens.size();
-        if (n < 3 || previous() != Tok::Number || out_.tokens[n - 2].kind != Tok::Less ||
-            out_.tokens[n - 3].kind != Tok::Name)
-            break;
+    if (is_one_of(t.kind, {Tok::Open, Tok::ListOpen, Tok::Body})) return open(t, i);
+    if (is_one_of(t.kind, {Tok::Close, Tok::ListClose, Tok::BraceClose})) return close(t, i);
+    if (t.kind == Tok::If) level().waits = Header::If;
+    if (t.kind == Tok::Else) level().waits = Header::Else;
+    if (t.kind == Tok::For) level().waits = Header::For;
+    if (t.kind == Tok::While) level().waits = Header::While;
+    if (t.kind == Tok::Fn) level().waits = Header::Fn;
+    if (t.kind == Tok::End) level().waits = Header::None;
+    if (t.kind == Tok::Assign && level().waits == Header::Fn) level().waits = Header::None;
+    const std::size_t n = out_.tokens.size();
+    // `s: shape<1>= a`: comparisons do not chain, so that this is a type's end and a `=`.
+    if (t.kind == Tok::GreaterEqual && n >= 3 && previous() == Tok::Number &&
+        out_.tokens[n - 2].kind == Tok::Less && out_.tokens[n - 3].kind == Tok::Name) {
         put({Tok::Greater, false, t.begin, t.begin + 1}, Tok::Greater);
         return put({Tok::Assign, false, t.begin + 1, t.end}, Tok::Assign);
     }
-    case Tok::Assign:
-        if (level().waits == Header::Fn) level().waits = Header::None;
-        break;
-    case Tok::Name: {
+    if (t.kind == Tok::Name) {
         const bool lambda = i + 1 < words_.size() && words_[i + 1].kind == Tok::FatArrow;
         if (lambda) return put(t, Tok::LambdaName);
         const std::string_view text = text_of(source_, t);
@@ -375,12 +324,8 @@ void Layout::place(std::size_t i) {
         const bool after_operand = !continues_after(last) && last != Tok::While && last != Tok::End;
         if (level().waits == Header::While && after_operand && text == "limit")
             return put(t, Tok::Limit);
-        const std::size_t n = out_.tokens.size();
         if (text == "as" && n >= 2 && out_.tokens[n - 2].kind == Tok::Import)
             return put(t, Tok::As);
-        break;
-    }
-    default: break;
     }
     put(t, t.kind);
 }

@@ -15,7 +15,4 @@ Ast parse(const Sources &sources, SourceId source, Diagnostics &diagnostics);
 Ast parse_part(const Sources &sources, SourceId source, std::uint32_t begin, std::uint32_t end,
                Diagnostics &diagnostics);
 
-// The names that the grammar keeps for itself (`let`, `fn`, `for`, …).
-const std::vector<std::string> &keywords();
-
 } // namespace fathom::lang

@@ -5,7 +5,9 @@
 #include "base/diagnostic.h"
 #include "base/source.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -84,6 +86,10 @@ enum class Tok : char {
     False = 'z',
     As = 's',
 };
+
+inline bool is_one_of(Tok kind, std::initializer_list<Tok> some) {
+    return std::find(some.begin(), some.end(), kind) != some.end();
+}
 
 struct Token {
     Tok kind = Tok::End;

@@ -1,5 +1,6 @@
 // What library functions ask of arguments that hang on params, time and the ids of copies: proved
 // with intervals, by halving the ranges. Proofs: docs/lipschitz.md, 9.
+#include "ir/passes/walk.h"
 #include "proof/continuity.h"
 #include "proof/prover.h"
 

@@ -2,6 +2,8 @@
 // and compared as polynomials in whatever they are made of.
 #include "proof/continuity.h"
 
+#include "ir/passes/walk.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -332,9 +334,7 @@ bool keeps_length(Graph &graph, NodeId q) {
 
 bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b) {
     const ir::Node node = graph[condition];
-    switch (node.op) {
-    case Op::Less:
-    case Op::LessEqual: {
+    if (node.op == Op::Less || node.op == Op::LessEqual) {
         NodeId u = graph.arg(condition, 0), v = graph.arg(condition, 1);
         if (graph[u].type != ir::Type::Float) return false;
         if (agree_where_equal(graph, u, v, a, b)) return true;
@@ -345,14 +345,12 @@ bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b) {
                 return false;
         return true;
     }
-    case Op::Not: return arms_agree(graph, graph.arg(condition, 0), b, a);
-    case Op::And:
-    case Op::Or: { // the border is part of the two borders together
+    if (node.op == Op::Not) return arms_agree(graph, graph.arg(condition, 0), b, a);
+    if (node.op == Op::And || node.op == Op::Or) { // the border is part of the two together
         NodeId left = graph.arg(condition, 0), right = graph.arg(condition, 1);
         return arms_agree(graph, left, a, b) && arms_agree(graph, right, a, b);
     }
-    default: return false; // a border that is not given by a comparison
-    }
+    return false; // a border that is not given by a comparison
 }
 
 } // namespace fathom::proof

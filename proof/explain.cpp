@@ -240,18 +240,4 @@ Explanation explain(const ir::Scene &proved) {
     return explained(scene, scene.root, prover, steepness(scene, scene.root), true, 0);
 }
 
-Summary summarize(const ir::Scene &scene) {
-    Summary out;
-    out.exact = true;
-    for (const ir::TopLevel &top : scene.top_level) {
-        const ir::ShapeFact &fact = scene.facts[top.shape.index];
-        if (scene.shapes[top.shape].kind == ShapeKind::Empty) continue;
-        out.lipschitz = std::max(out.lipschitz, fact.lipschitz_sup);
-        out.status = std::max(out.status, fact.status);
-        out.exact = out.exact && fact.kind == ir::FieldKind::Exact;
-    }
-    if (out.lipschitz == 0) out.exact = false;
-    return out;
-}
-
 } // namespace fathom::proof

@@ -2,6 +2,7 @@
 // takes: whatever half-space has only values above 0, as intervals, holds nothing of it.
 #include "proof/prover.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fathom::proof {
@@ -65,23 +66,13 @@ Box Prover::extent(ShapeId id) {
 void Prover::find_extent(ShapeId id, Known &k) {
     const Shape &shape = scene.shapes[id];
     if (k.failed || k.fact.bounds.finite() || !place(id).audible) return;
-    switch (shape.kind) {
-    case ShapeKind::Leaf: break;
-    case ShapeKind::Offset:
-    case ShapeKind::Shell:
-    case ShapeKind::Displace:
-    case ShapeKind::Blend: {
-        bool may_be_bounded = false;
-        for (ShapeId c : shape.children) {
-            const Known &one = of(c);
-            may_be_bounded =
-                may_be_bounded || (one.fact.bounds.finite() && !std::isfinite(one.swell));
-        }
-        if (!may_be_bounded) return;
-        break;
-    }
-    default: return;
-    }
+    const bool grows = shape.kind == ShapeKind::Offset || shape.kind == ShapeKind::Shell ||
+                       shape.kind == ShapeKind::Displace || shape.kind == ShapeKind::Blend;
+    if (!grows && shape.kind != ShapeKind::Leaf) return;
+    if (grows && std::none_of(shape.children.begin(), shape.children.end(), [&](ShapeId c) {
+            return of(c).fact.bounds.finite() && !std::isfinite(of(c).swell);
+        }))
+        return;
     const Box found = extent(id);
     const Box cut = ir::intersect(k.fact.bounds, found);
     if (cut.empty() || holds(cut, k.fact.bounds)) return;

@@ -1,5 +1,7 @@
 // Fields of the user's own: their bounds over the region where they are asked, what is assumed of
 // them, and the reports that say where and why there is none.
+#include "ir/passes/operations.h"
+#include "ir/passes/walk.h"
 #include "proof/prover.h"
 
 #include "ir/lower/lower.h"
@@ -33,6 +35,23 @@ std::string point_text(const std::array<double, 3> &p, int dims) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
         out += (i > 0 ? ", " : "") + number_text(std::fabs(p[i]) < nothing ? 0 : p[i]);
     return out + "]";
+}
+
+// Two points that are not one, with as many digits as it takes to tell them apart.
+static std::pair<std::string, std::string> two_points(const std::array<double, 3> &a,
+                                                      const std::array<double, 3> &b, int dims) {
+    constexpr int all_digits = 17;
+    std::pair<std::string, std::string> out{point_text(a, dims), point_text(b, dims)};
+    for (int digits = 4; digits <= all_digits && out.first == out.second; ++digits) {
+        const auto written = [&](const std::array<double, 3> &p) {
+            std::string text = "[";
+            for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
+                text += fmt::format("{}{:.{}g}", i > 0 ? ", " : "", p[i], digits);
+            return text + "]";
+        };
+        out = {written(a), written(b)};
+    }
+    return out;
 }
 
 Diagnostic *Prover::report(ShapeId id, Code code, std::string message) {
@@ -167,46 +186,7 @@ namespace {
 
 std::string cause_text(const ir::Graph &graph, NodeId cause) {
     if (!cause) return "an operation";
-    switch (graph[cause].op) {
-    case Op::Div: return "a division by 0";
-    case Op::Sqrt: return "a square root at 0";
-    case Op::InverseSqrt: return "`inversesqrt` at 0";
-    case Op::Pow: return "a power at 0";
-    case Op::Log:
-    case Op::Log2: return "a logarithm at 0";
-    case Op::Tan: return "`tan` at its pole";
-    case Op::Asin: return "`asin` at -1 or 1";
-    case Op::Acos: return "`acos` at -1 or 1";
-    case Op::Atan2: return "`atan` of two arguments at the origin";
-    case Op::Normalize: return "`normalize` at 0";
-    case Op::Mod: return "`%`";
-    case Op::Floor: return "`floor`";
-    case Op::Ceil: return "`ceil`";
-    case Op::Round: return "`round`";
-    case Op::Trunc:
-    case Op::ToInt: return "`int` or `trunc`";
-    case Op::Fract: return "`fract`";
-    case Op::ToFloat: return "a condition made into a number";
-    case Op::Step: return "`step`";
-    case Op::Sign: return "`sign`";
-    case Op::Hash: return "`hash` of the point";
-    case Op::Select: return "an `if`";
-    case Op::Fold: return "a loop that ends early";
-    case Op::TableRead: return "an index that depends on the point";
-    case Op::Smoothstep: return "`smoothstep` with equal edges";
-    case Op::Sub:
-    case Op::Add: return "a wave made with `%`";
-    case Op::Mul:
-    case Op::MatMul: return "a product";
-    case Op::Make:
-    case Op::Swizzle:
-    case Op::Splat:
-    case Op::Neg: return "an expression";
-    case Op::Perlin: return "`noise`";
-    case Op::ValueNoise: return "`value_noise`";
-    case Op::SpotNoise: return "`spot_noise`";
-    default: break; // NOLINT: the others are called in the language as their ops are
-    }
+    if (const char *trouble = ir::info(graph[cause].op).trouble; *trouble) return trouble;
     std::string name(ir::info(graph[cause].op).name);
     for (char &c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return "`" + name + "`";
@@ -215,17 +195,9 @@ std::string cause_text(const ir::Graph &graph, NodeId cause) {
 // Smooth at every point: what has no bound by one of these has outgrown all numbers.
 bool only_grows(const ir::Graph &graph, NodeId cause) {
     if (!cause) return false;
-    switch (graph[cause].op) {
-    case Op::Mul:
-    case Op::MatMul:
-    case Op::Dot:
-    case Op::Cross:
-    case Op::Exp:
-    case Op::Exp2:
-    case Op::Sinh:
-    case Op::Cosh: return true;
-    default: return false;
-    }
+    constexpr ir::OpSet products{Op::Mul, Op::MatMul, Op::Dot, Op::Cross};
+    const ir::OpInfo &op = ir::info(graph[cause].op);
+    return products[graph[cause].op] || (op.function && *op.trouble == '\0');
 }
 
 } // namespace
@@ -302,12 +274,12 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             "list[int(floor(x)) + 1], fract(x))`; ";
         bool seen = std::fabs(b.value_a - b.value_b) >
                     1e-4 * std::max({1.0, std::fabs(b.value_a), std::fabs(b.value_b)});
+        const auto [one_side, other_side] = two_points(b.side_a, b.side_b, dims);
         if (seen) {
             if (Diagnostic *d =
                     report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))
-                d->note("it is " + number_text(b.value_a) + " at " + point_text(b.side_a, dims) +
-                        " and " + number_text(b.value_b) + " at " + point_text(b.side_b, dims) +
-                        ": " + cause)
+                d->note("it is " + number_text(b.value_a) + " at " + one_side + " and " +
+                        number_text(b.value_b) + " at " + other_side + ": " + cause)
                     .help((by_list ? between : "make both sides agree there, ") +
                           "keep the jump out of the region with " +
                           (has_region ? "`within:`, " : "`.within(…)`, ") + assume);
@@ -459,8 +431,9 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
             step = std::max(step * 0.98, 1e-4);
         }
     }
-    std::string witness = "between " + point_text(worst_a, dims) + " and " +
-                          point_text(worst_b, dims) + " its slope is " + number_text(worst);
+    const auto [one_end, other_end] = two_points(worst_a, worst_b, dims);
+    std::string witness =
+        "between " + one_end + " and " + other_end + " its slope is " + number_text(worst);
     if (estimate) {
         if (Diagnostic *d = report(id, Code::EstimatedField,
                                    "this field is marched by an estimate, which is not a proof: "

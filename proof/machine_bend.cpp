@@ -24,6 +24,34 @@ namespace {
 double above(double x) { return x == 0 ? 0 : up(x, 8); } // what is straight stays so
 bool fixed(double norm, double bend) { return norm == 0 && bend == 0; }
 
+// The rule of an op. Only what displacements are made of has one.
+enum class Bend : std::uint8_t {
+    Unknown,
+    None,
+    Part,
+    Splat,
+    Sum,
+    Product,
+    Quotient,
+    Vector,
+    Dot,
+    Matrix,
+    Length,
+    Wave,
+    Perlin,
+    ValueNoise,
+};
+constexpr ir::OpTable<Bend> bend_of_op{
+    {Op::Point, Bend::None},    {Op::Neg, Bend::Part},
+    {Op::Swizzle, Bend::Part},  {Op::Splat, Bend::Splat},
+    {Op::Add, Bend::Sum},       {Op::Sub, Bend::Sum},
+    {Op::Mul, Bend::Product},   {Op::Div, Bend::Quotient},
+    {Op::Make, Bend::Vector},   {Op::Dot, Bend::Dot},
+    {Op::MatMul, Bend::Matrix}, {Op::Length, Bend::Length},
+    {Op::Sin, Bend::Wave},      {Op::Cos, Bend::Wave},
+    {Op::Perlin, Bend::Perlin}, {Op::ValueNoise, Bend::ValueNoise},
+};
+
 } // namespace
 
 double Step::bend() const {
@@ -64,106 +92,32 @@ double Step::bend() const {
     case Form::Loop: return infinity;
     case Form::Plain: break;
     }
-    switch (in.op) {
-    case Op::Point: return 0;
-    case Op::Neg:
-    case Op::Swizzle: return bend_of(0);
-    case Op::Splat: return above(std::sqrt(double(n)) * bend_of(0));
-    case Op::Add:
-    case Op::Sub: return above(bend_of(0) + bend_of(1));
-    case Op::Mul: return product(most(0), most(1));
-    case Op::Div: {
+    switch (bend_of_op[in.op]) {
+    case Bend::None: return 0;
+    case Bend::Part: return bend_of(0);
+    case Bend::Splat: return above(std::sqrt(double(n)) * bend_of(0));
+    case Bend::Sum: return above(bend_of(0) + bend_of(1));
+    case Bend::Product: return product(most(0), most(1));
+    case Bend::Quotient: {
         double least = infinity;
         for (int c = 0; c < size(1); ++c) least = std::min(least, value(1, c).mignitude());
         return fixed(norm(1), bend_of(1)) && least > 0 ? above(bend_of(0) / least) : infinity;
     }
-    case Op::Make: {
+    case Bend::Vector: {
         double squares = 0;
         for (int a = 0; a < int(in.args.size()); ++a) squares += bend_of(a) * bend_of(a);
         return above(std::sqrt(squares));
     }
-    case Op::Dot: return product(long_at_most(0), long_at_most(1));
-    case Op::MatMul:
+    case Bend::Dot: return product(long_at_most(0), long_at_most(1));
+    case Bend::Matrix:
         if (fixed(norm(0), bend_of(0))) return above(times(long_at_most(0), bend_of(1)));
         if (fixed(norm(1), bend_of(1))) return above(times(long_at_most(1), bend_of(0)));
         return infinity;
-    case Op::Length: return length();
-    case Op::Sin:
-    case Op::Cos: return through(1, 1);
-    case Op::Perlin: return through(ir::sem::perlin_slope, ir::sem::perlin_bend);
-    case Op::ValueNoise: return through(ir::sem::value_noise_slope, ir::sem::value_noise_bend);
-    case Op::Const:
-    case Op::Normal:
-    case Op::Direction:
-    case Op::Time:
-    case Op::Param:
-    case Op::Var:
-    case Op::Mod:
-    case Op::Pow:
-    case Op::Min:
-    case Op::Max:
-    case Op::Step:
-    case Op::Atan2:
-    case Op::Abs:
-    case Op::Sign:
-    case Op::Floor:
-    case Op::Ceil:
-    case Op::Round:
-    case Op::Trunc:
-    case Op::Fract:
-    case Op::Sqrt:
-    case Op::InverseSqrt:
-    case Op::Exp:
-    case Op::Exp2:
-    case Op::Log:
-    case Op::Log2:
-    case Op::Tan:
-    case Op::Asin:
-    case Op::Acos:
-    case Op::Atan:
-    case Op::Sinh:
-    case Op::Cosh:
-    case Op::Tanh:
-    case Op::Clamp:
-    case Op::Mix:
-    case Op::Smoothstep:
-    case Op::Cross:
-    case Op::Normalize:
-    case Op::Less:
-    case Op::LessEqual:
-    case Op::Equal:
-    case Op::NotEqual:
-    case Op::And:
-    case Op::Or:
-    case Op::Not:
-    case Op::Select:
-    case Op::ToFloat:
-    case Op::ToInt:
-    case Op::Column:
-    case Op::Transpose:
-    case Op::TableRead:
-    case Op::Hash:
-    case Op::Simplex:
-    case Op::Worley:
-    case Op::SpotNoise:
-    case Op::Image:
-    case Op::Grid:
-    case Op::Call:
-    case Op::Fold:
-    case Op::FoldResult:
-    case Op::Cached:
-    case Op::Union:
-    case Op::Intersection:
-    case Op::Blend:
-    case Op::MakeHit:
-    case Op::HitDistance:
-    case Op::HitPaint:
-    case Op::HitPoint:
-    case Op::HitExtra:
-    case Op::NearestHit:
-    case Op::FarthestHit:
-    case Op::HitWith:
-    case Op::FillPaint: return infinity;
+    case Bend::Length: return length();
+    case Bend::Wave: return through(1, 1);
+    case Bend::Perlin: return through(ir::sem::perlin_slope, ir::sem::perlin_bend);
+    case Bend::ValueNoise: return through(ir::sem::value_noise_slope, ir::sem::value_noise_bend);
+    case Bend::Unknown: return infinity;
     }
     return infinity;
 }

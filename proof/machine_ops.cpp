@@ -21,27 +21,16 @@ Interval truth_of(bool may_be_false, bool may_be_true) {
 
 bool even_aware(const Instruction &i) {
     if (i.form == Form::Norm || i.form == Form::Square || i.form == Form::Joined) return true;
-    switch (i.op) {
-    case Op::Neg:
-    case Op::Abs:
-    case Op::Mul:
-    case Op::Div:
-    case Op::Make:
-    case Op::Swizzle:
-    case Op::Splat:
-    case Op::Cos:
-    case Op::Cosh:
-    case Op::Pow:
-    case Op::Column:
-    case Op::Transpose: return true;
-    default: return false; // the list is of the few that keep or remove a change of sign
+    switch (ir::info(i.op).parity) {
+    case ir::OpParity::Even:
+    case ir::OpParity::Product:
+    case ir::OpParity::Parts: return true;
+    case ir::OpParity::None:
+    case ir::OpParity::Odd:
+    case ir::OpParity::Sum:
+    case ir::OpParity::Own: break;
     }
-}
-
-Interval tan_value(Interval x) {
-    Interval c = cos(x);
-    if (c.contains(0)) return Interval::everything();
-    return ir::monotone(std::tan, x);
+    return i.op == Op::Neg || i.op == Op::Pow;
 }
 
 } // namespace
@@ -77,32 +66,14 @@ bool Step::overflows() const {
         return true;
     };
     if (in.form != Form::Plain && in.form != Form::Joined) return true;
-    switch (in.op) {
-    case Op::Neg:
-    case Op::Abs:
-    case Op::Min:
-    case Op::Max:
-    case Op::Union:
-    case Op::Intersection:
-    case Op::Clamp:
-    case Op::Exp:
-    case Op::Exp2:
-    case Op::Atan:
-    case Op::Tanh:
-    case Op::Less:
-    case Op::LessEqual:
-    case Op::Select:
-    case Op::Make:
-    case Op::Splat:
-    case Op::Swizzle:
-    case Op::Column:
-    case Op::Transpose: return false;
-    case Op::Add:
-    case Op::Sub: return many > 1;
-    case Op::Mul: return many == 1 && !at_least_one(large(0) ? 1 : 0);
-    case Op::Div: return large(0);
-    default: return true; // the list is of those that bear it
-    }
+    constexpr ir::OpSet bear{Op::Neg,          Op::Abs,     Op::Min,       Op::Max,      Op::Union,
+                             Op::Intersection, Op::Clamp,   Op::Exp,       Op::Exp2,     Op::Atan,
+                             Op::Tanh,         Op::Less,    Op::LessEqual, Op::Select,   Op::Make,
+                             Op::Splat,        Op::Swizzle, Op::Column,    Op::Transpose};
+    if (bear[in.op]) return false;
+    if (in.op == Op::Add || in.op == Op::Sub) return many > 1;
+    if (in.op == Op::Mul) return many == 1 && !at_least_one(large(0) ? 1 : 0);
+    return in.op != Op::Div || large(0);
 }
 
 void Step::run() {
@@ -463,72 +434,11 @@ void Step::run() {
         if (is_int()) return settle_int();
         return finish(norm(0), false);
     }
-    case Op::Sqrt: {
-        return unary([](Interval x) { return sqrt(x); },
-                     [](Interval x) {
-                         if (x.hi < 0) return Interval(0.0);
-                         if (x.lo <= 0) return Interval::everything();
-                         return Interval(0.5) / sqrt(x);
-                     });
-    }
-    case Op::InverseSqrt: {
-        return unary(
-            [](Interval x) { return x.lo <= 0 ? Interval(0, infinity) : Interval(1.0) / sqrt(x); },
-            [](Interval x) {
-                if (x.lo <= 0) return Interval::everything();
-                return Interval(-0.5) / (x * sqrt(x));
-            });
-    }
-    case Op::Exp:
-        return unary([](Interval x) { return exp(x); }, [](Interval x) { return exp(x); });
-    case Op::Exp2:
-        return unary([](Interval x) { return exp2(x); },
-                     [](Interval x) {
-                         return exp2(x) * Interval(0.69314718055994528, 0.69314718055994534);
-                     });
-    case Op::Log:
-        return unary([](Interval x) { return log(x); },
-                     [](Interval x) {
-                         return x.lo < single_least ? Interval::everything() : Interval(1.0) / x;
-                     });
-    case Op::Log2:
-        return unary([](Interval x) { return log2(x); },
-                     [](Interval x) {
-                         return x.lo < single_least
-                                    ? Interval::everything()
-                                    : Interval(1.4426950408889632, 1.4426950408889636) / x;
-                     });
-    case Op::Sin:
-        return unary([](Interval x) { return sin(x); }, [](Interval x) { return cos(x); });
-    case Op::Cos: // even
-        return unary([](Interval x) { return cos(x); }, [](Interval x) { return -sin(x); });
-    case Op::Tan:
-        return unary(tan_value, [](Interval x) {
-            Interval t = tan_value(x);
-            return t.finite() ? Interval(1.0) + square(t) : Interval::everything();
-        });
-    case Op::Asin:
-    case Op::Acos: {
-        bool is_asin = in.op == Op::Asin;
-        return unary([&](Interval x) { return is_asin ? asin(x) : acos(x); },
-                     [&](Interval x) {
-                         if (x.lo >= 1 || x.hi <= -1) return Interval(0.0); // clamped
-                         if (x.lo <= -1 || x.hi >= 1) return Interval::everything();
-                         Interval d = Interval(1.0) / sqrt(Interval(1.0) - square(x));
-                         return is_asin ? d : -d;
-                     });
-    }
-    case Op::Atan:
-        return unary([](Interval x) { return atan(x); },
-                     [](Interval x) { return Interval(1.0) / (Interval(1.0) + square(x)); });
-    case Op::Sinh:
-        return unary([](Interval x) { return sinh(x); }, [](Interval x) { return cosh(x); });
-    case Op::Cosh:
-        return unary([](Interval x) { return cosh(x); }, [](Interval x) { return sinh(x); });
-    case Op::Tanh:
-        return unary(
-            [](Interval x) { return tanh(x); },
-            [](Interval x) { return meet(Interval(0, 1), Interval(1.0) - square(tanh(x))); });
+#define FATHOM_FUNCTION(name, function, ...)                                                       \
+    case Op::name:                                                                                 \
+        return unary([](Interval x) { return ir::function(x); },                                   \
+                     [](Interval x) { return ir::slope::function(x); });
+#include "ir/ops.def"
     case Op::Clamp: {
         double m = extremum(
             1, [&](int c) { return value(0, c); }, [&](int c) { return grad(0, c); },

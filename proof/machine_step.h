@@ -9,8 +9,8 @@
 
 namespace fathom::proof {
 
-// Evaluators count in single precision: beyond the one is infinity, below the other 0.
-constexpr double single_most = 1e38, single_least = 1.2e-38;
+using ir::rounding::single_least;
+using ir::rounding::single_most;
 
 inline Row scaled(Interval factor, const Row &row) {
     return {factor * row[0], factor * row[1], factor * row[2]};

@@ -1,6 +1,7 @@
 // Displacements that are sums, as octaves of noise are: with the first terms alone, and the most
 // that the others can add, a ray may step by a bound that is less steep (lipschitz.md, 3,
 // nested octaves).
+#include "ir/passes/inline.h"
 #include "proof/prover.h"
 
 #include <algorithm>
@@ -46,12 +47,8 @@ struct Unrolled {
             for (NodeId &arg : args) arg = of(arg);
             out = graph.make(node.op, node.type, args, node.payload);
         } else if (node.op == Op::Call) {
-            const ir::Function &callee = graph.function(ir::FunctionId{node.payload});
-            if (sums(callee.result)) {
-                ir::Substitution map;
-                for (std::size_t i = 0; i < args.size(); ++i) map[callee.params[i]] = args[i];
-                out = of(ir::substitute(graph, callee.result, map));
-            }
+            if (sums(graph.function(ir::FunctionId{node.payload}).result))
+                out = of(ir::called(graph, id));
         }
         return known[id] = out;
     }
@@ -67,12 +64,8 @@ struct Unrolled {
         const auto count = graph.as_number(fold.count);
         std::vector<NodeId> state(graph.args(fold_node).begin(), graph.args(fold_node).end());
         failed = failed || !count || *count < 0 || *count > double(most_octaves) || fold.condition;
-        for (int turn = 0; !failed && turn < int(*count); ++turn) {
-            ir::Substitution map{{fold.index, graph.integer(turn)}};
-            for (std::size_t i = 0; i < state.size(); ++i) map[fold.vars[i]] = state[i];
-            for (std::size_t i = 0; i < state.size(); ++i)
-                state[i] = ir::substitute(graph, fold.next[i], map);
-        }
+        for (int turn = 0; !failed && turn < int(*count); ++turn)
+            state = ir::after_iteration(graph, fold, turn, state);
         return state;
     }
 };

@@ -3,6 +3,8 @@
 #include "proof/field.h"
 
 #include <algorithm>
+#include <cassert>
+#include <optional>
 
 namespace fathom::proof {
 namespace {
@@ -39,42 +41,41 @@ struct Follower {
         const Parity even = all(in, plain) == Parity::Even ? Parity::Even : Parity::Neither;
         if (in.form == Form::Wave) return of(in.args[1], c) == Parity::Even ? arg(0) : even;
         if (in.form != Form::Plain) return even;
-        switch (in.op) {
-        case Op::Neg:
-        case Op::Sin:
-        case Op::Tan:
-        case Op::Asin:
-        case Op::Atan:
-        case Op::Sinh:
-        case Op::Tanh: return arg(0);
-        case Op::Cos:
-        case Op::Cosh:
-        case Op::Abs: return square(arg(0));
-        case Op::Add:
-        case Op::Sub: return sum(arg(0), arg(1));
-        case Op::Mul:
-        case Op::Div: return product(arg(0), arg(1));
-        case Op::Mix: // a + t (b - a)
-            return sum(arg(0), product(arg(2), sum(arg(0), arg(1))));
-        case Op::Length: return all(in, square);
-        case Op::Dot: {
+        switch (ir::info(in.op).parity) {
+        case ir::OpParity::Odd: return arg(0);
+        case ir::OpParity::Even: return square(arg(0));
+        case ir::OpParity::Sum: return sum(arg(0), arg(1));
+        case ir::OpParity::Product: return product(arg(0), arg(1));
+        case ir::OpParity::Parts: return part(in, c).value_or(even);
+        case ir::OpParity::Own: return own(in, c);
+        case ir::OpParity::None: break;
+        }
+        return even; // of the same arguments the same value
+    }
+    Parity own(const Instruction &in, std::uint32_t c) {
+        if (in.op == Op::Length) return all(in, square);
+        if (in.op == Op::Dot) {
             Parity out = product(of(in.args[0], 0), of(in.args[1], 0));
             for (std::uint32_t i = 1; i < tape.size[in.args[0]]; ++i)
                 out = sum(out, product(of(in.args[0], i), of(in.args[1], i)));
             return out;
         }
-        case Op::Splat: return of(in.args[0], 0);
-        case Op::Swizzle:
+        const auto arg = [&](std::size_t i) { return of(in.args[i], c); };
+        assert(in.op == Op::Mix); // a + t (b - a)
+        return sum(arg(0), product(arg(2), sum(arg(0), arg(1))));
+    }
+    // Of the component of an argument that component c is; none of matrices' parts.
+    std::optional<Parity> part(const Instruction &in, std::uint32_t c) {
+        if (in.op == Op::Splat) return of(in.args[0], 0);
+        if (in.op == Op::Swizzle)
             return of(in.args[0],
                       static_cast<std::uint32_t>(ir::swizzle_component(in.payload, int(c))));
-        case Op::Make:
-            for (Slot s : in.args) {
-                if (c < tape.size[s]) return of(s, c);
-                c -= tape.size[s];
-            }
-            return Parity::Neither;
-        default: return even; // of the same arguments the same value
+        if (in.op != Op::Make) return std::nullopt;
+        for (Slot s : in.args) {
+            if (c < tape.size[s]) return of(s, c);
+            c -= tape.size[s];
         }
+        return Parity::Neither;
     }
 };
 

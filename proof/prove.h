@@ -40,12 +40,4 @@ struct Explanation {
 };
 Explanation explain(const ir::Scene &scene);
 
-// What a top-level report needs: the largest bound and the worst status (semantics.md, 19).
-struct Summary {
-    double lipschitz = 0; // before division; 0 when there is no shape
-    ir::ProofStatus status = ir::ProofStatus::Proved;
-    bool exact = false; // all are
-};
-Summary summarize(const ir::Scene &scene);
-
 } // namespace fathom::proof

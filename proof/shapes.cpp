@@ -146,7 +146,24 @@ Known Prover::know_set(ShapeId id) {
             k.swell = infinity;
             k.outer = Box::everything();
             break;
-        default: break; // know() sends no other kind here
+        // know() sends no other kind here
+        case ShapeKind::Empty:
+        case ShapeKind::Leaf:
+        case ShapeKind::Complement:
+        case ShapeKind::Lerp:
+        case ShapeKind::Map:
+        case ShapeKind::Offset:
+        case ShapeKind::Shell:
+        case ShapeKind::Displace:
+        case ShapeKind::Extrude:
+        case ShapeKind::Repeat:
+        case ShapeKind::Within:
+        case ShapeKind::Paint:
+        case ShapeKind::Repaint:
+        case ShapeKind::Mixed:
+        case ShapeKind::Many:
+        case ShapeKind::Library:
+        case ShapeKind::Contract: break;
         }
         bool quadratic = (shape.kind == ShapeKind::Blend && profile == ir::Profile::Columns) ||
                          (shape.kind == ShapeKind::Seam && seam == ir::SeamKind::Pipe);

@@ -9,10 +9,12 @@
 // (docs/lipschitz.md, 2).
 #include "proof/steps.h"
 
+#include "ir/passes/inline.h"
 #include "proof/continuity.h"
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -29,10 +31,7 @@ using ir::Op;
 constexpr std::size_t most_nodes = 4'000; // of a field that is looked at
 constexpr int most_depth = 400;
 
-bool is_step(Op op) {
-    return op == Op::Floor || op == Op::Ceil || op == Op::Round || op == Op::Fract ||
-           op == Op::Mod || op == Op::Atan2;
-}
+constexpr ir::OpSet is_step{Op::Floor, Op::Ceil, Op::Round, Op::Fract, Op::Mod, Op::Atan2};
 
 // -- one form for equal expressions --------------------------------------------------------------
 
@@ -95,7 +94,7 @@ struct Canonical {
         if (failed) return id;
         const ir::Node node = graph[id];
         NodeId out = id;
-        if (is_step(node.op) && node.type != ir::Type::Int)
+        if (is_step[node.op] && node.type != ir::Type::Int)
             out = step(id, node, depth);
         else if (node.count > 0)
             out = rewritten(id, node, depth);
@@ -108,32 +107,21 @@ struct Canonical {
         std::vector<NodeId> args;
         for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
             args.push_back(of(a, depth + 1));
-        switch (node.op) {
-        case Op::Mix:
-            if (auto t = number(args[2])) {
-                if (*t == 0) return args[0];
-                if (*t == 1) return args[1];
-            }
-            break;
-        case Op::ToFloat:
-            if (graph[args[0]].type == ir::Type::Int) return scalar(as_float(args[0]));
-            break;
-        case Op::ToInt:
+        if (node.op == Op::Mix)
+            if (auto t = number(args[2]); t && (*t == 0 || *t == 1)) return args[*t == 0 ? 0 : 1];
+        if (node.op == Op::ToFloat && graph[args[0]].type == ir::Type::Int)
+            return scalar(as_float(args[0]));
+        if (node.op == Op::ToInt)
             if (auto w = whole(args[0])) return *w;
-            break;
-        case Op::Sin:
-        case Op::Cos:
-            if (node.type == ir::Type::Float) args[0] = without_turns(graph, args[0]);
-            break;
-        case Op::Length: {
+        if ((node.op == Op::Sin || node.op == Op::Cos) && node.type == ir::Type::Float)
+            args[0] = without_turns(graph, args[0]);
+        if (node.op == Op::Length) {
             NodeId sum = graph.number(0);
             for (int i = 0; i < ir::components(graph[args[0]].type); ++i) {
                 NodeId part = scalar(component_of(graph, args[0], i));
                 sum = graph.add(sum, graph.mul(part, part));
             }
             return graph.make(Op::Sqrt, ir::Type::Float, {scalar(sum)});
-        }
-        default: break; // NOLINT: every other op is made again of its arguments
         }
         NodeId made = graph.make(node.op, node.type, args, node.payload);
         if (node.type == ir::Type::Float) return scalar(made);
@@ -261,16 +249,15 @@ struct Border {
             const NodeId left = graph.number(snapped(t->number) - floor_of(t->number, t->slope));
             return moves ? graph.add(left, graph.mul(graph.number(t->slope), little)) : left;
         };
-        switch (op) {
-        case Op::Floor: return graph.add(multiple, graph.number(floor_of(t->number, t->slope)));
-        case Op::Round:
-            return graph.add(multiple, graph.number(floor_of(t->number + 0.5, t->slope)));
-        case Op::Ceil: return graph.sub(multiple, graph.number(floor_of(-t->number, -t->slope)));
-        case Op::Fract: return rest();
-        case Op::Mod:
-            return graph.mul(rest(), part(moves ? moving : limit, step, 1, component, depth));
-        default: return step; // no step: is_step
-        }
+        const auto floored = [&](double number, double slope) {
+            return graph.number(floor_of(number, slope));
+        };
+        if (op == Op::Floor) return graph.add(multiple, floored(t->number, t->slope));
+        if (op == Op::Round) return graph.add(multiple, floored(t->number + 0.5, t->slope));
+        if (op == Op::Ceil) return graph.sub(multiple, floored(-t->number, -t->slope));
+        if (op == Op::Fract) return rest();
+        assert(op == Op::Mod); // the last that is_step knows
+        return graph.mul(rest(), part(moves ? moving : limit, step, 1, component, depth));
     }
 
     // The angle that is cut here; of any other nothing is known.
@@ -368,49 +355,17 @@ std::vector<NodeId> in_body(const Graph &graph, NodeId loop) {
     return out;
 }
 
-struct WritingOut {
-    Graph &graph;
-    std::map<NodeId, NodeId> known{};
-    bool too_large = false;
-
-    NodeId of(NodeId id, int depth = 0) {
-        if (auto it = known.find(id); it != known.end()) return it->second;
-        if (depth > most_depth || known.size() > most_nodes) too_large = true;
-        if (too_large) return id;
-        const ir::Node node = graph[id];
-        std::vector<NodeId> args;
-        bool changed = false;
-        for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end())) {
-            args.push_back(of(a, depth + 1));
-            changed = changed || args.back() != a;
-        }
-        NodeId out = id;
-        if (node.op == Op::Call) {
-            const ir::Function function = graph.function(ir::FunctionId{node.payload});
-            ir::Substitution map;
-            for (std::size_t i = 0; i < function.params.size(); ++i)
-                map[function.params[i]] = args[i];
-            out = of(ir::substitute(graph, function.result, map), depth + 1);
-        } else if (changed) {
-            out = graph.make(node.op, node.type, args, node.payload);
-        }
-        known[id] = out;
-        return out;
-    }
-};
-
 } // namespace
 
 bool has_steps(const Graph &graph, NodeId root) {
     for (NodeId id : reached(graph, root, true))
-        if (is_step(graph[id].op) && graph[id].type != ir::Type::Int) return true;
+        if (is_step[graph[id].op] && graph[id].type != ir::Type::Int) return true;
     return false;
 }
 
-NodeId without_calls(Graph &graph, NodeId root) {
-    WritingOut writing{graph};
-    const NodeId out = writing.of(root);
-    return writing.too_large ? root : out;
+NodeId written_out(Graph &graph, NodeId root) {
+    const ir::WithoutCalls out = ir::without_calls(graph, root, most_nodes);
+    return out.all ? out.root : root;
 }
 
 std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
@@ -420,7 +375,7 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
     std::unordered_set<NodeId> steps;
     for (NodeId id : nodes) {
         const ir::Node node = graph[id];
-        if (!is_step(node.op) || !graph.reads(id).point || graph.reads(id).free_vars) continue;
+        if (!is_step[node.op] || !graph.reads(id).point || graph.reads(id).free_vars) continue;
         if (node.type != ir::Type::Float && !ir::is_vector(node.type)) continue;
         NodeId turning = graph.arg(id, 0);
         if (node.op == Op::Mod) turning = graph.div(turning, graph.arg(id, 1));

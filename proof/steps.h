@@ -11,7 +11,7 @@ namespace fathom::proof {
 
 // The steps (Floor, Ceil, Round, Fract, Mod, Atan2) below `root` whose jumps `root` is proved not
 // to see: it has one value on both sides of each border. Enters no loops; calls should have been
-// written out before (without_calls).
+// written out before (written_out).
 std::unordered_set<ir::NodeId> cancelling_steps(ir::Graph &graph, ir::NodeId root);
 
 // Does the expression, its calls included, hold such a step?
@@ -19,6 +19,6 @@ bool has_steps(const ir::Graph &graph, ir::NodeId root);
 
 // The same expression with every call replaced by its function's body; `root` itself where that
 // would be very large.
-ir::NodeId without_calls(ir::Graph &graph, ir::NodeId root);
+ir::NodeId written_out(ir::Graph &graph, ir::NodeId root);
 
 } // namespace fathom::proof

@@ -41,10 +41,6 @@ bool Supports::is_base(Slot s) const {
 void Supports::make_base(Slot s) {
     for (int c = 0; c < int(tape_.size[s]); ++c) set(s, c, {s, static_cast<std::uint8_t>(1u << c)});
 }
-void Supports::make_unknown(Slot s) {
-    for (int c = 0; c < int(tape_.size[s]); ++c) set(s, c, {none, 0xff});
-}
-
 void Supports::follow(const Instruction &in) {
     const int n = tape_.size[in.out];
     if (!in.varies) {

@@ -14,7 +14,6 @@ class Supports {
     // The point, and vectors whose Jacobian is a multiple of an orthogonal matrix everywhere.
     bool is_base(Slot s) const;
     void make_base(Slot s);
-    void make_unknown(Slot s); // as of a loop's values
     // After an instruction's slot is made: from its arguments.
     void follow(const Instruction &instruction);
     // Two bits an argument: arguments of different numbers depend on different coordinates.

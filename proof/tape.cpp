@@ -16,6 +16,40 @@ namespace {
 
 constexpr std::size_t most_instructions = 100'000;
 
+// What an op's node is looked at for, before it becomes an instruction as it stands (Plain).
+enum class Look : std::uint8_t {
+    Plain,
+    Point,
+    Call,
+    Cached,
+    Loop,
+    LoopResult,
+    Sum,
+    Root,
+    Length,
+    Product,
+    Quotient,
+    Vector,
+    Choice,
+};
+constexpr ir::OpTable<Look> look_of_op{
+    {Op::Point, Look::Point},
+    {Op::Call, Look::Call},
+    {Op::Cached, Look::Cached},
+    {Op::Fold, Look::Loop},
+    {Op::FoldResult, Look::LoopResult},
+    {Op::Sub, Look::Sum},
+    {Op::Add, Look::Sum},
+    {Op::Sqrt, Look::Root},
+    {Op::Pow, Look::Root},
+    {Op::Length, Look::Length},
+    {Op::Mul, Look::Product},
+    {Op::Div, Look::Quotient},
+    {Op::Make, Look::Vector},
+    {Op::MatMul, Look::Vector},
+    {Op::Select, Look::Choice},
+};
+
 struct Scope {
     Scope *outer = nullptr;                    // a loop's surroundings; none for a function's body
     std::vector<Instruction> *block = nullptr; // where what depends on this scope's variables goes
@@ -305,19 +339,18 @@ struct Flattener {
         out.payload = node.payload;
         out.node = id;
         out.cancels = cancelling.contains(id);
-        switch (node.op) {
-        case Op::Point: out.varies = true; return emit(scope, out);
-        case Op::Call: return call(scope, id, ir::FunctionId{node.payload});
-        case Op::Cached:
+        switch (look_of_op[node.op]) {
+        case Look::Point: out.varies = true; return emit(scope, out);
+        case Look::Call: return call(scope, id, ir::FunctionId{node.payload});
+        case Look::Cached:
             if (node.payload < context.kept.size() && context.kept[node.payload]) break;
             return call(scope, id, graph.cache(ir::CacheId{node.payload}).field);
-        case Op::Fold: return loop(scope, id);
-        case Op::FoldResult: {
+        case Look::Loop: return loop(scope, id);
+        case Look::LoopResult: {
             slot(scope, graph.arg(id, 0));
             return loop_results.at(graph.arg(id, 0))[node.payload];
         }
-        case Op::Sub:
-        case Op::Add:
+        case Look::Sum:
             if (auto parts = wave(id)) {
                 out.form = Form::Wave;
                 out.args = {slot(scope, parts->x), slot(scope, parts->m)};
@@ -351,19 +384,18 @@ struct Flattener {
                 return emit(scope, out);
             }
             break;
-        case Op::Sqrt:
-        case Op::Pow:
+        case Look::Root:
             if (auto parts = norm_parts(id)) {
                 out.form = Form::Norm;
                 for (NodeId part : *parts) out.args.push_back(slot(scope, part));
                 return emit(scope, out);
             }
             break;
-        case Op::Length:
+        case Look::Length:
             out.form = Form::Norm;
             out.args = {slot(scope, graph.arg(id, 0))};
             return emit(scope, out);
-        case Op::Mul:
+        case Look::Product:
             if (graph.arg(id, 0) == graph.arg(id, 1)) {
                 out.form = Form::Square;
                 out.args = {slot(scope, graph.arg(id, 0))};
@@ -380,7 +412,7 @@ struct Flattener {
                 return emit(scope, out);
             }
             break;
-        case Op::Div: {
+        case Look::Quotient: {
             NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
             if (graph[a].op == Op::Sin && graph.arg(a, 0) == b) {
                 out.form = Form::Sinc;
@@ -395,8 +427,7 @@ struct Flattener {
             }
             break;
         }
-        case Op::Make:
-        case Op::MatMul: {
+        case Look::Vector: {
             if (out.op == Op::MatMul && ir::is_vector(node.type))
                 for (int i = 0; i < 2; ++i)
                     if (const NodeId m = graph.arg(id, i); ir::is_matrix(graph[m].type))
@@ -405,7 +436,7 @@ struct Flattener {
                 out.args.push_back(slot(scope, a));
             return emit_turned(scope, id, std::move(out));
         }
-        case Op::Select: {
+        case Look::Choice: {
             NodeId condition = graph.arg(id, 0);
             for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
                 out.args.push_back(slot(scope, a));
@@ -421,79 +452,7 @@ struct Flattener {
             }
             return emit(scope, out);
         }
-        case Op::Const:
-        case Op::Normal:
-        case Op::Direction:
-        case Op::Time:
-        case Op::Param:
-        case Op::Var:
-        case Op::Neg:
-        case Op::Mod:
-        case Op::Min:
-        case Op::Max:
-        case Op::Step:
-        case Op::Atan2:
-        case Op::Abs:
-        case Op::Sign:
-        case Op::Floor:
-        case Op::Ceil:
-        case Op::Round:
-        case Op::Trunc:
-        case Op::Fract:
-        case Op::InverseSqrt:
-        case Op::Exp:
-        case Op::Exp2:
-        case Op::Log:
-        case Op::Log2:
-        case Op::Sin:
-        case Op::Cos:
-        case Op::Tan:
-        case Op::Asin:
-        case Op::Acos:
-        case Op::Atan:
-        case Op::Sinh:
-        case Op::Cosh:
-        case Op::Tanh:
-        case Op::Clamp:
-        case Op::Mix:
-        case Op::Smoothstep:
-        case Op::Dot:
-        case Op::Cross:
-        case Op::Normalize:
-        case Op::Less:
-        case Op::LessEqual:
-        case Op::Equal:
-        case Op::NotEqual:
-        case Op::And:
-        case Op::Or:
-        case Op::Not:
-        case Op::ToFloat:
-        case Op::ToInt:
-        case Op::Splat:
-        case Op::Swizzle:
-        case Op::Column:
-        case Op::Transpose:
-        case Op::TableRead:
-        case Op::Hash:
-        case Op::Perlin:
-        case Op::Simplex:
-        case Op::ValueNoise:
-        case Op::Worley:
-        case Op::SpotNoise:
-        case Op::Image:
-        case Op::Grid:
-        case Op::Union:
-        case Op::Intersection:
-        case Op::Blend:
-        case Op::MakeHit:
-        case Op::HitDistance:
-        case Op::HitPaint:
-        case Op::HitPoint:
-        case Op::HitExtra:
-        case Op::NearestHit:
-        case Op::FarthestHit:
-        case Op::HitWith:
-        case Op::FillPaint: break;
+        case Look::Plain: break;
         }
         for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
             out.args.push_back(slot(scope, a));
@@ -576,7 +535,7 @@ std::size_t Tape::length() const {
 Tape flatten(Flattening &context, NodeId root) {
     Flattener flattener(context);
     if (has_steps(context.graph, root)) {
-        const NodeId whole = without_calls(context.graph, root);
+        const NodeId whole = written_out(context.graph, root);
         flattener.cancelling = cancelling_steps(context.graph, whole);
         if (!flattener.cancelling.empty()) root = whole;
     }

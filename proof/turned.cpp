@@ -5,6 +5,7 @@
 #include "proof/turned.h"
 
 #include "ir/interval.h"
+#include "ir/passes/inline.h"
 #include "proof/continuity.h"
 #include "proof/segments.h"
 
@@ -52,13 +53,7 @@ struct Reader {
     NodeId entered(NodeId id) {
         while (graph[id].op == Op::Call && ++steps < most_steps) {
             NodeId &known = calls[id];
-            if (!known) {
-                const ir::Function function = graph.function(ir::FunctionId{graph[id].payload});
-                ir::Substitution map;
-                for (std::size_t i = 0; i < function.params.size(); ++i)
-                    map[function.params[i]] = graph.arg(id, static_cast<int>(i));
-                known = ir::substitute(graph, function.result, map);
-            }
+            if (!known) known = ir::called(graph, id);
             id = known;
         }
         return id;
@@ -154,66 +149,71 @@ struct Reader {
         if (++steps > most_steps) failed = true;
         if (failed) return {};
         const ir::Node node = graph[id];
-        switch (node.op) {
-        case Op::Swizzle: {
-            const NodeId x = part(graph.arg(id, 0), ir::swizzle_component(node.payload, 0));
-            if (!x) break;
-            if (graph[x].op != Op::Swizzle) return read(x);
-            const NodeId vector = graph.arg(x, 0);
-            if (vector == self) break; // not looked into
-            if (!(*varies)(vector)) return constant(x);
-            if (!of) of = vector;
-            if (of != vector) break;
-            Sum out;
-            out.by[static_cast<std::size_t>(ir::swizzle_component(graph[x].payload, 0))] =
-                graph.number(1);
-            return out;
-        }
-        case Op::Add:
-        case Op::Sub:
-        case Op::Neg: {
-            Sum a = read(graph.arg(id, 0)), b;
-            if (node.op == Op::Neg)
-                std::swap(a, b);
-            else
-                b = read(graph.arg(id, 1));
-            for (std::size_t i = 0; i < 4; ++i) a.by[i] = joined(a.by[i], b.by[i], node.op);
-            a.rest = joined(a.rest, b.rest, node.op);
-            return a;
-        }
-        case Op::Mul:
-        case Op::Div: {
-            const NodeId x = graph.arg(id, 0), y = graph.arg(id, 1);
-            const Sum a = read(x), b = read(y);
+        constexpr ir::OpSet sums{Op::Add, Op::Sub, Op::Neg}, products{Op::Mul, Op::Div};
+        std::optional<Sum> sum;
+        if (node.op == Op::Swizzle)
+            sum = component(id, node);
+        else if (sums[node.op])
+            sum = combined(id, node);
+        else if (products[node.op])
+            sum = scaled(id, node);
+        else if (node.op == Op::Dot)
+            sum = dotted(id);
+        else if (node.op != Op::Call)
+            return constant(id);
+        else if (const NodeId inner = entered(id); inner != id)
+            return read(inner);
+        failed = failed || !sum;
+        return sum.value_or(Sum{});
+    }
+    std::optional<Sum> component(NodeId id, const ir::Node &node) {
+        const NodeId x = part(graph.arg(id, 0), ir::swizzle_component(node.payload, 0));
+        if (!x) return {};
+        if (graph[x].op != Op::Swizzle) return read(x);
+        const NodeId vector = graph.arg(x, 0);
+        if (vector == self) return {}; // not looked into
+        if (!(*varies)(vector)) return constant(x);
+        if (!of) of = vector;
+        if (of != vector) return {};
+        Sum out;
+        out.by[static_cast<std::size_t>(ir::swizzle_component(graph[x].payload, 0))] =
+            graph.number(1);
+        return out;
+    }
+    Sum combined(NodeId id, const ir::Node &node) {
+        Sum a = read(graph.arg(id, 0)), b;
+        if (node.op == Op::Neg)
+            std::swap(a, b);
+        else
+            b = read(graph.arg(id, 1));
+        for (std::size_t i = 0; i < 4; ++i) a.by[i] = joined(a.by[i], b.by[i], node.op);
+        a.rest = joined(a.rest, b.rest, node.op);
+        return a;
+    }
+    std::optional<Sum> scaled(NodeId id, const ir::Node &node) {
+        const NodeId x = graph.arg(id, 0), y = graph.arg(id, 1);
+        const Sum a = read(x), b = read(y);
+        if (failed) return {};
+        if (!a.linear() && !b.linear()) return Sum{{}, id};
+        if (b.linear() && (a.linear() || node.op == Op::Div)) return {};
+        const Sum &sum = a.linear() ? a : b;
+        const NodeId by = a.linear() ? y : x;
+        Sum out;
+        for (std::size_t i = 0; i < 4; ++i)
+            if (sum.by[i])
+                out.by[i] =
+                    node.op == Op::Div ? graph.div(sum.by[i], by) : graph.mul(sum.by[i], by);
+        if (sum.rest) out.rest = id;
+        return out;
+    }
+    std::optional<Sum> dotted(NodeId id) {
+        NodeId sum;
+        for (int i = 0; i < ir::components(graph[graph.arg(id, 0)].type); ++i) {
+            const NodeId x = part(graph.arg(id, 0), i), y = part(graph.arg(id, 1), i);
             if (failed) return {};
-            if (!a.linear() && !b.linear()) return {{}, id};
-            if (b.linear() && (a.linear() || node.op == Op::Div)) break;
-            const Sum &sum = a.linear() ? a : b;
-            const NodeId by = a.linear() ? y : x;
-            Sum out;
-            for (std::size_t i = 0; i < 4; ++i)
-                if (sum.by[i])
-                    out.by[i] =
-                        node.op == Op::Div ? graph.div(sum.by[i], by) : graph.mul(sum.by[i], by);
-            if (sum.rest) out.rest = id;
-            return out;
+            sum = plus(sum, graph.mul(x, y));
         }
-        case Op::Dot: {
-            NodeId sum;
-            for (int i = 0; i < ir::components(graph[graph.arg(id, 0)].type); ++i) {
-                const NodeId x = part(graph.arg(id, 0), i), y = part(graph.arg(id, 1), i);
-                if (failed) return {};
-                sum = plus(sum, graph.mul(x, y));
-            }
-            return graph[sum].op == Op::Dot ? constant(sum) : read(sum);
-        }
-        case Op::Call:
-            if (const NodeId inner = entered(id); inner != id) return read(inner);
-            break;
-        default: return constant(id); // NOLINT: no sum or product
-        }
-        failed = true;
-        return {};
+        return graph[sum].op == Op::Dot ? constant(sum) : read(sum);
     }
     NodeId joined(NodeId a, NodeId b, Op op) {
         if (op == Op::Add) return plus(a, b);

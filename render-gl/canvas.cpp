@@ -50,8 +50,6 @@ Picture read_bytes(GLuint framebuffer, int width, int height) {
 
 } // namespace
 
-int context_version() { return epoxy_gl_version(); }
-
 std::string lost_context() {
     // Where the window was asked for without robustness the driver says nothing, and then ends the
     // program itself.

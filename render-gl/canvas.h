@@ -12,9 +12,6 @@
 
 namespace fathom::gl {
 
-// The version that the current context has, 33 for 3.3; 0 where it has none.
-int context_version();
-
 // A sentence where the driver lost the context, which then draws nothing any more; else nothing.
 std::string lost_context();
 

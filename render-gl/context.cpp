@@ -105,10 +105,6 @@ std::variant<Context, std::string> Context::make() {
     return reason;
 }
 
-void Context::make_current() const {
-    eglMakeCurrent(state_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, state_->context);
-}
-
 std::string Context::describe() const {
     const auto text = [](GLenum what) {
         const GLubyte *name = glGetString(what);

@@ -15,7 +15,6 @@ class Context {
     // be had.
     static std::variant<Context, std::string> make();
 
-    void make_current() const;
     std::string describe() const; // the renderer's and the version's names
     int version() const;          // 45 is 4.5
 

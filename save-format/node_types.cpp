@@ -216,11 +216,6 @@ const PropertyType *find_property(const NodeTypeRow &row, std::string_view name)
     return nullptr;
 }
 
-bool is_shape(NodeType type) {
-    const NodeTypeRow &row = row_of(type);
-    return row.children == Arity::Leaf && type != NodeType::Lighting;
-}
-
 std::span<const VectorSet> vector_sets() { return sets; }
 int find_vector_set(std::string_view name) {
     const std::string key = spelling_key(name);

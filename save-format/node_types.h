@@ -84,7 +84,6 @@ std::span<const NodeTypeRow> node_types();
 const NodeTypeRow &row_of(NodeType type);
 const NodeTypeRow *find_node_type(std::string_view name); // any spelling; null for an unknown one
 const PropertyType *find_property(const NodeTypeRow &row, std::string_view name);
-bool is_shape(NodeType type); // leaves with a material
 
 // The sets of unit vectors of Akleman and Chen that 6.1 may use, by the name in `Shape`. -1:
 // unknown. Three of them the library has turned by 90 degrees about x; those are module dfmodel's.

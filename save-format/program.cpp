@@ -9,74 +9,31 @@
 namespace fathom::save {
 namespace {
 
-// How an operation is written: infix between its arguments, or a call. Names are those of
-// ir/ops.def.
+// How each operation of the table is written; and what the save format alone has.
 struct Spelling {
     std::string_view op;
-    std::string_view text;
     int arity;
-    bool infix;
+    std::string_view text; // {0} {1} {2} stand for the arguments
 };
 constexpr Spelling spellings[] = {
-    {"Add", "+", 2, true},
-    {"Sub", "-", 2, true},
-    {"Mul", "*", 2, true},
-    {"Div", "/", 2, true},
-    {"WholeDiv", "div", 2, false},
-    {"Mod", "%", 2, true},
-    {"Pow", "pow", 2, false},
-    {"Min", "min", 2, false},
-    {"Max", "max", 2, false},
-    {"Step", "step", 2, false},
-    {"Atan2", "atan", 2, false},
-    {"Abs", "abs", 1, false},
-    {"Sign", "sign", 1, false},
-    {"Floor", "floor", 1, false},
-    {"Ceil", "ceil", 1, false},
-    {"Round", "round", 1, false},
-    {"Trunc", "trunc", 1, false},
-    {"Fract", "fract", 1, false},
-    {"Sqrt", "sqrt", 1, false},
-    {"InverseSqrt", "inversesqrt", 1, false},
-    {"Exp", "exp", 1, false},
-    {"Exp2", "exp2", 1, false},
-    {"Log", "log", 1, false},
-    {"Log2", "log2", 1, false},
-    {"Sin", "sin", 1, false},
-    {"Cos", "cos", 1, false},
-    {"Tan", "tan", 1, false},
-    {"Asin", "asin", 1, false},
-    {"Acos", "acos", 1, false},
-    {"Atan", "atan", 1, false},
-    {"Sinh", "sinh", 1, false},
-    {"Cosh", "cosh", 1, false},
-    {"Tanh", "tanh", 1, false},
-    {"Clamp", "clamp", 3, false},
-    {"Mix", "mix", 3, false},
-    {"Smoothstep", "smoothstep", 3, false},
-    {"Dot", "dot", 2, false},
-    {"Length", "length", 1, false},
-    {"Cross", "cross", 2, false},
-    {"Normalize", "normalize", 1, false},
-    {"Less", "<", 2, true},
-    {"LessEqual", "<=", 2, true},
-    {"Equal", "==", 2, true},
-    {"NotEqual", "!=", 2, true},
-    {"And", "and", 2, true},
-    {"Or", "or", 2, true},
-    {"ToFloat", "float", 1, false},
-    {"ToInt", "int", 1, false},
-    {"MatMul", "*", 2, true},
-    {"Transpose", "transpose", 1, false},
-    {"Hash", "hash", 1, false},
-    {"Perlin", "dfmodel.perlin", 1, false},
-    {"Simplex", "dfmodel.simplex", 1, false},
-    {"ValueNoise", "dfmodel.value_noise", 1, false},
-    {"Worley", "worley", 1, false},
-    {"SpotNoise", "spot_noise", 3, false},
+#define FATHOM_OP(name, arity, rule, glsl, text, ...) {#name, arity, text},
+#include "ir/ops.def"
+    {"WholeDiv", 2, "div({0}, {1})"},
 };
 
 constexpr std::size_t most_inline = 20000; // characters of an expression without names
+
+std::string filled(std::string_view form, const std::vector<std::string> &arguments) {
+    std::string text;
+    for (std::size_t i = 0; i < form.size(); ++i) {
+        const bool place = i + 2 < form.size() && form[i] == '{' && form[i + 2] == '}';
+        if (place)
+            text += arguments[static_cast<std::size_t>(form[i + 1] - '0')], i += 2;
+        else
+            text += form[i];
+    }
+    return text;
+}
 
 constexpr std::string_view constructors[] = {"vec2", "vec3", "vec4", "mat2", "mat3", "mat4"};
 
@@ -185,9 +142,9 @@ class Program {
                 number && *number == std::floor(*number) && *number >= 0 && *number < words_.copies;
             return legal ? copy_name(static_cast<int>(*number)) : std::string();
         }
-        if (op == "Normal" && given_ == Given::PointAndNormal) {
+        if (op == "Normal") {
+            if (given_ != Given::PointAndNormal) return {};
             normal_used_ = true;
-            return "n";
         }
         if (op == "Const") return count == 1 ? constant_text(value.items[1]) : std::string();
         std::vector<std::string> arguments;
@@ -229,27 +186,17 @@ class Program {
                                *index >= 0 && *index < static_cast<double>(words_.caches.size());
             return legal ? call(words_.caches[static_cast<std::size_t>(*index)]) : std::string();
         }
-        if (op == "Neg" && arguments.size() == 1) return "(-" + arguments[0] + ")";
-        if (op == "Not" && arguments.size() == 1) return "(not " + arguments[0] + ")";
-        if (op == "Select" && arguments.size() == 3)
-            return "(if " + arguments[0] + " { " + arguments[1] + " } else { " + arguments[2] +
-                   " })";
-        if ((op == "Union" || op == "Intersection") &&
-            !arguments.empty()) { // of distances: the least, the greatest
-            std::string text = arguments[0];
-            for (std::size_t i = 1; i < arguments.size(); ++i)
-                text = (op == "Union" ? "min(" : "max(") + text + ", " + arguments[i] + ")";
-            return text;
+        const auto known = std::ranges::find(spellings, op, &Spelling::op);
+        if (known == std::end(spellings) || known->text.empty()) return {};
+        if (known->arity >= 0) {
+            const bool fits = arguments.size() == static_cast<std::size_t>(known->arity);
+            return fits ? filled(known->text, arguments) : std::string();
         }
-        for (const Spelling &spelling : spellings) {
-            if (spelling.op != op) continue;
-            if (arguments.size() != static_cast<std::size_t>(spelling.arity)) return {};
-            if (spelling.infix)
-                return "(" + arguments[0] + " " + std::string(spelling.text) + " " + arguments[1] +
-                       ")";
-            return call(spelling.text);
-        }
-        return {};
+        if (arguments.empty()) return {}; // of any number: one after another
+        std::string text = arguments[0];
+        for (std::size_t i = 1; i < arguments.size(); ++i)
+            text = filled(known->text, {text, arguments[i]});
+        return text;
     }
 
     const Value &steps_;

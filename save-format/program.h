@@ -3,6 +3,7 @@
 // language's text. Private to save-format.
 #pragma once
 
+#include "ir/passes/walk.h"
 #include "ir/scene.h"
 #include "save-format/yaml_reader.h"
 

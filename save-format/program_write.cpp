@@ -3,6 +3,7 @@
 // them share it finds again.
 #include "save-format/program.h"
 
+#include "ir/passes/inline.h"
 #include "save-format/yaml_writer.h"
 
 #include <algorithm>
@@ -71,11 +72,7 @@ class StepWriter {
 
     // A function's body where it is called.
     int call(ir::FunctionId id, const std::vector<NodeId> &args, int depth) {
-        const ir::Function function = graph_.function(id);
-        ir::Substitution inside = present_;
-        for (std::size_t i = 0; i < function.params.size() && i < args.size(); ++i)
-            inside[function.params[i]] = args[i];
-        return step(ir::substitute(graph_, function.result, inside), depth + 1);
+        return step(ir::called(graph_, id, args, present_), depth + 1);
     }
 
     // A cached field is written once, among the file's others. One that reads a copy's number is
@@ -109,17 +106,15 @@ class StepWriter {
         NodeId running = graph_.boolean(true);
         for (int turn = 0; turn < static_cast<int>(turns); ++turn) {
             if (graph_.size() > most_nodes_) return nullptr;
-            ir::Substitution now{{loop.index, graph_.integer(turn)}};
-            for (std::size_t k = 0; k < values.size(); ++k) now.emplace(loop.vars[k], values[k]);
             if (!known)
                 running = graph_.make(
                     Op::And, {running, graph_.make(Op::Less, {graph_.integer(turn), loop.count})});
             if (loop.condition)
-                running =
-                    graph_.make(Op::And, {running, ir::substitute(graph_, loop.condition, now)});
+                running = graph_.make(Op::And, {running, ir::in_iteration(graph_, loop, turn,
+                                                                          values, loop.condition)});
+            const std::vector<NodeId> next = ir::after_iteration(graph_, loop, turn, values);
             for (std::size_t k = 0; k < values.size(); ++k)
-                values[k] = graph_.make(
-                    Op::Select, {running, ir::substitute(graph_, loop.next[k], now), values[k]});
+                values[k] = graph_.make(Op::Select, {running, next[k], values[k]});
         }
         return &loops_.emplace(id, std::move(values)).first->second;
     }
@@ -129,118 +124,42 @@ class StepWriter {
         return values && which < values->size() ? step((*values)[which], depth + 1) : -1;
     }
 
+    int table_read(const ir::Node &node, NodeId place) {
+        const auto row = graph_.as_number(place);
+        const ir::Table &table = graph_.table(ir::table_of(node.payload));
+        if (!row || table.rows == 0) return -1;
+        const auto at =
+            static_cast<std::size_t>(std::min(std::max(*row, 0.0), double(table.rows - 1)));
+        ir::Constant value{node.type, {}};
+        for (int i = 0; i < ir::components(node.type); ++i) {
+            const std::size_t column = static_cast<std::size_t>(ir::column_of(node.payload) + i);
+            value.value[static_cast<std::size_t>(i)] =
+                table.data[at * static_cast<std::size_t>(table.stride) + column];
+        }
+        return constant(value);
+    }
+
     int make(NodeId id, int depth) {
         const ir::Node node = graph_[id];
         const std::vector<NodeId> args(graph_.args(id).begin(), graph_.args(id).end());
-        switch (node.op) {
-        case Op::Const: return constant(graph_.constant_of(id));
-        case Op::Point: return push("Point");
-        case Op::Normal: return push("Normal");
-        case Op::Time: return push("Time");
-        case Op::Call: return call(ir::FunctionId{node.payload}, args, depth);
-        case Op::Direction: return push("Direction");
-        case Op::Param: return push("Param, " + flow_scalar(words_.params[node.payload], true));
-        case Op::Var: {
+        if (node.op == Op::Const) return constant(graph_.constant_of(id));
+        if (node.op == Op::Call) return call(ir::FunctionId{node.payload}, args, depth);
+        if (node.op == Op::Cached) return cached(ir::CacheId{node.payload}, args, depth);
+        if (node.op == Op::Direction) return push("Direction");
+        if (node.op == Op::Param)
+            return push("Param, " + flow_scalar(words_.params[node.payload], true));
+        if (node.op == Op::Var) {
             const auto found = std::find(words_.ids.begin(), words_.ids.end(), id);
             return found == words_.ids.end()
                        ? -1
                        : push("Id, " + std::to_string(found - words_.ids.begin()));
         }
-        case Op::Cached: return cached(ir::CacheId{node.payload}, args, depth);
-        case Op::Fold: return result(id, 0, depth);
-        case Op::FoldResult: return result(args[0], node.payload, depth);
-        case Op::Blend: return step(blend_expression(graph_, id), depth + 1);
-        case Op::TableRead: {
-            const auto row = graph_.as_number(args[0]);
-            const ir::Table &table = graph_.table(ir::table_of(node.payload));
-            if (!row || table.rows == 0) return -1;
-            const auto at =
-                static_cast<std::size_t>(std::min(std::max(*row, 0.0), double(table.rows - 1)));
-            ir::Constant value{node.type, {}};
-            for (int i = 0; i < ir::components(node.type); ++i) {
-                const std::size_t column =
-                    static_cast<std::size_t>(ir::column_of(node.payload) + i);
-                value.value[static_cast<std::size_t>(i)] =
-                    table.data[at * static_cast<std::size_t>(table.stride) + column];
-            }
-            return constant(value);
-        }
-        case Op::Image:
-        case Op::Grid:
-        case Op::MakeHit:
-        case Op::HitDistance:
-        case Op::HitPaint:
-        case Op::HitPoint:
-        case Op::HitExtra:
-        case Op::NearestHit:
-        case Op::FarthestHit:
-        case Op::HitWith:
-        case Op::FillPaint: return -1;
-        case Op::Neg:
-        case Op::Add:
-        case Op::Sub:
-        case Op::Mul:
-        case Op::Div:
-        case Op::Mod:
-        case Op::Pow:
-        case Op::Min:
-        case Op::Max:
-        case Op::Step:
-        case Op::Atan2:
-        case Op::Abs:
-        case Op::Sign:
-        case Op::Floor:
-        case Op::Ceil:
-        case Op::Round:
-        case Op::Trunc:
-        case Op::Fract:
-        case Op::Sqrt:
-        case Op::InverseSqrt:
-        case Op::Exp:
-        case Op::Exp2:
-        case Op::Log:
-        case Op::Log2:
-        case Op::Sin:
-        case Op::Cos:
-        case Op::Tan:
-        case Op::Asin:
-        case Op::Acos:
-        case Op::Atan:
-        case Op::Sinh:
-        case Op::Cosh:
-        case Op::Tanh:
-        case Op::Clamp:
-        case Op::Mix:
-        case Op::Smoothstep:
-        case Op::Dot:
-        case Op::Length:
-        case Op::Cross:
-        case Op::Normalize:
-        case Op::Less:
-        case Op::LessEqual:
-        case Op::Equal:
-        case Op::NotEqual:
-        case Op::And:
-        case Op::Or:
-        case Op::Not:
-        case Op::Select:
-        case Op::ToFloat:
-        case Op::ToInt:
-        case Op::Splat:
-        case Op::Make:
-        case Op::Swizzle:
-        case Op::Column:
-        case Op::MatMul:
-        case Op::Transpose:
-        case Op::Hash:
-        case Op::Perlin:
-        case Op::Simplex:
-        case Op::ValueNoise:
-        case Op::Worley:
-        case Op::SpotNoise:
-        case Op::Union:
-        case Op::Intersection: break;
-        }
+        if (node.op == Op::Fold) return result(id, 0, depth);
+        if (node.op == Op::FoldResult) return result(args[0], node.payload, depth);
+        if (node.op == Op::Blend) return step(blend_expression(graph_, id), depth + 1);
+        if (node.op == Op::TableRead) return table_read(node, args[0]);
+        constexpr ir::OpSet with_word{Op::Splat, Op::Make, Op::Column, Op::Swizzle};
+        if (!with_word[node.op] && *ir::info(node.op).text == '\0') return -1;
         // What truncates is not the language's `/`, and what hashes a whole number not what hashes
         // a float: numbers do not say in text which of the two they are.
         const bool whole = node.op == Op::Div && node.type == ir::Type::Int;

@@ -44,11 +44,12 @@ const std::unordered_set<std::string_view> &known_words() {
         "noise", "fbm", "ridged", "turbulence", "simplex", "value_noise", "worley", "spot_noise",
         "hash", "cached", "div", "map_range", "saturate", "smin", "smax", "rotate2", "random",
         "pick", "shuffle", "concat", "len", "map", "filter", "fold", "zip", "reverse", "sort",
-        "print", "assert", "range", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh",
-        "tanh", "pow", "exp", "log", "exp2", "log2", "sqrt", "inversesqrt", "abs", "sign", "floor",
-        "ceil", "round", "trunc", "fract", "mod", "min", "max", "clamp", "mix", "step",
-        "smoothstep", "length", "distance", "dot", "cross", "normalize", "transpose", "inverse",
-        "determinant", "any", "all",
+        "print", "assert", "range",
+#define FATHOM_FUNCTION(name, function, ...) #function,
+#include "ir/ops.def"
+        "pow", "abs", "sign", "floor", "ceil", "round", "trunc", "fract", "mod", "min", "max",
+        "clamp", "mix", "step", "smoothstep", "length", "distance", "dot", "cross", "normalize",
+        "transpose", "inverse", "determinant", "any", "all",
         // looks
         "image", "paint", "repaint", "hsv", "rgb", "palette", "sun", "lighting", "camera",
         "background", "render", "orient",

@@ -1,7 +1,8 @@
 #!/bin/sh
 # The checks that take too long for every change: the tests by clang++, the sanitizers, clang-tidy,
-# ten minutes of each fuzzer, and the coverage of the front end. Each leaves its output in
-# build-weekly/; the last lines say what passed. Takes some hours on two cores.
+# ten minutes of each fuzzer, the coverage of the front end, two ops more, and the columns of the op
+# table. Each leaves its output in build-weekly/; the last lines say what passed. Takes some hours on
+# two cores.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
 cd "$root" && mkdir -p build-weekly || exit 3
 failed=0
@@ -17,4 +18,6 @@ try sanitize scripts/sanitize.sh
 try tidy scripts/tidy.sh
 for target in parse_fuzz compile_fuzz yaml_fuzz; do try $target scripts/fuzz.sh $target 600; done
 try coverage scripts/coverage.sh
+try ops scripts/weekly-ops.sh
+try columns scripts/weekly-columns.sh
 exit $failed

@@ -7,6 +7,7 @@
 #include "typecheck/evaluator.h"
 
 #include "ir/passes/fold.h"
+#include "ir/passes/inline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -116,6 +117,7 @@ struct Formula {
             possible = possible && g.reads(id) == ir::Graph::Reads{};
             return id;
         }
+        if (n.op == Op::Call) return node(ir::called(g, id)); // so that what follows sees into it
         std::vector<NodeId> args(g.args(id).begin(), g.args(id).end());
         for (NodeId &arg : args) arg = node(arg);
         if (!possible) return id;
@@ -123,15 +125,6 @@ struct Formula {
             n.op == Op::TableRead) {
             possible = false;
             return id;
-        }
-        if (n.op == Op::Call) { // written out, so that what follows sees into it
-            const ir::Function function = g.function(ir::FunctionId{n.payload});
-            Formula inside{ev, {}, true, depth};
-            for (std::size_t i = 0; i < args.size(); ++i)
-                inside.known[function.params[i]] = args[i];
-            const NodeId result = inside.node(function.result);
-            possible = inside.possible;
-            return result;
         }
         if (n.op == Op::ToInt || n.op == Op::Floor || n.op == Op::Fract)
             if (const NodeId whole = of_quotient(n.op, args[0])) return whole;
@@ -228,13 +221,10 @@ struct Formula {
 // -- whether they give the rows
 
 // What every shader computes alike where the result is a float.
-bool is_exact(Op op) {
-    return op == Op::Neg || op == Op::Add || op == Op::Sub || op == Op::Mul || op == Op::Min ||
-           op == Op::Max || op == Op::Abs || op == Op::Sign || op == Op::Floor || op == Op::Ceil ||
-           op == Op::Round || op == Op::Trunc || op == Op::Clamp || op == Op::Step ||
-           op == Op::ToFloat || op == Op::Select || op == Op::Make || op == Op::Splat ||
-           op == Op::Swizzle || op == Op::Column || op == Op::Transpose || op == Op::Hash;
-}
+constexpr ir::OpSet is_exact{
+    Op::Neg,   Op::Add,   Op::Sub,     Op::Mul,    Op::Min,       Op::Max,  Op::Abs,     Op::Sign,
+    Op::Floor, Op::Ceil,  Op::Round,   Op::Trunc,  Op::Clamp,     Op::Step, Op::ToFloat, Op::Select,
+    Op::Make,  Op::Splat, Op::Swizzle, Op::Column, Op::Transpose, Op::Hash};
 
 void round_to_float(Constant &value, Op op, std::uint32_t mix) {
     if (value.type == Type::Bool || value.type == Type::Int) return;
@@ -242,7 +232,7 @@ void round_to_float(Constant &value, Op op, std::uint32_t mix) {
         double &x = value.value[static_cast<std::size_t>(i)];
         float rounded = static_cast<float>(x);
         mix = mix * 1664525u + 1013904223u;
-        if (!is_exact(op) || static_cast<double>(rounded) != x)
+        if (!is_exact[op] || static_cast<double>(rounded) != x)
             rounded = std::nextafter(rounded, mix >> 31 ? 1e30f : -1e30f);
         x = static_cast<double>(rounded);
     }

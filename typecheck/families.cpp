@@ -6,6 +6,9 @@
 // with the constants taken out, in the order of a walk; the constants, in that order, are its row.
 #include "typecheck/evaluator.h"
 
+#include "ir/passes/rows.h"
+#include "ir/passes/walk.h"
+
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -25,66 +28,53 @@ constexpr std::size_t largest_walk = 4000; // parts of one shape; larger ones st
 
 struct Walk {
     const ir::Scene &scene;
-    std::vector<std::uint64_t> skeleton;
-    std::vector<ir::Constant> row;
+    ir::Skeleton tree{};
     std::vector<bool>
         stated{}; // by row: a library call's number or claim, which no evaluator reads
     bool in_statement = false;
     bool too_large = false;
 
     void node(NodeId id) {
-        if (!id) return skeleton.push_back(~0ull);
-        if (skeleton.size() > largest_walk) {
-            too_large = true;
-            return;
-        }
-        const ir::Node &n = scene.graph[id];
-        skeleton.push_back(static_cast<std::uint64_t>(n.op) << 56 |
-                           static_cast<std::uint64_t>(n.type) << 48 |
-                           (n.op == Op::Const ? 0 : n.payload));
-        if (n.op == Op::Const) {
-            stated.push_back(in_statement);
-            return row.push_back(scene.graph.constant_of(id));
-        }
-        for (NodeId a : scene.graph.args(id)) node(a);
+        too_large = !ir::take_apart(scene.graph, id, largest_walk, tree) || too_large;
+        stated.resize(tree.row.size(), in_statement);
     }
     void region(const ir::Region &r) {
-        skeleton.push_back(static_cast<std::uint64_t>(r.kind) << 8 |
-                           static_cast<std::uint64_t>(r.axis + 1));
+        tree.words.push_back(static_cast<std::uint64_t>(r.kind) << 8 |
+                             static_cast<std::uint64_t>(r.axis + 1));
         node(r.center), node(r.size);
-        skeleton.push_back(r.less.size());
+        tree.words.push_back(r.less.size());
         for (const ir::Region &l : r.less) region(l);
     }
     void shape(ShapeId id) {
-        if (skeleton.size() > largest_walk) {
+        if (tree.words.size() > largest_walk) {
             too_large = true;
             return;
         }
         const ir::Shape &s = scene.shapes[id];
-        skeleton.push_back(
+        tree.words.push_back(
             static_cast<std::uint64_t>(s.kind) << 40 | static_cast<std::uint64_t>(s.map) << 32 |
             static_cast<std::uint64_t>(s.dims) << 24 | static_cast<std::uint64_t>(s.axis) << 16 |
             static_cast<std::uint64_t>(s.towards) << 8);
-        skeleton.push_back(static_cast<std::uint64_t>(s.assumed * 1e6));
-        skeleton.push_back(static_cast<std::uint64_t>(s.estimate * 1e6));
-        skeleton.push_back(s.children.size() << 16 | s.args.size());
+        tree.words.push_back(static_cast<std::uint64_t>(s.assumed * 1e6));
+        tree.words.push_back(static_cast<std::uint64_t>(s.estimate * 1e6));
+        tree.words.push_back(s.children.size() << 16 | s.args.size());
         switch (s.kind) {
         case ShapeKind::Within: region(scene.shapes.regions[s.payload]); break;
         case ShapeKind::Paint:
         case ShapeKind::Repaint: {
             const ir::Material &m = scene.shapes.materials[s.payload];
             node(m.diffuse), node(m.specular), node(m.exponent), node(m.emission);
-            skeleton.push_back(static_cast<std::uint64_t>(m.texture.image + 1));
+            tree.words.push_back(static_cast<std::uint64_t>(m.texture.image + 1));
             break;
         }
         case ShapeKind::Library: {
             const ir::Library &l = scene.shapes.libraries[s.payload];
-            skeleton.push_back(std::hash<std::string>{}(l.name));
+            tree.words.push_back(std::hash<std::string>{}(l.name));
             in_statement = true;
             for (const auto &[name, argument] : l.arguments) node(argument);
-            skeleton.push_back(static_cast<std::uint64_t>(l.claims.kind) << 4 | l.has_claims << 3 |
-                               l.claims.symmetric[0] << 2 | l.claims.symmetric[1] << 1 |
-                               l.claims.symmetric[2]);
+            tree.words.push_back(static_cast<std::uint64_t>(l.claims.kind) << 4 |
+                                 l.has_claims << 3 | l.claims.symmetric[0] << 2 |
+                                 l.claims.symmetric[1] << 1 | l.claims.symmetric[2]);
             node(l.claims.lipschitz), node(l.claims.lo), node(l.claims.hi), node(l.claims.swell);
             for (NodeId lever : l.claims.lever) node(lever);
             in_statement = false;
@@ -109,30 +99,10 @@ struct Walk {
         case ShapeKind::Shell:
         case ShapeKind::Displace:
         case ShapeKind::Extrude:
-        case ShapeKind::Mixed: skeleton.push_back(s.payload); break;
+        case ShapeKind::Mixed: tree.words.push_back(s.payload); break;
         }
         for (NodeId a : s.args) node(a);
         for (ShapeId c : s.children) shape(c);
-    }
-};
-
-// The same walk over expressions, with `replacement[k]` for the k-th constant.
-struct Constants {
-    Evaluator &ev;
-    const std::vector<NodeId> &replacement;
-    std::size_t next = 0;
-
-    NodeId node(NodeId id) {
-        if (!id) return id;
-        ir::Graph &g = ev.scene.graph;
-        const ir::Node n = g[id];
-        if (n.op == Op::Const) {
-            NodeId r = replacement[next++];
-            return r ? r : id;
-        }
-        std::vector<NodeId> args(g.args(id).begin(), g.args(id).end());
-        for (NodeId &a : args) a = node(a);
-        return g.make(n.op, n.type, args, n.payload);
     }
 };
 
@@ -176,62 +146,27 @@ void region_nodes(const ir::Region &r, std::vector<NodeId> &out) {
     for (const ir::Region &less : r.less) region_nodes(less, out);
 }
 
-// Tables hold ints and bools as floats.
-NodeId read_of(ir::Graph &g, Type type, NodeId index, std::uint32_t slot) {
-    bool whole = type == Type::Int || type == Type::Bool;
-    NodeId read = g.make(Op::TableRead, whole ? Type::Float : type, {index}, slot);
-    if (type == Type::Int) return g.make(Op::ToInt, Type::Int, {read});
-    if (type == Type::Bool) return g.make(Op::NotEqual, {read, g.number(0)});
-    return read;
-}
-
-bool same(const ir::Constant &a, const ir::Constant &b) {
-    return a.type == b.type && a.value == b.value;
-}
-
 // The columns that differ, as a table: of those that evaluators read (stated: false), or of the
-// library's statements, so that a shader holds the first alone. Equal columns stand once. Fills
-// `replacement` for the columns it took.
+// library's statements, so that a shader holds the first alone. Fills `replacement` for the columns
+// it took.
 bool add_columns(Evaluator &ev, const std::vector<std::vector<ir::Constant>> &rows,
-                 const std::vector<bool> &stated, bool which, NodeId index,
-                 std::vector<NodeId> &replacement) {
+                 const std::vector<bool> &wanted, NodeId index, std::vector<NodeId> &replacement) {
     ir::Graph &g = ev.scene.graph;
     ir::Table table;
+    std::vector<int> column;
     table.rows = static_cast<int>(rows.size());
-    std::vector<std::size_t> taken;             // distinct columns, in order
-    std::vector<int> offset;                    // of each taken one
-    std::map<std::size_t, std::size_t> slot_of; // column -> place in `taken`
-    auto equal_columns = [&](std::size_t a, std::size_t b) {
-        for (const auto &row : rows)
-            if (!same(row[a], row[b])) return false;
-        return true;
-    };
-    for (std::size_t c = 0; c < stated.size(); ++c) {
-        if (stated[c] != which || replacement[c]) continue;
-        bool differs = false;
-        for (const auto &row : rows) differs = differs || !same(row[c], rows[0][c]);
-        if (!differs) continue;
-        std::size_t k = 0;
-        while (k < taken.size() && !equal_columns(taken[k], c)) ++k;
-        if (k == taken.size()) {
-            taken.push_back(c);
-            offset.push_back(table.stride);
-            table.stride += ir::components(rows[0][c].type);
-        }
-        slot_of[c] = k;
-    }
-    if (table.stride > 4000) return false;
+    table.stride = ir::lay_out(rows, wanted, 0, column);
+    if (table.stride > ir::most_columns) return false;
     if (table.stride == 0) return true;
-    table.data.reserve(rows.size() * static_cast<std::size_t>(table.stride));
-    for (const auto &row : rows)
-        for (std::size_t c : taken)
-            for (int i = 0; i < ir::components(row[c].type); ++i)
-                table.data.push_back(static_cast<float>(row[c].value[static_cast<std::size_t>(i)]));
+    const auto stride = static_cast<std::size_t>(table.stride);
+    table.data.resize(rows.size() * stride);
+    for (std::size_t r = 0; r < rows.size(); ++r)
+        ir::fill_row(rows[r], column, table.data.data() + r * stride);
     ir::TableId id = g.add_table(std::move(table));
-    for (const auto &[c, k] : slot_of) {
-        Type type = rows[0][c].type;
-        replacement[c] = read_of(g, type, index, ir::table_slot(id, offset[k]));
-    }
+    for (std::size_t c = 0; c < column.size(); ++c)
+        if (column[c] >= 0)
+            replacement[c] =
+                ir::read_table(g, rows[0][c].type, index, ir::table_slot(id, column[c]));
     return true;
 }
 
@@ -256,10 +191,16 @@ ShapeId make_family(Evaluator &ev, const std::vector<ShapeId> &members,
                     const std::vector<bool> &stated, bool smooth, NodeId k, int dims) {
     const ir::Family family = family_of(ev, members.size(), smooth);
     std::vector<NodeId> replacement(rows[0].size());
-    if (!add_columns(ev, rows, stated, false, family.index, replacement)) return {};
-    if (!add_columns(ev, rows, stated, true, family.index, replacement)) return {};
-    Constants constants{ev, replacement};
-    Rebuild rebuild{ev, [&](NodeId id) { return constants.node(id); }};
+    std::vector<bool> read = stated;
+    read.flip();
+    if (!add_columns(ev, rows, read, family.index, replacement)) return {};
+    if (!add_columns(ev, rows, stated, family.index, replacement)) return {};
+    const auto read_or_kept = [&](std::size_t c, NodeId constant) {
+        return replacement[c] ? replacement[c] : constant;
+    };
+    std::size_t next = 0;
+    Rebuild rebuild{
+        ev, [&](NodeId id) { return ir::put_together(ev.scene.graph, id, read_or_kept, next); }};
     return add_family(ev, family, rebuild.shape(members[0]), k, dims);
 }
 
@@ -283,7 +224,7 @@ std::optional<ShapeId> family_of_turns(Evaluator &ev, const std::vector<ShapeId>
             table.stride += ir::components(g.type(turns->places[c]));
         }
         if (columns.empty()) continue;
-        if (table.stride > 4000) return std::nullopt;
+        if (table.stride > ir::most_columns) return std::nullopt;
         for (const auto &row : turns->rows)
             for (std::size_t c : columns)
                 for (int i = 0; i < ir::components(row[c].type); ++i)
@@ -302,7 +243,8 @@ std::optional<ShapeId> family_of_turns(Evaluator &ev, const std::vector<ShapeId>
         ir::TableId id = g.add_table(std::move(table));
         for (std::size_t j = 0; j < columns.size(); ++j) {
             NodeId place = turns->places[columns[j]];
-            reads[place] = read_of(g, g.type(place), family.index, ir::table_slot(id, offset[j]));
+            reads[place] =
+                ir::read_table(g, g.type(place), family.index, ir::table_slot(id, offset[j]));
         }
     }
     Rebuild rebuild{ev, [&](NodeId id) { return id ? ir::substitute(g, id, reads) : id; }};
@@ -358,12 +300,12 @@ std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes,
     std::map<std::vector<std::uint64_t>, Group> groups;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         if (taken[i]) continue;
-        Walk walk{ev.scene, {}, {}};
+        Walk walk{ev.scene};
         walk.shape(shapes[i]);
-        if (walk.too_large || walk.row.empty()) continue;
-        Group &g = groups[walk.skeleton];
+        if (walk.too_large || walk.tree.row.empty()) continue;
+        Group &g = groups[walk.tree.words];
         g.members.push_back(i);
-        g.rows.push_back(std::move(walk.row));
+        g.rows.push_back(std::move(walk.tree.row));
         g.stated = std::move(walk.stated);
     }
     for (auto &[skeleton, g] : groups) {
@@ -398,11 +340,11 @@ std::optional<ShapeId> smooth_family(Evaluator &ev, const std::vector<ShapeId> &
     std::vector<std::uint64_t> skeleton;
     std::vector<bool> stated;
     for (ShapeId s : shapes) {
-        Walk walk{ev.scene, {}, {}};
+        Walk walk{ev.scene};
         walk.shape(s);
-        if (walk.too_large || (!rows.empty() && walk.skeleton != skeleton)) return std::nullopt;
-        skeleton = std::move(walk.skeleton);
-        rows.push_back(std::move(walk.row));
+        if (walk.too_large || (!rows.empty() && walk.tree.words != skeleton)) return std::nullopt;
+        skeleton = std::move(walk.tree.words);
+        rows.push_back(std::move(walk.tree.row));
         stated = std::move(walk.stated);
     }
     ShapeId family = make_family(ev, shapes, rows, stated, true, k, dims);

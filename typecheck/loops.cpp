@@ -5,6 +5,8 @@
 #include "typecheck/evaluator.h"
 
 #include "ir/lower/lower.h"
+#include "ir/passes/operations.h"
+#include "ir/passes/walk.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 // Arithmetic on numbers of both stages. What is known is computed through the graph's own constant
 // folding (so that an op has one meaning); the everyday operations on plain numbers have a short
 // way. What is not known becomes a node.
+#include "ir/passes/walk.h"
 #include "typecheck/evaluator.h"
 
 #include <fmt/format.h>
@@ -112,12 +113,6 @@ static bool any_color(const std::vector<Value> &args) {
 }
 
 // Ops that keep whole numbers whole; all others take floats.
-static bool works_on_ints(Op op) {
-    return op == Op::Add || op == Op::Sub || op == Op::Mul || op == Op::Mod || op == Op::Min ||
-           op == Op::Max || op == Op::Neg || op == Op::Abs || op == Op::Clamp || op == Op::Sign ||
-           op == Op::Hash || op == Op::Div;
-}
-
 // Componentwise ops broadcast a number to the widest argument; a whole number becomes a float
 // beside a float.
 Value apply_op(Evaluator &ev, Op op, std::vector<Value> args, Span place, std::string_view name) {
@@ -141,7 +136,7 @@ Value apply_op(Evaluator &ev, Op op, std::vector<Value> args, Span place, std::s
             return poison();
         }
     }
-    if (widest == Type::Int && !works_on_ints(op)) widest = Type::Float;
+    if (widest == Type::Int && ir::info(op).takes != ir::Takes::Numbers) widest = Type::Float;
     std::vector<ir::NodeId> nodes;
     for (Value &a : args) {
         ir::NodeId node = to_node(ev, widest == Type::Int ? a : to_float(ev, a));
@@ -353,7 +348,22 @@ static Value combined(Evaluator &ev, lang::BinaryOp op, const Value &left, const
                                fmt::format("`{}` wants numbers, this is {}", operator_text(op),
                                            describe(ev, left_wrong ? a : b)));
         const Value &wrong = left_wrong ? a : b;
-        if (is_function(wrong)) d.help("call it with a point: `f(p)`");
+        if (is_function(wrong))
+            d.help(text(ev.sources, left_wrong ? a_place : b_place) == "degrees"
+                       ? "the unit touches its number: `45deg`"
+                       : "call it with a point: `f(p)`");
+        if (a.kind == ValueKind::String) d.help("a value is joined to a string by `+`");
+        if (op == BinaryOp::Mul && a.kind == ValueKind::List)
+            d.help("a list is made by a loop: `[for i in 0..3 { 0 }]`");
+        const auto is_list = [&](const Value &v) {
+            return v.kind == ValueKind::List ||
+                   (is_numeric(v) && ir::is_vector(numeric_type(ev, v)));
+        };
+        if (op == BinaryOp::Add && is_list(a) && is_list(b) && !is_library_place(ev, a_place))
+            d.help("lists are joined by `concat(a, b)`",
+                   {{{a_place.source, a_place.begin, a_place.begin}, "concat("},
+                    {{a_place.source, a_place.end, b_place.begin}, ", "},
+                    {{a_place.source, b_place.end, b_place.end}, ")"}});
         if (wrong.kind == ValueKind::Shape && op == BinaryOp::Add)
             d.help("shapes are united with `|`");
         if (wrong.kind == ValueKind::Shape && op == BinaryOp::Mul)

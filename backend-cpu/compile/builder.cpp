@@ -2,6 +2,8 @@
 // operands into registers where no variant of the kernel takes them as they are.
 #include "backend-cpu/compile/code.h"
 
+#include "base/hash.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -10,22 +12,17 @@ namespace fathom::cpu {
 
 namespace {
 
-std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
-    hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-    return hash ^ (hash >> 29);
-}
-
 std::uint64_t hash_of(Kernel kernel, std::span<const Value> in) {
     std::uint64_t hash = static_cast<std::uint64_t>(kernel) + 1;
-    for (Value value : in) hash = mix(hash, value.index);
+    for (Value value : in) hash = hash_combine(hash, value.index);
     return hash;
 }
 
 } // namespace
 
 Value Builder::source(Program::Shared what, ir::Type type) {
-    std::uint64_t key = mix(static_cast<std::uint64_t>(what.kind) + 1, what.bits);
-    key = mix(mix(key, what.param), what.component);
+    std::uint64_t key = hash_combine(static_cast<std::uint64_t>(what.kind) + 1, what.bits);
+    key = hash_combine(hash_combine(key, what.param), what.component);
     for (auto [it, end] = known_sources_.equal_range(key); it != end; ++it) {
         const Program::Shared &known = code_.sources[code_.values[it->second].source].what;
         if (known.kind == what.kind && known.bits == what.bits && known.param == what.param &&

@@ -36,6 +36,8 @@ Values joined(Arguments args) {
     return all;
 }
 
+Kernel for_size(std::size_t size, std::array<Kernel, 4> kernels) { return kernels[size - 1]; }
+
 Value sum_of_products(Builder &builder, const Values &a, const Values &b) {
     Values left, right;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -45,13 +47,9 @@ Value sum_of_products(Builder &builder, const Values &a, const Values &b) {
     }
     Values both = left;
     both.insert(both.end(), right.begin(), right.end());
-    switch (left.size()) {
-    case 0: return builder.number(0);
-    case 1: return builder.make(Kernel::MulF, {left[0], right[0]});
-    case 2: return builder.outputs(Kernel::Dot2, both)[0];
-    case 3: return builder.outputs(Kernel::Dot3, both)[0];
-    default: return builder.outputs(Kernel::Dot4, both)[0];
-    }
+    if (left.empty()) return builder.number(0);
+    return builder.outputs(
+        for_size(left.size(), {Kernel::MulF, Kernel::Dot2, Kernel::Dot3, Kernel::Dot4}), both)[0];
 }
 
 Values multiply(Builder &builder, const Values &a, Type a_type, const Values &b, Type b_type) {
@@ -123,8 +121,6 @@ Values farthest(Builder &builder, Arguments args) {
     return fill_paint(builder, best, args[0]);
 }
 
-Kernel for_size(std::size_t size, std::array<Kernel, 4> kernels) { return kernels[size - 1]; }
-
 } // namespace
 
 std::vector<Value> select(Builder &builder, const Node &node, Arguments args,
@@ -152,7 +148,7 @@ std::vector<Value> select(Builder &builder, const Node &node, Arguments args,
     case Op::Abs: return either(Kernel::AbsF, Kernel::AbsI);
     case Op::Sign: return either(Kernel::SignF, Kernel::SignI);
     case Op::Clamp: return either(Kernel::ClampF, Kernel::ClampI);
-    case Op::Pow: return either(Kernel::PowF, Kernel::PowI);
+    case Op::Pow: return each(Kernel::PowF);
     case Op::Step: return each(Kernel::StepF);
     case Op::Atan2: return each(Kernel::Atan2F);
     case Op::Floor: return each(Kernel::FloorF);
@@ -160,28 +156,16 @@ std::vector<Value> select(Builder &builder, const Node &node, Arguments args,
     case Op::Round: return each(Kernel::RoundF);
     case Op::Trunc: return each(Kernel::TruncF);
     case Op::Fract: return each(Kernel::FractF);
-    case Op::Sqrt: return each(Kernel::SqrtF);
-    case Op::InverseSqrt: return each(Kernel::InverseSqrtF);
-    case Op::Exp: return each(Kernel::ExpF);
-    case Op::Exp2: return each(Kernel::Exp2F);
-    case Op::Log: return each(Kernel::LogF);
-    case Op::Log2: return each(Kernel::Log2F);
-    case Op::Sin: return each(Kernel::SinF);
-    case Op::Cos: return each(Kernel::CosF);
-    case Op::Tan: return each(Kernel::TanF);
-    case Op::Asin: return each(Kernel::AsinF);
-    case Op::Acos: return each(Kernel::AcosF);
-    case Op::Atan: return each(Kernel::AtanF);
-    case Op::Sinh: return each(Kernel::SinhF);
-    case Op::Cosh: return each(Kernel::CoshF);
-    case Op::Tanh: return each(Kernel::TanhF);
+#define FATHOM_FUNCTION(name, ...)                                                                 \
+    case Op::name: {                                                                               \
+        return each(Kernel::name##F);                                                              \
+    }
+#include "ir/ops.def"
     case Op::Mix: return each(Kernel::MixF);
     case Op::Smoothstep: return each(Kernel::SmoothstepF);
 
-    case Op::Dot: {
-        if (size == 1) return {builder.make(Kernel::MulF, {args[0][0], args[1][0]})};
+    case Op::Dot:
         return together(for_size(size, {Kernel::MulF, Kernel::Dot2, Kernel::Dot3, Kernel::Dot4}));
-    }
     case Op::Length:
         return together(
             for_size(size, {Kernel::AbsF, Kernel::Length2, Kernel::Length3, Kernel::Length4}));

@@ -50,11 +50,18 @@ template <class F, class... X> F hash(X... components) {
     return sem::unit<F>(h);
 }
 
+// The functions of the op table: ir::sem's, but for those that trigonometry.h computes.
+namespace functions {
+using namespace sem;
+template <class F> F sin(F x) { return sine(x); }
+template <class F> F cos(F x) { return cosine(x); }
+template <class F> F atan(F x) { return arctangent(x); }
+} // namespace functions
+
 #define FATHOM_KERNEL(name, parameters, expression, ...)                                           \
     template <class F> struct name##Row {                                                          \
         static auto run parameters {                                                               \
-            using std::floor, std::ceil, std::trunc, std::exp, std::exp2, std::tan, std::sinh,     \
-                std::cosh, std::tanh;                                                              \
+            using std::floor, std::ceil, std::trunc;                                               \
             using sem::plain;                                                                      \
             return expression;                                                                     \
         }                                                                                          \

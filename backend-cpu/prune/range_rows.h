@@ -38,21 +38,8 @@ FATHOM_RANGE(TruncF, (R a), return R{std::trunc(a.lo), std::trunc(a.hi)};)
 FATHOM_RANGE(FractF, (R a), const float n = std::floor(a.lo);
              const bool one = n == std::floor(a.hi);
              return one ? tidy(a.lo - n, a.hi - n) : (size(a) < endless ? R{0, 1} : everything());)
-FATHOM_RANGE(SqrtF, (R a), return sqrt(a);)
-FATHOM_RANGE(InverseSqrtF, (R a), return R{sem::inverse_sqrt(a.hi), sem::inverse_sqrt(a.lo)};)
-FATHOM_RANGE(ExpF, (R a), return rising([](float x) { return std::exp(x); }, a);)
-FATHOM_RANGE(Exp2F, (R a), return rising([](float x) { return std::exp2(x); }, a);)
-FATHOM_RANGE(LogF, (R a), return widen(rising([](float x) { return sem::log(x); }, a), few);)
-FATHOM_RANGE(Log2F, (R a), return widen(rising([](float x) { return sem::log2(x); }, a), few);)
-FATHOM_RANGE(SinF, (R a), return sine(a);)
-FATHOM_RANGE(CosF, (R a), return cosine(a);)
-FATHOM_RANGE(TanF, (R a), return tan(a);)
-FATHOM_RANGE(AsinF, (R a), return rising([](float x) { return sem::asin(x); }, a);)
-FATHOM_RANGE(AcosF, (R a), return widen(falling([](float x) { return sem::acos(x); }, a), few);)
-FATHOM_RANGE(AtanF, (R a), return rising([](float x) { return arctangent(x); }, a);)
-FATHOM_RANGE(SinhF, (R a), return rising([](float x) { return std::sinh(x); }, a);)
-FATHOM_RANGE(CoshF, (R a), return rising([](float x) { return std::cosh(x); }, abs(a));)
-FATHOM_RANGE(TanhF, (R a), return rising([](float x) { return std::tanh(x); }, a);)
+#define FATHOM_FUNCTION(name, function, ...) FATHOM_RANGE(name##F, (R a), return function(a);)
+#include "ir/ops.def"
 FATHOM_RANGE(ClampF, (R a, R b, R c),
              return R{sem::clamp(a.lo, b.lo, c.lo), sem::clamp(a.hi, b.hi, c.hi)};)
 FATHOM_RANGE(MixF, (R a, R b, R c), return mix(a, b, c);)
@@ -69,11 +56,6 @@ FATHOM_RANGE(ModI, (R a, R b), const float n = std::floor(a.lo / b.lo), m = size
              if (b.lo == b.hi && b.lo > 0 && n == std::floor(a.hi / b.lo) &&
                  size(a) <= whole) return integer(a.lo - n * b.lo, a.hi - n * b.lo);
              return integer(b.lo > 0 ? R{0, m} : hull(R{-m, m}, a));)
-FATHOM_RANGE(PowI, (R a, R b),
-             return points(a, b) && size(a) <= whole && size(b) <= whole
-                        ? integer(std::trunc(static_cast<float>(sem::pow<double>(a.lo, b.lo))),
-                                  std::trunc(static_cast<float>(sem::pow<double>(a.lo, b.lo))))
-                        : everything();)
 FATHOM_RANGE(MinI, (R a, R b), return least(a, b);)
 FATHOM_RANGE(MaxI, (R a, R b), return greatest(a, b);)
 FATHOM_RANGE(AbsI, (R a), return abs(a);)

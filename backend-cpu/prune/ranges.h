@@ -134,8 +134,8 @@ inline Range cosine_of(double lo, double hi) {
     return {(both || (some && !even) ? -1 : lesser(a, b)) - few,
             (both || (some && even) ? 1 : greater(a, b)) + few};
 }
-inline Range cosine(Range a) { return cosine_of(a.lo, a.hi); }
-inline Range sine(Range a) {
+inline Range cos(Range a) { return cosine_of(a.lo, a.hi); }
+inline Range sin(Range a) {
     constexpr double half_pi = 1.57079632679489661923;
     return cosine_of(a.lo - half_pi, a.hi - half_pi);
 }
@@ -144,6 +144,38 @@ inline Range tan(Range a) { // rises between its poles at pi/2 + k pi
     const double from = std::floor(a.lo / pi + 0.5 - 1e-6), to = std::floor(a.hi / pi + 0.5 + 1e-6);
     if (from != to || size(a) > 1e4f) return everything();
     return rising([](float x) { return std::tan(x); }, a);
+}
+
+inline Range inversesqrt(Range a) { return {sem::inversesqrt(a.hi), sem::inversesqrt(a.lo)}; }
+inline Range exp(Range a) {
+    return rising([](float x) { return std::exp(x); }, a);
+}
+inline Range exp2(Range a) {
+    return rising([](float x) { return std::exp2(x); }, a);
+}
+inline Range log(Range a) {
+    return widen(rising([](float x) { return sem::log(x); }, a), few);
+}
+inline Range log2(Range a) {
+    return widen(rising([](float x) { return sem::log2(x); }, a), few);
+}
+inline Range asin(Range a) {
+    return rising([](float x) { return sem::asin(x); }, a);
+}
+inline Range acos(Range a) {
+    return widen(falling([](float x) { return sem::acos(x); }, a), few);
+}
+inline Range atan(Range a) {
+    return rising([](float x) { return arctangent(x); }, a);
+}
+inline Range sinh(Range a) {
+    return rising([](float x) { return std::sinh(x); }, a);
+}
+inline Range cosh(Range a) {
+    return rising([](float x) { return std::cosh(x); }, abs(a));
+}
+inline Range tanh(Range a) {
+    return rising([](float x) { return std::tanh(x); }, a);
 }
 
 inline Range mix(Range a, Range b, Range t) {

@@ -1,6 +1,7 @@
 // Which surface decides, and how it looks: paints, the numbers that travel with a hit, and mixed
 // materials.
 #include "ir/lower/lowering.h"
+#include "ir/passes/walk.h"
 
 #include <algorithm>
 #include <cassert>

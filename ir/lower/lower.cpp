@@ -1,6 +1,7 @@
 // Shapes to functions: the driver, functions for what is shared, and the frames in which shapes are
 // asked.
 #include "ir/lower/lowering.h"
+#include "ir/passes/walk.h"
 
 #include <algorithm>
 #include <cassert>

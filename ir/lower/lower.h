@@ -40,13 +40,4 @@ Parts lower_with_parts(Scene &scene);
 NodeId region_distance(Graph &graph, const Region &region, NodeId p);
 NodeId region_nearest(Graph &graph, const Region &region, NodeId p);
 
-// How many operations an expression takes at most, its loops' turns and its calls counted out.
-double operations(const Graph &graph, NodeId root);
-constexpr double most_operations = 1e7; // of one point: beyond it no picture ever ends
-
-// The rules that a scene obeys on its way to a back end (argument order, types, payloads in range,
-// no free variables, no Point in functions …). Returns the first broken rule in words, or an empty
-// string. For assertions and tests.
-std::string verify(const Scene &scene);
-
 } // namespace fathom::ir

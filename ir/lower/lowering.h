@@ -7,6 +7,7 @@
 #pragma once
 
 #include "ir/lower/lower.h"
+#include "ir/passes/walk.h"
 
 #include <cmath>
 #include <map>
@@ -124,7 +125,6 @@ class Lowering {
     Packing packing_of(std::vector<NodeId> vars) const;
     std::int32_t mixed_surface(ShapeId id);
     Surface blank_surface();
-    void finish_surface(Surface surface);
     NodeId point3(NodeId p);
     void add_endless(Where frame);
     void find_bounds();

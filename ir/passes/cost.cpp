@@ -1,5 +1,6 @@
-// One row an op. The numbers of noise and look-ups are measured (docs/noise-cache.md); the others
-// are by their number of instructions.
+// The column `cost` of ir/ops.def. The numbers of noise and look-ups are measured
+// (docs/noise-cache.md); the others are by their number of instructions. What holds other
+// expressions (Call, Fold, Cached) costs what these do.
 #include "ir/passes/cost.h"
 
 #include <algorithm>
@@ -9,99 +10,16 @@
 namespace fathom::ir {
 namespace {
 
-constexpr double simple = 0.03, division = 0.1, curve = 0.4;
+constexpr double simple = 0.03, division = 0.1, curve = 0.4; // an instruction, …, sin or exp
 
 double own_cost(const Node &node) {
-    const double size = components(node.type);
+    const double size = components(node.type), count = node.count;
     switch (node.op) {
-    case Op::Const:
-    case Op::Point:
-    case Op::Normal:
-    case Op::Direction:
-    case Op::Time:
-    case Op::Param:
-    case Op::Var:
-    case Op::Splat:
-    case Op::Make:
-    case Op::Swizzle:
-    case Op::Column:
-    case Op::Transpose:
-    case Op::FoldResult:
-    case Op::HitDistance:
-    case Op::HitPaint:
-    case Op::HitPoint:
-    case Op::HitExtra:
-    case Op::MakeHit:
-    case Op::HitWith: return 0;
-    case Op::Neg:
-    case Op::Not:
-    case Op::Add:
-    case Op::Sub:
-    case Op::Mul:
-    case Op::Min:
-    case Op::Max:
-    case Op::Abs:
-    case Op::Sign:
-    case Op::Step:
-    case Op::Floor:
-    case Op::Ceil:
-    case Op::Round:
-    case Op::Trunc:
-    case Op::Fract:
-    case Op::Less:
-    case Op::LessEqual:
-    case Op::Equal:
-    case Op::NotEqual:
-    case Op::And:
-    case Op::Or:
-    case Op::Select:
-    case Op::ToFloat:
-    case Op::ToInt: return simple * size;
-    case Op::Clamp:
-    case Op::Mix:
-    case Op::Smoothstep: return 3 * simple * size;
-    case Op::Div:
-    case Op::Mod:
-    case Op::Sqrt:
-    case Op::InverseSqrt: return division * size;
-    case Op::Dot:
-    case Op::Cross:
-    case Op::MatMul: return 9 * simple;
-    case Op::Length:
-    case Op::Normalize: return division + 6 * simple;
-    case Op::Union:
-    case Op::Intersection: return simple * node.count;
-    case Op::NearestHit:
-    case Op::FarthestHit:
-    case Op::FillPaint: return 9 * simple * node.count;
-    case Op::Blend: return 8 * simple * node.count;
-    case Op::Pow:
-    case Op::Atan2:
-    case Op::Exp:
-    case Op::Exp2:
-    case Op::Log:
-    case Op::Log2:
-    case Op::Sin:
-    case Op::Cos:
-    case Op::Tan:
-    case Op::Asin:
-    case Op::Acos:
-    case Op::Atan:
-    case Op::Sinh:
-    case Op::Cosh:
-    case Op::Tanh: return curve * size;
-    case Op::TableRead: return 0.5;
-    case Op::Hash: return 0.4;
-    case Op::Perlin:
-    case Op::Simplex: return octave_cost;
-    case Op::ValueNoise: return 1.8;
-    case Op::Worley: return worley_cost;
-    case Op::SpotNoise: return spot_cost;
-    case Op::Image:
-    case Op::Grid: return 3;
-    case Op::Call:
-    case Op::Fold:
-    case Op::Cached: return 0; // by what they hold
+#define FATHOM_OP(name, arity, rule, glsl, text, weight, cost, ...)                                \
+    case Op::name: {                                                                               \
+        return cost;                                                                               \
+    }
+#include "ir/ops.def"
     }
     return 0;
 }

@@ -1,7 +1,8 @@
 // What an expression costs to compute, for the choices that depend on it: whether a field is worth
-// keeping in the noise cache (docs/noise-cache.md), whether it is worth asking first if it is
-// needed at all. In nanoseconds a point as Mesa's llvmpipe takes on the machine of
-// docs/noise-cache.md: only ratios matter.
+// storing in the noise cache (docs/noise-cache.md), whether it is worth asking first if it is
+// needed at all. In comes an expression, out go nanoseconds a point as Mesa's llvmpipe takes on the
+// machine of docs/noise-cache.md: only ratios matter. It changes nothing, and never says what may
+// be left out for being dear. (operations.h counts; this weighs.)
 #pragma once
 
 #include "ir/scene.h"

@@ -1,6 +1,6 @@
 // Text forms of expressions and shapes, for goldens and for people who look inside. Stable: numbers
 // count from the root, never from the arena.
-#include "ir/shape.h"
+#include "ir/passes/dump.h"
 
 #include "base/text.h"
 

@@ -1,6 +1,6 @@
-// Ops on constants: the canonical semantics at work, in double. Used by the graph to fold, by tests
-// to compare. Knows nothing of graphs' structure: inputs, calls, folds, tables and hits have no
-// value here.
+// Constant folding: the canonical semantics at work, in double. In come an op and constants of the
+// right types, out goes its value. Used by the graph to fold, by tests to compare. It never looks
+// at a graph: inputs, calls, loops, tables, samples and hits have no value here.
 #pragma once
 
 #include "ir/graph.h"

@@ -1,6 +1,6 @@
 // What an expression costs to evaluate once, counted in operations: loops by their turns, calls by
 // what they call. So that what could not be answered in any time is refused before it is asked.
-#include "ir/lower/lower.h"
+#include "ir/passes/operations.h"
 
 #include <unordered_set>
 

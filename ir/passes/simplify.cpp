@@ -1,7 +1,7 @@
 // Cheap identities, applied as nodes are made. Each keeps the value for all finite arguments (x*0
 // is 0, also for an infinite x: an infinity that survives to a product with 0 is no number that a
 // scene means).
-#include "ir/graph.h"
+#include "ir/passes/simplify.h"
 
 #include <cassert>
 #include <cmath>
@@ -9,6 +9,36 @@
 
 namespace fathom::ir {
 namespace {
+
+// A node that is about to be made.
+struct Made {
+    Graph &graph;
+    Op op;
+    Type type;
+    std::span<const NodeId> args;
+    std::uint32_t payload;
+
+    bool whole() const { return type == Type::Int; } // saturation forbids re-association
+    Op op_of(std::size_t i) const { return graph[args[i]].op; }
+    NodeId inside(std::size_t i) const { return graph.arg(args[i], 0); }
+    // Whether an argument is a constant with this number in every component.
+    bool is(std::size_t i, double value) const {
+        if (!graph.is_constant(args[i])) return false;
+        const Constant &constant = graph.constant_of(args[i]);
+        for (int k = 0; k < components(constant.type); ++k)
+            if (constant.value[static_cast<std::size_t>(k)] != value) return false;
+        return true;
+    }
+    NodeId make(Op other, std::initializer_list<NodeId> of) const {
+        return graph.make(other, type, of);
+    }
+    NodeId filled_with(double value) const {
+        Constant constant{type, {}};
+        for (int k = 0; k < components(type); ++k)
+            constant.value[static_cast<std::size_t>(k)] = value;
+        return graph.constant(constant);
+    }
+};
 
 // A component of a vector-valued node, where it is known without computing.
 NodeId part_of(Graph &graph, NodeId vector, int i) {
@@ -105,7 +135,10 @@ bool is_identity(const Constant &matrix) {
     return true;
 }
 
-NodeId simple_hit(Graph &graph, Op op, std::span<const NodeId> args) {
+NodeId simple_hit(const Made &n) {
+    Graph &graph = n.graph;
+    const Op op = n.op;
+    const std::span<const NodeId> args = n.args;
     const NodeId hit = args.front();
     const Op made = graph[hit].op;
     if (op == Op::HitDistance) {
@@ -135,179 +168,175 @@ NodeId simple_hit(Graph &graph, Op op, std::span<const NodeId> args) {
     return graph.make(Op::MakeHit, {graph.arg(hit, 0), args[1], args[2], args[3]});
 }
 
+// -- what a node simplifies to, by its op; none where it stays as it is
+
+NodeId simple_neg(const Made &n) {
+    return n.op_of(0) == Op::Neg && !n.whole() ? n.inside(0) : NodeId{};
+}
+
+NodeId simple_add(const Made &n) {
+    if (n.is(0, 0)) return n.args[1];
+    if (n.is(1, 0)) return n.args[0];
+    if (n.op_of(1) == Op::Neg && !n.whole()) return n.make(Op::Sub, {n.args[0], n.inside(1)});
+    if (n.op_of(0) == Op::Neg && !n.whole()) return n.make(Op::Sub, {n.args[1], n.inside(0)});
+    return {};
+}
+
+NodeId simple_sub(const Made &n) {
+    if (n.is(1, 0)) return n.args[0];
+    if (n.args[0] == n.args[1]) return n.filled_with(0);
+    if (n.is(0, 0)) return n.make(Op::Neg, {n.args[1]});
+    if (n.op_of(1) == Op::Neg && !n.whole()) return n.make(Op::Add, {n.args[0], n.inside(1)});
+    return {};
+}
+
+NodeId simple_mul(const Made &n) {
+    if (n.is(0, 1) || n.is(1, 0)) return n.args[1];
+    if (n.is(1, 1) || n.is(0, 0)) return n.args[0];
+    if (n.is(0, -1)) return n.make(Op::Neg, {n.args[1]});
+    if (n.is(1, -1)) return n.make(Op::Neg, {n.args[0]});
+    return {};
+}
+
+NodeId simple_div(const Made &n) {
+    if (n.is(1, 1)) return n.args[0];
+    if (n.op_of(0) == Op::Sin && n.inside(0) == n.args[1]) return sine_ratio(n.graph, n.args[1]);
+    if (n.is(1, -1)) return n.make(Op::Neg, {n.args[0]});
+    if (n.whole() || !n.graph.is_constant(n.args[1]) || n.graph.is_constant(n.args[0])) return {};
+    // By a power of two exactly, else division stays: it rounds once.
+    Constant inverse = n.graph.constant_of(n.args[1]);
+    for (int i = 0; i < components(n.type); ++i) {
+        double &value = inverse.value[static_cast<std::size_t>(i)];
+        int exponent = 0;
+        if (std::frexp(value, &exponent) != 0.5 || exponent <= -100 || exponent >= 100) return {};
+        value = 1 / value;
+    }
+    return n.make(Op::Mul, {n.args[0], n.graph.constant(inverse)});
+}
+
+NodeId simple_log(const Made &n) { return log_of_exponentials(n.graph, n.op, n.type, n.args[0]); }
+
+NodeId simple_pow(const Made &n) {
+    const NodeId x = n.args[0];
+    if (n.is(1, 1)) return x;
+    if (n.is(1, 0)) return n.filled_with(1);
+    if (n.is(1, 2)) return n.make(Op::Mul, {x, x});
+    if (n.is(1, 3)) return n.make(Op::Mul, {n.make(Op::Mul, {x, x}), x});
+    return {};
+}
+
+NodeId simple_extremum(const Made &n) { return n.args[0] == n.args[1] ? n.args[0] : NodeId{}; }
+
+NodeId simple_abs(const Made &n) {
+    if (n.op_of(0) == Op::Abs) return n.args[0];
+    if (n.op_of(0) == Op::Neg && !n.whole()) return n.make(Op::Abs, {n.inside(0)});
+    return {};
+}
+
+NodeId simple_mix(const Made &n) {
+    if (n.is(2, 0)) return n.args[0];
+    return n.is(2, 1) ? n.args[1] : NodeId{};
+}
+
+NodeId simple_rounding(const Made &n) {
+    constexpr OpSet rounds{Op::Floor, Op::Ceil, Op::Trunc, Op::Round};
+    return n.whole() || rounds[n.op_of(0)] ? n.args[0] : NodeId{};
+}
+
+NodeId simple_and(const Made &n) {
+    if (n.is(0, 1) || n.is(1, 0)) return n.args[1];
+    return n.is(1, 1) || n.is(0, 0) || n.args[0] == n.args[1] ? n.args[0] : NodeId{};
+}
+
+NodeId simple_or(const Made &n) {
+    if (n.is(0, 0) || n.is(1, 1)) return n.args[1];
+    return n.is(1, 0) || n.is(0, 1) || n.args[0] == n.args[1] ? n.args[0] : NodeId{};
+}
+
+NodeId simple_select(const Made &n) {
+    if (n.is(0, 1)) return n.args[1];
+    if (n.is(0, 0)) return n.args[2];
+    if (n.type == Type::Bool && n.is(1, 1) && n.is(2, 0)) return n.args[0];
+    if (n.type == Type::Bool && n.is(1, 0) && n.is(2, 1)) return n.make(Op::Not, {n.args[0]});
+    return n.args[1] == n.args[2] ? n.args[1] : NodeId{};
+}
+
+NodeId of_its_type(const Made &n) {
+    return n.graph.type(n.args[0]) == n.type ? n.args[0] : NodeId{};
+}
+
+NodeId twice(const Made &n) { return n.op_of(0) == n.op ? n.inside(0) : NodeId{}; }
+
+NodeId made_of_columns(const Made &n) {
+    return n.op_of(0) == Op::Make ? n.graph.arg(n.args[0], static_cast<int>(n.payload)) : NodeId{};
+}
+
+NodeId simple_product(const Made &n) {
+    for (std::size_t i = 0; i < 2; ++i)
+        if (n.graph.is_constant(n.args[i]) && is_matrix(n.graph.type(n.args[i])) &&
+            is_identity(n.graph.constant_of(n.args[i])))
+            return n.args[1 - i];
+    return {};
+}
+
+NodeId only_one(const Made &n) { return n.args.size() == 1 ? n.args[0] : NodeId{}; }
+
+NodeId length_of_number(const Made &n) {
+    return n.type == n.graph.type(n.args[0]) ? n.make(Op::Abs, {n.args[0]}) : NodeId{};
+}
+
+using Rule = NodeId (*)(const Made &);
+constexpr OpTable<Rule> rules{
+    {Op::Neg, simple_neg},
+    {Op::Add, simple_add},
+    {Op::Sub, simple_sub},
+    {Op::Mul, simple_mul},
+    {Op::Div, simple_div},
+    {Op::Pow, simple_pow},
+    {Op::Min, simple_extremum},
+    {Op::Max, simple_extremum},
+    {Op::Abs, simple_abs},
+    {Op::Mix, simple_mix},
+    {Op::Floor, simple_rounding},
+    {Op::Ceil, simple_rounding},
+    {Op::Trunc, simple_rounding},
+    {Op::Round, simple_rounding},
+    {Op::And, simple_and},
+    {Op::Or, simple_or},
+    {Op::Not, twice},
+    {Op::Select, simple_select},
+    {Op::ToFloat, of_its_type},
+    {Op::ToInt, of_its_type},
+    {Op::Splat, of_its_type},
+    {Op::Make, [](const Made &n) { return simple_make(n.graph, n.type, n.args); }},
+    {Op::Swizzle,
+     [](const Made &n) { return simple_swizzle(n.graph, n.type, n.args[0], n.payload); }},
+    {Op::Column, made_of_columns},
+    {Op::MatMul, simple_product},
+    {Op::Transpose, twice},
+    {Op::Length, length_of_number},
+    {Op::Log, simple_log},
+    {Op::Log2, simple_log},
+    {Op::FoldResult, [](const Made &n) { return n.payload == 0 ? n.args[0] : NodeId{}; }},
+    {Op::Union, only_one},
+    {Op::Intersection, only_one},
+    {Op::NearestHit, only_one},
+    {Op::FarthestHit, only_one},
+    {Op::Blend, [](const Made &n) { return n.args.size() == 3 ? n.args[2] : NodeId{}; }},
+    {Op::HitDistance, simple_hit},
+    {Op::HitPaint, simple_hit},
+    {Op::HitPoint, simple_hit},
+    {Op::HitExtra, simple_hit},
+    {Op::HitWith, simple_hit},
+    {Op::FillPaint, simple_hit},
+};
+
 } // namespace
 
-NodeId Graph::simplified(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
-    const auto is = [&](std::size_t i, double value) { return is_all(args[i], value); };
-    const auto op_of = [&](std::size_t i) { return nodes_[args[i]].op; };
-    const auto zero = [&] { return constant({type, {}}); };
-    const auto all_ones = [&] {
-        Constant ones{type, {}};
-        for (int i = 0; i < components(type); ++i) ones.value[static_cast<std::size_t>(i)] = 1;
-        return constant(ones);
-    };
-    const bool whole = type == Type::Int; // where saturation forbids re-association
-    switch (op) {
-    case Op::Neg: return op_of(0) == Op::Neg && !whole ? arg(args[0], 0) : NodeId{};
-    case Op::Add:
-        if (is(0, 0)) return args[1];
-        if (is(1, 0)) return args[0];
-        if (op_of(1) == Op::Neg && !whole) return make(Op::Sub, type, {args[0], arg(args[1], 0)});
-        if (op_of(0) == Op::Neg && !whole) return make(Op::Sub, type, {args[1], arg(args[0], 0)});
-        return {};
-    case Op::Sub:
-        if (is(1, 0)) return args[0];
-        if (args[0] == args[1]) return zero();
-        if (is(0, 0)) return make(Op::Neg, type, {args[1]});
-        if (op_of(1) == Op::Neg && !whole) return make(Op::Add, type, {args[0], arg(args[1], 0)});
-        return {};
-    case Op::Mul:
-        if (is(0, 1) || is(1, 0)) return args[1];
-        if (is(1, 1) || is(0, 0)) return args[0];
-        if (is(0, -1)) return make(Op::Neg, type, {args[1]});
-        if (is(1, -1)) return make(Op::Neg, type, {args[0]});
-        return {};
-    case Op::Div:
-        if (is(1, 1)) return args[0];
-        if (op_of(0) == Op::Sin && arg(args[0], 0) == args[1]) return sine_ratio(*this, args[1]);
-        if (is(1, -1)) return make(Op::Neg, type, {args[0]});
-        if (!whole && is_constant(args[1]) && !is_constant(args[0])) {
-            // By a power of two exactly, else division stays: it rounds once.
-            Constant inverse = constant_of(args[1]);
-            bool exact = true;
-            for (int i = 0; i < components(type); ++i) {
-                double &value = inverse.value[static_cast<std::size_t>(i)];
-                int exponent = 0;
-                exact &= std::frexp(value, &exponent) == 0.5 && exponent > -100 && exponent < 100;
-                value = 1 / value;
-            }
-            if (exact) return make(Op::Mul, type, {args[0], constant(inverse)});
-        }
-        return {};
-    case Op::Pow:
-        if (is(1, 1)) return args[0];
-        if (is(1, 0)) return all_ones();
-        if (is(1, 2)) return make(Op::Mul, type, {args[0], args[0]});
-        if (is(1, 3)) {
-            const NodeId x = args[0];
-            const NodeId square = make(Op::Mul, type, {x, x});
-            return make(Op::Mul, type, {square, x});
-        }
-        return {};
-    case Op::Min:
-    case Op::Max: return args[0] == args[1] ? args[0] : NodeId{};
-    case Op::Abs:
-        if (op_of(0) == Op::Abs) return args[0];
-        if (op_of(0) == Op::Neg && !whole) return make(Op::Abs, type, {arg(args[0], 0)});
-        return {};
-    case Op::Mix:
-        if (is(2, 0)) return args[0];
-        return is(2, 1) ? args[1] : NodeId{};
-    case Op::Floor:
-    case Op::Ceil:
-    case Op::Trunc:
-    case Op::Round: {
-        const bool whole_already = op_of(0) == Op::Floor || op_of(0) == Op::Ceil ||
-                                   op_of(0) == Op::Trunc || op_of(0) == Op::Round;
-        return whole || whole_already ? args[0] : NodeId{};
-    }
-    case Op::And:
-        if (is(0, 1) || is(1, 0)) return args[1];
-        return is(1, 1) || is(0, 0) || args[0] == args[1] ? args[0] : NodeId{};
-    case Op::Or:
-        if (is(0, 0) || is(1, 1)) return args[1];
-        return is(1, 0) || is(0, 1) || args[0] == args[1] ? args[0] : NodeId{};
-    case Op::Not: return op_of(0) == Op::Not ? arg(args[0], 0) : NodeId{};
-    case Op::Select:
-        if (is(0, 1)) return args[1];
-        if (is(0, 0)) return args[2];
-        if (type == Type::Bool && is(1, 1) && is(2, 0)) return args[0];
-        if (type == Type::Bool && is(1, 0) && is(2, 1)) return make(Op::Not, {args[0]});
-        return args[1] == args[2] ? args[1] : NodeId{};
-    case Op::ToFloat:
-    case Op::ToInt: return nodes_[args[0]].type == type ? args[0] : NodeId{};
-    case Op::Splat: return nodes_[args[0]].type == type ? args[0] : NodeId{};
-    case Op::Make: return simple_make(*this, type, args);
-    case Op::Swizzle: return simple_swizzle(*this, type, args[0], payload);
-    case Op::Column:
-        return op_of(0) == Op::Make ? arg(args[0], static_cast<int>(payload)) : NodeId{};
-    case Op::MatMul:
-        if (is_constant(args[0]) && is_matrix(nodes_[args[0]].type) &&
-            is_identity(constant_of(args[0])))
-            return args[1];
-        if (is_constant(args[1]) && is_matrix(nodes_[args[1]].type) &&
-            is_identity(constant_of(args[1])))
-            return args[0];
-        return {};
-    case Op::Transpose: return op_of(0) == Op::Transpose ? arg(args[0], 0) : NodeId{};
-    case Op::FoldResult: return payload == 0 ? args[0] : NodeId{};
-    case Op::Union:
-    case Op::Intersection:
-    case Op::NearestHit:
-    case Op::FarthestHit: return args.size() == 1 ? args[0] : NodeId{};
-    case Op::Blend: return args.size() == 3 ? args[2] : NodeId{};
-    case Op::HitDistance:
-    case Op::HitPaint:
-    case Op::HitPoint:
-    case Op::HitExtra:
-    case Op::HitWith:
-    case Op::FillPaint: return simple_hit(*this, op, args);
-
-    case Op::Log:
-    case Op::Log2: return log_of_exponentials(*this, op, type, args[0]);
-
-    case Op::Length:
-        return type == nodes_[args[0]].type ? make(Op::Abs, type, {args[0]}) : NodeId{};
-
-    case Op::Const:
-    case Op::Point:
-    case Op::Normal:
-    case Op::Direction:
-    case Op::Time:
-    case Op::Param:
-    case Op::Var:
-    case Op::Mod:
-    case Op::Step:
-    case Op::Atan2:
-    case Op::Sign:
-    case Op::Fract:
-    case Op::Sqrt:
-    case Op::InverseSqrt:
-    case Op::Exp:
-    case Op::Exp2:
-    case Op::Sin:
-    case Op::Cos:
-    case Op::Tan:
-    case Op::Asin:
-    case Op::Acos:
-    case Op::Atan:
-    case Op::Sinh:
-    case Op::Cosh:
-    case Op::Tanh:
-    case Op::Clamp:
-    case Op::Smoothstep:
-    case Op::Dot:
-    case Op::Cross:
-    case Op::Normalize:
-    case Op::Less:
-    case Op::LessEqual:
-    case Op::Equal:
-    case Op::NotEqual:
-    case Op::TableRead:
-    case Op::Hash:
-    case Op::Perlin:
-    case Op::Simplex:
-    case Op::ValueNoise:
-    case Op::Worley:
-    case Op::SpotNoise:
-    case Op::Image:
-    case Op::Grid:
-    case Op::Call:
-    case Op::Fold:
-    case Op::Cached:
-    case Op::MakeHit: return {};
-    }
-    return {};
+NodeId simplified(Graph &graph, Op op, Type type, std::span<const NodeId> args,
+                  std::uint32_t payload) {
+    const Rule rule = rules[op];
+    return rule ? rule({graph, op, type, args, payload}) : NodeId{};
 }
 
 } // namespace fathom::ir

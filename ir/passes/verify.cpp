@@ -1,6 +1,6 @@
 // The rules of a lowered scene, checked node by node. What back ends may take for granted is what
 // stands here.
-#include "ir/lower/lower.h"
+#include "ir/passes/verify.h"
 
 #include <algorithm>
 #include <unordered_set>
@@ -160,45 +160,13 @@ class Verifier {
         case Op::Var:
             want(id, node.payload < graph_.var_count(), "there is no such variable");
             break;
-        case Op::Neg:
-        case Op::Add:
-        case Op::Sub:
-        case Op::Mul:
-        case Op::Div:
-        case Op::Mod:
-        case Op::Pow:
-        case Op::Min:
-        case Op::Max:
-        case Op::Clamp:
-        case Op::Abs:
-        case Op::Sign:
-            want(id, node.type == Type::Int || is_float(id) || is_matrix(node.type),
-                 "its type has no arithmetic");
+#define FATHOM_BY_COMPONENT(name, ...) case Op::name:
+#include "ir/ops.def"
+            want(id,
+                 is_float(id) || is_matrix(node.type) ||
+                     (op.takes == Takes::Numbers && node.type == Type::Int),
+                 "it does not take this type");
             break;
-        case Op::Step:
-        case Op::Atan2:
-        case Op::Floor:
-        case Op::Ceil:
-        case Op::Round:
-        case Op::Trunc:
-        case Op::Fract:
-        case Op::Sqrt:
-        case Op::InverseSqrt:
-        case Op::Exp:
-        case Op::Exp2:
-        case Op::Log:
-        case Op::Log2:
-        case Op::Sin:
-        case Op::Cos:
-        case Op::Tan:
-        case Op::Asin:
-        case Op::Acos:
-        case Op::Atan:
-        case Op::Sinh:
-        case Op::Cosh:
-        case Op::Tanh:
-        case Op::Mix:
-        case Op::Smoothstep:
         case Op::Normalize: want(id, is_float(id), "its type is no float or vector"); break;
         case Op::Dot:
             want(id, is_float(args[0]) && is(1, type(args[0])), "its arguments differ in type");

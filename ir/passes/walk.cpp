@@ -1,6 +1,6 @@
 // What hangs below a node: what it reads, which variables are free in it, and copies with parts
 // replaced.
-#include "ir/graph.h"
+#include "ir/passes/walk.h"
 
 #include <algorithm>
 #include <unordered_set>

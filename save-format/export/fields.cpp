@@ -1,6 +1,7 @@
 // Functions of the point, as nodes: a field of one's own, with its region and what is assumed of
 // it; and any shape that nodes have no words for, as the raw field that it is.
 #include "ir/lower/lower.h"
+#include "ir/passes/walk.h"
 #include "save-format/export/tree_writer.h"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 // (import/tree.cpp), and record the rest.
 #include "save-format/export/tree.h"
 
+#include "ir/passes/walk.h"
 #include "save-format/export/looks.h"
 #include "save-format/export/tree_writer.h"
 #include "save-format/program.h"

@@ -2,6 +2,7 @@
 // to save-format.
 #pragma once
 
+#include "ir/passes/walk.h"
 #include "ir/scene.h"
 #include "save-format/kept_items.h"
 #include "save-format/program.h"

@@ -37,7 +37,7 @@ TEST_CASE("all ops that have values are asked") {
     std::set<Op> asked;
     for (const Question &question : questions()) asked.insert(question.c.op);
     CHECK(asked.size() ==
-          ir::op_count() - 23); // inputs, data, structure and hits have none of their own
+          ir::op_count - 23); // inputs, data, structure and hits have none of their own
 }
 
 TEST_CASE("a kernel gives the same bits on every instruction set, with registers and with shared "

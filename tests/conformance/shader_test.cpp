@@ -117,11 +117,10 @@ Measure measure_of(Op op) {
     if (op == Op::Perlin || op == Op::Simplex || op == Op::ValueNoise || op == Op::Worley ||
         op == Op::SpotNoise)
         return {2e-5, 4e-6};
-    if (op == Op::Sin || op == Op::Cos || op == Op::Tan || op == Op::Asin || op == Op::Acos ||
-        op == Op::Atan || op == Op::Atan2 || op == Op::Tanh)
-        return {1e-5, 1e-4};
-    if (op == Op::Pow || op == Op::Exp || op == Op::Exp2 || op == Op::Sinh || op == Op::Cosh)
-        return {1e-6, 1e-4};
+    constexpr ir::OpSet near_exact{Op::Sqrt, Op::InverseSqrt, Op::Log, Op::Log2};
+    constexpr ir::OpSet growing{Op::Pow, Op::Exp, Op::Exp2, Op::Sinh, Op::Cosh};
+    if (growing[op]) return {1e-6, 1e-4};
+    if ((ir::info(op).function && !near_exact[op]) || op == Op::Atan2) return {1e-5, 1e-4};
     return {1e-6, 4e-6};
 }
 

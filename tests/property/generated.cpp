@@ -7,6 +7,7 @@
 #include "backend-glsl/emit.h"
 #include "driver/compile.h"
 #include "ir/lower/lower.h"
+#include "ir/passes/verify.h"
 #include "lang/format.h"
 #include "lang/parse.h"
 #include "tests/support/reference_eval.h"

@@ -4,6 +4,7 @@
 #include "backend-cpu/prune/pruning.h"
 #include "backend-cpu/trace/march.h"
 #include "driver/compile.h"
+#include "ir/passes/operations.h"
 #include "programs.h"
 #include "random_scenes.h"
 

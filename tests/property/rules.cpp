@@ -2,6 +2,7 @@
 // and wrong at once when the rule is halved.
 #include "build.h"
 #include "ir/lower/lower.h"
+#include "ir/passes/verify.h"
 #include "tests/support/slopes.h"
 #include "tests/support/spans.h"
 

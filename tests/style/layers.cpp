@@ -155,3 +155,29 @@ TEST_CASE("no file grows past 800 lines") {
         CHECK(file.lines.size() <= 800);
     }
 }
+
+// With a default a new op or kind would be passed over in silence where it has to be thought of.
+// Numbers of foreign libraries (keys, GL's constants) are no enumerations of ours.
+TEST_CASE("a switch over ops, kinds or codes has no default") {
+    const auto indentation = [](const std::string &line) { return line.find_first_not_of(' '); };
+    std::size_t switches = 0;
+    for (const SourceFile &file : read_sources())
+        for (std::size_t i = 0; i < file.lines.size(); ++i) {
+            const std::size_t at = indentation(file.lines[i]);
+            if (at == std::string::npos || file.lines[i].compare(at, 8, "switch (") != 0) continue;
+            ++switches;
+            bool enumeration = false;
+            std::size_t fallback = 0;
+            for (std::size_t k = i + 1; k < file.lines.size(); ++k) {
+                const std::string &line = file.lines[k];
+                if (indentation(line) != at) continue;
+                if (line.compare(at, 1, "}") == 0) break;
+                const std::string label = line.substr(at, line.find(' ', at + 5) - at);
+                enumeration |= label.starts_with("case ") && label.find("::") != label.npos;
+                if (line.compare(at, 8, "default:") == 0) fallback = k + 1;
+            }
+            INFO(file.file << ":" << fallback);
+            CHECK_FALSE((enumeration && fallback > 0));
+        }
+    CHECK(switches > 50); // the test reads what it means to read
+}

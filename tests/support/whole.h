@@ -6,6 +6,7 @@
 #include "backend-glsl/emit.h"
 #include "driver/compile.h"
 #include "ir/lower/lower.h"
+#include "ir/passes/verify.h"
 #include "proof/prove.h"
 #include "typecheck/check.h"
 

@@ -36,15 +36,19 @@ static Value componentwise(Evaluator &ev, const CallSite &site, std::vector<Valu
     return apply_op(ev, op, args, site.call, site.name);
 }
 
-// The scene-time errors that GLSL leaves undefined.
+// Where GLSL leaves a function of the op table undefined.
+static bool is_undefined(Op op, double x) {
+#define FATHOM_FUNCTION(name, function, glsl, weight, cost, parity, trouble, undefined, doc)       \
+    if (op == Op::name) return undefined;
+#include "ir/ops.def"
+    return false;
+}
+
+// A function of the op table; where it is undefined is an error at scene time.
 template <Op op>
-static Value partial(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value function_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     if (args[0].kind == ValueKind::Int || args[0].kind == ValueKind::Float) {
-        double x = args[0].num[0];
-        bool bad = (op == Op::Sqrt && x < 0) ||
-                   ((op == Op::Log || op == Op::Log2 || op == Op::InverseSqrt) && x <= 0) ||
-                   ((op == Op::Asin || op == Op::Acos) && std::abs(x) > 1);
-        if (bad) {
+        if (const double x = args[0].num[0]; is_undefined(op, x)) {
             report(ev, Code::NumberRange, site.arg(0),
                    fmt::format("`{}({})` is not a number", site.name, x));
             return poison();
@@ -251,6 +255,23 @@ static Value div_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
     return apply_op(ev, Op::Div, args, site.call, site.name);
 }
 
+// `rgb(255, 128, 0)`: whole numbers up to 255, of which one is too large for any light.
+static void warn_of_bytes(Evaluator &ev, const CallSite &site, const std::vector<Value> &args) {
+    constexpr double brightest = 16;
+    double most = 0;
+    for (const Value &v : args) {
+        if (v.kind != ValueKind::Int || v.num[0] < 0 || v.num[0] > 255) return;
+        most = std::max(most, v.num[0]);
+    }
+    if (most <= brightest) return;
+    const std::string hex =
+        fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(args[0].num[0]),
+                    static_cast<int>(args[1].num[0]), static_cast<int>(args[2].num[0]));
+    report(ev, Code::Units, site.call,
+           fmt::format("the parts of a colour go from 0 to 1, and one of these is {}", most))
+        .help(fmt::format("write `{}` if parts of 255 are meant", hex), {{site.call, hex}});
+}
+
 static Value rgb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     // sRGB in the text, linear inside (docs/language.md)
     auto linear = [&](const Value &v) {
@@ -267,6 +288,7 @@ static Value rgb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
         return from_node(
             ev, g.make(Op::Select, {g.make(Op::LessEqual, {c, g.number(0.04045)}), low, high}));
     };
+    warn_of_bytes(ev, site, args);
     std::vector<Value> parts;
     for (std::size_t i = 0; i < 3; ++i) {
         if (!is_scalar(ev, args[i])) {
@@ -347,25 +369,12 @@ void add_numeric_builtins(std::vector<Builtin> &table) {
         const bool compares = word == "min" || word == "max" || word == "clamp";
         table.push_back({name, std::move(parameters), variadic, library, call, "", doc, !compares});
     };
-    add("sin", {{"x"}}, componentwise<Op::Sin>, "GLSL's sine, by component");
-    add("cos", {{"x"}}, componentwise<Op::Cos>, "GLSL's cosine, by component");
-    add("tan", {{"x"}}, componentwise<Op::Tan>, "GLSL's tangent, by component");
-    add("asin", {{"x"}}, partial<Op::Asin>,
-        "the angle whose sine is x; x is clamped to -1..1 at field time");
-    add("acos", {{"x"}}, partial<Op::Acos>,
-        "the angle whose cosine is x; x is clamped to -1..1 at field time");
+#define FATHOM_FUNCTION(name, function, glsl, weight, cost, parity, trouble, undefined, doc)       \
+    if (Op::name != Op::Atan) add(#function, {{"x"}}, function_call<Op::name>, doc);
+#include "ir/ops.def"
     add("atan", {{"y"}, {"x", true}}, atan_call,
         "the angle whose tangent is y, or of the point (x, y); 0 at the origin");
-    add("sinh", {{"x"}}, componentwise<Op::Sinh>, "hyperbolic sine");
-    add("cosh", {{"x"}}, componentwise<Op::Cosh>, "hyperbolic cosine");
-    add("tanh", {{"x"}}, componentwise<Op::Tanh>, "hyperbolic tangent");
-    add("exp", {{"x"}}, componentwise<Op::Exp>, "e to the power of x");
-    add("exp2", {{"x"}}, componentwise<Op::Exp2>, "2 to the power of x");
-    add("log", {{"x"}}, partial<Op::Log>, "the natural logarithm");
-    add("log2", {{"x"}}, partial<Op::Log2>, "the logarithm to the base 2");
     add("pow", {{"x"}, {"y"}}, componentwise<Op::Pow>, "x to the power of y");
-    add("sqrt", {{"x"}}, partial<Op::Sqrt>, "the square root; 0 below 0 at field time");
-    add("inversesqrt", {{"x"}}, partial<Op::InverseSqrt>, "1 / sqrt(x)");
     add("abs", {{"x"}}, componentwise<Op::Abs>, "without its sign");
     add("sign", {{"x"}}, componentwise<Op::Sign>, "-1, 0 or 1");
     add("floor", {{"x"}}, componentwise<Op::Floor>, "the whole number at or below x");

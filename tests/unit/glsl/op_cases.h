@@ -32,65 +32,14 @@ inline std::vector<Case> cases_of(Op op) {
         for (Type t : types) cases.push_back({op, std::vector<Type>(arity, t), t});
     };
     switch (op) {
-    case Op::Const:
-    case Op::Point:
-    case Op::Normal:
-    case Op::Direction:
-    case Op::Time:
-    case Op::Param:
-    case Op::Var:
-    case Op::TableRead:
-    case Op::Image:
-    case Op::Grid:
-    case Op::Call:
-    case Op::Fold:
-    case Op::FoldResult:
-    case Op::Cached:
-    case Op::MakeHit:
-    case Op::HitDistance:
-    case Op::HitPaint:
-    case Op::HitPoint:
-    case Op::HitExtra:
-    case Op::NearestHit:
-    case Op::FarthestHit:
-    case Op::HitWith:
-    case Op::FillPaint: break;
-    case Op::Neg:
-    case Op::Abs:
-    case Op::Sign: same(1, with_int); break;
-    case Op::Add:
-    case Op::Sub:
-    case Op::Mul:
-    case Op::Div:
-    case Op::Mod:
-    case Op::Min:
-    case Op::Max: same(2, with_int); break;
-    case Op::Pow:
-    case Op::Step:
-    case Op::Atan2: same(2, all); break;
-    case Op::Floor:
-    case Op::Ceil:
-    case Op::Round:
-    case Op::Trunc:
-    case Op::Fract:
-    case Op::Sqrt:
-    case Op::InverseSqrt:
-    case Op::Exp:
-    case Op::Exp2:
-    case Op::Log:
-    case Op::Log2:
-    case Op::Sin:
-    case Op::Cos:
-    case Op::Tan:
-    case Op::Asin:
-    case Op::Acos:
-    case Op::Atan:
-    case Op::Sinh:
-    case Op::Cosh:
-    case Op::Tanh: same(1, all); break;
-    case Op::Clamp: same(3, with_int); break;
-    case Op::Mix:
-    case Op::Smoothstep: same(3, all); break;
+#define FATHOM_BOUND(name, ...) case Op::name:
+#include "ir/ops.def"
+        break;
+#define FATHOM_BY_COMPONENT(name, ...) case Op::name:
+#include "ir/ops.def"
+        same(static_cast<std::size_t>(ir::info(op).arity),
+             ir::info(op).takes == ir::Takes::Numbers ? with_int : all);
+        break;
     case Op::Dot:
         for (Type t : vectors_and_float) cases.push_back({op, {t, t}, Type::Float});
         break;

@@ -1,4 +1,5 @@
 // Which surface shows: semantics.md, 22.
+#include "ir/passes/verify.h"
 #include "tests/unit/ir/scenes.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,5 @@
 // What each kind of shape computes, against formulas written another way.
+#include "ir/passes/verify.h"
 #include "ir/semantics.h"
 #include "tests/unit/ir/scenes.h"
 
@@ -96,7 +97,28 @@ TEST_CASE("blends are those of blends.h, folded in order") {
     }
 }
 
-TEST_CASE("seams and the pseudo-norm are those of blends.h") {
+namespace {
+
+// Seams, as hg_sdf's users know them.
+// A pipe of radius r along the line where both surfaces meet. L = sqrt(La^2 + Lb^2).
+double seam_pipe(double a, double b, double r) { return std::sqrt(a * a + b * b) - r; }
+// a with a V-shaped notch, r deep, where b's surface meets it. L = max(La, Lb); with hg_sdf's
+// sqrt(1/2) it would be sqrt 2 times that, for the same contour.
+double seam_engrave(double a, double b, double r) {
+    return std::max(a, 0.5 * (a + r - std::fabs(b)));
+}
+// a with a groove `width` wide and `depth` deep, or a tongue as wide and as high, along b's
+// surface. L = max(La, Lb).
+double seam_groove(double a, double b, double width, double depth) {
+    return std::max(a, std::min(a + depth, 0.5 * width - std::fabs(b)));
+}
+double seam_tongue(double a, double b, double width, double depth) {
+    return std::min(a, std::max(a - depth, std::fabs(b) - 0.5 * width));
+}
+
+} // namespace
+
+TEST_CASE("seams are those of hg_sdf, and the pseudo-norm that of blends.h") {
     for (int kind = 0; kind < 4; ++kind) {
         Two t;
         const ShapeId seam = t.add(ShapeKind::Seam, {t.a, t.b}, {t.n(0.2), t.n(0.1)},
@@ -104,10 +126,10 @@ TEST_CASE("seams and the pseudo-norm are those of blends.h") {
         agrees(t.lowered(seam), [&](P p) {
             const double a = a_of(p), b = b_of(p);
             switch (static_cast<SeamKind>(kind)) {
-            case SeamKind::Pipe: return sem::seam_pipe(a, b, 0.2);
-            case SeamKind::Engrave: return sem::seam_engrave(a, b, 0.2);
-            case SeamKind::Groove: return sem::seam_groove(a, b, 0.2, 0.1);
-            case SeamKind::Tongue: return sem::seam_tongue(a, b, 0.2, 0.1);
+            case SeamKind::Pipe: return seam_pipe(a, b, 0.2);
+            case SeamKind::Engrave: return seam_engrave(a, b, 0.2);
+            case SeamKind::Groove: return seam_groove(a, b, 0.2, 0.1);
+            case SeamKind::Tongue: return seam_tongue(a, b, 0.2, 0.1);
             }
             return 0.0;
         });
@@ -185,7 +207,8 @@ TEST_CASE("maps act on the object") {
             return f({std::abs(p[0]), p[1], p[2]});
         });
         Builder u;
-        const NodeId q = elongate_point(u.g, u.g.point(), u.v(1, 0, 0));
+        const NodeId q = u.g.sub(
+            u.g.point(), u.g.make(Op::Clamp, {u.g.point(), u.v(-0.5, 0, 0), u.v(0.5, 0, 0)}));
         agrees(u.lowered(u.add(folded(u.g, u.sphere(0.5), q))), [](P p) {
             return length({p[0] - std::clamp(p[0], -0.5, 0.5), p[1], p[2]}) - 0.5;
         });

@@ -1,4 +1,5 @@
 // Repetition and families against the plain union of all copies.
+#include "ir/passes/verify.h"
 #include "tests/unit/ir/scenes.h"
 
 #include <catch2/catch.hpp>

@@ -1,6 +1,7 @@
 // What is used twice is written once: functions for shared shapes, with the variables that they
 // read as parameters. And the marched field over random trees: safe, equal to what the hit says,
 // and verified.
+#include "ir/passes/verify.h"
 #include "tests/unit/ir/scenes.h"
 
 #include <catch2/catch.hpp>

@@ -299,7 +299,8 @@ TEST_CASE("a fold is bounded by what it gathers") {
     ShapeId ball = s.add(translated(g, s.sphere(0.5), g.vec3(1, 0, 0)));
     ShapeId mirror = s.add(folded(g, ball, mirror_point(g, s.p, 0)));
     CHECK(s.prove(mirror).bounds.lo[0] == Approx(-1.5).epsilon(1e-4));
-    ShapeId longer = s.add(folded(g, s.sphere(0.5), elongate_point(g, s.p, g.vec3(2, 0, 0))));
+    ShapeId longer = s.add(folded(
+        g, s.sphere(0.5), g.sub(s.p, g.make(Op::Clamp, {s.p, g.vec3(-1, 0, 0), g.vec3(1, 0, 0)}))));
     CHECK(s.prove(longer).bounds.hi[0] == Approx(1.5).epsilon(1e-4));
     // The thesis's fold, written for any axis: p + (|d| - d) n, d = dot(p, n).
     NodeId n = g.vec3(0.6, 0.8, 0), along = g.make(Op::Dot, {s.p, n});

@@ -1,0 +1,34 @@
+// Inlining: calls and iterations of loops written out where they stand. In come a graph and a call, a loop or an
+// expression; out go nodes of the same graph with the same values. Names that a function or a loop
+// binds are replaced by what is given for them. It never enters the body of a loop that it is not
+// asked for, and removes nothing.
+#pragma once
+
+#include "ir/passes/walk.h"
+
+#include <vector>
+
+namespace fathom::ir {
+
+// What a function gives of arguments: its result with these in its parameters' places, and with
+// what else `also` replaces.
+NodeId called(Graph &graph, FunctionId function, std::span<const NodeId> args,
+              const Substitution &also = {});
+NodeId called(Graph &graph, NodeId call); // of a Call node
+
+// An expression of a loop's body in one iteration, by the values that the loop carries into it; and
+// these values after it. Its condition is not asked.
+NodeId in_iteration(Graph &graph, const Fold &fold, int iteration, std::span<const NodeId> values,
+                    NodeId expression);
+std::vector<NodeId> after_iteration(Graph &graph, const Fold &fold, int iteration,
+                                    std::span<const NodeId> values);
+
+// The expression with every call written out, loops' bodies apart. Where more than `most` nodes
+// would have to be looked at, the rest stays as it is, and `all` is false.
+struct WithoutCalls {
+    NodeId root;
+    bool all = true;
+};
+WithoutCalls without_calls(Graph &graph, NodeId root, std::size_t most);
+
+} // namespace fathom::ir

@@ -1,0 +1,15 @@
+// Copies of expressions with parts replaced. In come a graph, a node and what stands for what; out
+// goes a node of the same graph. It enters the bodies of loops and never those of functions, which
+// are closed. (What a node reads, and its free variables: Graph::reads, Graph::free_vars.)
+#pragma once
+
+#include "ir/graph.h"
+
+namespace fathom::ir {
+
+// A copy of `root` in which every node that `map` names is replaced. A copied Fold gets variables
+// of its own.
+using Substitution = std::unordered_map<NodeId, NodeId>;
+NodeId substitute(Graph &graph, NodeId root, const Substitution &map);
+
+} // namespace fathom::ir
