@@ -21,8 +21,6 @@ constexpr Spelling spellings[] = {
     {"WholeDiv", 2, "div({0}, {1})"},
 };
 
-constexpr std::size_t most_inline = 20000; // characters of an expression without names
-
 std::string filled(std::string_view form, const std::vector<std::string> &arguments) {
     std::string text;
     for (std::size_t i = 0; i < form.size(); ++i) {
@@ -34,6 +32,7 @@ std::string filled(std::string_view form, const std::vector<std::string> &argume
     }
     return text;
 }
+constexpr std::size_t most_inline = 20000; // characters of an expression without names
 
 constexpr std::string_view constructors[] = {"vec2", "vec3", "vec4", "mat2", "mat3", "mat4"};
 
@@ -145,6 +144,7 @@ class Program {
         if (op == "Normal") {
             if (given_ != Given::PointAndNormal) return {};
             normal_used_ = true;
+            return "n";
         }
         if (op == "Const") return count == 1 ? constant_text(value.items[1]) : std::string();
         std::vector<std::string> arguments;

@@ -149,7 +149,7 @@ class StepWriter {
         if (node.op == Op::Param)
             return push("Param, " + flow_scalar(words_.params[node.payload], true));
         if (node.op == Op::Var) {
-            const auto found = std::find(words_.ids.begin(), words_.ids.end(), id);
+            const auto found = std::ranges::find(words_.ids, id);
             return found == words_.ids.end()
                        ? -1
                        : push("Id, " + std::to_string(found - words_.ids.begin()));
