@@ -1,6 +1,7 @@
 #include "backend-glsl/assemble.h"
 
 #include "backend-glsl/helpers.h"
+#include "backend-glsl/template.h"
 #include "ir/look.h"
 
 #include <algorithm>
@@ -60,18 +61,15 @@ class Assembler {
         for (const auto &[index, name] : module_.functions)
             functions += function(FunctionId{index}, name) + readers(index);
         if (module_.around) functions += prune_around(hit);
-        if (!scene_.distance) functions += "\nfloat sdf(vec3 p) {\n    return 1e9;\n}\n";
+        if (!scene_.distance) functions += expand("empty", {});
         std::string looks = materials();
         if (with_looks) looks += lighting() + lights();
         if (with_looks && !scene_.background_function) {
             const auto &c = ir::look::background;
-            looks += "\nvec3 fathom_background(vec3 direction) {\n    return vec3(" +
-                     float_literal(c[0]) + ", " + float_literal(c[1]) + ", " + float_literal(c[2]) +
-                     ");\n}\n";
+            looks += expand("background", {{"COLOR", vec3_literal({c[0], c[1], c[2]})}});
         }
-        result_.functions = "\nstruct Hit {\n    float distance;\n    int paint;\n    vec3 "
-                            "point;\n    vec4 extra;\n};\n" +
-                            helper_text(module_.helpers) + kept_inputs() + functions;
+        result_.functions =
+            expand("hit_type", {}) + helper_text(module_.helpers) + kept_inputs() + functions;
         result_.looks = looks;
         for (const auto &[index, use] : module_.tables) result_.tables += table(use);
         for (const TableUse &use : own_tables_) result_.tables += table(use);
@@ -155,13 +153,10 @@ class Assembler {
 
     std::string materials() {
         const auto &surfaces = scene_.surfaces;
-        std::string text = "\nstruct fathom_Material {\n    vec3 diffuse;\n    vec3 specular;\n    "
-                           "float exponent;\n"
-                           "    vec3 emission;\n};\n";
         const auto plain = static_cast<std::size_t>(
             std::ranges::count_if(surfaces, [&](const ir::Surface &s) { return is_plain(s); }));
         const bool as_table = plain >= material_table_from;
-        std::string choices;
+        std::string functions, choices;
         for (std::size_t i = 0; i < surfaces.size(); ++i) {
             const ir::Surface &s = surfaces[i];
             if (as_table && is_plain(s)) continue;
@@ -180,17 +175,17 @@ class Assembler {
             if (s.extra) bound.push_back({s.extra, "extra"});
             result_.local_normals |= reads(s, s.normal);
             const Body values = body(module_, bound, roots_of(s));
-            text += "\nfathom_Material " + name + "(vec3 point, vec3 normal, vec4 extra) {\n" +
-                    values.statements + "    return " + constructor(values.values) + ";\n}\n";
+            functions += "\nfathom_Material " + name + "(vec3 point, vec3 normal, vec4 extra) {\n" +
+                         values.statements + "    return " + constructor(values.values) + ";\n}\n";
             choices += when + name + "(s.point, normal, s.extra);\n";
         }
-        text += "\nfathom_Material fathom_material(Hit s, vec3 normal) {\n";
-        if (surfaces.empty())
-            return text + "    return fathom_Material(vec3(0.8), vec3(1.0), 32.0, vec3(0.0));\n}\n";
-        text += "    int paint = s.paint < 0 || s.paint >= " + std::to_string(surfaces.size()) +
-                " ? " + std::to_string(surfaces.size() - 1) + " : s.paint;\n" + choices;
-        if (as_table) text += plain_materials();
-        return text + "}\n";
+        if (as_table) choices += plain_materials();
+        const std::size_t count = surfaces.size();
+        return expand("materials", {{"VARYING", functions},
+                                    {"PAINTED", count ? "1" : ""},
+                                    {"COUNT", std::to_string(count)},
+                                    {"LAST", std::to_string(count - 1)},
+                                    {"CHOICES", choices}});
     }
 
     static std::string constructor(const std::vector<std::string> &v) {
@@ -238,20 +233,13 @@ class Assembler {
         std::string list;
         for (std::size_t i = 0, k = 0; i < all.size(); ++i)
             list += (i ? ", " : "") + (all[i] ? values.values[k++] : std::string(absent[i]));
-        return "\nstruct fathom_Lighting {\n    vec3 ambient;\n    float ambient_occlusion;\n    "
-               "float shadow_darkness;\n"
-               "    float soft_shadows;\n    float specular_intensity;\n};\n"
-               "\nfathom_Lighting fathom_lighting() {\n" +
-               values.statements + "    return fathom_Lighting(" + list + ");\n}\n";
+        return expand("lighting", {{"STATEMENTS", values.statements}, {"LIST", list}});
     }
 
     std::string lights() {
-        std::string text = "\nstruct fathom_Light {\n    bool directional;\n    vec3 position;\n   "
-                           " vec3 color;\n};\n"
-                           "\nfathom_Light fathom_light(int i) {\n";
         const std::size_t count = scene_.lights.size();
         result_.lights = static_cast<int>(std::max<std::size_t>(count, 1));
-        if (count == 0) return text + "    return fathom_Light(true, fathom_sun, vec3(1.0));\n}\n";
+        std::string text;
         for (std::size_t i = 0; i < count; ++i) {
             const ir::Light &light = scene_.lights[i];
             std::vector<Bound> none;
@@ -267,7 +255,7 @@ class Assembler {
                     value + ";\n";
             if (!last) text += "    }\n";
         }
-        return text + "}\n";
+        return expand("lights", {{"LIT", count ? "1" : ""}, {"CASES", text}});
     }
 
     // -- data

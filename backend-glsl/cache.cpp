@@ -21,23 +21,15 @@ std::string cache_look_up(std::span<const KeptText> fields) {
 }
 
 std::string cache_reader(const KeptText &field, std::size_t number) {
-    const bool wide = field.type != ir::Type::Float;
-    const std::string type = glsl_type(field.type);
-    return "\n" + type + " " + field.function +
-           "_kept(vec3 p) {\n#ifdef FATHOM_CACHE\n    vec3 at;\n    if (fathom_kept(p, " +
-           float_literal(static_cast<float>(field.cell)) + ", fathom_cache_fields[" +
-           std::to_string(number) + "], at)) return textureLod(" +
-           (wide ? "fathom_cache_wide" : "fathom_cache_pool") + ", at, 0.0)" +
-           components_of(field.type) + ";\n    return " + type +
-           "(0.0);\n#else\n#ifdef FATHOM_CACHE_LEARN\n    fathom_ask(p, " +
-           float_literal(static_cast<float>(field.cell)) + ", fathom_cache_fields[" +
-           std::to_string(number) + "]);\n#endif\n    return " + field.function +
-           "(p);\n#endif\n}\n";
+    return expand("cache_reader", {{"TYPE", glsl_type(field.type)},
+                                   {"READER", field.function + "_kept"},
+                                   {"FUNCTION", field.function},
+                                   {"CELL", float_literal(field.cell)},
+                                   {"NUMBER", std::to_string(number)},
+                                   {"POOL", field.type == ir::Type::Float ? "fathom_cache_pool"
+                                                                          : "fathom_cache_wide"},
+                                   {"PART", components_of(field.type)}});
 }
-
-std::string cache_outputs() { return expand("cache_outputs", cache_numbers()); }
-
-std::string cache_output() { return expand("cache_output", cache_numbers()); }
 
 std::string with_cache(const std::string &text, const char *defined) {
     const std::size_t line = text.find('\n') + 1; // after the version

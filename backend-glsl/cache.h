@@ -89,8 +89,6 @@ constexpr const char *cache_defined = "FATHOM_CACHE", *cache_learns = "FATHOM_CA
 enum class PixelState { Finished, Missed, Computed }; // Computed: what it wants cannot be kept
 std::string cache_look_up(std::span<const KeptText> fields); // inputs, state and fathom_kept
 std::string cache_reader(const KeptText &field, std::size_t number); // FUNCTION_kept(vec3)
-std::string cache_outputs(); // declares what main gives beside the colour
-std::string cache_output();  // and sets it
 std::string with_cache(const std::string &text, const char *defined = cache_defined);
 std::string cache_fill(std::span<const KeptText> fields); // follows the fields' own functions
 std::string cache_reserve();                              // whole texts

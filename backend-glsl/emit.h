@@ -3,6 +3,7 @@
 // no file, calls no GL.
 #pragma once
 
+#include "backend-glsl/targets.h"
 #include "base/diagnostic.h"
 #include "ir/scene.h"
 
@@ -10,14 +11,9 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace fathom::glsl {
-
-enum class Target { Glsl450, Glsl330, Es300, Shadertoy, GlslViewer, Spirv, Html };
-std::optional<Target> target_by_name(std::string_view name); // "glsl450", "es300", …
-const char *target_name(Target target);
 
 // What a shader tells its host beside the picture. Texts with instruments are for a host of ours
 // that sets every uniform: they carry no defaults, so that a number that changed in the scene's
@@ -31,8 +27,8 @@ enum class Instruments {
 
 struct Options {
     Instruments instruments = Instruments::None;
-    int part_stride = 0; // ir::Parts::stride, where the scene was lowered with its parts
-    Target target = Target::Glsl450;
+    int part_stride = 0;     // ir::Parts::stride, where the scene was lowered with its parts
+    Target target{};         // the table's first
     bool field_only = false; // just `float sdf(vec3 p)`, the material function and the bound
     bool buffers = false; // the host binds large tables as the texture buffer `fathom_tables`; else
                           // a formula stands for a table that has one, and all other data is text

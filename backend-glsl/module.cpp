@@ -41,6 +41,11 @@ std::string float_literal(float value) {
     return text;
 }
 
+std::string vec3_literal(const std::array<double, 3> &v) {
+    return "vec3(" + float_literal(v[0]) + ", " + float_literal(v[1]) + ", " + float_literal(v[2]) +
+           ")";
+}
+
 std::string comment(std::string_view text) { return "// " + for_comment(text) + "\n"; }
 
 std::string literal(const ir::Constant &constant) {

@@ -42,7 +42,8 @@ struct Module {
     std::map<std::uint32_t, ir::NodeId> results{}; // by FunctionId: as loops (roll.h)
 
     std::map<std::uint32_t, PrunePlan::Use> pruned{}; // by FoldId: loops over a cell's rows
-    bool around = false; // outside of the cells there are the scene's endless parts (prune.h)
+    bool around = false;    // outside of the cells there are the scene's endless parts (prune.h)
+    bool far_cells = false; // rays ask which cells are far from all surfaces (prune.h)
 
     ir::NodeId result_of(ir::FunctionId id) const {
         const auto it = results.find(id.index);
@@ -55,6 +56,7 @@ std::string comment(std::string_view text); // a line of its own: what comes fro
 std::string literal(const ir::Constant &constant); // "1.0", "vec3(0.0, 1.0, 0.0)"
 std::string float_literal(float value);
 inline std::string float_literal(double value) { return float_literal(static_cast<float>(value)); }
+std::string vec3_literal(const std::array<double, 3> &value);
 
 // Every function, table, image and grid that the roots need gets its name here; functions by
 // ascending id.

@@ -73,7 +73,7 @@ void note_fixed_params(const ir::Scene &scene, Target target, Diagnostics &diagn
         if (!param.structural) continue;
         diagnostics
             .add(Code::FixedParam, param.origin,
-                 "`" + param.name + "` decides what there is, so the `" + target_name(target) +
+                 "`" + param.name + "` decides what there is, so the `" + traits_of(target).name +
                      "` text holds it as a constant, " + value_text(param))
             .help("`-D " + param.name + "=…` writes the text for another value" +
                   (param.has_range ? " of " + range_text(param) : ""));

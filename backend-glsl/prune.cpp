@@ -166,11 +166,7 @@ std::optional<PrunePlan> plan_pruning(const ir::Scene &scene,
 }
 
 std::string prune_look_up(const ir::Box &bounds) {
-    const auto corner = [](const std::array<double, 3> &v) {
-        return "vec3(" + float_literal(v[0]) + ", " + float_literal(v[1]) + ", " +
-               float_literal(v[2]) + ")";
-    };
-    return expand("prune_rows", {{"LO", corner(bounds.lo)}, {"HI", corner(bounds.hi)}});
+    return expand("prune_rows", {{"LO", vec3_literal(bounds.lo)}, {"HI", vec3_literal(bounds.hi)}});
 }
 
 std::string far_look_up(const std::string &outside) {

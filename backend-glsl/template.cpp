@@ -6,7 +6,7 @@
 
 namespace fathom::glsl {
 
-// Made from the files by cmake/Embed.cmake.
+// Made from the files by cmake/embed.cmake.
 const std::vector<std::pair<std::string_view, std::string_view>> &embedded_templates();
 
 namespace {
@@ -29,6 +29,14 @@ bool directive(std::string_view line, std::string_view word, std::string_view &r
     if (!line.starts_with(word)) return false;
     rest = line.substr(word.size());
     return true;
+}
+
+// How long the hole is that the text begins with; 0: there is none.
+std::size_t hole(std::string_view text) {
+    if (!text.starts_with('$')) return 0;
+    std::size_t end = 1;
+    while (end < text.size() && (text[end] == '_' || (text[end] >= 'A' && text[end] <= 'Z'))) ++end;
+    return end;
 }
 
 void expand_into(std::string_view name, const Values &values, std::string &out) {
@@ -56,6 +64,10 @@ void expand_into(std::string_view name, const Values &values, std::string &out) 
             continue;
         } else if (directive(words, "$include ", rest)) {
             expand_into(rest, values, out);
+        } else if (!words.empty() && hole(words) == words.size()) {
+            const std::string &lines = value_of(values, words.substr(1));
+            assert(lines.empty() || lines.back() == '\n');
+            out += lines;
         } else {
             out += fill(line, values);
         }
@@ -71,10 +83,9 @@ std::string fill(std::string_view form, const Values &values) {
         const std::size_t at = form.find('$');
         out += form.substr(0, at);
         if (at == form.npos) return out;
-        std::size_t end = at + 1;
-        while (end < form.size() && (form[end] == '_' || (form[end] >= 'A' && form[end] <= 'Z')))
-            ++end;
-        out += value_of(values, form.substr(at + 1, end - at - 1));
+        form.remove_prefix(at);
+        const std::size_t end = hole(form);
+        out += value_of(values, form.substr(1, end - 1));
         form.remove_prefix(end);
     }
 }
@@ -88,7 +99,7 @@ std::string expand(std::string_view name, const Values &values) {
 std::vector<std::string_view> template_names() {
     std::vector<std::string_view> names;
     for (const auto &[file, text] : embedded_templates())
-        names.push_back(file.substr(0, file.find('.')));
+        if (file.ends_with(".glsl")) names.push_back(file.substr(0, file.find('.')));
     return names;
 }
 

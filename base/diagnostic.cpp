@@ -92,6 +92,15 @@ Diagnostic *Diagnostics::keep(Diagnostic diagnostic) {
     return &items_.back();
 }
 
+void Diagnostics::withdraw(Code code, Span primary) {
+    const auto it = std::find_if(items_.begin(), items_.end(), [&](const Diagnostic &d) {
+        return d.code == code && d.primary.span == primary;
+    });
+    if (it == items_.end()) return;
+    errors_ -= it->severity == Severity::Error;
+    items_.erase(it);
+}
+
 std::size_t Diagnostics::warnings() const {
     return static_cast<std::size_t>(
         std::count_if(items_.begin(), items_.end(),

@@ -64,6 +64,9 @@ class Diagnostics {
     // is good until the next add.
     Diagnostic &add(Code code, Span primary, std::string message);
     void add(Diagnostic diagnostic);
+    // Takes one back which a later phase knows better: what reads the text cannot tell shapes from
+    // conditions.
+    void withdraw(Code code, Span primary);
     bool has_errors() const { return errors_ > 0; }
     std::size_t errors() const { return errors_; }
     std::size_t warnings() const;

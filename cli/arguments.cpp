@@ -113,15 +113,15 @@ template <class T> CLI::Option *choice(CLI::App *app, const std::string &name, T
     return option(
         app, name,
         [&value, words](const std::string &word) {
-            std::string all;
-            for (std::size_t i = 0; i < words.size(); ++i) {
-                if (words[i].first == word) {
-                    value = words[i].second;
+            std::vector<std::string> names;
+            for (const auto &[known, meaning] : words) {
+                if (known == word) {
+                    value = meaning;
                     return std::string();
                 }
-                all += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i].first;
+                names.push_back(known);
             }
-            return fmt::format("wants {}, not `{}`", all, word);
+            return fmt::format("wants {}, not `{}`", listed(names), word);
         },
         help);
 }
@@ -199,6 +199,17 @@ struct Reader {
     std::string help_about;
     CLI::App *help = nullptr;
 
+    void add_target(CLI::App *sub) {
+        std::vector<std::pair<std::string, glsl::Target>> targets;
+        std::vector<std::string> names;
+        for (const glsl::Target target : glsl::all_targets()) {
+            targets.emplace_back(glsl::traits_of(target).name, target);
+            names.push_back(targets.back().first + (names.empty() ? " (unless said)" : ""));
+        }
+        choice<glsl::Target>(sub, "--target", compile.target, targets, listed(names))
+            ->type_name("TARGET");
+    }
+
     template <class T> CLI::App *command(const char *name, const char *what, T &value) {
         CLI::App *sub = app.add_subcommand(name, what);
         sub->callback([this, &value] { invocation.command = value; });
@@ -244,17 +255,12 @@ struct Reader {
 
         sub = command("compile", "write the scene's shader, validated", compile);
         add_scene(sub, compile.scene);
-        add_out(sub, compile.out,
-                "write here, not to standard output; for glsl450, large tables to OUT.tables")
+        add_out(
+            sub, compile.out,
+            fmt::format("write here, not to standard output; for {}, large tables to OUT.tables",
+                        targets_with(&glsl::TargetTraits::buffer_file)))
             ->type_name("OUT");
-        std::vector<std::pair<std::string, std::string>> targets;
-        for (const char *name :
-             {"glsl450", "glsl330", "es300", "shadertoy", "glslviewer", "spirv", "html"})
-            targets.emplace_back(name, name);
-        choice<std::string>(
-            sub, "--target", compile.target, targets,
-            "glsl450 (unless said), glsl330, es300, shadertoy, glslviewer, spirv or html")
-            ->type_name("TARGET");
+        add_target(sub);
         sub->add_flag("--field-only", compile.field_only,
                       "the field functions alone, for a renderer of your own");
         sub->add_flag(
@@ -407,13 +413,15 @@ std::string contradiction(const Reader &reader) {
     if (watches && watched == "-") return "--watch follows a file, and standard input is none";
     if (is("check") && reader.check.json && reader.check.explain)
         return "--explain is for people, --json for programs: ask for one of them";
-    if (is("compile") && reader.compile.field_only && reader.compile.target == "html")
-        return "--field-only leaves out the picture that a page shows; `--target es300 "
-               "--field-only` "
-               "writes the text that a page of your own can use";
+    const glsl::TargetTraits &target = glsl::traits_of(reader.compile.target);
+    if (is("compile") && reader.compile.field_only && *target.field_by)
+        return fmt::format("--field-only leaves out the picture that a page shows; `--target {} "
+                           "--field-only` writes the text that a page of your own can use",
+                           target.field_by);
     if (is("compile") && reader.compile.noise_cache) {
-        if (reader.compile.target != "glsl450" || reader.compile.field_only)
-            return "--noise-cache is for whole pictures by `--target glsl450`";
+        if (!target.noise_cache || reader.compile.field_only)
+            return fmt::format("--noise-cache is for whole pictures by `--target {}`",
+                               targets_with(&glsl::TargetTraits::noise_cache));
         if (reader.compile.out.empty() || reader.compile.out == "-")
             return "--noise-cache writes several files: name the first by -o";
     }

@@ -2,6 +2,7 @@
 // knows nothing of what the commands do, the commands nothing of how the line is written.
 #pragma once
 
+#include "backend-glsl/targets.h"
 #include "typecheck/check.h"
 
 #include <array>
@@ -36,8 +37,8 @@ struct CheckCommand {
 };
 struct CompileCommand {
     SceneArguments scene;
-    std::string out; // empty: standard output
-    std::string target = "glsl450";
+    std::string out;       // empty: standard output
+    glsl::Target target{}; // the table's first
     bool field_only = false, watch = false;
     bool noise_cache = false; // with the cache's hooks, and its passes beside `out`
 };

@@ -8,19 +8,6 @@
 namespace fathom::cli {
 namespace {
 
-Content content_of(glsl::Target target) {
-    switch (target) {
-    case glsl::Target::Glsl450:
-    case glsl::Target::Glsl330:
-    case glsl::Target::Es300:
-    case glsl::Target::Shadertoy:
-    case glsl::Target::GlslViewer: return Content::Shader;
-    case glsl::Target::Spirv: return Content::SpirV;
-    case glsl::Target::Html: return Content::Page;
-    }
-    return Content::Shader;
-}
-
 // The noise cache's passes, beside the picture's shader: OUT.frag, OUT.reserve.frag, …
 Exit write_passes(const std::string &out, const ir::Scene &scene, const glsl::Options &options,
                   Terminal &terminal) {
@@ -51,11 +38,11 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
     if (exit != done) return exit;
     if (overwrites(compilation, command.out, terminal)) return usage_error;
     glsl::Options options;
-    options.target = *glsl::target_by_name(command.target);
+    options.target = command.target;
     options.field_only = command.field_only;
     // Only beside a file there is room for the data of a buffer.
-    options.buffers =
-        options.target == glsl::Target::Glsl450 && !command.out.empty() && command.out != "-";
+    const glsl::TargetTraits &target = glsl::traits_of(command.target);
+    options.buffers = target.buffer_file && !command.out.empty() && command.out != "-";
     options.computed = true;
     options.table_text = 256;
     options.title = std::filesystem::path(command.scene.file).stem().string();
@@ -70,7 +57,7 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
     glsl::Output output = glsl::emit(compilation.scene, options, diagnostics);
     print_diagnostics(diagnostics, compilation.sources, terminal);
     if (diagnostics.has_errors()) return scene_error;
-    if (options.target == glsl::Target::Spirv) {
+    if (target.form == glsl::Form::SpirV) {
         std::string_view bytes(reinterpret_cast<const char *>(output.words.data()),
                                output.words.size() * sizeof(std::uint32_t));
         return write_result(command.out, bytes, terminal);
@@ -88,7 +75,7 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
 
 Exit run(const CompileCommand &command, Terminal &terminal) {
     if (overwrites(command.scene.file, command.out, terminal) ||
-        misnamed(command.out, content_of(*glsl::target_by_name(command.target)), terminal))
+        misnamed(command.out, content_of(command.target), terminal))
         return usage_error;
     auto act = [&](const driver::Compilation &compilation) {
         return emit(command, compilation, terminal);

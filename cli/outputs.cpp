@@ -27,6 +27,12 @@ constexpr std::array<Suffix, 11> suffixes{{{".png", Content::Picture},
                                            {".yaml", Content::SaveFile},
                                            {".yml", Content::SaveFile}}};
 
+const Suffix *known_suffix(std::string_view suffix) {
+    const auto *known = std::find_if(suffixes.begin(), suffixes.end(),
+                                     [&](const Suffix &s) { return s.text == suffix; });
+    return known == suffixes.end() ? nullptr : known;
+}
+
 std::string_view name_of(Content content) {
     switch (content) {
     case Content::Picture: return "a picture";
@@ -39,12 +45,22 @@ std::string_view name_of(Content content) {
     return "";
 }
 
-std::string_view writer_of(Content content) {
+// The first target that writes it.
+std::string compiler_of(Content content) {
+    for (const glsl::Target target : glsl::all_targets())
+        if (content_of(target) == content)
+            return target == glsl::Target{}
+                       ? "`fathom compile`"
+                       : fmt::format("`fathom compile --target {}`", glsl::traits_of(target).name);
+    return "";
+}
+
+std::string writer_of(Content content) {
     switch (content) {
     case Content::Picture: return "`fathom render`";
-    case Content::Shader: return "`fathom compile`";
-    case Content::SpirV: return "`fathom compile --target spirv`";
-    case Content::Page: return "`fathom compile --target html`";
+    case Content::Shader:
+    case Content::SpirV:
+    case Content::Page: return compiler_of(content);
     case Content::Scene: return "`fathom import`";
     case Content::SaveFile: return "`fathom export`";
     }
@@ -71,6 +87,25 @@ bool refuse_overwriting(const std::string &out, Terminal &terminal) {
 
 } // namespace
 
+std::string listed(const std::vector<std::string> &names) {
+    std::string all;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        all += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
+    return all;
+}
+
+std::string targets_with(bool glsl::TargetTraits::*trait) {
+    std::vector<std::string> names;
+    for (const glsl::Target target : glsl::all_targets())
+        if (glsl::traits_of(target).*trait) names.emplace_back(glsl::traits_of(target).name);
+    return listed(names);
+}
+
+Content content_of(glsl::Target target) {
+    const Suffix *known = known_suffix(glsl::traits_of(target).suffix);
+    return known ? known->content : Content::Shader;
+}
+
 std::optional<PictureFormat> picture_format(const std::string &out) {
     if (is_stream(out)) return PictureFormat::Png;
     const std::string suffix = suffix_of(out);
@@ -82,9 +117,8 @@ std::optional<PictureFormat> picture_format(const std::string &out) {
 bool misnamed(const std::string &out, Content content, Terminal &terminal) {
     if (is_stream(out)) return false;
     const std::string suffix = suffix_of(out);
-    const auto known = std::find_if(suffixes.begin(), suffixes.end(),
-                                    [&](const Suffix &s) { return s.text == suffix; });
-    if (known != suffixes.end() && known->content != content) {
+    const Suffix *known = known_suffix(suffix);
+    if (known && known->content != content) {
         terminal.say(fmt::format("fathom: -o {}: `{}` is {}, and this writes {}; {} writes {}", out,
                                  suffix, name_of(known->content), name_of(content),
                                  writer_of(known->content), name_of(known->content)));

@@ -2,12 +2,19 @@
 // can be refused is refused before any work is done.
 #pragma once
 
+#include "backend-glsl/targets.h"
 #include "cli/terminal.h"
 
 namespace fathom::cli {
 
 // What a command writes.
 enum class Content { Picture, Shader, SpirV, Page, Scene, SaveFile };
+
+Content content_of(glsl::Target target); // by its suffix
+
+// The names of the targets that have the trait; names as "a, b or c".
+std::string targets_with(bool glsl::TargetTraits::*trait);
+std::string listed(const std::vector<std::string> &names);
 
 enum class PictureFormat { Png, Jpeg };
 

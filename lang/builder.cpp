@@ -326,9 +326,18 @@ void Builder::choice(Index first, Index last) {
 void Builder::argument_name(Index at) {
     names_.emplace_back(identifier(at));
     if (kind(at + 1) != Tok::Assign) return;
+    // all of one call are one mistake
+    const Index open = enclosing(at), close = tokens_.match[open];
+    std::vector<Edit> edits;
+    for (Index i = open + 1; i<close; i = tokens_.match[i]> i ? tokens_.match[i] + 1 : i + 1) {
+        const bool begins = kind(i - 1) == Tok::Comma || i == open + 1;
+        if (!begins || kind(i) != Tok::Name || kind(i + 1) != Tok::Assign) continue;
+        if (i < at) return;
+        const bool spaced = token(i + 1).end < token(i + 2).begin;
+        edits.push_back({{id_, token(i).end, token(i + 1).end}, spaced ? ":" : ": "});
+    }
     foreign(span(at + 1), "an argument is named with `:`")
-        .help("write `" + std::string(text(at)) + ": …`",
-              {{{id_, token(at).end, token(at + 1).end}, ":"}});
+        .help("write `" + std::string(text(at)) + ": …`", std::move(edits));
 }
 
 void Builder::argument() { arguments_.push_back({take_back(names_), pop_item().id}); }
@@ -376,6 +385,18 @@ void Builder::trailing(Index first, Index last) {
         push(Call{callee.id, {}, block, false}, whole, tall);
         return;
     }
+    if (const Name *name = std::get_if<Name>(&ast_.exprs[call->callee].kind);
+        name && !call->arguments.empty() && is_foreign_transform(name->text) &&
+        !may_be_declared(name->text)) {
+        const Index open = tokens_.match[first - 1];
+        const Span head{id_, token(open - 1).begin, token(first - 1).end};
+        const std::string chain = "." + transform_text(open - 1);
+        foreign(head, "a transform stands behind the shape that it moves")
+            .help("write " + ("`union { … }" + chain + "`"),
+                  {{head, "union"}, {{id_, whole.end, whole.end}, chain}});
+        push(Poison{}, whole, tall);
+        return;
+    }
     if (call->arguments.empty()) {
         const Index open = tokens_.match[first - 1];
         const std::string name = brief(text(expr.span.begin, token(open).begin));
@@ -391,7 +412,16 @@ void Builder::trailing(Index first, Index last) {
 void Builder::step(Index at) {
     const Item item = pop_item();
     const bool up = kind(at) == Tok::PlusPlus;
+    if (up && foreign_concat(at)) {
+        failed_ = at;
+        throw Abandon{};
+    }
     const std::string name = brief(text(item.begin, item.end));
+    if (!is_target(item.id)) {
+        foreign(span(at), up ? "there is no `++`" : "there is no `--`")
+            .help("lists are joined by `concat(a, b)`");
+        return push(Poison{}, {id_, item.begin, token(at).end}, 1);
+    }
     foreign(span(at), up ? "there is no `++`" : "there is no `--`")
         .help("write `" + name + (up ? " += 1`" : " -= 1`"), {{span(at), up ? " += 1" : " -= 1"}});
     push(Poison{}, {id_, item.begin, token(at).end}, 1);

@@ -5,6 +5,8 @@
 #include "lang/ast.h"
 #include "lang/token.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <optional>
 #include <string>
@@ -18,9 +20,16 @@ namespace fathom::lang {
 // Names that other languages have for what is spelled otherwise here: `True`, `None`; `math`.
 bool is_foreign_value(std::string_view name);
 bool is_foreign_module(std::string_view name);
+bool is_foreign_transform(std::string_view name); // what OpenSCAD writes before a shape
 
-// A text as it can stand in a message: of one line and not long, else `…`.
+// A text as it can stand in a message: of one line and not long, else `…`; and in backticks.
 std::string brief(std::string_view text);
+std::string in_code(std::string_view text);
+
+template <std::size_t N>
+bool is_one_of(std::string_view word, const std::array<std::string_view, N> &words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 // Thrown by Builder::fail, caught around each statement: reading goes on behind it. Never leaves
 // parse().
@@ -83,6 +92,7 @@ class Builder {
     Mark mark() const;
     bool ends_statement(Index at) const;
     Index junk(const Mark &mark, Index first, Index at);
+    bool foreign_statement(Index first); // true: reported, and to be abandoned
     Index abandon(const Mark &mark, Index first);
 
     // Types.
@@ -241,12 +251,29 @@ class Builder {
     bool separated_unit(Index at);
     std::string parameters_text(Index open) const;
     bool foreign_junk(Index first, Index at);
+    bool foreign_import(Index at);
+    bool foreign_slice(Index at);
+    std::string transform_text(Index name) const;
+    bool joined_by_space(Index at, bool list);
+
+    // Words and blocks of theirs (foreign_words.cpp).
+    void declare_poison(Index name);
+    void withdraw_quotes(Index first);
+    bool may_be_declared(std::string_view name);
+    bool indented_body(Index colon, std::vector<Edit> &edits);
+    void foreign_colon(Index at);
+    void foreign_choice(Index start, Index at);
+    Index value_start(Index first, Index at) const;
+    void foreign_pipe(Index at);
+    bool foreign_concat(Index at);
+    bool foreign_record(Index brace);
     bool juxtaposed_calls(Index first, Index at);
     void settle_foreign_names();
 
     // Answers to all else (failures.cpp).
     bool already_reported(Wanted wanted, Index at) const;
     void generic_failure(Wanted wanted, Index at);
+    std::vector<Edit> call_of_list(Index open) const;
     Index enclosing(Index at) const;
     std::string describe(Index at) const;
 
@@ -281,6 +308,7 @@ class Builder {
     bool body_missing_ = false;         // of an `if` that was just abandoned: an `else` may follow
     bool expression_body_ = false;      // of the function whose body was just read
     std::uint32_t last_too_tall_ = ~0u; // where the chain began that was reported
+    std::vector<Index> lost_;           // names that it would have declared, beside its first
     Index failed_ = 0;                  // where the statement that is being abandoned broke
 
     // Names that other languages have, to be reported unless the file declares them.
@@ -292,6 +320,8 @@ class Builder {
     std::vector<std::string_view> declared_;
     std::unordered_set<std::string_view> known_names_; // the first known_ of them
     std::size_t known_ = 0;
+    std::optional<std::unordered_set<std::string_view>> all_declared_; // made when it is asked for
+    bool has_import_ = false;
 };
 
 } // namespace fathom::lang

@@ -298,13 +298,21 @@ Builder::Index Builder::statement_end(Index first) const {
 // What stands for the statement in the tree. Its name stays declared, so that its uses are no new
 // errors.
 void Builder::replace_bad_statement(Index first) {
+    for (const Index name : std::exchange(lost_, {})) declare_poison(name);
     const Index end = statement_end(first);
     const Span whole = span(first, end > first ? end - 1 : first);
-    const bool begins = // a declaration, also `vec2 x = …` and `def f(…)`
-        is_one_of(kind(first), {Tok::Let, Tok::Var, Tok::Fn, Tok::Param, Tok::Name});
-    const Index name = begins ? first + 1 : first;
+    Index name = first;
+    if (is_one_of(kind(first), {Tok::Let, Tok::Var, Tok::Fn, Tok::Param})) name = first + 1;
+    if (kind(first) == Tok::Name) // `x = …`, `const float x = …`, `def f(…)`
+        while (kind(name + 1) == Tok::Name) ++name;
+    const Tok behind = kind(name + 1);
     const bool declares =
-        kind(first) != Tok::Name || kind(first + 2) == Tok::Assign || kind(first + 2) == Tok::Open;
+        kind(first) != Tok::Name || behind == Tok::Assign || (name > first && behind == Tok::Open);
+    if (kind(first) == Tok::Name && name == first && declares && kind(name) == Tok::Name &&
+        !is_declared(std::string(text(name)))) {
+        declare_poison(name);
+        return;
+    }
     if (name == first || kind(name) != Tok::Name || !declares) {
         add_stmt(Bad{}, whole, 1);
         return;

@@ -61,6 +61,8 @@ bool Builder::already_reported(Wanted wanted, Index at) const {
         return token(i).begin == token(i).end && kind(i) != Tok::End;
     };
     if (at < tokens_.tokens.size() && (kind(at) == Tok::Bad || is_virtual(at))) return true;
+    if (at > 0 && kind(at - 1) == Tok::Bad && kind(at) != Tok::Comma && kind(at) != Tok::End)
+        return true;
     if (wanted != Wanted::CloseParen && wanted != Wanted::CloseList) return false;
     return is_virtual(tokens_.match[enclosing(at)]);
 }
@@ -93,9 +95,18 @@ std::string Builder::describe(Index at) const {
     return "`" + std::string(text(at)) + "`";
 }
 
+// `s.translate[1, 2, 3]` as a call.
+std::vector<Edit> Builder::call_of_list(Index open) const {
+    const Index close = tokens_.match[open];
+    if (open == 0 || kind(open - 1) != Tok::Name || kind(close) != Tok::ListClose) return {};
+    return {{{id_, token(open - 1).end, token(open).begin}, "("},
+            {{id_, token(close).end, token(close).end}, ")"}};
+}
+
 void Builder::generic_failure(Wanted wanted, Index at) {
     const Tok found = kind(at);
     const bool exists = at < tokens_.tokens.size();
+    if (exists && found == Tok::StrayBrace && foreign_record(at)) return;
     if (exists && found == Tok::StrayBrace) {
         diagnostics_.add(Code::SyntaxError, span(at), "a block cannot stand here")
             .note("`{` opens a block behind a callee, a header, a function's head or `=>`")
@@ -110,7 +121,7 @@ void Builder::generic_failure(Wanted wanted, Index at) {
     if (exists && wanted == Wanted::CloseList && found == Tok::Comma) { // no list: an index
         diagnostics_.add(Code::SyntaxError, span(at), "an index is one number")
             .label(span(enclosing(at)), "of this index")
-            .help("the arguments of a call stand in `( … )`");
+            .help("the arguments of a call stand in `( … )`", call_of_list(enclosing(at)));
         return;
     }
     Diagnostic &d = diagnostics_.add(Code::SyntaxError, place(at),

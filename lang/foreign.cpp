@@ -10,11 +10,6 @@ namespace fathom::lang {
 
 namespace {
 
-template <std::size_t N>
-bool is_one_of(std::string_view word, const std::array<std::string_view, N> &words) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
-
 constexpr std::array<std::string_view, 24> type_words = {
     "float", "int",   "bool",  "string", "vec2",   "vec3",     "vec4",   "mat2",
     "mat3",  "mat4",  "color", "shape",  "shape2", "material", "light",  "double",
@@ -24,16 +19,13 @@ constexpr std::array<std::string_view, 13> qualifiers = {
     "mediump", "lowp",    "varying", "inout", "out",   "mut"};
 constexpr std::array<std::string_view, 6> function_words = {"def", "function", "func",
                                                             "fun", "module",   "void"};
-constexpr std::array<std::string_view, 11> transforms = {
-    "translate", "rotate",         "scale",          "mirror",     "color", "resize",
-    "offset",    "linear_extrude", "rotate_extrude", "multmatrix", "twist"};
 constexpr std::array<std::string_view, 5> math_modules = {"math", "Math", "np", "numpy", "glm"};
-constexpr std::array<std::string_view, 9> value_words = {
-    "True", "False", "TRUE", "FALSE", "None", "null", "NULL", "nil", "undefined"};
-
-std::string code(std::string_view text) { return "`" + brief(text) + "`"; }
+constexpr std::array<std::string_view, 10> value_words = {
+    "True", "False", "TRUE", "FALSE", "None", "null", "NULL", "nil", "undefined", "undef"};
 
 } // namespace
+
+std::string in_code(std::string_view text) { return "`" + brief(text) + "`"; }
 
 std::string brief(std::string_view text) {
     constexpr std::size_t longest = 80;
@@ -42,7 +34,9 @@ std::string brief(std::string_view text) {
 }
 
 bool is_foreign_value(std::string_view name) { return is_one_of(name, value_words); }
-bool is_foreign_module(std::string_view name) { return is_one_of(name, math_modules); }
+bool is_foreign_module(std::string_view name) {
+    return name == "console" || is_one_of(name, math_modules);
+}
 
 // `True`, `None`, `math.sin`, unless the file has such a name of its own.
 void Builder::settle_foreign_names() {
@@ -54,8 +48,21 @@ void Builder::settle_foreign_names() {
         Expr &expr = ast_.exprs[foreign_name.expr];
         if (const Member *member = std::get_if<Member>(&expr.kind)) {
             const Span qualifier{id_, foreign_name.span.begin, member->name.span.begin};
+            const Span all{id_, qualifier.begin, member->name.span.end};
+            if (name == "console") {
+                foreign(all, "a value is shown by `print`").help("write `print`", {{all, "print"}});
+                expr.kind = Name{"print", word("print")};
+                continue;
+            }
+            if (member->name.text == "PI" || member->name.text == "TAU") {
+                const std::string ours = member->name.text == "PI" ? "pi" : "tau";
+                foreign(all, "the mathematical constants need no module")
+                    .help("write " + in_code(ours), {{all, ours}});
+                expr.kind = Name{ours, word(ours == "pi" ? "pi" : "tau")};
+                continue;
+            }
             foreign(foreign_name.span, "the mathematical functions need no module")
-                .help("write " + code(member->name.text), {{qualifier, ""}});
+                .help("write " + in_code(member->name.text), {{qualifier, ""}});
             expr.kind = Name{member->name.text, member->name.word};
         } else if (name[0] == 'T' || name[0] == 'F') {
             const bool value = name[0] == 'T';
@@ -64,7 +71,7 @@ void Builder::settle_foreign_names() {
                       {{foreign_name.span, value ? "true" : "false"}});
             expr.kind = Bool{value};
         } else if (std::holds_alternative<Name>(expr.kind)) {
-            foreign(foreign_name.span, "there is no " + code(name) + ": every name has a value")
+            foreign(foreign_name.span, "there is no " + in_code(name) + ": every name has a value")
                 .note("the shape that is nowhere is `empty`, the list without items `[]`");
             expr.kind = Poison{};
         }
@@ -90,10 +97,23 @@ bool Builder::foreign_loop(Index at) {
     };
     Diagnostic &d = foreign(span(at - 1, close), "a loop is written `for i in 0..8 { … }`");
     const auto propose = [&](const std::string &head) {
-        d.help("write `for " + head + "`", {{span(at, close), head}});
+        std::vector<Edit> edits{{span(at, close), head}};
+        Index end = close + 1; // of a body without braces
+        while (!ends_statement(end) && kind(end) != Tok::ListClose && kind(end) != Tok::Close)
+            end = tokens_.match[end] > end ? tokens_.match[end] + 1 : end + 1;
+        if (kind(close + 1) != Tok::Body && end > close + 1) {
+            edits.push_back({{id_, token(close + 1).begin, token(close + 1).begin}, "{ "});
+            edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, " }"});
+        }
+        d.help("write `for " + head + " { … }`", std::move(edits));
         return true;
     };
     Index i = at + 1;
+    while (kind(i) == Tok::Let || kind(i) == Tok::Var ||
+           (kind(i) == Tok::Name && kind(i + 1) == Tok::Name && text(i + 1) != "of"))
+        ++i;
+    if (kind(i) == Tok::Name && kind(i + 1) == Tok::Name && text(i + 1) == "of")
+        return propose(std::string(text(i)) + " in " + inside(i + 2, close));
     if (kind(i) == Tok::Name && kind(i + 1) == Tok::In) return propose(inside(i, close));
     while (i < close && kind(i + 1) != Tok::Assign) ++i;
     if (i >= close || kind(i) != Tok::Name) return true;
@@ -161,8 +181,8 @@ bool Builder::foreign_head(Index first) {
         const bool is_function = is_one_of(word, function_words) || is_one_of(type, type_words);
         if (!is_function) return false;
         const Index close = tokens_.match[name + 1];
-        if (declared == "main" && word == "void") {
-            foreign(span(first, name), "a scene has no `main`")
+        if (declared.starts_with("main") && word == "void") {
+            foreign(span(first, name), "a scene has no " + in_code(declared))
                 .note("the shapes that stand at top level are the scene");
             return true;
         }
@@ -170,13 +190,24 @@ bool Builder::foreign_head(Index first) {
         std::string head = "fn " + declared + "(" + parameters_text(name + 1) + ")";
         if (has_type) head += " -> " + type;
         if (colon) {
+            std::vector<Edit> edits{{span(first, close), head}};
+            if (!indented_body(close + 1, edits)) edits.clear();
             foreign(span(first, name),
                     "a function is declared with `fn`, and its body stands in braces")
-                .help("write `" + head + " { … }`");
+                .help("write `" + head + " { … }`", std::move(edits));
             return true;
         }
         foreign(span(first, name), "a function is declared with `fn`")
-            .help("write " + code(head), {{span(first, close), head}});
+            .help("write " + in_code(head), {{span(first, close), head}});
+        return true;
+    }
+    const bool curv = name == first + 1 && !is_one_of(word, qualifiers) &&
+                      !is_one_of(word, type_words) && !is_one_of(word, function_words);
+    if (kind(name + 1) == Tok::Assign && curv) {
+        const std::string head = "fn " + word + "(" + declared + ")";
+        lost_.push_back(first);
+        foreign(span(first, name), "a function is declared with `fn`")
+            .help("write " + in_code(head), {{span(first, name), head}});
         return true;
     }
     if (kind(name + 1) == Tok::Assign) {
@@ -184,43 +215,19 @@ bool Builder::foreign_head(Index first) {
         Diagnostic &d =
             foreign(span(first, name), has_type ? "a type stands behind its name, after `let`"
                                                 : "a name is bound with `let`");
-        d.help("write " + code(let + " = …"), {{span(first, name), let}});
+        d.help("write " + in_code(let + " = …"), {{span(first, name), let}});
         if (in_function_) d.note("a name that is assigned to later is bound with `var`");
         return true;
     }
     if (is_one_of(type, type_words) && ends_statement(name + 1)) {
+        lost_.push_back(name);
         foreign(span(first, name), "a name is bound together with its value")
-            .help("write `let " + declared + ": " + type + " = …`");
+            .help(word == "uniform" ? "a number from outside is `param " + declared +
+                                          " = 1 in 0..2`, the seconds are `time`"
+                                    : "write `let " + declared + ": " + type + " = …`");
         return true;
     }
     return false;
-}
-
-// `translate([1, 2, 3]) rotate(…) sphere(1)`: transforms stand behind what they move.
-bool Builder::juxtaposed_calls(Index first, Index at) {
-    if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open ||
-        !is_one_of(text(first), transforms))
-        return false;
-    constexpr int longest_chain = 20;
-    std::string chain;
-    Index shape = first;
-    for (int links = 0;
-         links < longest_chain && kind(shape) == Tok::Name && kind(shape + 1) == Tok::Open &&
-         kind(tokens_.match[shape + 1] + 1) == Tok::Name;
-         ++links) {
-        const Index close = tokens_.match[shape + 1];
-        chain.insert(0, "." + std::string(text(token(shape).begin, token(close).end)));
-        shape = close + 1;
-    }
-    if (shape < at) return false;
-    failed_ = shape;
-    const Index end = statement_end(first);
-    foreign(span(first, tokens_.match[first + 1]),
-            "a transform stands behind the shape that it moves")
-        .help("write " + code(std::string(text(shape)) + "(…)" + chain),
-              {{{id_, token(first).begin, token(shape).begin}, ""},
-               {{id_, token(end - 1).end, token(end - 1).end}, chain}});
-    return true;
 }
 
 // -- where a statement should have ended ---------------------------------------------------------
@@ -247,14 +254,41 @@ bool Builder::foreign_junk(Index first, Index at) {
         return true;
     }
     if (foreign_lambda(at) || separated_unit(at)) return true;
+    if (found == Tok::Name && kind(at - 1) == Tok::Name && text(at - 1) == "new") {
+        foreign(span(at - 1), "nothing is made with `new`")
+            .help("leave it away", {{{id_, token(at - 1).begin, token(at).begin}, ""}});
+        return true;
+    }
+    if (found == Tok::String && kind(at - 1) == Tok::String &&
+        token(at - 1).end == token(at).begin) { // `"""…"""`
+        const bool whole = kind(at + 1) == Tok::String && ends_statement(at + 2);
+        std::vector<Edit> edits;
+        if (whole)
+            edits.push_back({span(at - 1, at + 1),
+                             "// " + std::string(text(token(at).begin + 1, token(at).end - 1))});
+        foreign(span(at - 1, whole ? at + 1 : at), "a comment begins with `//`")
+            .help("write `// …`", std::move(edits));
+        return true;
+    }
+    if (found == Tok::In && kind(first) == Tok::Let) {
+        foreign(span(at), "a name is known to the end of its block, without `in`")
+            .help("end the `let`, with a line's end or `;`",
+                  {{{id_, token(at - 1).end, token(at).end}, ";"}});
+        return true;
+    }
+    if (found == Tok::String && kind(at - 1) == Tok::Name && token(at - 1).end == token(at).begin)
+        return joined_by_space(at, false);
     const std::string name(text(first));
-    const bool literal = found == Tok::Number || found == Tok::String || found == Tok::Color;
+    const bool all = name == "assert" || name == "print" || name == "echo"; // `assert 1 < 2`
+    const bool literal = found == Tok::Number || found == Tok::String || found == Tok::Color ||
+                         (all && found == Tok::Name);
     if (literal && kind(first) == Tok::Name && at == first + 1) {
         Diagnostic &d = foreign(span(first, at), "a call's arguments stand in parentheses");
-        if (ends_statement(at + 1))
-            d.help("write " + code(name + "(" + std::string(text(at)) + ")"),
-                   {{{id_, token(first).end, token(at).begin}, "("},
-                    {{id_, token(at).end, token(at).end}, ")"}});
+        const Index last = all ? statement_end(first) - 1 : at;
+        d.help("write " +
+                   in_code(name + "(" + std::string(text(token(at).begin, token(last).end)) + ")"),
+               {{{id_, token(first).end, token(at).begin}, "("},
+                {{id_, token(last).end, token(last).end}, ")"}});
         return true;
     }
     if (found == Tok::Arrow) {
@@ -273,6 +307,12 @@ bool Builder::foreign_junk(Index first, Index at) {
     }
     if (found == Tok::Colon) {
         if (kind(first) != Tok::Name || at != first + 1) return false;
+        if (first > 0 && kind(first - 1) == Tok::Trailing) { // `torus{major: 2}`
+            const Index open = first - 1;
+            foreign(span(open), "a call's arguments stand in parentheses")
+                .help("write `( … )`", {{span(open), "("}, {span(tokens_.match[open]), ")"}});
+            return true;
+        }
         foreign(span(first), "a new name is bound with `let`")
             .help("write `let " + name + "`",
                   {{{id_, token(first).begin, token(first).begin}, "let "}});
@@ -282,44 +322,30 @@ bool Builder::foreign_junk(Index first, Index at) {
         if (kind(first) != Tok::Name) return false;
         const std::string target(text(token(first).begin, token(at - 1).end));
         const std::string op(text(at).substr(0, 1));
-        foreign(span(at), "there is no " + code(text(at)))
+        foreign(span(at), "there is no " + in_code(text(at)))
             .help("write `" + target + " = " + target + " " + op + " …`",
                   {{span(at), "= " + target + " " + op}});
         return true;
     }
     if (found == Tok::Comma) {
+        if (kind(first) == Tok::Name && at == first + 1 && kind(at + 1) == Tok::Name) {
+            foreign(span(first, at + 1), "each name is bound by a `let` of its own")
+                .help("write `let " + name + " = …`");
+            for (Index i = first; kind(i) == Tok::Name; i += 2) lost_.push_back(i);
+            return true;
+        }
         if (kind(first) != Tok::Let && kind(first) != Tok::Var) return false;
-        foreign(span(at), "each name is bound by a `let` of its own");
+        if (kind(at + 1) == Tok::Name) lost_.push_back(at + 1);
+        foreign(span(at), "each name is bound by a `let` of its own")
+            .help("write `; let`", {{span(at), "; " + std::string(text(first))}});
         return true;
     }
     if (found == Tok::If) {
-        foreign(span(at), "a choice begins with its condition")
-            .help("write `if c { a } else { b }`");
+        foreign_choice(value_start(first, at), at);
         return true;
     }
     if (found != Tok::In) return false;
     foreign(span(at), "there is no operator `in`");
-    return true;
-}
-
-// Python's `lambda p: …`, at the `p`.
-bool Builder::foreign_lambda(Index at) {
-    if (at == 0 || kind(at) != Tok::Name || kind(at - 1) != Tok::Name || text(at - 1) != "lambda")
-        return false;
-    const std::string head = std::string(text(at)) + " =>";
-    Diagnostic &d = foreign(span(at - 1), "a function without a name is written `p => …`");
-    if (kind(at + 1) == Tok::Colon)
-        d.help("write " + code(head + " …"), {{span(at - 1, at + 1), head}});
-    return true;
-}
-
-// `45 deg`.
-bool Builder::separated_unit(Index at) {
-    if (at == 0 || kind(at) != Tok::Name || kind(at - 1) != Tok::Number) return false;
-    if (text(at) != "deg" && text(at) != "rad" && text(at) != "turn") return false;
-    const std::string angle = std::string(text(at - 1)) + std::string(text(at));
-    diagnostics_.add(Code::BadNumber, span(at - 1, at), "a unit touches its number")
-        .help("write " + code(angle), {{span(at - 1, at), angle}});
     return true;
 }
 
@@ -330,7 +356,7 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
     const Index before = at > 0 ? at - 1 : 0;
     const auto missing = [&](std::string message, std::string replacement) {
         foreign(span(at), std::move(message))
-            .help("write " + code(replacement), {{span(at), replacement}});
+            .help("write " + in_code(replacement), {{span(at), replacement}});
         return true;
     };
     switch (wanted) {
@@ -343,7 +369,7 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
         }
         if (found == Tok::PlusPlus || found == Tok::MinusMinus) {
             const std::string op = found == Tok::PlusPlus ? " += 1" : " -= 1";
-            Diagnostic &d = foreign(span(at), "there is no " + code(text(at)));
+            Diagnostic &d = foreign(span(at), "there is no " + in_code(text(at)));
             if (kind(at + 1) == Tok::Name)
                 d.help("write `" + std::string(text(at + 1)) + op + "`",
                        {{span(at), ""}, {{id_, token(at + 1).end, token(at + 1).end}, op}});
@@ -357,22 +383,43 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
         if (found == Tok::Bar && kind(at + 1) == Tok::Name && kind(at + 2) == Tok::Bar) {
             const std::string head = std::string(text(at + 1)) + " =>";
             foreign(span(at, at + 2), "a function without a name is written `p => …`")
-                .help("write " + code(head + " …"), {{span(at, at + 2), head}});
+                .help("write " + in_code(head + " …"), {{span(at, at + 2), head}});
             return true;
         }
         if (found == Tok::Greater && kind(before) == Tok::Bar &&
             token(before).end == token(at).begin) {
-            foreign(span(before, at), "there is no operator `|>`")
-                .help("write `a.f(b)` for `f(a, b)`");
+            foreign_pipe(at);
+            return true;
+        }
+        if (found == Tok::Greater && kind(before) == Tok::Greater &&
+            token(before).end == token(at).begin) {
+            foreign_pipe(at);
+            return true;
+        }
+        if (found == Tok::Question && kind(before) == Tok::Question) {
+            foreign(span(before, at), "there is no `??`: every name has a value");
+            return true;
+        }
+        if (wanted == Wanted::Statement && found == Tok::In) {
+            foreign(span(at), "a name is known to the end of its block, without `in`")
+                .help("leave it away", {{span(at), ""}});
+            return true;
+        }
+        if (wanted == Wanted::Statement && (found == Tok::Star || found == Tok::Percent) &&
+            kind(at + 1) == Tok::Name) {
+            foreign(span(at), "there are no modifiers of shapes")
+                .help("leave it away; what `//` stands before is not drawn", {{span(at), ""}});
             return true;
         }
         if (found == Tok::Fn) {
-            foreign(span(at), "a function without a name is written `p => …`");
+            Diagnostic &d = foreign(span(at), "a function without a name is written `p => …`");
+            if (kind(at + 1) == Tok::LambdaOpen) d.help("leave `fn` away", {{span(at), ""}});
             return true;
         }
         if (found == Tok::Less && kind(before) == Tok::Import) return false;
         return false;
     case Wanted::CloseList:
+        if (found == Tok::Colon && foreign_slice(at)) return true;
         if (found == Tok::Colon) {
             foreign(span(at), "a range is written with `..`, or `..=` with its end")
                 .help("write `..=`", {{span(at), "..="}});
@@ -385,7 +432,7 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
             const std::string list = "[" + loop + " { " + item + " }]";
             Diagnostic &d = foreign(span(at), "in a list, the loop stands before what it gives");
             if (list.find('\n') == std::string::npos)
-                d.help("write " + code(list), {{span(open, close), list}});
+                d.help("write " + in_code(list), {{span(open, close), list}});
             return true;
         }
         [[fallthrough]];
@@ -398,13 +445,35 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
             const bool swapped = is_one_of(text(at), type_words);
             const std::string name(text(swapped ? before : at)), type(text(swapped ? at : before));
             foreign(span(before, at), "a parameter's type stands behind its name, after a `:`")
-                .help("write " + code(name + ": " + type),
+                .help("write " + in_code(name + ": " + type),
                       {{span(before, at), name + ": " + type}});
             return true;
         }
         if (found == Tok::If) {
-            foreign(span(at), "a choice begins with its condition")
-                .help("write `if c { a } else { b }`");
+            foreign_choice(value_start(open + 1, at), at);
+            return true;
+        }
+        if (found == Tok::For) {
+            const Index close = tokens_.match[open];
+            Diagnostic &d = diagnostics_.add(Code::WrongPlace, span(at), "a `for` has no value");
+            if (at == open + 1 && kind(open - 1) == Tok::Name)
+                d.help("a block takes it", {{span(open), " { "}, {span(close), " }"}});
+            else
+                d.help("write `[for … { … }]` for a list, `union { for … { … } }` for a shape");
+            return true;
+        }
+        if (found == Tok::DotDot && text(at) == ".." && kind(at + 1) == Tok::Dot) {
+            foreign(span(at, at + 1), "a list is not spread out")
+                .help("lists are joined by `concat(a, b)`");
+            return true;
+        }
+        if (foreign_concat(at) || joined_by_space(at, wanted == Wanted::CloseList)) return true;
+        const bool grouping = open > 0 && kind(open) == Tok::Open && kind(open - 1) != Tok::Name &&
+                              kind(open - 1) != Tok::Close && kind(open - 1) != Tok::ListClose;
+        if (grouping && found == Tok::Comma) { // a tuple
+            const Index close = tokens_.match[open];
+            foreign(span(open), "a vector or a list stands in brackets")
+                .help("write `[ … ]`", {{span(open), "["}, {span(close), "]"}});
             return true;
         }
         if (found == Tok::Arrow)
@@ -426,7 +495,7 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
         if (found == Tok::Name && kind(before) == Tok::Name && kind(at + 1) == Tok::Assign) {
             const std::string typed = std::string(text(at)) + ": " + std::string(text(before));
             foreign(span(before, at), "a type stands behind its name")
-                .help("write " + code(typed), {{span(before, at), typed}});
+                .help("write " + in_code(typed), {{span(before, at), typed}});
             return true;
         }
         return false;
@@ -437,11 +506,29 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
             return true;
         }
         return false;
-    case Wanted::Name: return foreign_loop(at);
+    case Wanted::Name:
+        if (kind(before) == Tok::Let && at < tokens_.tokens.size() &&
+            (found == Tok::End || found == Tok::Open)) {
+            const Index close = tokens_.match[at];
+            std::vector<Edit> edits;
+            if (found == Tok::End) // Curv's: the names follow on lines of their own
+                edits.push_back({span(before), ""});
+            else if (kind(at + 1) == Tok::Name && kind(at + 2) == Tok::Assign)
+                edits = {{span(at), ""}, {span(close), ";"}}, lost_.push_back(at + 1);
+            foreign(span(before), "each name is bound by a `let` of its own")
+                .help("write `let a = 1`, and what uses it behind that", std::move(edits));
+            return true;
+        }
+        return foreign_loop(at);
     case Wanted::In:
         if (found == Tok::Assign) return missing("a loop runs over what stands behind `in`", "in");
         if (found == Tok::Name && text(at) == "of")
             return missing("a loop runs over what stands behind `in`", "in");
+        if (found == Tok::Comma) {
+            foreign(span(at), "a loop has one variable")
+                .help("loop over the places: `for i in 0..len(list) { let x = list[i] … }`");
+            return true;
+        }
         return false;
     case Wanted::FunctionBody:
         if (found == Tok::Colon) {
@@ -456,14 +543,7 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
         if (found == Tok::FatArrow) return missing("the body of a `fn` stands behind `=`", "=");
         return false;
     case Wanted::Block: return foreign_body(at);
-    case Wanted::ImportPath:
-        if (found == Tok::Name) {
-            const std::string path = "\"" + std::string(text(at)) + ".sdf\"";
-            foreign(span(at), "a module is named by its file")
-                .help("write `import " + path + "`", {{span(at), path}});
-            return true;
-        }
-        return false;
+    case Wanted::ImportPath: return foreign_import(at);
     case Wanted::CloseBrace:
     case Wanted::ParameterName:
     case Wanted::OpenParen:
@@ -476,69 +556,6 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
     case Wanted::StatementEnd: return false;
     }
     return false;
-}
-
-// `if a then b else c`, `for i in 0..3 do b`.
-void Builder::foreign_then(Index at) {
-    Diagnostic &d = foreign(span(at), "a body stands in braces");
-    const auto end_of = [&](Index i) { // of the branch that begins there
-        while (!ends_statement(i) && kind(i) != Tok::Else && kind(i) != Tok::Close &&
-               kind(i) != Tok::ListClose && kind(i) != Tok::Comma)
-            i = tokens_.match[i] > i ? tokens_.match[i] + 1 : i + 1;
-        return i;
-    };
-    const auto before = [&](Index i) { return Span{id_, token(i).begin, token(i).begin}; };
-    const auto behind = [&](Index i) { return Span{id_, token(i - 1).end, token(i - 1).end}; };
-    const Index first = at + 1, end = end_of(first);
-    if (end == first || kind(first) == Tok::Body) {
-        d.help("write `{ … }`");
-        return;
-    }
-    std::string told = "`{ " + std::string(text(token(first).begin, token(end - 1).end)) + " }";
-    std::vector<Edit> edits{{span(at), "{"}, {behind(end), " }"}};
-    const Index other = end + 1;
-    if (kind(end) == Tok::Else && kind(other) != Tok::If && kind(other) != Tok::Body) {
-        if (const Index last = end_of(other); last > other) {
-            told += " else { " + std::string(text(token(other).begin, token(last - 1).end)) + " }";
-            edits.push_back({before(other), "{ "});
-            edits.push_back({behind(last), " }"});
-        }
-    }
-    d.help("write " + told + "`", std::move(edits));
-}
-
-// A header without its `{`: `if a = b {`, `if x:`, `if (c) return 1`.
-bool Builder::foreign_body(Index at) {
-    const Tok found = kind(at);
-    body_missing_ = true;
-    if (at < tokens_.tokens.size() && found == Tok::End) {
-        foreign(place(at), "a body stands in braces, which begin on the line of its header")
-            .help("write `{ … }`");
-        return true;
-    }
-    if (found == Tok::Assign) {
-        foreign(span(at), "a comparison is written `==`").help("write `==`", {{span(at), "=="}});
-        return true;
-    }
-    if (found == Tok::Colon) {
-        foreign(span(at), "a body stands in braces").help("write `{ … }`");
-        return true;
-    }
-    if (found == Tok::Name && (text(at) == "then" || text(at) == "do")) {
-        foreign_then(at);
-        return true;
-    }
-    const bool statement =
-        found == Tok::Return || found == Tok::Break || found == Tok::Name || found == Tok::Number;
-    if (!statement) return false;
-    Index end = at;
-    while (!ends_statement(end) && kind(end) != Tok::Else)
-        end = tokens_.match[end] > end ? tokens_.match[end] + 1 : end + 1;
-    foreign(span(at), "a body stands in braces")
-        .help("write `{ " + std::string(text(token(at).begin, token(end - 1).end)) + " }`",
-              {{{id_, token(at).begin, token(at).begin}, "{ "},
-               {{id_, token(end - 1).end, token(end - 1).end}, " }"}});
-    return true;
 }
 
 } // namespace fathom::lang

@@ -148,8 +148,9 @@ void Lexer::add(Tok kind, std::uint32_t begin, std::uint32_t end) {
 
 Diagnostic &Lexer::foreign(std::uint32_t begin, std::uint32_t end, std::string message,
                            std::string replacement) {
-    std::string help =
-        "write " + quoted_code(std::string_view(replacement).substr(0, replacement.find(' ')));
+    std::string_view shown = replacement;
+    if (shown.ends_with(' ')) shown.remove_suffix(1);
+    std::string help = "write " + quoted_code(shown);
     return report(Code::ForeignSyntax, begin, end, std::move(message))
         .help(std::move(help), {{span(begin, end), std::move(replacement)}});
 }
@@ -238,6 +239,33 @@ void Lexer::quoted(std::uint32_t begin, std::uint32_t end) {
             "\"" + std::string(slice(begin + 1, end - 1)) + "\"");
 }
 
+// The end of the name behind `#define`, where a value follows on its line; else 0.
+std::uint32_t Lexer::defined_name(std::uint32_t from) const {
+    const std::string_view all = source_.text;
+    const auto is_word = [](char c) {
+        return c == '_' || std::isalnum(static_cast<unsigned char>(c));
+    };
+    const std::size_t begin = std::min(all.find_first_not_of(" \t", from), all.size());
+    std::size_t end = begin;
+    while (end < all.size() && is_word(all[end])) ++end;
+    const std::size_t value = std::min(all.find_first_not_of(" \t", end), all.size());
+    const bool good = end > begin && !is_digit(all[begin]) && value > end && value < all.size() &&
+                      all[value] != '\n' && all[value] != '\r' && all[value] != '/';
+    return good ? static_cast<std::uint32_t>(end) : 0;
+}
+
+// `#define N 3` is read as `let N = 3`.
+std::uint32_t Lexer::define(std::uint32_t begin, std::uint32_t end, std::uint32_t name_end) {
+    const auto name = static_cast<std::uint32_t>(source_.text.find_first_not_of(" \t", end));
+    report(Code::ForeignSyntax, begin, end, "there is no preprocessor; a name is bound with `let`")
+        .help("write `let " + std::string(slice(name, name_end)) + " = …`",
+              {{span(begin, end), "let"}, {span(name_end, name_end), " ="}});
+    add(Tok::Let, begin, end);
+    add(Tok::Name, name, name_end);
+    add(Tok::Assign, name_end, name_end);
+    return name_end;
+}
+
 std::uint32_t Lexer::hash(std::uint32_t begin, std::uint32_t end) {
     const std::string_view digits = slice(begin + 1, end);
     const bool all_hex = std::all_of(digits.begin(), digits.end(), is_hex);
@@ -248,11 +276,20 @@ std::uint32_t Lexer::hash(std::uint32_t begin, std::uint32_t end) {
     // `# remark` of Python, and `#version`, `#include`: the rest of the line is theirs.
     if (digits.empty() || (fresh_line_ && !all_hex)) {
         const std::size_t line_end = std::min(source_.text.find('\n', begin), source_.text.size());
+        if (end < source_.text.size() && source_.text[end] == '(') { // OpenSCAD's modifier
+            report(Code::ForeignSyntax, begin, begin + 1, "there are no modifiers of shapes")
+                .help("leave it away", {{span(begin, begin + 1), ""}});
+            return begin + 1;
+        }
+        if (const auto name_end = defined_name(end); digits == "define" && name_end > 0)
+            return define(begin, end, name_end);
         Diagnostic &d =
             report(Code::ForeignSyntax, begin, digits.empty() ? begin + 1 : end,
                    digits.empty() ? "a comment begins with `//`" : "there is no preprocessor");
         if (digits.empty())
             d.help("write `//`", {{span(begin, begin + 1), "//"}});
+        else if (digits == "define")
+            d.help("a value is bound by `let name = …`, a function by `fn name(x) = …`");
         else
             d.help(
                 "other files are brought in by `import \"file.sdf\"`; a comment begins with `//`");

@@ -21,6 +21,8 @@ class Lexer {
     void unclosed_string(std::uint32_t begin, std::uint32_t end);
     void quoted(std::uint32_t begin, std::uint32_t end);        // 'text'
     std::uint32_t hash(std::uint32_t begin, std::uint32_t end); // the end of what was understood
+    std::uint32_t defined_name(std::uint32_t from) const;
+    std::uint32_t define(std::uint32_t begin, std::uint32_t end, std::uint32_t name_end);
     void sign(std::uint32_t begin, std::uint32_t end);
     void strange(std::uint32_t begin, std::uint32_t end); // bytes that begin no word
 

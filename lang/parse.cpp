@@ -56,7 +56,9 @@ struct number : sor<seq<plus<digit>, opt<sor<fraction, lonely_point, suffix_poin
 struct string_char : sor<pegtl::not_one<'"', '\\', '\n'>, seq<one<'\\'>, pegtl::not_one<'\n'>>> {};
 struct text : seq<one<'"'>, star<string_char>, one<'"'>> {};
 struct unclosed_text : seq<one<'"'>, rest_of_line> {};
-struct quoted : seq<one<'\''>, star<pegtl::not_one<'\'', '\n'>>, one<'\''>> {};
+template <char sign> struct quoted_by
+    : seq<one<sign>, star<pegtl::not_one<sign, '\n'>>, one<sign>> {};
+struct quoted : sor<quoted_by<'\''>, quoted_by<'`'>> {};
 struct hash : seq<one<'#'>, star<word_char>> {};
 struct sign
     : sor<string<'.', '.', '='>, string<'.', '.', '<'>, string<'=', '=', '='>,
@@ -280,6 +282,10 @@ template <class Rule> struct recovering {
         const Builder::Mark mark = builder.mark();
         const Builder::Index first = index();
         Builder::Index next = first;
+        if (builder.foreign_statement(first)) {
+            in.go_to(builder.abandon(builder.mark(), first));
+            return true;
+        }
         try {
             const bool read = Control<Rule>::template match<A, M, Action, Control>(in, builder);
             if (read && builder.ends_statement(index())) return true;

@@ -37,6 +37,23 @@ std::string point_text(const std::array<double, 3> &p, int dims) {
     return out + "]";
 }
 
+// Two points that are not one, with as many digits as it takes to tell them apart.
+static std::pair<std::string, std::string> two_points(const std::array<double, 3> &a,
+                                                      const std::array<double, 3> &b, int dims) {
+    constexpr int all_digits = 17;
+    std::pair<std::string, std::string> out{point_text(a, dims), point_text(b, dims)};
+    for (int digits = 4; digits <= all_digits && out.first == out.second; ++digits) {
+        const auto written = [&](const std::array<double, 3> &p) {
+            std::string text = "[";
+            for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
+                text += fmt::format("{}{:.{}g}", i > 0 ? ", " : "", p[i], digits);
+            return text + "]";
+        };
+        out = {written(a), written(b)};
+    }
+    return out;
+}
+
 Diagnostic *Prover::report(ShapeId id, Code code, std::string message) {
     if (!place(id).audible) return nullptr;
     return &diagnostics.add(code, scene.shapes[id].origin, std::move(message));
@@ -257,12 +274,12 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             "list[int(floor(x)) + 1], fract(x))`; ";
         bool seen = std::fabs(b.value_a - b.value_b) >
                     1e-4 * std::max({1.0, std::fabs(b.value_a), std::fabs(b.value_b)});
+        const auto [one_side, other_side] = two_points(b.side_a, b.side_b, dims);
         if (seen) {
             if (Diagnostic *d =
                     report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))
-                d->note("it is " + number_text(b.value_a) + " at " + point_text(b.side_a, dims) +
-                        " and " + number_text(b.value_b) + " at " + point_text(b.side_b, dims) +
-                        ": " + cause)
+                d->note("it is " + number_text(b.value_a) + " at " + one_side + " and " +
+                        number_text(b.value_b) + " at " + other_side + ": " + cause)
                     .help((by_list ? between : "make both sides agree there, ") +
                           "keep the jump out of the region with " +
                           (has_region ? "`within:`, " : "`.within(…)`, ") + assume);
@@ -414,8 +431,9 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
             step = std::max(step * 0.98, 1e-4);
         }
     }
-    std::string witness = "between " + point_text(worst_a, dims) + " and " +
-                          point_text(worst_b, dims) + " its slope is " + number_text(worst);
+    const auto [one_end, other_end] = two_points(worst_a, worst_b, dims);
+    std::string witness =
+        "between " + one_end + " and " + other_end + " its slope is " + number_text(worst);
     if (estimate) {
         if (Diagnostic *d = report(id, Code::EstimatedField,
                                    "this field is marched by an estimate, which is not a proof: "

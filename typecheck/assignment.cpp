@@ -192,18 +192,37 @@ void run_assign(Evaluator &ev, const File &ast, const lang::Assign &node, Span p
     if (!found) {
         Diagnostic &d = report(ev, Code::UnknownName, base.span,
                                fmt::format("nothing here is called `{}`", name->text));
-        if (!node.op && path.empty())
+        if (!node.op && path.empty()) {
+            const bool in_body = !ev.frames[frame].index;
             d.help(fmt::format("declare it: `let {} = …`, or `var {} = …` where it changes",
-                               name->text, name->text));
+                               name->text, name->text),
+                   {{{place.source, place.begin, place.begin}, in_body ? "var " : "let "}});
+            declare(ev, frame, symbol_of(ast, *name), poison(), in_body, base.span);
+        }
         return;
     }
     const Binding binding = ev.frames[found->frame].bindings[found->slot];
     if (!binding.is_var) {
+        const Span declared = binding.declared;
+        const bool by_let =
+            declared.source && declared.begin >= 4 &&
+            text(ev.sources, {declared.source, declared.begin - 4, declared.begin}) == "let ";
+        const bool in_body = !ev.frames[found->frame].index;
+        const bool is_argument = in_body && !by_let && ev.frames[frame].parent == found->frame;
         Diagnostic &d =
             report(ev, Code::NotAssignable, base.span,
-                   fmt::format("`{}` was declared with `let` and does not change", name->text));
+                   is_argument ? fmt::format("`{}` is an argument, and does not change", name->text)
+                               : fmt::format("`{}` was declared with `let` and does not change",
+                                             name->text));
         if (binding.declared.source) d.label(binding.declared, "declared here");
-        if (ev.calls.empty() && ev.in_field == 0)
+        const Span before{place.source, place.begin, place.begin};
+        if (is_argument)
+            d.help(fmt::format("an argument is changed in a copy: `var {0} = {0}`", name->text),
+                   {{before, fmt::format("var {0} = {0}; ", name->text)}});
+        else if (by_let && in_body)
+            d.help(fmt::format("write `var {}` where it is declared", name->text),
+                   {{{declared.source, declared.begin - 4, declared.begin - 1}, "var"}});
+        else if (ev.calls.empty() && ev.in_field == 0)
             d.help("a scene's names keep their value: give the new value a name of its own");
         else
             d.help("declare it with `var` inside the function");

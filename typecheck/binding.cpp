@@ -1,7 +1,5 @@
 // Arguments to parameters, and what is said where they do not fit.
-#include "typecheck/binding.h"
-
-#include "base/suggest.h"
+#include "typecheck/remedies.h"
 
 #include <fmt/format.h>
 
@@ -18,10 +16,31 @@ static std::string signature_text(std::string_view name, std::span<const Formal>
     return out + ")";
 }
 
+static void report_unknown_arguments(Evaluator &ev, std::string_view name,
+                                     std::span<const Formal> formals,
+                                     std::span<const Argument> args,
+                                     const std::vector<std::size_t> &unknown, Span callee) {
+    std::string list;
+    for (std::size_t i = 0; i < unknown.size(); ++i)
+        list += fmt::format("{}`{}`",
+                            i == 0                    ? ""
+                            : i + 1 == unknown.size() ? " and "
+                                                      : ", ",
+                            args[unknown[i]].name->text);
+    Diagnostic &d = report(
+        ev, Code::UnknownArgument, args[unknown[0]].name->span,
+        fmt::format("`{}` has no argument{} {}", name, unknown.size() == 1 ? "" : "s", list));
+    const Fix fix = remedy_of_arguments(ev, name, formals, args, unknown, callee);
+    if (!fix.message.empty()) d.help(fix.message, fix.edits);
+    d.note(fmt::format("it is `{}`", signature_text(name, formals)));
+}
+
 std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view name,
                                                  std::span<const Formal> formals,
                                                  std::span<const Argument> args, Span call,
                                                  Span callee) {
+    // a block that could not be read: reported, and perhaps the arguments
+    if (!args.empty() && args.back().trailing && is_poison(args.back().value)) return std::nullopt;
     Given nothing;
     nothing.span = callee;
     std::vector<Given> bound(formals.size(), nothing);
@@ -31,15 +50,22 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
     std::vector<Value> rest;
     Span rest_span = callee;
     bool has_rest = !formals.empty() && formals.back().takes_rest;
+    std::vector<std::size_t> unknown, by_place; // arguments; by_place: of each parameter
+    by_place.assign(formals.size(), args.size());
     auto give = [&](std::size_t i, const Argument &a) {
         if (bound[i].given) {
             Diagnostic &d = report(
                 ev, Code::DuplicateArgument, a.name ? a.name->span : a.span,
                 fmt::format("`{}` is given twice in this call of `{}`", formals[i].name, name));
-            d.label(bound[i].span, "given here");
+            d.label(bound[i].span, by_place[i] < args.size() && a.name ? "given here, by its place"
+                                                                       : "given here");
+            if (i == 0 && by_place[0] < args.size() && a.name)
+                if (Fix fix = remedy_of_duplicate(ev, name, args, a, call); !fix.message.empty())
+                    d.help(fix.message, fix.edits);
             ok = false;
             return;
         }
+        if (!a.name && !a.trailing) by_place[i] = static_cast<std::size_t>(&a - args.data());
         bound[i] = {a.value, a.span, true, a.plain_literal};
     };
     for (const Argument &a : args) {
@@ -61,18 +87,7 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
             std::size_t i = 0;
             while (i < formals.size() && formals[i].symbol != a.symbol) ++i;
             if (i == formals.size() || a.name->text[0] == '_') {
-                std::vector<std::string> names;
-                for (const Formal &f : formals) names.emplace_back(f.name);
-                Diagnostic &d =
-                    report(ev, Code::UnknownArgument, a.name->span,
-                           fmt::format("`{}` has no argument `{}`", name, a.name->text));
-                std::string near = nearest_name(a.name->text, names);
-                if (near.empty()) near = shortest_begun_by(a.name->text, names); // `r` for `radius`
-                if (a.name->text == "within" && name != "within")
-                    d.help("a region stands behind the whole: `.within(ball(3))`");
-                else if (!near.empty())
-                    d.help(fmt::format("did you mean `{}`?", near), {{a.name->span, near}});
-                d.note(fmt::format("it is `{}`", signature_text(name, formals)));
+                unknown.push_back(static_cast<std::size_t>(&a - args.data()));
                 ok = false;
                 continue;
             }
@@ -103,11 +118,14 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
                     .note(fmt::format("it is `{}`", signature_text(name, formals)));
             if (args[0].value.kind == ValueKind::Shape)
                 help_with_shape(d, name);
-            else if (!formals.empty() && formals[0].is_vector &&
+            else if (!formals.empty() && formals[0].vector_size > 0 &&
                      std::ranges::all_of(args, [&](const Argument &b) {
                          return !b.name && is_scalar(ev, b.value);
-                     }))
-                d.help("a vector is written in brackets: `[x, y, z]`");
+                     })) {
+                const Fix fix = remedy_of_row(args, formals[0].vector_size);
+                d.help(fix.message, fix.edits);
+            } else if (name == "cylinder")
+                d.help("a cone without its tip is `capped_cone(bottom, top, height)`");
             return std::nullopt;
         }
         give(next++, a);
@@ -120,12 +138,33 @@ std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view
         a.span = rest_span;
         give(formals.size() - 1, a);
     }
+    if (!unknown.empty()) report_unknown_arguments(ev, name, formals, args, unknown, callee);
+    // `light(1, 2, 3)`: one number fills a size, but is no place
+    const bool of_user = !ev.modules[ev.current_module].library;
+    for (std::size_t i = 0; ok && of_user && i < formals.size(); ++i) {
+        const std::size_t first = by_place[i];
+        std::size_t end = first;
+        while (end < args.size() && !args[end].name && !args[end].trailing &&
+               is_scalar(ev, args[end].value))
+            ++end;
+        if (!formals[i].is_place || end - first < 2) continue;
+        const Fix fix = remedy_of_row(args.subspan(first, end - first), formals[i].vector_size);
+        report(ev, Code::TypeMismatch, join(args[first].span, args[end - 1].span),
+               fmt::format("`{}` of `{}` is one vector, not {} numbers", formals[i].name, name,
+                           end - first))
+            .help(fix.message, fix.edits);
+        return std::nullopt;
+    }
     for (std::size_t i = 0; i < formals.size(); ++i) {
         if (bound[i].given || formals[i].optional) continue;
         if (!ok) return std::nullopt;
         Diagnostic &d = report(ev, Code::MissingArgument, call,
                                fmt::format("`{}` wants an argument `{}`", name, formals[i].name));
         d.note(fmt::format("it is `{}`", signature_text(name, formals)));
+        if (name == "range" && args.size() == 1) { // Python's
+            const Span before{args[0].span.source, args[0].span.begin, args[0].span.begin};
+            d.help("a range begins somewhere: `range(0, n)`, or `0..n`", {{before, "0, "}});
+        }
         if (!is_library_place(ev, formals[i].declared))
             d.label(formals[i].declared, "declared here");
         return std::nullopt;
@@ -141,7 +180,15 @@ static bool is_shape_list(const lang::TypeExpr &type) {
             type.items[0].named == lang::TypeName::AnyShape);
 }
 
-static bool is_angle(std::string_view name) { return name == "angle" || name == "fov"; }
+static bool is_angle(std::string_view name) {
+    return name == "angle" || name == "angles" || name == "fov" || name == "rate" ||
+           name == "twist";
+}
+
+static bool is_place(std::string_view name) {
+    return name == "at" || name == "look_at" || name == "direction" || name == "by" ||
+           name == "axis" || name == "normal";
+}
 
 std::span<const Formal> formals_of(Evaluator &ev, const Closure &c) {
     std::optional<std::vector<Formal>> &formals = ev.files[c.ast->place].formals[c.function.index];
@@ -155,8 +202,9 @@ std::span<const Formal> formals_of(Evaluator &ev, const Closure &c) {
         formal.optional = p.default_value.has_value();
         formal.takes_rest = &p == &f.parameters.back() && p.type && is_shape_list(*p.type);
         formal.is_angle = is_angle(p.name.text);
-        formal.is_vector = p.type && (p.type->named == lang::TypeName::Vec2 ||
-                                      p.type->named == lang::TypeName::Vec3);
+        if (p.type && p.type->named == lang::TypeName::Vec2) formal.vector_size = 2;
+        if (p.type && p.type->named == lang::TypeName::Vec3) formal.vector_size = 3;
+        formal.is_place = c.library && formal.vector_size > 0 && is_place(p.name.text);
         if (p.default_value) {
             const auto *name = std::get_if<lang::Name>(&c.ast->exprs[*p.default_value].kind);
             formal.no_limit = name && name->text == "inf";
@@ -178,6 +226,8 @@ std::span<const Formal> formals_of(Evaluator &ev, const Builtin &builtin) {
         formal.name = p.name;
         formal.optional = p.optional;
         formal.is_angle = is_angle(p.name);
+        formal.is_place = is_place(p.name);
+        if (formal.is_place) formal.vector_size = 3;
         formals->push_back(formal);
     }
     if (builtin.variadic) {
@@ -187,10 +237,28 @@ std::span<const Formal> formals_of(Evaluator &ev, const Builtin &builtin) {
     return *formals;
 }
 
+// `rotate_euler([0, 90, 0])`: each plain literal of more than a turn.
+static void warn_of_degrees_in_vector(Evaluator &ev, const Formal &formal, const Given &given,
+                                      const Value &v) {
+    const auto large = [&](int i) { return std::abs(v.num[static_cast<std::size_t>(i)]) > 6.5; };
+    std::string written = "[";
+    bool any = false;
+    for (int i = 0; i < v.size; ++i) {
+        const double x = v.num[static_cast<std::size_t>(i)];
+        any = any || large(i);
+        written += fmt::format("{}{}{}", i ? ", " : "", x, x == 0 ? "" : "deg");
+    }
+    written += "]";
+    if (!any) return;
+    report(ev, Code::Units, given.span, fmt::format("`{}` are in radians", formal.name))
+        .help(fmt::format("write `{}` if degrees are meant", written), {{given.span, written}});
+}
+
 // `rotate(90)`: a plain literal of more than a turn.
 void warn_of_degrees(Evaluator &ev, const Formal &formal, const Given &given, const Value &v) {
-    if (!given.plain_literal || !formal.is_angle || !is_scalar(ev, v) || std::abs(v.num[0]) <= 6.5)
-        return;
+    if (!given.plain_literal || !formal.is_angle) return;
+    if (v.kind == ValueKind::Vec) return warn_of_degrees_in_vector(ev, formal, given, v);
+    if (!is_scalar(ev, v) || std::abs(v.num[0]) <= 6.5) return;
     report(ev, Code::Units, given.span,
            fmt::format("`{}` is in radians, and {} of them are {:.0f} turns", formal.name, v.num[0],
                        std::abs(v.num[0]) / 6.283185307179586))

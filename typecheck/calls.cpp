@@ -1,6 +1,6 @@
 // Calls: overloads of the library, running a body, and functions of the graph for calls with
 // numbers that are known only at field time.
-#include "typecheck/binding.h"
+#include "typecheck/remedies.h"
 
 #include "base/suggest.h"
 
@@ -88,6 +88,8 @@ static Value result_of(Evaluator &ev, const Outcome &out, Span place) {
 static Value finish(Evaluator &ev, const Closure &c, Value v, const lang::Function &f,
                     std::string_view name) {
     Span place = f.span;
+    if (v.kind == ValueKind::Unit && !c.library && report_unfinished(ev, c, f, name))
+        return poison();
     if (v.kind == ValueKind::Unit && f.result) {
         const bool unread = std::ranges::any_of(c.ast->blocks[f.body].stmts, [](const auto &stmt) {
             return std::holds_alternative<lang::Bad>(stmt.kind);
@@ -258,6 +260,8 @@ static Value call_closure(Evaluator &ev, const Value &callee, std::string_view n
     const Closure c = ev.closures[callee.id];
     const lang::Function &f = c.ast->functions[c.function];
     const std::span<const Formal> formals = formals_of(ev, c);
+    if (c.library && !inside_library(ev) && shape_out_of_place(ev, name, f, formals, args, call))
+        return poison();
     auto bound = bind_arguments(ev, name, formals, args, call, callee_span);
     if (!bound) return poison();
     // defaults are evaluated where the function stands, and see the parameters before them
@@ -435,6 +439,16 @@ Value call_with(Evaluator &ev, const Value &callee, const std::vector<Value> &va
     return call_value(ev, callee, name, args, place, place);
 }
 
+// A number without a unit, or a list of such.
+static bool is_plain_literal(const File &ast, const lang::Expr &e) {
+    if (auto *n = std::get_if<lang::Number>(&e.kind)) return n->unit.empty();
+    auto *list = std::get_if<lang::List>(&e.kind);
+    return list && !list->items.empty() && std::ranges::all_of(list->items, [&](lang::ExprId id) {
+               auto *n = std::get_if<lang::Number>(&ast.exprs[id].kind);
+               return n && n->unit.empty();
+           });
+}
+
 static void read_arguments(Evaluator &ev, const File &ast, const lang::Call &call,
                            std::uint32_t frame, std::vector<Argument> &args) {
     for (const lang::Argument &a : call.arguments) {
@@ -443,7 +457,7 @@ static void read_arguments(Evaluator &ev, const File &ast, const lang::Call &cal
         if (a.name) arg.name = &*a.name, arg.symbol = symbol_of(ast, *a.name);
         arg.span = e.span;
         arg.value = eval(ev, ast, a.value, frame);
-        if (auto *n = std::get_if<lang::Number>(&e.kind)) arg.plain_literal = n->unit.empty();
+        arg.plain_literal = is_plain_literal(ast, e);
         args.push_back(arg);
     }
     if (call.trailing) {
@@ -453,12 +467,36 @@ static void read_arguments(Evaluator &ev, const File &ast, const lang::Call &cal
         pop_frame(ev, inner);
         std::vector<Value> values;
         for (const Contribution &item : items) values.push_back(item.value);
+        const auto &stmts = ast.blocks[*call.trailing].stmts;
+        const bool unread =
+            !stmts.empty() && std::ranges::all_of(stmts, [](const lang::Stmt &stmt) {
+                return std::holds_alternative<lang::Bad>(stmt.kind);
+            });
         Argument arg;
-        arg.value = list_value(ev, std::move(values));
+        arg.value = unread ? poison() : list_value(ev, std::move(values));
         arg.span = ast.blocks[*call.trailing].span;
         arg.trailing = true;
         args.push_back(arg);
     }
+}
+
+// For `s.color(red)`, `s.rotateX(a)` and the like, where `s` is a shape.
+static void help_with_method(Diagnostic &d, const lang::Member &member, const File &ast,
+                             const lang::Call &call) {
+    help_with_shape(d, member.name.text);
+    const std::string_view name = member.name.text;
+    if (name == "color" || name == "colour" || name == "colorize")
+        d.help("a shape is given a colour or a material by `.paint(…)`",
+               {{member.name.span, "paint"}});
+    const char axis = name.empty() ? ' ' : name.back();
+    const bool turns = name.starts_with("rotate") && name.size() <= 8;
+    if (!turns || call.arguments.size() != 1 || call.arguments[0].name) return;
+    const char upper = axis >= 'x' && axis <= 'z' ? static_cast<char>(axis - 'x' + 'X') : axis;
+    if (upper < 'X' || upper > 'Z') return;
+    const Span angle = ast.exprs[call.arguments[0].value].span;
+    d.help(fmt::format("write `.rotate(angle, axis: {})`", upper),
+           {{member.name.span, "rotate"},
+            {{angle.source, angle.end, angle.end}, fmt::format(", axis: {}", upper)}});
 }
 
 Value eval_call(Evaluator &ev, const File &ast, lang::ExprId id, const lang::Call &call,
@@ -504,7 +542,9 @@ Value eval_call(Evaluator &ev, const File &ast, lang::ExprId id, const lang::Cal
             Diagnostic &d = report(ev, Code::UnknownMember, m->name.span,
                                    fmt::format("there is no function `{}` for {}", m->name.text,
                                                describe(ev, object)));
-            if (object.kind == ValueKind::Shape) help_with_shape(d, m->name.text);
+            if (object.kind == ValueKind::Shape) help_with_method(d, *m, ast, call);
+            if (const auto way = way_from_elsewhere(m->name.text); !d.fix && !way.empty())
+                d.help(std::string(way));
             if (!d.fix && !near.empty())
                 d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
             return poison();

@@ -1,7 +1,7 @@
 // Types as the user writes them, and the conversions that happen where one is wanted: an int
 // becomes a float, a number fills a vector, a list of two to four numbers is a vector and back, a
 // constant stands for a field.
-#include "typecheck/evaluator.h"
+#include "typecheck/remedies.h"
 
 #include "base/suggest.h"
 
@@ -232,6 +232,7 @@ Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span pl
         is_numeric(v))
         d.help("`int(x)` cuts the fraction off");
     if (v.kind == ValueKind::Shape) help_with_shape(d, what.of);
+    if (type.kind == lang::TypeExpr::Kind::Name) help_with_value(ev, d, v, type.named, place);
     if (what.of == "rotate" && what.name == "angle" && v.kind == ValueKind::Vec)
         d.help("the angle comes first: `.rotate(angle, axis)`; `.rotate_euler([x, y, z])` turns "
                "about all three axes");
@@ -244,8 +245,10 @@ static void want(Evaluator &ev, const Value &v, Span place, What what, std::stri
     if (is_poison(v)) return;
     Diagnostic &d = report(ev, Code::TypeMismatch, place,
                            fmt::format("{} wants {}, this is {}", what, wanted, describe(ev, v)));
-    if (v.kind == ValueKind::String && wanted == "a color")
-        d.help("colours are written without quotes: `red`, `#ff0000`");
+    using lang::TypeName;
+    if (wanted == "a color") help_with_value(ev, d, v, TypeName::Color, place);
+    if (wanted == "a number") help_with_value(ev, d, v, TypeName::Float, place);
+    if (wanted == "a vec3") help_with_value(ev, d, v, TypeName::Vec3, place);
     if (v.kind == ValueKind::Shape && wanted == "a color") help_with_shape(d, "color");
 }
 

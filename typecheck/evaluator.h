@@ -47,8 +47,9 @@ struct Formal {
     bool takes_rest = false; // the last one, of type [shape], or a builtin's of any number
     bool opens_list = true;  // a single list among the rest is the rest
     bool is_angle = false;   // in radians, so that a plain literal beyond a turn looks like degrees
-    bool is_vector = false;
-    bool no_limit = false; // its default is `inf`, which so has a meaning
+    std::uint8_t vector_size = 0; // of a vec2 or a vec3
+    bool is_place = false;        // a point or a direction, which one number is not
+    bool no_limit = false;        // its default is `inf`, which so has a meaning
     Span declared;
 };
 
@@ -423,7 +424,7 @@ struct Argument {
     Value value;
     Span span;
     bool trailing = false;      // the block behind the call: belongs to the last parameter
-    bool plain_literal = false; // a number without a unit
+    bool plain_literal = false; // a number without a unit, or a list of such
 };
 Value call_value(Evaluator &ev, const Value &callee, std::string_view name,
                  std::span<const Argument> args, Span call, Span callee_span);

@@ -34,10 +34,8 @@ static Value eval_list(Evaluator &ev, const File &ast, const lang::List &list, S
         numbers = numbers && is_scalar(ev, items.back());
     }
     if (wrong && items.size() <= 4) return poison();
-    if (numbers) {
-        const Value v = make_vector(ev, items, static_cast<int>(items.size()), place);
-        return computed(ev, v, items, place, "a vector of field time");
-    }
+    // `inf` may stand beside what is computed: the limits of a box, or of `clamp`
+    if (numbers) return make_vector(ev, items, static_cast<int>(items.size()), place);
     return list_value(ev, std::move(items));
 }
 
@@ -100,6 +98,19 @@ static Value combine(Evaluator &ev, ir::ShapeKind kind, const std::vector<Value>
     return shape_value(ev.scene.shapes.add(std::move(s)), dims);
 }
 
+// `sphere(1) && box(1)`: the text was read as conditions, with what there is to say of `&&`.
+static void report_joined_shapes(Evaluator &ev, const lang::Binary &b) {
+    const bool is_and = b.ops[0] == lang::BinaryOp::And;
+    std::vector<Edit> edits;
+    for (const Span op : b.op_spans) {
+        if (ev.quiet == 0) ev.diagnostics.withdraw(Code::ForeignSyntax, op);
+        edits.push_back({op, is_and ? "&" : "|"});
+    }
+    report(ev, Code::TypeMismatch, b.op_spans[0],
+           is_and ? "what shapes have in common is written with `&`" : "shapes are united with `|`")
+        .help(is_and ? "write `&`" : "write `|`", std::move(edits));
+}
+
 static Value eval_logic(Evaluator &ev, const File &ast, const lang::Binary &b,
                         std::uint32_t frame) {
     bool is_and = b.ops[0] == lang::BinaryOp::And;
@@ -107,6 +118,10 @@ static Value eval_logic(Evaluator &ev, const File &ast, const lang::Binary &b,
     for (lang::ExprId id : b.operands) {
         Value v = eval(ev, ast, id, frame);
         if (is_poison(v)) return v;
+        if (v.kind == ValueKind::Shape) {
+            report_joined_shapes(ev, b);
+            return poison();
+        }
         if (!is_numeric(v) || numeric_type(ev, v) != Type::Bool) {
             report(ev, Code::TypeMismatch, ast.exprs[id].span,
                    fmt::format("`{}` joins conditions, this is {}", is_and ? "and" : "or",
@@ -209,10 +224,16 @@ static Value eval_index(Evaluator &ev, const File &ast, const lang::Index &node,
             size = static_cast<int>(items.size());
         }
         if (*i < 0 || *i >= size) {
-            report(ev, Code::BadIndex, index_place,
-                   size == 0 ? fmt::format("index {} of an empty list", *i)
-                             : fmt::format("index {} of a list of {}: the first is 0, the last {}",
-                                           *i, size, size - 1));
+            Diagnostic &d = report(
+                ev, Code::BadIndex, index_place,
+                size == 0 ? fmt::format("index {} of an empty list", *i)
+                          : fmt::format("index {} of a list of {}: the first is 0, the last {}", *i,
+                                        size, size - 1));
+            const Span list = ast.exprs[node.object].span;
+            if (*i < 0 && -*i <= size && list.end - list.begin < 40)
+                d.help(
+                    fmt::format("from the end it is `len({}) - {}`", text(ev.sources, list), -*i),
+                    {{index_place, fmt::format("len({}) - {}", text(ev.sources, list), -*i)}});
             return poison();
         }
         if (object.kind == ValueKind::Range) return integer(object.num[0] + *i * object.num[2]);
@@ -339,6 +360,16 @@ static Value eval_unary(Evaluator &ev, const File &ast, const lang::Unary &u, Sp
                         std::uint32_t frame) {
     Value v = eval(ev, ast, u.operand, frame);
     if (is_poison(v)) return v;
+    if (u.op == lang::UnaryOp::Not && v.kind == ValueKind::Shape) {
+        const Span sign{place.source, place.begin, ast.exprs[u.operand].span.begin};
+        if (ev.quiet == 0)
+            ev.diagnostics.withdraw(Code::ForeignSyntax,
+                                    {place.source, place.begin, place.begin + 1});
+        report(ev, Code::TypeMismatch, place, "a shape is no condition")
+            .help("the space around a shape is `complement(s)`",
+                  {{sign, "complement("}, {{place.source, place.end, place.end}, ")"}});
+        return poison();
+    }
     if (u.op == lang::UnaryOp::Not) {
         if (!is_numeric(v) || numeric_type(ev, v) != Type::Bool) {
             report(ev, Code::TypeMismatch, ast.exprs[u.operand].span,
@@ -383,6 +414,10 @@ static Value eval_kind(Evaluator &ev, const File &ast, lang::ExprId id, std::uin
         Value operator()(const lang::String &s) { return string_value(ev, s.value); }
         Value operator()(const lang::Bool &b) { return boolean(b.value); }
         Value operator()(const lang::Color &c) {
+            if (c.rgba[3] != 1)
+                report(ev, Code::AlphaIgnored, span, "nothing is drawn half transparent")
+                    .help("leave the last two digits away",
+                          {{{span.source, span.end - 2, span.end}, ""}});
             return color(linear_of_srgb(c.rgba[0]), linear_of_srgb(c.rgba[1]),
                          linear_of_srgb(c.rgba[2]));
         }

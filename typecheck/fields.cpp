@@ -62,7 +62,10 @@ std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field,
     }
     report(ev, Code::TypeMismatch, place,
            fmt::format("{} wants a function that gives a {}, this one gives {}", what,
-                       ir::type_name(result), describe(ev, value)));
+                       ir::type_name(result), describe(ev, value)))
+        .help(result == Type::Float && ir::is_vector(type)
+                  ? "one number of a vector is its length, `length(p) - 1`, or a part, `p.y`"
+                  : "let the function's last expression give that");
     return std::nullopt;
 }
 

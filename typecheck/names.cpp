@@ -1,5 +1,5 @@
 // Names and the frames that hold them: a frame per block, call and module, each with its parent.
-#include "typecheck/evaluator.h"
+#include "typecheck/remedies.h"
 
 #include "base/suggest.h"
 
@@ -110,87 +110,35 @@ std::vector<std::string> visible_names(Evaluator &ev, std::uint32_t frame) {
     return result;
 }
 
-// What other languages and libraries call what is here.
-static std::string_view name_from_elsewhere(std::string_view name) {
-    static const std::unordered_map<std::string_view, std::string_view> ours = {
-        {"cube", "box"},
-        {"cuboid", "box"},
-        {"square", "rectangle"},
-        {"perlin", "noise"},
-        {"snoise", "simplex"},
-        {"voronoi", "worley"},
-        {"cellular", "worley"},
-        {"color", "rgb"},
-        {"linear_extrude", "extrude"},
-        {"rotate_extrude", "revolve"},
-        {"lathe", "revolve"},
-        {"move", "translate"},
-        {"symmetry", "mirror"},
-        {"lerp", "mix"},
-        {"frac", "fract"},
-        {"fabs", "abs"},
-        {"fmod", "mod"},
-        {"atan2", "atan"},
-        {"rsqrt", "inversesqrt"},
-        {"rand", "random"},
-        {"half_space", "plane"},
-        {"frustum", "capped_cone"},
-        {"cone_frustum", "capped_cone"},
-        {"truncated_cone", "capped_cone"},
-        {"round_box", "rounded_box"},
-        {"rect", "rectangle"},
-        {"donut", "torus"},
-        {"onion", "shell"},
-        {"hollow", "shell"},
-        {"inflate", "offset"},
-        {"dilate", "offset"},
-        {"stretch", "elongate"},
-        {"flip", "mirror"},
-        {"array", "repeat"},
-        {"polar_repeat", "repeat_polar"},
-        {"radial_repeat", "repeat_polar"},
-        {"smooth_min", "smin"},
-        {"smooth_max", "smax"},
-        {"blobs", "metaballs"},
-        {"echo", "print"},
-        {"subtract", "difference"},
-        {"intersect", "intersection"}};
-    const auto it = ours.find(name);
-    return it == ours.end() ? std::string_view() : it->second;
-}
-
 std::string likely_name(Evaluator &ev, std::uint32_t frame, const std::string &name) {
-    const std::string_view known = name_from_elsewhere(name);
-    return known.empty() ? nearest_name(name, visible_names(ev, frame)) : std::string(known);
-}
-
-void help_with_shape(Diagnostic &d, std::string_view name) {
-    constexpr const char *painted = "a shape is given a colour or a material by `.paint(…)`";
-    constexpr std::pair<std::string_view, std::string_view> ways[] = {
-        {"min", "shapes are united with `|`"},
-        {"max", "shapes are intersected with `&`"},
-        {"mix", "shapes are mixed by `blend(a, b, t)`"},
-        {"smoothstep", "shapes flow together in `smooth_union(r) { … }`"},
-        {"abs", "a shape's skin is `.shell(thickness)`"},
-        {"round", "`.offset(r)` rounds what is convex and grows by r; boxes have `rounded_box`"},
-        {"mod", "a shape is repeated by `.repeat(cell)`"},
-        {"fract", "a shape is repeated by `.repeat(cell)`"},
-        {"color", painted},
-        {"colour", painted},
-        {"material", painted},
-        {"texture", painted},
-        {"rotate_x", "write `.rotate(angle, axis: X)`"},
-        {"rotate_y", "write `.rotate(angle, axis: Y)`"},
-        {"rotate_z", "write `.rotate(angle, axis: Z)`"}};
-    for (const auto &[known, way] : ways)
-        if (name == known) d.help(std::string(way));
-    if (name.ends_with("_union") || name.ends_with("_intersection") ||
-        name.ends_with("_difference"))
-        d.help(fmt::format("the shapes stand in a block behind it: `{}(r) {{ … }}`", name));
+    if (const std::string_view known = name_from_elsewhere(name); !known.empty())
+        return std::string(known);
+    if (!way_from_elsewhere(name).empty()) return {};
+    std::vector<std::string> names = visible_names(ev, frame);
+    // `sdBox`, `opUnion`, `sdf_sphere`: a library of shader code has its prefixes
+    for (const std::string_view prefix : {"sdf_", "sd_", "op_", "sdf", "sd", "op"}) {
+        if (!name.starts_with(prefix) || name.size() < prefix.size() + 3) continue;
+        const std::string rest = name.substr(prefix.size());
+        if (const auto ours = name_from_elsewhere(rest); !ours.empty()) return std::string(ours);
+        const std::string near = nearest_name(rest, names);
+        if (!near.empty() && edit_distance(near, rest) <= 1) return near;
+    }
+    return nearest_name(name, names);
 }
 
 bool lacking(const Evaluator &ev, const std::string &name, const std::string &near) {
     return ev.modules[ev.current_module].lacks_names && (near.empty() || name.size() < 5);
+}
+
+// `45*deg`: the unit touches its number.
+static std::vector<Edit> unit_edit(const Evaluator &ev, const std::string &name, Span place) {
+    if (name != "deg") return {};
+    const std::string_view before = text(ev.sources, {place.source, 0, place.begin});
+    const std::size_t sign = before.find_last_not_of(" \t");
+    if (sign == before.npos || before[sign] != '*' || sign == 0) return {};
+    const std::size_t digit = before.find_last_not_of(" \t", sign - 1);
+    if (digit == before.npos || before[digit] < '0' || before[digit] > '9') return {};
+    return {{{place.source, static_cast<std::uint32_t>(digit + 1), place.begin}, ""}};
 }
 
 void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place) {
@@ -202,6 +150,8 @@ void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &
         d.help("the point is the argument of a function: `implicit(p => length(p) - 1)`");
         return;
     }
+    const std::string_view way = way_from_elsewhere(name);
+    if (!way.empty()) d.help(std::string(way), unit_edit(ev, name, place));
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});
 }
 

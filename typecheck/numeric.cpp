@@ -348,7 +348,22 @@ static Value combined(Evaluator &ev, lang::BinaryOp op, const Value &left, const
                                fmt::format("`{}` wants numbers, this is {}", operator_text(op),
                                            describe(ev, left_wrong ? a : b)));
         const Value &wrong = left_wrong ? a : b;
-        if (is_function(wrong)) d.help("call it with a point: `f(p)`");
+        if (is_function(wrong))
+            d.help(text(ev.sources, left_wrong ? a_place : b_place) == "degrees"
+                       ? "the unit touches its number: `45deg`"
+                       : "call it with a point: `f(p)`");
+        if (a.kind == ValueKind::String) d.help("a value is joined to a string by `+`");
+        if (op == BinaryOp::Mul && a.kind == ValueKind::List)
+            d.help("a list is made by a loop: `[for i in 0..3 { 0 }]`");
+        const auto is_list = [&](const Value &v) {
+            return v.kind == ValueKind::List ||
+                   (is_numeric(v) && ir::is_vector(numeric_type(ev, v)));
+        };
+        if (op == BinaryOp::Add && is_list(a) && is_list(b) && !is_library_place(ev, a_place))
+            d.help("lists are joined by `concat(a, b)`",
+                   {{{a_place.source, a_place.begin, a_place.begin}, "concat("},
+                    {{a_place.source, a_place.end, b_place.begin}, ", "},
+                    {{a_place.source, b_place.end, b_place.end}, ")"}});
         if (wrong.kind == ValueKind::Shape && op == BinaryOp::Add)
             d.help("shapes are united with `|`");
         if (wrong.kind == ValueKind::Shape && op == BinaryOp::Mul)

@@ -23,6 +23,15 @@ bool is_infinite(Evaluator &ev, Value v) {
     if (v.kind == ValueKind::List && ev.lists[v.id].size() <= 16) // as many as a matrix has
         return std::ranges::any_of(ev.lists[v.id],
                                    [&](const Value &item) { return is_infinite(ev, item); });
+    if (v.kind == ValueKind::Field) { // a vector that was written with a known part
+        const ir::Graph &g = ev.scene.graph;
+        const ir::NodeId node = to_node(ev, v);
+        return g[node].op == ir::Op::Make &&
+               std::ranges::any_of(g.args(node), [&](ir::NodeId part) {
+                   const auto number = g.as_number(part);
+                   return number && std::isinf(*number);
+               });
+    }
     return std::ranges::any_of(known_numbers(ev, v), [](double x) { return std::isinf(x); });
 }
 
@@ -98,8 +107,10 @@ Value computed(Evaluator &ev, const Value &v, std::span<const Value> of, Span pl
         for (const Value &a : of)
             if (is_infinite(ev, a)) {
                 report_infinite(ev, place,
-                                fmt::format("{} of a field wants finite numbers, one is {}", what,
-                                            print_value(ev, a)));
+                                fmt::format("{} of a field wants finite numbers, one {}", what,
+                                            a.kind == ValueKind::Field
+                                                ? "holds `inf`"
+                                                : "is " + print_value(ev, a)));
                 return poison();
             }
     return in_range(ev, v, of, place);

@@ -30,7 +30,8 @@ bool run_simple(Evaluator &ev, const File &ast, const lang::Stmt &stmt, std::uin
         if (ev.frames[frame].index)
             report(ev, Code::WrongPlace, stmt.span,
                    "`var` stands inside a function; at the top of a file names do not change")
-                .help("write `let`");
+                .help("write `let`",
+                      {{{stmt.span.source, stmt.span.begin, stmt.span.begin + 3}, "let"}});
         Value value = declared_value(ev, ast, v->value, v->type, v->name.text, frame);
         value.ints = false;
         declare(ev, frame, symbol_of(ast, v->name), value, true, v->name.span);
@@ -375,7 +376,9 @@ static bool contribute_stmt(Evaluator &ev, const File &ast, const lang::Stmt &st
         return true;
     } else if (std::holds_alternative<lang::Return>(stmt.kind)) {
         report(ev, Code::WrongPlace, stmt.span,
-               "`return` stands inside a function; here every expression counts");
+               "`return` stands inside a function; here every expression counts")
+            .help("leave it away",
+                  {{{stmt.span.source, stmt.span.begin, stmt.span.begin + 6}, ""}});
     }
     return false;
 }

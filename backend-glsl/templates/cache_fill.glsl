@@ -14,7 +14,8 @@ ivec3 fathom_cache_place(uint index) {
 }
 
 vec4 fathom_value(int which, vec3 p) {
-$VALUES    return vec4(0.0);
+$VALUES
+    return vec4(0.0);
 }
 
 void fathom_fill(uint index) {

@@ -3,7 +3,11 @@
 #include "driver/image.h"
 #include "shell.h"
 
+#include "backend-glsl/targets.h"
+
 #include <catch2/catch.hpp>
+
+namespace glsl = fathom::glsl;
 
 namespace {
 
@@ -96,6 +100,32 @@ TEST_CASE("no file holds something else than its suffix says") {
     }
 }
 
+TEST_CASE("every target writes a file of its suffix, and no other known one") {
+    OutputScenes folder;
+    for (const glsl::Target target : glsl::all_targets()) {
+        const std::string name = glsl::traits_of(target).name;
+        const std::string line = "fathom compile good.sdf --target " + name + " -o a";
+        INFO(line);
+        CHECK(shell(folder, line + glsl::traits_of(target).suffix).exit == 0);
+        CHECK(shell(folder, line + ".sdf").exit == 2);
+        for (const glsl::Target other : glsl::all_targets()) {
+            const std::string suffix = glsl::traits_of(other).suffix;
+            if (suffix == glsl::traits_of(target).suffix) continue;
+            const Result refused = shell(folder, line + suffix);
+            CHECK(refused.exit == 2);
+            // The way to what the suffix promises is a line that works.
+            const std::size_t begin = refused.err.find("; `fathom compile") + 3;
+            const std::string way = refused.err.substr(begin, refused.err.find('`', begin) - begin);
+            CHECK(shell(folder, way + " good.sdf -o b" + suffix).exit == 0);
+        }
+        const bool page = glsl::traits_of(target).form == glsl::Form::Page;
+        CHECK(shell(folder, "fathom compile good.sdf --field-only --target " + name).exit ==
+              (page ? 2 : 0));
+        CHECK(shell(folder, "fathom compile good.sdf --noise-cache -o a.frag --target " + name)
+                  .exit == (glsl::traits_of(target).noise_cache ? 0 : 2));
+    }
+}
+
 TEST_CASE("what cannot be written is refused, with what to write") {
     OutputScenes folder;
     const std::size_t before = folder.files();
@@ -111,8 +141,9 @@ TEST_CASE("what cannot be written is refused, with what to write") {
     refused("fathom render good.sdf" + small + "-o ''", "wants a name");
     refused("fathom compile good.sdf -o ''", "wants a name");
     refused("fathom view good.sdf --record ''", "wants a name");
-    refused("fathom compile good.sdf --target HTML", "spirv or html, not `HTML`");
-    refused("fathom compile good.sdf --target ''", "spirv or html, not ``");
+    const std::string last = std::string(" or ") + glsl::traits_of(glsl::all_targets().back()).name;
+    refused("fathom compile good.sdf --target HTML", last + ", not `HTML`");
+    refused("fathom compile good.sdf --target ''", last + ", not ``");
     refused("fathom compile good.sdf --target html --field-only", "--target es300 --field-only");
     refused("fathom compile good.sdf --noise-cache -o -", "name the first by -o");
     refused("fathom compile good.sdf --noise-cache", "name the first by -o");
@@ -184,10 +215,11 @@ TEST_CASE("no result is written over a file that the scene reads") {
 
 TEST_CASE("a param that a shader holds as a constant is said, with its place and the way out") {
     OutputScenes folder;
-    for (const char *target : {"glsl450", "glsl330", "es300", "shadertoy", "glslviewer", "html"}) {
-        INFO(target);
-        const Result written =
-            shell(folder, std::string("fathom compile counted.sdf --target ") + target);
+    for (const glsl::Target target : glsl::all_targets()) {
+        if (glsl::traits_of(target).form == glsl::Form::SpirV) continue;
+        INFO(glsl::traits_of(target).name);
+        const Result written = shell(folder, std::string("fathom compile counted.sdf --target ") +
+                                                 glsl::traits_of(target).name);
         CHECK(written.exit == 0);
         CHECK(contains(written.err, "counted.sdf:1:7: note[fixed-param]"));
         CHECK(contains(written.err, "-D n=…"));

@@ -1,6 +1,8 @@
 // docs/cli.md against `fathom help`: each names what the other does, no more and no less.
 #include "shell.h"
 
+#include "backend-glsl/targets.h"
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -155,4 +157,24 @@ TEST_CASE("the examples and the library are formatted") {
     const Result check = shell(folder, "fathom fmt --check" + files);
     CHECK(check.out == "");
     CHECK(check.exit == 0);
+}
+
+TEST_CASE("docs/shaders.md has a row for each target, and help names them in the same order") {
+    ScratchFolder folder;
+    std::vector<std::string> known;
+    for (const fathom::glsl::Target target : fathom::glsl::all_targets())
+        known.emplace_back(fathom::glsl::traits_of(target).name);
+    std::istringstream page(read(fs::path(FATHOM_SOURCE_DIR) / "docs/shaders.md"));
+    std::vector<std::string> told;
+    for (std::string line; std::getline(page, line);)
+        if (line.starts_with("| `")) told.push_back(line.substr(3, line.find('`', 3) - 3));
+    CHECK(told == known);
+    const std::string help = shell(folder, "fathom help compile").out;
+    std::size_t at = help.find("--target");
+    REQUIRE(at != help.npos);
+    for (const std::string &name : known) {
+        INFO(name);
+        at = help.find(name, at);
+        REQUIRE(at != help.npos);
+    }
 }

@@ -103,6 +103,18 @@ TEST_CASE("golden cases") {
     CHECK(count >= 40);
 }
 
+TEST_CASE("each fix that a message proposes mends what it is about") {
+    std::size_t fixed = 0;
+    for (const fs::path &file : case_files()) {
+        const golden::Case golden = golden::read_case(file.string());
+        const golden::Mended mended = golden::mend(golden);
+        INFO(golden.file << "\n" << mended.program);
+        CHECK(mended.stuck.empty());
+        fixed += mended.program != golden.program;
+    }
+    CHECK(fixed >= 40);
+}
+
 TEST_CASE("each code has a golden case that reports it") {
     std::set<std::string> reported = without_scene;
     for (const fs::path &file : case_files()) {

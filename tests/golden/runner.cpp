@@ -128,9 +128,18 @@ std::string eval_text(const ir::Scene &scene, const std::string &arguments) {
     return text;
 }
 
+std::string with_edits(std::string text, std::vector<Edit> edits) {
+    std::stable_sort(edits.begin(), edits.end(),
+                     [](const Edit &a, const Edit &b) { return a.span < b.span; });
+    for (auto edit = edits.rbegin(); edit != edits.rend(); ++edit)
+        text.replace(edit->span.begin, edit->span.end - edit->span.begin, edit->replacement);
+    return text;
+}
+
 std::string section_text(const Section &section, const driver::Compilation &compilation) {
     if (section.stage == "diagnostics")
         return diagnostics_text(compilation.diagnostics, compilation.sources);
+    if (section.stage == "fixed") return ""; // of the case as a whole
     if (section.stage == "json") return driver::verdict_json(compilation);
     if (section.stage == "ast" || section.stage == "format") {
         Diagnostics diagnostics;
@@ -144,6 +153,11 @@ std::string section_text(const Section &section, const driver::Compilation &comp
     if (section.stage == "glsl") return glsl_text(compilation.scene, compilation.sources);
     if (section.stage == "eval") return eval_text(compilation.scene, section.arguments);
     return fmt::format("(there is no stage `{}`)\n", section.stage);
+}
+
+std::string fixed_text(const Mended &mended) {
+    return mended.program + mended.left +
+           (mended.stuck.empty() ? "" : "no fix: " + mended.stuck + "\n");
 }
 
 } // namespace
@@ -188,9 +202,44 @@ Outcome run_case(const Case &golden) {
     for (const Diagnostic &diagnostic : compilation.diagnostics.items())
         outcome.codes.emplace_back(code_name(diagnostic.code));
     for (const Section &section : golden.sections)
-        outcome.actual.push_back(
-            {section.stage, section.arguments, section_text(section, compilation)});
+        outcome.actual.push_back({section.stage, section.arguments,
+                                  section.stage == "fixed" ? fixed_text(mend(golden))
+                                                           : section_text(section, compilation)});
     return outcome;
+}
+
+Mended mend(const Case &golden) {
+    constexpr int most_fixes = 60;
+    Mended result{golden.program, "", ""};
+    for (int i = 0; i < most_fixes; ++i) {
+        const driver::Compilation compilation =
+            driver::compile_text(golden.file, result.program, golden.folder, {});
+        const std::vector<Diagnostic> found = compilation.diagnostics.sorted();
+        const auto fixable = std::find_if(found.begin(), found.end(), [](const Diagnostic &d) {
+            return d.fix && !d.fix->edits.empty();
+        });
+        if (fixable == found.end()) {
+            for (const Diagnostic &d : found)
+                if (d.severity != Severity::Note)
+                    result.left += fmt::format("left: {}: {}\n", code_name(d.code), d.message);
+            return result;
+        }
+        const std::string mended = with_edits(result.program, fixable->fix->edits);
+        // The same thing said at the same place: the fix has mended nothing.
+        const auto says_it = [&](const Diagnostic &d) {
+            return d.code == fixable->code && d.message == fixable->message &&
+                   d.primary.span.begin == fixable->primary.span.begin;
+        };
+        const driver::Compilation after =
+            driver::compile_text(golden.file, mended, golden.folder, {});
+        const auto &items = after.diagnostics.items();
+        if (std::any_of(items.begin(), items.end(), says_it))
+            result.stuck = fmt::format("{}: {}", code_name(fixable->code), fixable->message);
+        if (!result.stuck.empty()) return result;
+        result.program = mended;
+    }
+    result.stuck = "there is no end of fixes";
+    return result;
 }
 
 std::string write_case(const Case &golden, const std::vector<Section> &sections) {

@@ -255,6 +255,23 @@ static Value div_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
     return apply_op(ev, Op::Div, args, site.call, site.name);
 }
 
+// `rgb(255, 128, 0)`: whole numbers up to 255, of which one is too large for any light.
+static void warn_of_bytes(Evaluator &ev, const CallSite &site, const std::vector<Value> &args) {
+    constexpr double brightest = 16;
+    double most = 0;
+    for (const Value &v : args) {
+        if (v.kind != ValueKind::Int || v.num[0] < 0 || v.num[0] > 255) return;
+        most = std::max(most, v.num[0]);
+    }
+    if (most <= brightest) return;
+    const std::string hex =
+        fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(args[0].num[0]),
+                    static_cast<int>(args[1].num[0]), static_cast<int>(args[2].num[0]));
+    report(ev, Code::Units, site.call,
+           fmt::format("the parts of a colour go from 0 to 1, and one of these is {}", most))
+        .help(fmt::format("write `{}` if parts of 255 are meant", hex), {{site.call, hex}});
+}
+
 static Value rgb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
     // sRGB in the text, linear inside (docs/language.md)
     auto linear = [&](const Value &v) {
@@ -271,6 +288,7 @@ static Value rgb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
         return from_node(
             ev, g.make(Op::Select, {g.make(Op::LessEqual, {c, g.number(0.04045)}), low, high}));
     };
+    warn_of_bytes(ev, site, args);
     std::vector<Value> parts;
     for (std::size_t i = 0; i < 3; ++i) {
         if (!is_scalar(ev, args[i])) {

@@ -25,7 +25,8 @@ std::size_t length_of(const driver::Compilation &c, glsl::Target target) {
     Diagnostics diagnostics;
     glsl::Output output = glsl::emit(c.scene, options, diagnostics);
     CHECK(!diagnostics.has_errors());
-    return target == glsl::Target::Spirv ? output.words.size() : output.text.size();
+    return glsl::traits_of(target).form == glsl::Form::SpirV ? output.words.size()
+                                                             : output.text.size();
 }
 
 std::string with(std::string text, int count) {
@@ -77,10 +78,8 @@ TEST_CASE("the text of a loop over ten thousand spheres does not grow with their
         "}";
     const driver::Compilation few = good(with(loop, 100)), many = good(with(loop, 10000));
     CHECK(checked_formulas(many.scene) >= 3);
-    for (glsl::Target target : {glsl::Target::Glsl450, glsl::Target::Glsl330, glsl::Target::Es300,
-                                glsl::Target::Shadertoy, glsl::Target::GlslViewer,
-                                glsl::Target::Spirv, glsl::Target::Html}) {
-        CAPTURE(glsl::target_name(target));
+    for (glsl::Target target : glsl::all_targets()) {
+        CAPTURE(glsl::traits_of(target).name);
         CHECK(length_of(many, target) < length_of(few, target) + 100);
     }
 }

@@ -3,17 +3,16 @@
 #include "tests/unit/glsl/scenes.h"
 
 #include "backend-glsl/emit.h"
+#include "backend-glsl/names.h"
 
 #include <catch2/catch.hpp>
+
+#include <sstream>
 
 using namespace fathom;
 using namespace fathom::scenes;
 
 namespace {
-
-const glsl::Target all_targets[] = {
-    glsl::Target::Glsl450,    glsl::Target::Glsl330, glsl::Target::Es300, glsl::Target::Shadertoy,
-    glsl::Target::GlslViewer, glsl::Target::Spirv,   glsl::Target::Html};
 
 glsl::Output emitted(const Scene &scene, const glsl::Options &options = {}) {
     Diagnostics diagnostics;
@@ -51,20 +50,21 @@ NodeId fold(Graph &g, Fold record, NodeId start) {
 } // namespace
 
 TEST_CASE("a sphere is emitted for every target") {
-    for (glsl::Target target : all_targets)
+    for (glsl::Target target : glsl::all_targets())
         for (bool field_only : {false, true}) {
-            CAPTURE(glsl::target_name(target), field_only);
+            CAPTURE(glsl::traits_of(target).name, field_only);
             const glsl::Output out =
                 emitted(sphere(), {.target = target, .field_only = field_only});
-            CHECK(out.text.empty() == (target == glsl::Target::Spirv));
-            CHECK(out.words.empty() == (target != glsl::Target::Spirv));
+            const bool spirv = glsl::traits_of(target).form == glsl::Form::SpirV;
+            CHECK(out.text.empty() == spirv);
+            CHECK(out.words.empty() == !spirv);
         }
 }
 
 TEST_CASE("a field that moves is emitted for every target, alone or in its picture") {
-    for (glsl::Target target : all_targets)
+    for (glsl::Target target : glsl::all_targets())
         for (bool field_only : {false, true}) {
-            CAPTURE(glsl::target_name(target), field_only);
+            CAPTURE(glsl::traits_of(target).name, field_only);
             const Scene scene = of_field([](Graph &g, NodeId p) {
                 return g.sub(g.make(Op::Length, {p}), g.make(Op::Cos, {g.time()}));
             });
@@ -73,7 +73,7 @@ TEST_CASE("a field that moves is emitted for every target, alone or in its pictu
 }
 
 TEST_CASE("every op is emitted for every target") {
-    for (glsl::Target target : all_targets) {
+    for (glsl::Target target : glsl::all_targets()) {
         const Scene scene = of_field([](Graph &g, NodeId p) {
             NodeId sum = g.number(0);
             for (std::size_t index = 0; index < op_count; ++index) {
@@ -103,7 +103,7 @@ TEST_CASE("every op is emitted for every target") {
             }
             return sum;
         });
-        CAPTURE(glsl::target_name(target));
+        CAPTURE(glsl::traits_of(target).name);
         emitted(scene, {.target = target});
     }
 }
@@ -245,6 +245,23 @@ TEST_CASE("params are uniforms where there is a host, constants where there is n
     CHECK(count(emitted(scene, {.target = glsl::Target::Html}).text, "param_radius") > 1);
 }
 
+TEST_CASE("what a target's row reserves is no name in any text") {
+    std::size_t checked = 0;
+    for (const glsl::Target target : glsl::all_targets()) {
+        std::istringstream words(glsl::traits_of(target).reserved);
+        for (std::string word; words >> word; ++checked) {
+            CAPTURE(word);
+            CHECK(glsl::is_reserved(word));
+            CHECK_FALSE(glsl::is_reserved(word + "x"));
+            CHECK_FALSE(glsl::is_reserved(word.substr(1)));
+            CHECK(glsl::Names().unique(word) == word + "_2");
+        }
+    }
+    CHECK(checked > 10);
+    CHECK_FALSE(glsl::is_reserved(""));
+    CHECK_FALSE(glsl::is_reserved("iTime iTimeDelta"));
+}
+
 TEST_CASE("many plain materials are a table") {
     Scene scene = sphere();
     scene.surfaces.clear();
@@ -263,5 +280,5 @@ TEST_CASE("infinities and the least int are written so that GLSL reads them") {
                       {g.number(INFINITY), g.make(Op::Max, {g.make(Op::ToFloat, Type::Float, {i}),
                                                             g.number(-INFINITY)})});
     });
-    for (glsl::Target target : all_targets) emitted(scene, {.target = target});
+    for (glsl::Target target : glsl::all_targets()) emitted(scene, {.target = target});
 }

@@ -65,7 +65,7 @@ std::vector<float> raw_field(ir::Scene scene, const Points &at) {
 
 struct Comparison {
     std::string exported, imported, errors; // what was said
-    double worst = 0, below = 0;            // differences; the largest by which the second is less
+    double worst = 0;                       // the largest difference
     bool signs = true;
     std::string sdf;
 };
@@ -89,18 +89,16 @@ Comparison compared(const driver::Compilation &first, unsigned seed) {
     for (std::size_t i = 0; i < a.size(); ++i) {
         const double off = std::abs(double(a[i]) - double(b[i]));
         if (!(off <= result.worst)) result.worst = off;
-        result.below = std::max(result.below, double(a[i]) - double(b[i]));
         result.signs = result.signs && ((a[i] < 0) == (b[i] < 0) || off <= 1e-5);
     }
     return result;
 }
 
-// Copies that differ become nodes, all of them. A scene evaluates only the nearest, and takes the
-// way to the others for a lower bound: there the export has the larger, true distance, and the same
-// solid.
+// Copies that differ become nodes, all of them: the same solid. Its distances differ: a scene
+// evaluates the nearest copy, takes the way to the others for a lower bound, and holds a motif that
+// is only a bound by its box (lipschitz.md, 5).
 void check_fields(const Comparison &result, bool differing_copies) {
     if (!differing_copies) CHECK(result.worst <= 1e-5);
-    CHECK(result.below <= 1e-5);
     CHECK(result.signs);
 }
 

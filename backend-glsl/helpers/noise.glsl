@@ -1,25 +1,7 @@
-// The noise helpers, ports of ir/noise.h; see there for what they are and why their constants are
-// these.
-#include "backend-glsl/helpers.h"
+$# Hashes and noises, ports of ir/noise.h; see there for what they are and why their constants are
+$# these.
 
-namespace fathom::glsl {
-
-std::string hash_helper(const std::string &type) {
-    const int size = type == "int" || type == "float" ? 1 : type.back() - '0';
-    std::string text =
-        "\nfloat fathom_hash(" + type + " x) {\n    uint h = " + std::to_string(size) + "u;\n";
-    for (int i = 0; i < size; ++i) {
-        const std::string part = size == 1 ? "x" : std::string("x.") + "xyzw"[i];
-        const std::string word =
-            type == "int" ? "uint(x)" : part + " == 0.0 ? 0u : floatBitsToUint(" + part + ")";
-        text += "    h = fathom_hash_more(h, " + word + ");\n";
-    }
-    return text + "    return fathom_unit(h);\n}\n";
-}
-
-const std::vector<NoiseHelper> &noise_library() {
-    static const std::vector<NoiseHelper> helpers = {
-        {"fathom_scramble", {}, R"(
+$helper fathom_scramble
 uint fathom_scramble(uint h) {
     h ^= h >> 16u;
     h *= 0x7feb352du;
@@ -32,13 +14,54 @@ uint fathom_scramble(uint h) {
 float fathom_unit(uint h) {
     return float(h >> 8u) * (1.0 / 16777216.0);
 }
-)"},
-        {"fathom_hash_more", {{"fathom_scramble", ""}}, R"(
+
+$helper fathom_hash_more needs fathom_scramble
 uint fathom_hash_more(uint h, uint word) {
     return fathom_scramble((h ^ word) + 0x9e3779b9u);
 }
-)"},
-        {"fathom_lattice", {{"fathom_scramble", ""}}, R"(
+
+$helper fathom_hash:int needs fathom_hash_more
+float fathom_hash(int x) {
+    uint h = 1u;
+    h = fathom_hash_more(h, uint(x));
+    return fathom_unit(h);
+}
+
+$helper fathom_hash:float needs fathom_hash_more
+float fathom_hash(float x) {
+    uint h = 1u;
+    h = fathom_hash_more(h, x == 0.0 ? 0u : floatBitsToUint(x));
+    return fathom_unit(h);
+}
+
+$helper fathom_hash:vec2 needs fathom_hash_more
+float fathom_hash(vec2 x) {
+    uint h = 2u;
+    h = fathom_hash_more(h, x.x == 0.0 ? 0u : floatBitsToUint(x.x));
+    h = fathom_hash_more(h, x.y == 0.0 ? 0u : floatBitsToUint(x.y));
+    return fathom_unit(h);
+}
+
+$helper fathom_hash:vec3 needs fathom_hash_more
+float fathom_hash(vec3 x) {
+    uint h = 3u;
+    h = fathom_hash_more(h, x.x == 0.0 ? 0u : floatBitsToUint(x.x));
+    h = fathom_hash_more(h, x.y == 0.0 ? 0u : floatBitsToUint(x.y));
+    h = fathom_hash_more(h, x.z == 0.0 ? 0u : floatBitsToUint(x.z));
+    return fathom_unit(h);
+}
+
+$helper fathom_hash:vec4 needs fathom_hash_more
+float fathom_hash(vec4 x) {
+    uint h = 4u;
+    h = fathom_hash_more(h, x.x == 0.0 ? 0u : floatBitsToUint(x.x));
+    h = fathom_hash_more(h, x.y == 0.0 ? 0u : floatBitsToUint(x.y));
+    h = fathom_hash_more(h, x.z == 0.0 ? 0u : floatBitsToUint(x.z));
+    h = fathom_hash_more(h, x.w == 0.0 ? 0u : floatBitsToUint(x.w));
+    return fathom_unit(h);
+}
+
+$helper fathom_lattice needs fathom_scramble
 uint fathom_hash_lattice(uvec3 p, uint salt) {
     uint h = (p.x ^ salt) * 0x9e3779b1u;
     h = ((h ^ (h >> 15u)) + p.y) * 0x85ebca77u;
@@ -55,16 +78,16 @@ uvec3 fathom_lattice(vec3 whole) {
 vec3 fathom_fade(vec3 t) {
     return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
 }
-)"},
-        {"fathom_edge_gradient", {{"fathom_lattice", ""}}, R"(
+
+$helper fathom_edge_gradient needs fathom_lattice
 float fathom_edge_gradient(uint h, vec3 p) {
     uint k = h >> 28u;
     float u = k < 8u ? p.x : p.y;
     float v = k < 4u ? p.y : ((k | 2u) == 14u ? p.x : p.z);
     return ((k & 1u) == 0u ? u : -u) + ((k & 2u) == 0u ? v : -v);
 }
-)"},
-        {"fathom_perlin", {{"fathom_edge_gradient", ""}}, R"(
+
+$helper fathom_perlin needs fathom_edge_gradient
 float fathom_perlin_corner(uvec3 cell, vec3 p, uvec3 corner) {
     return fathom_edge_gradient(fathom_hash_lattice(cell + corner, 0u), p - vec3(corner));
 }
@@ -80,8 +103,8 @@ float fathom_perlin(vec3 p) {
     float d = mix(fathom_perlin_corner(cell, x, uvec3(0u, 1u, 1u)), fathom_perlin_corner(cell, x, uvec3(1u)), u.x);
     return mix(mix(a, b, u.y), mix(c, d, u.y), u.z);
 }
-)"},
-        {"fathom_value_noise", {{"fathom_lattice", ""}}, R"(
+
+$helper fathom_value_noise needs fathom_lattice
 float fathom_value_corner(uvec3 cell) {
     return fathom_unit(fathom_hash_lattice(cell, 0x68e31da4u));
 }
@@ -96,8 +119,8 @@ float fathom_value_noise(vec3 p) {
     float d = mix(fathom_value_corner(cell + uvec3(0u, 1u, 1u)), fathom_value_corner(cell + uvec3(1u)), u.x);
     return mix(mix(a, b, u.y), mix(c, d, u.y), u.z);
 }
-)"},
-        {"fathom_simplex", {{"fathom_edge_gradient", ""}}, R"(
+
+$helper fathom_simplex needs fathom_edge_gradient
 float fathom_simplex_corner(uvec3 cell, vec3 p) {
     float t = max(0.5 - (p.x * p.x + p.y * p.y + p.z * p.z), 0.0);
     return t * t * t * t * fathom_edge_gradient(fathom_hash_lattice(cell, 0xb5297a4du), p);
@@ -118,14 +141,14 @@ float fathom_simplex(vec3 p) {
                    fathom_simplex_corner(cell + uvec3(second), x - second + (1.0 / 3.0)) +
                    fathom_simplex_corner(cell + uvec3(1u), x - 1.0 + 0.5));
 }
-)"},
-        {"fathom_worley_point", {{"fathom_lattice", ""}}, R"(
+
+$helper fathom_worley_point needs fathom_lattice
 vec3 fathom_worley_point(uint h) {
     return vec3((float(h & 2047u) + 0.5) * (1.0 / 2048.0), (float((h >> 11u) & 2047u) + 0.5) * (1.0 / 2048.0),
                 (float(h >> 22u) + 0.5) * (1.0 / 1024.0));
 }
-)"},
-        {"fathom_worley", {{"fathom_worley_point", ""}}, R"(
+
+$helper fathom_worley needs fathom_worley_point
 float fathom_worley(vec3 p) {
     vec3 whole = floor(p);
     uvec3 cell = fathom_lattice(whole);
@@ -140,10 +163,10 @@ float fathom_worley(vec3 p) {
             }
     return sqrt(least);
 }
-)"},
-        // A cell's spots, at most eight, are written out: as a loop's turns they would add up with
-        // the march's to more than llvmpipe grants a shader (turns_together).
-        {"fathom_spot_noise", {{"fathom_worley_point", ""}, {"fathom_hash_more", ""}}, R"(
+
+$# A cell's spots, at most eight, are written out: as a loop's turns they would add up with the march's
+$# to more than llvmpipe grants a shader (turns_together).
+$helper fathom_spot_noise needs fathom_worley_point fathom_hash_more
 float fathom_spot(vec3 x, vec3 corner, inout uint h, bool there) {
     h = fathom_hash_more(h, 1u);
     vec3 d = x - (corner + fathom_worley_point(h));
@@ -180,9 +203,3 @@ float fathom_spot_noise(vec3 p, float radius, float density) {
             }
     return sum / sqrt(max(n, 1.0));
 }
-)"},
-    };
-    return helpers;
-}
-
-} // namespace fathom::glsl

@@ -1,0 +1,31 @@
+$# Hits: the nearest, the farthest, and what they are painted with.
+
+$helper fathom_nearest
+Hit fathom_nearest(Hit a, Hit b) {
+    if (b.distance < a.distance) return b;
+    return a;
+}
+
+$helper fathom_farthest_of
+// Of hits that are asked in a row: an unpainted one shows the first one's paint.
+Hit fathom_farthest_of(Hit first, Hit best, Hit next) {
+    if (next.distance <= best.distance) return best;
+    if (next.paint >= 0) return next;
+    return Hit(next.distance, first.paint, first.point, first.extra);
+}
+
+$helper fathom_farthest needs fathom_farthest_of
+Hit fathom_farthest(Hit a, Hit b) {
+    return fathom_farthest_of(a, a, b);
+}
+
+$helper fathom_hit_with
+Hit fathom_hit_with(Hit hit, float distance) {
+    return Hit(distance, hit.paint, hit.point, hit.extra);
+}
+
+$helper fathom_fill_paint
+Hit fathom_fill_paint(Hit hit, int paint, vec3 point, vec4 extra) {
+    if (hit.paint >= 0) return hit;
+    return Hit(hit.distance, paint, point, extra);
+}

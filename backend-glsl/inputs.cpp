@@ -1,0 +1,113 @@
+#include "backend-glsl/inputs.h"
+
+#include "backend-glsl/template.h"
+
+namespace fathom::glsl {
+
+namespace {
+
+// How a target whose host does not set our uniforms holds an input of the frame.
+enum class Held { Constant, Global, Nowhere };
+
+struct FrameInput {
+    const char *type, *name;
+    std::string value; // for the first view
+    Held held;
+};
+
+std::string param_value(const ir::Param &param) {
+    return literal({param.type, {param.value[0], param.value[1], param.value[2], param.value[3]}});
+}
+
+} // namespace
+
+bool is_fixed(const ir::Param &param, const Options &options) {
+    return param.structural && options.instruments == Instruments::None;
+}
+
+std::string Inputs::defaults() const {
+    return target_.lists_defaults && options_.instruments == Instruments::None
+               ? defaults_comment(declared_)
+               : "";
+}
+
+std::string Inputs::uniform(const std::string &type, const std::string &name,
+                            const std::string &value, const std::string &range) {
+    declared_.push_back({type, name, value, range});
+    if (target_.locations)
+        return "layout(location = " + std::to_string(location_++) + ") uniform " + type + " " +
+               name + ";\n";
+    const bool bare = target_.es || options_.instruments != Instruments::None || value.empty();
+    return "uniform " + type + " " + name + (bare ? "" : " = " + value) + ";\n";
+}
+
+std::string Inputs::sampler(const std::string &type, const std::string &name) {
+    const std::string place =
+        target_.locations ? "layout(binding = " + std::to_string(binding_++) + ") " : "";
+    return place + "uniform " + type + " " + name + ";\n";
+}
+
+std::string Inputs::own_inputs(bool picture) const {
+    if (!*target_.inputs) return "";
+    return expand(target_.inputs,
+                  {{"PICTURE", picture ? "1" : ""}, {"TIME", module_.reads_time ? "1" : ""}});
+}
+
+std::string Inputs::time() {
+    if (!target_.hosted)
+        return module_.reads_time ? std::string("#define fathom_time ") + target_.time + "\n" : "";
+    if (!module_.reads_time && options_.field_only) return "";
+    return uniform("float", "fathom_time", float_literal(options_.time));
+}
+
+std::string Inputs::of_scene() {
+    std::string text = time();
+    for (const auto &[index, name] : module_.params) {
+        const ir::Param &param = scene_.params[index];
+        const std::string value = param_value(param), type = glsl_type(param.type);
+        if (!param.label.empty() && options_.instruments == Instruments::None)
+            text += comment(param.label);
+        if (target_.hosted && !is_fixed(param, options_))
+            text += uniform(type, name, value, range_text(param));
+        else
+            text += "const " + type + " " + name + " = " + value + ";\n";
+    }
+    if (!module_.texels.empty())
+        text += "// A texture buffer of RGBA32F texels: the file written beside this text.\n" +
+                sampler("samplerBuffer", "fathom_tables");
+    for (const auto &[index, name] : module_.images) text += sampler("sampler2D", name);
+    for (const auto &[index, name] : module_.grids) text += sampler("sampler3D", name);
+    return text;
+}
+
+std::string Inputs::of_field() { return own_inputs(false) + of_scene(); }
+
+std::string Inputs::of_picture(const ir::View &view) {
+    const ir::Triple sun = scene_.lights.empty()
+                               ? ir::lights_of(scene_, options_.time, view)[0].position
+                               : ir::Triple{0, 1, 0};
+    const FrameInput all[] = {
+        {"vec2", "fathom_resolution", "vec2(1280.0, 720.0)", Held::Global},
+        {"vec2", "fathom_offset", "vec2(0.5)", Held::Nowhere},
+        {"vec3", "fathom_origin", vec3_literal(view.origin), Held::Global},
+        {"vec3", "fathom_right", vec3_literal(view.right), Held::Global},
+        {"vec3", "fathom_up", vec3_literal(view.up), Held::Global},
+        {"vec3", "fathom_forward", vec3_literal(view.forward), Held::Global},
+        {"float", "fathom_extent", float_literal(view.extent), Held::Constant},
+        {"float", "fathom_focus", float_literal(view.focus), Held::Constant},
+        {"int", "fathom_orthographic", view.orthographic ? "1" : "0", Held::Constant},
+        {"vec3", "fathom_sun", vec3_literal(sun), Held::Constant},
+        {"int", "fathom_mode", "0", Held::Constant}};
+    std::string text = "\n" + own_inputs(true);
+    for (const FrameInput &i : all) {
+        if (target_.hosted)
+            text += uniform(i.type, i.name, i.value);
+        else if (i.held == Held::Constant)
+            text += std::string("const ") + i.type + " " + i.name + " = " + i.value + ";\n";
+        else if (i.held == Held::Global)
+            text += std::string(i.type) + " " + i.name + ";\n";
+    }
+    return text + of_scene();
+}
+
+} // namespace fathom::glsl

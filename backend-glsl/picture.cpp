@@ -1,0 +1,138 @@
+#include "backend-glsl/picture.h"
+
+#include "backend-glsl/cache_text.h"
+#include "backend-glsl/inputs.h"
+#include "backend-glsl/marcher.h"
+#include "backend-glsl/template.h"
+#include "base/encode.h"
+#include "ir/passes/operations.h"
+#include "ir/view.h"
+
+#include <algorithm>
+
+namespace fathom::glsl {
+
+namespace {
+
+constexpr double cheap_field = 150; // operations
+
+std::string shown(bool on) { return on ? "1" : ""; }
+
+// What the text's version has to be, by what it uses; empty where its host says it.
+std::string version_of(const Module &module, const TargetTraits &target) {
+    if (target.version == 0) return "";
+    if (target.es) return std::to_string(target.version) + " es";
+    const int used = !module.pruned.empty() ? 430 : !module.kept.empty() ? 420 : 0;
+    return std::to_string(std::max(target.version, used)) + " core";
+}
+
+std::string head(const Module &module) {
+    const Options &options = module.options;
+    const TargetTraits &target = traits_of(options.target);
+    const std::string fixed =
+        options.instruments != Instruments::None
+            ? ""
+            : fixed_params_comment(module.scene, [&](Span span) {
+                  return options.place ? for_comment(options.place(span)) : std::string();
+              });
+    return expand("head", {{"VERSION", version_of(module, target)},
+                           {"WRITTEN_BY", written_by(options)},
+                           {"FIELD_ONLY", shown(options.field_only)},
+                           {"USE", target.use},
+                           {"FIXED_PARAMS", fixed},
+                           {"ES", shown(target.es)}});
+}
+
+std::string hit_function(const Module &module) {
+    const ir::Scene &scene = module.scene;
+    const int stride = module.options.part_stride;
+    return expand("hit", {{"MARKED", shown(scene.hit && stride > 0)},
+                          {"STRIDE", std::to_string(stride)},
+                          {"PICK", shown(module.options.instruments == Instruments::Pick)},
+                          {"UNPAINTED", shown(!scene.hit)}});
+}
+
+MarcherOptions marcher_options(const Module &module, const SceneText &text, const ir::View &view) {
+    const ir::Scene &scene = module.scene;
+    const ir::Frame frame = ir::frame_of(scene, view, 1080);
+    MarcherOptions marcher;
+    marcher.boxed = frame.boxed;
+    marcher.steep = frame.steep;
+    marcher.reaches = frame.steep && scene.reach;
+    marcher.cheap = scene.distance &&
+                    ir::operations(scene.graph, module.result_of(scene.distance)) <= cheap_field;
+    marcher.skip_shading = scene.lighting.skip;
+    marcher.local_normals = text.local_normals;
+    marcher.lights = text.lights;
+    marcher.max_steps = scene.render.max_steps;
+    marcher.epsilon = scene.render.epsilon;
+    marcher.far = scene.render.far;
+    marcher.radius = frame.radius;
+    marcher.center = vec3_literal(frame.center);
+    marcher.lo = vec3_literal(frame.lo);
+    marcher.hi = vec3_literal(frame.hi);
+    marcher.zero = traits_of(module.options.target).zero;
+    marcher.pick = module.options.instruments == Instruments::Pick;
+    marcher.kept = !module.kept.empty();
+    marcher.far_cells = module.far_cells;
+    marcher.around = module.around;
+    return marcher;
+}
+
+// The entry point, by the target's template.
+std::string entry(const Module &module, const ir::View &view) {
+    const TargetTraits &target = traits_of(module.options.target);
+    ir::Triple looked_at;
+    for (std::size_t i = 0; i < 3; ++i)
+        looked_at[i] = view.origin[i] + view.focus * view.forward[i];
+    const bool kept = !module.kept.empty();
+    const bool several = kept || module.options.instruments == Instruments::Pick;
+    Values values = cache_numbers();
+    values.insert({{"LOCATIONS", shown(target.locations || several)}, // of the outputs
+                   {"KEPT", shown(kept)},
+                   {"ORIGIN", vec3_literal(view.origin)},
+                   {"RIGHT", vec3_literal(view.right)},
+                   {"UP", vec3_literal(view.up)},
+                   {"FORWARD", vec3_literal(view.forward)},
+                   {"BACK_X", float_literal(-view.forward[0])},
+                   {"BACK_Z", float_literal(-view.forward[2])},
+                   {"TARGET", vec3_literal(looked_at)}});
+    return expand(target.entry, values);
+}
+
+} // namespace
+
+std::string written_by(const Options &options) {
+    return comment(options.title + ": written by fathom.");
+}
+
+std::string picture_text(const Module &module, const SceneText &scene) {
+    const ir::View view = ir::view_of(module.scene, module.options.time, 16.0 / 9.0);
+    const MarcherOptions marcher = marcher_options(module, scene, view);
+    Inputs inputs(module);
+    const std::string declared = inputs.of_picture(view);
+    std::string before = head(module) + inputs.defaults() + declared;
+    if (!module.pruned.empty()) before += prune_look_up(module.scene.bounds);
+    before += scene.tables + scene.functions;
+    if (module.far_cells) before += far_look_up(marcher.boxed ? "fathom_off(p)" : "0.0");
+    if (module.options.instruments == Instruments::Probe) return before + probe_text(marcher);
+    return before + hit_function(module) + scene.looks + marcher_text(marcher) +
+           entry(module, view);
+}
+
+std::string field_text(const Module &module, const SceneText &scene) {
+    double bound = 0;
+    for (const ir::TopLevel &top : module.scene.top_level)
+        if (top.shape.index < module.scene.facts.size())
+            bound = std::max(bound, module.scene.facts[top.shape.index].lipschitz_sup);
+    Inputs inputs(module);
+    const std::string declared = inputs.of_field();
+    return expand("field", {{"BEGIN", head(module) + inputs.defaults()},
+                            {"INPUTS", declared},
+                            {"BOUND", float_literal(bound > 0 ? bound : 1)},
+                            {"FUNCTIONS", scene.tables + scene.functions},
+                            {"HIT", hit_function(module)},
+                            {"LOOKS", scene.looks}});
+}
+
+} // namespace fathom::glsl

@@ -1,0 +1,187 @@
+// Answers to calls as other languages write them: transforms before what they move, arguments
+// without parentheses, lambdas, units apart from their numbers, slices, imports.
+#include "lang/builder.h"
+
+#include <algorithm>
+#include <array>
+
+namespace fathom::lang {
+
+namespace {
+
+constexpr std::array<std::string_view, 13> transforms = {
+    "translate", "rotate",         "scale",          "mirror",     "color", "resize", "projection",
+    "offset",    "linear_extrude", "rotate_extrude", "multmatrix", "twist", "render"};
+// What OpenSCAD calls the shapes and transforms that are juxtaposed there.
+constexpr std::pair<std::string_view, std::string_view> scad_names[] = {
+    {"linear_extrude", "extrude"},
+    {"rotate_extrude", "revolve"},
+    {"color", "paint"},
+    {"mirror", "reflect"},
+    {"cube", "box"},
+    {"square", "rectangle"}};
+
+} // namespace
+
+bool is_foreign_transform(std::string_view name) { return is_one_of(name, transforms); }
+
+// A transform of OpenSCAD as it is written here: angles in degrees, `:` behind names.
+std::string Builder::transform_text(Index name) const {
+    const Index open = name + 1, close = tokens_.match[open];
+    std::string out(text(name));
+    const bool rotate = out == "rotate", color = out == "color";
+    if (rotate && kind(open + 1) == Tok::ListOpen) out = "rotate_euler";
+    for (const auto &[theirs, ours] : scad_names)
+        if (out == theirs) out = ours;
+    std::uint32_t end = token(name).end;
+    int depth = 0;
+    bool angle = true; // in the first argument
+    for (Index i = open; i <= close; ++i) {
+        if (tokens_.match[i] > i) ++depth;
+        if (tokens_.match[i] < i) --depth;
+        if (kind(i) == Tok::Comma && depth == 1) angle = false;
+        const bool assign = kind(i) == Tok::Assign;
+        if (!assign) out += text(end, token(i).begin);
+        const std::string_view word = text(i);
+        const bool in_degrees = rotate && angle && kind(i) == Tok::Number && word != "0" &&
+                                word.find_first_not_of("0123456789.") == std::string_view::npos;
+        if (assign)
+            out += token(i).end < token(i + 1).begin ? ":" : ": ";
+        else if (color && kind(i) == Tok::String)
+            out += word.substr(1, word.size() - 2);
+        else
+            out += std::string(word) + (in_degrees ? "deg" : "");
+        end = token(i).end;
+    }
+    return out;
+}
+
+// `translate([1, 2, 3]) rotate(…) sphere(1)`: transforms stand behind what they move.
+bool Builder::juxtaposed_calls(Index first, Index at) {
+    if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open ||
+        !is_one_of(text(first), transforms))
+        return false;
+    constexpr int longest_chain = 20;
+    std::string chain;
+    Index shape = first;
+    for (int links = 0;
+         links < longest_chain && kind(shape) == Tok::Name && kind(shape + 1) == Tok::Open &&
+         kind(tokens_.match[shape + 1] + 1) == Tok::Name;
+         ++links) {
+        const Index close = tokens_.match[shape + 1];
+        chain.insert(0, "." + transform_text(shape));
+        shape = close + 1;
+    }
+    if (shape < at) return false;
+    failed_ = shape;
+    const Index end = statement_end(first);
+    std::string moved(text(shape));
+    for (const auto &[theirs, ours] : scad_names)
+        if (moved == theirs) moved = ours;
+    foreign(span(first, tokens_.match[first + 1]),
+            "a transform stands behind the shape that it moves")
+        .help("write " + in_code(moved + "(…)" + chain),
+              {{{id_, token(first).begin, token(shape).end}, moved},
+               {{id_, token(end - 1).end, token(end - 1).end}, chain}});
+    return true;
+}
+
+// Python's `lambda p: …`, at the `p`.
+bool Builder::foreign_lambda(Index at) {
+    if (at == 0 || kind(at) != Tok::Name || kind(at - 1) != Tok::Name || text(at - 1) != "lambda")
+        return false;
+    const std::string head = std::string(text(at)) + " =>";
+    Diagnostic &d = foreign(span(at - 1), "a function without a name is written `p => …`");
+    if (kind(at + 1) == Tok::Colon)
+        d.help("write " + in_code(head + " …"), {{span(at - 1, at + 1), head}});
+    return true;
+}
+
+// `45 deg`.
+bool Builder::separated_unit(Index at) {
+    if (at == 0 || kind(at) != Tok::Name || kind(at - 1) != Tok::Number) return false;
+    if (text(at) != "deg" && text(at) != "rad" && text(at) != "turn") return false;
+    const std::string angle = std::string(text(at - 1)) + std::string(text(at));
+    diagnostics_.add(Code::BadNumber, span(at - 1, at), "a unit touches its number")
+        .help("write " + in_code(angle), {{span(at - 1, at), angle}});
+    return true;
+}
+
+// `l[1:3]`, at the colon.
+bool Builder::foreign_slice(Index at) {
+    const Index open = enclosing(at), close = tokens_.match[open];
+    const Tok before = open > 0 ? kind(open - 1) : Tok::End;
+    const bool index = kind(open) == Tok::ListOpen &&
+                       (before == Tok::Name || before == Tok::Close || before == Tok::ListClose);
+    if (!index) return false;
+    Diagnostic &d = foreign(span(open, close), "an index is one number; a list has no slices");
+    const std::string way = "[for i in a..b { list[i] }]";
+    if (before != Tok::Name || at == open + 1 || at + 1 == close || kind(open - 2) == Tok::Dot) {
+        d.help("write " + in_code(way));
+        return true;
+    }
+    const std::string from(text(token(open + 1).begin, token(at - 1).end)),
+        to(text(token(at + 1).begin, token(close - 1).end)), list(text(open - 1));
+    const std::string written = "[for i in " + from + ".." + to + " { " + list + "[i] }]";
+    d.help("write " + in_code(written), {{span(open - 1, close), written}});
+    return true;
+}
+
+// `import parts/arch.sdf`, `import math`.
+bool Builder::foreign_import(Index at) {
+    if (kind(at) != Tok::Name && kind(at) != Tok::Dot && kind(at) != Tok::DotDot) return false;
+    Index end = at;
+    while (!ends_statement(end) && kind(end) != Tok::As && text(end) != "as") ++end;
+    if (kind(end - 1) != Tok::Name) return false;
+    const std::string written(text(token(at).begin, token(end - 1).end));
+    if (is_foreign_module(written)) {
+        failed_ = end;
+        foreign(span(at), "the mathematical functions need no module")
+            .help("leave the line away",
+                  {{{id_, token(at - 1).begin, token(statement_end(at) - 1).end}, ""}});
+        return true;
+    }
+    const std::string path = "\"" + written + (written.ends_with(".sdf") ? "\"" : ".sdf\"");
+    foreign(span(at, end - 1), "a module is named by its file, in double quotes")
+        .help("write `import " + path + "`", {{span(at, end - 1), path}});
+    return true;
+}
+
+// Two values with nothing between them: `translate(y 1)`, `[sphere 1, box 2]`, `f"text"`.
+bool Builder::joined_by_space(Index at, bool list) {
+    const Tok found = kind(at);
+    const Index name = at - 1;
+    const bool value = found == Tok::Number || found == Tok::String || found == Tok::Color ||
+                       found == Tok::ListOpen || (found == Tok::Name && !token(at).first_on_line);
+    if (at < 2 || kind(name) != Tok::Name || !value) return false;
+    const Tok before = kind(name - 1);
+    const std::uint32_t end = token(name).end;
+    if (found == Tok::String && end == token(at).begin) {
+        foreign(span(name, at), "a string holds no values").help("join it to them: `\"r = \" + r`");
+        return true;
+    }
+    if (text(name) == "new") {
+        foreign(span(name), "nothing is made with `new`")
+            .help("leave it away", {{{id_, token(name).begin, token(at).begin}, ""}});
+        return true;
+    }
+    if (found == Tok::Name || (before != Tok::Comma && before != Tok::Open &&
+                               before != Tok::ListOpen && before != Tok::FreshListOpen))
+        return false;
+    const Index open = enclosing(at);
+    const bool argument =
+        !list && open > 0 && kind(open - 1) == Tok::Name && !is_declared(std::string(text(name)));
+    if (argument) {
+        foreign(span(name, at), "an argument is named with `:`")
+            .help("write " + in_code(std::string(text(name)) + ": " + std::string(text(at))),
+                  {{{id_, end, end}, ":"}});
+        return true;
+    }
+    if (found == Tok::ListOpen) return false;
+    foreign(span(name, at), "a call's arguments stand in parentheses")
+        .help("write " + in_code(std::string(text(name)) + "(" + std::string(text(at)) + ")"),
+              {{{id_, end, token(at).begin}, "("}, {{id_, token(at).end, token(at).end}, ")"}});
+    return true;
+}
+
+} // namespace fathom::lang

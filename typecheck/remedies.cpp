@@ -1,0 +1,486 @@
+// The tables of what other languages and libraries call things, and the edits that carry a call
+// over.
+#include "typecheck/remedies.h"
+
+#include "base/suggest.h"
+#include "base/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace fathom::typecheck {
+
+// -- names ---------------------------------------------------------------------------------------
+
+std::string_view name_from_elsewhere(std::string_view name) {
+    static const std::unordered_map<std::string_view, std::string_view> ours = {
+        {"cube", "box"},
+        {"cuboid", "box"},
+        {"square", "rectangle"},
+        {"perlin", "noise"},
+        {"snoise", "simplex"},
+        {"voronoi", "worley"},
+        {"cellular", "worley"},
+        {"color", "rgb"},
+        {"linear_extrude", "extrude"},
+        {"extrudeLinear", "extrude"},
+        {"pancake", "extrude"},
+        {"rotate_extrude", "revolve"},
+        {"extrudeRotate", "revolve"},
+        {"lathe", "revolve"},
+        {"move", "translate"},
+        {"symmetry", "mirror"},
+        {"lerp", "mix"},
+        {"frac", "fract"},
+        {"fabs", "abs"},
+        {"fmod", "mod"},
+        {"atan2", "atan"},
+        {"mag", "length"},
+        {"norm", "length"},
+        {"rsqrt", "inversesqrt"},
+        {"rand", "random"},
+        {"rot", "rotate2"},
+        {"rot2", "rotate2"},
+        {"PI", "pi"},
+        {"M_PI", "pi"},
+        {"TAU", "tau"},
+        {"TWO_PI", "tau"},
+        {"iTime", "time"},
+        {"iGlobalTime", "time"},
+        {"u_time", "time"},
+        {"Vector3", "vec3"},
+        {"Vector2", "vec2"},
+        {"count", "len"},
+        {"size", "len"},
+        {"nothing", "empty"},
+        {"half_space", "plane"},
+        {"half_plane", "plane"},
+        {"frustum", "capped_cone"},
+        {"cone_frustum", "capped_cone"},
+        {"truncated_cone", "capped_cone"},
+        {"round_box", "rounded_box"},
+        {"roundedCuboid", "rounded_box"},
+        {"rect", "rectangle"},
+        {"ball3", "sphere"},
+        {"donut", "torus"},
+        {"onion", "shell"},
+        {"hollow", "shell"},
+        {"inflate", "offset"},
+        {"dilate", "offset"},
+        {"stretch", "elongate"},
+        {"flip", "mirror"},
+        {"array", "repeat"},
+        {"polar_repeat", "repeat_polar"},
+        {"radial_repeat", "repeat_polar"},
+        {"smooth_min", "smin"},
+        {"smooth_max", "smax"},
+        {"blobs", "metaballs"},
+        {"echo", "print"},
+        {"printf", "print"},
+        {"parseFloat", "float"},
+        {"parseInt", "int"},
+        {"subtract", "difference"},
+        {"subtraction", "difference"},
+        {"intersect", "intersection"}};
+    const auto it = ours.find(name);
+    return it == ours.end() ? std::string_view() : it->second;
+}
+
+std::string_view way_from_elsewhere(std::string_view name) {
+    static const std::unordered_map<std::string_view, std::string_view> ways = {
+        {"smooth", "shapes flow together in `smooth_union(k) { … }`"},
+        {"hull", "there is no convex hull; `smooth_union(r) { … }` joins shapes, `round_cone` and "
+                 "`capsule` join two balls"},
+        {"minkowski", "there is no Minkowski sum; with a ball it is `.offset(r)`"},
+        {"polyhedron", "a convex solid is an intersection of planes: `plane(normal, offset) & …`"},
+        {"text", "there are no letters; a flat shape is made by `polygon`, `segment` and `bezier`"},
+        {"text3d", "there are no letters; a flat shape is made by `polygon` and `segment`"},
+        {"projection", "there is no projection; flat shapes are `circle`, `rectangle`, `polygon`"},
+        {"surface", "a height field is `heightfield(f, size)`"},
+        {"texture", "an image is a field: `image(\"file.png\")`, called with a vec2"},
+        {"texture2D", "an image is a field: `image(\"file.png\")`, called with a vec2"},
+        {"iResolution", "a field knows no screen: it is a function of the point alone"},
+        {"fragCoord", "a field knows no screen: it is a function of the point alone"},
+        {"gl_FragCoord", "a field knows no screen: it is a function of the point alone"},
+        {"sum", "a list is summed by `fold(list, 0, (a, b) => a + b)`"},
+        {"reduce", "a list is folded by `fold(list, first, (a, b) => …)`"},
+        {"enumerate", "write `for i in 0..len(list) { let x = list[i] … }`"},
+        {"str", "a string shows a value where it is joined to it: `\"r = \" + r`"},
+        {"String", "a string shows a value where it is joined to it: `\"r = \" + r`"},
+        {"deg", "the unit touches its number, `45deg`; a name is converted by `radians(x)`"},
+        {"rad", "an angle is in radians as it is"},
+        {"iChannel0", "an image is `image(\"file.png\")`, called with a vec2"},
+        {"pass", "an empty body is `{ }`; leave the word away"},
+        {"append", "a list is made longer by `concat(list, [x])`, which gives a new one"},
+        {"push", "a list is made longer by `concat(list, [x])`, which gives a new one"},
+        {"extend", "lists are joined by `concat(a, b)`, which gives a new one"},
+        {"forEach", "a loop runs over a list: `for x in list { … }`"},
+        {"for_each", "a loop runs over a list: `for x in list { … }`"},
+        {"colorize", "a shape is given a colour or a material by `.paint(…)`"},
+        {"colour", "a shape is given a colour or a material by `.paint(…)`"},
+        {"hue", "a colour by its hue is `hsv(h, s, v)`"},
+        {"make_shape", "a shape is made of a function of the point: `implicit(p => …)`"},
+        {"NaN", "every number has a value; where there is no limit, write `inf`"},
+        {"nan", "every number has a value; where there is no limit, write `inf`"},
+        {"Infinity", "write `inf`"},
+        {"rotateX", "write `.rotate(angle, axis: X)`"},
+        {"rotateY", "write `.rotate(angle, axis: Y)`"},
+        {"rotateZ", "write `.rotate(angle, axis: Z)`"},
+        {"rotate_x", "write `.rotate(angle, axis: X)`"},
+        {"rotate_y", "write `.rotate(angle, axis: Y)`"},
+        {"rotate_z", "write `.rotate(angle, axis: Z)`"}};
+    const auto it = ways.find(name);
+    return it == ways.end() ? std::string_view() : it->second;
+}
+
+void help_with_shape(Diagnostic &d, std::string_view name) {
+    constexpr const char *painted = "a shape is given a colour or a material by `.paint(…)`";
+    constexpr std::pair<std::string_view, std::string_view> ways[] = {
+        {"min", "shapes are united with `|`"},
+        {"max", "shapes are intersected with `&`"},
+        {"mix", "shapes are mixed by `blend(a, b, t)`"},
+        {"smoothstep", "shapes flow together in `smooth_union(r) { … }`"},
+        {"abs", "a shape's skin is `.shell(thickness)`"},
+        {"round", "`.offset(r)` rounds what is convex and grows by r; boxes have `rounded_box`"},
+        {"mod", "a shape is repeated by `.repeat(cell)`"},
+        {"fract", "a shape is repeated by `.repeat(cell)`"},
+        {"color", painted},
+        {"colour", painted},
+        {"material", painted},
+        {"texture", painted}};
+    for (const auto &[known, way] : ways)
+        if (name == known) d.help(std::string(way));
+    if (name.ends_with("_union") || name.ends_with("_intersection") ||
+        name.ends_with("_difference"))
+        d.help(fmt::format("the shapes stand in a block behind it: `{}(r) {{ … }}`", name));
+}
+
+// -- arguments -----------------------------------------------------------------------------------
+
+namespace {
+
+constexpr std::pair<std::string_view, std::string_view> argument_names[] = {
+    {"color", "diffuse"},
+    {"colour", "diffuse"},
+    {"albedo", "diffuse"},
+    {"ambient", "diffuse"},
+    {"shininess", "exponent"},
+    {"emissive", "emission"},
+    {"position", "at"},
+    {"pos", "at"},
+    {"center", "at"},
+    {"eye", "at"},
+    {"target", "look_at"},
+    {"lookat", "look_at"},
+    {"dir", "direction"},
+    {"h", "height"},
+    {"r", "radius"},
+    {"r1", "bottom"},
+    {"r2", "top"},
+    {"bottom_radius", "bottom"},
+    {"top_radius", "top"},
+    {"radius1", "major"},
+    {"radius2", "minor"},
+    {"radius", "r"},
+    {"radius", "k"},
+    {"r", "k"},
+    {"amount", "r"},
+    {"distance", "r"},
+    {"n", "sides"},
+    {"n", "count"},
+    {"count", "n"},
+    {"factor", "by"},
+    {"v", "axis"},
+    {"v", "by"},
+    {"vector", "by"},
+    {"a", "angle"},
+    {"degrees", "angle"},
+    {"faces", "sides"},
+    {"width", "size"},
+    {"dimensions", "size"},
+    {"thick", "thickness"},
+    {"width", "thickness"},
+    {"step", "cell"},
+    {"spacing", "cell"},
+    {"period", "cell"},
+    {"size", "cell"},
+    {"material", "material"},
+    {"normal", "axis"},
+    {"rounding", "radius"},
+    {"round_radius", "radius"},
+    {"length", "height"},
+    {"roundRadius", "radius"}};
+
+// What only other ways of making shapes need.
+constexpr std::array<std::string_view, 8> needless = {
+    "center", "centre", "centered", "segments", "resolution", "convexity", "slices", "fn"};
+
+bool has(std::span<const Formal> formals, std::string_view name) {
+    return std::ranges::any_of(formals, [&](const Formal &f) { return f.name == name; });
+}
+
+std::string text_of(const Evaluator &ev, Span span) { return std::string(text(ev.sources, span)); }
+
+// With parentheses where operators stand in it.
+std::string operand_text(const Evaluator &ev, Span span) {
+    const std::string s = text_of(ev, span);
+    int depth = 0;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        if (s[i] == '(' || s[i] == '[' || s[i] == '{') ++depth;
+        if (s[i] == ')' || s[i] == ']' || s[i] == '}') --depth;
+        if (depth == 0 && std::string_view("|&+-*/%^<>=?").find(s[i]) != std::string_view::npos)
+            return "(" + s + ")";
+    }
+    return s;
+}
+
+Span whole(const Argument &a) { return a.name ? join(a.name->span, a.span) : a.span; }
+
+// The argument with the comma that it needs no more.
+Span with_comma(std::span<const Argument> args, std::size_t at, Span callee) {
+    const Span own = whole(args[at]);
+    if (at > 0 && args[at - 1].span.begin >= callee.end)
+        return {own.source, args[at - 1].span.end, own.end};
+    if (at + 1 < args.size() && !args[at + 1].trailing)
+        return {own.source, own.begin, whole(args[at + 1]).begin};
+    return own;
+}
+
+// `x: 2, z: 3` of a function that takes an axis, or a vector.
+bool letters_remedy(Evaluator &ev, std::string_view function, std::span<const Formal> formals,
+                    std::span<const Argument> args, const std::vector<std::size_t> &letters,
+                    Span callee, Fix &fix) {
+    const auto letter = [&](std::size_t i) { return args[i].name->text[0]; };
+    const Argument &first = args[letters[0]];
+    std::array<std::string, 3> parts;
+    parts.fill(function == "scale" ? "1" : "0");
+    for (std::size_t i : letters) parts[std::size_t(letter(i) - 'x')] = text_of(ev, args[i].span);
+    std::string vector = "[" + parts[0] + ", " + parts[1] + ", " + parts[2] + "]";
+    const auto named = [&](const Argument &a) {
+        return a.name && (a.name->text == "angle" || a.name->text == "axis");
+    };
+    const bool turns = has(formals, "angle") && has(formals, "axis");
+    if (turns && std::ranges::any_of(args, named)) return false;
+    if (turns && letters.size() == 1) {
+        const std::string axis(1, static_cast<char>(letter(letters[0]) - 'x' + 'X'));
+        const std::string value = text_of(ev, first.span) + ", axis: " + axis;
+        fix = {fmt::format("write `{}({})`", function, value), {{whole(first), value}}};
+        return true;
+    }
+    if (turns) fix.edits.push_back({callee, "rotate_euler"});
+    const auto taken = std::ranges::find_if(formals, [](const Formal &f) {
+        return f.vector_size > 0 && f.name != "axis" && f.name != "towards";
+    });
+    if (!turns && taken == formals.end()) return false;
+    if (!turns && taken->vector_size == 2) vector = "[" + parts[0] + ", " + parts[1] + "]";
+    fix.message = fmt::format("write `{}({})`", turns ? "rotate_euler" : function, vector);
+    fix.edits.push_back({whole(first), vector});
+    for (std::size_t i = 1; i < letters.size(); ++i)
+        fix.edits.push_back({with_comma(args, letters[i], callee), ""});
+    return true;
+}
+
+std::string our_argument(std::string_view theirs, std::span<const Formal> formals) {
+    for (const auto &[elsewhere, ours] : argument_names)
+        if (elsewhere == theirs && has(formals, ours)) return std::string(ours);
+    std::vector<std::string> names;
+    for (const Formal &f : formals)
+        if (f.name[0] != '_') names.emplace_back(f.name);
+    const std::string near = nearest_name(theirs, names);
+    return near.empty() ? shortest_begun_by(theirs, names) : near; // `r` for `radius`
+}
+
+} // namespace
+
+Fix remedy_of_arguments(Evaluator &ev, std::string_view function, std::span<const Formal> formals,
+                        std::span<const Argument> args, const std::vector<std::size_t> &unknown,
+                        Span callee) {
+    Fix fix;
+    std::vector<std::size_t> letters, others;
+    for (std::size_t i : unknown) {
+        const std::string &name = args[i].name->text;
+        const bool is_letter = name == "x" || name == "y" || name == "z";
+        (is_letter ? letters : others).push_back(i);
+    }
+    std::vector<std::string> proposed; // each of our arguments once
+    const auto is_free = [&](std::string_view ours) {
+        return std::ranges::find(proposed, ours) == proposed.end() &&
+               std::ranges::none_of(
+                   args, [&](const Argument &b) { return b.name && b.name->text == ours; });
+    };
+    if (!letters.empty() && !letters_remedy(ev, function, formals, args, letters, callee, fix))
+        others.insert(others.begin(), letters.begin(), letters.end());
+    const auto say = [&](std::string help) {
+        fix.message += fix.message.empty() ? help : "; " + help;
+    };
+    for (std::size_t i : others) {
+        const Argument &a = args[i];
+        const std::string &name = a.name->text;
+        const bool diameter = name == "d" || name == "diameter" || name == "dia";
+        if (std::ranges::find(needless, name) != needless.end() && !has(formals, "at")) {
+            say(fmt::format("shapes are centred and smooth: leave `{}` away", name));
+            fix.edits.push_back({with_comma(args, i, callee), ""});
+        } else if (diameter && has(formals, "radius") && is_free("radius")) {
+            proposed.emplace_back("radius");
+            const std::string value = operand_text(ev, a.span) + " / 2";
+            say(fmt::format("write `radius: {}`", value));
+            fix.edits.push_back({a.name->span, "radius"});
+            fix.edits.push_back({a.span, value});
+        } else if ((name == "r1" || name == "r2") && has(formals, "radius")) {
+            if (name == "r2" && fix.message.find("capped_cone") != std::string::npos) continue;
+            say("a cone without its tip is `capped_cone(bottom: …, top: …, height: …)`");
+        } else if (name == "within" && function != "within") {
+            say("a region stands behind the whole: `.within(ball(3))`");
+        } else if (const std::string ours = our_argument(name, formals);
+                   !ours.empty() && is_free(ours)) {
+            proposed.push_back(ours);
+            say(others.size() == 1 ? fmt::format("did you mean `{}`?", ours)
+                                   : fmt::format("write `{}` for `{}`", ours, name));
+            fix.edits.push_back({a.name->span, ours});
+        }
+    }
+    return fix;
+}
+
+// -- the order of arguments ----------------------------------------------------------------------
+
+Fix remedy_of_duplicate(Evaluator &ev, std::string_view function, std::span<const Argument> args,
+                        const Argument &named, Span call) {
+    std::string list = text_of(ev, named.span);
+    for (const Argument &a : args) {
+        if (a.trailing) return {};
+        if (&a != &named) list += ", " + text_of(ev, whole(a));
+    }
+    const std::string written = fmt::format("{}({})", function, list);
+    if (written.find('\n') != std::string::npos) return {};
+    return {fmt::format("`{}` stands first: `{}`", named.name->text, written), {{call, written}}};
+}
+
+Fix remedy_of_row(std::span<const Argument> row, int vector_size) {
+    Fix fix{"a vector is written in brackets: `[x, y, z]`", {}};
+    if (static_cast<int>(row.size()) != vector_size) return fix;
+    const Span first = row.front().span, last = row.back().span;
+    fix.edits = {{{first.source, first.begin, first.begin}, "["},
+                 {{last.source, last.end, last.end}, "]"}};
+    return fix;
+}
+
+bool shape_out_of_place(Evaluator &ev, std::string_view name, const lang::Function &function,
+                        std::span<const Formal> formals, std::span<const Argument> args,
+                        Span call) {
+    if (args.size() < 2 || function.parameters.empty() || !function.parameters[0].type ||
+        std::ranges::any_of(args,
+                            [](const Argument &a) { return a.trailing || is_poison(a.value); }))
+        return false;
+    using lang::TypeName;
+    const lang::TypeExpr &type = *function.parameters[0].type;
+    const bool takes_shape = type.kind == lang::TypeExpr::Kind::Name &&
+                             (type.named == TypeName::Shape || type.named == TypeName::Shape2 ||
+                              type.named == TypeName::AnyShape);
+    const auto is_shape = [](const Argument &a) { return a.value.kind == ValueKind::Shape; };
+    const auto join_others = [&](const Argument &moved) {
+        std::string list;
+        for (const Argument &a : args)
+            if (&a != &moved) list += (list.empty() ? "" : ", ") + text_of(ev, whole(a));
+        return list;
+    };
+    const auto say = [&](std::string message, std::string written) {
+        Diagnostic &d = report(ev, Code::TypeMismatch, args[0].span, std::move(message));
+        if (written.find('\n') == std::string::npos)
+            d.help(fmt::format("write `{}`", written), {{call, written}});
+        return true;
+    };
+    if (takes_shape && !args[0].name && !is_shape(args[0])) {
+        const auto shape = std::ranges::find_if(args, is_shape);
+        if (shape == args.end() || shape->name) return false;
+        return say(
+            fmt::format("the shape stands first, before what `{}` does to it", name),
+            fmt::format("{}.{}({})", operand_text(ev, shape->span), name, join_others(*shape)));
+    }
+    if (formals.back().takes_rest && type.named == TypeName::Float && !args[0].name &&
+        is_shape(args[0])) {
+        const auto number = std::ranges::find_if(
+            args, [&](const Argument &a) { return !a.name && is_scalar(ev, a.value); });
+        if (number == args.end()) return false;
+        return say(
+            fmt::format("`{}` of `{}` stands first, before the shapes", formals[0].name, name),
+            fmt::format("{}({}, {})", name, text_of(ev, number->span), join_others(*number)));
+    }
+    return false;
+}
+
+// -- values --------------------------------------------------------------------------------------
+
+void help_with_value(Evaluator &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,
+                     Span place) {
+    using lang::TypeName;
+    if (!place.source || is_library_place(ev, place)) {
+        if (v.kind == ValueKind::String && wanted == TypeName::Color)
+            d.help("colours are written without quotes: `red`, `#ff0000`");
+        return;
+    }
+    const std::string written = text_of(ev, place);
+    const bool list = written.starts_with('[') && written.ends_with(']');
+    if (wanted == TypeName::Vec3 && list && is_numeric(v) && numeric_type(ev, v) == ir::Type::Vec2)
+        d.help("a vec3 has three parts", {{{place.source, place.end - 1, place.end - 1}, ", 0"}});
+    if (wanted == TypeName::Float && is_function(v))
+        d.help(ev.in_field > 0 ? "a function gives a number where it is called: `f(p)`"
+                               : "a function gives a number where it is called, `f(x)`; a shape is "
+                                 "made of a function of the point by `implicit(f, within: …)`");
+    if (v.kind != ValueKind::String || !written.starts_with('"')) return;
+    const std::string &inside = ev.strings[v.id];
+    if ((wanted == TypeName::Float || wanted == TypeName::Int) && parse_number(inside))
+        d.help("a number is written without quotes", {{place, inside}});
+    const bool known = look_up(ev, ev.prelude_frame, intern(ev, inside)).has_value();
+    if (wanted == TypeName::Color || wanted == TypeName::Material)
+        d.help("colours are written without quotes: `red`, `#ff0000`",
+               known ? std::vector<Edit>{{place, inside}} : std::vector<Edit>{});
+}
+
+// -- bodies ----------------------------------------------------------------------------------------
+
+bool report_unfinished(Evaluator &ev, const Closure &c, const lang::Function &f,
+                       std::string_view name) {
+    if (c.ast->blocks[f.body].stmts.empty()) return false;
+    const lang::Stmt &last = c.ast->blocks[f.body].stmts.back();
+    const auto say = [&](std::string_view what, std::string help, Edit edit) {
+        report(ev, Code::MissingValue, last.span,
+               fmt::format("{} ends with {}, and so has no value",
+                           f.name ? fmt::format("`{}`", name) : "this function", what))
+            .help(std::move(help), {std::move(edit)});
+        return true;
+    };
+    const auto without_head = [&](lang::ExprId value) {
+        return Edit{{last.span.source, last.span.begin, c.ast->exprs[value].span.begin}, ""};
+    };
+    if (auto *l = std::get_if<lang::Let>(&last.kind))
+        return say(
+            "a `let`",
+            fmt::format("leave `let {} =` away: the last expression is the value", l->name.text),
+            without_head(l->value));
+    if (auto *v = std::get_if<lang::Var>(&last.kind))
+        return say(
+            "a `var`",
+            fmt::format("leave `var {} =` away: the last expression is the value", v->name.text),
+            without_head(v->value));
+    if (auto *a = std::get_if<lang::Assign>(&last.kind)) {
+        lang::ExprId target = a->target;
+        while (true) {
+            const lang::ExprKind &kind = c.ast->exprs[target].kind;
+            if (auto *m = std::get_if<lang::Member>(&kind))
+                target = m->object;
+            else if (auto *i = std::get_if<lang::Index>(&kind))
+                target = i->object;
+            else
+                break;
+        }
+        const std::string variable(text(ev.sources, c.ast->exprs[target].span));
+        return say("an assignment", fmt::format("end it with the value: `{}`", variable),
+                   {{last.span.source, last.span.end, last.span.end}, "; " + variable});
+    }
+    return false;
+}
+
+} // namespace fathom::typecheck
