@@ -256,6 +256,7 @@ TEST_CASE("a number in every numeric place is refused there, or means something"
          typecheck::library_entries(driver::standard_library())) {
         INFO(e.name);
         CHECK((asked.count(e.name) == 1 || e.signature.find('(') == std::string::npos));
+        CHECK(!e.doc.empty());
     }
     int asked_texts = 0;
     for (const Entry &e : entries) {

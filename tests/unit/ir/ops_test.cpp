@@ -36,6 +36,40 @@ TEST_CASE("an op's spellings name each of its arguments") {
     }
 }
 
+TEST_CASE("an op with a value of its own has spellings, but for those that need the payload") {
+    constexpr OpSet bound{
+#define FATHOM_BOUND(name, ...) Op::name,
+#include "ir/ops.def"
+    };
+    constexpr OpSet by_payload{Op::Splat, Op::Make, Op::Swizzle, Op::Column, Op::Blend};
+    for (std::size_t k = 0; k < op_count; ++k) {
+        const Op op = static_cast<Op>(k);
+        INFO(info(op).name);
+        if (bound[op] || by_payload[op]) continue;
+        CHECK(*info(op).text);
+        CHECK((*info(op).glsl || op == Op::Union || op == Op::Intersection));
+    }
+}
+
+TEST_CASE("what takes long takes an op's weight in a shader") {
+    struct Row {
+        Op op;
+        double cost;
+    };
+    constexpr double simple = 1, division = 3, curve = 12, size = 1, count = 1; // in simple ones
+    const Row rows[] = {
+#define FATHOM_OP(name, arity, rule, glsl, text, weight, cost, ...) {Op::name, cost},
+#include "ir/ops.def"
+    };
+    for (const Row &row : rows) {
+        const OpInfo &op = info(row.op);
+        INFO(op.name);
+        if (op.takes != Takes::Own && row.op != Op::Neg) CHECK(op.weight >= 1);
+        if (row.cost >= division) CHECK(op.weight >= 3);
+        if (row.cost >= curve) CHECK(op.weight >= 5);
+    }
+}
+
 TEST_CASE("an op costs what its column says, by component where it is by component") {
     Graph g;
     const auto own = [&](NodeId id) { // without what it is made of
