@@ -252,11 +252,15 @@ TEST_CASE("a number in every numeric place is refused there, or means something"
     entries.insert(entries.end(), more.begin(), more.end());
     std::set<std::string> asked;
     for (const Entry &e : entries) asked.insert(e.name);
-    for (const typecheck::LibraryEntry &e :
-         typecheck::library_entries(driver::standard_library())) {
+    const auto library = typecheck::library_entries(driver::standard_library());
+    std::set<std::string> documented; // an overload may stand below the one that says it
+    for (const typecheck::LibraryEntry &e : library)
+        if (!e.doc.empty()) documented.insert(e.name);
+    for (const typecheck::LibraryEntry &e : library) {
         INFO(e.name);
-        CHECK((asked.count(e.name) == 1 || e.signature.find('(') == std::string::npos));
-        CHECK(!e.doc.empty());
+        const bool constant = e.signature.find('(') == std::string::npos;
+        CHECK((constant || asked.count(e.name) == 1));
+        CHECK((constant || documented.count(e.name) == 1));
     }
     int asked_texts = 0;
     for (const Entry &e : entries) {
