@@ -152,8 +152,9 @@ std::variant<std::string, EditError> save_file_with_camera(const std::string &ya
     if (!compilation.good()) return EditError{first_error(compilation.diagnostics)};
     Diagnostics writing;
     std::string text = save::export_yaml(compilation.scene, writing);
-    if (const auto remarks = writing.sorted(); !remarks.empty())
-        return EditError{"the save format has no place for all of it: " + remarks[0].message};
+    for (const Diagnostic &remark : writing.sorted()) // a note says what is kept under labels
+        if (remark.severity != Severity::Note)
+            return EditError{"the save format has no place for all of it: " + remark.message};
     return text;
 }
 
