@@ -14,14 +14,21 @@ leading = re.compile(r"([-+*#>|]|#+|\d+[.)])$")
 
 
 def words_of(text):
-    """Split at spaces outside of backticks."""
-    return [w.replace("\0", " ") for w in re.sub(r"`[^`]*`", lambda m: m.group().replace(" ", "\0"), text).split()]
+    """Split at spaces outside of backticks, where a line may break."""
+    words = []
+    for word in re.sub(r"`[^`]*`", lambda m: m.group().replace(" ", "\0"), text).split():
+        word = word.replace("\0", " ")
+        if words and leading.match(word):
+            words[-1] += " " + word  # stays behind the word before it
+        else:
+            words.append(word)
+    return words
 
 
 def filled(text, first, rest):
     lines, line, empty = [], first, True
     for word in words_of(text):
-        if not empty and len(line) + 1 + len(word) > width and not leading.match(word):
+        if not empty and len(line) + 1 + len(word) > width:
             lines.append(line)
             line, empty = rest, True
         line += word if empty else " " + word
