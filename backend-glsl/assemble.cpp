@@ -2,7 +2,7 @@
 
 #include "backend-glsl/helpers.h"
 #include "backend-glsl/template.h"
-#include "ir/look.h"
+#include "ir/shading.h"
 
 #include <algorithm>
 
@@ -21,7 +21,7 @@ class Assembler {
     explicit Assembler(Module &module)
         : module_(module), scene_(module.scene), graph_(module.scene.graph) {}
 
-    SceneText run(bool with_looks) {
+    SceneText run(bool with_shading) {
         std::vector<NodeId> roots;
         const auto want = [&](NodeId id) {
             if (id) roots.push_back(id);
@@ -34,7 +34,7 @@ class Assembler {
         const std::string hit =
             module_.options.part_stride > 0 ? "fathom_marked_hit" : "fathom_hit";
         want_function(scene_.distance, module_.around ? "fathom_all" : "sdf");
-        if (!module_.options.field_only) want_function(scene_.reach, "fathom_reach");
+        if (!module_.options.field_only) want_function(scene_.safe_radius, "fathom_safe_radius");
         if (scene_.hit != scene_.distance)
             want_function(scene_.hit, module_.around ? "fathom_all_hit" : hit.c_str());
         if (module_.around) {
@@ -43,7 +43,7 @@ class Assembler {
         }
         for (const ir::Surface &s : scene_.surfaces)
             for (NodeId id : {s.diffuse, s.specular, s.exponent, s.emission}) want(id);
-        if (with_looks) {
+        if (with_shading) {
             want_function(scene_.background_function, "fathom_background");
             const ir::Lighting &l = scene_.lighting;
             for (NodeId id : {l.ambient, l.ambient_occlusion, l.shadow_darkness, l.soft_shadows,
@@ -62,15 +62,15 @@ class Assembler {
             functions += function(FunctionId{index}, name) + readers(index);
         if (module_.around) functions += prune_around(hit);
         if (!scene_.distance) functions += expand("empty", {});
-        std::string looks = materials();
-        if (with_looks) looks += lighting() + lights();
-        if (with_looks && !scene_.background_function) {
-            const auto &c = ir::look::background;
-            looks += expand("background", {{"COLOR", vec3_literal({c[0], c[1], c[2]})}});
+        std::string shading = materials();
+        if (with_shading) shading += lighting() + lights();
+        if (with_shading && !scene_.background_function) {
+            const auto &c = ir::shading::background;
+            shading += expand("background", {{"COLOR", vec3_literal({c[0], c[1], c[2]})}});
         }
         result_.functions =
-            expand("hit_type", {}) + helper_text(module_.helpers) + kept_inputs() + functions;
-        result_.looks = looks;
+            expand("hit_type", {}) + helper_text(module_.helpers) + cached_inputs() + functions;
+        result_.shading = shading;
         for (const auto &[index, use] : module_.tables) result_.tables += table(use);
         for (const TableUse &use : own_tables_) result_.tables += table(use);
         return std::move(result_);
@@ -92,17 +92,17 @@ class Assembler {
     }
 
   private:
-    std::string kept_inputs() const {
-        std::vector<KeptText> fields;
-        for (const auto &[id, field] : module_.kept) fields.push_back(field);
+    std::string cached_inputs() const {
+        std::vector<CachedText> fields;
+        for (const auto &[id, field] : module_.cached) fields.push_back(field);
         return fields.empty() ? "" : cache_look_up(fields);
     }
 
-    // What reads the kept fields that this function computes.
+    // What reads the cached fields that this function computes.
     std::string readers(std::uint32_t function) const {
         std::string text;
         std::size_t number = 0;
-        for (const auto &[id, field] : module_.kept) {
+        for (const auto &[id, field] : module_.cached) {
             if (graph_.cache(ir::CacheId{id}).field.index == function)
                 text += cache_reader(field, number);
             ++number;
@@ -288,6 +288,8 @@ SceneText assemble_functions(Module &module, std::span<const FunctionId> wanted)
     return Assembler(module).run_functions(wanted);
 }
 
-SceneText assemble(Module &module, bool with_looks) { return Assembler(module).run(with_looks); }
+SceneText assemble(Module &module, bool with_shading) {
+    return Assembler(module).run(with_shading);
+}
 
 } // namespace fathom::glsl

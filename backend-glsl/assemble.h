@@ -9,7 +9,7 @@ struct SceneText {
     std::string tables;    // constants, where the data stands in the text
     std::string functions; // helpers, the scene's functions, `sdf`
     std::string
-        looks; // fathom_hit, fathom_material, fathom_lighting, fathom_light, fathom_background
+        shading; // fathom_hit, fathom_material, fathom_lighting, fathom_light, fathom_background
     bool local_normals = false;
     int lights = 0;
 };
@@ -17,7 +17,7 @@ struct SceneText {
 // Some functions of the scene and what they need, and nothing else.
 SceneText assemble_functions(Module &module, std::span<const ir::FunctionId> wanted);
 
-// `with_looks`: also what shading needs beyond the materials.
-SceneText assemble(Module &module, bool with_looks);
+// `with_shading`: also what shading needs beyond the materials.
+SceneText assemble(Module &module, bool with_shading);
 
 } // namespace fathom::glsl

@@ -1,10 +1,10 @@
 // Spells a scheduled body (schedule.h) as GLSL statements and expressions. Knows the op table's
 // spelling column and what the ops without one look like; helper functions are only named here
 // (helpers.cpp holds them).
-#include "backend-glsl/known.h"
+#include "backend-glsl/certain.h"
+#include "backend-glsl/clone_loops.h"
 #include "backend-glsl/module.h"
 #include "backend-glsl/schedule.h"
-#include "backend-glsl/unshare.h"
 
 #include <algorithm>
 #include <cassert>
@@ -97,7 +97,7 @@ class Writer {
 
     void statement(NodeId id, int indent) {
         const ir::Node &node = graph_[id];
-        if (node.op == Op::Fold) return loop(id, indent);
+        if (node.op == Op::Loop) return loop(id, indent);
         const std::string type = glsl_type(node.type);
         if (auto arms = plan_.arms.find(id); arms != plan_.arms.end()) {
             const std::string name = names_.numbered(prefix_of(node.type));
@@ -175,82 +175,82 @@ class Writer {
     }
 
     void loop(NodeId id, int indent) {
-        const ir::Fold &fold = graph_.fold(ir::FoldId{graph_[id].payload});
-        for (std::size_t k = 0; k < fold.vars.size(); ++k) {
-            const Type type = graph_[fold.vars[k]].type;
+        const ir::Loop &loop = graph_.loop(ir::LoopId{graph_[id].payload});
+        for (std::size_t k = 0; k < loop.vars.size(); ++k) {
+            const Type type = graph_[loop.vars[k]].type;
             const std::string start = value(graph_.args(id)[k]);
             const std::string name = names_.numbered(prefix_of(type));
             line(indent, std::string(glsl_type(type)) + " " + name + " = " + start + ";");
-            name_[fold.vars[k]] = name;
+            name_[loop.vars[k]] = name;
         }
         const std::string i = names_.numbered('i');
-        const int stride = turns_together(fold);
+        const int stride = iterations_together(loop);
         std::string turn_end; // a turn's last line, of turns too many
         if (const auto pruned = module_.pruned.find(graph_[id].payload);
             pruned != module_.pruned.end()) {
-            turn_end = listed_loop(pruned->second, fold, i, indent);
+            turn_end = listed_loop(pruned->second, loop, i, indent);
         } else if (stride == 0) {
-            turn_end = filled_loop(fold, i, indent);
+            turn_end = filled_loop(loop, i, indent);
         } else if (stride > 1) {
             const std::string group = names_.numbered('i'), turn = names_.numbered('i');
             line(indent, "for (int " + group + " = 0; " + group + " < " +
-                             expression(fold.count).text + "; " + group +
+                             expression(loop.count).text + "; " + group +
                              " += " + std::to_string(stride) + ") for (int " + turn + " = 0; " +
                              turn + " < " + std::to_string(stride) + "; ++" + turn + ") {");
             line(indent + 1, "int " + i + " = " + group + " + " + turn + ";");
         } else {
             line(indent, "for (int " + i + " = 0; " + i + " < " +
-                             at_least(expression(fold.count), Sum) + "; ++" + i + ") {");
+                             at_least(expression(loop.count), Sum) + "; ++" + i + ") {");
         }
-        name_[fold.index] = i;
+        name_[loop.index] = i;
 
         // What the condition needs comes first, then the way out, then the rest.
         const auto &all = plan_.blocks[static_cast<std::size_t>(plan_.loop.at(id))].statements;
         std::vector<NodeId> before, after;
-        if (fold.condition) {
+        if (loop.condition) {
             std::unordered_map<NodeId, bool> known;
-            for (NodeId s : all) (needs(fold.condition, s, known) ? before : after).push_back(s);
+            for (NodeId s : all) (needs(loop.condition, s, known) ? before : after).push_back(s);
             statements(before, indent + 1);
-            line(indent + 1, "if (!" + at_least(expression(fold.condition), Primary) + ") break;");
+            line(indent + 1, "if (!" + at_least(expression(loop.condition), Primary) + ") break;");
             statements(after, indent + 1);
         } else {
             statements(all, indent + 1);
         }
 
-        // All next values are of the old ones: a value that a later line still reads is kept aside.
+        // All next values are of the old ones: a value that a later line still reads is put aside.
         std::vector<std::pair<std::string, std::string>> moves;
-        for (std::size_t k = 0; k < fold.vars.size(); ++k) {
-            if (fold.next[k] == fold.vars[k]) continue;
-            const std::string &target = name_[fold.vars[k]];
+        for (std::size_t k = 0; k < loop.vars.size(); ++k) {
+            if (loop.next[k] == loop.vars[k]) continue;
+            const std::string &target = name_[loop.vars[k]];
             bool read_later = false;
-            for (std::size_t j = k + 1; j < fold.vars.size(); ++j)
-                read_later |= mentions(fold.next[j], fold.vars[k]);
+            for (std::size_t j = k + 1; j < loop.vars.size(); ++j)
+                read_later |= mentions(loop.next[j], loop.vars[k]);
             if (!read_later) {
-                assign(indent + 1, target, fold.next[k]);
+                assign(indent + 1, target, loop.next[k]);
                 continue;
             }
-            const std::string name = names_.numbered(prefix_of(graph_[fold.vars[k]].type));
-            line(indent + 1, std::string(glsl_type(graph_[fold.vars[k]].type)) + " " + name +
-                                 " = " + value(fold.next[k]) + ";");
+            const std::string name = names_.numbered(prefix_of(graph_[loop.vars[k]].type));
+            line(indent + 1, std::string(glsl_type(graph_[loop.vars[k]].type)) + " " + name +
+                                 " = " + value(loop.next[k]) + ";");
             moves.emplace_back(target, name);
         }
         for (const auto &[target, name] : moves) line(indent + 1, target + " = " + name + ";");
         if (!turn_end.empty()) line(indent + 1, turn_end);
         line(indent, "}");
-        name_[id] = name_[fold.vars[0]];
+        name_[id] = name_[loop.vars[0]];
     }
 
     // The head of a loop in groups that do not fill it; what the last group's turns compute beyond
     // the end is taken back, by the line handed back.
-    std::string filled_loop(const ir::Fold &fold, const std::string &i, int indent) {
+    std::string filled_loop(const ir::Loop &loop, const std::string &i, int indent) {
         const std::string group = names_.numbered('i'), turn = names_.numbered('i'),
-                          &carried = name_[fold.vars[0]],
-                          count = at_least(expression(fold.count), Primary);
-        const Type type = graph_[fold.vars[0]].type;
+                          &carried = name_[loop.vars[0]],
+                          count = at_least(expression(loop.count), Primary);
+        const Type type = graph_[loop.vars[0]].type;
         const std::string before = names_.numbered(prefix_of(type));
         line(indent, "for (int " + group + " = 0; " + group + " < " + count + "; " + group +
-                         " += " + std::to_string(most_together) + ") for (int " + turn + " = 0; " +
-                         turn + " < " + std::to_string(most_together) + "; ++" + turn + ") {");
+                         " += " + std::to_string(max_together) + ") for (int " + turn + " = 0; " +
+                         turn + " < " + std::to_string(max_together) + "; ++" + turn + ") {");
         line(indent + 1, "int " + i + " = min(" + group + " + " + turn + ", " + count + " - 1);");
         line(indent + 1, std::string(glsl_type(type)) + " " + before + " = " + carried + ";");
         return "if (" + group + " + " + turn + " >= " + count + ") " + carried + " = " + before +
@@ -258,11 +258,11 @@ class Writer {
     }
 
     // The same over the rows of a cell's list.
-    std::string listed_loop(const PrunePlan::Use &use, const ir::Fold &fold, const std::string &i,
+    std::string listed_loop(const PrunePlan::Use &use, const ir::Loop &loop, const std::string &i,
                             int indent) {
         const std::string list = names_.numbered('n'), group = names_.numbered('i'),
-                          turn = names_.numbered('i'), &carried = name_[fold.vars[0]];
-        const Type type = graph_[fold.vars[0]].type;
+                          turn = names_.numbered('i'), &carried = name_[loop.vars[0]];
+        const Type type = graph_[loop.vars[0]].type;
         const std::string before = names_.numbered(prefix_of(type));
         line(indent, "uvec2 " + list + " = fathom_list(" + value(use.point) + ", " +
                          std::to_string(use.grid) + ", " + std::to_string(use.rows) + "u);");
@@ -278,15 +278,15 @@ class Writer {
 
     // A long loop runs in groups of a few turns. Drivers write such a short inner loop out, which
     // is faster, and keeps within the 65,536 turns, of all loops together, after which Mesa's
-    // llvmpipe ends a shader. 1: no groups; 0: groups of most_together that do not fill the loop,
+    // llvmpipe ends a shader. 1: no groups; 0: groups of max_together that do not fill the loop,
     // where no large ones do.
-    static constexpr int most_together = 8;
-    int turns_together(const ir::Fold &fold) const {
-        const auto count = graph_.as_number(fold.count);
-        if (!count || fold.condition || *count < 32) return 1;
-        int stride = most_together;
+    static constexpr int max_together = 8;
+    int iterations_together(const ir::Loop &loop) const {
+        const auto count = graph_.as_number(loop.count);
+        if (!count || loop.condition || *count < 32) return 1;
+        int stride = max_together;
         while (static_cast<int>(*count) % stride != 0) --stride;
-        return stride < most_together / 2 && fold.vars.size() == 1 ? 0 : stride;
+        return stride < max_together / 2 && loop.vars.size() == 1 ? 0 : stride;
     }
 
     // Whether `root` reads statement `s` (itself, or through other nodes of the same loop).
@@ -303,10 +303,10 @@ class Writer {
         if (!fresh) return entry->second;
         bool found = false;
         for (NodeId arg : graph_.args(from)) found = found || reaches(arg, to, known);
-        if (graph_[from].op == Op::Fold) {
-            const ir::Fold &fold = graph_.fold(ir::FoldId{graph_[from].payload});
-            found = found || reaches(fold.count, to, known) || reaches(fold.condition, to, known);
-            for (NodeId next : fold.next) found = found || reaches(next, to, known);
+        if (graph_[from].op == Op::Loop) {
+            const ir::Loop &loop = graph_.loop(ir::LoopId{graph_[from].payload});
+            found = found || reaches(loop.count, to, known) || reaches(loop.condition, to, known);
+            for (NodeId next : loop.next) found = found || reaches(next, to, known);
         }
         return known[from] = found;
     }
@@ -408,13 +408,13 @@ class Writer {
         case Op::Call: return {module_.functions.at(node.payload) + "(" + list(id) + ")", Primary};
         case Op::Cached: {
             const auto field = graph_.cache(ir::CacheId{node.payload}).field;
-            const char *kept = module_.kept.contains(node.payload) ? "_kept(" : "(";
-            return {module_.functions.at(field.index) + kept + list(id) + ")", Primary};
+            const char *cached = module_.cached.contains(node.payload) ? "_cached(" : "(";
+            return {module_.functions.at(field.index) + cached + list(id) + ")", Primary};
         }
-        case Op::Fold: return {name_.at(id), Primary};
-        case Op::FoldResult: {
-            const ir::Fold &fold = graph_.fold(ir::FoldId{graph_[arg(0)].payload});
-            return {name_.at(fold.vars[node.payload]), Primary};
+        case Op::Loop: return {name_.at(id), Primary};
+        case Op::LoopResult: {
+            const ir::Loop &loop = graph_.loop(ir::LoopId{graph_[arg(0)].payload});
+            return {name_.at(loop.vars[node.payload]), Primary};
         }
         case Op::Union:
         case Op::Intersection:
@@ -632,7 +632,7 @@ class Writer {
     Module &module_;
     const ir::Graph &graph_;
     Schedule plan_;
-    Known known_;
+    Certain known_;
     Names names_;
     std::unordered_map<NodeId, std::string> name_;
     std::string out_;
@@ -641,7 +641,7 @@ class Writer {
 } // namespace
 
 Body body(Module &module, std::span<Bound> bound, std::span<const NodeId> roots) {
-    const std::optional<Unshared> apart = unshare(module.scene.graph, roots);
+    const std::optional<ClonedLoops> apart = clone_shared_loops(module.scene.graph, roots);
     if (apart) roots = apart->roots;
     Writer writer(module, apart ? apart->graph : module.scene.graph, bound, roots);
     writer.block(0, 1);

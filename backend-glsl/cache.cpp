@@ -1,4 +1,4 @@
-// What a picture's shader reads kept fields by; see cache.h.
+// What a picture's shader reads cached fields by; see cache.h.
 #include "backend-glsl/cache_text.h"
 #include "backend-glsl/module.h"
 #include "backend-glsl/template.h"
@@ -14,15 +14,15 @@ const char *components_of(ir::Type type) {
 
 } // namespace
 
-std::string cache_look_up(std::span<const KeptText> fields) {
+std::string cache_look_up(std::span<const CachedText> fields) {
     Values values = cache_numbers();
     values["COUNT"] = std::to_string(fields.size());
     return expand("cache_look_up", values);
 }
 
-std::string cache_reader(const KeptText &field, std::size_t number) {
+std::string cache_reader(const CachedText &field, std::size_t number) {
     return expand("cache_reader", {{"TYPE", glsl_type(field.type)},
-                                   {"READER", field.function + "_kept"},
+                                   {"READER", field.function + "_cached"},
                                    {"FUNCTION", field.function},
                                    {"CELL", float_literal(field.cell)},
                                    {"NUMBER", std::to_string(number)},

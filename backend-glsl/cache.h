@@ -1,5 +1,5 @@
 // The noise cache in GLSL (thesis, 7.2 and 7.3; docs/noise-cache.md): the look-up that a picture's
-// shader reads kept fields by, and the passes that reserve places, fill them and give them up.
+// shader reads cached fields by, and the passes that reserve places, fill them and give them up.
 // Knows fields by number, cell and the name of the function that computes them, nothing of scenes;
 // calls no GL.
 //
@@ -73,25 +73,25 @@ enum class Count {
     Total
 };
 
-struct KeptText {
+struct CachedText {
     std::string function; // what computes it
     ir::Type type = ir::Type::Float;
     double cell = 1, slope = 0;
 };
 
-// A picture's text stands for three: with `cache_defined` as a macro it reads kept values alone,
+// A picture's text stands for three: with `cache_defined` as a macro it reads cached values alone,
 // counts and says by its depth, 0 or 1, whether the pixel is finished, and where its march first
 // asked for a value; without it computes every field. With `cache_learns` it computes, too, from
 // there on, and asks for some of the cells that it would have read.
 constexpr const char *cache_defined = "FATHOM_CACHE", *cache_learns = "FATHOM_CACHE_LEARN";
 // What fathom_counted says of a pixel beside its hits, in its two lowest bits; above them its
 // steps.
-enum class PixelState { Finished, Missed, Computed }; // Computed: what it wants cannot be kept
-std::string cache_look_up(std::span<const KeptText> fields); // inputs, state and fathom_kept
-std::string cache_reader(const KeptText &field, std::size_t number); // FUNCTION_kept(vec3)
+enum class PixelState { Finished, Missed, Computed }; // Computed: what it wants cannot be cached
+std::string cache_look_up(std::span<const CachedText> fields); // inputs, state and fathom_cached
+std::string cache_reader(const CachedText &field, std::size_t number); // FUNCTION_cached(vec3)
 std::string with_cache(const std::string &text, const char *defined = cache_defined);
-std::string cache_fill(std::span<const KeptText> fields); // follows the fields' own functions
-std::string cache_reserve();                              // whole texts
+std::string cache_fill(std::span<const CachedText> fields); // follows the fields' own functions
+std::string cache_reserve();                                // whole texts
 std::string cache_sweep();
 std::string cache_publish();
 std::string cache_tint();

@@ -13,12 +13,12 @@
 
 namespace fathom::glsl {
 
-std::string cache_fill(std::span<const KeptText> fields) {
+std::string cache_fill(std::span<const CachedText> fields) {
     Values values = cache_numbers();
     values["COUNT"] = std::to_string(fields.size());
     std::string cases, cells, slopes, wide;
     for (std::size_t i = 0; i < fields.size(); ++i) {
-        const KeptText &field = fields[i];
+        const CachedText &field = fields[i];
         const char *rest = field.type == ir::Type::Float  ? ", 0.0, 0.0, 0.0"
                            : field.type == ir::Type::Vec3 ? ", 0.0"
                                                           : "";

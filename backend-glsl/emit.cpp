@@ -6,7 +6,7 @@
 #include "backend-glsl/inputs.h"
 #include "backend-glsl/picture.h"
 #include "backend-glsl/prune.h"
-#include "backend-glsl/roll.h"
+#include "backend-glsl/reroll.h"
 
 #include <cmath>
 
@@ -16,7 +16,7 @@ namespace {
 
 class Emitter {
   public:
-    Emitter(const ir::Scene &scene, const std::optional<Rolled> &loops, const Options &options,
+    Emitter(const ir::Scene &scene, const std::optional<Rerolled> &loops, const Options &options,
             Diagnostics &diagnostics)
         : scene_(loops ? loops->scene : scene), options_(options),
           diagnostics_(diagnostics), module_{scene_, options} {
@@ -31,7 +31,7 @@ class Emitter {
 
     void use(const PrunePlan &plan) { module_.pruned = plan.loops; }
     void use_far_cells() { module_.far_cells = true; }
-    void ask_less_outside() { module_.around = static_cast<bool>(scene_.endless); }
+    void split_endless_parts() { module_.around = static_cast<bool>(scene_.endless); }
 
     // What lists the rows of one grid's cells.
     PruneKernel run_kernel(const PrunedLoop &loop) {
@@ -68,16 +68,16 @@ class Emitter {
         std::vector<ir::FunctionId> fields;
         for (std::uint32_t id : caches) fields.push_back(scene_.graph.cache(ir::CacheId{id}).field);
         const SceneText scene = assemble_functions(module_, fields);
-        std::vector<KeptText> kept;
+        std::vector<CachedText> cached;
         for (std::size_t i = 0; i < caches.size(); ++i)
-            kept.push_back({module_.functions.at(fields[i].index),
-                            scene_.graph[scene_.graph.function(fields[i]).result].type,
-                            scene_.graph.cache(ir::CacheId{caches[i]}).cell,
-                            scene_.caches[caches[i]].slope});
+            cached.push_back({module_.functions.at(fields[i].index),
+                              scene_.graph[scene_.graph.function(fields[i]).result].type,
+                              scene_.graph.cache(ir::CacheId{caches[i]}).cell,
+                              scene_.caches[caches[i]].slope});
         Output output = gathered();
         output.text = "#version 420 core\n" + written_by(options_) + "\n" +
                       Inputs(module_).of_field() + scene.tables + scene.functions +
-                      cache_fill(kept);
+                      cache_fill(cached);
         if (!check(output.text, output)) return {};
         return output;
     }
@@ -86,7 +86,7 @@ class Emitter {
         const SceneText scene =
             assemble(module_, !options_.field_only && options_.instruments != Instruments::Probe);
         Output output = gathered();
-        for (const auto &[id, field] : module_.kept) output.kept.push_back(kept_field(id));
+        for (const auto &[id, field] : module_.cached) output.cached.push_back(cached_field(id));
         const TargetTraits &target = traits_of(options_.target);
         if ((!module_.images.empty() || !module_.grids.empty()) && !target.samplers) {
             diagnostics_.add(Code::Unsupported, {},
@@ -98,7 +98,7 @@ class Emitter {
         std::string text =
             options_.field_only ? field_text(module_, scene) : picture_text(module_, scene);
         if (!check(text, output)) return {};
-        if (!module_.kept.empty() &&
+        if (!module_.cached.empty() &&
             (!check(with_cache(text), output) || !check(with_cache(text, cache_learns), output)))
             return {};
         if (target.form == Form::Page && !options_.field_only)
@@ -122,24 +122,24 @@ class Emitter {
     }
 
     // A field's meaning is all that its own text says, and the data that the text only names.
-    KeptField kept_field(std::uint32_t id) const {
+    CachedField cached_field(std::uint32_t id) const {
         Options plain;
         Module alone{scene_, plain};
         alone.results = module_.results;
         const ir::FunctionId field = scene_.graph.cache(ir::CacheId{id}).field;
         const SceneText text = assemble_functions(alone, {&field, 1});
-        KeptField kept;
-        kept.cache = id;
-        kept.wide = module_.kept.at(id).type != ir::Type::Float;
-        kept.meaning = 14695981039346656037u; // FNV-1a, 64 bits
+        CachedField cached;
+        cached.cache = id;
+        cached.wide = module_.cached.at(id).type != ir::Type::Float;
+        cached.meaning = 14695981039346656037u; // FNV-1a, 64 bits
         const auto mix = [&](const void *data, std::size_t size) {
             for (std::size_t i = 0; i < size; ++i)
-                kept.meaning =
-                    (kept.meaning ^ static_cast<const unsigned char *>(data)[i]) * 1099511628211u;
+                cached.meaning =
+                    (cached.meaning ^ static_cast<const unsigned char *>(data)[i]) * 1099511628211u;
         };
         mix(text.tables.data(), text.tables.size());
         mix(text.functions.data(), text.functions.size());
-        mix(&module_.kept.at(id).cell, sizeof(double));
+        mix(&module_.cached.at(id).cell, sizeof(double));
         for (const auto &[index, name] : alone.images) {
             const ir::ImageData &image = scene_.images[index];
             mix(&image.width, sizeof image.width);
@@ -150,8 +150,8 @@ class Emitter {
             mix(grid.size.data(), sizeof grid.size);
             mix(grid.values.data(), grid.values.size() * sizeof(float));
         }
-        for (const auto &[index, name] : alone.params) kept.params.push_back(index);
-        return kept;
+        for (const auto &[index, name] : alone.params) cached.params.push_back(index);
+        return cached;
     }
 
     bool check(const std::string &text, Output &output, Stage stage = Stage::Fragment) {
@@ -164,7 +164,7 @@ class Emitter {
     Module module_;
 };
 
-// The box of a scene's cells: larger than its bounds by what shading looks around.
+// The box of a scene's cells: larger than its bounds by what shading samples around.
 Pruning grid_of(const ir::Scene &scene) {
     Pruning grid;
     double diagonal = 0;
@@ -184,18 +184,18 @@ Pruning grid_of(const ir::Scene &scene) {
 CachePasses emit_cache_passes(const ir::Scene &scene, const Options &options,
                               Diagnostics &diagnostics) {
     std::vector<std::uint32_t> caches;
-    for (const KeptField &field : emit(scene, options, diagnostics).kept)
+    for (const CachedField &field : emit(scene, options, diagnostics).cached)
         caches.push_back(field.cache);
     if (caches.empty()) return {};
     Options direct = options;
     direct.noise_cache = false;
-    const std::optional<Rolled> loops = rolled(scene);
+    const std::optional<Rerolled> loops = rerolled(scene);
     return {cache_reserve(), cache_publish(), cache_sweep(), cache_tint(),
             Emitter(scene, loops, direct, diagnostics).run_fields(caches)};
 }
 
 std::vector<int> prunable_rows(const ir::Scene &scene) {
-    const std::optional<Rolled> loops = rolled(scene);
+    const std::optional<Rerolled> loops = rerolled(scene);
     const auto plan = loops ? plan_pruning(loops->scene, loops->results) : plan_pruning(scene, {});
     std::vector<int> rows;
     if (plan)
@@ -204,13 +204,13 @@ std::vector<int> prunable_rows(const ir::Scene &scene) {
 }
 
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics) {
-    std::optional<Rolled> loops = rolled(scene);
-    if (loops) loops->scene.reach = {}; // it would have the lists in full
+    std::optional<Rerolled> loops = rerolled(scene);
+    if (loops) loops->scene.safe_radius = {}; // it would have the lists in full
     const std::map<std::uint32_t, ir::NodeId> results =
         loops ? loops->results : std::map<std::uint32_t, ir::NodeId>{};
     std::optional<PrunePlan> plan =
         options.pruning ? plan_pruning(loops ? loops->scene : scene, results) : std::nullopt;
-    if (plan) plan->scene.reach = {};
+    if (plan) plan->scene.safe_radius = {};
     if (!plan) return Emitter(scene, loops, options, diagnostics).run();
     Pruning pruning = grid_of(scene);
     Options direct = options;
@@ -228,7 +228,7 @@ Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnos
     if (diagnostics.has_errors()) return {};
     Emitter picture(plan->scene, results, options, diagnostics);
     picture.use(*plan);
-    if (options.far_cells) picture.ask_less_outside();
+    if (options.far_cells) picture.split_endless_parts();
     if (!pruning.far.text.empty()) picture.use_far_cells();
     Output output = picture.run();
     if (!output.text.empty()) output.pruning = std::move(pruning);

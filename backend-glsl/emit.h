@@ -59,9 +59,9 @@ struct Sampler {
 };
 
 // A field that a text with `noise_cache` reads through the cache. The host sets
-// fathom_cache_fields[i], i its place in Output::kept, to a number of its own choice below
+// fathom_cache_fields[i], i its place in Output::cached, to a number of its own choice below
 // cache_most_fields.
-struct KeptField {
+struct CachedField {
     std::uint32_t cache = 0;   // index into Graph::caches
     bool wide = false;         // vectors: its values lie in fathom_cache_wide
     std::uint64_t meaning = 0; // equal for fields that compute the same from the same params
@@ -91,7 +91,7 @@ struct Output {
     std::vector<float>
         tables; // RGBA32F texels of `fathom_tables`; empty where the text holds the data
     std::vector<Sampler> images, grids;
-    std::vector<KeptField> kept;
+    std::vector<CachedField> cached;
     Pruning pruning;
     bool reads_time = false;
 };
@@ -106,7 +106,7 @@ void note_fixed_params(const ir::Scene &scene, Target target, Diagnostics &diagn
 std::vector<int> prunable_rows(const ir::Scene &scene);
 
 // The passes that follow a picture drawn by a text with `noise_cache`. Empty where no field is
-// kept.
+// cached.
 struct CachePasses {
     std::string reserve, publish, sweep, tint; // the same for every scene
     Output fill;

@@ -1,9 +1,9 @@
-// See marcher.h. The GLSL stands in templates/; names and order follow ir/look.h, which explains.
+// See marcher.h. The GLSL stands in templates/; names and order follow ir/shading.h, which explains.
 #include "backend-glsl/marcher.h"
 
 #include "backend-glsl/module.h"
 #include "backend-glsl/template.h"
-#include "ir/look.h"
+#include "ir/shading.h"
 
 #include <cmath>
 
@@ -16,24 +16,24 @@ constexpr int check_steps_a_step = 40; // of the probe
 std::string flag(bool on) { return on ? "1" : ""; }
 
 Values values_of(const MarcherOptions &options) {
-    namespace look = ir::look;
+    namespace shading = ir::shading;
     const std::string far = "100.0 * max(" + float_literal(options.radius) +
                             ", length(fathom_origin - " + options.center + "))";
     return {
         {"BOXED", flag(options.boxed)},
         {"STEEP", flag(options.steep)},
-        {"REACHES", flag(options.reaches)},
+        {"HAS_SAFE_RADIUS", flag(options.has_safe_radius)},
         // Of a field that costs little, two copies are quicker than the loop round one.
-        {"APART", flag(options.cheap && !options.kept)},
+        {"APART", flag(options.cheap && !options.cached)},
         {"SKIP_SHADING", flag(options.skip_shading)},
         {"LOCAL_NORMALS", flag(options.local_normals)},
         {"PICK", flag(options.pick)},
-        {"KEPT", flag(options.kept)},
+        {"CACHED", flag(options.cached)},
         {"FAR_CELLS", flag(options.far_cells)},
         {"AROUND", flag(options.around)},
         {"ONE_LIGHT", flag(options.lights == 1)},
         {"NEAR", options.steep ? "near" : "d"},
-        {"AND_PRESENT", options.kept ? " && !fathom_absent" : ""},
+        {"AND_PRESENT", options.cached ? " && !fathom_absent" : ""},
         {"UNLIT", options.lights == 1 ? "return color" : "continue"},
         {"LIGHTS", std::to_string(options.lights)},
         {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
@@ -44,20 +44,20 @@ Values values_of(const MarcherOptions &options) {
         {"EPSILON", float_literal(options.epsilon)},
         {"MAX_STEPS", std::to_string(options.max_steps)},
         {"ZERO", options.zero},
-        {"FLOAT_SLACK", float_literal(look::float_slack)},
-        {"NORMAL_SLACK", float_literal(look::normal_slack)},
-        {"LEAST_SLOPE", float_literal(look::least_slope)},
-        {"RELAXATION", float_literal(look::relaxation)},
-        {"FLATTEST", float_literal(look::flattest)},
-        {"NEARER_PART", float_literal(look::nearer)},
-        {"BENT_RELAXATION", float_literal(look::bent_relaxation)},
-        {"ALL_TAPS", std::to_string(4 + look::occlusion_samples)},
-        {"OCCLUSION_TOTAL", float_literal(1 - std::ldexp(1.0, -look::occlusion_samples))},
+        {"FLOAT_SLACK", float_literal(shading::float_slack)},
+        {"NORMAL_SLACK", float_literal(shading::normal_slack)},
+        {"MIN_SLOPE", float_literal(shading::min_slope)},
+        {"RELAXATION", float_literal(shading::relaxation)},
+        {"FLATTEST", float_literal(shading::flattest)},
+        {"NEARER_PART", float_literal(shading::nearer)},
+        {"BENT_RELAXATION", float_literal(shading::bent_relaxation)},
+        {"ALL_TAPS", std::to_string(4 + shading::occlusion_samples)},
+        {"OCCLUSION_TOTAL", float_literal(1 - std::ldexp(1.0, -shading::occlusion_samples))},
         {"OCCLUSION_REACH",
-         float_literal(look::occlusion_reach * options.radius / look::occlusion_samples)},
-        {"SHADOW_STEPS", std::to_string(look::shadow_steps)},
-        {"SHADOW_BIAS", float_literal(look::shadow_bias)},
-        {"LEAST_ANGLE", float_literal(look::least_angle)},
+         float_literal(shading::occlusion_reach * options.radius / shading::occlusion_samples)},
+        {"SHADOW_STEPS", std::to_string(shading::shadow_steps)},
+        {"SHADOW_BIAS", float_literal(shading::shadow_bias)},
+        {"MIN_ANGLE", float_literal(shading::min_angle)},
         {"CHECK_STEPS", std::to_string(check_steps_a_step * options.max_steps)},
     };
 }

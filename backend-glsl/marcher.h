@@ -1,6 +1,6 @@
-// The frame code in GLSL: camera ray, march, shading, output; ir/look.h line by line. Knows the
+// The frame code in GLSL: camera ray, march, shading, output; ir/shading.h line by line. Knows the
 // scene only as the functions
-//   float sdf(vec3), where it reaches farther than its ball vec2 fathom_reach(vec3), Hit
+//   float sdf(vec3), where it has_safe_radius farther than its ball vec2 fathom_safe_radius(vec3), Hit
 //   fathom_hit(vec3), fathom_Material fathom_material(Hit, vec3 local normal), fathom_Lighting
 //   fathom_lighting(), fathom_Light fathom_light(int), vec3 fathom_background(vec3)
 // and the host as these inputs (uniforms; where a target has no host of ours, globals that its main
@@ -21,15 +21,16 @@
 namespace fathom::glsl {
 
 struct MarcherOptions {
-    bool boxed = false;   // rays live between FATHOM_LO and FATHOM_HI
-    bool steep = false;   // ir::steep
-    bool reaches = false; // the field says how far it reaches; only where it is steep
-    bool cheap = false;   // the field is a few operations
+    bool boxed = false; // rays live between FATHOM_LO and FATHOM_HI
+    bool steep = false; // ir::steep
+    bool has_safe_radius =
+        false;          // the field says how far it has_safe_radius; only where it is steep
+    bool cheap = false; // the field is a few operations
     bool skip_shading = false;
     bool local_normals = false; // some material reads its normal
     bool default_sun = false;
     bool pick = false;      // writes fathom_pick too (emit.h)
-    bool kept = false;      // some field is read through the noise cache (cache.h)
+    bool cached = false;    // some field is read through the noise cache (cache.h)
     bool far_cells = false; // rays may ask `fathom_clear` (prune.h)
     bool around = false; // outside of the cells the field may be less than the distance (prune.h)
     int lights = 0;

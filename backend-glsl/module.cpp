@@ -90,11 +90,11 @@ class Gatherer {
             const ir::Node &node = graph_[id];
             module_.hits |= node.type == Type::Hit;
             for (NodeId arg : graph_.args(id)) todo.push_back(arg);
-            if (node.op == Op::Fold) {
-                const ir::Fold &fold = graph_.fold(ir::FoldId{node.payload});
-                todo.insert(todo.end(), fold.next.begin(), fold.next.end());
-                todo.push_back(fold.condition);
-                todo.push_back(fold.count);
+            if (node.op == Op::Loop) {
+                const ir::Loop &loop = graph_.loop(ir::LoopId{node.payload});
+                todo.insert(todo.end(), loop.next.begin(), loop.next.end());
+                todo.push_back(loop.condition);
+                todo.push_back(loop.count);
             } else if (node.op == Op::Call) {
                 function(node.payload, todo);
             } else if (node.op == Op::Cached) {
@@ -136,14 +136,14 @@ class Gatherer {
     }
 
     void keep(ir::CacheId id) {
-        if (module_.kept.size() >= cache_most_fields ||
-            ir::kept(module_.scene, id) != ir::Kept::Yes)
+        if (module_.cached.size() >= cache_most_fields ||
+            ir::cached(module_.scene, id) != ir::Cacheable::Yes)
             return;
         const ir::Cache &cache = graph_.cache(id);
         const std::string &name = module_.functions.at(cache.field.index);
-        module_.names.unique(name + "_kept");
-        module_.kept[id.index] = {name, graph_[graph_.function(cache.field).result].type,
-                                  cache.cell, module_.scene.caches[id.index].slope};
+        module_.names.unique(name + "_cached");
+        module_.cached[id.index] = {name, graph_[graph_.function(cache.field).result].type,
+                                    cache.cell, module_.scene.caches[id.index].slope};
     }
 
     void read(std::uint32_t slot, std::vector<NodeId> &todo) {

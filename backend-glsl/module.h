@@ -37,11 +37,12 @@ struct Module {
     std::map<std::uint32_t, std::string> params{}, images{}, grids{};
     std::vector<float> texels{};
     bool reads_time = false;
-    bool hits = false;                        // the struct Hit is used
-    std::map<std::uint32_t, KeptText> kept{}; // by CacheId: the fields read through the noise cache
-    std::map<std::uint32_t, ir::NodeId> results{}; // by FunctionId: as loops (roll.h)
+    bool hits = false; // the struct Hit is used
+    std::map<std::uint32_t, CachedText>
+        cached{}; // by CacheId: the fields read through the noise cache
+    std::map<std::uint32_t, ir::NodeId> results{}; // by FunctionId: as loops (reroll.h)
 
-    std::map<std::uint32_t, PrunePlan::Use> pruned{}; // by FoldId: loops over a cell's rows
+    std::map<std::uint32_t, PrunePlan::Use> pruned{}; // by LoopId: loops over a cell's rows
     bool around = false;    // outside of the cells there are the scene's endless parts (prune.h)
     bool far_cells = false; // rays ask which cells are far from all surfaces (prune.h)
 

@@ -22,7 +22,7 @@ std::string shown(bool on) { return on ? "1" : ""; }
 std::string version_of(const Module &module, const TargetTraits &target) {
     if (target.version == 0) return "";
     if (target.es) return std::to_string(target.version) + " es";
-    const int used = !module.pruned.empty() ? 430 : !module.kept.empty() ? 420 : 0;
+    const int used = !module.pruned.empty() ? 430 : !module.cached.empty() ? 420 : 0;
     return std::to_string(std::max(target.version, used)) + " core";
 }
 
@@ -58,7 +58,7 @@ MarcherOptions marcher_options(const Module &module, const SceneText &text, cons
     MarcherOptions marcher;
     marcher.boxed = frame.boxed;
     marcher.steep = frame.steep;
-    marcher.reaches = frame.steep && scene.reach;
+    marcher.has_safe_radius = frame.steep && scene.safe_radius;
     marcher.cheap = scene.distance &&
                     ir::operations(scene.graph, module.result_of(scene.distance)) <= cheap_field;
     marcher.skip_shading = scene.lighting.skip;
@@ -73,7 +73,7 @@ MarcherOptions marcher_options(const Module &module, const SceneText &text, cons
     marcher.hi = vec3_literal(frame.hi);
     marcher.zero = traits_of(module.options.target).zero;
     marcher.pick = module.options.instruments == Instruments::Pick;
-    marcher.kept = !module.kept.empty();
+    marcher.cached = !module.cached.empty();
     marcher.far_cells = module.far_cells;
     marcher.around = module.around;
     return marcher;
@@ -85,11 +85,11 @@ std::string entry(const Module &module, const ir::View &view) {
     ir::Triple looked_at;
     for (std::size_t i = 0; i < 3; ++i)
         looked_at[i] = view.origin[i] + view.focus * view.forward[i];
-    const bool kept = !module.kept.empty();
-    const bool several = kept || module.options.instruments == Instruments::Pick;
+    const bool cached = !module.cached.empty();
+    const bool several = cached || module.options.instruments == Instruments::Pick;
     Values values = cache_numbers();
     values.insert({{"LOCATIONS", shown(target.locations || several)}, // of the outputs
-                   {"KEPT", shown(kept)},
+                   {"CACHED", shown(cached)},
                    {"ORIGIN", vec3_literal(view.origin)},
                    {"RIGHT", vec3_literal(view.right)},
                    {"UP", vec3_literal(view.up)},
@@ -116,7 +116,7 @@ std::string picture_text(const Module &module, const SceneText &scene) {
     before += scene.tables + scene.functions;
     if (module.far_cells) before += far_look_up(marcher.boxed ? "fathom_off(p)" : "0.0");
     if (module.options.instruments == Instruments::Probe) return before + probe_text(marcher);
-    return before + hit_function(module) + scene.looks + marcher_text(marcher) +
+    return before + hit_function(module) + scene.shading + marcher_text(marcher) +
            entry(module, view);
 }
 
@@ -132,7 +132,7 @@ std::string field_text(const Module &module, const SceneText &scene) {
                             {"BOUND", float_literal(bound > 0 ? bound : 1)},
                             {"FUNCTIONS", scene.tables + scene.functions},
                             {"HIT", hit_function(module)},
-                            {"LOOKS", scene.looks}});
+                            {"SHADING", scene.shading}});
 }
 
 } // namespace fathom::glsl

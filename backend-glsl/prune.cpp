@@ -38,8 +38,8 @@ NodeId distance_of(Graph &graph, NodeId id) {
 constexpr std::size_t most_written_out = 2000; // nodes of what is differentiated
 
 // In diagonals of a cell.
-constexpr double far_from = 0.625;  // a cell is far whose centre is farther from surfaces
-constexpr double least_way = 0.125; // a shorter way ahead is none
+constexpr double far_from = 0.625; // a cell is far whose centre is farther from surfaces
+constexpr double min_way = 0.125;  // a shorter way ahead is none
 
 class Planner {
   public:
@@ -70,7 +70,7 @@ class Planner {
             todo.pop_back();
             if (!seen.insert(node).second) continue;
             todo.insert(todo.end(), graph_.args(node).begin(), graph_.args(node).end());
-            if (graph_[node].op != Op::Fold) continue;
+            if (graph_[node].op != Op::Loop) continue;
             loops.push_back(node);
             ++uses[graph_[node].payload];
         }
@@ -79,14 +79,14 @@ class Planner {
             if (uses[graph_[loop].payload] == 1) add(loop, point);
     }
 
-    void add(NodeId loop, NodeId point) {
-        const std::uint32_t record = graph_[loop].payload;
-        const ir::Fold fold = graph_.fold(ir::FoldId{record});
-        const auto count = graph_.as_number(fold.count);
-        if (fold.vars.size() != 1 || fold.condition || !count || *count < least_pruned ||
-            *count != fold.max_count)
+    void add(NodeId node, NodeId point) {
+        const std::uint32_t index = graph_[node].payload;
+        const ir::Loop loop = graph_.loop(ir::LoopId{index});
+        const auto count = graph_.as_number(loop.count);
+        if (loop.vars.size() != 1 || loop.condition || !count || *count < min_pruned ||
+            *count != loop.max_count)
             return;
-        const NodeId next = fold.next[0];
+        const NodeId next = loop.next[0];
         const Op op = graph_[next].op;
         const std::size_t first = op == Op::Blend ? 2 : 0;
         if (op != Op::Blend && op != Op::Union && op != Op::NearestHit) return;
@@ -95,12 +95,12 @@ class Planner {
             graph_[next].payload != static_cast<std::uint32_t>(ir::Profile::Smooth))
             return;
         const std::vector<NodeId> args(graph_.args(next).begin(), graph_.args(next).end());
-        if (args.size() != first + 2 || args[first] != fold.vars[0]) return;
+        if (args.size() != first + 2 || args[first] != loop.vars[0]) return;
 
-        const ir::Substitution plain{{point, point_}, {fold.index, row_}, {fold.vars[0], acc_}};
+        const ir::Substitution plain{{point, point_}, {loop.index, row_}, {loop.vars[0], acc_}};
         const auto renamed = [&](NodeId id) { return id ? ir::substitute(graph_, id, plain) : id; };
         const NodeId value = renamed(distance_of(graph_, args[first + 1])),
-                     start = renamed(distance_of(graph_, graph_.arg(loop, 0)));
+                     start = renamed(distance_of(graph_, graph_.arg(node, 0)));
         const NodeId radius = op == Op::Blend ? args[0] : graph_.number(0);
         if (!value || !start || !reads_only(value, {point_, row_}) ||
             !reads_only(start, {point_}) || !reads_only(radius, {}))
@@ -115,19 +115,19 @@ class Planner {
             PrunedLoop made;
             made.slope = slope(value);
             made.acc_slope = std::max(made.slope, slope(start));
-            if (!(made.acc_slope <= steepest_pruned) || plan_.grids.size() >= most_grids) {
+            if (!(made.acc_slope <= steepest_pruned) || plan_.grids.size() >= max_grids) {
                 it->second = -1;
                 return;
             }
             made.blended = op == Op::Blend;
-            made.rows = fold.max_count;
+            made.rows = loop.max_count;
             made.value = graph_.add_function({"value", {}, {point_, row_}, value});
             made.start = graph_.add_function({"start", {}, {point_}, start});
             made.joined = graph_.add_function({"joined", {}, {acc_, point_, row_}, joined});
             made.radius = graph_.add_function({"radius", {}, {point_}, radius});
             plan_.grids.push_back(made);
         }
-        if (it->second >= 0) plan_.loops[record] = {it->second, fold.max_count, point};
+        if (it->second >= 0) plan_.loops[index] = {it->second, loop.max_count, point};
     }
 
     bool reads_only(NodeId id, std::initializer_list<NodeId> vars) const {
@@ -154,11 +154,11 @@ class Planner {
 std::optional<PrunePlan> plan_pruning(const ir::Scene &scene,
                                       const std::map<std::uint32_t, NodeId> &results) {
     if (scene.bounds.empty() || !scene.bounds.finite()) return std::nullopt;
-    const auto long_loop = [&](ir::FoldId id) {
-        return scene.graph.fold(id).max_count >= least_pruned;
+    const auto long_loop = [&](ir::LoopId id) {
+        return scene.graph.loop(id).max_count >= min_pruned;
     };
     bool any = false;
-    for (std::size_t i = 0; i < scene.graph.fold_count(); ++i) any |= long_loop(ir::FoldId{i});
+    for (std::size_t i = 0; i < scene.graph.loop_count(); ++i) any |= long_loop(ir::LoopId{i});
     if (!any) return std::nullopt;
     PrunePlan plan = Planner(scene, results).run();
     if (plan.grids.empty()) return std::nullopt;
@@ -170,7 +170,7 @@ std::string prune_look_up(const ir::Box &bounds) {
 }
 
 std::string far_look_up(const std::string &outside) {
-    return expand("prune_far", {{"OUTSIDE", outside}, {"LEAST_WAY", float_literal(least_way)}});
+    return expand("prune_far", {{"OUTSIDE", outside}, {"MIN_WAY", float_literal(min_way)}});
 }
 
 std::string prune_around(const std::string &hit) { return expand("prune_around", {{"HIT", hit}}); }

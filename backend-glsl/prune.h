@@ -24,8 +24,8 @@
 
 namespace fathom::glsl {
 
-constexpr int least_pruned = 96;       // rows
-constexpr std::size_t most_grids = 16; // of one scene
+constexpr int min_pruned = 96;         // rows
+constexpr std::size_t max_grids = 16;  // of one scene
 constexpr double steepest_pruned = 16; // steeper rows keep too much
 
 struct PrunedLoop {
@@ -42,11 +42,11 @@ struct PrunePlan {
         int grid = 0, rows = 0;
         ir::NodeId point;
     };
-    std::map<std::uint32_t, Use> loops; // by FoldId
+    std::map<std::uint32_t, Use> loops; // by LoopId
 };
 
 // The loops of the scene's distance and hit that can be pruned. `results`: what functions hand back
-// instead of what they say (roll.h). Nothing where there are none, or no part has an end.
+// instead of what they say (reroll.h). Nothing where there are none, or no part has an end.
 std::optional<PrunePlan> plan_pruning(const ir::Scene &scene,
                                       const std::map<std::uint32_t, ir::NodeId> &results);
 

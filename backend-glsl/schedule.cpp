@@ -56,11 +56,11 @@ class Scheduler {
             if (!id || !seen.insert(id).second) continue;
             nodes_.push_back(id);
             for (NodeId arg : graph_.args(id)) todo.push_back(arg);
-            if (graph_[id].op == Op::Fold) {
-                const ir::Fold &fold = graph_.fold(ir::FoldId{graph_[id].payload});
-                todo.push_back(fold.count);
-                todo.push_back(fold.condition);
-                todo.insert(todo.end(), fold.next.begin(), fold.next.end());
+            if (graph_[id].op == Op::Loop) {
+                const ir::Loop &loop = graph_.loop(ir::LoopId{graph_[id].payload});
+                todo.push_back(loop.count);
+                todo.push_back(loop.condition);
+                todo.insert(todo.end(), loop.next.begin(), loop.next.end());
             }
         }
         std::ranges::sort(nodes_);
@@ -73,19 +73,19 @@ class Scheduler {
                 std::ranges::set_union(free, free_[from], std::back_inserter(merged));
                 free = std::move(merged);
             };
-            if (graph_[id].op == Op::Fold) {
-                const ir::Fold &fold = graph_.fold(ir::FoldId{graph_[id].payload});
-                for (NodeId next : fold.next) join(next);
-                join(fold.condition);
-                std::erase_if(free, [&](NodeId var) { return binds(fold, var); });
-                join(fold.count);
+            if (graph_[id].op == Op::Loop) {
+                const ir::Loop &loop = graph_.loop(ir::LoopId{graph_[id].payload});
+                for (NodeId next : loop.next) join(next);
+                join(loop.condition);
+                std::erase_if(free, [&](NodeId var) { return binds(loop, var); });
+                join(loop.count);
             }
             for (NodeId arg : graph_.args(id)) join(arg);
         }
     }
 
-    static bool binds(const ir::Fold &fold, NodeId var) {
-        return var == fold.index || std::ranges::find(fold.vars, var) != fold.vars.end();
+    static bool binds(const ir::Loop &loop, NodeId var) {
+        return var == loop.index || std::ranges::find(loop.vars, var) != loop.vars.end();
     }
 
     BlockId open(BlockId parent, NodeId owner, bool loop) {
@@ -135,14 +135,14 @@ class Scheduler {
                 use(graph_.arg(id, 2), no, 1);
                 continue;
             }
-            if (node.op == Op::Fold) {
-                const ir::Fold &fold = graph_.fold(ir::FoldId{node.payload});
+            if (node.op == Op::Loop) {
+                const ir::Loop &loop = graph_.loop(ir::LoopId{node.payload});
                 BlockId body = open(home, id, true);
                 result_.loop[id] = body;
-                result_.rows[fold.index] = fold.max_count;
-                use(fold.count, home, 1);
-                use(fold.condition, body, 1);
-                for (NodeId next : fold.next) use(next, body, 1);
+                result_.rows[loop.index] = loop.max_count;
+                use(loop.count, home, 1);
+                use(loop.condition, body, 1);
+                for (NodeId next : loop.next) use(next, body, 1);
             }
             for (std::size_t i = 0; i < node.count; ++i)
                 use(graph_.args(id)[i], home, times * copies(graph_, id));
@@ -153,8 +153,8 @@ class Scheduler {
         BlockId best = at;
         for (BlockId b = at; b != 0; b = block(b).parent) {
             if (!block(b).loop) continue;
-            const ir::Fold &fold = graph_.fold(ir::FoldId{graph_[block(b).owner].payload});
-            if (std::ranges::any_of(free_[id], [&](NodeId var) { return binds(fold, var); })) break;
+            const ir::Loop &loop = graph_.loop(ir::LoopId{graph_[block(b).owner].payload});
+            if (std::ranges::any_of(free_[id], [&](NodeId var) { return binds(loop, var); })) break;
             best = block(b).parent;
         }
         return best;
@@ -165,8 +165,8 @@ class Scheduler {
         std::unordered_map<NodeId, int> length;
         for (NodeId id : nodes_) {
             const ir::Node &node = graph_[id];
-            if (node.op == Op::Var || node.op == Op::Fold) {
-                if (node.op == Op::Fold) set_named(id);
+            if (node.op == Op::Var || node.op == Op::Loop) {
+                if (node.op == Op::Loop) set_named(id);
                 length[id] = 4;
                 continue;
             }
@@ -243,7 +243,7 @@ class Scheduler {
 bool is_trivial(const ir::Graph &graph, NodeId id) {
     const Op op = graph[id].op;
     return op == Op::Const || op == Op::Point || op == Op::Normal || op == Op::Direction ||
-           op == Op::Time || op == Op::Param || op == Op::Var || op == Op::FoldResult ||
+           op == Op::Time || op == Op::Param || op == Op::Var || op == Op::LoopResult ||
            // parts: what they are taken from is counted once for each place where they are written
            op == Op::Swizzle || op == Op::Column || op == Op::HitDistance || op == Op::HitPaint ||
            op == Op::HitPoint || op == Op::HitExtra;

@@ -19,7 +19,7 @@ using BlockId = int; // index into Schedule::blocks; 0 is the function's body
 struct Block {
     BlockId parent = -1;
     int depth = 0;
-    ir::NodeId owner; // the Select or Fold that opens it
+    ir::NodeId owner; // the Select or Loop that opens it
     bool loop = false;
     std::vector<ir::NodeId> statements; // what gets a name, or is a loop, in order
 };
@@ -27,7 +27,7 @@ struct Block {
 struct Schedule {
     std::vector<Block> blocks;
     std::unordered_map<ir::NodeId, BlockId> home; // of every node that is needed
-    std::unordered_map<ir::NodeId, BlockId> loop; // of a Fold
+    std::unordered_map<ir::NodeId, BlockId> loop; // of a Loop
     std::unordered_map<ir::NodeId, std::pair<BlockId, BlockId>>
         arms;                                 // of a Select whose arms are blocks
     std::unordered_map<ir::NodeId, int> rows; // Vars that count loops: their largest value plus one

@@ -126,7 +126,7 @@ class Slopes {
     }
 
     // The least size of a fixed number.
-    double least_size(NodeId id) {
+    double min_size(NodeId id) {
         const ir::Node &node = graph_[id];
         if (node.op == Op::Const) {
             double least = unbounded;
@@ -134,7 +134,7 @@ class Slopes {
                 least = std::min(least, std::fabs(graph_.constant_of(id).value[std::size_t(i)]));
             return least;
         }
-        if (node.op == Op::Splat) return least_size(graph_.arg(id, 0));
+        if (node.op == Op::Splat) return min_size(graph_.arg(id, 0));
         if (node.op != Op::TableRead) return 0;
         const ir::Table &table = graph_.table(ir::table_of(node.payload));
         double least = unbounded;
@@ -223,7 +223,7 @@ class Slopes {
     Part made(NodeId id) {
         const ir::Node &node = graph_[id];
         const std::span<const NodeId> args = graph_.args(id);
-        if (node.op == Op::Fold) return own(id, unbounded);
+        if (node.op == Op::Loop) return own(id, unbounded);
         bool fixed = true;
         for (NodeId arg : args) fixed &= part_of(arg).fixed;
         if (fixed) return {};
@@ -246,7 +246,7 @@ class Slopes {
         if (op == Op::Select && part_of(args[0]).fixed)
             return own(id, std::max(total(args[1]), total(args[2])));
         if (op == Op::Div && part_of(args[1]).fixed)
-            return scaled(id, part_of(args[0]), 1 / least_size(args[1]));
+            return scaled(id, part_of(args[0]), 1 / min_size(args[1]));
         if (op == Op::Splat)
             return own(id, std::sqrt(double(ir::components(node.type))) * total(args[0]));
         if (op == Op::Swizzle) return swizzled(node, args[0]);

@@ -310,7 +310,7 @@ void Printer::remark(std::string_view word, std::string_view style, std::string_
 
 // The lines as the edits would make them, where each edit stays within its line.
 void Printer::edited_lines(const Fix &fix, const Sources &sources) {
-    constexpr std::size_t most_lines = 4;
+    constexpr std::size_t max_lines = 4;
     std::vector<Edit> edits = fix.edits;
     std::stable_sort(edits.begin(), edits.end(),
                      [](const Edit &a, const Edit &b) { return a.span < b.span; });
@@ -323,7 +323,7 @@ void Printer::edited_lines(const Fix &fix, const Sources &sources) {
         if (edit.span.end > line_end || edit.replacement.find('\n') != std::string::npos) return;
         by_line[{edit.span.source, line}].push_back(&edit);
     }
-    if (by_line.empty() || by_line.size() > most_lines) return;
+    if (by_line.empty() || by_line.size() > max_lines) return;
 
     row("", "");
     for (const auto &[place, line_edits] : by_line) {

@@ -71,19 +71,20 @@ FunctionId looped(Scene &scene, const Spheres &s, double k) {
     for (std::size_t i = 0; i < s.x.size(); ++i)
         table.data.insert(table.data.end(), {s.x[i], s.y[i], s.z[i], s.r[i]});
     TableId id = g.add_table(table);
-    Fold fold;
-    fold.count = g.integer(table.rows);
-    fold.max_count = table.rows;
-    fold.index = g.fresh_var(Type::Int);
-    NodeId c = g.make(Op::TableRead, Type::Vec3, {fold.index}, table_slot(id, 0));
-    NodeId r = g.make(Op::TableRead, Type::Float, {fold.index}, table_slot(id, 3));
+    ir::Loop record;
+    record.count = g.integer(table.rows);
+    record.max_count = table.rows;
+    record.index = g.fresh_var(Type::Int);
+    NodeId c = g.make(Op::TableRead, Type::Vec3, {record.index}, table_slot(id, 0));
+    NodeId r = g.make(Op::TableRead, Type::Float, {record.index}, table_slot(id, 3));
     NodeId args[] = {g.number(k), g.number(0), acc, ball(g, p, c, r)};
-    fold.vars = {acc};
-    fold.next = {g.make(Op::Blend, Type::Float, args, std::uint32_t(Profile::Smooth))};
-    return g.add_function({"looped",
-                           {},
-                           {p},
-                           g.make(Op::Fold, Type::Float, {g.number(1e9)}, g.add_fold(fold).index)});
+    record.vars = {acc};
+    record.next = {g.make(Op::Blend, Type::Float, args, std::uint32_t(Profile::Smooth))};
+    return g.add_function(
+        {"looped",
+         {},
+         {p},
+         g.make(Op::Loop, Type::Float, {g.number(1e9)}, g.add_loop(record).index)});
 }
 
 // A Menger sponge as the difference of a cube and all its square holes, each written out: about a

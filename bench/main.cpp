@@ -16,7 +16,7 @@ int main(int argc, char **argv) {
                                 {"reload", measure_reload},
                                 {"shader", measure_shader},
                                 {"by-hand", measure_hand_written},
-                                {"many", measure_many},
+                                {"many", measure_instances},
                                 {"steps", measure_steps},
                                 {"noise-cache", measure_noise_cache},
                                 {"interpreter", measure_interpreter},

@@ -131,7 +131,7 @@ void measure_frame(Table &table, const std::string &what, const std::string &tex
 
 } // namespace
 
-void measure_many(Table &table) {
+void measure_instances(Table &table) {
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     auto context = gl::Context::make();
     if (const std::string *why = std::get_if<std::string>(&context)) {

@@ -39,7 +39,7 @@ void measure_scene(Table &table, const std::string &what, const driver::Compilat
     }
     const FrameTimes times = frame_times(view, c.scene, inputs);
     table.push_back({.what = what,
-                     .value = 1e3 / times.kept,
+                     .value = 1e3 / times.cached,
                      .unit = "frames/s",
                      .baseline = "exact",
                      .baseline_value = 1e3 / times.exact,
@@ -112,7 +112,7 @@ double look_up_cost(int probes) {
     options.target = glsl::Target::Glsl450;
     options.buffers = options.noise_cache = true;
     const glsl::Output picture = glsl::emit(c.scene, options, diagnostics);
-    const std::size_t end = picture.text.find("_kept(vec3 p)");
+    const std::size_t end = picture.text.find("_cached(vec3 p)");
     if (end == std::string::npos) return NAN;
     const std::size_t begin = picture.text.rfind(' ', end) + 1;
     const std::string name = picture.text.substr(begin, end - begin);
@@ -121,7 +121,7 @@ double look_up_cost(int probes) {
     gl::CacheStore store;
     store.make({});
     store.bind_textures(0);
-    return nanoseconds(functions, "sum.x += " + name + "_kept(p);", picture, c.scene, probes);
+    return nanoseconds(functions, "sum.x += " + name + "_cached(p);", picture, c.scene, probes);
 }
 
 void measure_costs(Table &table) {
@@ -132,7 +132,7 @@ void measure_costs(Table &table) {
     const double perlin =
         (field_cost("0.1 * fbm(2 * p, octaves: 9)") - field_cost("0.1 * fbm(2 * p, octaves: 4)")) /
         5;
-    // One alone is not kept, so that no shader would fill cells with it.
+    // One alone is not cached, so that no shader would fill cells with it.
     const std::string two = "0.1 * worley(3 * p) + 0.05 * worley(7 * p)";
     const double worley = field_cost(two + " + 0.03 * worley(11 * p)") - field_cost(two);
     const Cost costs[] = {{"  a look-up of one probe", look_up_cost(1), ir::look_up_cost},
@@ -182,12 +182,12 @@ FrameTimes frame_times(gl::CachedView &view, const ir::Scene &scene,
         gl::finish();
         return 1e3 * (processor_seconds() - begin);
     };
-    std::vector<double> kept, exact;
+    std::vector<double> cached, exact;
     for (int turn = 0; turn < 7; ++turn) {
-        kept.push_back(time([&] { view.draw(inputs, scene.params, {}); }));
+        cached.push_back(time([&] { view.draw(inputs, scene.params, {}); }));
         exact.push_back(time([&] { view.draw_exactly(inputs, scene.params); }));
     }
-    return {median(kept), median(exact)};
+    return {median(cached), median(exact)};
 }
 
 void measure_noise_cache(Table &table) {

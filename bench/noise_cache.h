@@ -17,7 +17,7 @@ gl::FrameInputs middle_of(const ir::Scene &scene, double times_as_far);
 
 // Milliseconds, the medians of a few frames, in turn so that what slows the machine slows both.
 struct FrameTimes {
-    double kept = 0, exact = 0;
+    double cached = 0, exact = 0;
 };
 FrameTimes frame_times(gl::CachedView &view, const ir::Scene &scene, const gl::FrameInputs &inputs);
 

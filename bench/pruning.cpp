@@ -159,7 +159,7 @@ void add_share(Table &table, const std::string &name) {
     settings.depth = 3;
     settings.enough = 0;
     const cpu::Pruning pruning(program, inputs, cube, settings);
-    cpu::Asker asker(pruning, inputs);
+    cpu::CellEvaluator evaluator(pruning, inputs);
     std::vector<float> x, y, z, out, limits;
     const float step = cube.side / 64;
     for (int i = 0; i < 64 * 64 * 64; ++i) {
@@ -171,8 +171,8 @@ void add_share(Table &table, const std::string &name) {
     limits.assign(x.size(), 0);
     const float *in[] = {x.data(), y.data(), z.data()};
     float *to[] = {out.data()};
-    cpu::ask(pruning, asker, in, to, x.size(), limits.data());
-    const double left = asker.tally.kernels / double(asker.tally.near) / pruning.whole.cost;
+    cpu::evaluate(pruning, evaluator, in, to, x.size(), limits.data());
+    const double left = evaluator.tally.kernels / double(evaluator.tally.near) / pruning.whole.cost;
     table.push_back({.what = name + ": kernels left in a cell near the surface, of 64^3",
                      .value = 100 * left,
                      .unit = "%",

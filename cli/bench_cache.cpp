@@ -129,18 +129,18 @@ void print_fields(const Bench &bench) {
     for (std::size_t i = 0; i < graph.cache_count(); ++i) {
         const ir::CacheId id{i};
         const double cost = ir::cost_of(graph, graph.function(graph.cache(id).field).result);
-        const char *verdict = "kept";
-        switch (ir::kept(bench.scene, id)) {
-        case ir::Kept::Yes: break;
-        case ir::Kept::Cheap: verdict = "computed: cheaper than a look-up"; break;
-        case ir::Kept::Moving: verdict = "computed: it moves with time"; break;
-        case ir::Kept::Ridged: verdict = "computed: Worley noise alone, too few cells"; break;
-        case ir::Kept::Steep: verdict = "computed: its slope has no bound"; break;
+        const char *verdict = "cached";
+        switch (ir::cached(bench.scene, id)) {
+        case ir::Cacheable::Yes: break;
+        case ir::Cacheable::Cheap: verdict = "computed: cheaper than a look-up"; break;
+        case ir::Cacheable::Moving: verdict = "computed: it moves with time"; break;
+        case ir::Cacheable::Ridged: verdict = "computed: Worley noise alone, too few cells"; break;
+        case ir::Cacheable::Steep: verdict = "computed: its slope has no bound"; break;
         }
         bench.put(fmt::format("field {}: cell {:g}, about {:.3g} ns against {:g} for a "
                               "look-up, error at most {:.3g}; {}\n",
                               i, graph.cache(id).cell, cost, ir::look_up_cost,
-                              ir::kept_error(bench.scene, id), verdict));
+                              ir::cached_error(bench.scene, id), verdict));
     }
 }
 
@@ -153,16 +153,16 @@ void print_difference(const Bench &bench, gl::CachedView &view) {
         view.draw(inputs, bench.scene.params, {.weigh = false});
         misses.push_back(view.read_tally().misses);
     } while (1000 * misses.back() > bench.pixels() && ++frames < 40);
-    const gl::Pixels kept = view.read_pixels();
+    const gl::Pixels cached = view.read_pixels();
     view.draw_exactly(inputs, bench.scene.params);
     const gl::Pixels exact = view.read_pixels();
     double most = 0, sum = 0;
     std::size_t both = 0, one = 0;
-    for (std::size_t i = 0; i < kept.rgba.size(); i += 4) {
-        const bool here = kept.rgba[i + 3] > 0, there = exact.rgba[i + 3] > 0;
+    for (std::size_t i = 0; i < cached.rgba.size(); i += 4) {
+        const bool here = cached.rgba[i + 3] > 0, there = exact.rgba[i + 3] > 0;
         if (here != there) ++one;
         if (!here || !there) continue;
-        const double d = std::abs(kept.rgba[i + 1] - exact.rgba[i + 1]);
+        const double d = std::abs(cached.rgba[i + 1] - exact.rgba[i + 1]);
         most = std::max(most, d), sum += d, ++both;
     }
     bench.put(fmt::format("\ndifference from exact (figure 8.4), a still view after {} frames\n",
@@ -218,12 +218,12 @@ void print_ages(const Bench &bench, gl::CachedView &view, int frames) {
     bench.put("\n");
 }
 
-// Each frame with another value: kept all the same, as a moving view is drawn, and exactly.
+// Each frame with another value: cached all the same, as a moving view is drawn, and exactly.
 void print_edits(const Bench &bench, gl::CachedView &view, int frames) {
     bench.put("\nediting a param, another value each frame (figure 8.5)\n"
-              "  param            read by a kept field   cached ms   as drawn ms   exact ms   "
+              "  param            read by a cached field   cached ms   as drawn ms   exact ms   "
               "speed-up   as drawn   pixels that miss\n");
-    const std::vector<glsl::KeptField> &fields = view.fields();
+    const std::vector<glsl::CachedField> &fields = view.fields();
     for (std::size_t i = 0; i < bench.scene.params.size(); ++i) {
         const ir::Param &p = bench.scene.params[i];
         if (p.structural || p.type != ir::Type::Float || !p.has_range) continue;

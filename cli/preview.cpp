@@ -50,11 +50,11 @@ PreviewSize preview_size(int width, int height) {
     if (!says("COLORTERM", {"truecolor", "24bit"}) || !is_utf8() ||
         ::ioctl(STDERR_FILENO, TIOCGWINSZ, &window) != 0)
         return {};
-    const int most_columns = window.ws_col - 1, most_rows = window.ws_row / 2 - 1;
-    if (most_columns < 8 || most_rows < 4) return {};
+    const int max_columns = window.ws_col - 1, max_rows = window.ws_row / 2 - 1;
+    if (max_columns < 8 || max_rows < 4) return {};
     // a character is two pixels high, each about as wide as it is high
     const double scale =
-        std::min({static_cast<double>(most_columns) / width, 2.0 * most_rows / height, 1.0});
+        std::min({static_cast<double>(max_columns) / width, 2.0 * max_rows / height, 1.0});
     return {std::max(1, static_cast<int>(width * scale)),
             std::max(1, static_cast<int>(height * scale / 2))};
 }

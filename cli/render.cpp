@@ -28,17 +28,17 @@ struct Painter {
 // misses is computed. Where the first one, which computes all, wishes for more cells than pixels
 // miss, few of them share any: learning them takes longer than computing this picture, so that was
 // it.
-constexpr int most_learning_frames = 6;
+constexpr int max_learning_frames = 6;
 
 bool draw_still(gl::CachedView &view, const ir::Scene &scene, const gl::FrameInputs &inputs,
                 const std::function<void(double)> &progress) {
     const auto pixels =
         static_cast<std::uint64_t>(inputs.width) * static_cast<std::uint64_t>(inputs.height);
     std::uint64_t before = 0;
-    for (int frame = 0; frame < most_learning_frames; ++frame) {
+    for (int frame = 0; frame < max_learning_frames; ++frame) {
         if (!view.draw(inputs, scene.params, {})) return false;
         const std::uint64_t misses = view.read_tally().misses;
-        progress((frame + 1.0) / most_learning_frames);
+        progress((frame + 1.0) / max_learning_frames);
         if (!view.looked_up() || 20 * misses <= pixels) break;
         const gl::CacheCounts counts = view.store().read_counts();
         const std::uint64_t cells =
@@ -49,14 +49,14 @@ bool draw_still(gl::CachedView &view, const ir::Scene &scene, const gl::FrameInp
     return true;
 }
 
-std::string kept_share(const gl::CachedView &view) {
+std::string cached_share(const gl::CachedView &view) {
     const double all = static_cast<double>(view.width()) * view.height();
     const gl::CacheTally tally = view.read_tally();
     const double computed = static_cast<double>(tally.computed);
-    if (!view.looked_up()) return "drawn exactly: kept values do not pay in this view";
+    if (!view.looked_up()) return "drawn exactly: cached values do not pay in this view";
     if (computed < all && tally.hits > 0)
-        return fmt::format("{:.1f} % by kept values", 100 - 100 * computed / all);
-    return tally.misses > 0 ? "drawn exactly: its pixels share too few kept values to learn them"
+        return fmt::format("{:.1f} % by cached values", 100 - 100 * computed / all);
+    return tally.misses > 0 ? "drawn exactly: its pixels share too few cached values to learn them"
                             : "drawn exactly: cells are narrower than pixels";
 }
 
@@ -86,7 +86,7 @@ std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &sce
     }
     if (command.samples > 1)
         for (float &value : sum->rgba) value /= static_cast<float>(command.samples);
-    status = kept_share(view);
+    status = cached_share(view);
     return sum;
 }
 
@@ -262,7 +262,7 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
             terminal.flush();
             Interrupts::obey();
         }
-        // Who asks for kept values is told what became of it.
+        // Who asks for cached values is told what became of it.
         if (!status.empty() && (terminal.interactive() || (command.cache && !command.frames)))
             terminal.say(out + ": " + status);
         if (!picture) {

@@ -42,15 +42,15 @@ void enter(const CompileOptions &options, Phase phase) {
 // What the proof says of one shape while the scene is still being built (`lipschitz(s)`, `taper`).
 // Its complaints are not for now: the whole scene is proved afterwards, where it can say them once.
 std::optional<ir::ShapeFact> prove_one(ir::Scene &scene, ir::ShapeId shape) {
-    Diagnostics unheard;
+    Diagnostics discarded;
     proof::Options options;
     options.test_assumptions = false;
     ir::ShapeId root = std::exchange(scene.root, shape);
     std::vector<ir::TopLevel> top_level = std::exchange(scene.top_level, {{shape, {}}});
-    proof::prove(scene, unheard, options);
+    proof::prove(scene, discarded, options);
     scene.root = root;
     scene.top_level = std::move(top_level);
-    if (unheard.has_errors()) return std::nullopt;
+    if (discarded.has_errors()) return std::nullopt;
     return scene.facts[shape.index];
 }
 
@@ -95,13 +95,13 @@ void run_phases(Compilation &out, SceneFiles &files, const std::string &identity
         assert(ir::verify(out.scene).empty());
         const ir::Graph &graph = out.scene.graph;
         const double cost = ir::operations(graph, graph.function(out.scene.distance).result);
-        if (cost > ir::most_operations)
+        if (cost > ir::max_operations)
             out.diagnostics
                 .add(Code::LoopLimit,
                      out.scene.top_level.empty() ? Span{root, 0, 0} : out.scene.top_level[0].span,
                      fmt::format("a point of this scene would take {:.0e} operations", cost))
                 .note(fmt::format("at most {:.0e} are allowed, so that every picture ends",
-                                  ir::most_operations))
+                                  ir::max_operations))
                 .help("look for copies of copies, or loops in loops");
     }
     enter(options, Phase::Done);

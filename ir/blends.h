@@ -19,13 +19,13 @@ template <class T> T least(T a, T b) { return b < a ? b : a; }
 template <class T> T greatest(T a, T b) { return a < b ? b : a; }
 template <class T> T gap(T a, T b) { return a < b ? b - a : a - b; } // |a - b|
 
-constexpr float least_radius = 1e-9f; // in place of 0, where a radius divides
+constexpr float min_radius = 1e-9f; // in place of 0, where a radius divides
 
 // Quilez' quadratic: g = (k - d)^2 / 4k. dg/dk in [0, 1/4]. At d = 0 it is k/4.
 template <class T> T blend_smooth(T a, T b, T k) {
     const T h = greatest(k - gap(a, b), T(0));
     const T scale =
-        T(0.25) / greatest(k, T(least_radius)); // one division where k is the same for many
+        T(0.25) / greatest(k, T(min_radius)); // one division where k is the same for many
     return least(a, b) - h * h * scale;
 }
 
@@ -49,7 +49,7 @@ template <class T> T blend_chamfer(T a, T b, T r) {
 // g' is 0 or -1.
 template <class T> T blend_stairs(T a, T b, T r, T n) {
     using std::floor;
-    const T s = greatest(r, T(least_radius)) / (greatest(floor(n + T(0.5)), T(0)) + T(1));
+    const T s = greatest(r, T(min_radius)) / (greatest(floor(n + T(0.5)), T(0)) + T(1));
     const T d = gap(a, b), x = (greatest(r, T(0)) - d) / (s + s);
     const T turn = x - floor(x);                       // 0..1 through one step
     const T wave = (s + s) * least(turn, T(1) - turn); // 0..s
@@ -70,7 +70,7 @@ template <class T> T blend_columns(T a, T b, T r, T n) {
     const T line = greatest(radius - (c + c) - gap(a, b), T(0)); // the chamfer behind them
     const T across = (a + b - (radius - (c + c))) * half_root2, along = (b - a) * half_root2;
     const T half = T(0.5) * (count - T(1));
-    const T k = floor(along / greatest(c + c, T(least_radius)) + half +
+    const T k = floor(along / greatest(c + c, T(min_radius)) + half +
                       T(0.5)); // the nearest column's number
     const T y = along - (c + c) * (least(greatest(k, T(0)), count - T(1)) - half);
     const T column = sqrt(across * across + y * y) - c;
@@ -84,7 +84,7 @@ template <class T> T pseudonorm(T a, T b, T exponent) {
     using std::pow;
     const T p = greatest(exponent, T(1));
     const T u = greatest(T(1) - a, T(0)), v = greatest(T(1) - b, T(0));
-    const T most = greatest(u, v), ratio = least(u, v) / greatest(most, T(least_radius));
+    const T most = greatest(u, v), ratio = least(u, v) / greatest(most, T(min_radius));
     return greatest(T(1), least(a, b)) - most * pow(T(1) + pow(ratio, p), T(1) / p);
 }
 

@@ -124,7 +124,7 @@ Type given_type(const Graph &graph, Op op, std::span<const NodeId> args, std::ui
     if (op == Op::HitExtra) return Type::Vec4;
     if (op == Op::Image) return Type::Vec4;
     if (op == Op::Call) return graph.type(graph.function(FunctionId{std::size_t{payload}}).result);
-    if (op == Op::Fold) return graph.type(graph.fold(FoldId{std::size_t{payload}}).vars.front());
+    if (op == Op::Loop) return graph.type(graph.loop(LoopId{std::size_t{payload}}).vars.front());
     if (op == Op::MakeHit || op == Op::NearestHit || op == Op::FarthestHit || op == Op::HitWith ||
         op == Op::FillPaint)
         return Type::Hit;
@@ -305,7 +305,7 @@ NodeId Graph::call(FunctionId id, std::span<const NodeId> args) {
 // -- what nodes refer to
 
 FunctionId Graph::add_function(Function function) { return functions_.add(std::move(function)); }
-FoldId Graph::add_fold(Fold fold) { return folds_.add(std::move(fold)); }
+LoopId Graph::add_loop(Loop loop) { return loops_.add(std::move(loop)); }
 TableId Graph::add_table(Table table) {
     std::uint64_t h = hash_combine(static_cast<std::uint64_t>(table.rows),
                                    static_cast<std::uint64_t>(table.stride));

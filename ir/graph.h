@@ -3,7 +3,7 @@
 // builds on this).
 //
 // A *closed* expression depends on inputs alone. `Point` is the point of the space in which an
-// expression stands; `Var`s are bound by functions, folds and the shapes Repeat and Many. A node's
+// expression stands; `Var`s are bound by functions, folds and the shapes Repeat and Instances. A node's
 // value is a function of those.
 #pragma once
 
@@ -38,12 +38,12 @@ enum class Profile : std::uint8_t { Smooth, Round, Chamfer, Stairs, Columns };
 
 struct Node;
 struct Function;
-struct Fold;
+struct Loop;
 struct Table;
 struct Cache;
 using NodeId = Id<Node>;
 using FunctionId = Id<Function>;
-using FoldId = Id<Fold>;
+using LoopId = Id<Loop>;
 using TableId = Id<Table>;
 using CacheId = Id<Cache>;
 
@@ -75,7 +75,7 @@ struct Function {
 // counts 0, 1, … The loop ends after `count` turns (an Int node, evaluated once before), or before
 // the first turn in which `condition` (a Bool over index and vars, invalid id: always true) is
 // false. Results are the vars' last values.
-struct Fold {
+struct Loop {
     NodeId count;
     NodeId index;             // Var, Int
     std::vector<NodeId> vars; // Vars
@@ -153,15 +153,15 @@ class Graph {
     std::optional<double> as_number(NodeId id) const; // a constant scalar's value
 
     FunctionId add_function(Function function);
-    FoldId add_fold(Fold fold);
+    LoopId add_loop(Loop loop);
     TableId add_table(Table table); // or finds the equal one
     CacheId add_cache(Cache cache);
     const Function &function(FunctionId id) const { return functions_[id]; }
-    const Fold &fold(FoldId id) const { return folds_[id]; }
+    const Loop &loop(LoopId id) const { return loops_[id]; }
     const Table &table(TableId id) const { return tables_[id]; }
     const Cache &cache(CacheId id) const { return caches_[id]; }
     std::size_t function_count() const { return functions_.size(); }
-    std::size_t fold_count() const { return folds_.size(); }
+    std::size_t loop_count() const { return loops_.size(); }
     std::size_t table_count() const { return tables_.size(); }
     std::size_t cache_count() const { return caches_.size(); }
     std::uint32_t var_count() const { return vars_; }
@@ -184,7 +184,7 @@ class Graph {
     std::vector<Reads> reads_;
     Arena<Constant> constants_;
     Arena<Function> functions_;
-    Arena<Fold> folds_;
+    Arena<Loop> loops_;
     Arena<Table> tables_;
     Arena<Cache> caches_;
     std::uint32_t vars_ = 0;

@@ -65,7 +65,7 @@ Shape scaled(Graph &graph, ShapeId child, NodeId by) {
 }
 
 Shape folded(Graph &graph, ShapeId child, NodeId q) {
-    return mapped(graph, MapKind::Fold, child, q, {});
+    return mapped(graph, MapKind::MirrorFold, child, q, {});
 }
 
 Shape revolved(Graph &graph, ShapeId flat_child, NodeId offset) {

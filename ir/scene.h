@@ -46,13 +46,13 @@ struct ShapeFact {
         1; // its largest value over all params and times; infinity where the proof failed
     Box bounds = Box::everything(); // holds the solid, for all params and times
     std::array<bool, 3> symmetric{};
-    std::array<double, 3> lever{}; // sup |(p x grad f)_axis| over space; infinity: unknown
+    std::array<double, 3> moment_arm{}; // sup |(p x grad f)_axis| over space; infinity: unknown
     double outward = std::numeric_limits<double>::infinity(); // Displace: the most by which it
                                                               // moves the surface outward
     double inward = std::numeric_limits<double>::infinity();  // … and inward
     std::vector<PartialSum> partial; // Displace: shorter sums first, all of it last; or none
     // Displace: M, an upper bound of the raw field's second derivative along any line, down to the
-    // depth that the reach sqrt(2 f/M) asks for (look.h); infinity: none of use.
+    // depth that the reach sqrt(2 f/M) asks for (shading.h); infinity: none of use.
     double curvature = std::numeric_limits<double>::infinity();
     bool local = false; // the bound holds within `bounds` alone: the raw field is asked at the
                         // nearest point there, and joined with the way to it as Within's is
@@ -169,9 +169,10 @@ struct Scene {
 
     // Filled by ir::lower.
     FunctionId distance; // (vec3) -> float: marched: a step of its length never passes a surface
-    FunctionId reach; // (vec3) -> vec2, or none: the same distance, and how far it reaches beside
-                      // another sample (look.h, MARCH), at least as far
-    FunctionId hit;   // (vec3) -> Hit: the same distance, with the surface that decides
+    FunctionId
+        safe_radius; // (vec3) -> vec2, or none: the same distance, and how far it reaches beside
+                     // another sample (shading.h, MARCH), at least as far
+    FunctionId hit;  // (vec3) -> Hit: the same distance, with the surface that decides
     FunctionId endless, endless_hit; // the same of the parts without an end alone, where the scene
                                      // has others beside them
     std::vector<Surface> surfaces;   // by a hit's paint; the last is that of what nobody painted

@@ -31,7 +31,7 @@ const char *shape_kind_name(ShapeKind kind) {
     case ShapeKind::Paint: return "paint";
     case ShapeKind::Repaint: return "repaint";
     case ShapeKind::Mixed: return "mixed";
-    case ShapeKind::Many: return "many";
+    case ShapeKind::Instances: return "many";
     case ShapeKind::Library: return "library";
     case ShapeKind::Contract: return "contract";
     }

@@ -44,8 +44,8 @@ enum class ShapeKind : std::uint8_t {
     Paint,      // payload: Shapes::materials, fills what is unpainted; f itself
     Repaint,    // the same, overriding
     Mixed,      // child is a Blend; materials are mixed by the blend's weights (`mix: true`)
-    Many,    // payload: Shapes::families: the union, or the smooth union, of copies that differ by
-             // their row
+    Instances, // payload: Shapes::instance_tables: the union, or the smooth union, of copies that differ by
+               // their row
     Library, // one child, its body; payload: Shapes::libraries: name, arguments, claims
     Contract // f; payload: index into Shapes::contracts: `shape<L>` demanded here
 };
@@ -56,16 +56,16 @@ enum class SeamKind : std::uint8_t { Pipe, Engrave, Groove, Tongue };
 // How q depends on p, so that the analysis need not rediscover it.
 enum class MapKind : std::uint8_t {
     Translate, // q = p - a[2]
-    Rotate,  // q = transpose(R) p, any isometry that fixes the origin, reflections too; a[2] = the
-             // matrix R (mat3; of flat shapes mat2)
-    Scale,   // q = p / a[2] (a vector), factor = min |a[2]|
-    Fold,    // q is continuous and 1-Lipschitz (mirror folds, elongate): no numbers
-    Revolve, // flat child: q = (length(p.xz) - a[2], p.y)
-    Twist,   // rate a[2], payload2 axis: turns by rate * (p along the axis)
-    Bend,    // rate a[2], axis and towards in axis/towards
-    Taper,   // a[2] = ratio, a[3] = from, a[4] = to along the axis; factor is part of the rule:
-             // c(y)*f(p/c(y), y)
-    Distort  // any q
+    Rotate, // q = transpose(R) p, any isometry that fixes the origin, reflections too; a[2] = the
+            // matrix R (mat3; of flat shapes mat2)
+    Scale,  // q = p / a[2] (a vector), factor = min |a[2]|
+    MirrorFold, // q is continuous and 1-Lipschitz (mirror folds, elongate): no numbers
+    Revolve,    // flat child: q = (length(p.xz) - a[2], p.y)
+    Twist,      // rate a[2], payload2 axis: turns by rate * (p along the axis)
+    Bend,       // rate a[2], axis and towards in axis/towards
+    Taper,      // a[2] = ratio, a[3] = from, a[4] = to along the axis; factor is part of the rule:
+                // c(y)*f(p/c(y), y)
+    Distort     // any q
 };
 
 enum class RegionKind : std::uint8_t { Everywhere, Ball, Box, Tube };
@@ -95,7 +95,7 @@ struct Repetition {
 
 // `count` copies of a child that reads `index` (Int) and, through TableRead(index), its row's
 // numbers.
-struct Family {
+struct InstanceTable {
     NodeId index;
     int count = 0;
     bool smooth = false; // else a plain union; a[0] = k
@@ -153,11 +153,12 @@ struct Claims {
     FieldKind kind = FieldKind::Bound;
     NodeId lipschitz; // invalid: to be proved
     NodeId lo, hi;    // vec3 (flat: vec2): a box that holds the solid; invalid: unknown
-    NodeId swell; // {f < t} lies in that box grown by swell*t, t >= 0; invalid: 1 where exact, else
-                  // unknown
+    NodeId
+        growth_rate; // {f < t} lies in that box grown by growth_rate*t, t >= 0; invalid: 1 where exact, else
+                     // unknown
     std::array<bool, 3> symmetric{}; // mirror symmetry across x = 0, y = 0, z = 0
     std::array<NodeId, 3>
-        lever{}; // sup |(p x grad f)_axis| (lipschitz.md, 5.1); invalid: derived from the box
+        moment_arm{}; // sup |(p x grad f)_axis| (lipschitz.md, 5.1); invalid: derived from the box
 };
 
 struct Library {
@@ -199,7 +200,7 @@ class Shapes {
 
     std::vector<Region> regions;
     std::vector<Repetition> repetitions;
-    std::vector<Family> families;
+    std::vector<InstanceTable> instance_tables;
     std::vector<Material> materials;
     std::vector<DisplacementMap> displacement_maps;
     std::vector<Library> libraries;

@@ -2,8 +2,8 @@
 // double.
 #include "ir/view.h"
 
-#include "ir/look.h"
 #include "ir/passes/fold.h"
+#include "ir/shading.h"
 
 #include <algorithm>
 #include <cassert>
@@ -39,8 +39,8 @@ class Evaluator {
             std::ranges::copy(scene_.params[node.payload].value, result.value.begin());
             return result;
         }
-        if (node.op == Op::Fold) return loop(id)[0];
-        if (node.op == Op::FoldResult) return loop(graph_.arg(id, 0))[node.payload];
+        if (node.op == Op::Loop) return loop(id)[0];
+        if (node.op == Op::LoopResult) return loop(graph_.arg(id, 0))[node.payload];
         if (node.op == Op::TableRead) return row(id);
         std::vector<Constant> args;
         for (NodeId arg : graph_.args(id)) args.push_back(value(arg));
@@ -62,20 +62,20 @@ class Evaluator {
     }
 
     std::vector<Constant> loop(NodeId id) {
-        const Fold &fold = graph_.fold(FoldId{graph_[id].payload});
+        const Loop &loop = graph_.loop(LoopId{graph_[id].payload});
         std::vector<Constant> now;
         for (NodeId arg : graph_.args(id)) now.push_back(value(arg));
-        const int count = static_cast<int>(value(fold.count).value[0]);
+        const int count = static_cast<int>(value(loop.count).value[0]);
         for (int i = 0; i < count; ++i) {
             Evaluator turn(scene_, time_);
             for (NodeId var : graph_.free_vars(id))
                 if (auto known = values_.find(var); known != values_.end())
                     turn.values_[var] = known->second;
-            turn.values_[fold.index] = {Type::Int, {static_cast<double>(i)}};
-            for (std::size_t k = 0; k < now.size(); ++k) turn.values_[fold.vars[k]] = now[k];
-            if (fold.condition && turn.value(fold.condition).value[0] == 0) break;
+            turn.values_[loop.index] = {Type::Int, {static_cast<double>(i)}};
+            for (std::size_t k = 0; k < now.size(); ++k) turn.values_[loop.vars[k]] = now[k];
+            if (loop.condition && turn.value(loop.condition).value[0] == 0) break;
             std::vector<Constant> next;
-            for (NodeId n : fold.next) next.push_back(turn.value(n));
+            for (NodeId n : loop.next) next.push_back(turn.value(n));
             now = std::move(next);
         }
         return now;
@@ -191,7 +191,7 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
     const auto [center, radius] = sphere_of(scene.bounds);
     frame.center = center;
     frame.radius = radius;
-    frame.slack = look::float_slack * (length(view.origin) + radius);
+    frame.slack = shading::float_slack * (length(view.origin) + radius);
     frame.pixel = 2 * view.extent / height;
     const double sharp =
         std::min(scene.render.epsilon * (view.orthographic ? view.focus : 1), frame.pixel / 2);

@@ -1,4 +1,4 @@
-// Where a picture is taken from, and the numbers of one frame that the marchers share (look.h says
+// Where a picture is taken from, and the numbers of one frame that the marchers share (shading.h says
 // how they are used). Evaluates the scene's closed expressions (params and time only); knows no
 // back end.
 #pragma once
@@ -41,7 +41,7 @@ View frame_sphere(View view, Triple center, double radius, double aspect);
 // spread evenly and more can be added.
 std::array<double, 2> sample_offset(int k);
 
-// What look.h calls by these names, for a picture `height` pixels high.
+// What shading.h calls by these names, for a picture `height` pixels high.
 struct Frame {
     double slack = 0, pixel = 0;
     double tolerance_base = 0, tolerance_slope = 0; // tolerance(t) = base + slope*t

@@ -50,7 +50,7 @@ double reach(const std::array<double, 3> &centre, const Ball &ball) {
 
 } // namespace
 
-Ball Prover::ball_of(ShapeId id, const Known &k) {
+Ball Prover::ball_of(ShapeId id, const Derived &k) {
     const Shape &shape = scene.shapes[id];
     switch (shape.kind) {
     case ShapeKind::Union:
@@ -68,11 +68,11 @@ Ball Prover::ball_of(ShapeId id, const Known &k) {
         if (!std::isfinite(all.radius)) return {};
         all.radius = 0;
         for (std::size_t i = 0; i < shape.children.size(); ++i) {
-            const Known &c = child(shape, i);
+            const Derived &c = child(shape, i);
             if (c.fact.bounds.empty()) return {};
-            Ball ball = i == 0 || r == 0 ? c.ball : grown(c.ball, up(c.ball.swell * r));
+            Ball ball = i == 0 || r == 0 ? c.ball : grown(c.ball, up(c.ball.growth_rate * r));
             all.radius = std::max(all.radius, reach(all.centre, ball));
-            all.swell = std::max(all.swell, c.ball.swell);
+            all.growth_rate = std::max(all.growth_rate, c.ball.growth_rate);
         }
         return all;
     }
@@ -96,7 +96,7 @@ Ball Prover::ball_of(ShapeId id, const Known &k) {
             break;
         }
         case MapKind::Scale:
-        case MapKind::Fold:
+        case MapKind::MirrorFold:
         case MapKind::Revolve:
         case MapKind::Twist:
         case MapKind::Bend:
@@ -104,14 +104,14 @@ Ball Prover::ball_of(ShapeId id, const Known &k) {
         case MapKind::Distort: return {};
         }
         Ball ball = grown(around(to, shape.dims), inner.radius);
-        ball.swell = inner.swell;
+        ball.growth_rate = inner.growth_rate;
         return ball;
     }
     case ShapeKind::Paint:
     case ShapeKind::Repaint:
     case ShapeKind::Mixed: return child(shape).ball; // colours move nothing
-    case ShapeKind::Many:                            // the child's ball holds every copy
-        if (scene.shapes.families[shape.payload].smooth) return {};
+    case ShapeKind::Instances:                       // the child's ball holds every copy
+        if (scene.shapes.instance_tables[shape.payload].smooth) return {};
         return child(shape).ball;
     case ShapeKind::Empty:
     case ShapeKind::Leaf:
@@ -136,21 +136,21 @@ Ball Prover::ball_of(ShapeId id, const Known &k) {
 // {f < t} lies in the box grown and in the ball grown, so in both boxes grown by the greater; a
 // meet of grown boxes is the grown meet where that is not empty. The corner of a box grown by s is
 // sqrt(3)*s further out; but what is exact grows as balls do.
-void Prover::keep_in_ball(ShapeId id, Known &k) {
+void Prover::keep_in_ball(ShapeId id, Derived &k) {
     const int dims = scene.shapes[id].dims;
     Ball own = around(k.fact.bounds, dims);
-    own.swell = k.exact_outside ? 1 : up(k.swell * std::sqrt(3.0), 4);
+    own.growth_rate = k.exact_outside ? 1 : up(k.growth_rate * std::sqrt(3.0), 4);
     const Ball made = ball_of(id, k);
     k.ball = made.radius < own.radius ? made : own;
     if (!std::isfinite(made.radius) || !bounded(k.fact.bounds)) return;
-    if (!std::isfinite(made.swell) && std::isfinite(k.swell)) return;
+    if (!std::isfinite(made.growth_rate) && std::isfinite(k.growth_rate)) return;
     Vec sides{};
     for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
         sides[i] = Interval(made.centre[i]) + Interval(-made.radius, made.radius);
     const Box cut = ir::intersect(k.fact.bounds, from_cell({sides}, dims));
     if (cut.empty() || holds(cut, k.fact.bounds)) return;
     k.fact.bounds = cut;
-    k.swell = std::max(k.swell, made.swell);
+    k.growth_rate = std::max(k.growth_rate, made.growth_rate);
 }
 
 } // namespace fathom::proof

@@ -1,7 +1,7 @@
 // What is proved of the fields that the noise cache may keep: how steep they are and how far their
 // values lie apart, wherever they are asked. So the error of interpolation has a bound. The shapes
 // that read such a field are proved with what is known of it everywhere and not with what its text
-// says where they lie: the kept field, which is interpolated, is as steep as the former allows and
+// says where they lie: the cached field, which is interpolated, is as steep as the former allows and
 // may be steeper than the latter (docs/noise-cache.md).
 #include "proof/prover.h"
 
@@ -16,33 +16,33 @@ using ir::NodeId;
 using ir::Op;
 using ir::rounding::up;
 
-void Prover::report_not_kept(ir::CacheId id) {
+void Prover::report_not_cached(ir::CacheId id) {
     const ir::Function &field = graph.function(graph.cache(id).field);
     const auto say = [&](const std::string &why) {
-        diagnostics.add(Code::NotKept, field.origin, "this field is computed all the same: " + why);
+        diagnostics.add(Code::NotCached, field.origin, "this field is computed all the same: " + why);
     };
-    switch (ir::kept(scene, id)) {
-    case ir::Kept::Yes: return;
-    case ir::Kept::Cheap:
+    switch (ir::cached(scene, id)) {
+    case ir::Cacheable::Yes: return;
+    case ir::Cacheable::Cheap:
         say("that takes about " + number_text(ir::cost_of(graph, field.result)) +
             " ns a point, a look-up in the noise cache " + number_text(ir::look_up_cost));
         return;
-    case ir::Kept::Ridged:
-        say("at the ridges of Worley noise cells are steeper than the noise and are not kept; "
+    case ir::Cacheable::Ridged:
+        say("at the ridges of Worley noise cells are steeper than the noise and are not cached; "
             "alone, at " +
             number_text(ir::cost_of(graph, field.result)) +
             " ns a point, it is too cheap for the others to pay");
         return;
-    case ir::Kept::Moving: say("it moves with `time`, so that no value stays right"); return;
-    case ir::Kept::Steep:
-        say("no bound of its slope holds everywhere, so a kept value could be off by anything");
+    case ir::Cacheable::Moving: say("it moves with `time`, so that no value stays right"); return;
+    case ir::Cacheable::Steep:
+        say("no bound of its slope holds everywhere, so a cached value could be off by anything");
         return;
     }
 }
 
 // Between the corners of a cell a field is at most sqrt(3) times as steep as it is: where it has a
 // ridge, the edges along x, y and z may each be as steep as the field. A cell that is steeper than
-// what is stated of the field is not kept. Of most noise that is none, since what is proved of it
+// what is stated of the field is not cached. Of most noise that is none, since what is proved of it
 // is far more than it has; but Worley noise is the distance to a point and nearly everywhere as
 // steep as proved, so cells by its ridges would all go: what reads it is allowed this much more.
 constexpr double ridge_allowance = 1.15;
@@ -50,7 +50,7 @@ constexpr double ridge_allowance = 1.15;
 void Prover::know_caches() {
     scene.caches.assign(graph.cache_count(), {});
     ranges.caches.assign(graph.cache_count(), {});
-    flattening.kept.assign(graph.cache_count(), false);
+    flattening.cached.assign(graph.cache_count(), false);
     for (std::size_t i = 0; i < graph.cache_count(); ++i) {
         const ir::FunctionId field = graph.cache(ir::CacheId{i}).field;
         const NodeId result = graph.function(field).result;
@@ -74,9 +74,9 @@ void Prover::know_caches() {
         known.slope = up(std::sqrt(slopes));
         if (ir::reads_worley(graph, result)) known.slope = up(known.slope * ridge_allowance);
         scene.caches[i] = {known.slope, up(std::sqrt(spans))};
-        known.kept = ir::kept(scene, ir::CacheId{i}) == ir::Kept::Yes;
-        flattening.kept[i] = known.kept;
-        report_not_kept(ir::CacheId{i});
+        known.cached = ir::cached(scene, ir::CacheId{i}) == ir::Cacheable::Yes;
+        flattening.cached[i] = known.cached;
+        report_not_cached(ir::CacheId{i});
     }
 }
 

@@ -15,7 +15,7 @@ using ir::Op;
 
 namespace {
 
-constexpr int most_boxes = 4096;
+constexpr int max_boxes = 4096;
 constexpr double grain = 1e-6; // by this much an order may be missed: a size is 0 there at worst
 
 // One number that a condition hangs on: a component of a variable that stands for a param, or time,
@@ -110,7 +110,7 @@ bool always(Flattening &flattening, Ranges &ranges, NodeId condition,
     }
     std::vector<std::vector<Interval>> boxes{all};
     for (int asked = 0; !boxes.empty(); ++asked) {
-        if (asked == most_boxes) return false;
+        if (asked == max_boxes) return false;
         const std::vector<Interval> box = boxes.back();
         boxes.pop_back();
         Cell cell;

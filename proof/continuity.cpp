@@ -22,7 +22,7 @@ using ir::Op;
 // numbers.
 using Monomial = std::vector<NodeId>; // sorted, repeats allowed
 using Polynomial = std::map<Monomial, double>;
-constexpr std::size_t most_terms = 64;
+constexpr std::size_t max_terms = 64;
 
 NodeId rebuilt(Graph &graph, const Polynomial &polynomial) {
     NodeId sum = graph.number(0);
@@ -74,7 +74,7 @@ std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Poly
             } else {
                 out[product] += x * y;
             }
-            if (out.size() > most_terms || product.size() > 8) return {};
+            if (out.size() > max_terms || product.size() > 8) return {};
         }
     return out;
 }
@@ -100,7 +100,7 @@ std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
             auto a = sub(0), b = sub(1);
             if (!a || !b) return {};
             for (auto &[m, x] : *b) (*a)[m] += node.op == Op::Add ? x : -x;
-            return a->size() > most_terms ? std::optional<Polynomial>() : a;
+            return a->size() > max_terms ? std::optional<Polynomial>() : a;
         }
         if (node.op == Op::Mul) {
             auto a = sub(0), b = sub(1);
@@ -282,7 +282,7 @@ NodeId in_one_form(Graph &graph, NodeId scalar) {
     return p ? rebuilt(graph, *p) : scalar;
 }
 
-NodeId without_turns(Graph &graph, NodeId angle) {
+NodeId without_iterations(Graph &graph, NodeId angle) {
     auto sum = polynomial(graph, angle);
     if (!sum) return angle;
     constexpr double turn = 2 * std::numbers::pi, grain = 4294967296.0;

@@ -20,7 +20,7 @@ ir::NodeId component_of(ir::Graph &graph, ir::NodeId vector, int i);
 ir::NodeId in_one_form(ir::Graph &graph, ir::NodeId scalar);
 // The same angle in one form, with whole turns left out: of a + 3 pi, a + pi; of 2 pi n with n
 // whole, 0. Numbers are rounded to 2^-32 on the way, so this is for comparing.
-ir::NodeId without_turns(ir::Graph &graph, ir::NodeId angle);
+ir::NodeId without_iterations(ir::Graph &graph, ir::NodeId angle);
 // What a scalar is at most, where it is a number but for sines and cosines with factors that are
 // no more than rounding.
 std::optional<double> number_of(ir::Graph &graph, ir::NodeId scalar);

@@ -147,7 +147,7 @@ double Prover::core_made(ShapeId id, int depth) {
     case ShapeKind::Extrude:
     case ShapeKind::Repeat:
     case ShapeKind::Within:
-    case ShapeKind::Many: return -infinity;
+    case ShapeKind::Instances: return -infinity;
     }
     return -infinity;
 }
@@ -155,7 +155,7 @@ double Prover::core_made(ShapeId id, int depth) {
 // M for f = g - t, g with a core c and t >= -a. Down to the depth D, where f >= -D, g + c is at
 // least c - a - D, so f'' <= b + 1/(c - a - D), b the bend of t. The rule wants D >= L^2/(2M): what
 // dips deeper is as long as L says. M grows with D, so there is one least D.
-double Prover::curvature_of(ShapeId id, const Known &k) {
+double Prover::curvature_of(ShapeId id, const Derived &k) {
     const Shape shape = scene.shapes[id];
     if (shape.kind != ShapeKind::Displace || k.failed || local || !std::isfinite(inward))
         return infinity;

@@ -45,7 +45,7 @@ std::string operation_name(const ir::Scene &scene, ShapeId id) {
         case MapKind::Translate: return "translate";
         case MapKind::Rotate: return "rotate";
         case MapKind::Scale: return "scale";
-        case MapKind::Fold: return "fold";
+        case MapKind::MirrorFold: return "fold";
         case MapKind::Revolve: return "revolve";
         case MapKind::Twist: return "twist";
         case MapKind::Bend: return "bend";
@@ -62,7 +62,7 @@ std::string operation_name(const ir::Scene &scene, ShapeId id) {
     case ShapeKind::Paint: return "paint";
     case ShapeKind::Repaint: return "repaint";
     case ShapeKind::Mixed: return "mix";
-    case ShapeKind::Many: return "copies";
+    case ShapeKind::Instances: return "copies";
     case ShapeKind::Contract: return "shape<L>";
     }
     return "shape";
@@ -106,16 +106,17 @@ std::string rule_text(const ir::Scene &scene, ShapeId id, Prover &prover) {
         switch (shape.map) {
         case MapKind::Translate:
         case MapKind::Rotate:
-        case MapKind::Fold:
+        case MapKind::MirrorFold:
         case MapKind::Revolve: return "a rigid map keeps the slope";
         case MapKind::Scale: return "the factor takes back what the map adds";
         case MapKind::Twist:
-            return "shear by rate " + span(prover.number(shape.args[2])) + " * lever arm " +
-                   number_text(child().lever[shape.axis]);
+            return "shear by rate " + span(prover.number(shape.args[2])) + " * moment arm " +
+                   number_text(child().moment_arm[shape.axis]);
         case MapKind::Bend:
-            return "1 + rate " + span(prover.number(shape.args[2])) + " * lever arm " +
+            return "1 + rate " + span(prover.number(shape.args[2])) + " * moment arm " +
                    number_text(
-                       child().lever[static_cast<std::size_t>(3 - shape.axis - shape.towards)]);
+                       child()
+                           .moment_arm[static_cast<std::size_t>(3 - shape.axis - shape.towards)]);
         case MapKind::Taper:
             return "the cross-section's factor changes from 1 to " +
                    span(prover.number(shape.args[2]));
@@ -162,7 +163,7 @@ std::string rule_text(const ir::Scene &scene, ShapeId id, Prover &prover) {
     case ShapeKind::Paint:
     case ShapeKind::Repaint:
     case ShapeKind::Mixed:
-    case ShapeKind::Many:
+    case ShapeKind::Instances:
     case ShapeKind::Contract: break;
     }
     return "the steepest part's slope";

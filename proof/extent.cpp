@@ -63,21 +63,21 @@ Box Prover::extent(ShapeId id) {
 
 // A box for a field of one's own, and for what offsets, displacements and blends make of shapes
 // whose growth is unknown, while they themselves are bounded.
-void Prover::find_extent(ShapeId id, Known &k) {
+void Prover::find_extent(ShapeId id, Derived &k) {
     const Shape &shape = scene.shapes[id];
-    if (k.failed || k.fact.bounds.finite() || !place(id).audible) return;
+    if (k.failed || k.fact.bounds.finite() || !place(id).reported) return;
     const bool grows = shape.kind == ShapeKind::Offset || shape.kind == ShapeKind::Shell ||
                        shape.kind == ShapeKind::Displace || shape.kind == ShapeKind::Blend;
     if (!grows && shape.kind != ShapeKind::Leaf) return;
     if (grows && std::none_of(shape.children.begin(), shape.children.end(), [&](ShapeId c) {
-            return of(c).fact.bounds.finite() && !std::isfinite(of(c).swell);
+            return of(c).fact.bounds.finite() && !std::isfinite(of(c).growth_rate);
         }))
         return;
     const Box found = extent(id);
     const Box cut = ir::intersect(k.fact.bounds, found);
     if (cut.empty() || holds(cut, k.fact.bounds)) return;
     k.fact.bounds = cut;
-    k.swell = infinity;
+    k.growth_rate = infinity;
 }
 
 } // namespace fathom::proof

@@ -55,7 +55,7 @@ static std::pair<std::string, std::string> two_points(const std::array<double, 3
 }
 
 Diagnostic *Prover::report(ShapeId id, Code code, std::string message) {
-    if (!place(id).audible) return nullptr;
+    if (!place(id).reported) return nullptr;
     return &diagnostics.add(code, scene.shapes[id].origin, std::move(message));
 }
 
@@ -108,7 +108,7 @@ FieldBound Prover::bound_once(NodeId field, const Place &here) {
 FieldBound Prover::bound(ShapeId id, NodeId field, const std::string &what, bool report_it) {
     const Place &here = place(id);
     FieldBound out;
-    if (!here.audible) { // inside a body whose claims are taken
+    if (!here.reported) { // inside a body whose claims are taken
         out.lipschitz = 1;
         out.value = Interval::everything();
         return out;
@@ -177,7 +177,7 @@ std::optional<NodeId> Prover::expression(ShapeId id, int depth) {
     case ShapeKind::Shell:
     case ShapeKind::Repeat:
     case ShapeKind::Within:
-    case ShapeKind::Many: break;
+    case ShapeKind::Instances: break;
     }
     return {};
 }
@@ -312,11 +312,11 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     }
 }
 
-Known Prover::know_leaf(ShapeId id) {
+Derived Prover::know_leaf(ShapeId id) {
     const Shape shape = scene.shapes[id];
-    Known k;
+    Derived k;
     k.fact.kind = FieldKind::Bound;
-    k.fact.lever = {infinity, infinity, infinity};
+    k.fact.moment_arm = {infinity, infinity, infinity};
     if (shape.dims == 2) k.fact.bounds.lo[2] = k.fact.bounds.hi[2] = 0;
     if (const Tape &tape = tape_of(shape.args[0]); !tape.too_large)
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -347,7 +347,7 @@ Known Prover::know_leaf(ShapeId id) {
 // the limit, if any are found.
 void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate) {
     const Place &here = place(id);
-    if (!here.audible || !options.test_assumptions) return;
+    if (!here.reported || !options.test_assumptions) return;
     const Tape &tape = tape_of(field);
     if (tape.too_large) return;
     Machine machine(tape, ranges);

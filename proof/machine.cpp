@@ -1,6 +1,6 @@
 // The machine's frame: ranges, norms, loops, what happens to trouble. The rules for the ops:
 // machine_ops.cpp and machine_vectors.cpp.
-#include "proof/machine_step.h"
+#include "proof/instruction_rules.h"
 
 #include <algorithm>
 #include <cmath>

@@ -18,7 +18,7 @@ struct Ranges {
     const ir::Scene *scene = nullptr;
     Interval time;
     std::unordered_map<std::uint32_t, std::array<Interval, 4>>
-        vars; // by Var payload: ids of cells, rows of families
+        vars; // by Var payload: ids of cells, rows of instance_tables
     // By image and grid: least and greatest value, and a bound on the slope in the unit square or
     // cube.
     struct Sampled {
@@ -26,10 +26,10 @@ struct Ranges {
         double slope = 0;
     };
     std::vector<Sampled> images, grids;
-    // By cached field, where its values may be kept: what holds of the kept ones, too (caches.cpp).
+    // By cached field, where its values may be cached: what holds of the cached ones, too (caches.cpp).
     // Else nothing, and its own text is looked at.
     struct Cached {
-        bool kept = false;
+        bool cached = false;
         std::array<Interval, 4> values{};
         double slope = 0; // of all components together
     };
@@ -83,7 +83,7 @@ class Machine {
 
   private:
     static constexpr double infinity_ = ir::rounding::infinity;
-    friend struct Step; // the rules of one instruction (machine_step.h)
+    friend struct Step; // the rules of one instruction (instruction_rules.h)
     void run(const std::vector<Instruction> &block);
     void run_loop(const Instruction &instruction);
     void step(const Instruction &instruction);

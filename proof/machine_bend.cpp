@@ -11,7 +11,7 @@
 //   M a, M fixed  |M|_F ba
 //   noise of q    c bq + c2 nq^2, with the certified slope c and bend c2 of ir/noise.h
 #include "ir/noise.h"
-#include "proof/machine_step.h"
+#include "proof/instruction_rules.h"
 
 namespace fathom::proof {
 

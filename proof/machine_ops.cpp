@@ -1,7 +1,7 @@
 // One rule an op: the value's interval, the partial derivatives' intervals, the norm; what mixes
 // components stands in machine_vectors.cpp. Proofs: docs/lipschitz.md, 2.
 #include "ir/noise.h"
-#include "proof/machine_step.h"
+#include "proof/instruction_rules.h"
 
 #include <algorithm>
 #include <cmath>
@@ -604,8 +604,8 @@ void Step::run() {
         return finish(times(kept.slope, norm(0)), any_odd);
     }
     case Op::Call:
-    case Op::Fold:
-    case Op::FoldResult: break; // flattened away
+    case Op::Loop:
+    case Op::LoopResult: break; // flattened away
     case Op::MakeHit:
     case Op::HitDistance:
     case Op::HitPaint:

@@ -1,6 +1,6 @@
 // The rules of what mixes components: moves between vectors, lengths and products. Proofs:
 // docs/lipschitz.md, 2.
-#include "proof/machine_step.h"
+#include "proof/instruction_rules.h"
 
 #include <algorithm>
 #include <cmath>

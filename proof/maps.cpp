@@ -1,4 +1,4 @@
-// The rules for maps: rigid motions, scales, folds, and the deformations with their lever arms.
+// The rules for maps: rigid motions, scales, folds, and the deformations with their moment arms.
 // Proofs: docs/lipschitz.md, 5.
 #include "ir/maps.h"
 #include "proof/deformed.h"
@@ -22,22 +22,22 @@ using ir::rounding::up;
 
 namespace {
 
-void forget_levers(Known &k) {
+void forget_moment_arms(Derived &k) {
     k.parts = Box::everything();
-    k.fact.lever = {infinity, infinity, infinity};
+    k.fact.moment_arm = {infinity, infinity, infinity};
 }
-void cap_levers(Known &k) {
+void cap_moment_arms(Derived &k) {
     for (int a = 0; a < 3; ++a) {
-        double &lever = k.fact.lever[static_cast<std::size_t>(a)];
-        lever = std::min(lever, radius_about(k.parts, a));
+        double &moment_arm = k.fact.moment_arm[static_cast<std::size_t>(a)];
+        moment_arm = std::min(moment_arm, radius_about(k.parts, a));
     }
 }
 
 } // namespace
 
-Known Prover::know_map(ShapeId id) {
+Derived Prover::know_map(ShapeId id) {
     const Shape shape = scene.shapes[id];
-    Known k = child(shape);
+    Derived k = child(shape);
     k.fact.repeat = {};
     k.fact.guard = false;
     bool flat = shape.dims == 2;
@@ -54,10 +54,10 @@ Known Prover::know_map(ShapeId id) {
             for (int b = 0; b < 3; ++b)
                 if (b != a)
                     across = std::hypot(across, by[static_cast<std::size_t>(b)].magnitude());
-            k.fact.lever[i] = up(k.fact.lever[i] + across, 4); // p x g = q x g + v x g
+            k.fact.moment_arm[i] = up(k.fact.moment_arm[i] + across, 4); // p x g = q x g + v x g
             k.fact.symmetric[i] = k.fact.symmetric[i] && by[i] == Interval(0.0);
         }
-        cap_levers(k);
+        cap_moment_arms(k);
         break;
     }
     case MapKind::Rotate: {
@@ -67,24 +67,24 @@ Known Prover::know_map(ShapeId id) {
         k.outer = everywhere(k.outer) ? k.outer : turned(k.outer, matrix, side);
         k.parts = everywhere(k.parts) ? k.parts : turned(k.parts, matrix, side);
         auto n = static_cast<std::size_t>(side);
-        std::array<double, 3> lever{infinity, infinity, infinity};
+        std::array<double, 3> moment_arm{infinity, infinity, infinity};
         std::array<bool, 3> symmetric{};
-        if (flat) { // about z: the lever about z stays
-            lever[2] = k.fact.lever[2];
+        if (flat) { // about z: the moment arm about z stays
+            moment_arm[2] = k.fact.moment_arm[2];
             symmetric[2] = k.fact.symmetric[2];
         }
         for (std::size_t to = 0; to < n; ++to)
             for (std::size_t from = 0; from < n; ++from) {
                 // Column `from` is +-e_to: that axis is only renamed, for all params. Trigonometry
-                // leaves 1e-16; a lever changes by less than its rounding.
+                // leaves 1e-16; a moment arm changes by less than its rounding.
                 bool axis = matrix[from * n + to].mignitude() > 1 - 1e-12;
                 if (!axis) continue;
-                if (side == 3) lever[to] = up(k.fact.lever[from], 4);
+                if (side == 3) moment_arm[to] = up(k.fact.moment_arm[from], 4);
                 symmetric[to] = k.fact.symmetric[from];
             }
-        k.fact.lever = lever;
+        k.fact.moment_arm = moment_arm;
         k.fact.symmetric = symmetric;
-        cap_levers(k);
+        cap_moment_arms(k);
         break;
     }
     case MapKind::Scale: {
@@ -107,20 +107,21 @@ Known Prover::know_map(ShapeId id) {
         k.outer = everywhere(k.outer) ? k.outer : times(k.outer, by);
         if (uniform) {
             k.parts = everywhere(k.parts) ? k.parts : times(k.parts, by);
-            for (double &lever : k.fact.lever) lever = up(lever * most);
-            k.drift = up(k.drift * most);
+            for (double &moment_arm : k.fact.moment_arm) moment_arm = up(moment_arm * most);
+            k.offset_slack = up(k.offset_slack * most);
         } else {
             // min|s| * |J^T g| <= min|s| / min|s| * L: the factor takes back what the map adds. Not
             // exact any more, and gradients no longer point from nearest points.
             if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
             k.exact_outside = k.parts_exact = false;
-            forget_levers(k);
+            forget_moment_arms(k);
             double ratio = least > 0 ? most / least : infinity;
-            k.swell = up(k.swell * ratio), k.swell_out = up(k.swell_out * ratio);
+            k.growth_rate = up(k.growth_rate * ratio),
+            k.outer_growth_rate = up(k.outer_growth_rate * ratio);
         }
         break;
     }
-    case MapKind::Fold: {
+    case MapKind::MirrorFold: {
         // What lies within the fold's image may have copies: the preimage of the box.
         Box preimage = fold_preimage(shape.args[0], k.fact.bounds);
         k.fact.bounds = preimage;
@@ -132,9 +133,9 @@ Known Prover::know_map(ShapeId id) {
         k.parts_exact = false;
         k.exact_outside = k.exact_outside && fold_is_clean(shape.args[0], child(shape).fact.bounds);
         k.fact.symmetric = fold_symmetry(shape.args[0], k.fact.symmetric);
-        k.fact.lever = {infinity, infinity, infinity};
-        cap_levers(k);
-        k.swell *= std::sqrt(3.0);
+        k.fact.moment_arm = {infinity, infinity, infinity};
+        cap_moment_arms(k);
+        k.growth_rate *= std::sqrt(3.0);
         break;
     }
     case MapKind::Revolve: {
@@ -150,7 +151,7 @@ Known Prover::know_map(ShapeId id) {
             return out;
         };
         k.fact.bounds = spin(k.fact.bounds, false);
-        k.outer = Box::everything(), k.swell_out = 0;
+        k.outer = Box::everything(), k.outer_growth_rate = 0;
         bool clear = !flat_box.empty() && (Interval(flat_box.lo[0]) + offset).lo >= 0;
         bool mirrored = k.fact.symmetric[0] && offset == Interval(0.0);
         if (!clear &&
@@ -160,13 +161,13 @@ Known Prover::know_map(ShapeId id) {
         }
         // In the plane through p and the axis the gradient g is the profile's, and s its nearest
         // point, as far as o further from the axis: |s x g| there is at most M + |o|, M the
-        // profile's own lever arm. About x and z it counts by the same share of that plane's
+        // profile's own moment arm. About x and z it counts by the same share of that plane's
         // tilt as |g| does.
         k.parts = spin(k.parts, true);
-        k.fact.lever[0] = k.fact.lever[2] = up(k.fact.lever[2] + offset.magnitude());
-        cap_levers(k);
+        k.fact.moment_arm[0] = k.fact.moment_arm[2] = up(k.fact.moment_arm[2] + offset.magnitude());
+        cap_moment_arms(k);
         k.fact.symmetric = {true, k.fact.symmetric[1], true};
-        k.fact.lever[1] = 0; // every profile is its own turn about y
+        k.fact.moment_arm[1] = 0; // every profile is its own turn about y
         break;
     }
     case MapKind::Twist:
@@ -277,15 +278,15 @@ double Prover::region_radius(ShapeId id, int axis) const {
     return radius;
 }
 
-Known Prover::know_deformed(ShapeId id) {
+Derived Prover::know_deformed(ShapeId id) {
     const Shape shape = scene.shapes[id];
-    const Known inner = child(shape);
-    Known k = inner;
+    const Derived inner = child(shape);
+    Derived k = inner;
     k.fact.repeat = {};
     k.fact.guard = false;
     k.fact.kind = k.fact.kind == FieldKind::Estimate ? FieldKind::Estimate : FieldKind::Bound;
     k.exact_outside = k.parts_exact = false;
-    k.outer = Box::everything(), k.swell_out = 0;
+    k.outer = Box::everything(), k.outer_growth_rate = 0;
     const Box here = place(id).box;
     const double l = inner.fact.lipschitz_sup;
     auto needs_region = [&](const std::string &what) {
@@ -296,7 +297,7 @@ Known Prover::know_deformed(ShapeId id) {
         k.failed = true;
     };
     const std::string child_name = operation_name(scene, shape.children[0]);
-    // Without a lever arm or a region, a shape that has bounds is proved within them, and joined
+    // Without a moment arm or a region, a shape that has bounds is proved within them, and joined
     // with the way to them.
     auto own_box = [&] {
         return shape.dims == 3 && k.fact.bounds.finite() && !k.fact.bounds.empty();
@@ -308,16 +309,16 @@ Known Prover::know_deformed(ShapeId id) {
         Interval rate = number(shape.args[2]);
         int axis = shape.axis;
         auto a = static_cast<std::size_t>(axis);
-        double lever = inner.fact.lever[a], region = region_radius(id, axis);
-        double arm = std::min(lever, region); // sigma(k M) everywhere, or sigma(k R) within R
+        double moment_arm = inner.fact.moment_arm[a], region = region_radius(id, axis);
+        double arm = std::min(moment_arm, region); // sigma(k M) everywhere, or sigma(k R) within R
         double r = radius_about(inner.fact.bounds, axis);
         if (!everywhere(k.fact.bounds) && !k.fact.bounds.empty())
             for (std::size_t i = 0; i < 3; ++i)
                 if (int(i) != axis) k.fact.bounds.lo[i] = -r, k.fact.bounds.hi[i] = r;
         round = radius_about(padded(inner.fact.bounds), axis) * options.rules[Rule::Round];
-        k.swell *= std::sqrt(2.0);
-        forget_levers(k);
-        k.fact.lever[a] = lever; // turning about the axis commutes with the twist
+        k.growth_rate *= std::sqrt(2.0);
+        forget_moment_arms(k);
+        k.fact.moment_arm[a] = moment_arm; // turning about the axis commutes with the twist
         bool still = rate == Interval(0.0);
         if (!still) k.fact.symmetric = {false, false, false};
         if (!std::isfinite(arm) && !still && own_box()) {
@@ -347,14 +348,15 @@ Known Prover::know_deformed(ShapeId id) {
         Interval rate = number(shape.args[2]);
         int third = 3 - shape.axis - shape.towards;
         auto t = static_cast<std::size_t>(third);
-        double lever = inner.fact.lever[t], arm = std::min(lever, region_radius(id, third));
+        double moment_arm = inner.fact.moment_arm[t],
+               arm = std::min(moment_arm, region_radius(id, third));
         double r = radius_about(inner.fact.bounds, third);
         if (!everywhere(k.fact.bounds) && !k.fact.bounds.empty())
             for (std::size_t i = 0; i < 3; ++i)
                 if (int(i) != third) k.fact.bounds.lo[i] = -r, k.fact.bounds.hi[i] = r;
         round = radius_about(padded(inner.fact.bounds), third) * options.rules[Rule::Round];
-        k.swell *= std::sqrt(2.0);
-        forget_levers(k);
+        k.growth_rate *= std::sqrt(2.0);
+        forget_moment_arms(k);
         bool still = rate == Interval(0.0);
         for (std::size_t i = 0; i < 3; ++i)
             if (i != t && !still) k.fact.symmetric[i] = false;
@@ -390,11 +392,11 @@ Known Prover::know_deformed(ShapeId id) {
         bool still = ratio == Interval(1.0);
         if (still) steepness = 0;
         // What was turned about the same axis before is seen through: its points and surface points
-        // turn alike, and the turn adds k m to the slope along the axis, |m| at most the lever arm.
+        // turn alike, and the turn adds k m to the slope along the axis, |m| at most the moment arm.
         const Shape below = scene.shapes[shape.children[0]];
         const bool twisted = below.kind == ir::ShapeKind::Map && below.map == MapKind::Twist &&
                              below.axis == shape.axis;
-        const Known &straight = twisted ? of(below.children[0]) : inner;
+        const Derived &straight = twisted ? of(below.children[0]) : inner;
         const double rate = twisted ? number(below.args[2]).magnitude() : 0;
         const Box &parts = straight.parts;
         double r = radius_about(parts, shape.axis);
@@ -410,8 +412,9 @@ Known Prover::know_deformed(ShapeId id) {
                 }
         k.fact.symmetric[a] = k.fact.symmetric[a] && still;
         // {c f(x/c) < t} needs f < t/c.
-        k.swell = ratio.lo > 0 ? up(k.swell * most / std::min(1.0, ratio.lo)) : infinity;
-        forget_levers(k);
+        k.growth_rate =
+            ratio.lo > 0 ? up(k.growth_rate * most / std::min(1.0, ratio.lo)) : infinity;
+        forget_moment_arms(k);
         if (still) {
             if (!k.failed) set_lipschitz(k, inner.fact.lipschitz, l);
             break;
@@ -427,7 +430,7 @@ Known Prover::know_deformed(ShapeId id) {
             norm = lower_triangle_norm(
                 up(most + steepness * v * options.rules[Rule::Taper]),
                 std::min(up(std::hypot(slant, turn * r), 4),
-                         up(slant + turn * std::min(straight.fact.lever[a], r))));
+                         up(slant + turn * std::min(straight.fact.moment_arm[a], r))));
             norm = up(norm * straight.fact.lipschitz_sup / l);
         }
         Box inside = here;
@@ -463,13 +466,13 @@ Known Prover::know_deformed(ShapeId id) {
         break;
     }
     case MapKind::Distort: {
-        forget_levers(k);
+        forget_moment_arms(k);
         k.fact.symmetric = {false, false, false};
-        k.swell = infinity;
+        k.growth_rate = infinity;
         auto shift = whole_shift(shape.args[0]);
         if (shift && !everywhere(k.fact.bounds)) {
             k.fact.bounds = moved(k.fact.bounds, *shift);
-            k.swell = inner.swell;
+            k.growth_rate = inner.growth_rate;
         } else if (!k.fact.bounds.empty()) {
             k.fact.bounds = here;
         }
@@ -482,7 +485,7 @@ Known Prover::know_deformed(ShapeId id) {
             if (shape.assumed <= 0) k.fact.kind = FieldKind::Estimate;
         } else {
             FieldBound b;
-            if (everywhere(here) && own_box() && place(id).audible) {
+            if (everywhere(here) && own_box() && place(id).reported) {
                 b = bound(id, shape.args[0], "the map", false);
                 if (!std::isfinite(b.lipschitz)) { // steeper without limit far away, perhaps; but
                                                    // not in the shape's own box
@@ -511,7 +514,7 @@ Known Prover::know_deformed(ShapeId id) {
     case MapKind::Translate:
     case MapKind::Rotate:
     case MapKind::Scale:
-    case MapKind::Fold:
+    case MapKind::MirrorFold:
     case MapKind::Revolve: break;
     }
     if (!k.failed && own_box() && (alone || shape.map == MapKind::Taper)) tighten(id, k);
@@ -521,11 +524,11 @@ Known Prover::know_deformed(ShapeId id) {
 
 // Rules that hold for every shape count its farthest point and its steepest gradient as one. Where
 // the field can be written as one expression, its slope in the shape's own box is measured whole.
-void Prover::tighten(ShapeId id, Known &k) {
+void Prover::tighten(ShapeId id, Derived &k) {
     const Shape shape = scene.shapes[id];
     const double rule = k.fact.lipschitz_sup;
     if (!options.tighten || rule <= 1.1 || !graph.is_constant(k.fact.lipschitz) ||
-        !place(id).audible)
+        !place(id).reported)
         return;
     Budget budget;
     // Few deformed shapes share what many would.

@@ -18,7 +18,7 @@ using ir::rounding::up;
 
 namespace {
 
-constexpr std::size_t most_octaves = 16, most_of_a_sum = 1'000;
+constexpr std::size_t max_octaves = 16, max_of_a_sum = 1'000;
 constexpr double worth = 0.95; // a partial sum is used where its bound is that much less
 
 // Calls and short loops written out, so that the turns of a sum are its terms. Nothing where a loop
@@ -31,14 +31,14 @@ struct Unrolled {
     NodeId of(NodeId id) {
         if (failed || !graph.reads(id).point) return id;
         if (const auto found = known.find(id); found != known.end()) return found->second;
-        if (known.size() > most_of_a_sum) failed = true;
+        if (known.size() > max_of_a_sum) failed = true;
         const ir::Node node = graph[id];
         std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
         NodeId out = id;
-        if (node.op == Op::FoldResult ||
-            node.op == Op::Fold) { // the loop itself is its first value
-            const bool first = node.op == Op::Fold;
-            const std::vector<NodeId> ends = turns(first ? id : args[0]);
+        if (node.op == Op::LoopResult ||
+            node.op == Op::Loop) { // the loop itself is its first value
+            const bool first = node.op == Op::Loop;
+            const std::vector<NodeId> ends = final_values(first ? id : args[0]);
             if (failed) return id;
             out = ends[first ? 0 : node.payload];
         } else if (node.type == ir::Type::Float &&
@@ -56,16 +56,16 @@ struct Unrolled {
     bool sums(NodeId id) const {
         const Op op = graph[id].op;
         return op == Op::Add || op == Op::Sub || op == Op::Neg || op == Op::Mul || op == Op::Div ||
-               op == Op::FoldResult || op == Op::Fold;
+               op == Op::LoopResult || op == Op::Loop;
     }
-    // The loop's values after its last turn.
-    std::vector<NodeId> turns(NodeId fold_node) {
-        const ir::Fold fold = graph.fold(ir::FoldId{graph[fold_node].payload});
-        const auto count = graph.as_number(fold.count);
-        std::vector<NodeId> state(graph.args(fold_node).begin(), graph.args(fold_node).end());
-        failed = failed || !count || *count < 0 || *count > double(most_octaves) || fold.condition;
-        for (int turn = 0; !failed && turn < int(*count); ++turn)
-            state = ir::after_iteration(graph, fold, turn, state);
+    // The loop's values after its last iteration.
+    std::vector<NodeId> final_values(NodeId loop_node) {
+        const ir::Loop loop = graph.loop(ir::LoopId{graph[loop_node].payload});
+        const auto count = graph.as_number(loop.count);
+        std::vector<NodeId> state(graph.args(loop_node).begin(), graph.args(loop_node).end());
+        failed = failed || !count || *count < 0 || *count > double(max_octaves) || loop.condition;
+        for (int iteration = 0; !failed && iteration < int(*count); ++iteration)
+            state = ir::after_iteration(graph, loop, iteration, state);
         return state;
     }
 };
@@ -78,7 +78,7 @@ void split_sum(ir::Graph &graph, NodeId id, NodeId factor, std::vector<NodeId> &
         return graph.type(a) == ir::Type::Float && !graph.reads(a).point &&
                !graph.reads(a).free_vars;
     };
-    if (out.size() <= most_octaves && node.type == ir::Type::Float && graph.reads(id).point) {
+    if (out.size() <= max_octaves && node.type == ir::Type::Float && graph.reads(id).point) {
         if (node.op == Op::Add || node.op == Op::Sub) {
             split_sum(graph, arg(0), factor, out);
             split_sum(graph, arg(1), node.op == Op::Add ? factor : graph.neg(factor), out);
@@ -105,7 +105,7 @@ std::vector<ir::PartialSum> Prover::partial_sums(ShapeId id, double slope) {
     const NodeId whole = unrolled.of(shape.args[0]);
     if (unrolled.failed) return out;
     split_sum(graph, whole, graph.number(1), terms);
-    if (terms.size() < 2 || terms.size() > most_octaves) return out;
+    if (terms.size() < 2 || terms.size() > max_octaves) return out;
     // One look at all of the place: what noise says of itself does not depend on where it is.
     const Cell box = to_cell(place(id).box);
     const auto measured = [&](NodeId field, Interval &value) {

@@ -28,7 +28,7 @@ void prove(ir::Scene &scene, Diagnostics &diagnostics, const Options &options = 
 struct Explanation {
     ir::ShapeId shape;
     std::string operation; // "twist", "union", "sphere"
-    std::string rule;      // in words: "shear by rate * lever arm: sigma(2 * 0.6)"
+    std::string rule;      // in words: "shear by rate * moment arm: sigma(2 * 0.6)"
     double factor = 1;     // the operation's own: lipschitz_sup over the largest child's
     double lipschitz = 1;  // of the result
     double share =

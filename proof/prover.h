@@ -2,8 +2,8 @@
 // shapes.cpp, maps.cpp, repeat.cpp, fields.cpp).
 #pragma once
 
-#include "proof/known.h"
 #include "proof/prove.h"
+#include "proof/shape_facts.h"
 
 #include <deque>
 #include <map>
@@ -14,8 +14,9 @@ namespace fathom::proof {
 
 // Where a shape is asked at all, in its own space.
 struct Place {
-    bool reached = false, audible = false; // audible: not only inside a body whose claims are taken
-    Box box;                               // the hull over all uses
+    bool reached = false,
+         reported = false; // reported: not only inside a body whose claims are taken
+    Box box;               // the hull over all uses
     const Zone *zone =
         nullptr; // the region, where there is one use and it is the shape's own space
     bool shared = false;
@@ -28,7 +29,7 @@ struct Prover {
     ir::Graph &graph;
     Flattening flattening;
     Ranges ranges;
-    std::vector<Known> known;
+    std::vector<Derived> known;
     std::vector<Place> places;
     std::deque<Zone> zones;              // stable addresses
     double outward = 0;                  // ShapeFact::outward of the shape at hand
@@ -49,8 +50,8 @@ struct Prover {
     Vec vector(ir::NodeId id);      // of a closed vector (a flat one's z is 0)
     std::array<Interval, 16> numbers(ir::NodeId id);
     bool reads_point(ir::NodeId id) const { return graph.reads(id).point; }
-    const Known &of(ir::ShapeId id) const { return known[id.index]; }
-    const Known &child(const ir::Shape &shape, std::size_t i = 0) const {
+    const Derived &of(ir::ShapeId id) const { return known[id.index]; }
+    const Derived &child(const ir::Shape &shape, std::size_t i = 0) const {
         return of(shape.children[i]);
     }
     const Place &place(ir::ShapeId id) const { return places[id.index]; }
@@ -59,29 +60,30 @@ struct Prover {
 
     void test_conditions(); // conditions.cpp
     void know_caches();     // caches.cpp
-    void report_not_kept(ir::CacheId id);
+    void report_not_cached(ir::CacheId id);
 
     // -- places, from the root down
     void find_places();
-    void visit(ir::ShapeId child, const Box &box, const Zone *zone, bool audible);
+    void visit(ir::ShapeId child, const Box &box, const Zone *zone, bool reported);
 
     // -- rules, from the leaves up
-    Known know(ir::ShapeId id);
-    Known know_leaf(ir::ShapeId id);
-    Known know_set(ir::ShapeId id); // union, intersection, xor, blend, seam, pseudo-norm
-    Known know_lerp(ir::ShapeId id);
-    Known know_displaced(ir::ShapeId id); // displace, offset, shell
-    Known know_extrude(ir::ShapeId id);
-    Known know_map(ir::ShapeId id);
-    Known know_deformed(ir::ShapeId id); // twist, bend, taper, distort
-    Known know_repeat(ir::ShapeId id);
-    Known know_within(ir::ShapeId id);
-    Known know_many(ir::ShapeId id);
-    Known know_library(ir::ShapeId id);
-    Known know_contract(ir::ShapeId id);
+    Derived know(ir::ShapeId id);
+    Derived know_leaf(ir::ShapeId id);
+    Derived know_set(ir::ShapeId id); // union, intersection, xor, blend, seam, pseudo-norm
+    Derived know_lerp(ir::ShapeId id);
+    Derived know_displaced(ir::ShapeId id); // displace, offset, shell
+    Derived know_extrude(ir::ShapeId id);
+    Derived know_map(ir::ShapeId id);
+    Derived know_deformed(ir::ShapeId id); // twist, bend, taper, distort
+    Derived know_repeat(ir::ShapeId id);
+    Derived know_within(ir::ShapeId id);
+    Derived know_instances(ir::ShapeId id);
+    Derived know_library(ir::ShapeId id);
+    Derived know_contract(ir::ShapeId id);
 
-    Ball ball_of(ir::ShapeId id, const Known &k); // from the children's balls, where that says more
-    void keep_in_ball(ir::ShapeId id, Known &k);  // sets the ball, and cuts the box to it
+    Ball ball_of(ir::ShapeId id,
+                 const Derived &k); // from the children's balls, where that says more
+    void keep_in_ball(ir::ShapeId id, Derived &k); // sets the ball, and cuts the box to it
 
     double bend(ir::NodeId field, const Box &box); // curvature.cpp
     double core_of_leaf(ir::NodeId field);
@@ -90,10 +92,10 @@ struct Prover {
     double core_of(ir::ShapeId id, int depth = 0);
     double core_made(ir::ShapeId id, int depth);
     std::map<ir::ShapeId, double> cores;
-    double curvature_of(ir::ShapeId id, const Known &k); // ShapeFact::curvature
+    double curvature_of(ir::ShapeId id, const Derived &k); // ShapeFact::curvature
 
     std::vector<ir::PartialSum> partial_sums(ir::ShapeId displaced, double slope); // octaves.cpp
-    void tighten(ir::ShapeId id, Known &k); // a deformed shape's bound, by its own expression
+    void tighten(ir::ShapeId id, Derived &k); // a deformed shape's bound, by its own expression
     double region_radius(ir::ShapeId id, int axis) const;
 
     // -- folds: q is p by component, |p_i|, or p less something limited
@@ -112,7 +114,7 @@ struct Prover {
     Interval values(ir::ShapeId id, const Cell &cell, int depth = 0);
     double magnitude(ir::ShapeId id, const Box &box);
     Box extent(ir::ShapeId id); // holds the solid, wherever its field's values say so
-    void find_extent(ir::ShapeId id, Known &k); // sets the box of what has none
+    void find_extent(ir::ShapeId id, Derived &k); // sets the box of what has none
 
     // The raw field as one expression in Point, where the shape is made of leaves, maps, min and
     // max; else nothing.
@@ -125,16 +127,16 @@ struct Prover {
     // The bound of an expression of the point over where the shape is asked. Reports failures.
     FieldBound bound(ir::ShapeId id, ir::NodeId field, const std::string &what, bool report = true);
 
-    void keep_local(Known &k, double sup,
-                    ir::NodeId formula);        // the bound of a field that is joined with its box
-    void set_lipschitz(Known &k, double value); // a constant
-    void set_lipschitz(Known &k, ir::NodeId formula,
+    void keep_local(Derived &k, double sup,
+                    ir::NodeId formula); // the bound of a field that is joined with its box
+    void set_lipschitz(Derived &k, double value); // a constant
+    void set_lipschitz(Derived &k, ir::NodeId formula,
                        double sup); // an expression in params; constant where it reads none
-    void fail(Known &k);            // no proof: infinity, facts usable
-    void check_size(ir::ShapeId id, Known &k); // too large or too small for single precision
-    void finish(ir::ShapeId id, Known &k);     // guards, notes
+    void fail(Derived &k);          // no proof: infinity, facts usable
+    void check_size(ir::ShapeId id, Derived &k); // too large or too small for single precision
+    void finish(ir::ShapeId id, Derived &k);     // guards, notes
 
-    // -- reports; silent where the shape is not audible
+    // -- reports; silent where the shape is not reported
     static std::string cheaper(const ir::Shape &shape);
     Diagnostic *report(ir::ShapeId id, Code code, std::string message);
     void report_field(ir::ShapeId id, const FieldBound &bound, const std::string &what);

@@ -15,9 +15,9 @@ using ir::rounding::up;
 
 namespace {
 
-constexpr int most_per_axis = 9, most_copies = 128;
+constexpr int max_per_axis = 9, max_copies = 128;
 
-// Of like copies at j*cell, those that can hold the nearest point when the asker is at x (own cell:
+// Of like copies at j*cell, those that can hold the nearest point when the evaluator is at x (own cell:
 // |x| <= cell/2): a point s of the motif, lo <= s <= hi, is nearest in the copy with |x - s -
 // j*cell| <= cell/2. For x in [0, cell/2].
 void copies_that_matter(double lo, double hi, double cell, double &least, double &most) {
@@ -27,15 +27,15 @@ void copies_that_matter(double lo, double hi, double cell, double &least, double
 
 } // namespace
 
-Known Prover::know_repeat(ShapeId id) {
+Derived Prover::know_repeat(ShapeId id) {
     const Shape shape = scene.shapes[id];
     const ir::Repetition repetition = scene.shapes.repetitions[shape.payload];
-    const Known &motif = child(shape);
-    Known k = motif;
+    const Derived &motif = child(shape);
+    Derived k = motif;
     k.fact.guard = false;
-    k.outer = Box::everything(), k.swell_out = 0;
+    k.outer = Box::everything(), k.outer_growth_rate = 0;
     k.parts = Box::everything();
-    k.fact.lever = {infinity, infinity, infinity};
+    k.fact.moment_arm = {infinity, infinity, infinity};
     const Box &box = motif.fact.bounds;
     const bool differ = static_cast<bool>(repetition.id);
     const bool exact = motif.exact_outside;
@@ -89,7 +89,7 @@ Known Prover::know_repeat(ShapeId id) {
             }
         }
         if (need > 1) need = std::max(1, int(need * options.rules[Rule::Sectors]));
-        if (need > most_copies) too_many = true;
+        if (need > max_copies) too_many = true;
         plan.neighbors[0] = std::min(need, n);
         product = plan.neighbors[0];
         double r = radius_about(box, repetition.axis);
@@ -97,7 +97,7 @@ Known Prover::know_repeat(ShapeId id) {
             for (std::size_t i = 0; i < 3; ++i)
                 if (i != a && !(shape.dims == 2 && i == 2))
                     k.fact.bounds.lo[i] = -r, k.fact.bounds.hi[i] = r;
-        k.swell *= std::sqrt(2.0);
+        k.growth_rate *= std::sqrt(2.0);
         for (std::size_t i = 0; i < 3; ++i)
             if (i != a) k.fact.symmetric[i] = false;
         // Even counts of mirror images: a motif symmetric across its own plane makes a whole that
@@ -108,9 +108,10 @@ Known Prover::know_repeat(ShapeId id) {
         if (exact && motif.parts_exact && !box.empty()) {
             k.parts = k.fact.bounds;
             for (int i = 0; i < 3; ++i)
-                k.fact.lever[static_cast<std::size_t>(i)] = radius_about(k.parts, i);
-            k.fact.lever[a] = std::min(k.fact.lever[a],
-                                       motif.fact.lever[a]); // each copy is turned about that axis
+                k.fact.moment_arm[static_cast<std::size_t>(i)] = radius_about(k.parts, i);
+            k.fact.moment_arm[a] =
+                std::min(k.fact.moment_arm[a],
+                         motif.fact.moment_arm[a]); // each copy is turned about that axis
         }
     } else {
         Vec cells = vector(shape.args[0]), counts = vector(shape.args[1]);
@@ -160,7 +161,7 @@ Known Prover::know_repeat(ShapeId id) {
             need = std::max(
                 1, int(std::lround(need * (need > 1 ? options.rules[Rule::RepeatNeighbors] : 1))));
             if (counts[a].hi < 1e8) need = std::min(need, int(std::max(2 * counts[a].hi - 1, 1.0)));
-            if (need > most_per_axis) too_many = true;
+            if (need > max_per_axis) too_many = true;
             plan.neighbors[a] = need;
             product *= need;
             // Which copies are asked changes in the middle between two; the guard is continuous
@@ -178,11 +179,11 @@ Known Prover::know_repeat(ShapeId id) {
         }
         if (exact && motif.parts_exact) k.parts = k.fact.bounds;
         for (int i = 0; i < 3; ++i)
-            k.fact.lever[static_cast<std::size_t>(i)] = radius_about(k.parts, i);
+            k.fact.moment_arm[static_cast<std::size_t>(i)] = radius_about(k.parts, i);
         for (std::size_t a = 0; a < 3; ++a)
             k.fact.symmetric[a] = motif.fact.symmetric[a] && !differ;
     }
-    if (product > most_copies) too_many = true;
+    if (product > max_copies) too_many = true;
     if (too_many && !k.failed) {
         if (Diagnostic *d =
                 report(id, Code::RepeatLimit,
@@ -201,8 +202,8 @@ Known Prover::know_repeat(ShapeId id) {
         k.fact.kind = k.fact.kind == FieldKind::Estimate ? FieldKind::Estimate : FieldKind::Bound;
         k.exact_outside = k.parts_exact = false;
         k.parts = Box::everything();
-        k.fact.lever = {infinity, infinity, infinity};
-        k.swell = infinity; // the guard may be less than the field
+        k.fact.moment_arm = {infinity, infinity, infinity};
+        k.growth_rate = infinity; // the guard may be less than the field
     }
     plan.hold = plan.guard && !exact;
     k.fact.repeat = plan;

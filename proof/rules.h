@@ -40,7 +40,7 @@ struct Rules {
     double operator[](Rule rule) const { return factor[static_cast<std::size_t>(rule)]; }
 };
 
-// The spectral norm of a shear by s: (s + sqrt(s^2 + 4))/2. A twist by rate k of parts with lever
+// The spectral norm of a shear by s: (s + sqrt(s^2 + 4))/2. A twist by rate k of parts with moment_arm
 // arm M: sigma(k M).
 double sigma(double s);
 

@@ -1,4 +1,4 @@
-// The rules of the kinds that combine, displace, repeat as a family, or claim. Proofs:
+// The rules of the kinds that combine, displace, repeat as a instance_table, or claim. Proofs:
 // docs/lipschitz.md, 3.
 #include "proof/prover.h"
 
@@ -22,40 +22,40 @@ namespace {
 ProofStatus worse(ProofStatus a, ProofStatus b) { return std::max(a, b); }
 
 // Of a min of fields: {min < t} is in the hull of the children's; {min > -t} in the meet of theirs.
-void unite(Known &k, const Known &c) {
+void unite(Derived &k, const Derived &c) {
     k.fact.bounds = ir::hull(k.fact.bounds, c.fact.bounds);
-    k.swell = std::max(k.swell, c.swell);
-    k.swell_out = std::max(k.swell_out, c.swell_out);
+    k.growth_rate = std::max(k.growth_rate, c.growth_rate);
+    k.outer_growth_rate = std::max(k.outer_growth_rate, c.outer_growth_rate);
     k.outer = meeting(k.outer, c.outer);
 }
-void meet(Known &k, const Known &c) {
+void meet(Derived &k, const Derived &c) {
     std::swap(k.fact.bounds, k.outer);
-    std::swap(k.swell, k.swell_out);
-    Known other = c;
+    std::swap(k.growth_rate, k.outer_growth_rate);
+    Derived other = c;
     std::swap(other.fact.bounds, other.outer);
-    std::swap(other.swell, other.swell_out);
+    std::swap(other.growth_rate, other.outer_growth_rate);
     unite(k, other);
     std::swap(k.fact.bounds, k.outer);
-    std::swap(k.swell, k.swell_out);
+    std::swap(k.growth_rate, k.outer_growth_rate);
 }
 // What every combination of two inherits: the attributes of the gradients.
-void inherit(Known &k, const Known &c) {
+void inherit(Derived &k, const Derived &c) {
     k.failed = k.failed || c.failed;
     k.fact.status = worse(k.fact.status, c.fact.status);
     k.parts = ir::hull(k.parts, c.parts);
-    k.drift = std::max(k.drift, c.drift);
+    k.offset_slack = std::max(k.offset_slack, c.offset_slack);
     k.lowered = std::max(k.lowered, c.lowered);
     for (std::size_t a = 0; a < 3; ++a) {
         k.fact.symmetric[a] = k.fact.symmetric[a] && c.fact.symmetric[a];
-        k.fact.lever[a] = std::max(k.fact.lever[a], c.fact.lever[a]);
+        k.fact.moment_arm[a] = std::max(k.fact.moment_arm[a], c.fact.moment_arm[a]);
     }
 }
 
 } // namespace
 
-Known Prover::know_set(ShapeId id) {
+Derived Prover::know_set(ShapeId id) {
     const Shape shape = scene.shapes[id];
-    Known k = child(shape);
+    Derived k = child(shape);
     k.fact.repeat = {};
     k.fact.guard = false;
     auto profile = static_cast<ir::Profile>(shape.payload);
@@ -69,9 +69,9 @@ Known Prover::know_set(ShapeId id) {
     double sup = k.fact.lipschitz_sup;
     bool pairwise_disjoint = shape.children.size() <= 64,
          all_exact = k.fact.kind == FieldKind::Exact;
-    const Known first = k;
+    const Derived first = k;
     for (std::size_t i = 1; i < shape.children.size(); ++i) {
-        const Known &c = child(shape, i);
+        const Derived &c = child(shape, i);
         bool exact_outside = k.exact_outside && c.exact_outside,
              parts_exact = k.parts_exact && c.parts_exact;
         all_exact = all_exact && c.fact.kind == FieldKind::Exact;
@@ -79,7 +79,7 @@ Known Prover::know_set(ShapeId id) {
             pairwise_disjoint = disjoint(child(shape, j).fact.bounds, c.fact.bounds);
         inherit(k, c);
         k.exact_outside = k.parts_exact = false;
-        double w = std::max(k.swell, c.swell);
+        double w = std::max(k.growth_rate, c.growth_rate);
         switch (shape.kind) {
         case ShapeKind::Union:
             unite(k, c);
@@ -93,7 +93,7 @@ Known Prover::know_set(ShapeId id) {
         case ShapeKind::Xor: // within the union; all else unknown
             unite(k, c);
             k.outer = Box::everything();
-            k.swell_out = 0;
+            k.outer_growth_rate = 0;
             k.parts_exact = parts_exact;
             break;
         case ShapeKind::Blend: {
@@ -111,30 +111,31 @@ Known Prover::know_set(ShapeId id) {
                 w = gap > 2 * w * r ? up(w * gap / (gap - 2 * w * r), 4) : infinity;
             }
             unite(k, c);
-            k.swell = std::max(k.swell, w);
+            k.growth_rate = std::max(k.growth_rate, w);
             if (!both.empty()) k.fact.bounds = ir::hull(k.fact.bounds, both);
-            k.drift = up(k.drift + 2 * r); // a part decides only where it is within r of the least
+            k.offset_slack =
+                up(k.offset_slack + 2 * r); // a part decides only where it is within r of the least
             if (profile == ir::Profile::Columns) { // not a function of the difference alone
                 k.fact.bounds = reached(k.fact.bounds, w, r);
-                k.swell = infinity;
+                k.growth_rate = infinity;
                 k.outer = Box::everything();
             }
             break;
         }
         case ShapeKind::Seam: {
-            k.outer = Box::everything(), k.swell_out = 0;
-            k.drift = infinity;
+            k.outer = Box::everything(), k.outer_growth_rate = 0;
+            k.offset_slack = infinity;
             if (seam == ir::SeamKind::Pipe) {
                 k.fact.bounds =
                     meeting(reached(first.fact.bounds, w, r), reached(c.fact.bounds, w, r));
-                k.swell = w;
+                k.growth_rate = w;
             } else if (seam == ir::SeamKind::Tongue) {
                 double depth = std::max(number(shape.args[1]).hi, 0.0);
-                k.fact.bounds = reached(first.fact.bounds, first.swell, depth);
-                k.swell = first.swell;
+                k.fact.bounds = reached(first.fact.bounds, first.growth_rate, depth);
+                k.growth_rate = first.growth_rate;
             } else {
                 k.fact.bounds = first.fact.bounds; // takes away
-                k.swell = first.swell;
+                k.growth_rate = first.growth_rate;
             }
             break;
         }
@@ -142,8 +143,8 @@ Known Prover::know_set(ShapeId id) {
                                     // <= 1/2
             unite(k, c);
             k.fact.bounds = reached(k.fact.bounds, w, 0.5);
-            k.drift = infinity;
-            k.swell = infinity;
+            k.offset_slack = infinity;
+            k.growth_rate = infinity;
             k.outer = Box::everything();
             break;
         // know() sends no other kind here
@@ -161,7 +162,7 @@ Known Prover::know_set(ShapeId id) {
         case ShapeKind::Paint:
         case ShapeKind::Repaint:
         case ShapeKind::Mixed:
-        case ShapeKind::Many:
+        case ShapeKind::Instances:
         case ShapeKind::Library:
         case ShapeKind::Contract: break;
         }
@@ -202,10 +203,10 @@ Known Prover::know_set(ShapeId id) {
         k.failed = k.failed || !std::isfinite(b.lipschitz) || profile == ir::Profile::Columns;
         sup = up(sup + 0.5 * b.lipschitz * options.rules[Rule::BlendRadius]);
         formula = graph.number(sup);
-        k.fact.lever = {infinity, infinity, infinity};
+        k.fact.moment_arm = {infinity, infinity, infinity};
         k.parts = Box::everything();
         if (shape.kind == ShapeKind::Blend)
-            k.fact.bounds = reached(k.fact.bounds, k.swell, b.value.hi);
+            k.fact.bounds = reached(k.fact.bounds, k.growth_rate, b.value.hi);
     }
     if (k.failed)
         fail(k);
@@ -237,10 +238,10 @@ static Box varying_part(const ir::Graph &graph, NodeId weight) {
     return Box::everything();
 }
 
-Known Prover::know_lerp(ShapeId id) {
+Derived Prover::know_lerp(ShapeId id) {
     const Shape shape = scene.shapes[id];
-    const Known &a = child(shape, 0), &b = child(shape, 1);
-    Known k = a;
+    const Derived &a = child(shape, 0), &b = child(shape, 1);
+    Derived k = a;
     k.fact.repeat = {};
     k.fact.guard = false;
     inherit(k, b);
@@ -258,13 +259,13 @@ Known Prover::know_lerp(ShapeId id) {
         convex ? (varies || !range.is_point() ? std::max(la, lb) : up(range.hi * la + rest.hi * lb))
                : up(range.magnitude() * la + rest.magnitude() * lb);
     if (!convex) sup = 1 + (sup - 1) * options.rules[Rule::LerpWeights];
-    k.drift = infinity;
+    k.offset_slack = infinity;
     // t*a + (1-t)*b < 0 needs a < 0 or b < 0 while both weights are at least 0.
     unite(k, b);
     if (!convex) {
         k.fact.bounds = k.outer = Box::everything();
         k.parts = Box::everything();
-        k.fact.lever = {infinity, infinity, infinity};
+        k.fact.moment_arm = {infinity, infinity, infinity};
     }
     if (varies && std::isfinite(weight.lipschitz) && weight.lipschitz > 0) {
         // |grad| <= the mean's + |grad t| * |a - b|. For exact a and b of solids A and B the
@@ -290,7 +291,7 @@ Known Prover::know_lerp(ShapeId id) {
         if (box.finite() && !box.empty())
             gap = std::min(
                 gap, up(magnitude(shape.children[0], box) + magnitude(shape.children[1], box)));
-        k.fact.lever = {infinity, infinity, infinity};
+        k.fact.moment_arm = {infinity, infinity, infinity};
         k.parts = Box::everything();
         k.fact.symmetric = {false, false, false};
         if (!std::isfinite(gap) && !k.failed) {
@@ -316,9 +317,9 @@ Known Prover::know_lerp(ShapeId id) {
     return k;
 }
 
-Known Prover::know_displaced(ShapeId id) {
+Derived Prover::know_displaced(ShapeId id) {
     const Shape shape = scene.shapes[id];
-    Known k = child(shape);
+    Derived k = child(shape);
     k.fact.repeat = {};
     k.fact.guard = false;
     if (shape.kind != ShapeKind::Displace && !k.exact_outside && !k.failed &&
@@ -339,7 +340,7 @@ Known Prover::know_displaced(ShapeId id) {
     double slope = 0;
     if (varies) {
         if (shape.args.size() >
-            3) { // a map: the library states what its chart and its data give (ir/charts.h)
+            3) { // a map: the library states what its uv_map and its data give (ir/uv_maps.h)
             slope = number(shape.args[1]).magnitude();
             amount = hull(number(shape.args[2]), number(shape.args[3]));
         } else {
@@ -350,7 +351,7 @@ Known Prover::know_displaced(ShapeId id) {
             slope = b.lipschitz;
         }
         k.parts = Box::everything();
-        k.fact.lever = {infinity, infinity, infinity};
+        k.fact.moment_arm = {infinity, infinity, infinity};
         k.fact.symmetric = {false, false, false};
         if (!std::isfinite(slope))
             k.failed = true;
@@ -367,15 +368,15 @@ Known Prover::know_displaced(ShapeId id) {
     if (shape.kind == ShapeKind::Shell) {
         double half = std::max(amount.hi, 0.0) / 2;
         slope /= 2;
-        k.fact.bounds = reached(k.fact.bounds, k.swell, half);
-        k.drift = up(k.drift + half);
+        k.fact.bounds = reached(k.fact.bounds, k.growth_rate, half);
+        k.offset_slack = up(k.offset_slack + half);
         k.outer = Box::everything();
-        k.swell_out = 0;
+        k.outer_growth_rate = 0;
         k.exact_outside = was_exact && !varies;
     } else {
-        k.fact.bounds = reached(k.fact.bounds, k.swell, amount.hi);
-        k.outer = reached(k.outer, k.swell_out, -amount.lo);
-        k.drift = up(k.drift + amount.magnitude());
+        k.fact.bounds = reached(k.fact.bounds, k.growth_rate, amount.hi);
+        k.outer = reached(k.outer, k.outer_growth_rate, -amount.lo);
+        k.offset_slack = up(k.offset_slack + amount.magnitude());
         k.lowered = up(k.lowered + std::max(-amount.lo, 0.0));
         k.exact_outside = k.exact_outside && !varies;
         // What moves inward only is still below the child's field: the shell begins at the surface
@@ -400,9 +401,9 @@ Known Prover::know_displaced(ShapeId id) {
     return k;
 }
 
-Known Prover::know_extrude(ShapeId id) {
+Derived Prover::know_extrude(ShapeId id) {
     const Shape shape = scene.shapes[id];
-    Known k = child(shape);
+    Derived k = child(shape);
     k.fact.repeat = {};
     k.fact.guard = false;
     double half = number(shape.args[0]).magnitude() / 2;
@@ -411,19 +412,19 @@ Known Prover::know_extrude(ShapeId id) {
     };
     // length((f)+, (|z| - h)+) + min(max(f, |z| - h), 0): the weights of the two gradients, which
     // are at right angles, lie on a unit circle: max(L, 1).
-    double lever = k.fact.lever[2];
+    double moment_arm = k.fact.moment_arm[2];
     stand(k.fact.bounds);
     // The solid's nearest point is that of the flat shape as it is, not of the part that makes the
-    // gradient: they differ by the drift, along that gradient.
-    k.parts = reached(k.parts, 1, k.drift);
-    k.drift = 0;
+    // gradient: they differ by the offset_slack, along that gradient.
+    k.parts = reached(k.parts, 1, k.offset_slack);
+    k.offset_slack = 0;
     stand(k.parts);
     k.fact.symmetric[2] = true;
     for (int a = 0; a < 2; ++a)
-        k.fact.lever[static_cast<std::size_t>(a)] = radius_about(k.parts, a);
-    k.fact.lever[2] = std::min(lever, radius_about(k.parts, 2));
+        k.fact.moment_arm[static_cast<std::size_t>(a)] = radius_about(k.parts, a);
+    k.fact.moment_arm[2] = std::min(moment_arm, radius_about(k.parts, 2));
     k.outer = Box::everything();
-    k.swell_out = 0;
+    k.outer_growth_rate = 0;
     if (k.failed) {
         fail(k);
         return k;
@@ -433,21 +434,21 @@ Known Prover::know_extrude(ShapeId id) {
     return k;
 }
 
-Known Prover::know_many(ShapeId id) {
+Derived Prover::know_instances(ShapeId id) {
     const Shape shape = scene.shapes[id];
-    const ir::Family family = scene.shapes.families[shape.payload];
-    Known k = child(shape);
+    const ir::InstanceTable instance_table = scene.shapes.instance_tables[shape.payload];
+    Derived k = child(shape);
     k.fact.repeat = {};
-    if (family.count > 1) {
+    if (instance_table.count > 1) {
         k.fact.kind = k.fact.kind == FieldKind::Estimate ? FieldKind::Estimate : FieldKind::Bound;
-        bool plain = !family.smooth;
+        bool plain = !instance_table.smooth;
         k.exact_outside = k.exact_outside && plain;
         k.parts_exact = k.parts_exact && plain;
-        // By induction over the fold: {acc < t} lies in the copies' box grown by swell*(t + k).
-        if (family.smooth) {
+        // By induction over the fold: {acc < t} lies in the copies' box grown by growth_rate*(t + k).
+        if (instance_table.smooth) {
             const double smooth = std::max(number(shape.args[0]).hi, 0.0);
-            k.fact.bounds = reached(k.fact.bounds, k.swell, smooth);
-            k.drift = up(k.drift + 2 * smooth * family.count);
+            k.fact.bounds = reached(k.fact.bounds, k.growth_rate, smooth);
+            k.offset_slack = up(k.offset_slack + 2 * smooth * instance_table.count);
         }
     }
     // Symmetric copies need not be a symmetric whole.
@@ -459,10 +460,10 @@ Known Prover::know_many(ShapeId id) {
     return k;
 }
 
-Known Prover::know_library(ShapeId id) {
+Derived Prover::know_library(ShapeId id) {
     const Shape shape = scene.shapes[id];
     const ir::Library library = scene.shapes.libraries[shape.payload];
-    Known k = child(shape);
+    Derived k = child(shape);
     k.fact.repeat = {};
     if (!library.has_claims) return k;
     const ir::Claims &claims = library.claims;
@@ -476,9 +477,11 @@ Known Prover::know_library(ShapeId id) {
             box.hi[i] = flat ? 0 : hi[i].hi;
         }
         k.fact.bounds = box;
-        k.swell = exact ? 1 : claims.swell ? number(claims.swell).magnitude() : infinity;
+        k.growth_rate = exact                ? 1
+                        : claims.growth_rate ? number(claims.growth_rate).magnitude()
+                                             : infinity;
         k.outer = Box::everything();
-        k.swell_out = 0;
+        k.outer_growth_rate = 0;
     }
     if (claims.kind == FieldKind::Estimate)
         k.fact.kind = FieldKind::Estimate;
@@ -491,18 +494,18 @@ Known Prover::know_library(ShapeId id) {
     if (exact) {
         k.exact_outside = k.parts_exact = true;
         k.parts = k.fact.bounds;
-        if (claims.lo && claims.hi) k.swell = 1;
+        if (claims.lo && claims.hi) k.growth_rate = 1;
         for (int a = 0; a < 3; ++a)
-            k.fact.lever[static_cast<std::size_t>(a)] = radius_about(k.parts, a);
+            k.fact.moment_arm[static_cast<std::size_t>(a)] = radius_about(k.parts, a);
     } else if (claims.lipschitz) {
         k.exact_outside = k.parts_exact = false;
         k.parts = Box::everything();
-        k.fact.lever = {infinity, infinity, infinity};
+        k.fact.moment_arm = {infinity, infinity, infinity};
     }
     for (std::size_t a = 0; a < 3; ++a)
-        if (claims.lever[a]) {
-            double lever = number(claims.lever[a]).magnitude();
-            k.fact.lever[a] = std::min(k.fact.lever[a], lever);
+        if (claims.moment_arm[a]) {
+            double moment_arm = number(claims.moment_arm[a]).magnitude();
+            k.fact.moment_arm[a] = std::min(k.fact.moment_arm[a], moment_arm);
         }
     if (claims.lipschitz || exact) {
         k.failed = false;
@@ -519,10 +522,10 @@ Known Prover::know_library(ShapeId id) {
     return k;
 }
 
-Known Prover::know_contract(ShapeId id) {
+Derived Prover::know_contract(ShapeId id) {
     const Shape shape = scene.shapes[id];
     const ir::Contract contract = scene.shapes.contracts[shape.payload];
-    Known k = child(shape);
+    Derived k = child(shape);
     k.fact.repeat = {};
     if (!k.failed && k.fact.lipschitz_sup > contract.lipschitz * (1 + slack)) {
         if (Diagnostic *d =

@@ -33,7 +33,7 @@ static double thinnest(const ir::Box &box) {
     return thin;
 }
 
-void Prover::check_size(ShapeId id, Known &k) {
+void Prover::check_size(ShapeId id, Derived &k) {
     if (k.failed) return;
     const ir::Shape &shape = scene.shapes[id];
     const std::string name = operation_name(scene, id);

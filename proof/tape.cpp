@@ -2,11 +2,11 @@
 #include "proof/tape.h"
 
 #include "proof/continuity.h"
+#include "proof/discontinuities.h"
+#include "proof/linear_maps.h"
 #include "proof/segments.h"
 #include "proof/smooth.h"
-#include "proof/steps.h"
 #include "proof/supports.h"
-#include "proof/turned.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace fathom::proof {
 namespace {
 
-constexpr std::size_t most_instructions = 100'000;
+constexpr std::size_t max_instructions = 100'000;
 
 // What an op's node is looked at for, before it becomes an instruction as it stands (Plain).
 enum class Look : std::uint8_t {
@@ -36,8 +36,8 @@ constexpr ir::OpTable<Look> look_of_op{
     {Op::Point, Look::Point},
     {Op::Call, Look::Call},
     {Op::Cached, Look::Cached},
-    {Op::Fold, Look::Loop},
-    {Op::FoldResult, Look::LoopResult},
+    {Op::Loop, Look::Loop},
+    {Op::LoopResult, Look::LoopResult},
     {Op::Sub, Look::Sum},
     {Op::Add, Look::Sum},
     {Op::Sqrt, Look::Root},
@@ -65,7 +65,7 @@ struct Flattener {
     std::vector<bool> varies; // by slot
     std::size_t count = 0;
     std::unordered_set<NodeId> cancelling; // steps
-    std::unordered_set<NodeId> known_turned;
+    std::unordered_set<NodeId> known_linear;
     Supports supports{tape};
 
     explicit Flattener(Flattening &c) : context(c), graph(c.graph) {}
@@ -85,7 +85,7 @@ struct Flattener {
     }
 
     Slot emit(Scope &scope, Instruction instruction) {
-        if (++count > most_instructions) tape.too_large = true;
+        if (++count > max_instructions) tape.too_large = true;
         for (Slot s : instruction.args) instruction.varies = instruction.varies || varies[s];
         instruction.out = fresh(instruction.type, instruction.varies);
         Slot out = instruction.out;
@@ -104,7 +104,7 @@ struct Flattener {
         bool result = false;
         for (NodeId a : graph.args(id)) result = result || depends(scope, a);
         const ir::Node &node = graph[id];
-        if (!result && node.op == Op::Fold)
+        if (!result && node.op == Op::Loop)
             for (NodeId v : graph.free_vars(id)) result = result || depends(scope, v);
         scope.depends.emplace(id, result);
         return result;
@@ -116,7 +116,7 @@ struct Flattener {
         return nullptr;
     }
 
-    // All of `roots`, arguments first. A loop's body is walked when its Fold is met.
+    // All of `roots`, arguments first. A loop's body is walked when its Loop is met.
     void walk(Scope &scope, const std::vector<NodeId> &roots) {
         std::vector<NodeId> reached, pending = roots;
         std::unordered_map<NodeId, bool> seen;
@@ -287,8 +287,8 @@ struct Flattener {
         }
         const auto may_be = [&](NodeId v) { return varies[slot(scope, v)]; };
         const bool is_matrix = out.op == Op::MatMul; // whose rule has the matrix' norm
-        const auto t = ir::is_vector(out.type) ? turned(graph, id, may_be, known_turned)
-                                               : std::optional<Turned>();
+        const auto t = ir::is_vector(out.type) ? turned(graph, id, may_be, known_linear)
+                                               : std::optional<LinearMap>();
         if (!t) return emit(scope, out);
         bool still = true;
         std::vector<Slot> constants;
@@ -303,7 +303,7 @@ struct Flattener {
             out.turned = {of};
             out.turned.insert(out.turned.end(), constants.begin(), constants.end());
         }
-        known_turned.insert(id);
+        known_linear.insert(id);
         const Slot made = emit(scope, out);
         if (still && t->whole && supports.is_base(of)) supports.make_base(made);
         return made;
@@ -343,7 +343,7 @@ struct Flattener {
         case Look::Point: out.varies = true; return emit(scope, out);
         case Look::Call: return call(scope, id, ir::FunctionId{node.payload});
         case Look::Cached:
-            if (node.payload < context.kept.size() && context.kept[node.payload]) break;
+            if (node.payload < context.cached.size() && context.cached[node.payload]) break;
             return call(scope, id, graph.cache(ir::CacheId{node.payload}).field);
         case Look::Loop: return loop(scope, id);
         case Look::LoopResult: {
@@ -473,10 +473,10 @@ struct Flattener {
     std::unordered_map<NodeId, std::vector<Slot>> loop_results;
 
     Slot loop(Scope &scope, NodeId id) {
-        const ir::Fold fold = graph.fold(ir::FoldId{graph[id].payload});
+        const ir::Loop loop = graph.loop(ir::LoopId{graph[id].payload});
         Loop plan;
-        plan.most = fold.max_count;
-        plan.count = slot(scope, fold.count);
+        plan.most = loop.max_count;
+        plan.count = slot(scope, loop.count);
         for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
             plan.start.push_back(slot(scope, a));
         Scope inner;
@@ -484,9 +484,9 @@ struct Flattener {
         inner.loop = true;
         inner.block = &plan.body;
         plan.index = fresh(ir::Type::Int, false);
-        inner.slots[fold.index] = plan.index;
-        inner.depends[fold.index] = true;
-        for (NodeId var : fold.vars) {
+        inner.slots[loop.index] = plan.index;
+        inner.depends[loop.index] = true;
+        for (NodeId var : loop.vars) {
             Slot s = fresh(graph[var].type, true);
             plan.vars.push_back(s);
             plan.scratch.push_back(fresh(graph[var].type, true));
@@ -494,19 +494,19 @@ struct Flattener {
             inner.slots[var] = s;
             inner.depends[var] = true;
         }
-        std::vector<NodeId> roots = fold.next;
-        plan.has_condition = static_cast<bool>(fold.condition);
-        if (plan.has_condition) roots.push_back(fold.condition);
+        std::vector<NodeId> roots = loop.next;
+        plan.has_condition = static_cast<bool>(loop.condition);
+        if (plan.has_condition) roots.push_back(loop.condition);
         walk(inner, roots);
         if (tape.too_large) return 0;
-        for (NodeId next : fold.next) plan.next.push_back(slot(inner, next));
+        for (NodeId next : loop.next) plan.next.push_back(slot(inner, next));
         if (plan.has_condition) {
-            plan.condition = slot(inner, fold.condition);
+            plan.condition = slot(inner, loop.condition);
             plan.condition_varies = varies[plan.condition];
         }
 
         Instruction out;
-        out.op = Op::Fold;
+        out.op = Op::Loop;
         out.form = Form::Loop;
         out.node = id;
         out.varies = true;
@@ -517,9 +517,9 @@ struct Flattener {
         const Slot plan_result = plan.ends.front();
         tape.loops.push_back(std::move(plan));
         out.out = plan_result;
-        if (++count > most_instructions) tape.too_large = true;
+        if (++count > max_instructions) tape.too_large = true;
         scope.block->push_back(std::move(out));
-        return plan_result; // the Fold itself is its first value
+        return plan_result; // the Loop itself is its first value
     }
 };
 

@@ -37,12 +37,12 @@ struct Instruction {
     Form form = Form::Plain;
     ir::Type type = ir::Type::Float;
     bool varies = false;  // with the point
-    bool cancels = false; // a step whose jumps the result does not see (steps.h)
+    bool cancels = false; // a step whose jumps the result does not see (discontinuities.h)
     Slot out = 0;
     std::vector<Slot> args;
     std::uint32_t payload = 0; // the op's; of a Loop: index into Tape::loops
     std::uint32_t groups = 0;  // of a Make or Norm: Supports::groups of its arguments
-    // Of a vector that is M v + c (turned.h, segments.h): v, then what M and c are made of.
+    // Of a vector that is M v + c (linear_maps.h, segments.h): v, then what M and c are made of.
     std::vector<Slot> turned;
     // … and of a matrix product: a bound of the matrix' norm, whatever its numbers are.
     double norm = ir::rounding::infinity;
@@ -74,7 +74,7 @@ struct Tape {
 struct Flattening {
     ir::Graph &graph;
     std::unordered_map<NodeId, bool> joined; // by Select, remembered over fields
-    std::vector<bool> kept{}; // by cached field: known by its bounds alone (Ranges::caches)
+    std::vector<bool> cached{}; // by cached field: known by its bounds alone (Ranges::caches)
 };
 
 Tape flatten(Flattening &context, NodeId root);

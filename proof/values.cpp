@@ -84,7 +84,7 @@ Interval Prover::values(ShapeId id, const Cell &cell, int depth) {
     case ShapeKind::PseudoNorm:
     case ShapeKind::Within:
     case ShapeKind::Repeat:
-    case ShapeKind::Many: break;
+    case ShapeKind::Instances: break;
     }
     return Interval::everything();
 }

@@ -34,9 +34,10 @@ void Prover::run() {
     scene.facts.assign(count, {});
     for (std::size_t i = 0; i < count; ++i) { // variables that shapes bind
         const Shape &shape = scene.shapes[ShapeId{i}];
-        if (shape.kind == ShapeKind::Many) {
-            const ir::Family &family = scene.shapes.families[shape.payload];
-            ranges.vars[graph[family.index].payload] = {Interval(0, std::max(family.count - 1, 0))};
+        if (shape.kind == ShapeKind::Instances) {
+            const ir::InstanceTable &instance_table = scene.shapes.instance_tables[shape.payload];
+            ranges.vars[graph[instance_table.index].payload] = {
+                Interval(0, std::max(instance_table.count - 1, 0))};
         }
         if (shape.kind == ShapeKind::Repeat) {
             const ir::Repetition &repetition = scene.shapes.repetitions[shape.payload];
@@ -65,7 +66,7 @@ void Prover::run() {
                      shape.map == MapKind::Taper || shape.map == MapKind::Distort);
     }
     for (std::size_t i = 0; i < count; ++i) {
-        Known k;
+        Derived k;
         set_lipschitz(k, 1);
         if (places[i].reached) { // what no one asks keeps facts that say nothing
             local = false;
@@ -140,7 +141,7 @@ bool Prover::is_field(ShapeId id) const {
     case ShapeKind::Repeat:
     case ShapeKind::Within:
     case ShapeKind::Mixed:
-    case ShapeKind::Many: return false;
+    case ShapeKind::Instances: return false;
     }
     return false;
 }
@@ -164,7 +165,7 @@ Vec Prover::vector(NodeId id) {
     return {all[0], all[1], all[2]};
 }
 
-void Prover::set_lipschitz(Known &k, double value) {
+void Prover::set_lipschitz(Derived &k, double value) {
     // Rounding outward leaves 1 + a few units in the last place where the truth is 1; the float32
     // slack covers them.
     if (value > 1 && value <= 1 + slack) value = 1;
@@ -172,7 +173,7 @@ void Prover::set_lipschitz(Known &k, double value) {
     k.fact.lipschitz_sup = value;
     k.fact.lipschitz = graph.number(value);
 }
-void Prover::set_lipschitz(Known &k, NodeId formula, double sup) {
+void Prover::set_lipschitz(Derived &k, NodeId formula, double sup) {
     ir::Graph::Reads reads = graph.reads(formula);
     bool in_params = (reads.params || reads.time) && !reads.point && !reads.free_vars;
     set_lipschitz(k, sup);
@@ -180,15 +181,15 @@ void Prover::set_lipschitz(Known &k, NodeId formula, double sup) {
 }
 // Within the box the field; outside sqrt(|p-q|^2 + max(f(q), 0)^2), whose two gradients are
 // perpendicular: max(L, 1).
-void Prover::keep_local(Known &k, double sup, NodeId formula) {
+void Prover::keep_local(Derived &k, double sup, NodeId formula) {
     local = true;
-    k.swell = 1;
-    k.fact.lever = {infinity, infinity, infinity};
+    k.growth_rate = 1;
+    k.fact.moment_arm = {infinity, infinity, infinity};
     for (std::size_t a = 0; a < 3; ++a)
         k.fact.symmetric[a] = k.fact.symmetric[a] && k.fact.bounds.lo[a] == -k.fact.bounds.hi[a];
     set_lipschitz(k, graph.make(Op::Max, {formula, graph.number(1)}), std::max(sup, 1.0));
 }
-void Prover::fail(Known &k) {
+void Prover::fail(Derived &k) {
     k.failed = true;
     k.fact.lipschitz_sup = infinity;
     k.fact.lipschitz = graph.number(1);
@@ -211,7 +212,7 @@ Zone Prover::zone_of(const ir::Region &region) {
     return zone;
 }
 
-void Prover::visit(ShapeId id, const Box &box, const Zone *zone, bool audible) {
+void Prover::visit(ShapeId id, const Box &box, const Zone *zone, bool reported) {
     Place &place = places[id.index];
     if (!place.reached) {
         place.box = box;
@@ -222,7 +223,7 @@ void Prover::visit(ShapeId id, const Box &box, const Zone *zone, bool audible) {
         place.shared = true;
     }
     place.reached = true;
-    place.audible = place.audible || audible;
+    place.reported = place.reported || reported;
 }
 
 void Prover::find_places() {
@@ -239,7 +240,7 @@ void Prover::find_places() {
             case ShapeKind::Within: {
                 zones.push_back(zone_of(scene.shapes.regions[shape.payload]));
                 Box region = from_cell(outer_box(zones.back()), shape.dims);
-                visit(child, ir::intersect(here.box, region), &zones.back(), here.audible);
+                visit(child, ir::intersect(here.box, region), &zones.back(), here.reported);
                 break;
             }
             case ShapeKind::Map: {
@@ -258,15 +259,15 @@ void Prover::find_places() {
                                 box.hi[a] = std::min(box.hi[a], r);
                     }
                 }
-                visit(child, box, nullptr, here.audible);
+                visit(child, box, nullptr, here.reported);
                 break;
             }
-            case ShapeKind::Repeat: visit(child, Box::everything(), nullptr, here.audible); break;
-            case ShapeKind::Extrude: visit(child, here.box, nullptr, here.audible); break;
+            case ShapeKind::Repeat: visit(child, Box::everything(), nullptr, here.reported); break;
+            case ShapeKind::Extrude: visit(child, here.box, nullptr, here.reported); break;
             case ShapeKind::Library: {
                 const ir::Library &library = scene.shapes.libraries[shape.payload];
                 bool taken = library.has_claims && library.claims.lipschitz;
-                visit(child, here.box, here.zone, here.audible && !taken);
+                visit(child, here.box, here.zone, here.reported && !taken);
                 break;
             }
             case ShapeKind::Empty:
@@ -285,8 +286,8 @@ void Prover::find_places() {
             case ShapeKind::Paint:
             case ShapeKind::Repaint:
             case ShapeKind::Mixed:
-            case ShapeKind::Many:
-            case ShapeKind::Contract: visit(child, here.box, here.zone, here.audible); break;
+            case ShapeKind::Instances:
+            case ShapeKind::Contract: visit(child, here.box, here.zone, here.reported); break;
             }
         }
     }
@@ -294,11 +295,11 @@ void Prover::find_places() {
 
 // -- facts
 
-Known Prover::know(ShapeId id) {
+Derived Prover::know(ShapeId id) {
     const Shape shape = scene.shapes[id];
     switch (shape.kind) {
     case ShapeKind::Empty: {
-        Known k;
+        Derived k;
         k.fact.kind = FieldKind::Exact;
         k.fact.bounds = k.parts = empty_box();
         k.fact.symmetric = {true, true, true};
@@ -314,9 +315,9 @@ Known Prover::know(ShapeId id) {
     case ShapeKind::Seam:
     case ShapeKind::PseudoNorm: return know_set(id);
     case ShapeKind::Complement: {
-        Known k = child(shape);
+        Derived k = child(shape);
         std::swap(k.fact.bounds, k.outer);
-        std::swap(k.swell, k.swell_out);
+        std::swap(k.growth_rate, k.outer_growth_rate);
         k.exact_outside = k.fact.kind == FieldKind::Exact;
         k.fact.repeat = {};
         return k;
@@ -332,11 +333,11 @@ Known Prover::know(ShapeId id) {
     case ShapeKind::Paint:
     case ShapeKind::Repaint:
     case ShapeKind::Mixed: {
-        Known k = child(shape);
+        Derived k = child(shape);
         k.fact.repeat = {};
         return k;
     }
-    case ShapeKind::Many: return know_many(id);
+    case ShapeKind::Instances: return know_instances(id);
     case ShapeKind::Library: return know_library(id);
     case ShapeKind::Contract: return know_contract(id);
     }
@@ -345,7 +346,7 @@ Known Prover::know(ShapeId id) {
 
 // -- guards
 
-void Prover::finish(ShapeId id, Known &k) {
+void Prover::finish(ShapeId id, Derived &k) {
     const Shape &shape = scene.shapes[id];
     // Each rule says for itself why it has no bound. Whatever comes to no number without saying so
     // is not marched either: nothing may be proved by a bound that is none.
@@ -359,7 +360,7 @@ void Prover::finish(ShapeId id, Known &k) {
     }
     check_size(id, k);
     bool everywhere_valid = everywhere(place(id).box);
-    bool deformed = shape.kind == ShapeKind::Displace || shape.kind == ShapeKind::Many ||
+    bool deformed = shape.kind == ShapeKind::Displace || shape.kind == ShapeKind::Instances ||
                     (shape.kind == ShapeKind::Map &&
                      (shape.map == MapKind::Twist || shape.map == MapKind::Bend ||
                       shape.map == MapKind::Taper || shape.map == MapKind::Distort));
@@ -415,7 +416,7 @@ std::string Prover::cheaper(const Shape &shape) {
         case MapKind::Translate:
         case MapKind::Rotate:
         case MapKind::Scale:
-        case MapKind::Fold:
+        case MapKind::MirrorFold:
         case MapKind::Revolve: break;
         }
         break;
@@ -433,7 +434,7 @@ std::string Prover::cheaper(const Shape &shape) {
     case ShapeKind::Paint:
     case ShapeKind::Repaint:
     case ShapeKind::Mixed:
-    case ShapeKind::Many:
+    case ShapeKind::Instances:
     case ShapeKind::Library:
     case ShapeKind::Contract: break;
     }

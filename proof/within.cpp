@@ -104,9 +104,9 @@ double slope_in_holes(const Zone &zone) {
 
 } // namespace
 
-Known Prover::know_within(ShapeId id) {
+Derived Prover::know_within(ShapeId id) {
     const Shape shape = scene.shapes[id];
-    Known k = child(shape);
+    Derived k = child(shape);
     k.fact.repeat = {};
     k.fact.guard = false;
     Zone zone = zone_of(scene.shapes.regions[shape.payload]);
@@ -116,12 +116,14 @@ Known Prover::know_within(ShapeId id) {
     // by t.
     // What is inside may be smaller than the region: d < t needs |p - q| < t and f(q) < t, so q in
     // the grown box, and p within t of it.
-    k.swell = !zone.less.empty() ? infinity : holds(k.fact.bounds, region) ? 1 : up(k.swell + 1);
+    k.growth_rate = !zone.less.empty()             ? infinity
+                    : holds(k.fact.bounds, region) ? 1
+                                                   : up(k.growth_rate + 1);
     k.fact.bounds = meeting(region, k.fact.bounds);
     k.outer = Box::everything();
-    k.swell_out = 0;
+    k.outer_growth_rate = 0;
     k.parts = Box::everything();
-    k.fact.lever = {infinity, infinity, infinity};
+    k.fact.moment_arm = {infinity, infinity, infinity};
     if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
     k.exact_outside = k.parts_exact = false;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -144,8 +146,8 @@ Known Prover::know_within(ShapeId id) {
         return k;
     }
     k.fact.detour = 1 + (detour - 1) * options.rules[Rule::Detour];
-    const Known &inner = child(shape);
-    if (inner.leaf && zone.less.empty() && shape.dims == 3 && place(id).audible &&
+    const Derived &inner = child(shape);
+    if (inner.leaf && zone.less.empty() && shape.dims == 3 && place(id).reported &&
         graph.is_constant(inner.fact.lipschitz) && inner.fact.status == ProofStatus::Proved) {
         Budget budget;
         budget.instructions = options.field_instructions;

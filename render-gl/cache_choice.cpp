@@ -19,37 +19,37 @@ bool keeps_next(const CacheChoice &choice) {
     case State::Learning:
         // At the end of it the exact frame is the measure, where there is none yet.
         return choice.frames < choice.budget || choice.exact_ms > 0;
-    case State::Kept: return choice.since_exact < CacheChoice::check_every;
+    case State::Cached: return choice.since_exact < CacheChoice::check_every;
     case State::Exact: return choice.frames >= choice.gap;
     }
     return false;
 }
 
-void took(CacheChoice &choice, bool kept, double milliseconds) {
-    if (kept) {
-        choice.kept_ms = milliseconds;
+void took(CacheChoice &choice, bool cached, double milliseconds) {
+    if (cached) {
+        choice.cached_ms = milliseconds;
         ++choice.since_exact;
     } else {
-        // Smoothed where frames follow one another; the first after many kept ones counts alone.
+        // Smoothed where frames follow one another; the first after many cached ones counts alone.
         const bool fresh = choice.exact_ms == 0 || choice.since_exact > 0;
         choice.exact_ms = fresh ? milliseconds : 0.75 * choice.exact_ms + 0.25 * milliseconds;
         choice.since_exact = 0;
     }
-    if (kept || choice.state == State::Exact) ++choice.frames;
-    const bool better = choice.kept_ms > 0 && choice.kept_ms <= choice.exact_ms;
+    if (cached || choice.state == State::Exact) ++choice.frames;
+    const bool better = choice.cached_ms > 0 && choice.cached_ms <= choice.exact_ms;
     switch (choice.state) {
     case State::Learning:
-        if (kept && better && choice.exact_ms > 0) return enter(choice, State::Kept);
+        if (cached && better && choice.exact_ms > 0) return enter(choice, State::Cached);
         if (choice.frames < choice.budget || choice.exact_ms == 0) return;
-        if (!kept && better) return enter(choice, State::Kept);
+        if (!cached && better) return enter(choice, State::Cached);
         return enter(choice, State::Exact);
-    case State::Kept:
+    case State::Cached:
         choice.slower = better ? 0 : choice.slower + 1;
         if (better) choice.gap = CacheChoice::first_gap;
         if (choice.slower >= CacheChoice::patience) enter(choice, State::Exact);
         return;
     case State::Exact:
-        if (!kept) return;
+        if (!cached) return;
         enter(choice, State::Learning);
         choice.budget = CacheChoice::trial;
         choice.frames = 1;

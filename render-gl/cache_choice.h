@@ -11,22 +11,22 @@ struct CacheChoice {
     static constexpr int learning = 16, trial = 12;
     static constexpr int first_gap = 128, longest_gap = 1024; // exact frames between two trials
     static constexpr int patience = 6;      // slower frames one after the other, until it is left
-    static constexpr int check_every = 256; // kept frames, until an exact one is measured anew
+    static constexpr int check_every = 256; // cached frames, until an exact one is measured anew
 
-    enum class State { Learning, Kept, Exact };
+    enum class State { Learning, Cached, Exact };
     State state = State::Learning;
-    double exact_ms = 0; // of the last exact frames; 0: not known
-    double kept_ms = 0;  // of the last kept frame
-    int frames = 0;      // in this state
+    double exact_ms = 0;  // of the last exact frames; 0: not known
+    double cached_ms = 0; // of the last cached frame
+    int frames = 0;       // in this state
     int budget = learning;
     int slower = 0;
     int gap = first_gap;
-    int since_exact = 0; // kept frames
+    int since_exact = 0; // cached frames
 };
 
 bool keeps_next(const CacheChoice &choice);
-// A frame was drawn, kept or not (whatever was asked for), and took so long.
-void took(CacheChoice &choice, bool kept, double milliseconds);
+// A frame was drawn, cached or not (whatever was asked for), and took so long.
+void took(CacheChoice &choice, bool cached, double milliseconds);
 // Another scene: what was measured says nothing of it.
 inline void start_again(CacheChoice &choice) { choice = {}; }
 

@@ -36,13 +36,13 @@ std::string refusal(const ProgramError &error) {
     return "the graphics driver refuses the noise cache's shader: " + error.message;
 }
 
-CachePrices prices_of(const ir::Scene &scene, const std::vector<glsl::KeptField> &fields) {
+CachePrices prices_of(const ir::Scene &scene, const std::vector<glsl::CachedField> &fields) {
     const ir::Graph &graph = scene.graph;
     const auto cost = [&](ir::FunctionId f) {
         return ir::cost_of(graph, graph.function(f).result);
     };
     CachePrices prices;
-    for (const glsl::KeptField &field : fields) {
+    for (const glsl::CachedField &field : fields) {
         const double own = cost(graph.cache(ir::CacheId{field.cache}).field);
         prices.field = prices.field > 0 ? std::min(prices.field, own) : own;
     }
@@ -78,7 +78,7 @@ std::variant<CachePrograms, std::string> build_cache_programs(const ir::Scene &s
     if (options.pick) target.instruments = glsl::Instruments::Pick;
     const glsl::Output picture = glsl::emit(scene, target, diagnostics);
     if (picture.text.empty()) return "the shader with the noise cache cannot be made";
-    if (picture.kept.empty()) return "no field of this scene is worth keeping";
+    if (picture.cached.empty()) return "no field of this scene is worth keeping";
     glsl::Options direct = target;
     direct.noise_cache = false;
     const glsl::Output exact = glsl::emit(scene, direct, diagnostics);
@@ -91,18 +91,18 @@ std::variant<CachePrograms, std::string> build_cache_programs(const ir::Scene &s
     if (static_cast<int>(1 + picture.images.size() + picture.grids.size()) > units - 3)
         return "the scene has too many images to leave room for the noise cache";
 
-    glsl::Output kept = picture, rest = picture;
-    kept.text = glsl::with_cache(picture.text);
+    glsl::Output cached = picture, rest = picture;
+    cached.text = glsl::with_cache(picture.text);
     rest.text = glsl::with_cache(picture.text, glsl::cache_learns);
     std::vector<Program> built;
     for (const glsl::Output *output :
-         {&std::as_const(kept), &std::as_const(rest), &exact, &passes.fill}) {
+         {&std::as_const(cached), &std::as_const(rest), &exact, &passes.fill}) {
         auto program = Program::build(*output, scene);
         if (const auto *error = std::get_if<ProgramError>(&program)) return refusal(*error);
         built.push_back(std::move(std::get<Program>(program)));
     }
     return CachePrograms{std::move(built[0]), std::move(built[1]), std::move(built[2]),
-                         std::move(built[3]), picture.kept,        prices_of(scene, picture.kept),
+                         std::move(built[3]), picture.cached,      prices_of(scene, picture.cached),
                          options.pick};
 }
 
@@ -132,7 +132,7 @@ std::string CachedView::build_passes() {
 
 // A field that the cache knows keeps its number; others get one that nobody has.
 void CachedView::number_fields() {
-    const std::vector<glsl::KeptField> &fields = programs_->fields;
+    const std::vector<glsl::CachedField> &fields = programs_->fields;
     numbers_.assign(fields.size(), -1);
     const auto means = [](const std::vector<double> &known, std::uint64_t meaning) {
         std::uint64_t first = 0;
@@ -169,9 +169,9 @@ std::string CachedView::use(CachePrograms programs, const CacheSize &size) {
     glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
     first_unit_ = units - 3;
     CacheSize wanted = size;
-    for (const glsl::KeptField &field : programs.fields) wanted.wide |= field.wide;
+    for (const glsl::CachedField &field : programs.fields) wanted.wide |= field.wide;
     const int bits = store_.size().bits;
-    const bool fits = bits == wanted.bits || (bits > wanted.bits && bits <= wanted.most_bits);
+    const bool fits = bits == wanted.bits || (bits > wanted.bits && bits <= wanted.max_bits);
     if (!store_.hash() || !fits || (wanted.wide && !store_.size().wide)) {
         if (store_.hash() && fits) wanted.bits = bits;
         meanings_.clear();
@@ -205,10 +205,10 @@ void CachedView::set_fields(const Program &program) const {
     set(program, "fathom_cache_bits", store_.size().bits);
 }
 
-// Whether a kept field reads other values than in the frame before.
+// Whether a cached field reads other values than in the frame before.
 bool CachedView::edited(const std::vector<ir::Param> &params) {
     std::vector<double> now;
-    for (const glsl::KeptField &field : programs_->fields)
+    for (const glsl::CachedField &field : programs_->fields)
         for (std::uint32_t param : field.params)
             now.insert(now.end(), params[param].value.begin(), params[param].value.end());
     const bool other = now.size() == read_.size() && now != read_;
@@ -222,7 +222,7 @@ void CachedView::renew(const std::vector<ir::Param> &params, int ages) {
     ages_ = ages;
     if (swept) sweep(-2);
     for (std::size_t i = 0; i < programs_->fields.size(); ++i) {
-        const glsl::KeptField &field = programs_->fields[i];
+        const glsl::CachedField &field = programs_->fields[i];
         std::vector<double> now(1);
         std::memcpy(now.data(), &field.meaning, sizeof field.meaning);
         for (std::uint32_t param : field.params)
@@ -300,24 +300,24 @@ void CachedView::begin_picture() const {
     glDisable(GL_DEPTH_TEST);
 }
 
-// The picture from kept values alone; a pixel that wants an absent one keeps its depth of 1. Those
+// The picture from cached values alone; a pixel that wants an absent one keeps its depth of 1. Those
 // are drawn by computing all: the card skips the others before it shades them.
-void CachedView::draw_kept(const FrameInputs &inputs, const std::vector<ir::Param> &params,
-                           const CacheSettings &settings) {
-    const Program &kept = programs_->kept;
+void CachedView::draw_cached_frame(const FrameInputs &inputs, const std::vector<ir::Param> &params,
+                                   const CacheSettings &settings) {
+    const Program &cached = programs_->cached;
     begin_picture();
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     glDepthMask(GL_TRUE);
-    kept.use();
-    set_fields(kept);
-    set(kept, "fathom_cache_ages", ages_);
-    glUniform1f(glGetUniformLocation(kept.name(), "fathom_cache_least"),
-                static_cast<float>(settings.least_pixels));
+    cached.use();
+    set_fields(cached);
+    set(cached, "fathom_cache_ages", ages_);
+    glUniform1f(glGetUniformLocation(cached.name(), "fathom_cache_least"),
+                static_cast<float>(settings.min_pixels));
     const char *const samplers[] = {"fathom_cache_index", "fathom_cache_pool", "fathom_cache_wide"};
-    for (int i = 0; i < 3; ++i) set(kept, samplers[i], first_unit_ + i);
+    for (int i = 0; i < 3; ++i) set(cached, samplers[i], first_unit_ + i);
     store_.bind_textures(first_unit_);
-    kept.draw(inputs, params);
+    cached.draw(inputs, params);
 
     glBindFramebuffer(GL_FRAMEBUFFER, targets_.rest);
     glDepthFunc(GL_LESS); // the triangle lies at 0.5
@@ -327,7 +327,7 @@ void CachedView::draw_kept(const FrameInputs &inputs, const std::vector<ir::Para
     set_fields(rest);
     set_unsigned(rest, "fathom_cache_frame", frame_);
     glUniform1f(glGetUniformLocation(rest.name(), "fathom_cache_least"),
-                static_cast<float>(settings.least_pixels));
+                static_cast<float>(settings.min_pixels));
     set(rest, "fathom_cache_ages", ages_);
     set(rest, "fathom_cache_index", first_unit_); // still bound there
     set(rest, "fathom_cache_starts", first_unit_ + 1);
@@ -409,7 +409,7 @@ void CachedView::judge(bool weigh) {
     const double lost =
         static_cast<double>(counts->deleted) + counts->crowded + static_cast<double>(counts->full);
     too_small_ = too_small(growth_, lost, static_cast<double>(store_.cells())) &&
-                 store_.size().bits < store_.size().most_bits;
+                 store_.size().bits < store_.size().max_bits;
     if (!weigh) return;
     judged(worth_,
            {static_cast<double>(counts->paid), static_cast<double>(counts->wasted),
@@ -428,7 +428,7 @@ bool CachedView::grow() {
     growth_ = {};
     worth_ = {};
     if (store_.make(size)) return true;
-    size.most_bits = --size.bits;
+    size.max_bits = --size.bits;
     return store_.make(size);
 }
 
@@ -449,13 +449,13 @@ bool CachedView::draw(const FrameInputs &inputs, const std::vector<ir::Param> &p
     store_.begin_frame();
     begin_picture();
     renew(params, ages);
-    draw_kept(inputs, params, settings);
+    draw_cached_frame(inputs, params, settings);
     reserve(ages);
     glBeginConditionalRender(changed_, GL_QUERY_WAIT); // the card waits, not this program
     fill(inputs, params);
     publish(); // the index that the next frame looks up in
     glEndConditionalRender();
-    if (settings.weigh) drew_kept(worth_);
+    if (settings.weigh) drew_cached(worth_);
     store_.set_counts_aside();
     judge(settings.weigh);
     if (settings.show_misses) tint();

@@ -23,10 +23,10 @@ struct CacheSettings {
     int max_age = 4; // 1 to cache_ages
     // Pixels whose cells would be narrower than so many of them are computed: what no two pixels
     // share is found by no later frame either, unless nothing moves at all.
-    double least_pixels = 1;
+    double min_pixels = 1;
     bool show_misses = false; // in red
     // Draws exactly where counted work says that look-ups do not pay, and while params are edited
-    // that a kept field reads: such a frame would find nothing.
+    // that a cached field reads: such a frame would find nothing.
     bool weigh = true;
 };
 
@@ -46,10 +46,10 @@ struct CacheOptions {
 // All that depends on the scene. Programs belong to every context that shares with the one that
 // made them.
 struct CachePrograms {
-    Program kept, rest, exact; // the picture by kept values alone, by computing what these left
-                               // over, by computing all
-    Program fill;              // a cell's corners
-    std::vector<glsl::KeptField> fields;
+    Program cached, rest, exact; // the picture by cached values alone, by computing what these left
+                                 // over, by computing all
+    Program fill;                // a cell's corners
+    std::vector<glsl::CachedField> fields;
     CachePrices prices;
     bool pick = false;
 };
@@ -90,10 +90,10 @@ class CachedView {
 
     CacheStore &store() { return store_; }
     const CacheStore &store() const { return store_; }
-    const std::vector<glsl::KeptField> &fields() const {
+    const std::vector<glsl::CachedField> &fields() const {
         return programs_->fields;
     } // ready() alone
-    // The number in the cache's keys of Graph::caches' i-th field; -1 where it is not kept.
+    // The number in the cache's keys of Graph::caches' i-th field; -1 where it is not cached.
     int number_of(std::uint32_t cache) const;
 
   private:
@@ -105,8 +105,8 @@ class CachedView {
     void publish();
     void set_fields(const Program &program) const;
     void begin_picture() const;
-    void draw_kept(const FrameInputs &inputs, const std::vector<ir::Param> &params,
-                   const CacheSettings &settings);
+    void draw_cached_frame(const FrameInputs &inputs, const std::vector<ir::Param> &params,
+                           const CacheSettings &settings);
     void reserve(int ages);
     void fill(const FrameInputs &inputs, const std::vector<ir::Param> &params);
     void tint();
@@ -123,7 +123,7 @@ class CachedView {
     std::vector<int> numbers_; // by the programs' fields
     std::map<int, std::vector<double>>
         meanings_;             // by number: the meaning and the params' values it was filled with
-    std::vector<double> read_; // what the kept fields read of the params, in the frame before
+    std::vector<double> read_; // what the cached fields read of the params, in the frame before
     int first_unit_ = 0, ages_ = 0;
     std::uint32_t frame_ = 0;
     std::size_t sweep_cells_ = 0; // that the target of sweep() is made for

@@ -15,13 +15,13 @@ namespace fathom::gl {
 
 struct CacheSize {
     int bits = 6;      // 2^bits cells an axis, 2 to 7
-    int most_bits = 0; // where more than `bits`: what it may grow to (cache_worth.h)
+    int max_bits = 0;  // where more than `bits`: what it may grow to (cache_worth.h)
     bool wide = false; // vectors and colours, too
     std::uint64_t bytes() const;
 };
 
 // Where nobody says how many: 262,144 cells, and 2,097,152 in a view that needs more.
-constexpr CacheSize usual_cache_size{.bits = 6, .most_bits = 7};
+constexpr CacheSize usual_cache_size{.bits = 6, .max_bits = 7};
 
 // What one frame did, and what is there after it.
 struct CacheCounts {

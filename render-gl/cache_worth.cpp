@@ -10,7 +10,7 @@ namespace {
 // Measured on llvmpipe (docs/noise-cache.md): a pixel that is left costs about so many evaluations
 // more, since its neighbours wait while it is computed; a step of the march brings about five with
 // it: gradients, shadows, occlusion.
-constexpr double left_evaluations = 96, evaluations_a_step = 5, least_gain = 0.05;
+constexpr double left_evaluations = 96, evaluations_a_step = 5, min_gain = 0.05;
 
 } // namespace
 
@@ -18,7 +18,7 @@ bool pays(const CacheWork &work, const CachePrices &prices) {
     const double gain = work.paid * (prices.field - ir::look_up_cost) -
                         work.wasted * (prices.whole - prices.field + ir::look_up_cost) -
                         work.left * left_evaluations * prices.whole;
-    return gain > least_gain * evaluations_a_step * work.steps * prices.whole;
+    return gain > min_gain * evaluations_a_step * work.steps * prices.whole;
 }
 
 bool too_small(CacheGrowth &growth, double lost, double cells) {
@@ -32,7 +32,7 @@ void drew_exactly(CacheWorth &worth) {
     if (worth.exact) ++worth.frames;
 }
 
-void drew_kept(CacheWorth &worth) {
+void drew_cached(CacheWorth &worth) {
     if (!worth.exact) return;
     worth.exact = false;
     worth.frames = 0;

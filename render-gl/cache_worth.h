@@ -12,7 +12,7 @@ struct CacheWork {
     bool learnt = false;
 };
 
-// ir/passes/cost.h's, in nanoseconds a point: the cheapest of the kept fields, and the whole
+// ir/passes/cost.h's, in nanoseconds a point: the cheapest of the cached fields, and the whole
 // scene's field with all of them.
 struct CachePrices {
     double field = 0, whole = 0;
@@ -27,7 +27,7 @@ struct CacheWorth {
     static constexpr int learning = 12, trial = 8; // frames that do not pay, until it is left
     static constexpr int first_gap = 64, longest_gap = 1024; // exact frames before a trial
     bool exact = false;
-    int frames = 0; // exact ones; or kept ones that did not pay, one after the other
+    int frames = 0; // exact ones; or cached ones that did not pay, one after the other
     int budget = learning;
     int gap = first_gap;
 };
@@ -42,7 +42,7 @@ bool too_small(CacheGrowth &growth, double lost, double cells);
 
 bool looks_up_next(const CacheWorth &worth);
 void drew_exactly(CacheWorth &worth);
-void drew_kept(CacheWorth &worth); // begins a trial, where it is one
-void judged(CacheWorth &worth, const CacheWork &work, const CachePrices &prices); // a kept frame
+void drew_cached(CacheWorth &worth); // begins a trial, where it is one
+void judged(CacheWorth &worth, const CacheWork &work, const CachePrices &prices); // a cached frame
 
 } // namespace fathom::gl

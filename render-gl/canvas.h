@@ -1,4 +1,4 @@
-// A picture kept on the graphics card: drawn when something in it changed, sample by sample, shown
+// A picture cached on the graphics card: drawn when something in it changed, sample by sample, shown
 // as often as a window wants. Beside the colours it keeps what each pixel shows (part, distance,
 // steps, slope). Knows nothing of windows; needs a current context.
 #pragma once

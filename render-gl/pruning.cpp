@@ -11,7 +11,7 @@ namespace fathom::gl {
 
 namespace {
 
-constexpr std::size_t most_entries = std::size_t(1) << 26; // of lists: 256 MB
+constexpr std::size_t max_entries = std::size_t(1) << 26; // of lists: 256 MB
 
 // Cells along an axis, level by level: finer for more rows, and coarser where a processor makes the
 // lists, which takes as long as many pictures there.
@@ -22,7 +22,7 @@ std::vector<int> sides_for(int rows) {
     return {2, 8, 32, 128};
 }
 
-int most_rows(const glsl::Pruning &pruning) {
+int max_rows(const glsl::Pruning &pruning) {
     int most = 0;
     for (const glsl::PruneKernel &kernel : pruning.kernels) most = std::max(most, kernel.rows);
     return most;
@@ -139,7 +139,7 @@ void Pruning::remake(const std::vector<ir::Param> &params, double time) {
 // A level that has no room for its lists is made again with as much as it asked for; where that is
 // too much, the level before has to do.
 void Pruning::make_lists(const std::vector<ir::Param> &params, double time) {
-    const auto rows = static_cast<std::size_t>(most_rows(source_));
+    const auto rows = static_cast<std::size_t>(max_rows(source_));
     std::vector<std::uint32_t> every(rows);
     std::iota(every.begin(), every.end(), 0u);
     drop(cells_), drop(rows_);
@@ -155,9 +155,9 @@ void Pruning::make_lists(const std::vector<ir::Param> &params, double time) {
             side_ ? 0.6 * tally_.rows / static_cast<double>(source_.kernels.size()) : 48;
         auto wanted = static_cast<std::uint32_t>(
             rows + std::min(static_cast<std::size_t>(mean * static_cast<double>(cells)) + 65536,
-                            most_entries - rows));
+                            max_entries - rows));
         bool good = false;
-        for (int attempt = 0; attempt < 2 && !good && wanted <= most_entries; ++attempt) {
+        for (int attempt = 0; attempt < 2 && !good && wanted <= max_entries; ++attempt) {
             const std::uint32_t room = wanted;
             drop(next_rows_);
             next_rows_ = buffer_of(room * sizeof(std::uint32_t), nullptr);

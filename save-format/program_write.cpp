@@ -16,14 +16,14 @@ namespace {
 using ir::NodeId;
 using ir::Op;
 
-constexpr int most_steps = 20000;
-constexpr double most_turns = 1024; // of a loop
+constexpr int max_steps = 20000;
+constexpr double max_iterations = 1024; // of a loop
 
 class StepWriter {
   public:
     StepWriter(ir::Graph &graph, const ir::Substitution &present, FlowWords &words)
         : graph_(graph), present_(present), words_(words),
-          most_nodes_(graph.size() + 16 * most_steps) {}
+          max_nodes_(graph.size() + 16 * max_steps) {}
 
     std::string flow(NodeId root) {
         return step(ir::substitute(graph_, root, present_), 0) < 0 ? std::string()
@@ -32,7 +32,7 @@ class StepWriter {
 
   private:
     int push(const std::string &text) {
-        if (count_ >= most_steps) return -1;
+        if (count_ >= max_steps) return -1;
         if (count_ > 0) text_ += ", ";
         text_ += "[" + text + "]";
         return count_++;
@@ -64,7 +64,7 @@ class StepWriter {
 
     int step(NodeId id, int depth) {
         if (const auto found = steps_.find(id); found != steps_.end()) return found->second;
-        if (depth > 2000 || graph_.size() > most_nodes_) return -1;
+        if (depth > 2000 || graph_.size() > max_nodes_) return -1;
         const int made = make(id, depth);
         if (made >= 0) steps_.emplace(id, made);
         return made;
@@ -98,14 +98,14 @@ class StepWriter {
     // the first turn whose condition is false nothing changes any more.
     const std::vector<NodeId> *results(NodeId id) {
         if (const auto found = loops_.find(id); found != loops_.end()) return &found->second;
-        const ir::Fold loop = graph_.fold(ir::FoldId{graph_[id].payload});
+        const ir::Loop loop = graph_.loop(ir::LoopId{graph_[id].payload});
         const auto known = graph_.as_number(loop.count);
         const double turns = known.value_or(loop.max_count);
-        if (turns > most_turns) return nullptr;
+        if (turns > max_iterations) return nullptr;
         std::vector<NodeId> values(graph_.args(id).begin(), graph_.args(id).end());
         NodeId running = graph_.boolean(true);
         for (int turn = 0; turn < static_cast<int>(turns); ++turn) {
-            if (graph_.size() > most_nodes_) return nullptr;
+            if (graph_.size() > max_nodes_) return nullptr;
             if (!known)
                 running = graph_.make(
                     Op::And, {running, graph_.make(Op::Less, {graph_.integer(turn), loop.count})});
@@ -154,8 +154,8 @@ class StepWriter {
                        ? -1
                        : push("Id, " + std::to_string(found - words_.ids.begin()));
         }
-        if (node.op == Op::Fold) return result(id, 0, depth);
-        if (node.op == Op::FoldResult) return result(args[0], node.payload, depth);
+        if (node.op == Op::Loop) return result(id, 0, depth);
+        if (node.op == Op::LoopResult) return result(args[0], node.payload, depth);
         if (node.op == Op::Blend) return step(blend_expression(graph_, id), depth + 1);
         if (node.op == Op::TableRead) return table_read(node, args[0]);
         constexpr ir::OpSet with_word{Op::Splat, Op::Make, Op::Column, Op::Swizzle};
@@ -185,7 +185,7 @@ class StepWriter {
     ir::Graph &graph_;
     const ir::Substitution &present_;
     FlowWords &words_;
-    std::size_t most_nodes_;
+    std::size_t max_nodes_;
     std::unordered_map<NodeId, int> steps_;
     std::unordered_map<NodeId, std::vector<NodeId>> loops_;
     std::string text_;

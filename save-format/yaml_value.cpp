@@ -203,9 +203,9 @@ const Value *Value::find(std::string_view key) const {
 }
 
 ParsedText parse_text(std::string_view text) {
-    Diagnostics unheard;
+    Diagnostics discarded;
     Sources sources;
-    YamlReader reader(text, SourceId{0}, Report{unheard, false}, 2000);
+    YamlReader reader(text, SourceId{0}, Report{discarded, false}, 2000);
     ParsedText parsed;
     Event first = reader.next();
     if (first.kind == EventKind::Broken || first.kind == EventKind::End) return parsed;

@@ -1,6 +1,6 @@
 // Assignments: to a variable, a component, an element; and the journal of what they overwrote, so
 // that a trial can be undone.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include <fmt/format.h>
 
@@ -10,12 +10,12 @@ namespace fathom::typecheck {
 
 // -- the journal ---------------------------------------------------------------------------------
 
-JournalMark journal_mark(Evaluator &ev) {
+JournalMark journal_mark(Interpreter &ev) {
     ++ev.journaling;
     return {ev.journal.size(), ev.frame_count};
 }
 
-std::vector<Change> journal_take(Evaluator &ev, JournalMark mark) {
+std::vector<Change> journal_take(Interpreter &ev, JournalMark mark) {
     std::vector<Change> changes;
     for (std::size_t i = ev.journal.size(); i-- > mark.entries;) {
         JournalEntry &entry = ev.journal[i];
@@ -35,7 +35,7 @@ std::vector<Change> journal_take(Evaluator &ev, JournalMark mark) {
     return changes;
 }
 
-void assign(Evaluator &ev, std::uint32_t frame, std::uint32_t slot, Value value) {
+void assign(Interpreter &ev, std::uint32_t frame, std::uint32_t slot, Value value) {
     Value &stored = ev.frames[frame].bindings[slot].value;
     if (ev.journaling > 0) ev.journal.push_back({frame, slot, stored});
     stored = value;
@@ -55,10 +55,10 @@ struct Accessor {
 
 } // namespace
 
-static Value store(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+static Value store(Interpreter &ev, const Value &old, const std::vector<Accessor> &path,
                    std::size_t k, const Value &value, Span place);
 
-static Value store_components(Evaluator &ev, const Value &old, const std::vector<int> &indices,
+static Value store_components(Interpreter &ev, const Value &old, const std::vector<int> &indices,
                               const Value &value, Span place) {
     int size = ir::components(numeric_type(ev, old));
     std::vector<Value> parts;
@@ -76,7 +76,7 @@ static Value store_components(Evaluator &ev, const Value &old, const std::vector
     return out;
 }
 
-static Value store_member(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+static Value store_member(Interpreter &ev, const Value &old, const std::vector<Accessor> &path,
                           std::size_t k, const Value &value, Span place) {
     const Accessor &step = path[k];
     auto indices = is_numeric(old) && ir::is_vector(numeric_type(ev, old))
@@ -103,7 +103,7 @@ static Value store_member(Evaluator &ev, const Value &old, const std::vector<Acc
     return store_components(ev, old, *indices, part, place);
 }
 
-static Value store_index(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+static Value store_index(Interpreter &ev, const Value &old, const std::vector<Accessor> &path,
                          std::size_t k, const Value &value, Span place) {
     const Accessor &step = path[k];
     bool vector = is_numeric(old) && ir::is_vector(numeric_type(ev, old));
@@ -131,7 +131,7 @@ static Value store_index(Evaluator &ev, const Value &old, const std::vector<Acce
     return list_value(ev, std::move(items));
 }
 
-static Value store(Evaluator &ev, const Value &old, const std::vector<Accessor> &path,
+static Value store(Interpreter &ev, const Value &old, const std::vector<Accessor> &path,
                    std::size_t k, const Value &value, Span place) {
     if (k == path.size()) return value;
     return path[k].is_index ? store_index(ev, old, path, k, value, place)
@@ -139,7 +139,7 @@ static Value store(Evaluator &ev, const Value &old, const std::vector<Accessor> 
 }
 
 // A variable keeps its type, except that a whole number may become a float.
-static bool same_type(Evaluator &ev, Value &old, Value &value) {
+static bool same_type(Interpreter &ev, Value &old, Value &value) {
     if (is_poison(old) || is_poison(value) || old.kind == ValueKind::None) return true;
     if (is_numeric(old) && is_numeric(value)) {
         ir::Type a = numeric_type(ev, old), b = numeric_type(ev, value);
@@ -163,7 +163,7 @@ static bool same_type(Evaluator &ev, Value &old, Value &value) {
     return old.kind == value.kind;
 }
 
-void run_assign(Evaluator &ev, const File &ast, const lang::Assign &node, Span place,
+void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span place,
                 std::uint32_t frame) {
     std::vector<Accessor> path;
     lang::ExprId target = node.target;

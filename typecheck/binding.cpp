@@ -16,7 +16,7 @@ static std::string signature_text(std::string_view name, std::span<const Formal>
     return out + ")";
 }
 
-static void report_unknown_arguments(Evaluator &ev, std::string_view name,
+static void report_unknown_arguments(Interpreter &ev, std::string_view name,
                                      std::span<const Formal> formals,
                                      std::span<const Argument> args,
                                      const std::vector<std::size_t> &unknown, Span callee) {
@@ -35,7 +35,7 @@ static void report_unknown_arguments(Evaluator &ev, std::string_view name,
     d.note(fmt::format("it is `{}`", signature_text(name, formals)));
 }
 
-std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view name,
+std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_view name,
                                                  std::span<const Formal> formals,
                                                  std::span<const Argument> args, Span call,
                                                  Span callee) {
@@ -190,7 +190,7 @@ static bool is_place(std::string_view name) {
            name == "axis" || name == "normal";
 }
 
-std::span<const Formal> formals_of(Evaluator &ev, const Closure &c) {
+std::span<const Formal> formals_of(Interpreter &ev, const Closure &c) {
     std::optional<std::vector<Formal>> &formals = ev.files[c.ast->place].formals[c.function.index];
     if (formals) return *formals;
     formals.emplace();
@@ -215,7 +215,7 @@ std::span<const Formal> formals_of(Evaluator &ev, const Closure &c) {
     return *formals;
 }
 
-std::span<const Formal> formals_of(Evaluator &ev, const Builtin &builtin) {
+std::span<const Formal> formals_of(Interpreter &ev, const Builtin &builtin) {
     const std::size_t place = static_cast<std::size_t>(&builtin - builtins().data());
     std::optional<std::vector<Formal>> &formals = ev.builtin_formals[place];
     if (formals) return *formals;
@@ -238,7 +238,7 @@ std::span<const Formal> formals_of(Evaluator &ev, const Builtin &builtin) {
 }
 
 // `rotate_euler([0, 90, 0])`: each plain literal of more than a turn.
-static void warn_of_degrees_in_vector(Evaluator &ev, const Formal &formal, const Given &given,
+static void warn_of_degrees_in_vector(Interpreter &ev, const Formal &formal, const Given &given,
                                       const Value &v) {
     const auto large = [&](int i) { return std::abs(v.num[static_cast<std::size_t>(i)]) > 6.5; };
     std::string written = "[";
@@ -255,7 +255,7 @@ static void warn_of_degrees_in_vector(Evaluator &ev, const Formal &formal, const
 }
 
 // `rotate(90)`: a plain literal of more than a turn.
-void warn_of_degrees(Evaluator &ev, const Formal &formal, const Given &given, const Value &v) {
+void warn_of_degrees(Interpreter &ev, const Formal &formal, const Given &given, const Value &v) {
     if (!given.plain_literal || !formal.is_angle) return;
     if (v.kind == ValueKind::Vec) return warn_of_degrees_in_vector(ev, formal, given, v);
     if (!is_scalar(ev, v) || std::abs(v.num[0]) <= 6.5) return;

@@ -1,7 +1,7 @@
 // Which argument of a call goes to which parameter. Private to typecheck.
 #pragma once
 
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 namespace fathom::typecheck {
 
@@ -15,15 +15,15 @@ struct Given {
 
 // By place, then by name; what is left over goes to a last parameter that takes it. Nothing where
 // an argument is wrong, which is reported.
-std::optional<std::vector<Given>> bind_arguments(Evaluator &ev, std::string_view name,
+std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_view name,
                                                  std::span<const Formal> formals,
                                                  std::span<const Argument> args, Span call,
                                                  Span callee);
 
 // A function's parameters, made once.
-std::span<const Formal> formals_of(Evaluator &ev, const Closure &c);
-std::span<const Formal> formals_of(Evaluator &ev, const Builtin &builtin);
+std::span<const Formal> formals_of(Interpreter &ev, const Closure &c);
+std::span<const Formal> formals_of(Interpreter &ev, const Builtin &builtin);
 
-void warn_of_degrees(Evaluator &ev, const Formal &formal, const Given &given, const Value &v);
+void warn_of_degrees(Interpreter &ev, const Formal &formal, const Given &given, const Value &v);
 
 } // namespace fathom::typecheck

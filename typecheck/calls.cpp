@@ -17,14 +17,14 @@ using ir::Type;
 
 // -- functions of the graph ----------------------------------------------------------------------
 
-static bool varies(Evaluator &ev, const Value &v) {
+static bool varies(Interpreter &ev, const Value &v) {
     if (v.kind != ValueKind::Field) return false;
     ir::Graph::Reads r = ev.scene.graph.reads(node_of(v));
     return r.point || r.normal || r.direction || r.free_vars;
 }
 
 // Values that hold no number of field time, and so mean the same in every call.
-static bool is_closed(Evaluator &ev, const Value &v, int depth = 0) {
+static bool is_closed(Interpreter &ev, const Value &v, int depth = 0) {
     if (v.kind == ValueKind::Field || v.kind == ValueKind::Shape || v.kind == ValueKind::Material ||
         depth > 4)
         return false;
@@ -43,7 +43,7 @@ static bool is_closed(Evaluator &ev, const Value &v, int depth = 0) {
     return true;
 }
 
-static bool frame_has_vars(Evaluator &ev, std::uint32_t frame) {
+static bool frame_has_vars(Interpreter &ev, std::uint32_t frame) {
     for (;; frame = ev.frames[frame].parent) {
         const Frame &f = ev.frames[frame];
         if (f.index) return false;
@@ -53,7 +53,7 @@ static bool frame_has_vars(Evaluator &ev, std::uint32_t frame) {
     }
 }
 
-static void key_of(Evaluator &ev, const Value &v, std::vector<std::uint64_t> &key) {
+static void key_of(Interpreter &ev, const Value &v, std::vector<std::uint64_t> &key) {
     if (varies(ev, v)) {
         key.push_back(0x1000 + static_cast<std::uint64_t>(numeric_type(ev, v)) * 2 + v.color);
         return;
@@ -69,13 +69,13 @@ static void key_of(Evaluator &ev, const Value &v, std::vector<std::uint64_t> &ke
     }
 }
 
-static Outcome run_body(Evaluator &ev, const Closure &c, const lang::Function &f,
+static Outcome run_body(Interpreter &ev, const Closure &c, const lang::Function &f,
                         std::uint32_t frame) {
     return run_block(ev, *c.ast, f.body, frame);
 }
 
 // The value that a body ends with, its early returns included.
-static Value result_of(Evaluator &ev, const Outcome &out, Span place) {
+static Value result_of(Interpreter &ev, const Outcome &out, Span place) {
     const Value &returned = out.exit.returned;
     if (returned.kind == ValueKind::Bool) return returned.num[0] != 0 ? out.exit.value : out.value;
     if (auto merged = select_value(ev, returned, out.exit.value, out.value)) return *merged;
@@ -85,7 +85,7 @@ static Value result_of(Evaluator &ev, const Outcome &out, Span place) {
     return poison();
 }
 
-static Value finish(Evaluator &ev, const Closure &c, Value v, const lang::Function &f,
+static Value finish(Interpreter &ev, const Closure &c, Value v, const lang::Function &f,
                     std::string_view name) {
     Span place = f.span;
     if (v.kind == ValueKind::Unit && !c.library && report_unfinished(ev, c, f, name))
@@ -106,7 +106,7 @@ static Value finish(Evaluator &ev, const Closure &c, Value v, const lang::Functi
     return convert(ev, v, *f.result, last, fmt::format("`{}`'s result", name), ok);
 }
 
-static bool enter(Evaluator &ev, std::string_view name, Span call, const Closure &c) {
+static bool enter(Interpreter &ev, std::string_view name, Span call, const Closure &c) {
     if (ev.calls.size() >= static_cast<std::size_t>(max_call_depth)) {
         report(ev, Code::RecursionLimit, call,
                fmt::format("calls nest deeper than {}; is there an end to this recursion?",
@@ -117,7 +117,7 @@ static bool enter(Evaluator &ev, std::string_view name, Span call, const Closure
     return true;
 }
 
-static Value run_closure(Evaluator &ev, const Value &callee, std::string_view name,
+static Value run_closure(Interpreter &ev, const Value &callee, std::string_view name,
                          std::span<const Value> values, Span call) {
     Closure c = ev.closures[callee.id];
     const lang::Function &f = c.ast->functions[c.function];
@@ -138,7 +138,7 @@ static Value run_closure(Evaluator &ev, const Value &callee, std::string_view na
 // A call with numbers of field time: the body becomes a function of the graph, made once for each
 // set of known arguments. Where these sets are many (a shape's sizes, in a loop), known floats and
 // vectors are passed too, so that like shapes call one function; unless the body has to know them.
-static std::optional<Value> specialized(Evaluator &ev, const Value &callee, std::string_view name,
+static std::optional<Value> specialized(Interpreter &ev, const Value &callee, std::string_view name,
                                         std::span<const Value> known, Span call) {
     std::span<const Value> values = known;
     if (std::none_of(values.begin(), values.end(), [&](const Value &v) { return varies(ev, v); }))
@@ -157,7 +157,7 @@ static std::optional<Value> specialized(Evaluator &ev, const Value &callee, std:
         return std::nullopt;
     ir::Graph &g = ev.scene.graph;
     std::vector<Value> opened;
-    const bool open = ev.specialized[id] >= most_known_sets;
+    const bool open = ev.specialized[id] >= max_known_sets;
     if (open) {
         opened.assign(values.begin(), values.end());
         for (Value &v : opened)
@@ -221,7 +221,7 @@ static std::optional<Value> specialized(Evaluator &ev, const Value &callee, std:
 
 // -- the calls -----------------------------------------------------------------------------------
 
-static bool holds_shape(Evaluator &ev, const Value &v) {
+static bool holds_shape(Interpreter &ev, const Value &v) {
     if (v.kind == ValueKind::Shape) return true;
     if (v.kind != ValueKind::List) return false;
     for (const Value &item : ev.lists[v.id])
@@ -229,11 +229,11 @@ static bool holds_shape(Evaluator &ev, const Value &v) {
     return false;
 }
 
-static bool inside_library(Evaluator &ev) { return ev.modules[ev.current_module].library; }
+static bool inside_library(Interpreter &ev) { return ev.modules[ev.current_module].library; }
 
 // A call of a library function with known numbers always gives the same value, so that the bodies
 // of `sphere(0.1)` and `cylinder(1, 2)` run once however often a scene has them.
-static Value remembered(Evaluator &ev, const Value &callee, std::string_view name,
+static Value remembered(Interpreter &ev, const Value &callee, std::string_view name,
                         std::span<const Value> values, Span call) {
     const Closure &c = ev.closures[callee.id];
     std::vector<std::uint64_t> key{c.ast->place, c.function.index, c.frame};
@@ -264,7 +264,7 @@ static bool of_a_point(const lang::Parameter &p) {
            p.type->items[1].named == lang::TypeName::Float;
 }
 
-static Value call_closure(Evaluator &ev, const Value &callee, std::string_view name,
+static Value call_closure(Interpreter &ev, const Value &callee, std::string_view name,
                           std::span<const Argument> args, Span call, Span callee_span) {
     const Closure c = ev.closures[callee.id];
     const lang::Function &f = c.ast->functions[c.function];
@@ -338,7 +338,7 @@ static Value call_closure(Evaluator &ev, const Value &callee, std::string_view n
     return v;
 }
 
-static Value call_builtin(Evaluator &ev, const Value &callee, std::span<const Argument> args,
+static Value call_builtin(Interpreter &ev, const Value &callee, std::span<const Argument> args,
                           Span call, Span callee_span) {
     const Builtin &b = builtins()[callee.id];
     const std::span<const Formal> formals = formals_of(ev, b);
@@ -360,7 +360,7 @@ static Value call_builtin(Evaluator &ev, const Value &callee, std::span<const Ar
                       : in_range(ev, v, values, call);
 }
 
-static Value call_overloads(Evaluator &ev, const Value &callee, std::string_view name,
+static Value call_overloads(Interpreter &ev, const Value &callee, std::string_view name,
                             std::span<const Argument> args, Span call, Span callee_span) {
     const std::vector<Value> candidates = ev.lists[callee.id];
     for (const Value &candidate : candidates) {
@@ -389,7 +389,7 @@ static Value call_overloads(Evaluator &ev, const Value &callee, std::string_view
     return call_closure(ev, *best, name, args, call, callee_span);
 }
 
-Value call_value(Evaluator &ev, const Value &callee, std::string_view name,
+Value call_value(Interpreter &ev, const Value &callee, std::string_view name,
                  std::span<const Argument> args, Span call, Span callee_span) {
     if (is_poison(callee)) return poison();
     switch (callee.kind) {
@@ -445,7 +445,8 @@ Value call_value(Evaluator &ev, const Value &callee, std::string_view name,
     return poison();
 }
 
-Value call_with(Evaluator &ev, const Value &callee, const std::vector<Value> &values, Span place) {
+Value call_with(Interpreter &ev, const Value &callee, const std::vector<Value> &values,
+                Span place) {
     std::vector<Argument> args;
     args.reserve(values.size());
     for (const Value &v : values) {
@@ -472,7 +473,7 @@ static bool is_plain_literal(const File &ast, const lang::Expr &e) {
            });
 }
 
-static void read_arguments(Evaluator &ev, const File &ast, const lang::Call &call,
+static void read_arguments(Interpreter &ev, const File &ast, const lang::Call &call,
                            std::uint32_t frame, std::vector<Argument> &args) {
     for (const lang::Argument &a : call.arguments) {
         Argument arg;
@@ -522,7 +523,7 @@ static void help_with_method(Diagnostic &d, const lang::Member &member, const Fi
             {{angle.source, angle.end, angle.end}, fmt::format(", axis: {}", upper)}});
 }
 
-Value eval_call(Evaluator &ev, const File &ast, lang::ExprId id, const lang::Call &call,
+Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::Call &call,
                 std::uint32_t frame) {
     Span place = ast.exprs[id].span;
     const lang::Expr &callee = ast.exprs[call.callee];

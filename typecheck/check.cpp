@@ -2,7 +2,7 @@
 #include "typecheck/check.h"
 
 #include "lang/parse.h"
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include "ir/background.h"
 
@@ -14,7 +14,7 @@
 
 namespace fathom::typecheck {
 
-ir::Lighting default_lighting(Evaluator &ev); // builtins/scene.cpp
+ir::Lighting default_lighting(Interpreter &ev); // builtins/scene.cpp
 
 namespace {
 
@@ -41,7 +41,7 @@ void with_stack(const std::function<void()> &work) {
         pthread_join(thread, nullptr);
 }
 
-void apply(Evaluator &ev, const Setting &s) {
+void apply(Interpreter &ev, const Setting &s) {
     switch (s.kind) {
     case Setting::Kind::Camera: ev.scene.camera = s.camera; break;
     case Setting::Kind::Light: ev.scene.lights.push_back(s.light); break;
@@ -52,7 +52,7 @@ void apply(Evaluator &ev, const Setting &s) {
     }
 }
 
-void add_top_level(Evaluator &ev, const Value &v, Span span, std::vector<ir::ShapeId> &shapes) {
+void add_top_level(Interpreter &ev, const Value &v, Span span, std::vector<ir::ShapeId> &shapes) {
     switch (v.kind) {
     case ValueKind::Poison:
     case ValueKind::Unit: return;
@@ -128,11 +128,11 @@ class ParamReads {
             if (n.op == ir::Op::Cached)
                 todo.push_back(
                     scene_.graph.function(scene_.graph.cache(ir::CacheId{n.payload}).field).result);
-            if (n.op == ir::Op::Fold) {
-                const ir::Fold &fold = scene_.graph.fold(ir::FoldId{n.payload});
-                todo.insert(todo.end(), fold.next.begin(), fold.next.end());
-                todo.push_back(fold.condition);
-                todo.push_back(fold.count);
+            if (n.op == ir::Op::Loop) {
+                const ir::Loop &loop = scene_.graph.loop(ir::LoopId{n.payload});
+                todo.insert(todo.end(), loop.next.begin(), loop.next.end());
+                todo.push_back(loop.condition);
+                todo.push_back(loop.count);
             }
             for (ir::NodeId arg : scene_.graph.args(id)) todo.push_back(arg);
         }
@@ -150,7 +150,7 @@ class ParamReads {
 
 // A number that reaches a shape's form needs a range, since the proof holds for all its values
 // (semantics.md, 18); what only paints does not.
-void demand_ranges(Evaluator &ev) {
+void demand_ranges(Interpreter &ev) {
     ParamReads geometry(ev.scene);
     geometry.form(ev.scene.root);
     for (std::size_t i = 0; i < ev.scene.params.size(); ++i) {
@@ -167,7 +167,7 @@ void demand_ranges(Evaluator &ev) {
 // A param of the scene's own file that neither forms, colours, lights nor frames anything. An
 // imported file may have some that this scene has no use for, and a file that makes no shape is
 // there to be imported. `only` leaves shapes out for a while.
-void tell_unused_params(Evaluator &ev, SourceId root) {
+void tell_unused_params(Interpreter &ev, SourceId root) {
     const ir::Scene &scene = ev.scene;
     if (ev.diagnostics.has_errors() || scene.top_level.empty() || !ev.only_shapes.empty()) return;
     ParamReads reads(scene);
@@ -189,7 +189,7 @@ void tell_unused_params(Evaluator &ev, SourceId root) {
     }
 }
 
-void build_scene(Evaluator &ev, const std::vector<Contribution> &contributions, const File &ast) {
+void build_scene(Interpreter &ev, const std::vector<Contribution> &contributions, const File &ast) {
     ir::Scene &scene = ev.scene;
     scene.lighting = default_lighting(ev);
     scene.background = ir::usual_background(scene.graph);
@@ -224,7 +224,7 @@ Checked check(Sources &sources, SourceId root, const std::string &root_identity,
               Diagnostics &diagnostics) {
     Checked out;
     with_stack([&] {
-        Evaluator ev{sources, diagnostics, library, loader, options};
+        Interpreter ev{sources, diagnostics, library, loader, options};
         load_prelude(ev);
         Module m;
         m.identity = root_identity;

@@ -1,10 +1,10 @@
 // The table of shapes that one loop's body made, and formulas for its columns. Where shapes come of
-// one body (turns.cpp), what differs between them is what hangs on the loops' numbers, and these
+// one body (iterations.cpp), what differs between them is what hangs on the loops' numbers, and these
 // follow from the row: of two loops, row = i*m + j. A formula stands beside the data, and a text
 // may hold it in its place. It is taken only if float32 arithmetic, each inexact result pushed by a
 // unit in its last place, gives every row to within `close_enough`: so no floor or comparison
 // stands at an edge, and a shader shows what was proved of the data.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include "ir/passes/fold.h"
 #include "ir/passes/inline.h"
@@ -24,9 +24,9 @@ using ir::Type;
 
 namespace {
 
-constexpr double close_enough = 2e-5;         // of the column's largest number
-constexpr std::size_t most_work = 20'000'000; // operations to try all rows
-constexpr std::size_t longest = 2000;         // nodes of all formulas of a family
+constexpr double close_enough = 2e-5;        // of the column's largest number
+constexpr std::size_t max_work = 20'000'000; // operations to try all rows
+constexpr std::size_t longest = 2000;        // nodes of all formulas of a instance_table
 
 // -- what hangs on the loops' numbers alone
 
@@ -42,7 +42,7 @@ struct Places {
         only.free_vars = true;
         if (graph.reads(id) == only) return found.push_back(id);
         const Op op = graph[id].op;
-        if (op == Op::Fold || op == Op::FoldResult) fits = false; // its body may hold some
+        if (op == Op::Loop || op == Op::LoopResult) fits = false; // its body may hold some
         for (NodeId arg : graph.args(id)) node(arg);
     }
 };
@@ -50,11 +50,11 @@ struct Places {
 // -- the loops' numbers from the row
 
 // The turns count through, the innermost loop's number fastest: place = row * step + first for the
-// whole family, and each loop's number is a digit of the place.
-bool numbers_of_row(Evaluator &ev, const std::vector<const Turn *> &turns, NodeId row,
+// whole table of instances, and each loop's number is a digit of the place.
+bool numbers_of_row(Interpreter &ev, const std::vector<const Iteration *> &turns, NodeId row,
                     ir::Substitution &numbers) {
     const auto &at = turns[0]->at;
-    auto place_of = [&](const Turn &turn) {
+    auto place_of = [&](const Iteration &turn) {
         double place = 0, stride = 1;
         for (const auto &[variable, number] : turn.at) {
             place += number * stride;
@@ -90,7 +90,7 @@ bool numbers_of_row(Evaluator &ev, const std::vector<const Turn *> &turns, NodeI
 // -- formulas that float32 computes well
 
 struct Formula {
-    Evaluator &ev;
+    Interpreter &ev;
     ir::Substitution known; // variables and what was made of nodes so far
     bool possible = true;
     int depth = 0;
@@ -121,7 +121,7 @@ struct Formula {
         std::vector<NodeId> args(g.args(id).begin(), g.args(id).end());
         for (NodeId &arg : args) arg = node(arg);
         if (!possible) return id;
-        if (n.op == Op::Var || n.op == Op::Fold || n.op == Op::FoldResult || n.op == Op::Cached ||
+        if (n.op == Op::Var || n.op == Op::Loop || n.op == Op::LoopResult || n.op == Op::Cached ||
             n.op == Op::TableRead) {
             possible = false;
             return id;
@@ -240,7 +240,7 @@ void round_to_float(Constant &value, Op op, std::uint32_t mix) {
 
 // All expressions for each row: in double, or in float32 as a shader would. False where one has no
 // value, or there is too much to do.
-bool evaluate_rows(Evaluator &ev, const std::vector<NodeId> &roots, NodeId row, int count,
+bool evaluate_rows(Interpreter &ev, const std::vector<NodeId> &roots, NodeId row, int count,
                    bool single, std::vector<std::vector<Constant>> &rows) {
     const ir::Graph &g = ev.scene.graph;
     std::vector<NodeId> order, todo = roots;
@@ -252,7 +252,7 @@ bool evaluate_rows(Evaluator &ev, const std::vector<NodeId> &roots, NodeId row, 
         order.push_back(id);
         for (NodeId arg : g.args(id)) todo.push_back(arg);
     }
-    if (order.size() > longest || order.size() * static_cast<std::size_t>(count) > most_work)
+    if (order.size() > longest || order.size() * static_cast<std::size_t>(count) > max_work)
         return false;
     std::sort(order.begin(), order.end(), [](NodeId a, NodeId b) { return a.index < b.index; });
     for (std::size_t i = 0; i < order.size(); ++i) slot[order[i]] = i;
@@ -309,10 +309,11 @@ std::vector<bool> agree(const std::vector<std::vector<Constant>> &truth,
 
 } // namespace
 
-std::optional<TurnTable> table_of_turns(Evaluator &ev, const std::vector<ShapeId> &members) {
-    if (members.size() < least_computed) return std::nullopt;
-    TurnTable table;
-    std::vector<const Turn *> turns;
+std::optional<IterationTable> table_of_iterations(Interpreter &ev,
+                                                  const std::vector<ShapeId> &members) {
+    if (members.size() < min_computed) return std::nullopt;
+    IterationTable table;
+    std::vector<const Iteration *> turns;
     for (ShapeId member : members) {
         auto it = ev.turns.find(member.index);
         if (it == ev.turns.end() || (!turns.empty() && it->second.symbolic != turns[0]->symbolic))

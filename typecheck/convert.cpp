@@ -30,7 +30,7 @@ std::string type_text(const lang::TypeExpr &type) {
 }
 
 // Wrong wherever the function is called from, so it is said of no call.
-bool check_type(Evaluator &ev, const lang::TypeExpr &type) {
+bool check_type(Interpreter &ev, const lang::TypeExpr &type) {
     if (type.kind != lang::TypeExpr::Kind::Name) {
         bool ok = true;
         for (const lang::TypeExpr &item : type.items) ok = check_type(ev, item) && ok;
@@ -57,19 +57,19 @@ bool is_function(const Value &v) {
            v.kind == ValueKind::CachedField || v.kind == ValueKind::ImageField;
 }
 
-Value list_value(Evaluator &ev, std::vector<Value> items) {
+Value list_value(Interpreter &ev, std::vector<Value> items) {
     ev.list_elements += items.size();
     ev.lists.push_back(std::move(items));
     return make_value(ValueKind::List, static_cast<std::uint32_t>(ev.lists.size() - 1));
 }
 
-Value string_value(Evaluator &ev, std::string text) {
+Value string_value(Interpreter &ev, std::string text) {
     ev.strings.push_back(std::move(text));
     return make_value(ValueKind::String, static_cast<std::uint32_t>(ev.strings.size() - 1));
 }
 
 // A list of numbers as a vector; everything else as it is.
-static Value vector_of_list(Evaluator &ev, const Value &v) {
+static Value vector_of_list(Interpreter &ev, const Value &v) {
     if (v.kind != ValueKind::List) return v;
     if (ev.lists[v.id].size() < 2 || ev.lists[v.id].size() > 4) return v;
     const std::vector<Value> items = ev.lists[v.id];
@@ -78,7 +78,7 @@ static Value vector_of_list(Evaluator &ev, const Value &v) {
     return make_vector(ev, items, static_cast<int>(items.size()), {});
 }
 
-static std::optional<Value> as_shape(Evaluator &ev, const Value &v, const lang::TypeExpr &type) {
+static std::optional<Value> as_shape(Interpreter &ev, const Value &v, const lang::TypeExpr &type) {
     if (v.kind != ValueKind::Shape) return std::nullopt;
     if (type.named == lang::TypeName::Shape && v.size != 3) return std::nullopt;
     if (type.named == lang::TypeName::Shape2 && v.size != 2) return std::nullopt;
@@ -93,7 +93,7 @@ static std::optional<Value> as_shape(Evaluator &ev, const Value &v, const lang::
     return shape_value(ev.scene.shapes.add(std::move(contract)), v.size);
 }
 
-static std::optional<Value> as_color(Evaluator &ev, Value v, Type t) {
+static std::optional<Value> as_color(Interpreter &ev, Value v, Type t) {
     if (t == Type::Vec4) v = swizzle(ev, v, "xyz", {}), t = Type::Vec3;
     if (t == Type::Int || t == Type::Float)
         v = make_vector(ev, {to_float(ev, v)}, 3, {}), t = Type::Vec3;
@@ -102,13 +102,14 @@ static std::optional<Value> as_color(Evaluator &ev, Value v, Type t) {
     return v;
 }
 
-static std::optional<Value> as_vector(Evaluator &ev, const Value &v, Type t, int size) {
+static std::optional<Value> as_vector(Interpreter &ev, const Value &v, Type t, int size) {
     if (t == Type::Int || t == Type::Float) return make_vector(ev, {to_float(ev, v)}, size, {});
     if (v.color && size == 4) return make_vector(ev, {v, number(1)}, 4, {});
     return t == ir::vector_type(size) ? std::optional(v) : std::nullopt;
 }
 
-static std::optional<Value> as_named(Evaluator &ev, const Value &raw, const lang::TypeExpr &type) {
+static std::optional<Value> as_named(Interpreter &ev, const Value &raw,
+                                     const lang::TypeExpr &type) {
     using lang::TypeName;
     const auto only_if = [](bool fits, const Value &v) {
         return fits ? std::optional(v) : std::nullopt;
@@ -174,7 +175,7 @@ static std::optional<Value> as_named(Evaluator &ev, const Value &raw, const lang
     return std::nullopt;
 }
 
-static std::optional<Value> as_type(Evaluator &ev, const Value &v, const lang::TypeExpr &type) {
+static std::optional<Value> as_type(Interpreter &ev, const Value &v, const lang::TypeExpr &type) {
     if (is_poison(v)) return v;
     switch (type.kind) {
     case lang::TypeExpr::Kind::Name: return as_named(ev, v, type);
@@ -212,11 +213,11 @@ static std::optional<Value> as_type(Evaluator &ev, const Value &v, const lang::T
     return std::nullopt;
 }
 
-bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type) {
+bool accepts(Interpreter &ev, const Value &v, const lang::TypeExpr &type) {
     return as_type(ev, v, type).has_value();
 }
 
-Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place, What what,
+Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span place, What what,
               bool &ok) {
     if (auto converted = as_type(ev, v, type)) return *converted;
     ok = false;
@@ -241,7 +242,7 @@ Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span pl
 
 // -- what builtins ask of their arguments --------------------------------------------------------
 
-static void want(Evaluator &ev, const Value &v, Span place, What what, std::string_view wanted) {
+static void want(Interpreter &ev, const Value &v, Span place, What what, std::string_view wanted) {
     if (is_poison(v)) return;
     Diagnostic &d = report(ev, Code::TypeMismatch, place,
                            fmt::format("{} wants {}, this is {}", what, wanted, describe(ev, v)));
@@ -253,7 +254,7 @@ static void want(Evaluator &ev, const Value &v, Span place, What what, std::stri
 }
 
 // The number, or nothing after a report.
-static Value limited(Evaluator &ev, const Value &v, Span place, What what, Limit limit) {
+static Value limited(Interpreter &ev, const Value &v, Span place, What what, Limit limit) {
     switch (limit) {
     case Limit::Size: return sized(ev, v, place, what);
     case Limit::Finite: return finite_number(ev, v, place, what) ? v : poison();
@@ -262,7 +263,7 @@ static Value limited(Evaluator &ev, const Value &v, Span place, What what, Limit
     return v;
 }
 
-std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what,
+std::optional<double> want_known_number(Interpreter &ev, const Value &v, Span place, What what,
                                         Limit limit) {
     if (!is_scalar(ev, v)) {
         want(ev, v, place, what, "a number");
@@ -274,7 +275,7 @@ std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span plac
     return is_poison(x) ? std::nullopt : std::optional(x.num[0]);
 }
 
-std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, What what) {
+std::optional<int> want_known_int(Interpreter &ev, const Value &v, Span place, What what) {
     if (!is_scalar(ev, v)) {
         want(ev, v, place, what, "a whole number");
         return std::nullopt;
@@ -289,7 +290,7 @@ std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, Wha
     return static_cast<int>(known->num[0]);
 }
 
-std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, What what) {
+std::optional<bool> want_known_bool(Interpreter &ev, const Value &v, Span place, What what) {
     if (!is_numeric(v) || numeric_type(ev, v) != Type::Bool) {
         want(ev, v, place, what, "a bool (a comparison, `true` or `false`)");
         return std::nullopt;
@@ -298,13 +299,13 @@ std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, W
     return known ? std::optional(known->num[0] != 0) : std::nullopt;
 }
 
-std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place, What what) {
+std::optional<std::string> want_string(Interpreter &ev, const Value &v, Span place, What what) {
     if (v.kind == ValueKind::String) return ev.strings[v.id];
     want(ev, v, place, what, "a string");
     return std::nullopt;
 }
 
-std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what,
+std::optional<ir::NodeId> want_scalar_node(Interpreter &ev, const Value &v, Span place, What what,
                                            Limit limit) {
     if (is_scalar(ev, v)) {
         const Value x = limited(ev, to_float(ev, v), place, what, limit);
@@ -314,7 +315,7 @@ std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span p
     return std::nullopt;
 }
 
-std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int size, Span place,
+std::optional<ir::NodeId> want_vec_node(Interpreter &ev, const Value &raw, int size, Span place,
                                         What what, Limit limit) {
     Value v = vector_of_list(ev, raw);
     if (is_numeric(v)) {
@@ -329,7 +330,7 @@ std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &raw, int siz
     return std::nullopt;
 }
 
-std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, What what) {
+std::optional<ir::NodeId> want_color_node(Interpreter &ev, const Value &v, Span place, What what) {
     const Value c = or_color(vector_of_list(ev, v));
     if (is_poison(sized(ev, c, place, what))) return std::nullopt;
     if (is_numeric(c) && numeric_type(ev, c) != Type::Bool)
@@ -338,7 +339,7 @@ std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span pl
     return std::nullopt;
 }
 
-std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place, What what,
+std::optional<ir::ShapeId> want_shape(Interpreter &ev, const Value &v, Span place, What what,
                                       int dims) {
     if (v.kind == ValueKind::Shape && (dims == 0 || v.size == dims)) return shape_of(v);
     if (v.kind == ValueKind::Shape && dims == 3) {
@@ -351,7 +352,8 @@ std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place,
     return std::nullopt;
 }
 
-std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place, What what) {
+std::optional<std::vector<Value>> want_list(Interpreter &ev, const Value &v, Span place,
+                                            What what) {
     if (v.kind == ValueKind::List) return ev.lists[v.id];
     if (v.kind == ValueKind::Range || (is_numeric(v) && ir::is_vector(numeric_type(ev, v))))
         return sequence_items(ev, v, place);
@@ -359,7 +361,7 @@ std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span 
     return std::nullopt;
 }
 
-std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &v, Span place,
+std::optional<std::vector<ir::ShapeId>> want_shapes(Interpreter &ev, const Value &v, Span place,
                                                     What what, int &dims) {
     if (is_poison(v)) return std::nullopt;
     std::vector<Value> items;
@@ -395,7 +397,7 @@ std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &
     return shapes;
 }
 
-std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place, What what) {
+std::optional<ir::Region> want_region(Interpreter &ev, const Value &v, Span place, What what) {
     if (v.kind == ValueKind::Region) return ev.regions[v.id];
     want(ev, v, place, what,
          "a region: `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or `everywhere`");

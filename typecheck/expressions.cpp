@@ -1,5 +1,5 @@
 // Expressions to values.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include "ir/maps.h"
 
@@ -15,14 +15,14 @@ static double linear_of_srgb(double c) {
     return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-static Value eval_name(Evaluator &ev, const File &ast, const lang::Name &name, Span place,
+static Value eval_name(Interpreter &ev, const File &ast, const lang::Name &name, Span place,
                        std::uint32_t frame) {
     if (auto v = look_up(ev, frame, symbol_of(ast, name))) return *v;
     report_unknown_name(ev, frame, name.text, place);
     return poison();
 }
 
-static Value eval_list(Evaluator &ev, const File &ast, const lang::List &list, Span place,
+static Value eval_list(Interpreter &ev, const File &ast, const lang::List &list, Span place,
                        std::uint32_t frame) {
     std::vector<Value> items;
     items.reserve(list.items.size());
@@ -39,7 +39,7 @@ static Value eval_list(Evaluator &ev, const File &ast, const lang::List &list, S
     return list_value(ev, std::move(items));
 }
 
-static Value eval_range(Evaluator &ev, const File &ast, const lang::Range &range,
+static Value eval_range(Interpreter &ev, const File &ast, const lang::Range &range,
                         std::uint32_t frame) {
     Value first = eval(ev, ast, range.first, frame), last = eval(ev, ast, range.last, frame);
     if (is_poison(first) || is_poison(last)) return poison();
@@ -53,7 +53,7 @@ static Value eval_range(Evaluator &ev, const File &ast, const lang::Range &range
 
 static bool is_shape_op(const Value &v) { return v.kind == ValueKind::Shape; }
 
-static Value shape_complement(Evaluator &ev, const Value &v, Span place) {
+static Value shape_complement(Interpreter &ev, const Value &v, Span place) {
     ir::Shape s;
     s.kind = ir::ShapeKind::Complement;
     s.dims = v.size;
@@ -62,7 +62,7 @@ static Value shape_complement(Evaluator &ev, const Value &v, Span place) {
     return shape_value(ev.scene.shapes.add(std::move(s)), v.size);
 }
 
-static Value combine(Evaluator &ev, ir::ShapeKind kind, const std::vector<Value> &values,
+static Value combine(Interpreter &ev, ir::ShapeKind kind, const std::vector<Value> &values,
                      const std::vector<Span> &places, Span place) {
     int dims = 0;
     std::vector<ir::ShapeId> children;
@@ -99,7 +99,7 @@ static Value combine(Evaluator &ev, ir::ShapeKind kind, const std::vector<Value>
 }
 
 // `sphere(1) && box(1)`: the text was read as conditions, with what there is to say of `&&`.
-static void report_joined_shapes(Evaluator &ev, const lang::Binary &b) {
+static void report_joined_shapes(Interpreter &ev, const lang::Binary &b) {
     const bool is_and = b.ops[0] == lang::BinaryOp::And;
     std::vector<Edit> edits;
     for (const Span op : b.op_spans) {
@@ -111,7 +111,7 @@ static void report_joined_shapes(Evaluator &ev, const lang::Binary &b) {
         .help(is_and ? "write `&`" : "write `|`", std::move(edits));
 }
 
-static Value eval_logic(Evaluator &ev, const File &ast, const lang::Binary &b,
+static Value eval_logic(Interpreter &ev, const File &ast, const lang::Binary &b,
                         std::uint32_t frame) {
     bool is_and = b.ops[0] == lang::BinaryOp::And;
     Value total = boolean(is_and);
@@ -135,7 +135,7 @@ static Value eval_logic(Evaluator &ev, const File &ast, const lang::Binary &b,
     return total;
 }
 
-static Value eval_binary(Evaluator &ev, const File &ast, const lang::Binary &b, Span place,
+static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b, Span place,
                          std::uint32_t frame) {
     using lang::BinaryOp;
     if (b.ops[0] == BinaryOp::And || b.ops[0] == BinaryOp::Or) return eval_logic(ev, ast, b, frame);
@@ -184,7 +184,7 @@ static Value eval_binary(Evaluator &ev, const File &ast, const lang::Binary &b, 
     return total;
 }
 
-static Value eval_index(Evaluator &ev, const File &ast, const lang::Index &node, Span place,
+static Value eval_index(Interpreter &ev, const File &ast, const lang::Index &node, Span place,
                         std::uint32_t frame) {
     Value object = eval(ev, ast, node.object, frame), index = eval(ev, ast, node.index, frame);
     if (is_poison(object) || is_poison(index)) return poison();
@@ -299,7 +299,7 @@ static Value eval_index(Evaluator &ev, const File &ast, const lang::Index &node,
     return out;
 }
 
-static Value eval_member(Evaluator &ev, const File &ast, const lang::Member &m, Span place,
+static Value eval_member(Interpreter &ev, const File &ast, const lang::Member &m, Span place,
                          std::uint32_t frame) {
     Value object = eval(ev, ast, m.object, frame);
     if (is_poison(object)) return object;
@@ -338,7 +338,7 @@ static Value eval_member(Evaluator &ev, const File &ast, const lang::Member &m, 
     return poison();
 }
 
-static Value make_closure(Evaluator &ev, const File &ast, lang::FunctionId function,
+static Value make_closure(Interpreter &ev, const File &ast, lang::FunctionId function,
                           std::uint32_t frame) {
     Closure c;
     c.ast = &ast;
@@ -356,7 +356,7 @@ static Value make_closure(Evaluator &ev, const File &ast, lang::FunctionId funct
     return make_value(ValueKind::Closure, static_cast<std::uint32_t>(ev.closures.size() - 1));
 }
 
-static Value eval_unary(Evaluator &ev, const File &ast, const lang::Unary &u, Span place,
+static Value eval_unary(Interpreter &ev, const File &ast, const lang::Unary &u, Span place,
                         std::uint32_t frame) {
     Value v = eval(ev, ast, u.operand, frame);
     if (is_poison(v)) return v;
@@ -387,16 +387,16 @@ static Value eval_unary(Evaluator &ev, const File &ast, const lang::Unary &u, Sp
     return negate(ev, v, place);
 }
 
-static Value eval_if(Evaluator &ev, const File &ast, const lang::If &node, Span place,
+static Value eval_if(Interpreter &ev, const File &ast, const lang::If &node, Span place,
                      std::uint32_t frame) {
     Outcome out = run_if(ev, ast, node, frame, place);
     return out.value;
 }
 
-static Value eval_kind(Evaluator &ev, const File &ast, lang::ExprId id, std::uint32_t frame) {
+static Value eval_kind(Interpreter &ev, const File &ast, lang::ExprId id, std::uint32_t frame) {
     const lang::Expr &e = ast.exprs[id];
     struct Visit {
-        Evaluator &ev;
+        Interpreter &ev;
         const File &ast;
         lang::ExprId id;
         std::uint32_t frame;
@@ -447,7 +447,7 @@ static Value eval_kind(Evaluator &ev, const File &ast, lang::ExprId id, std::uin
     return std::visit(Visit{ev, ast, id, frame, e.span}, e.kind);
 }
 
-Value eval(Evaluator &ev, const File &ast, lang::ExprId id, std::uint32_t frame) {
+Value eval(Interpreter &ev, const File &ast, lang::ExprId id, std::uint32_t frame) {
     if (!spend(ev, ast.exprs[id].span)) return poison();
     if (ev.depth >= max_depth) {
         report(ev, Code::RecursionLimit, ast.exprs[id].span, "this nests too deep to be evaluated");
@@ -459,7 +459,7 @@ Value eval(Evaluator &ev, const File &ast, lang::ExprId id, std::uint32_t frame)
     return v;
 }
 
-void hoist_functions(Evaluator &ev, const File &ast, lang::BlockId block, std::uint32_t frame) {
+void hoist_functions(Interpreter &ev, const File &ast, lang::BlockId block, std::uint32_t frame) {
     for (const lang::Stmt &s : ast.blocks[block].stmts)
         if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind)) {
             const lang::Function &fn = ast.functions[f->function];

@@ -1,6 +1,6 @@
 // What was found out about the names of a scene: their types, and when each is known. For goldens,
 // editors and people who look inside.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ std::string signature(const lang::Function &f) {
     return text + ")" + (f.result ? " -> " + type_text(*f.result) : "");
 }
 
-std::string type_of(const Evaluator &ev, const Value &v) {
+std::string type_of(const Interpreter &ev, const Value &v) {
     if (v.kind == ValueKind::Closure) {
         const Closure &c = ev.closures[v.id];
         return signature(c.ast->functions[c.function]);
@@ -70,7 +70,7 @@ Stage stage_of_shape(const ir::Scene &scene, ir::ShapeId root, ShapeStages &know
     return known[root.index];
 }
 
-Stage stage_of(const Evaluator &ev, const Value &v, ShapeStages &known) {
+Stage stage_of(const Interpreter &ev, const Value &v, ShapeStages &known) {
     Stage stage = Stage::Scene;
     if (v.kind == ValueKind::Field) return stage_of_node(ev.scene, node_of(v));
     if (v.kind == ValueKind::Shape) return stage_of_shape(ev.scene, shape_of(v), known);
@@ -90,7 +90,7 @@ const char *stage_name(Stage stage) {
     return "";
 }
 
-std::vector<NameFact> name_facts(const Evaluator &ev, std::uint32_t frame, SourceId source) {
+std::vector<NameFact> name_facts(const Interpreter &ev, std::uint32_t frame, SourceId source) {
     std::vector<NameFact> facts;
     ShapeStages known;
     for (const Binding &b : ev.frames[frame].bindings)

@@ -1,6 +1,6 @@
 // Functions of the point: a lambda, a named function, a constant or a cached field becomes one
 // expression of the graph.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include <fmt/format.h>
 
@@ -8,13 +8,13 @@ namespace fathom::typecheck {
 
 using ir::Type;
 
-int parameter_count(Evaluator &ev, const Value &f) {
+int parameter_count(Interpreter &ev, const Value &f) {
     if (f.kind != ValueKind::Closure) return -1;
     const Closure &c = ev.closures[f.id];
     return static_cast<int>(c.ast->functions[c.function].parameters.size());
 }
 
-std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field,
+std::optional<ir::NodeId> apply_field(Interpreter &ev, const Value &field,
                                       const std::vector<ir::NodeId> &inputs, Type result,
                                       Span place, What what, bool *is_color) {
     if (is_poison(field)) return std::nullopt;
@@ -69,7 +69,7 @@ std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field,
     return std::nullopt;
 }
 
-std::optional<ir::Material> want_material(Evaluator &ev, const Value &given, Span place,
+std::optional<ir::Material> want_material(Interpreter &ev, const Value &given, Span place,
                                           What what) {
     const Value v = or_color(given);
     if (v.kind == ValueKind::Material) return ev.materials[v.id];

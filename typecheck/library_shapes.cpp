@@ -1,12 +1,12 @@
 // What a scene keeps once however often it is named: calls of library shapes with their claims
 // (semantics.md, 12), regions, materials.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 namespace fathom::typecheck {
 
 static std::string number_key(std::uint32_t i) { return std::to_string(i) + ","; }
 
-Value library_shape(Evaluator &ev, ir::Library library, const Value &body, Span origin) {
+Value library_shape(Interpreter &ev, ir::Library library, const Value &body, Span origin) {
     ir::ShapeId child = shape_of(body);
     // a body that only makes claims is this very call: keep its claims under the call's numbers
     const ir::Shape &inner = ev.scene.shapes[child];
@@ -28,9 +28,9 @@ Value library_shape(Evaluator &ev, ir::Library library, const Value &body, Span 
     if (library.has_claims) {
         const ir::Claims &c = library.claims;
         key += number_key(static_cast<std::uint32_t>(c.kind)) + number_key(c.lipschitz.index) +
-               number_key(c.lo.index) + number_key(c.hi.index) + number_key(c.swell.index);
+               number_key(c.lo.index) + number_key(c.hi.index) + number_key(c.growth_rate.index);
         for (bool b : c.symmetric) key += b ? "y" : "n";
-        for (ir::NodeId n : c.lever) key += number_key(n.index);
+        for (ir::NodeId n : c.moment_arm) key += number_key(n.index);
     }
     auto [it, added] = ev.interned_records.try_emplace(
         key, static_cast<std::uint32_t>(ev.scene.shapes.libraries.size()));
@@ -52,14 +52,14 @@ static std::string region_key(const ir::Region &r) {
     return key + ")";
 }
 
-std::uint32_t intern_region(Evaluator &ev, const ir::Region &region) {
+std::uint32_t intern_region(Interpreter &ev, const ir::Region &region) {
     auto [it, added] = ev.interned_records.try_emplace(
         "region:" + region_key(region), static_cast<std::uint32_t>(ev.scene.shapes.regions.size()));
     if (added) ev.scene.shapes.regions.push_back(region);
     return it->second;
 }
 
-std::uint32_t intern_material(Evaluator &ev, const ir::Material &m) {
+std::uint32_t intern_material(Interpreter &ev, const ir::Material &m) {
     std::string key = "material:" + number_key(m.diffuse.index) + number_key(m.specular.index) +
                       number_key(m.exponent.index) + number_key(m.emission.index) +
                       number_key(static_cast<std::uint32_t>(m.texture.image));

@@ -1,8 +1,8 @@
 // Loops in bodies. While all numbers are known a loop simply runs. As soon as a turn assigns a
-// number that is not known, the loop becomes a Fold: its body is evaluated once with variables for
+// number that is not known, the loop becomes a Loop: its body is evaluated once with variables for
 // the index and for all that it assigns. Where that cannot be (the body needs the index at scene
 // time, say), the turns are written out one by one.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include "ir/lower/lower.h"
 #include "ir/passes/operations.h"
@@ -19,13 +19,13 @@ using ir::Type;
 
 namespace {
 
-struct Turns {
+struct Iterations {
     int count = 0;
     std::vector<Value> items;   // of a list; empty for a range
     double first = 0, step = 1; // of a range
 };
 
-Value item_at(const Turns &turns, int i) {
+Value item_at(const Iterations &turns, int i) {
     return turns.items.empty() ? integer(turns.first + i * turns.step)
                                : turns.items[static_cast<std::size_t>(i)];
 }
@@ -47,8 +47,8 @@ struct Carried {
     Value variable;
 };
 
-// The loop's variable in a Fold: computed from the index, or read from a table of the list's items.
-std::optional<Value> symbolic_item(Evaluator &ev, const Turns &turns, ir::NodeId index) {
+// The loop's variable in a Loop: computed from the index, or read from a table of the list's items.
+std::optional<Value> symbolic_item(Interpreter &ev, const Iterations &turns, ir::NodeId index) {
     ir::Graph &g = ev.scene.graph;
     if (turns.items.empty()) {
         ir::NodeId i = index;
@@ -77,7 +77,7 @@ std::optional<Value> symbolic_item(Evaluator &ev, const Turns &turns, ir::NodeId
     return from_node(ev, read, first.color);
 }
 
-struct FoldInput {
+struct LoopInput {
     int count = 0;
     ir::NodeId index;
     std::function<std::optional<Value>()>
@@ -88,10 +88,10 @@ struct FoldInput {
 
 // How often a loop turns whose condition hangs on nothing but numbers that are known before it and
 // change in a known way, as a counter does; none where it hangs on more, or goes on for `limit`.
-std::optional<int> known_turns(ir::Graph &g, ir::NodeId condition,
-                               const std::vector<ir::NodeId> &vars,
-                               const std::vector<ir::NodeId> &next,
-                               const std::vector<ir::NodeId> &initial, int limit) {
+std::optional<int> known_iterations(ir::Graph &g, ir::NodeId condition,
+                                    const std::vector<ir::NodeId> &vars,
+                                    const std::vector<ir::NodeId> &next,
+                                    const std::vector<ir::NodeId> &initial, int limit) {
     std::vector<std::size_t> used;
     std::vector<ir::NodeId> todo{condition};
     while (!todo.empty()) {
@@ -126,9 +126,9 @@ std::optional<int> known_turns(ir::Graph &g, ir::NodeId condition,
     return std::nullopt;
 }
 
-// Tries the Fold, quietly. On success the assigned variables hold its results and the exit says how
+// Tries the Loop, quietly. On success the assigned variables hold its results and the exit says how
 // it was left.
-std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input,
+std::optional<Exit> try_fold(Interpreter &ev, const LoopInput &input,
                              const std::vector<Change> &first_changes, Span place) {
     ir::Graph &g = ev.scene.graph;
     std::vector<Carried> carried;
@@ -220,31 +220,31 @@ std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input,
         int count = input.count;
         const std::optional<int> turns =
             always(go) ? std::nullopt
-                       : known_turns(g, to_node(ev, go), vars, next, initial, input.count);
+                       : known_iterations(g, to_node(ev, go), vars, next, initial, input.count);
         if (turns) count = *turns, go = boolean(true);
         if (!turns && !input.has_limit) return std::nullopt;
-        ir::Fold fold;
-        fold.count = g.integer(count);
-        fold.max_count = count;
-        fold.index = input.index;
-        fold.vars = vars;
-        fold.next = next;
+        ir::Loop loop;
+        loop.count = g.integer(count);
+        loop.max_count = count;
+        loop.index = input.index;
+        loop.vars = vars;
+        loop.next = next;
         if (left_at) go = logical_and(ev, go, logical_not(ev, from_node(ev, vars[*left_at])));
-        if (!always(go)) fold.condition = to_node(ev, go);
-        ir::FoldId id = g.add_fold(std::move(fold));
+        if (!always(go)) loop.condition = to_node(ev, go);
+        ir::LoopId id = g.add_loop(std::move(loop));
         if (const double cost =
-                ir::operations(g, g.make(Op::Fold, g[vars[0]].type, initial, id.index));
-            cost > ir::most_operations) {
+                ir::operations(g, g.make(Op::Loop, g[vars[0]].type, initial, id.index));
+            cost > ir::max_operations) {
             report(ev, Code::LoopLimit, place,
                    fmt::format("this loop would take {:.0e} operations a point", cost))
                 .note(fmt::format("at most {:.0e} are allowed, so that every picture ends",
-                                  ir::most_operations));
+                                  ir::max_operations));
             return Exit{};
         }
-        ir::NodeId node = g.make(Op::Fold, g[vars[0]].type, initial, id.index);
+        ir::NodeId node = g.make(Op::Loop, g[vars[0]].type, initial, id.index);
         auto result = [&](std::size_t k) {
             return k == 0 ? node
-                          : g.make(Op::FoldResult, g[vars[k]].type, {node},
+                          : g.make(Op::LoopResult, g[vars[k]].type, {node},
                                    static_cast<std::uint32_t>(k));
         };
         for (std::size_t k = 0; k < carried.size(); ++k)
@@ -262,12 +262,12 @@ std::optional<Exit> try_fold(Evaluator &ev, const FoldInput &input,
 
 } // namespace
 
-Outcome run_for(Evaluator &ev, const File &ast, const lang::For &node, std::uint32_t frame,
+Outcome run_for(Interpreter &ev, const File &ast, const lang::For &node, std::uint32_t frame,
                 Span place) {
     Outcome out;
     Value seq = eval(ev, ast, node.sequence, frame);
     if (is_poison(seq)) return out;
-    Turns turns;
+    Iterations turns;
     if (seq.kind == ValueKind::Range) {
         turns.count = static_cast<int>(
             std::min(2e9, std::max(0.0, std::ceil((seq.num[1] - seq.num[0]) / seq.num[2]))));
@@ -296,8 +296,8 @@ Outcome run_for(Evaluator &ev, const File &ast, const lang::For &node, std::uint
         Exit exit = turn(item_at(turns, i));
         std::vector<Change> changes = journal_take(ev, mark);
         bool touched = touches_unknown(exit, changes);
-        if (touched && i == 0 && turns.count > 2 && turns.count <= max_fold_turns) {
-            FoldInput input;
+        if (touched && i == 0 && turns.count > 2 && turns.count <= max_loop_iterations) {
+            LoopInput input;
             input.count = turns.count;
             input.index = ev.scene.graph.fresh_var(Type::Int);
             if (auto item = symbolic_item(ev, turns, input.index)) {
@@ -355,7 +355,7 @@ Outcome run_for(Evaluator &ev, const File &ast, const lang::For &node, std::uint
     return out;
 }
 
-Outcome run_while(Evaluator &ev, const File &ast, const lang::While &node, std::uint32_t frame,
+Outcome run_while(Interpreter &ev, const File &ast, const lang::While &node, std::uint32_t frame,
                   Span place) {
     Outcome out;
     int limit = 1'000'000;
@@ -384,8 +384,8 @@ Outcome run_while(Evaluator &ev, const File &ast, const lang::While &node, std::
         Exit exit = turn();
         std::vector<Change> changes = journal_take(ev, mark);
         if (unknown(*go) || touches_unknown(exit, changes)) {
-            FoldInput input;
-            input.count = node.limit ? limit - i : max_fold_turns;
+            LoopInput input;
+            input.count = node.limit ? limit - i : max_loop_iterations;
             input.has_limit = node.limit.has_value();
             input.index = ev.scene.graph.fresh_var(Type::Int);
             input.condition = condition;

@@ -1,6 +1,6 @@
 // Files: the embedded library, imports, the scene's parameters, and the names that are there from
 // the start.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include "lang/parse.h"
 
@@ -177,7 +177,7 @@ Value or_color(const Value &v) {
     return css_color(0xd2b48c);
 }
 
-static void declare_constants(Evaluator &ev) {
+static void declare_constants(Interpreter &ev) {
     auto let = [&](const char *name, Value v) {
         declare(ev, ev.prelude_frame, intern(ev, name), v, false, {});
     };
@@ -210,19 +210,19 @@ const std::vector<Builtin> &builtins() {
     return table;
 }
 
-void run_module(Evaluator &ev, std::uint32_t module, std::vector<Contribution> &out) {
+void run_module(Interpreter &ev, std::uint32_t module, std::vector<Contribution> &out) {
     std::uint32_t before = std::exchange(ev.current_module, module);
     const File &ast = *ev.modules[module].ast;
     contribute_block(ev, ast, ast.root, ev.modules[module].frame, out);
     ev.current_module = before;
 }
 
-void make_module_frame(Evaluator &ev, std::uint32_t frame) {
+void make_module_frame(Interpreter &ev, std::uint32_t frame) {
     ev.frames[frame].index = std::make_unique<std::unordered_map<Symbol, std::uint32_t>>();
     ev.frames[frame].captured = true;
 }
 
-static const File &add_file(Evaluator &ev, lang::Ast ast) {
+static const File &add_file(Interpreter &ev, lang::Ast ast) {
     File &file = ev.files.emplace_back();
     file.place = ev.files.size() - 1;
     static_cast<lang::Ast &>(file) = std::move(ast);
@@ -231,18 +231,18 @@ static const File &add_file(Evaluator &ev, lang::Ast ast) {
     return file;
 }
 
-const File &parse_file(Evaluator &ev, SourceId source, Diagnostics &diagnostics) {
+const File &parse_file(Interpreter &ev, SourceId source, Diagnostics &diagnostics) {
     return add_file(ev, lang::parse(ev.sources, source, diagnostics));
 }
 
-static std::uint32_t add_module(Evaluator &ev, Module m) {
+static std::uint32_t add_module(Interpreter &ev, Module m) {
     m.frame = push_frame(ev, ev.prelude_frame);
     make_module_frame(ev, m.frame);
     ev.modules.push_back(std::move(m));
     return static_cast<std::uint32_t>(ev.modules.size() - 1);
 }
 
-static Module library_module(Evaluator &ev, const LibraryFile &file) {
+static Module library_module(Interpreter &ev, const LibraryFile &file) {
     Module m;
     m.identity = fmt::format("library:{}", file.name);
     m.name = std::string(file.name);
@@ -253,7 +253,7 @@ static Module library_module(Evaluator &ev, const LibraryFile &file) {
 
 // Where each declaration of a prelude file stands. The library is written so that this is easy: all
 // of them begin a line with `fn ` or `let `, and nothing else does.
-static void find_items(Evaluator &ev, std::uint32_t module, std::string_view text) {
+static void find_items(Interpreter &ev, std::uint32_t module, std::string_view text) {
     LibraryItem *open = nullptr;
     for (std::size_t at = 0; at < text.size();) {
         const std::string_view line = text.substr(at);
@@ -271,7 +271,7 @@ static void find_items(Evaluator &ev, std::uint32_t module, std::string_view tex
     if (open) open->end = static_cast<std::uint32_t>(text.size());
 }
 
-void read_prelude_items(Evaluator &ev, Symbol name) {
+void read_prelude_items(Interpreter &ev, Symbol name) {
     const auto node = ev.prelude_items.extract(name);
     if (node.empty()) return;
     // what the library declares does not hang on who asks for it first
@@ -289,7 +289,7 @@ void read_prelude_items(Evaluator &ev, Symbol name) {
 }
 
 // All prelude files share one frame, the outermost, so that they see each other's private names.
-void load_prelude(Evaluator &ev) {
+void load_prelude(Interpreter &ev) {
     for (const Builtin &builtin : builtins()) intern(ev, builtin.name);
     ev.builtin_formals.resize(builtins().size());
     ev.prelude_frame = push_frame(ev, 0);
@@ -311,7 +311,7 @@ void load_prelude(Evaluator &ev) {
 
 // -- imports -------------------------------------------------------------------------------------
 
-static Value bring(Evaluator &ev, const lang::Import &import, std::uint32_t module,
+static Value bring(Interpreter &ev, const lang::Import &import, std::uint32_t module,
                    std::uint32_t importer) {
     std::uint32_t frame = ev.modules[importer].frame;
     if (import.as) {
@@ -347,7 +347,7 @@ std::string way_inside(const std::string &path) {
                                           : path.substr(0, slash));
 }
 
-static Value import_failed(Evaluator &ev, const lang::Import &import) {
+static Value import_failed(Interpreter &ev, const lang::Import &import) {
     // the names it would have brought are unknown, so those that are asked of it stay quiet
     if (!import.as) ev.modules[ev.current_module].lacks_names = true;
     if (import.as)
@@ -356,7 +356,7 @@ static Value import_failed(Evaluator &ev, const lang::Import &import) {
     return poison();
 }
 
-Value import_module(Evaluator &ev, const lang::Import &import, Span, std::uint32_t importer) {
+Value import_module(Interpreter &ev, const lang::Import &import, Span, std::uint32_t importer) {
     for (const LibraryFile &file : ev.library) {
         if (file.prelude || file.name != import.path) continue;
         std::string identity = fmt::format("library:{}", file.name);
@@ -426,7 +426,7 @@ Value import_module(Evaluator &ev, const lang::Import &import, Span, std::uint32
 
 // -- parameters ----------------------------------------------------------------------------------
 
-static std::optional<Value> param_number(Evaluator &ev, const File &ast, lang::ExprId id,
+static std::optional<Value> param_number(Interpreter &ev, const File &ast, lang::ExprId id,
                                          const ir::Param &p, std::uint32_t frame) {
     Value v = eval(ev, ast, id, frame);
     if (is_poison(v)) return std::nullopt;
@@ -447,7 +447,7 @@ static std::optional<Value> param_number(Evaluator &ev, const File &ast, lang::E
 }
 
 // `-D name=text`: an expression of scene time in the file's own names.
-static std::optional<Value> override_value(Evaluator &ev, const Override &o, const ir::Param &p,
+static std::optional<Value> override_value(Interpreter &ev, const Override &o, const ir::Param &p,
                                            std::uint32_t frame) {
     Diagnostics own;
     SourceId source = ev.sources.add(fmt::format("-D {}", o.name), o.text);
@@ -473,7 +473,8 @@ static std::optional<Value> override_value(Evaluator &ev, const Override &o, con
     return std::nullopt;
 }
 
-void declare_param(Evaluator &ev, const File &ast, const lang::Param &param, std::uint32_t frame) {
+void declare_param(Interpreter &ev, const File &ast, const lang::Param &param,
+                   std::uint32_t frame) {
     ir::Param p;
     p.name = param.name.text;
     p.label = param.label.value_or(param.name.text);

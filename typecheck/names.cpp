@@ -11,20 +11,20 @@
 
 namespace fathom::typecheck {
 
-Symbol intern(Evaluator &ev, const std::string &text) {
+Symbol intern(Interpreter &ev, const std::string &text) {
     auto [it, added] = ev.symbols.try_emplace(text, static_cast<Symbol>(ev.symbol_names.size()));
     if (added) ev.symbol_names.push_back(text);
     return it->second;
 }
 
-std::uint32_t push_frame(Evaluator &ev, std::uint32_t parent) {
+std::uint32_t push_frame(Interpreter &ev, std::uint32_t parent) {
     if (ev.frame_count == ev.frames.size()) ev.frames.emplace_back();
     ev.frames[ev.frame_count].parent = parent;
     return ev.frame_count++;
 }
 
 // A frame that no closure refers to is given back, so that a loop of a million turns needs one.
-void pop_frame(Evaluator &ev, std::uint32_t frame) {
+void pop_frame(Interpreter &ev, std::uint32_t frame) {
     if (frame + 1 != ev.frame_count || ev.frames[frame].captured) return;
     ev.frames[frame].bindings.clear();
     --ev.frame_count;
@@ -32,7 +32,7 @@ void pop_frame(Evaluator &ev, std::uint32_t frame) {
 
 bool is_builtin(Symbol name) { return name < builtins().size(); }
 
-void declare(Evaluator &ev, std::uint32_t frame, Symbol name, Value value, bool is_var,
+void declare(Interpreter &ev, std::uint32_t frame, Symbol name, Value value, bool is_var,
              Span place) {
     Frame &f = ev.frames[frame];
     if (!f.index) {
@@ -63,14 +63,14 @@ void declare(Evaluator &ev, std::uint32_t frame, Symbol name, Value value, bool 
     f.bindings.push_back({name, value, is_var, place});
 }
 
-std::optional<std::uint32_t> slot_in_module(Evaluator &ev, std::uint32_t frame, Symbol name) {
+std::optional<std::uint32_t> slot_in_module(Interpreter &ev, std::uint32_t frame, Symbol name) {
     if (frame == ev.prelude_frame && ev.prelude_items.contains(name)) read_prelude_items(ev, name);
     const auto &index = *ev.frames[frame].index;
     auto it = index.find(name);
     return it == index.end() ? std::nullopt : std::optional(it->second);
 }
 
-std::optional<Found> find_name(Evaluator &ev, std::uint32_t frame, Symbol name) {
+std::optional<Found> find_name(Interpreter &ev, std::uint32_t frame, Symbol name) {
     for (;;) {
         const Frame &f = ev.frames[frame]; // stale once a module was asked
         if (f.index) {
@@ -84,9 +84,9 @@ std::optional<Found> find_name(Evaluator &ev, std::uint32_t frame, Symbol name) 
     }
 }
 
-static bool in_library(const Evaluator &ev) { return ev.modules[ev.current_module].library; }
+static bool in_library(const Interpreter &ev) { return ev.modules[ev.current_module].library; }
 
-std::optional<Value> look_up(Evaluator &ev, std::uint32_t frame, Symbol name) {
+std::optional<Value> look_up(Interpreter &ev, std::uint32_t frame, Symbol name) {
     if (auto found = find_name(ev, frame, name))
         return ev.frames[found->frame].bindings[found->slot].value;
     if (is_builtin(name) && (!builtins()[name].library_only || in_library(ev)))
@@ -94,7 +94,7 @@ std::optional<Value> look_up(Evaluator &ev, std::uint32_t frame, Symbol name) {
     return std::nullopt;
 }
 
-std::vector<std::string> visible_names(Evaluator &ev, std::uint32_t frame) {
+std::vector<std::string> visible_names(Interpreter &ev, std::uint32_t frame) {
     std::set<std::string> names;
     for (;;) {
         const Frame &f = ev.frames[frame];
@@ -110,7 +110,7 @@ std::vector<std::string> visible_names(Evaluator &ev, std::uint32_t frame) {
     return result;
 }
 
-std::string likely_name(Evaluator &ev, std::uint32_t frame, const std::string &name) {
+std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string &name) {
     if (const std::string_view known = name_from_elsewhere(name); !known.empty())
         return std::string(known);
     if (!way_from_elsewhere(name).empty()) return {};
@@ -126,12 +126,12 @@ std::string likely_name(Evaluator &ev, std::uint32_t frame, const std::string &n
     return nearest_name(name, names);
 }
 
-bool lacking(const Evaluator &ev, const std::string &name, const std::string &near) {
+bool lacking(const Interpreter &ev, const std::string &name, const std::string &near) {
     return ev.modules[ev.current_module].lacks_names && (near.empty() || name.size() < 5);
 }
 
 // `45*deg`: the unit touches its number.
-static std::vector<Edit> unit_edit(const Evaluator &ev, const std::string &name, Span place) {
+static std::vector<Edit> unit_edit(const Interpreter &ev, const std::string &name, Span place) {
     if (name != "deg") return {};
     const std::string_view before = text(ev.sources, {place.source, 0, place.begin});
     const std::size_t sign = before.find_last_not_of(" \t");
@@ -141,7 +141,8 @@ static std::vector<Edit> unit_edit(const Evaluator &ev, const std::string &name,
     return {{{place.source, static_cast<std::uint32_t>(digit + 1), place.begin}, ""}};
 }
 
-void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place) {
+void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name,
+                         Span place) {
     const std::string near = likely_name(ev, frame, name);
     if (lacking(ev, name, near)) return; // one cause, one report
     Diagnostic &d =
@@ -160,7 +161,7 @@ void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &
 namespace {
 
 // Of all the forms that a function has; false where they are not known.
-bool parameter_names(Evaluator &ev, const Value &f, std::vector<std::string> &out) {
+bool parameter_names(Interpreter &ev, const Value &f, std::vector<std::string> &out) {
     if (f.kind == ValueKind::Closure) {
         const Closure &c = ev.closures[f.id];
         for (const lang::Parameter &p : c.ast->functions[c.function].parameters)
@@ -180,7 +181,7 @@ bool parameter_names(Evaluator &ev, const Value &f, std::vector<std::string> &ou
 // Walks a tree with the names that each block declares. Only names are judged: what they hold is
 // known when they are used.
 struct NameWalk {
-    Evaluator &ev;
+    Interpreter &ev;
     const File &ast;
     std::uint32_t frame;
     std::vector<std::map<std::string, Span>> scopes;
@@ -319,7 +320,7 @@ struct NameWalk {
 
 // Called once the module's names all stand, so only function bodies can hold something not yet
 // seen.
-void check_names(Evaluator &ev, const File &ast, std::uint32_t module_frame) {
+void check_names(Interpreter &ev, const File &ast, std::uint32_t module_frame) {
     NameWalk walk{ev, ast, module_frame, {}};
     for (const lang::Stmt &s : ast.blocks[ast.root].stmts)
         if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind))

@@ -2,7 +2,7 @@
 // folding (so that an op has one meaning); the everyday operations on plain numbers have a short
 // way. What is not known becomes a node.
 #include "ir/passes/walk.h"
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ bool is_numeric(const Value &v) {
            v.kind == ValueKind::Vec || v.kind == ValueKind::Mat || v.kind == ValueKind::Field;
 }
 
-Type numeric_type(const Evaluator &ev, const Value &v) {
+Type numeric_type(const Interpreter &ev, const Value &v) {
     switch (v.kind) {
     case ValueKind::Bool: return Type::Bool;
     case ValueKind::Int: return Type::Int;
@@ -49,13 +49,13 @@ Type numeric_type(const Evaluator &ev, const Value &v) {
     return Type::Float;
 }
 
-bool is_scalar(const Evaluator &ev, const Value &v) {
+bool is_scalar(const Interpreter &ev, const Value &v) {
     if (!is_numeric(v)) return false;
     Type type = numeric_type(ev, v);
     return type == Type::Int || type == Type::Float;
 }
 
-ir::NodeId to_node(Evaluator &ev, const Value &v) {
+ir::NodeId to_node(Interpreter &ev, const Value &v) {
     ir::Graph &graph = ev.scene.graph;
     if (v.kind == ValueKind::Field) return node_of(v);
     ir::Constant constant;
@@ -68,7 +68,7 @@ ir::NodeId to_node(Evaluator &ev, const Value &v) {
     return graph.constant(constant);
 }
 
-Value from_node(Evaluator &ev, ir::NodeId node, bool is_color) {
+Value from_node(Interpreter &ev, ir::NodeId node, bool is_color) {
     const ir::Graph &graph = ev.scene.graph;
     if (!graph.is_constant(node)) {
         Value v = make_value(ValueKind::Field, node.index);
@@ -98,7 +98,7 @@ Value from_node(Evaluator &ev, ir::NodeId node, bool is_color) {
     return poison();
 }
 
-Value to_float(Evaluator &ev, const Value &v) {
+Value to_float(Interpreter &ev, const Value &v) {
     if (v.kind == ValueKind::Int || v.kind == ValueKind::Bool) return number(v.num[0]);
     if (v.kind == ValueKind::Field &&
         (numeric_type(ev, v) == Type::Int || numeric_type(ev, v) == Type::Bool))
@@ -115,7 +115,7 @@ static bool any_color(const std::vector<Value> &args) {
 // Ops that keep whole numbers whole; all others take floats.
 // Componentwise ops broadcast a number to the widest argument; a whole number becomes a float
 // beside a float.
-Value apply_op(Evaluator &ev, Op op, std::vector<Value> args, Span place, std::string_view name) {
+Value apply_op(Interpreter &ev, Op op, std::vector<Value> args, Span place, std::string_view name) {
     Type widest = Type::Int;
     for (Value &a : args) {
         if (is_poison(a)) return poison();
@@ -147,14 +147,14 @@ Value apply_op(Evaluator &ev, Op op, std::vector<Value> args, Span place, std::s
     return from_node(ev, ev.scene.graph.make(op, nodes), any_color(args) && widest == Type::Vec3);
 }
 
-static Value overflow(Evaluator &ev, Span place, double value) {
+static Value overflow(Interpreter &ev, Span place, double value) {
     report(ev, Code::NumberRange, place,
            fmt::format("{:.0f} does not fit a whole number of 32 bits", value))
         .help("write one of the numbers with a decimal point, and floats are used");
     return poison();
 }
 
-static Value checked_int(Evaluator &ev, double value, Span place) {
+static Value checked_int(Interpreter &ev, double value, Span place) {
     if (value < std::numeric_limits<std::int32_t>::min() ||
         value > std::numeric_limits<std::int32_t>::max())
         return overflow(ev, place, value);
@@ -187,7 +187,8 @@ static bool known_scalar(const Value &v) {
     return v.kind == ValueKind::Int || v.kind == ValueKind::Float;
 }
 
-static Value compare(Evaluator &ev, lang::BinaryOp op, const Value &a, const Value &b, Span place) {
+static Value compare(Interpreter &ev, lang::BinaryOp op, const Value &a, const Value &b,
+                     Span place) {
     using lang::BinaryOp;
     bool equality = op == BinaryOp::Equal || op == BinaryOp::NotEqual;
     if (known_scalar(a) && known_scalar(b)) {
@@ -265,14 +266,14 @@ static bool holds_zero(const Value &v) {
     return std::ranges::count(std::span(v.num).first(size), 0.0) > 0;
 }
 
-static Value division_by_zero(Evaluator &ev, Span place, const char *what) {
+static Value division_by_zero(Interpreter &ev, Span place, const char *what) {
     report(ev, Code::NumberRange, place, fmt::format("{} by zero", what))
         .help("divide by another number, or ask with `if` before");
     return poison();
 }
 
 // A matrix times a matrix or a vector of its side.
-static std::optional<Value> matrix_product(Evaluator &ev, const Value &a, const Value &b,
+static std::optional<Value> matrix_product(Interpreter &ev, const Value &a, const Value &b,
                                            Span place) {
     Type ta = numeric_type(ev, a), tb = numeric_type(ev, b);
     bool ma = ir::is_matrix(ta), mb = ir::is_matrix(tb);
@@ -290,7 +291,7 @@ static std::optional<Value> matrix_product(Evaluator &ev, const Value &a, const 
 }
 
 // A list of 2 to 4 numbers is a vector where one is wanted.
-static Value as_vector(Evaluator &ev, const Value &v) {
+static Value as_vector(Interpreter &ev, const Value &v) {
     if (v.kind != ValueKind::List) return v;
     const std::vector<Value> items = ev.lists[v.id];
     if (items.size() < 2 || items.size() > 4) return v;
@@ -299,7 +300,7 @@ static Value as_vector(Evaluator &ev, const Value &v) {
     return make_vector(ev, items, static_cast<int>(items.size()), {});
 }
 
-static Value combined(Evaluator &ev, lang::BinaryOp op, const Value &left, const Value &right,
+static Value combined(Interpreter &ev, lang::BinaryOp op, const Value &left, const Value &right,
                       Span place, Span a_place, Span b_place) {
     using lang::BinaryOp;
     if (known_scalar(left) && known_scalar(right)) {
@@ -407,7 +408,7 @@ static Value combined(Evaluator &ev, lang::BinaryOp op, const Value &left, const
     return poison();
 }
 
-Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Value &right,
+Value arithmetic(Interpreter &ev, lang::BinaryOp op, const Value &left, const Value &right,
                  Span place, Span a_place, Span b_place) {
     if (is_poison(left) || is_poison(right)) return poison();
     const Value v = combined(ev, op, left, right, place, a_place, b_place);
@@ -416,7 +417,7 @@ Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &left, const Valu
     return computed(ev, v, std::array{left, right}, place, quoted(operator_text(op)));
 }
 
-Value negate(Evaluator &ev, const Value &v, Span place) {
+Value negate(Interpreter &ev, const Value &v, Span place) {
     if (v.kind == ValueKind::Int) return checked_int(ev, -v.num[0], place);
     if (v.kind == ValueKind::Float) return number(-v.num[0]);
     return apply_op(ev, Op::Neg, {as_vector(ev, v)}, place, "-");
@@ -424,23 +425,23 @@ Value negate(Evaluator &ev, const Value &v, Span place) {
 
 // -- truth ---------------------------------------------------------------------------------------
 
-Value logical_not(Evaluator &ev, const Value &a) {
+Value logical_not(Interpreter &ev, const Value &a) {
     if (a.kind == ValueKind::Bool) return boolean(a.num[0] == 0);
     return from_node(ev, ev.scene.graph.make(Op::Not, {to_node(ev, a)}));
 }
-Value logical_and(Evaluator &ev, const Value &a, const Value &b) {
+Value logical_and(Interpreter &ev, const Value &a, const Value &b) {
     if (a.kind == ValueKind::Bool) return a.num[0] != 0 ? b : a;
     if (b.kind == ValueKind::Bool) return b.num[0] != 0 ? a : b;
     return from_node(ev, ev.scene.graph.make(Op::And, {to_node(ev, a), to_node(ev, b)}));
 }
-Value logical_or(Evaluator &ev, const Value &a, const Value &b) {
+Value logical_or(Interpreter &ev, const Value &a, const Value &b) {
     if (a.kind == ValueKind::Bool) return a.num[0] != 0 ? a : b;
     if (b.kind == ValueKind::Bool) return b.num[0] != 0 ? b : a;
     return from_node(ev, ev.scene.graph.make(Op::Or, {to_node(ev, a), to_node(ev, b)}));
 }
 
 // Nothing where the two cannot be told apart by a number at field time (a shape in one arm, say).
-std::optional<Value> select_value(Evaluator &ev, const Value &condition, const Value &a,
+std::optional<Value> select_value(Interpreter &ev, const Value &condition, const Value &a,
                                   const Value &b) {
     if (condition.kind == ValueKind::Bool) return condition.num[0] != 0 ? a : b;
     if (is_poison(a) || is_poison(b)) return poison();
@@ -479,7 +480,7 @@ std::optional<std::vector<int>> swizzle_indices(const std::string &letters, int 
     return std::nullopt;
 }
 
-Value swizzle(Evaluator &ev, const Value &v, const std::string &letters, Span place) {
+Value swizzle(Interpreter &ev, const Value &v, const std::string &letters, Span place) {
     Type type = numeric_type(ev, v);
     auto indices =
         ir::is_vector(type) ? swizzle_indices(letters, ir::components(type)) : std::nullopt;
@@ -504,7 +505,7 @@ Value swizzle(Evaluator &ev, const Value &v, const std::string &letters, Span pl
 
 // GLSL's constructors: numbers and vectors one after another; one number fills all; a longer vector
 // is cut.
-Value make_vector(Evaluator &ev, const std::vector<Value> &parts, int size, Span place) {
+Value make_vector(Interpreter &ev, const std::vector<Value> &parts, int size, Span place) {
     std::vector<Value> scalars;
     bool known = true, whole = true;
     for (const Value &part : parts) {
@@ -547,7 +548,7 @@ Value make_vector(Evaluator &ev, const std::vector<Value> &parts, int size, Span
 
 // A number that scene time needs. One that hangs on params alone is taken at their present values,
 // and those params become structural: moving them builds the scene anew (semantics.md, 25).
-std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place, What what) {
+std::optional<Value> element_as_known(Interpreter &ev, const Value &v, Span place, What what) {
     if (v.kind != ValueKind::Field) return v;
     ir::Graph &g = ev.scene.graph;
     ir::Graph::Reads reads = g.reads(node_of(v));

@@ -1,5 +1,5 @@
 // The numbers that a scene may hold: those of single precision, and `inf` where it has a meaning.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include "base/single.h"
 #include "base/text.h"
@@ -11,7 +11,7 @@
 
 namespace fathom::typecheck {
 
-static std::span<double> known_numbers(Evaluator &ev, Value &v) {
+static std::span<double> known_numbers(Interpreter &ev, Value &v) {
     if (v.kind == ValueKind::Float) return {v.num.data(), 1};
     if (v.kind == ValueKind::Vec) return {v.num.data(), v.size};
     if (v.kind == ValueKind::Mat)
@@ -19,7 +19,7 @@ static std::span<double> known_numbers(Evaluator &ev, Value &v) {
     return {};
 }
 
-bool is_infinite(Evaluator &ev, Value v) {
+bool is_infinite(Interpreter &ev, Value v) {
     if (v.kind == ValueKind::List && ev.lists[v.id].size() <= 16) // as many as a matrix has
         return std::ranges::any_of(ev.lists[v.id],
                                    [&](const Value &item) { return is_infinite(ev, item); });
@@ -35,7 +35,7 @@ bool is_infinite(Evaluator &ev, Value v) {
     return std::ranges::any_of(known_numbers(ev, v), [](double x) { return std::isinf(x); });
 }
 
-static void report_range(Evaluator &ev, Span place, double x) {
+static void report_range(Interpreter &ev, Span place, double x) {
     if (std::isnan(x)) {
         report(ev, Code::NumberRange, place, "this is not a number")
             .help("`0 / 0`, `inf - inf` and the like have no value: write the number that is "
@@ -48,7 +48,7 @@ static void report_range(Evaluator &ev, Span place, double x) {
         .help("write smaller numbers, or choose a larger unit of length");
 }
 
-Value in_range(Evaluator &ev, Value v, std::span<const Value> of, Span place) {
+Value in_range(Interpreter &ev, Value v, std::span<const Value> of, Span place) {
     for (double &x : known_numbers(ev, v)) {
         const bool meant =
             std::isinf(x) && std::ranges::any_of(of, [&](Value a) { return is_infinite(ev, a); });
@@ -61,20 +61,20 @@ Value in_range(Evaluator &ev, Value v, std::span<const Value> of, Span place) {
     return v;
 }
 
-static void report_infinite(Evaluator &ev, Span place, std::string message) {
+static void report_infinite(Interpreter &ev, Span place, std::string message) {
     report(ev, Code::NumberRange, place, std::move(message))
         .help("write a number of the size that the scene has; `inf` stands for no limit, where a "
               "default is `inf`, and in comparisons, `min`, `max` and `clamp`");
 }
 
-bool finite_number(Evaluator &ev, const Value &v, Span place, What what) {
+bool finite_number(Interpreter &ev, const Value &v, Span place, What what) {
     if (!is_infinite(ev, v)) return true;
     report_infinite(ev, place,
                     fmt::format("{} wants a finite number, this is {}", what, print_value(ev, v)));
     return false;
 }
 
-Value sized(Evaluator &ev, Value v, Span place, What what) {
+Value sized(Interpreter &ev, Value v, Span place, What what) {
     if (!finite_number(ev, v, place, what)) return poison();
     if (v.kind == ValueKind::List) {
         std::vector<Value> items = ev.lists[v.id];
@@ -102,7 +102,7 @@ Value sized(Evaluator &ev, Value v, Span place, What what) {
     return v;
 }
 
-Value computed(Evaluator &ev, const Value &v, std::span<const Value> of, Span place, What what) {
+Value computed(Interpreter &ev, const Value &v, std::span<const Value> of, Span place, What what) {
     if (v.kind == ValueKind::Field)
         for (const Value &a : of)
             if (is_infinite(ev, a)) {
@@ -116,7 +116,7 @@ Value computed(Evaluator &ev, const Value &v, std::span<const Value> of, Span pl
     return in_range(ev, v, of, place);
 }
 
-std::optional<ir::NodeId> node_in_range(Evaluator &ev, ir::NodeId node, Span place) {
+std::optional<ir::NodeId> node_in_range(Interpreter &ev, ir::NodeId node, Span place) {
     const Value v = in_range(ev, from_node(ev, node), {}, place);
     return is_poison(v) ? std::nullopt : std::optional(to_node(ev, v));
 }

@@ -221,10 +221,12 @@ bool has(std::span<const Formal> formals, std::string_view name) {
     return std::ranges::any_of(formals, [&](const Formal &f) { return f.name == name; });
 }
 
-std::string text_of(const Evaluator &ev, Span span) { return std::string(text(ev.sources, span)); }
+std::string text_of(const Interpreter &ev, Span span) {
+    return std::string(text(ev.sources, span));
+}
 
 // With parentheses where operators stand in it.
-std::string operand_text(const Evaluator &ev, Span span) {
+std::string operand_text(const Interpreter &ev, Span span) {
     const std::string s = text_of(ev, span);
     int depth = 0;
     for (std::size_t i = 0; i < s.size(); ++i) {
@@ -249,7 +251,7 @@ Span with_comma(std::span<const Argument> args, std::size_t at, Span callee) {
 }
 
 // `x: 2, z: 3` of a function that takes an axis, or a vector.
-bool letters_remedy(Evaluator &ev, std::string_view function, std::span<const Formal> formals,
+bool letters_remedy(Interpreter &ev, std::string_view function, std::span<const Formal> formals,
                     std::span<const Argument> args, const std::vector<std::size_t> &letters,
                     Span callee, Fix &fix) {
     const auto letter = [&](std::size_t i) { return args[i].name->text[0]; };
@@ -294,7 +296,7 @@ std::string our_argument(std::string_view theirs, std::span<const Formal> formal
 
 } // namespace
 
-Fix remedy_of_arguments(Evaluator &ev, std::string_view function, std::span<const Formal> formals,
+Fix remedy_of_arguments(Interpreter &ev, std::string_view function, std::span<const Formal> formals,
                         std::span<const Argument> args, const std::vector<std::size_t> &unknown,
                         Span callee) {
     Fix fix;
@@ -346,7 +348,7 @@ Fix remedy_of_arguments(Evaluator &ev, std::string_view function, std::span<cons
 
 // -- the order of arguments ----------------------------------------------------------------------
 
-Fix remedy_of_duplicate(Evaluator &ev, std::string_view function, std::span<const Argument> args,
+Fix remedy_of_duplicate(Interpreter &ev, std::string_view function, std::span<const Argument> args,
                         const Argument &named, Span call) {
     std::string list = text_of(ev, named.span);
     for (const Argument &a : args) {
@@ -367,7 +369,7 @@ Fix remedy_of_row(std::span<const Argument> row, int vector_size) {
     return fix;
 }
 
-bool shape_out_of_place(Evaluator &ev, std::string_view name, const lang::Function &function,
+bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Function &function,
                         std::span<const Formal> formals, std::span<const Argument> args,
                         Span call) {
     if (args.size() < 2 || function.parameters.empty() || !function.parameters[0].type ||
@@ -413,7 +415,7 @@ bool shape_out_of_place(Evaluator &ev, std::string_view name, const lang::Functi
 
 // -- values --------------------------------------------------------------------------------------
 
-void help_with_value(Evaluator &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,
+void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,
                      Span place) {
     using lang::TypeName;
     if (!place.source || is_library_place(ev, place)) {
@@ -441,7 +443,7 @@ void help_with_value(Evaluator &ev, Diagnostic &d, const Value &v, lang::TypeNam
 
 // -- bodies ----------------------------------------------------------------------------------------
 
-bool report_unfinished(Evaluator &ev, const Closure &c, const lang::Function &f,
+bool report_unfinished(Interpreter &ev, const Closure &c, const lang::Function &f,
                        std::string_view name) {
     if (c.ast->blocks[f.body].stmts.empty()) return false;
     const lang::Stmt &last = c.ast->blocks[f.body].stmts.back();

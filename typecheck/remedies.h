@@ -12,12 +12,12 @@ std::string_view name_from_elsewhere(std::string_view name);
 std::string_view way_from_elsewhere(std::string_view name);
 
 // For the arguments of a call, by index, whose names its function does not have.
-Fix remedy_of_arguments(Evaluator &ev, std::string_view function, std::span<const Formal> formals,
+Fix remedy_of_arguments(Interpreter &ev, std::string_view function, std::span<const Formal> formals,
                         std::span<const Argument> args, const std::vector<std::size_t> &unknown,
                         Span callee);
 
 // For an argument that is given by its place and by its name: the name's value, in its place.
-Fix remedy_of_duplicate(Evaluator &ev, std::string_view function, std::span<const Argument> args,
+Fix remedy_of_duplicate(Interpreter &ev, std::string_view function, std::span<const Argument> args,
                         const Argument &named, Span call);
 
 // For numbers in a row where one vector is wanted; the edits only where they are as many.
@@ -25,16 +25,16 @@ Fix remedy_of_row(std::span<const Argument> row, int vector_size);
 
 // True, and reported, where the shape of a call stands behind what should follow it, or before what
 // should lead: `translate([1, 0, 0], s)`, `smooth_union(a, b, 0.1)`.
-bool shape_out_of_place(Evaluator &ev, std::string_view name, const lang::Function &function,
+bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Function &function,
                         std::span<const Formal> formals, std::span<const Argument> args, Span call);
 
 // For a value of another type than is wanted.
-void help_with_value(Evaluator &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,
+void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,
                      Span place);
 
 // True, and reported, where a body ends with a `let`, `var` or assignment: its writer took that for
 // its value.
-bool report_unfinished(Evaluator &ev, const Closure &c, const lang::Function &f,
+bool report_unfinished(Interpreter &ev, const Closure &c, const lang::Function &f,
                        std::string_view name);
 
 } // namespace fathom::typecheck

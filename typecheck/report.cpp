@@ -1,5 +1,5 @@
 // How the checker speaks: where an error is shown, and values in words.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include "base/text.h"
 
@@ -7,7 +7,7 @@
 
 namespace fathom::typecheck {
 
-bool is_library_place(const Evaluator &ev, Span span) {
+bool is_library_place(const Interpreter &ev, Span span) {
     if (!span.source) return true;
     for (const Module &m : ev.modules)
         if (m.library && m.source == span.source) return true;
@@ -24,7 +24,7 @@ struct Shown {
 
 // What is wrong inside the library is the caller's: it is shown at the innermost call that the user
 // wrote.
-Shown shown(const Evaluator &ev, Span place) {
+Shown shown(const Interpreter &ev, Span place) {
     auto of_library = [&](Span span) { return is_library_place(ev, span); };
     Shown out{place, {}, {}, {}};
     const bool in_library = of_library(place);
@@ -51,7 +51,7 @@ std::string with_place(std::string message, std::string_view inside) {
 
 } // namespace
 
-Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message) {
+Diagnostic &report(Interpreter &ev, Code code, Span place, std::string message) {
     static thread_local Diagnostic swallowed;
     if (code_severity(code) == Severity::Error && ev.quiet > 0) {
         ++ev.quiet_errors;
@@ -78,7 +78,7 @@ Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message) {
     return d;
 }
 
-void require(Evaluator &ev, ir::NodeId condition, Span place, std::string wanted) {
+void require(Interpreter &ev, ir::NodeId condition, Span place, std::string wanted) {
     const ir::Graph::Reads reads = ev.scene.graph.reads(condition);
     if (ev.quiet > 0 || reads.point || reads.normal || reads.direction) return;
     const Shown where = shown(ev, place);
@@ -90,7 +90,7 @@ static const char *vector_name(int size) {
     return size == 2 ? "vec2" : size == 3 ? "vec3" : "vec4";
 }
 
-std::string describe(const Evaluator &ev, const Value &v) {
+std::string describe(const Interpreter &ev, const Value &v) {
     switch (v.kind) {
     case ValueKind::Poison: return "something wrong";
     case ValueKind::Unit: return "nothing";
@@ -123,7 +123,7 @@ std::string describe(const Evaluator &ev, const Value &v) {
     return "";
 }
 
-std::string print_value(const Evaluator &ev, const Value &v) {
+std::string print_value(const Interpreter &ev, const Value &v) {
     switch (v.kind) {
     case ValueKind::Bool: return v.num[0] != 0 ? "true" : "false";
     case ValueKind::Int:
@@ -173,7 +173,7 @@ std::string print_value(const Evaluator &ev, const Value &v) {
     return "";
 }
 
-bool spend(Evaluator &ev, Span place, std::size_t amount) {
+bool spend(Interpreter &ev, Span place, std::size_t amount) {
     ev.evaluations += amount;
     if (ev.out_of_budget) return false;
     if (ev.evaluations <= ev.options.max_evaluations &&

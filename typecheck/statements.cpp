@@ -1,7 +1,7 @@
 // Blocks and statements, in both places where they stand: a body, whose last expression is its
 // value, and a contributing block (a file, a trailing block, a comprehension), in which every
 // expression counts (semantics.md, 3).
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ namespace fathom::typecheck {
 
 // -- statements that are the same everywhere -----------------------------------------------------
 
-static Value declared_value(Evaluator &ev, const File &ast, lang::ExprId value,
+static Value declared_value(Interpreter &ev, const File &ast, lang::ExprId value,
                             const std::optional<lang::TypeExpr> &type, std::string_view name,
                             std::uint32_t frame) {
     Value v = eval(ev, ast, value, frame);
@@ -21,7 +21,7 @@ static Value declared_value(Evaluator &ev, const File &ast, lang::ExprId value,
     return convert(ev, v, *type, ast.exprs[value].span, quoted(name), ok);
 }
 
-bool run_simple(Evaluator &ev, const File &ast, const lang::Stmt &stmt, std::uint32_t frame) {
+bool run_simple(Interpreter &ev, const File &ast, const lang::Stmt &stmt, std::uint32_t frame) {
     if (auto *l = std::get_if<lang::Let>(&stmt.kind)) {
         declare(ev, frame, symbol_of(ast, l->name),
                 declared_value(ev, ast, l->value, l->type, l->name.text, frame), false,
@@ -56,10 +56,10 @@ bool run_simple(Evaluator &ev, const File &ast, const lang::Stmt &stmt, std::uin
 
 // -- bodies --------------------------------------------------------------------------------------
 
-static Exit run_from(Evaluator &ev, const File &ast, const lang::Block &block, std::size_t at,
+static Exit run_from(Interpreter &ev, const File &ast, const lang::Block &block, std::size_t at,
                      std::uint32_t frame, Value &last);
 
-static Exit sequence(Evaluator &ev, const Exit &first, Span place,
+static Exit sequence(Interpreter &ev, const Exit &first, Span place,
                      const std::function<Exit()> &rest) {
     Value left = logical_or(ev, first.returned, first.broke);
     if (left.kind == ValueKind::Bool && left.num[0] != 0) return first;
@@ -86,7 +86,7 @@ static Exit sequence(Evaluator &ev, const Exit &first, Span place,
     return out;
 }
 
-static Value dropped(Evaluator &ev, const Value &v, Span place) {
+static Value dropped(Interpreter &ev, const Value &v, Span place) {
     if (v.kind == ValueKind::Shape)
         report(ev, Code::UnusedShape, place, "this shape is made and dropped")
             .note("in a function's body only the last expression is its value")
@@ -97,7 +97,7 @@ static Value dropped(Evaluator &ev, const Value &v, Span place) {
     return v;
 }
 
-static Exit run_one(Evaluator &ev, const File &ast, const lang::Stmt &stmt, bool is_last,
+static Exit run_one(Interpreter &ev, const File &ast, const lang::Stmt &stmt, bool is_last,
                     std::uint32_t frame, Value &last) {
     Exit exit;
     last = unit();
@@ -128,7 +128,7 @@ static Exit run_one(Evaluator &ev, const File &ast, const lang::Stmt &stmt, bool
     return exit;
 }
 
-static Exit run_from(Evaluator &ev, const File &ast, const lang::Block &block, std::size_t at,
+static Exit run_from(Interpreter &ev, const File &ast, const lang::Block &block, std::size_t at,
                      std::uint32_t frame, Value &last) {
     Exit exit;
     for (std::size_t i = at; i < block.stmts.size(); ++i) {
@@ -141,7 +141,7 @@ static Exit run_from(Evaluator &ev, const File &ast, const lang::Block &block, s
     return exit;
 }
 
-Outcome run_block(Evaluator &ev, const File &ast, lang::BlockId id, std::uint32_t parent) {
+Outcome run_block(Interpreter &ev, const File &ast, lang::BlockId id, std::uint32_t parent) {
     std::uint32_t frame = push_frame(ev, parent);
     hoist_functions(ev, ast, id, frame);
     Outcome out;
@@ -150,7 +150,7 @@ Outcome run_block(Evaluator &ev, const File &ast, lang::BlockId id, std::uint32_
     return out;
 }
 
-Exit run_unless(Evaluator &ev, const Value &skip, Span place, const std::function<Exit()> &rest) {
+Exit run_unless(Interpreter &ev, const Value &skip, Span place, const std::function<Exit()> &rest) {
     JournalMark mark = journal_mark(ev);
     Exit exit = rest();
     for (const Change &c : journal_take(ev, mark)) {
@@ -169,7 +169,7 @@ Exit run_unless(Evaluator &ev, const Value &skip, Span place, const std::functio
 // -- choice --------------------------------------------------------------------------------------
 
 // nullopt: not a condition. Params alone decide now where the arms cannot be merged.
-static std::optional<Value> condition_value(Evaluator &ev, const File &ast, lang::ExprId id,
+static std::optional<Value> condition_value(Interpreter &ev, const File &ast, lang::ExprId id,
                                             std::uint32_t frame) {
     Value v = eval(ev, ast, id, frame);
     if (is_poison(v)) return std::nullopt;
@@ -180,16 +180,16 @@ static std::optional<Value> condition_value(Evaluator &ev, const File &ast, lang
     return std::nullopt;
 }
 
-static bool params_only(Evaluator &ev, const Value &v) {
+static bool params_only(Interpreter &ev, const Value &v) {
     ir::Graph::Reads r = ev.scene.graph.reads(node_of(v));
     return r.params && !r.point && !r.normal && !r.direction && !r.time && !r.free_vars;
 }
 
-static Outcome run_otherwise(Evaluator &ev, const File &ast, const lang::If &node,
+static Outcome run_otherwise(Interpreter &ev, const File &ast, const lang::If &node,
                              std::size_t branch, std::uint32_t frame, Span place);
 
 // Both arms, each on its own, merged by the condition. Fails (nullopt) where they are not numbers.
-static std::optional<Outcome> run_both(Evaluator &ev, const File &ast, const lang::If &node,
+static std::optional<Outcome> run_both(Interpreter &ev, const File &ast, const lang::If &node,
                                        std::size_t branch, const Value &condition,
                                        std::uint32_t frame, Span place) {
     JournalMark mark = journal_mark(ev);
@@ -249,7 +249,7 @@ static std::optional<Outcome> run_both(Evaluator &ev, const File &ast, const lan
     return out;
 }
 
-static Outcome run_branches(Evaluator &ev, const File &ast, const lang::If &node,
+static Outcome run_branches(Interpreter &ev, const File &ast, const lang::If &node,
                             std::size_t branch, std::uint32_t frame, Span place) {
     auto condition = condition_value(ev, ast, node.branches[branch].condition, frame);
     if (!condition) {
@@ -290,24 +290,24 @@ static Outcome run_branches(Evaluator &ev, const File &ast, const lang::If &node
     return out;
 }
 
-static Outcome run_otherwise(Evaluator &ev, const File &ast, const lang::If &node,
+static Outcome run_otherwise(Interpreter &ev, const File &ast, const lang::If &node,
                              std::size_t branch, std::uint32_t frame, Span place) {
     if (branch < node.branches.size()) return run_branches(ev, ast, node, branch, frame, place);
     if (node.otherwise) return run_block(ev, ast, *node.otherwise, frame);
     return {};
 }
 
-Outcome run_if(Evaluator &ev, const File &ast, const lang::If &node, std::uint32_t frame,
+Outcome run_if(Interpreter &ev, const File &ast, const lang::If &node, std::uint32_t frame,
                Span place) {
     return run_branches(ev, ast, node, 0, frame, place);
 }
 
 // -- contributing blocks -------------------------------------------------------------------------
 
-static bool contribute_stmt(Evaluator &ev, const File &ast, const lang::Stmt &stmt,
+static bool contribute_stmt(Interpreter &ev, const File &ast, const lang::Stmt &stmt,
                             std::uint32_t frame, std::vector<Contribution> &out);
 
-bool contribute_block(Evaluator &ev, const File &ast, lang::BlockId block, std::uint32_t frame,
+bool contribute_block(Interpreter &ev, const File &ast, lang::BlockId block, std::uint32_t frame,
                       std::vector<Contribution> &out) {
     hoist_functions(ev, ast, block, frame);
     for (const lang::Stmt &stmt : ast.blocks[block].stmts) {
@@ -317,7 +317,7 @@ bool contribute_block(Evaluator &ev, const File &ast, lang::BlockId block, std::
     return false;
 }
 
-static bool contribute_inner(Evaluator &ev, const File &ast, lang::BlockId block,
+static bool contribute_inner(Interpreter &ev, const File &ast, lang::BlockId block,
                              std::uint32_t parent, std::vector<Contribution> &out) {
     std::uint32_t frame = push_frame(ev, parent);
     bool broke = contribute_block(ev, ast, block, frame, out);
@@ -325,8 +325,8 @@ static bool contribute_inner(Evaluator &ev, const File &ast, lang::BlockId block
     return broke;
 }
 
-static bool contribute_if(Evaluator &ev, const File &ast, const lang::If &node, std::uint32_t frame,
-                          std::vector<Contribution> &out) {
+static bool contribute_if(Interpreter &ev, const File &ast, const lang::If &node,
+                          std::uint32_t frame, std::vector<Contribution> &out) {
     for (const lang::IfBranch &branch : node.branches) {
         auto condition = condition_value(ev, ast, branch.condition, frame);
         if (!condition) return false;
@@ -338,7 +338,7 @@ static bool contribute_if(Evaluator &ev, const File &ast, const lang::If &node, 
     return node.otherwise ? contribute_inner(ev, ast, *node.otherwise, frame, out) : false;
 }
 
-static bool contribute_stmt(Evaluator &ev, const File &ast, const lang::Stmt &stmt,
+static bool contribute_stmt(Interpreter &ev, const File &ast, const lang::Stmt &stmt,
                             std::uint32_t frame, std::vector<Contribution> &out) {
     if (std::holds_alternative<lang::Bad>(stmt.kind)) // it may have been a shape
         out.push_back({poison(), stmt.span});
@@ -368,7 +368,7 @@ static bool contribute_stmt(Evaluator &ev, const File &ast, const lang::Stmt &st
             starts.push_back(out.size());
             if (turn(item, out)) return false;
         }
-        note_turns(ev, *items, starts, out, turn);
+        note_iterations(ev, *items, starts, out, turn);
     } else if (std::holds_alternative<lang::While>(stmt.kind)) {
         report(ev, Code::WrongPlace, stmt.span, "`while` stands inside a function")
             .help("use `for`, or a function that calls itself");
@@ -383,7 +383,7 @@ static bool contribute_stmt(Evaluator &ev, const File &ast, const lang::Stmt &st
     return false;
 }
 
-std::optional<std::vector<Value>> sequence_items(Evaluator &ev, const Value &v, Span place) {
+std::optional<std::vector<Value>> sequence_items(Interpreter &ev, const Value &v, Span place) {
     if (is_poison(v)) return std::nullopt;
     if (v.kind == ValueKind::List) return ev.lists[v.id];
     if (v.kind == ValueKind::Range) {

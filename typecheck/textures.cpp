@@ -2,11 +2,11 @@
 // the natural parametrisation of each base shape (thesis, 4.6), and grids of distances. Files are
 // read by the loader alone.
 #include "typecheck/textures.h"
-#include "typecheck/bases.h"
 #include "typecheck/builtins/builtins.h"
+#include "typecheck/rewrite_leaves.h"
 
-#include "ir/charts.h"
 #include "ir/semantics.h"
+#include "ir/uv_maps.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ using ir::Type;
 
 // -- files ---------------------------------------------------------------------------------------
 
-static void refuse(Evaluator &ev, Span place, const char *what, const std::string &path,
+static void refuse(Interpreter &ev, Span place, const char *what, const std::string &path,
                    const LoadError &error) {
     const Code code =
         error.reason == LoadError::Reason::Outside ? Code::ImportOutside : Code::FileNotFound;
@@ -33,7 +33,7 @@ static void refuse(Evaluator &ev, Span place, const char *what, const std::strin
 
 // The file whose text asks: a path is looked up beside it, also where the library's own text hands
 // the path on.
-static const std::string &asking_file(const Evaluator &ev) {
+static const std::string &naming_file(const Interpreter &ev) {
     std::size_t i = ev.calls.size();
     while (i > 0 && ev.calls[i - 1].library) --i;
     if (i < ev.calls.size())
@@ -44,9 +44,10 @@ static const std::string &asking_file(const Evaluator &ev) {
 
 // A file that is named twice is read once.
 template <class Data, class Load>
-static std::optional<std::uint32_t> loaded(Evaluator &ev, const Load &load, std::vector<Data> &all,
-                                           const char *what, const std::string &path, Span place) {
-    const std::string from = asking_file(ev);
+static std::optional<std::uint32_t> loaded(Interpreter &ev, const Load &load,
+                                           std::vector<Data> &all, const char *what,
+                                           const std::string &path, Span place) {
+    const std::string from = naming_file(ev);
     auto [it, added] = ev.assets.try_emplace(fmt::format("{}\n{}\n{}", what, from, path), 0);
     if (!added) return it->second;
     auto data = load(path, from);
@@ -60,7 +61,7 @@ static std::optional<std::uint32_t> loaded(Evaluator &ev, const Load &load, std:
     return it->second;
 }
 
-static Value image_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value image_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto path = want_string(ev, args[0], site.arg(0), "`image`");
     auto scale = given(args[1]) ? want_known_number(ev, args[1], site.arg(1), "`scale`")
                                 : std::optional(1.0);
@@ -80,7 +81,7 @@ static Value image_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
 // -- textures ------------------------------------------------------------------------------------
 
 // A number, or two, other than 0.
-static std::optional<std::array<double, 2>> want_scale(Evaluator &ev, const Value &v, Span place,
+static std::optional<std::array<double, 2>> want_scale(Interpreter &ev, const Value &v, Span place,
                                                        const char *what) {
     if (!given(v)) return std::array{1.0, 1.0};
     auto node = want_vec_node(ev, v, 2, place, what);
@@ -98,7 +99,7 @@ static std::optional<std::array<double, 2>> want_scale(Evaluator &ev, const Valu
     return std::array{c.value[0], c.value[1]};
 }
 
-std::optional<ir::Texture> want_texture(Evaluator &ev, const Value &image, Span image_place,
+std::optional<ir::Texture> want_texture(Interpreter &ev, const Value &image, Span image_place,
                                         const Value &scale, Span scale_place, const char *what,
                                         const char *scale_what) {
     if (is_poison(image)) return std::nullopt;
@@ -127,25 +128,25 @@ static double images_along(double scale, bool around) {
     return std::copysign(std::max(1.0, std::round(std::fabs(count))), count);
 }
 
-static NodeId sampled(ir::Graph &g, const ir::Chart &chart, const ir::Texture &texture,
+static NodeId sampled(ir::Graph &g, const ir::UvMap &uv_map, const ir::Texture &texture,
                       std::int32_t image) {
-    const NodeId counts = g.vec(std::array{images_along(texture.scale[0], chart.around_u),
-                                           images_along(texture.scale[1], chart.around_v)});
-    return g.make(Op::Image, Type::Vec4, {g.mul(chart.uv, counts)},
+    const NodeId counts = g.vec(std::array{images_along(texture.scale[0], uv_map.around_u),
+                                           images_along(texture.scale[1], uv_map.around_v)});
+    return g.make(Op::Image, Type::Vec4, {g.mul(uv_map.uv, counts)},
                   static_cast<std::uint32_t>(image));
 }
 
 // The parametrisation that is natural to a base shape, by what the library calls it.
-static std::optional<ir::Chart> chart_of(Evaluator &ev, ShapeId id) {
+static std::optional<ir::UvMap> uv_map_of(Interpreter &ev, ShapeId id) {
     ir::Graph &g = ev.scene.graph;
     const ir::Shape shape = ev.scene.shapes[id];
-    if (shape.dims == 2) return ir::flat_chart(g, Type::Vec2);
-    if (shape.kind == ShapeKind::Extrude) return ir::flat_chart(g, Type::Vec3);
+    if (shape.dims == 2) return ir::flat_uv_map(g, Type::Vec2);
+    if (shape.kind == ShapeKind::Extrude) return ir::flat_uv_map(g, Type::Vec3);
     if (shape.kind == ShapeKind::Map) { // revolved
         auto extent = ev.options.extent ? ev.options.extent(ev.scene, id, 0) : std::nullopt;
         const double reach =
             extent ? std::max(std::fabs(extent->first), std::fabs(extent->second)) : 1;
-        return ir::turned_chart(g, g.number(std::isfinite(reach) && reach > 0 ? reach : 1));
+        return ir::rotated_uv_map(g, g.number(std::isfinite(reach) && reach > 0 ? reach : 1));
     }
     if (shape.kind != ShapeKind::Library) return std::nullopt;
     const ir::Library library = ev.scene.shapes.libraries[shape.payload];
@@ -157,25 +158,25 @@ static std::optional<ir::Chart> chart_of(Evaluator &ev, ShapeId id) {
             if (known == name) return node;
         return g.vec3(0, 1, 0);
     };
-    if (called({"heightfield"})) return ir::plane_chart(g, g.vec3(0, 1, 0));
-    if (called({"plane"})) return ir::plane_chart(g, argument("normal"));
-    if (called({"slab"})) return ir::plane_chart(g, argument("axis"));
+    if (called({"heightfield"})) return ir::plane_uv_map(g, g.vec3(0, 1, 0));
+    if (called({"plane"})) return ir::plane_uv_map(g, argument("normal"));
+    if (called({"slab"})) return ir::plane_uv_map(g, argument("axis"));
     const NodeId lo = library.claims.lo, hi = library.claims.hi;
     if (!lo || !hi) return std::nullopt;
     const auto part = [&](int i) { return g.component(hi, i); };
     if (called({"box", "rounded_box", "box_frame", "menger", "menger_sponge", "gdf_cube"}))
-        return ir::box_chart(g, hi);
+        return ir::box_uv_map(g, hi);
     if (called({"cylinder", "rounded_cylinder", "prism"}))
-        return ir::can_chart(g, part(0), g.mul(part(1), g.number(2)));
-    if (called({"torus"})) return ir::ring_chart(g, g.sub(part(0), part(1)), part(1));
+        return ir::has_uv_map(g, part(0), g.mul(part(1), g.number(2)));
+    if (called({"torus"})) return ir::ring_uv_map(g, g.sub(part(0), part(1)), part(1));
     if (g.is_constant(lo) && g.is_constant(hi))
         for (std::size_t i = 0; i < 3; ++i)
             if (!std::isfinite(g.constant_of(hi).value[i] - g.constant_of(lo).value[i]))
                 return std::nullopt;
-    return ir::ball_chart(g, lo, hi);
+    return ir::ball_uv_map(g, lo, hi);
 }
 
-static void report_no_chart(Evaluator &ev, ShapeId id, Span place, const char *what) {
+static void report_no_uv_map(Interpreter &ev, ShapeId id, Span place, const char *what) {
     const ir::Shape &shape = ev.scene.shapes[id];
     const std::string name =
         shape.kind == ShapeKind::Library
@@ -190,22 +191,22 @@ static void report_no_chart(Evaluator &ev, ShapeId id, Span place, const char *w
         "project the image yourself: `triplanar(image(…))` is a field of the point and the normal");
 }
 
-std::optional<ShapeId> painted_by_base(Evaluator &ev, ShapeId shape, const ir::Material &material,
+std::optional<ShapeId> painted_by_base(Interpreter &ev, ShapeId shape, const ir::Material &material,
                                        bool over, Span place) {
     ir::Graph &g = ev.scene.graph;
     bool ok = true;
-    const ShapeId result = dressed(
+    const ShapeId result = rewrite_leaves(
         ev, shape, over ? Paints::Strip : Paints::KeepWhole,
         [&](ShapeId base, const Below &) -> ShapeId {
-            auto chart = chart_of(ev, base);
-            if (!chart) {
-                if (ok) report_no_chart(ev, base, place, "a texture");
+            auto uv_map = uv_map_of(ev, base);
+            if (!uv_map) {
+                if (ok) report_no_uv_map(ev, base, place, "a texture");
                 ok = false;
                 return base;
             }
             // What is transparent shows the diffuse colour.
             ir::Material here = material;
-            const NodeId texel = sampled(g, *chart, material.texture, material.texture.image);
+            const NodeId texel = sampled(g, *uv_map, material.texture, material.texture.image);
             here.diffuse = g.make(Op::Mix, {material.diffuse, g.swizzle(texel, std::array{0, 1, 2}),
                                             g.splat(g.component(texel, 3), Type::Vec3)});
             const ir::Shape below = ev.scene.shapes[base];
@@ -223,7 +224,7 @@ std::optional<ShapeId> painted_by_base(Evaluator &ev, ShapeId shape, const ir::M
 // -- displacement --------------------------------------------------------------------------------
 
 // An image's brightness as it is stored (not linear), 0..1: what a height map means.
-static std::uint32_t heights_of(Evaluator &ev, std::uint32_t image) {
+static std::uint32_t heights_of(Interpreter &ev, std::uint32_t image) {
     auto [it, added] = ev.assets.try_emplace(fmt::format("heights\n{}", image), 0);
     if (!added) return it->second;
     ir::ImageData heights = ev.scene.images[image];
@@ -264,8 +265,8 @@ static Heights measured(const ir::ImageData &image) {
 }
 
 // _displace_map(s, image, amount, scale): f - amount * h on each base shape, h the map's
-// brightness; at seams and poles its mean, where the chart says.
-static Value displace_map_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+// brightness; at seams and poles its mean, where the uv_map says.
+static Value displace_map_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     auto map =
         want_texture(ev, args[1], site.arg(1), args[3], site.arg(3), "`displace_map`", "`scale`");
@@ -279,25 +280,25 @@ static Value displace_map_call(Evaluator &ev, const CallSite &site, std::vector<
     const auto record = static_cast<std::uint32_t>(ev.scene.shapes.displacement_maps.size());
     bool ok = true;
     const ShapeId result =
-        dressed(ev, *s, Paints::Keep, [&](ShapeId base, const Below &below) -> ShapeId {
-            auto chart = chart_of(ev, base);
-            if (!chart) {
-                if (ok) report_no_chart(ev, base, site.call, "a displacement map");
+        rewrite_leaves(ev, *s, Paints::Keep, [&](ShapeId base, const Below &below) -> ShapeId {
+            auto uv_map = uv_map_of(ev, base);
+            if (!uv_map) {
+                if (ok) report_no_uv_map(ev, base, site.call, "a displacement map");
                 ok = false;
                 return base;
             }
             const NodeId here = g.div(below.inverted ? g.neg(*amount) : *amount, below.factor);
             const NodeId mean = g.number(heights.mean);
             const NodeId height =
-                g.component(sampled(g, *chart, *map, static_cast<std::int32_t>(image)), 0);
-            const NodeId seamless = g.add(mean, g.mul(chart->weight, g.sub(height, mean)));
+                g.component(sampled(g, *uv_map, *map, static_cast<std::int32_t>(image)), 0);
+            const NodeId seamless = g.add(mean, g.mul(uv_map->weight, g.sub(height, mean)));
             const double along_u =
-                heights.slope_u * std::fabs(images_along(map->scale[0], chart->around_u));
+                heights.slope_u * std::fabs(images_along(map->scale[0], uv_map->around_u));
             const double along_v =
-                heights.slope_v * std::fabs(images_along(map->scale[1], chart->around_v));
-            const NodeId slope = g.add(g.add(g.mul(chart->slope_u, g.number(along_u)),
-                                             g.mul(chart->slope_v, g.number(along_v))),
-                                       g.mul(chart->slope_weight, g.number(span)));
+                heights.slope_v * std::fabs(images_along(map->scale[1], uv_map->around_v));
+            const NodeId slope = g.add(g.add(g.mul(uv_map->slope_u, g.number(along_u)),
+                                             g.mul(uv_map->slope_v, g.number(along_v))),
+                                       g.mul(uv_map->slope_weight, g.number(span)));
             const NodeId a = g.mul(here, g.number(heights.least)),
                          b = g.mul(here, g.number(heights.most));
             const ir::Shape inner = ev.scene.shapes[base];
@@ -318,7 +319,7 @@ static Value displace_map_call(Evaluator &ev, const CallSite &site, std::vector<
 // -- grids ---------------------------------------------------------------------------------------
 
 // _grid(file): [its number, the corners lo and hi, the slope of its trilinear field]
-static Value grid_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value grid_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto path = want_string(ev, args[0], site.arg(0), "`distance_grid`");
     if (!path) return poison();
     auto index =
@@ -357,7 +358,7 @@ static Value grid_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
 }
 
 // _grid_at(grid, p): its value at p, 0..1 from corner to corner
-static Value grid_at_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value grid_at_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto index = want_known_int(ev, args[0], site.arg(0), "a grid");
     auto p = want_vec_node(ev, args[1], 3, site.arg(1), "a grid's point");
     if (!index || !p) return poison();

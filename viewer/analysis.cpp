@@ -95,7 +95,7 @@ void show_cache(Controls &controls, const CacheFigures &cache) {
     line(fmt::format("{} inserted, {} evicted", cache.counts.inserted, cache.counts.evicted));
     line(fmt::format("{} deleted, {} without room", cache.counts.deleted,
                      cache.counts.crowded + cache.counts.full));
-    line(fmt::format("kept {:.1f} ms, exact {:.1f} ms: {}", cache.choice.kept_ms,
+    line(fmt::format("kept {:.1f} ms, exact {:.1f} ms: {}", cache.choice.cached_ms,
                      cache.choice.exact_ms,
                      !cache.looked_up ? "look-ups do not pay here"
                      : cache.choice.state == gl::CacheChoice::State::Exact    ? "drawn exactly"

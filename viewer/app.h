@@ -47,8 +47,8 @@ struct App {
     gl::Timer timer;
     Cached cached;
     std::optional<Shot> cached_shot;
-    bool drawn_kept = false;        // what is drawn came through the noise cache
-    int kept_frames = 0;            // since it was at rest
+    bool drawn_cached = false;      // what is drawn came through the noise cache
+    int cached_frames = 0;          // since it was at rest
     Clock::time_point fade_begin{}; // from the last such picture to the exact one
     std::optional<Shot> drawn;
     int drawn_width = 0, drawn_height = 0; // of it, in pixels
@@ -64,7 +64,8 @@ struct App {
     bool drawing = false;   // a sample is drawn in part: so many rows, which took so long
     int next_sample = 0, next_row = 0;
     double sample_ms = 0, gpu_ms = 0;
-    std::vector<bool> bands_asked; // of the timer's answers to come: whether it is a sample's last
+    std::vector<bool>
+        bands_requested; // of the timer's answers to come: whether it is a sample's last
     static constexpr int samples_at_rest = 4;
     int samples_drawn = 0, frames_drawn = 0;
     std::vector<float> picks; // of what is shown at rest, while the next picture is drawn over it
@@ -94,9 +95,9 @@ struct App {
     std::filesystem::path sequence_folder;
     driver::Stamps read_files;   // by the newest build
     std::filesystem::path saved; // the file whose save brought that build; empty: none did
-    bool record_next = false, picture_asked = false, told = true;
+    bool record_next = false, picture_requested = false, told = true;
     double cursor_x = 0, cursor_y = 0, pressed_x = 0, pressed_y = 0;
-    bool click_asked = false;
+    bool click_requested = false;
     bool flies = true; // the keys that are held move the camera
     int dragged = -1;  // the view in which the button went down
     float font_scale = 1;
@@ -139,7 +140,7 @@ struct App {
     bool draw_rows(bool whole);
     void keep_picks();
     void finish_picture(double scale);
-    bool draw_kept(double scale);
+    bool draw_cached_frame(double scale);
     bool keeps(bool by_hand) const; // whether the next picture may come through the noise cache
 
     // draw.cpp

@@ -22,8 +22,8 @@ void Cached::take(std::variant<gl::CachePrograms, std::string> programs) {
 }
 
 void Cached::build(const ir::Scene &scene, int part_stride) {
-    Diagnostics unheard; // the worker has told them
-    take(gl::build_cache_programs(scene, {.part_stride = part_stride, .pick = true}, unheard));
+    Diagnostics discarded; // the worker has told them
+    take(gl::build_cache_programs(scene, {.part_stride = part_stride, .pick = true}, discarded));
 }
 
 bool Cached::draw(const gl::FrameInputs &inputs, const std::vector<ir::Param> &params,

@@ -1,4 +1,4 @@
-// The scene through the noise cache, while it is moved: the first view, by kept values where they
+// The scene through the noise cache, while it is moved: the first view, by cached values where they
 // are, and what the cache did. Draws, counts and chooses; knows no window. Needs a current context
 // of GL 4.2, and says so where there is none.
 #pragma once
@@ -41,7 +41,7 @@ class Cached {
     bool draw(const gl::FrameInputs &inputs, const std::vector<ir::Param> &params,
               bool show_misses);
     bool settled() const { // nothing is missed any more, or there is no room for it
-        return frames_ > 0 && (figures_.tally.misses == 0 || frames_ >= most_frames);
+        return frames_ > 0 && (figures_.tally.misses == 0 || frames_ >= max_frames);
     }
     // What the last frame did; the cells are counted now and then, since all of them are read back.
     void count();
@@ -51,7 +51,7 @@ class Cached {
     gl::CacheChoice choice;
 
   private:
-    static constexpr int most_frames = 256;
+    static constexpr int max_frames = 256;
     static constexpr int count_cells_every = 16;
     gl::CachedView view_;
     CacheFigures figures_;

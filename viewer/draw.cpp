@@ -19,7 +19,7 @@ namespace fathom::viewer {
 namespace {
 
 constexpr double turns_a_second = 0.1; // auto-rotate
-constexpr double fade_ms = 250;        // from kept values to exact ones, when it comes to rest
+constexpr double fade_ms = 250;        // from cached values to exact ones, when it comes to rest
 constexpr double slow_ms = 300;        // what takes longer is said
 
 std::filesystem::path free_name(const std::filesystem::path &scene, const char *form) {
@@ -47,7 +47,7 @@ std::vector<IsolineLabel> isoline_labels(const std::vector<float> &probe,
             probe[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                        static_cast<std::size_t>(x))]);
     };
-    const double least_apart = 60 / to_window;
+    const double min_apart = 60 / to_window;
     const auto along = [&](int x, int y, int dx, int dy) {
         for (; x + dx < width && y + dy < height; x += dx, y += dy) {
             if (!seen(x, y) || !seen(x + dx, y + dy)) continue;
@@ -58,8 +58,7 @@ std::vector<IsolineLabel> isoline_labels(const std::vector<float> &probe,
                                      static_cast<float>(y * to_window), std::max(a, b) * step};
             const bool crowded =
                 std::any_of(labels.begin(), labels.end(), [&](const IsolineLabel &other) {
-                    return std::hypot(other.x - label.x, other.y - label.y) <
-                           least_apart * to_window;
+                    return std::hypot(other.x - label.x, other.y - label.y) < min_apart * to_window;
                 });
             if (!crowded) labels.push_back(label);
         }
@@ -183,9 +182,9 @@ bool App::save_window(const std::filesystem::path &file, int width, int height) 
 
 // The panels have settled and the picture is the full one: that is what a record shows.
 void App::save_pictures(int width, int height, bool moving) {
-    if (picture_asked &&
+    if (picture_requested &&
         (animated() || (!moving && !pending() && fading() == 0))) { // the full picture
-        picture_asked = false;
+        picture_requested = false;
         const std::filesystem::path name = free_name(settings.file, "{}-{}.png");
         if (save_window(name, width, height)) note("saved " + name.string());
     }
@@ -297,7 +296,7 @@ void App::draw(double seconds) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
-    if (std::exchange(click_asked, false) && !ImGui::GetIO().WantCaptureMouse) select(true);
+    if (std::exchange(click_requested, false) && !ImGui::GetIO().WantCaptureMouse) select(true);
     draw_panels(width, height);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

@@ -24,7 +24,7 @@ int finest_quick(double frame_ms, int most) {
 
 bool App::pending() const {
     if (!program || controls.cache) return false;
-    if (drawn_kept) return true; // the exact picture comes when nothing moves any more
+    if (drawn_cached) return true; // the exact picture comes when nothing moves any more
     if (stale || !drawn || drawing || !finished || (resting && coarse > 1)) return true;
     return controls.accumulate && controls.look == gl::Look::Picture && !animated() &&
            !controls.always && !controls.rotate && samples_drawn < samples_at_rest;
@@ -49,7 +49,7 @@ void App::measure(int width, int height) {
 
 // At rest a slow picture is drawn coarse to fine, but never more coarsely than it is shown already.
 int App::first_coarseness(bool same_view) const {
-    if (drawn_kept || controls.always || controls.rotate || sequence > 0) return 1;
+    if (drawn_cached || controls.always || controls.rotate || sequence > 0) return 1;
     int first = finest_quick(status.frame_ms, coarsest);
     while (same_view && first > 1 && 1.0 / first <= drawn_scale) first /= 2;
     return first;
@@ -77,11 +77,11 @@ bool App::draw_rows(bool whole) {
             return false;
         }
         next_row += band;
-        if (timed) bands_asked.push_back(next_row >= drawn_height);
+        if (timed) bands_requested.push_back(next_row >= drawn_height);
         while (const auto milliseconds = timer.poll()) {
             gpu_ms += *milliseconds;
-            const bool last = bands_asked.front();
-            bands_asked.erase(bands_asked.begin());
+            const bool last = bands_requested.front();
+            bands_requested.erase(bands_requested.begin());
             if (last) gpu_times.add(std::exchange(gpu_ms, 0));
         }
         if (milliseconds_since(start) > turn_ms) break;
@@ -98,8 +98,8 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
     if (moving && controls.keep && !cached.asked() && !worker->lent() &&
         scene->compilation.scene.graph.cache_count() > 0)
         cached.build(scene->compilation.scene, scene->compilation.parts.stride);
-    const double expected_ms = drawn_kept && cached.choice.state == gl::CacheChoice::State::Kept
-                                   ? cached.choice.kept_ms
+    const double expected_ms = drawn_cached && cached.choice.state == gl::CacheChoice::State::Cached
+                                   ? cached.choice.cached_ms
                                    : status.frame_ms;
     const Shot shot{views, time, width, height};
     const bool same_view = !stale && drawn == shot;
@@ -113,7 +113,7 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
     resting = !moving;
     const bool kept = keeps(moving);
     const bool anew = !same_view || drawn_scale != scale || (controls.always && !drawing) ||
-                      (drawn_kept && !kept);
+                      (drawn_cached && !kept);
     if (anew) {
         // Until the next picture is whole, what is under the mouse is told by the one that is
         // shown.
@@ -124,10 +124,10 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
         drawn_width = std::max(1, static_cast<int>(width * scale));
         drawn_height = std::max(1, static_cast<int>(height * scale));
         stale = probed = false;
-        const bool before = std::exchange(drawn_kept, false);
-        if (kept && gl::keeps_next(cached.choice) && draw_kept(scale)) {
-            drawn_kept = true;
-            ++kept_frames;
+        const bool before = std::exchange(drawn_cached, false);
+        if (kept && gl::keeps_next(cached.choice) && draw_cached_frame(scale)) {
+            drawn_cached = true;
+            ++cached_frames;
             drawing = false;
             fade_begin = {};
             if (drew_before) frame_times.add(milliseconds_since(last_draw));
@@ -135,12 +135,12 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
             drew_now = true;
             return;
         }
-        if (kept_frames > 0 && !kept && settings.tell)
+        if (cached_frames > 0 && !kept && settings.tell)
             settings.tell(
                 fmt::format("moved: {} frames through the noise cache, the last {:.1f} ms, "
                             "exact {:.1f} ms",
-                            kept_frames, cached.choice.kept_ms, cached.choice.exact_ms));
-        if (!kept) kept_frames = 0;
+                            cached_frames, cached.choice.cached_ms, cached.choice.exact_ms));
+        if (!kept) cached_frames = 0;
         if (before && !kept) {
             canvas.keep_before();
             fade_begin = Clock::time_point::max(); // begins when the exact picture is there
@@ -212,7 +212,7 @@ bool App::keeps(bool moving) const {
            controls.look == gl::Look::Picture && !controls.always && sequence == 0;
 }
 
-bool App::draw_kept(double scale) {
+bool App::draw_cached_frame(double scale) {
     gl::FrameInputs inputs = tile_views(drawn_width, drawn_height)[0].inputs;
     inputs.width = drawn_width;
     inputs.height = drawn_height;

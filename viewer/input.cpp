@@ -16,7 +16,7 @@
 namespace fathom::viewer {
 namespace {
 
-constexpr double click_reach = 4;                     // a press that moves less is a click
+constexpr double click_radius = 4;                    // a press that moves less is a click
 constexpr double fine_step = 0.01, coarse_step = 0.1; // of a param's range
 
 } // namespace
@@ -197,7 +197,7 @@ void App::key(int key, int mods) {
     case GLFW_KEY_SPACE: running = !running; break;
     case GLFW_KEY_0: time = 0; break;
     case GLFW_KEY_N: controls.remarks = !controls.remarks; break;
-    case GLFW_KEY_P: picture_asked = true; break;
+    case GLFW_KEY_P: picture_requested = true; break;
     case GLFW_KEY_M:
         if (sequence > 0) {
             note(fmt::format("{} frames in {}", sequence - 1, sequence_folder.string()));
@@ -268,7 +268,7 @@ void App::move_cursor(double x, double y) {
         return;
     }
     if (over_panel || dragged < 0) return;
-    if (std::hypot(x - pressed_x, y - pressed_y) < click_reach) return;
+    if (std::hypot(x - pressed_x, y - pressed_y) < click_radius) return;
     const bool shift = glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
                        glfwGetKey(window, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
     touched = Clock::now();
@@ -296,9 +296,9 @@ void App::button(int button, bool down) {
         return;
     }
     const bool click = button == GLFW_MOUSE_BUTTON_LEFT && dragged >= 0 &&
-                       std::hypot(cursor_x - pressed_x, cursor_y - pressed_y) < click_reach;
+                       std::hypot(cursor_x - pressed_x, cursor_y - pressed_y) < click_radius;
     dragged = -1;
-    click_asked |= click; // panels know only with the next frame whether it was theirs
+    click_requested |= click; // panels know only with the next frame whether it was theirs
 }
 
 void App::open_selected() {

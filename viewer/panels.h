@@ -42,7 +42,7 @@ struct Shown {
     const std::vector<IsolineLabel> &labels;
     const FrameTimes &frame_times, &gpu_times;
     const std::array<std::size_t, 4> &verdicts;
-    const CacheFigures *cache = nullptr; // where the scene has kept fields
+    const CacheFigures *cache = nullptr; // where the scene has cached fields
     int max_steps = 256;
     double reach = 1; // how far a slice can be moved
 };

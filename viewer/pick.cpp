@@ -124,7 +124,7 @@ struct Search {
             break;
         }
         case ir::ShapeKind::Repeat:
-        case ir::ShapeKind::Many:
+        case ir::ShapeKind::Instances:
         case ir::ShapeKind::Extrude:
             return whole(id, box, to_world); // the copies, or the solid, together
         case ir::ShapeKind::Empty:

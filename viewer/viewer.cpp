@@ -122,7 +122,7 @@ std::string loop(App &app) {
             app.take(std::move(build));
         }
         if (app.scene && !app.cached.asked())
-            if (auto kept = app.worker->take_kept(app.scene->number)) {
+            if (auto kept = app.worker->take_cached(app.scene->number)) {
                 app.cached.take(std::move(*kept));
                 app.frames_due = 3;
             }
@@ -155,7 +155,7 @@ void end_panels() {
     ImGui::DestroyContext();
 }
 
-void ask_for_context(int major, int minor) {
+void request_context(int major, int minor) {
     glfwDefaultWindowHints();
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, major);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, minor);
@@ -172,7 +172,7 @@ struct Opened {
 Opened open_window(const Settings &settings, const std::string &title) {
     for (auto [major, minor] : {std::pair{4, 6}, {4, 3}, {4, 2}, {3, 3}})
         for (bool robust : {true, false}) {
-            ask_for_context(major, minor);
+            request_context(major, minor);
             if (robust) glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
             GLFWwindow *window =
                 glfwCreateWindow(settings.width, settings.height, title.c_str(), nullptr, nullptr);
@@ -185,7 +185,7 @@ Opened open_window(const Settings &settings, const std::string &title) {
 // the first.
 GLFWwindow *open_second(const Opened &first, const Settings &settings) {
     if (settings.one_context) return nullptr;
-    ask_for_context(first.major, first.minor);
+    request_context(first.major, first.minor);
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     if (glfwGetWindowAttrib(first.window, GLFW_CONTEXT_ROBUSTNESS) != GLFW_NO_ROBUSTNESS)
         glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);

@@ -61,25 +61,25 @@ std::unique_ptr<Build> Worker::take() {
     return std::move(finished_);
 }
 
-std::optional<Worker::Kept> Worker::take_kept(std::size_t number) {
+std::optional<Worker::Kept> Worker::take_cached(std::size_t number) {
     std::lock_guard lock(mutex_);
-    if (!kept_ || kept_number_ != number) return std::nullopt;
+    if (!kept_ || cached_number_ != number) return std::nullopt;
     return std::exchange(kept_, std::nullopt);
 }
 
 // The window does not wait for these: until they are there it draws exactly.
-void Worker::build_kept(const ir::Scene &scene, int part_stride, std::size_t number) {
-    Diagnostics unheard; // the build has told them
+void Worker::build_cached(const ir::Scene &scene, int part_stride, std::size_t number) {
+    Diagnostics discarded; // the build has told them
     Kept made =
-        gl::build_cache_programs(scene, {.part_stride = part_stride, .pick = true}, unheard);
+        gl::build_cache_programs(scene, {.part_stride = part_stride, .pick = true}, discarded);
     if (gl::CachePrograms *programs = std::get_if<gl::CachePrograms>(&made))
         for (const gl::Program *program :
-             {&programs->kept, &programs->rest, &programs->exact, &programs->fill})
+             {&programs->cached, &programs->rest, &programs->exact, &programs->fill})
             program->warm_up(scene.params);
     {
         std::lock_guard lock(mutex_);
         kept_ = std::move(made);
-        kept_number_ = number;
+        cached_number_ = number;
     }
     hooks_.ready();
 }
@@ -209,7 +209,7 @@ void Worker::run() {
                 complaint_ = watcher_.polls_because();
             }
             enter(Stage::Rest);
-            if (scene && !ending_ && !asked_) build_kept(*scene, part_stride, number);
+            if (scene && !ending_ && !asked_) build_cached(*scene, part_stride, number);
             while (!ending_ && !asked_ && !watcher_.wait(std::chrono::hours(1))) {
             }
         }

@@ -68,7 +68,7 @@ class Worker {
     // The noise cache's programs for the build of that number, or why there are none, once they are
     // made; by a worker that has a context, after the build was handed over.
     using Kept = std::variant<gl::CachePrograms, std::string>;
-    std::optional<Kept> take_kept(std::size_t number);
+    std::optional<Kept> take_cached(std::size_t number);
 
     // Builds again with these values of structural params, over those of the command line.
     void rebuild(std::vector<driver::Override> overrides);
@@ -88,7 +88,7 @@ class Worker {
   private:
     void run();
     std::unique_ptr<Build> build();
-    void build_kept(const ir::Scene &scene, int part_stride, std::size_t number);
+    void build_cached(const ir::Scene &scene, int part_stride, std::size_t number);
     void again();
     void enter(Stage stage); // and the window hears of it
 
@@ -99,7 +99,7 @@ class Worker {
     std::mutex mutex_; // over the five below
     std::unique_ptr<Build> finished_;
     std::optional<Kept> kept_;
-    std::size_t kept_number_ = 0; // of the build that `kept_` is for
+    std::size_t cached_number_ = 0; // of the build that `kept_` is for
     std::vector<driver::Override> overrides_;
     std::string complaint_;
     std::atomic<Stage> stage_ = Stage::Rest;

@@ -40,7 +40,7 @@ std::vector<Type> scalar_types(Type type) {
 
 // The values that a function's nodes have, where it is built in place once more.
 struct Frame {
-    std::unordered_map<NodeId, Values> values; // of a Fold: all its carried values
+    std::unordered_map<NodeId, Values> values; // of a Loop: all its carried values
     std::vector<std::pair<NodeId, std::uint16_t>>
         made; // what stands in a loop, to be forgotten when it closes
 };
@@ -83,8 +83,8 @@ class FunctionBuilder {
             auto args = graph_.args(id);
             for (std::size_t i = args.size(); i-- > 0;)
                 if (!frame.values.contains(args[i])) stack.push_back(args[i]);
-            if (graph_[id].op == Op::Fold) {
-                NodeId count = graph_.fold(FoldId{graph_[id].payload}).count;
+            if (graph_[id].op == Op::Loop) {
+                NodeId count = graph_.loop(LoopId{graph_[id].payload}).count;
                 if (!frame.values.contains(count)) stack.push_back(count);
             }
             if (stack.size() > before) continue;
@@ -118,7 +118,7 @@ Values FunctionBuilder::node(Frame &frame, NodeId id) {
     std::vector<Type> types;
     for (NodeId arg : graph_.args(id)) types.push_back(graph_[arg].type);
 
-    if (node.op != Op::FoldResult) // anywhere else a Fold stands for its first carried value
+    if (node.op != Op::LoopResult) // anywhere else a Loop stands for its first carried value
         for (std::size_t k = 0; k < args.size(); ++k)
             args[k].resize(static_cast<std::size_t>(components(types[k])));
     // Where one coordinate is a point's own, all are: what is read is not asked which are shared.
@@ -154,12 +154,12 @@ Values FunctionBuilder::node(Frame &frame, NodeId id) {
     if (node.op == Op::Grid) return data(InstructionKind::Grid);
     if (node.op == Op::Call) return call(FunctionId{node.payload}, args);
     if (node.op == Op::Cached) return call(graph_.cache(CacheId{node.payload}).field, args);
-    if (node.op == Op::Fold) return fold(frame, id);
-    if (node.op == Op::FoldResult) {
-        const Fold &fold = graph_.fold(FoldId{graph_[graph_.arg(id, 0)].payload});
+    if (node.op == Op::Loop) return fold(frame, id);
+    if (node.op == Op::LoopResult) {
+        const ir::Loop &record = graph_.loop(LoopId{graph_[graph_.arg(id, 0)].payload});
         std::size_t first = 0;
         for (std::uint32_t k = 0; k < node.payload; ++k)
-            first += static_cast<std::size_t>(components(graph_[fold.vars[k]].type));
+            first += static_cast<std::size_t>(components(graph_[record.vars[k]].type));
         auto begin = args[0].begin() + static_cast<std::ptrdiff_t>(first);
         return {begin, begin + components(node.type)};
     }
@@ -189,28 +189,28 @@ Values FunctionBuilder::call(FunctionId id, const std::vector<Values> &arguments
 }
 
 Values FunctionBuilder::fold(Frame &frame, NodeId id) {
-    const Fold &fold = graph_.fold(FoldId{graph_[id].payload});
-    Values count = frame.values.at(fold.count);
+    const ir::Loop &record = graph_.loop(LoopId{graph_[id].payload});
+    Values count = frame.values.at(record.count);
     LoopCode loop;
     loop.level = ++depth_;
-    loop.max_count = fold.max_count;
+    loop.max_count = record.max_count;
     loop.count = count[0];
     loop.index = builder_.variable(Type::Int, true, depth_);
-    frame.values[fold.index] = {loop.index};
+    frame.values[record.index] = {loop.index};
 
     // A variable is shared if it begins so and no turn makes it differ; whether turns happen must
     // not differ either.
-    std::size_t n = fold.vars.size();
+    std::size_t n = record.vars.size();
     std::vector<bool> shared(n);
     std::vector<std::vector<NodeId>> reads(n);
     std::vector<NodeId> condition_reads;
-    for (std::size_t k = 0; k < n; ++k) reads[k] = graph_.free_vars(fold.next[k]);
-    if (fold.condition) condition_reads = graph_.free_vars(fold.condition);
+    for (std::size_t k = 0; k < n; ++k) reads[k] = graph_.free_vars(record.next[k]);
+    if (record.condition) condition_reads = graph_.free_vars(record.condition);
     for (std::size_t k = 0; k < n; ++k) {
         const Values &init = frame.values.at(graph_.arg(id, static_cast<int>(k)));
         shared[k] = true;
-        for (std::size_t c = 0; c < static_cast<std::size_t>(components(graph_[fold.vars[k]].type));
-             ++c) {
+        for (std::size_t c = 0;
+             c < static_cast<std::size_t>(components(graph_[record.vars[k]].type)); ++c) {
             loop.init.push_back(init[c]);
             shared[k] = shared[k] && code_.values[init[c]].shared;
         }
@@ -218,7 +218,7 @@ Values FunctionBuilder::fold(Frame &frame, NodeId id) {
     bool turns_shared = code_.values[loop.count].shared;
     auto shared_var = [&](NodeId var) {
         for (std::size_t k = 0; k < n; ++k)
-            if (fold.vars[k] == var) return static_cast<bool>(shared[k]);
+            if (record.vars[k] == var) return static_cast<bool>(shared[k]);
         auto found = frame.values.find(var);
         return found == frame.values.end() ||
                std::ranges::all_of(found->second, [&](Value v) { return code_.values[v].shared; });
@@ -235,21 +235,22 @@ Values FunctionBuilder::fold(Frame &frame, NodeId id) {
 
     for (std::size_t k = 0; k < n; ++k) {
         Values var;
-        for (Type type : scalar_types(graph_[fold.vars[k]].type))
+        for (Type type : scalar_types(graph_[record.vars[k]].type))
             var.push_back(builder_.variable(type, shared[k], depth_));
         loop.vars.insert(loop.vars.end(), var.begin(), var.end());
-        frame.values[fold.vars[k]] = std::move(var);
+        frame.values[record.vars[k]] = std::move(var);
     }
-    if (fold.condition) loop.condition = value(frame, fold.condition)[0];
+    if (record.condition) loop.condition = value(frame, record.condition)[0];
     if (!code_.values[loop.count].shared) {
         Value more = builder_.make(Kernel::LessI, {loop.index, loop.count});
-        loop.condition = fold.condition ? builder_.make(Kernel::And, {more, loop.condition}) : more;
+        loop.condition =
+            record.condition ? builder_.make(Kernel::And, {more, loop.condition}) : more;
     }
     if (!turns_shared) loop.active = builder_.variable(Type::Bool, false, depth_);
     for (std::size_t k = 0; k < n; ++k) {
-        Values next = value(frame, fold.next[k]);
-        for (std::size_t c = 0; c < static_cast<std::size_t>(components(graph_[fold.vars[k]].type));
-             ++c)
+        Values next = value(frame, record.next[k]);
+        for (std::size_t c = 0;
+             c < static_cast<std::size_t>(components(graph_[record.vars[k]].type)); ++c)
             loop.next.push_back(moved(loop, next[c]));
     }
 
@@ -259,8 +260,8 @@ Values FunctionBuilder::fold(Frame &frame, NodeId id) {
         frame.values.erase(entry.first);
         return true;
     });
-    frame.values.erase(fold.index);
-    for (NodeId var : fold.vars) frame.values.erase(var);
+    frame.values.erase(record.index);
+    for (NodeId var : record.vars) frame.values.erase(var);
     --depth_;
 
     std::vector<Type> types;

@@ -35,11 +35,11 @@ Use walk(const Graph &graph, std::span<const NodeId> results) {
         for (NodeId arg : graph.args(at)) stack.push_back(arg);
         if (node.op == Op::Call) use.callees.push_back(FunctionId{node.payload});
         if (node.op == Op::Cached) use.callees.push_back(graph.cache(CacheId{node.payload}).field);
-        if (node.op == Op::Fold) {
-            const Fold &fold = graph.fold(FoldId{node.payload});
-            stack.push_back(fold.count);
-            stack.push_back(fold.condition);
-            stack.insert(stack.end(), fold.next.begin(), fold.next.end());
+        if (node.op == Op::Loop) {
+            const ir::Loop &loop = graph.loop(LoopId{node.payload});
+            stack.push_back(loop.count);
+            stack.push_back(loop.condition);
+            stack.insert(stack.end(), loop.next.begin(), loop.next.end());
         }
     }
     return use;

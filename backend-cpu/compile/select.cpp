@@ -260,8 +260,8 @@ std::vector<Value> select(Builder &builder, const Node &node, Arguments args,
     case Op::Image:
     case Op::Grid:
     case Op::Call:
-    case Op::Fold:
-    case Op::FoldResult:
+    case Op::Loop:
+    case Op::LoopResult:
     case Op::Cached: break;
     }
     assert(!"build.cpp does these");

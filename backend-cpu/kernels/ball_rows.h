@@ -1,4 +1,4 @@
-// Many rows of a table at once where each is a ball that joins what a loop carries: the commonest
+// Many rows of a table at once, where each is a ball that joins what a loop carries: the commonest
 // loop there is. The numbers of a row stay in registers for some points, those of the points for
 // some rows. The same floats, to the bit, as the kernels MinBall and SmoothBall row by row.
 #pragma once

@@ -104,12 +104,12 @@ std::uint64_t below(const float *a_hi, bool a_shared, const float *b_lo, bool b_
 // Boxes are taken eight at a time; where a ball is out of reach of all eight, k and what is carried
 // there apart, by a test that is coarser than ranges and surely wider than rounding, it changes
 // nothing.
-constexpr std::size_t eight = 8, most_eights = 8;
+constexpr std::size_t eight = 8, max_eights = 8;
 struct Eights {
-    float lo[3][most_eights], hi[3][most_eights], carried[most_eights];
+    float lo[3][max_eights], hi[3][max_eights], carried[max_eights];
 };
 std::uint64_t in_reach(const Eights &eights, std::size_t n, const float *row, float k) {
-    std::uint8_t truths[most_eights] = {};
+    std::uint8_t truths[max_eights] = {};
     for (std::size_t e = 0; e < n; ++e) {
         float square = 0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -149,7 +149,7 @@ template <bool is_smooth>
         for (std::size_t i = 1; i < eight; ++i) greatest = sem::greatest(greatest, numbers[i]);
         return greatest;
     };
-    for (std::size_t e = 0; e < most_eights; ++e) {
+    for (std::size_t e = 0; e < max_eights; ++e) {
         const std::size_t first = (e < eights_count ? e : 0) * eight;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             float least = in.lo[axis][first];
@@ -160,12 +160,12 @@ template <bool is_smooth>
         }
         eights.carried[e] = most(in.carried_hi + first);
     }
-    const std::uint64_t all = eights_count == most_eights ? 0xff : (1u << eights_count) - 1;
+    const std::uint64_t all = eights_count == max_eights ? 0xff : (1u << eights_count) - 1;
     for (std::size_t i = 0; i < in.count; ++i) {
         const float *row = in.numbers + 4 * std::size_t{in.rows[i]};
         const Range x{row[0], row[0]}, y{row[1], row[1]}, z{row[2], row[2]}, r{row[3], row[3]};
         std::uint64_t neutral = ~std::uint64_t{0}, renewed = 0;
-        for (std::uint64_t left = in_reach(eights, most_eights, row, k.hi) & all; left != 0;
+        for (std::uint64_t left = in_reach(eights, max_eights, row, k.hi) & all; left != 0;
              left &= left - 1) {
             const auto e = static_cast<std::size_t>(std::countr_zero(left));
             const std::size_t first = e * eight;

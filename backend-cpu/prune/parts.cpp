@@ -12,7 +12,7 @@ namespace fathom::cpu {
 
 namespace {
 
-constexpr std::size_t most_steps = 1 << 20; // of a tape with its calls spliced in
+constexpr std::size_t max_steps = 1 << 20; // of a tape with its calls spliced in
 
 class PartMaker {
   public:
@@ -364,7 +364,7 @@ void splice(const Parts &parts, std::uint32_t block, ShortTape &tape) {
     const Program &program = *parts.program;
     for (std::uint32_t i = program.blocks[block].first; i < program.blocks[block].last; ++i) {
         const Step &step = program.steps[i];
-        if (step.kind == StepKind::Call && tape.steps.size() < most_steps) {
+        if (step.kind == StepKind::Call && tape.steps.size() < max_steps) {
             splice(parts, step.target, tape);
             continue;
         }

@@ -10,7 +10,7 @@ namespace fathom::cpu {
 
 // 64 cells and their tapes, one after the other.
 struct PruneBlock {
-    std::array<PruneCell, most_boxes> cells;
+    std::array<PruneCell, max_boxes> cells;
     std::vector<std::uint32_t> steps, rows;
     std::vector<Selection::Rows> loops;
     std::vector<Step> packed; // of those that are not split further
@@ -36,10 +36,10 @@ void remove(PruneBlock *block) {
 // eighths: the bits of their number are x, y, z of the finer, x, y, z of the coarser ones.
 Boxes boxes_inside(const Pruning &pruning, const Place &place, int level) {
     Boxes boxes;
-    boxes.count = most_boxes;
+    boxes.count = max_boxes;
     const float side = std::ldexp(pruning.cube.side, -bits_a_level * (level + 1));
     const int shift = bits_a_level * (pruning.settings.depth - level);
-    for (std::size_t k = 0; k < most_boxes; ++k)
+    for (std::size_t k = 0; k < max_boxes; ++k)
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::int32_t first = (place.at[axis] >> shift) << bits_a_level;
             const auto at = static_cast<float>(
@@ -64,8 +64,8 @@ constexpr std::size_t tried_points = 16;
 
 // At how many of these points a box's tape with a Cut gives no value. A chain of blends that comes
 // nearer row by row, by less than their radius, forgets nothing.
-std::size_t unknown_of(const Pruning &pruning, Asker &asker, const Boxes &boxes, std::size_t box,
-                       const ShortTape &tape) {
+std::size_t unknown_of(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
+                       std::size_t box, const ShortTape &tape) {
     constexpr std::size_t n = tried_points;
     float in[3][n];
     for (std::size_t i = 0; i < n; ++i) { // 2 x 2 x 4
@@ -77,12 +77,13 @@ std::size_t unknown_of(const Pruning &pruning, Asker &asker, const Boxes &boxes,
                 boxes.lo[axis][box] + way[axis] * (boxes.hi[axis][box] - boxes.lo[axis][box]);
     }
     const std::size_t results = pruning.program.results.size();
-    asker.tried.resize(results * n);
-    asker.tried_to.resize(results);
-    for (std::size_t c = 0; c < results; ++c) asker.tried_to[c] = asker.tried.data() + c * n;
+    evaluator.tried.resize(results * n);
+    evaluator.tried_to.resize(results);
+    for (std::size_t c = 0; c < results; ++c)
+        evaluator.tried_to[c] = evaluator.tried.data() + c * n;
     const float *from[] = {in[0], in[1], in[2]};
     std::uint32_t unknown[n];
-    return evaluate(pruning.program, asker.scratch, from, asker.tried_to.data(), n,
+    return evaluate(pruning.program, evaluator.scratch, from, evaluator.tried_to.data(), n,
                     tape.selection(pruning.parts), unknown);
 }
 
@@ -92,31 +93,31 @@ bool has_cut(const Selection &tape) {
 
 // The cells of a block, their tapes made from that of `from`. Gives how many of them have a Cut by
 // which too many of their points are unknown.
-int fill(const Pruning &pruning, Asker &asker, const Boxes &boxes, const PruneCell &cell,
-         const PruneCell &from, int level, PruneBlock &block) {
-    run_over(pruning.parts, asker.shortener, from.tape, boxes);
+int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
+         const PruneCell &cell, const PruneCell &from, int level, PruneBlock &block) {
+    run_over(pruning.parts, evaluator.shortener, from.tape, boxes);
     const float half_diagonal =
         0.8660254f * std::ldexp(pruning.cube.side, -bits_a_level * (level + 1));
     struct Piece {
         std::size_t steps, loops, packed;
     };
-    std::array<Piece, most_boxes + 1> pieces{};
+    std::array<Piece, max_boxes + 1> pieces{};
     int unknown = 0;
-    ShortTape &tape = asker.tape;
-    for (std::size_t k = 0; k < most_boxes; ++k) {
+    ShortTape &tape = evaluator.tape;
+    for (std::size_t k = 0; k < max_boxes; ++k) {
         PruneCell &made = block.cells[k];
         made.above = &cell;
         pieces[k] = {block.steps.size(), block.loops.size(), block.packed.size()};
-        const float least = asker.shortener.result_lo[k];
+        const float least = evaluator.shortener.result_lo[k];
         if (pruning.settings.far_cells && least >= pruning.settings.far * half_diagonal) {
             made.far = least; // and where exact values are asked for, the cell above has them
             continue;
         }
-        shorten(pruning.parts, asker.shortener, from.tape, k, true, tape);
-        if (tape.cut && unknown_of(pruning, asker, boxes, k, tape) > tried_points / 2)
-            shorten(pruning.parts, asker.shortener, from.tape, k, false, tape);
+        shorten(pruning.parts, evaluator.shortener, from.tape, k, true, tape);
+        if (tape.cut && unknown_of(pruning, evaluator, boxes, k, tape) > tried_points / 2)
+            shorten(pruning.parts, evaluator.shortener, from.tape, k, false, tape);
         if (!tape.cut && has_cut(tape.selection(pruning.parts)))
-            unknown += unknown_of(pruning, asker, boxes, k, tape) > 1;
+            unknown += unknown_of(pruning, evaluator, boxes, k, tape) > 1;
         for (Selection::Rows &rows : tape.loops)
             rows.first += static_cast<std::uint32_t>(block.rows.size());
         block.steps.insert(block.steps.end(), tape.steps.begin(), tape.steps.end());
@@ -128,10 +129,10 @@ int fill(const Pruning &pruning, Asker &asker, const Boxes &boxes, const PruneCe
         made.splits = level + 1 < pruning.settings.depth && tape.cost > pruning.settings.enough &&
                       (level < 1 || tape.cost < 0.8f * cell.cost);
         if (!made.splits) pack(pruning.parts, tape, block);
-        ++asker.tally.cells;
+        ++evaluator.tally.cells;
     }
-    pieces[most_boxes] = {block.steps.size(), block.loops.size(), block.packed.size()};
-    for (std::size_t k = 0; k < most_boxes; ++k) {
+    pieces[max_boxes] = {block.steps.size(), block.loops.size(), block.packed.size()};
+    for (std::size_t k = 0; k < max_boxes; ++k) {
         const Piece &first = pieces[k], &end = pieces[k + 1];
         Selection &tape_of = block.cells[k].tape;
         tape_of.table = pruning.parts.table.data();
@@ -145,24 +146,26 @@ int fill(const Pruning &pruning, Asker &asker, const Boxes &boxes, const PruneCe
     return unknown;
 }
 
-PruneBlock *make_block(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+PruneBlock *make_block(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
                        const Place &place, int level) {
-    constexpr int too_many = most_boxes / 8;
+    constexpr int too_many = max_boxes / 8;
     const Boxes boxes = boxes_inside(pruning, place, level);
     auto block = std::make_unique<PruneBlock>();
-    if (fill(pruning, asker, boxes, cell, cell, level, *block) < too_many) return block.release();
+    if (fill(pruning, evaluator, boxes, cell, cell, level, *block) < too_many)
+        return block.release();
     const PruneCell *from = &cell; // whose Cut is too near for what is in it: without one
     while (has_cut(from->tape)) from = from->above;
     block = std::make_unique<PruneBlock>();
-    fill(pruning, asker, boxes, cell, *from, level, *block);
+    fill(pruning, evaluator, boxes, cell, *from, level, *block);
     return block.release();
 }
 
-const PruneBlock &below(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+const PruneBlock &below(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
                         const Place &place, int level) {
     if (const PruneBlock *there = cell.below.load(std::memory_order_acquire)) return *there;
     if (!cell.claimed.exchange(true)) {
-        cell.below.store(make_block(pruning, asker, cell, place, level), std::memory_order_release);
+        cell.below.store(make_block(pruning, evaluator, cell, place, level),
+                         std::memory_order_release);
         cell.below.notify_all();
     } else {
         cell.below.wait(nullptr, std::memory_order_acquire);
@@ -172,7 +175,7 @@ const PruneBlock &below(const Pruning &pruning, Asker &asker, const PruneCell &c
 
 // The cell whose tape, or whose one number, answers at a place. Most places lie in the block that
 // the last one lay in.
-const PruneCell *find(const Pruning &pruning, Asker &asker, const Place &place) {
+const PruneCell *find(const Pruning &pruning, CellEvaluator &evaluator, const Place &place) {
     const auto shift_of = [&](int level) { // to cells of the level
         return bits_a_level * (pruning.settings.depth - level);
     };
@@ -183,7 +186,7 @@ const PruneCell *find(const Pruning &pruning, Asker &asker, const Place &place) 
         return static_cast<std::size_t>((x & 1) | (y & 1) << 1 | (z & 1) << 2 | (x & 2) << 2 |
                                         (y & 2) << 3 | (z & 2) << 4);
     };
-    Asker::Last &last = asker.last;
+    CellEvaluator::Last &last = evaluator.last;
     int level = 0;
     const PruneCell *cell = &pruning.root;
     if (last.block) {
@@ -195,7 +198,7 @@ const PruneCell *find(const Pruning &pruning, Asker &asker, const Place &place) 
         }
     }
     for (; cell->splits; ++level) {
-        const PruneBlock &block = below(pruning, asker, *cell, place, level);
+        const PruneBlock &block = below(pruning, evaluator, *cell, place, level);
         const int shift = shift_of(level);
         last = {&block, level, {place.at[0] >> shift, place.at[1] >> shift, place.at[2] >> shift}};
         cell = &block.cells[index_at(level)];
@@ -203,15 +206,16 @@ const PruneCell *find(const Pruning &pruning, Asker &asker, const Place &place) 
     return cell;
 }
 
-std::uint32_t group_of(Asker &asker, const PruneCell *cell) {
-    const std::size_t mask = asker.seen.size() - 1;
+std::uint32_t group_of(CellEvaluator &evaluator, const PruneCell *cell) {
+    const std::size_t mask = evaluator.seen.size() - 1;
     std::size_t at = (reinterpret_cast<std::uintptr_t>(cell) / sizeof(PruneCell)) & mask;
-    while (asker.seen[at].turn == asker.turn && asker.seen[at].cell != cell) at = (at + 1) & mask;
-    Asker::Seen &seen = asker.seen[at];
-    if (seen.turn != asker.turn) {
-        seen = {cell, asker.turn, static_cast<std::uint32_t>(asker.groups.size())};
-        asker.groups.push_back(cell);
-        asker.counts.push_back(0);
+    while (evaluator.seen[at].turn == evaluator.turn && evaluator.seen[at].cell != cell)
+        at = (at + 1) & mask;
+    CellEvaluator::Seen &seen = evaluator.seen[at];
+    if (seen.turn != evaluator.turn) {
+        seen = {cell, evaluator.turn, static_cast<std::uint32_t>(evaluator.groups.size())};
+        evaluator.groups.push_back(cell);
+        evaluator.counts.push_back(0);
     }
     return seen.group;
 }
@@ -233,33 +237,34 @@ Pruning::Pruning(const Program &p, const Inputs &inputs, const Cube &c, const Pr
 }
 Pruning::~Pruning() { remove(root.below.load()); }
 
-Asker::Asker(const Pruning &pruning, const Inputs &inputs)
+CellEvaluator::CellEvaluator(const Pruning &pruning, const Inputs &inputs)
     : shortener(pruning.parts), scratch(make_scratch(pruning.program, inputs)), in(3),
       out(pruning.program.results.size()) {}
 
-const PruneCell &cell_at(const Pruning &pruning, Asker &asker, float x, float y, float z) {
+const PruneCell &cell_at(const Pruning &pruning, CellEvaluator &evaluator, float x, float y,
+                         float z) {
     const float px = (x - pruning.cube.lo[0]) * pruning.scale,
                 py = (y - pruning.cube.lo[1]) * pruning.scale,
                 pz = (z - pruning.cube.lo[2]) * pruning.scale;
     const bool inside = (px >= 0) & (py >= 0) & (pz >= 0) & (px < pruning.cells) &
                         (py < pruning.cells) & (pz < pruning.cells);
     if (!inside) return pruning.root;
-    return *find(pruning, asker,
+    return *find(pruning, evaluator,
                  {static_cast<std::int32_t>(px), static_cast<std::int32_t>(py),
                   static_cast<std::int32_t>(pz)});
 }
 
 namespace {
 
-void evaluate_exactly(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+void evaluate_exactly(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
                       const float *const *in, float *const *out, std::size_t n);
 
-// The points asker.unknown, by the cell above, whose tape has more rows and a Cut far beyond, or
+// The points evaluator.unknown, by the cell above, whose tape has more rows and a Cut far beyond, or
 // none as the whole tape.
-void ask_above(const Pruning &pruning, Asker &asker, const PruneCell &cell, const float *const *in,
-               float *const *out, std::size_t n) {
-    const std::vector<std::uint32_t> which(asker.unknown.begin(),
-                                           asker.unknown.begin() + static_cast<std::ptrdiff_t>(n));
+void evaluate_in_parent(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
+                        const float *const *in, float *const *out, std::size_t n) {
+    const std::vector<std::uint32_t> which(
+        evaluator.unknown.begin(), evaluator.unknown.begin() + static_cast<std::ptrdiff_t>(n));
     const std::size_t results = pruning.program.results.size();
     std::vector<float> numbers((3 + results) * n);
     const float *from[3];
@@ -269,89 +274,91 @@ void ask_above(const Pruning &pruning, Asker &asker, const PruneCell &cell, cons
         for (std::size_t i = 0; i < n; ++i) numbers[axis * n + i] = in[axis][which[i]];
     }
     for (std::size_t c = 0; c < results; ++c) to.push_back(numbers.data() + (3 + c) * n);
-    asker.tally.again += n;
-    evaluate_exactly(pruning, asker, *cell.above, from, to.data(), n);
+    evaluator.tally.again += n;
+    evaluate_exactly(pruning, evaluator, *cell.above, from, to.data(), n);
     for (std::size_t c = 0; c < results; ++c)
         for (std::size_t i = 0; i < n; ++i) out[c][which[i]] = to[c][i];
 }
 
-void evaluate_exactly(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+void evaluate_exactly(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
                       const float *const *in, float *const *out, std::size_t n) {
-    if (asker.unknown.size() < n) asker.unknown.resize(n);
-    const std::size_t unknown =
-        evaluate(pruning.program, asker.scratch, in, out, n, cell.tape, asker.unknown.data());
-    if (unknown > 0) ask_above(pruning, asker, cell, in, out, unknown);
+    if (evaluator.unknown.size() < n) evaluator.unknown.resize(n);
+    const std::size_t unknown = evaluate(pruning.program, evaluator.scratch, in, out, n, cell.tape,
+                                         evaluator.unknown.data());
+    if (unknown > 0) evaluate_in_parent(pruning, evaluator, cell, in, out, unknown);
 }
 
 } // namespace
 
-void evaluate_in(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+void evaluate_in(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
                  const float *const *in, float *const *out, std::size_t n) {
-    evaluate_exactly(pruning, asker, cell, in, out, n);
-    ++asker.tally.groups;
+    evaluate_exactly(pruning, evaluator, cell, in, out, n);
+    ++evaluator.tally.groups;
     if (&cell == &pruning.root) {
-        asker.tally.outside += n;
+        evaluator.tally.outside += n;
         return;
     }
-    asker.tally.near += n;
-    asker.tally.kernels += double(cell.cost) * static_cast<double>(n);
-    asker.tally.shapes += double(cell.shapes) * static_cast<double>(n);
+    evaluator.tally.near += n;
+    evaluator.tally.kernels += double(cell.cost) * static_cast<double>(n);
+    evaluator.tally.shapes += double(cell.shapes) * static_cast<double>(n);
 }
 
-void ask(const Pruning &pruning, Asker &asker, const float *const *in, float *const *out,
-         std::size_t n, const float *limits) {
-    ++asker.turn;
-    if (asker.seen.size() < 4 * n) asker.seen.assign(std::bit_ceil(4 * n), {});
-    asker.groups.clear(), asker.counts.clear();
-    asker.order.clear(), asker.group_of.clear();
-    asker.bounded.assign(n, 0);
+void evaluate(const Pruning &pruning, CellEvaluator &evaluator, const float *const *in,
+              float *const *out, std::size_t n, const float *limits) {
+    ++evaluator.turn;
+    if (evaluator.seen.size() < 4 * n) evaluator.seen.assign(std::bit_ceil(4 * n), {});
+    evaluator.groups.clear(), evaluator.counts.clear();
+    evaluator.order.clear(), evaluator.group_of.clear();
+    evaluator.bounded.assign(n, 0);
     const PruneCell *last = nullptr;
     std::uint32_t last_group = 0;
     for (std::size_t k = 0; k < n; ++k) {
-        const PruneCell *cell = &cell_at(pruning, asker, in[0][k], in[1][k], in[2][k]);
+        const PruneCell *cell = &cell_at(pruning, evaluator, in[0][k], in[1][k], in[2][k]);
         if (cell->far > 0) {
             if (limits && cell->far >= limits[k]) {
                 out[0][k] = cell->far;
-                asker.bounded[k] = 1;
-                ++asker.tally.far;
+                evaluator.bounded[k] = 1;
+                ++evaluator.tally.far;
                 continue;
             }
             cell = cell->above;
         }
         if (cell != last) {
             last = cell;
-            last_group = group_of(asker, cell);
+            last_group = group_of(evaluator, cell);
         }
-        ++asker.counts[last_group];
-        asker.order.push_back(static_cast<std::uint32_t>(k));
-        asker.group_of.push_back(last_group);
+        ++evaluator.counts[last_group];
+        evaluator.order.push_back(static_cast<std::uint32_t>(k));
+        evaluator.group_of.push_back(last_group);
     }
-    const std::size_t left = asker.order.size();
+    const std::size_t left = evaluator.order.size();
     if (left == 0) return;
-    for (auto *columns : {&asker.in, &asker.out})
+    for (auto *columns : {&evaluator.in, &evaluator.out})
         for (std::vector<float> &column : *columns)
             if (column.size() < left) column.resize(left);
-    asker.firsts.assign(1, 0);
-    for (std::uint32_t count : asker.counts) asker.firsts.push_back(asker.firsts.back() + count);
-    asker.next = asker.firsts;
-    asker.place.resize(left);
+    evaluator.firsts.assign(1, 0);
+    for (std::uint32_t count : evaluator.counts)
+        evaluator.firsts.push_back(evaluator.firsts.back() + count);
+    evaluator.next = evaluator.firsts;
+    evaluator.place.resize(left);
     for (std::size_t i = 0; i < left; ++i) {
-        asker.place[i] = asker.next[asker.group_of[i]]++;
+        evaluator.place[i] = evaluator.next[evaluator.group_of[i]]++;
         for (std::size_t axis = 0; axis < 3; ++axis)
-            asker.in[axis][asker.place[i]] = in[axis][asker.order[i]];
+            evaluator.in[axis][evaluator.place[i]] = in[axis][evaluator.order[i]];
     }
-    std::vector<float *> results(asker.out.size());
-    for (std::size_t g = 0; g < asker.groups.size(); ++g) {
-        const PruneCell *cell = asker.groups[g];
-        const std::uint32_t first = asker.firsts[g], count = asker.counts[g];
-        const float *points[] = {asker.in[0].data() + first, asker.in[1].data() + first,
-                                 asker.in[2].data() + first};
-        for (std::size_t c = 0; c < results.size(); ++c) results[c] = asker.out[c].data() + first;
-        evaluate_in(pruning, asker, *cell, points, results.data(), count);
+    std::vector<float *> results(evaluator.out.size());
+    for (std::size_t g = 0; g < evaluator.groups.size(); ++g) {
+        const PruneCell *cell = evaluator.groups[g];
+        const std::uint32_t first = evaluator.firsts[g], count = evaluator.counts[g];
+        const float *points[] = {evaluator.in[0].data() + first, evaluator.in[1].data() + first,
+                                 evaluator.in[2].data() + first};
+        for (std::size_t c = 0; c < results.size(); ++c)
+            results[c] = evaluator.out[c].data() + first;
+        evaluate_in(pruning, evaluator, *cell, points, results.data(), count);
     }
     for (std::size_t c = 0; c < results.size(); ++c)
         for (std::size_t i = 0; i < left; ++i)
-            out[c][asker.order[i]] = asker.out[c][asker.place[i]];
+            out[c][evaluator.order[i]] = evaluator.out[c][evaluator.place[i]];
 }
 
 } // namespace fathom::cpu

@@ -1,9 +1,9 @@
 // Where in space which parts of a field matter: a hierarchy of cells, 64 in each, with a shorter
 // tape each (shorten.h), or, far from every surface, one number. Cells are made when a point first
 // asks for them and depend on nothing but their place, so that pictures are the same whoever asks
-// first; any number of threads may ask.
+// first; any number of threads may evaluate.
 //
-// A value is that of the whole tape to the bit, unless the asker says that less will do: of a
+// A value is that of the whole tape to the bit, unless the evaluator says that less will do: of a
 // distance that is at least its `limit` any lower bound that is at least the limit. Far cells
 // answer that with the least value that the field takes in them.
 #pragma once
@@ -57,8 +57,8 @@ struct Pruning {
 };
 
 // One thread's memory.
-struct Asker {
-    Asker(const Pruning &pruning, const Inputs &inputs);
+struct CellEvaluator {
+    CellEvaluator(const Pruning &pruning, const Inputs &inputs);
     Shortener shortener;
     ShortTape tape; // of the cell in the making
     Scratch scratch;
@@ -92,12 +92,13 @@ struct Asker {
 };
 
 // out[c][k]: the c-th component of the result at point k. limits: one a point, or none: all exact.
-void ask(const Pruning &pruning, Asker &asker, const float *const *in, float *const *out,
-         std::size_t n, const float *limits = nullptr);
+void evaluate(const Pruning &pruning, CellEvaluator &evaluator, const float *const *in,
+              float *const *out, std::size_t n, const float *limits = nullptr);
 
 // The cell at a place: the root outside of the cube. And the exact values in one that is not far.
-const PruneCell &cell_at(const Pruning &pruning, Asker &asker, float x, float y, float z);
-void evaluate_in(const Pruning &pruning, Asker &asker, const PruneCell &cell,
+const PruneCell &cell_at(const Pruning &pruning, CellEvaluator &evaluator, float x, float y,
+                         float z);
+void evaluate_in(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
                  const float *const *in, float *const *out, std::size_t n);
 
 } // namespace fathom::cpu

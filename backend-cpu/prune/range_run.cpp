@@ -13,7 +13,7 @@ namespace {
 constexpr float endless = std::numeric_limits<float>::infinity();
 constexpr float cut_radii = 4; // how far beyond a chain's end rows are cut off: measured
 constexpr std::uint64_t everywhere = ~std::uint64_t{0};
-constexpr float least_round = 1e-15f; // of smaller radii the squares are no floats any more
+constexpr float min_round = 1e-15f; // of smaller radii the squares are no floats any more
 
 // Runs steps over ranges and notes what wins.
 class RangeRunner {
@@ -52,7 +52,7 @@ class RangeRunner {
     bool shared(std::uint32_t address) const { return address < program_.first_register; }
 
     void copy_ends(const float *from, std::uint32_t address,
-                   std::array<float, most_boxes> &to) const {
+                   std::array<float, max_boxes> &to) const {
         if (shared(address))
             std::fill_n(to.begin(), n_, from[address]);
         else
@@ -94,7 +94,7 @@ class RangeRunner {
             const bool one = shared(part.margin);
             if (kernel_of_variant(parts_.table[id].target) == Kernel::BlendRound &&
                 std::any_of(margin, margin + (one ? 1 : n_),
-                            [](float r) { return r > 0 && r < least_round; }))
+                            [](float r) { return r > 0 && r < min_round; }))
                 break;
             out[0] = below(a, b, margin, one);
             out[1] = below(b, a, margin, one);
@@ -255,7 +255,7 @@ class RangeRunner {
         if (!(k > 0)) return;
         run.cuts = static_cast<std::uint32_t>(memory_.cuts.size());
         auto &cuts = memory_.cuts.emplace_back();
-        std::array<float, most_boxes> beyond{};
+        std::array<float, max_boxes> beyond{};
         for (std::size_t box = 0; box < n_; ++box) {
             const float lo = cells_.lo[carried + box], hi = cells_.hi[carried + box];
             float t = hi + cut_radii * k;
@@ -276,13 +276,13 @@ class RangeRunner {
 
     // By box, the turns that may change something, in their order.
     void list(Shortener::LoopRun &run, std::uint32_t rows) {
-        std::array<std::uint32_t, most_boxes> next{};
+        std::array<std::uint32_t, max_boxes> next{};
         const Shortener::Turn *turns = memory_.turns.data() + run.first_turn;
         for (std::uint32_t i = 0; i < rows; ++i)
             each_bit(~turns[i].neutral, [&](std::size_t box) { ++next[box]; });
         std::uint32_t first = static_cast<std::uint32_t>(memory_.listed.size());
         run.listed[0] = first;
-        for (std::size_t box = 0; box < most_boxes; ++box) {
+        for (std::size_t box = 0; box < max_boxes; ++box) {
             first += next[box];
             next[box] = run.listed[box];
             run.listed[box + 1] = first;

@@ -14,7 +14,7 @@
 
 namespace fathom::cpu {
 
-inline constexpr std::size_t most_boxes = 64;
+inline constexpr std::size_t max_boxes = 64;
 inline constexpr std::uint32_t no_part = 0xffffffffu;
 
 // How a step's value can be one of its operands'.
@@ -81,8 +81,8 @@ struct ShortTape {
 ShortTape whole_tape(const Parts &parts);
 
 struct Boxes {
-    std::size_t count = 0; // a multiple of 16, at most most_boxes
-    std::array<std::array<float, most_boxes>, 3> lo{}, hi{};
+    std::size_t count = 0; // a multiple of 16, at most max_boxes
+    std::array<std::array<float, max_boxes>, 3> lo{}, hi{};
 };
 
 // One thread's memory for it.
@@ -94,7 +94,7 @@ struct Shortener {
         std::uint32_t ends = no_part;   // of a minimum: into `ends`
     };
     struct Ends {
-        std::array<float, most_boxes> lo[2], hi; // its operands' lower ends, its own upper one
+        std::array<float, max_boxes> lo[2], hi; // its operands' lower ends, its own upper one
     };
     struct Turn {
         std::uint64_t neutral = 0, renewed = 0; // nothing changes; nothing of before is left
@@ -102,13 +102,13 @@ struct Shortener {
     };
     struct LoopRun {
         std::uint32_t first_turn = 0, first_low = 0, ends = no_part, cuts = no_part;
-        std::array<std::uint32_t, most_boxes + 1> listed{}; // where each box's begin
+        std::array<std::uint32_t, max_boxes + 1> listed{}; // where each box's begin
     };
     std::vector<Chosen> chosen; // by step of the tape at hand
     std::vector<Ends> ends;
     std::vector<Turn> turns;
-    std::vector<std::array<Cut, most_boxes>> cuts; // of chains
-    std::vector<float> lows;                       // least loops and chains: by turn and box
+    std::vector<std::array<Cut, max_boxes>> cuts; // of chains
+    std::vector<float> lows;                      // least loops and chains: by turn and box
     std::vector<LoopRun> loop_runs;
     std::vector<std::uint32_t> listed; // by box of a loop: turns that may change something
     std::vector<std::uint32_t> kept;   // turns of the loop at hand, from the last
@@ -116,7 +116,7 @@ struct Shortener {
     std::vector<float> cutoff;         // by slot: its value matters as far as it is not above this
     std::uint32_t epoch = 0;
     std::size_t boxes = 0;
-    std::array<float, most_boxes> result_lo{}, result_hi{}; // of the first result, by box
+    std::array<float, max_boxes> result_lo{}, result_hi{}; // of the first result, by box
 };
 
 // First what a tape that holds in all boxes comes to in each, then, box by box, what of it is left.

@@ -9,7 +9,7 @@ namespace {
 class Marcher {
   public:
     Marcher(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings)
-        : worker_(worker), pruning_(*worker.stage.pruning), asker_(*worker.asker),
+        : worker_(worker), pruning_(*worker.stage.pruning), evaluator_(*worker.evaluator),
           memory_(*worker.cell_march), rays_(rays), landings_(landings), lengths_(worker.stage),
           max_steps_(worker.stage.scene->render.max_steps), steep_(worker.stage.frame.steep) {}
 
@@ -18,7 +18,7 @@ class Marcher {
         memory_.next.resize(std::max(memory_.next.size(), rays_.size()));
         memory_.stops.clear(), memory_.queue.clear();
         ++memory_.turn;
-        if (memory_.seen.empty()) memory_.seen.resize(4 * most_rays);
+        if (memory_.seen.empty()) memory_.seen.resize(4 * max_rays);
         for (std::uint32_t i = 0; i < rays_.size(); ++i) {
             landings_[i] = {};
             memory_.walks[i] = {};
@@ -32,7 +32,7 @@ class Marcher {
                 continue;
             }
             halt(memory_.queue[first++]);
-            if (memory_.arriving.rays.size() > most_rays / 2) arrive();
+            if (memory_.arriving.rays.size() > max_rays / 2) arrive();
         }
     }
 
@@ -43,12 +43,12 @@ class Marcher {
         const RayState &ray = rays_[i];
         while (goes_on(i)) {
             const Vec p = ray.origin + walk.t * ray.direction;
-            const PruneCell &cell = cell_at(pruning_, asker_, p.x, p.y, p.z);
+            const PruneCell &cell = cell_at(pruning_, evaluator_, p.x, p.y, p.z);
             if (!(cell.far > 0 && cell.far >= limit_at(walk.t, lengths_))) {
                 wait(i, cell.far > 0 ? *cell.above : cell);
                 return;
             }
-            ++asker_.tally.far, ++worker_.work.evaluations;
+            ++evaluator_.tally.far, ++worker_.work.evaluations;
             walk.d = cell.far;
             ++walk.steps;
             if (walk.steps < max_steps_ && apart(walk))
@@ -110,7 +110,7 @@ class Marcher {
         }
         worker_.work.evaluations += here.size();
         float *out = worker_.values.data();
-        evaluate_in(pruning_, asker_, cell, worker_.points.pointers(), &out, here.size());
+        evaluate_in(pruning_, evaluator_, cell, worker_.points.pointers(), &out, here.size());
         for (std::size_t k = 0; k < here.size(); ++k) {
             const std::uint32_t i = here[k];
             if (step(i, worker_.values[k])) go_on(i);
@@ -127,7 +127,7 @@ class Marcher {
             go_back(walk, lengths_, false);
             return true;
         }
-        if (d <= reach_at(walk, lengths_, max_steps_)) {
+        if (d <= tolerance_at(walk, lengths_, max_steps_)) {
             if (!steep_) {
                 landings_[i] = {walk.t + d, walk.steps};
                 return false;
@@ -152,7 +152,7 @@ class Marcher {
         for (std::size_t k = 0; k < count; ++k) {
             const std::uint32_t i = arriving.rays[k];
             Walk &walk = memory_.walks[i];
-            if (arriving.distances[k] <= reach_at(walk, lengths_, max_steps_)) {
+            if (arriving.distances[k] <= tolerance_at(walk, lengths_, max_steps_)) {
                 landings_[i] = {walk.t + walk.d, walk.steps};
             } else {
                 advance(walk, rays_[i].end, lengths_, false);
@@ -164,7 +164,7 @@ class Marcher {
 
     Worker &worker_;
     const Pruning &pruning_;
-    Asker &asker_;
+    CellEvaluator &evaluator_;
     CellMarch &memory_;
     std::span<const RayState> rays_;
     std::span<Landing> landings_;

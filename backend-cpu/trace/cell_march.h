@@ -4,7 +4,7 @@
 // cells come changes no ray's walk.
 #pragma once
 
-#include "backend-cpu/trace/walk.h"
+#include "backend-cpu/trace/ray.h"
 
 namespace fathom::cpu {
 

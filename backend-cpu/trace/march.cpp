@@ -1,5 +1,5 @@
 // Rays through the field, in batches from which those that are done drop out. Names and order
-// follow ir/look.h and backend-glsl/marcher.cpp.
+// follow ir/shading.h and backend-glsl/marcher.cpp.
 #include "backend-cpu/trace/cell_march.h"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace fathom::cpu {
 
-namespace look = ir::look;
+namespace shading = ir::shading;
 
 Lengths::Lengths(const Stage &stage)
     : slack(static_cast<float>(stage.frame.slack)), pixel(static_cast<float>(stage.frame.pixel)),
@@ -16,7 +16,7 @@ Lengths::Lengths(const Stage &stage)
       slope(static_cast<float>(stage.frame.tolerance_slope)),
       orthographic(stage.view.orthographic) {}
 
-float Lengths::arm(float t) const { return tolerance(t) + look::normal_slack * slack; }
+float Lengths::arm(float t) const { return tolerance(t) + shading::normal_slack * slack; }
 
 Inside box(const ir::Frame &frame, Vec origin, Vec direction) {
     auto safe = [](float d) { return std::fabs(d) < 1e-20f ? 1e-20f : d; };
@@ -41,23 +41,23 @@ RayState clipped(const Stage &stage, Vec origin, Vec direction) {
 void distances(Worker &worker, const Columns &points, float *out, std::size_t n,
                const float *limits) {
     worker.work.evaluations += n;
-    if (worker.asker)
-        ask(*worker.stage.pruning, *worker.asker, points.pointers(), &out, n, limits);
+    if (worker.evaluator)
+        evaluate(*worker.stage.pruning, *worker.evaluator, points.pointers(), &out, n, limits);
     else
         evaluate(worker.stage.distance, worker.distance, points.pointers(), &out, n);
 }
-void reaches(Worker &worker, const Columns &points, float *out, float *spans, std::size_t n) {
+void safe_radii(Worker &worker, const Columns &points, float *out, float *spans, std::size_t n) {
     worker.work.evaluations += n;
     float *const both[] = {out, spans};
-    evaluate(worker.stage.reach, worker.reach, points.pointers(), both, n);
+    evaluate(worker.stage.safe_radius, worker.safe_radius, points.pointers(), both, n);
 }
 bool is_bound(const Worker &worker, std::size_t k) {
-    return worker.asker && worker.asker->bounded[k] != 0;
+    return worker.evaluator && worker.evaluator->bounded[k] != 0;
 }
 void hits(Worker &worker, std::size_t n) {
-    if (worker.hit_asker)
-        ask(*worker.stage.hit_pruning, *worker.hit_asker, worker.points.pointers(),
-            worker.hits.pointers(), n);
+    if (worker.hit_evaluator)
+        evaluate(*worker.stage.hit_pruning, *worker.hit_evaluator, worker.points.pointers(),
+                 worker.hits.pointers(), n);
     else
         evaluate(worker.stage.hit, worker.hit, worker.points.pointers(), worker.hits.pointers(), n);
 }
@@ -83,7 +83,7 @@ void near(Worker &worker, const Vec *points, const float *d, const float *h, flo
     std::vector<Vec> slopes(n);
     gradients(worker, points, h, slopes.data(), n);
     for (std::size_t k = 0; k < n; ++k)
-        out[k] = d[k] / clamp(length(slopes[k]), look::least_slope, 1.0f);
+        out[k] = d[k] / clamp(length(slopes[k]), shading::min_slope, 1.0f);
 }
 
 namespace {
@@ -114,7 +114,7 @@ namespace {
 void march_together(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings,
                     bool brute) {
     const Lengths lengths(worker.stage);
-    const bool reaching = worker.stage.reaches && !brute;
+    const bool by_curvature = worker.stage.has_safe_radius && !brute;
     const int max_steps = worker.stage.scene->render.max_steps * (brute ? 100 : 1);
     std::vector<Walk> walks(rays.size());
     std::vector<std::size_t> active;
@@ -123,7 +123,7 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
         landings[i] = {};
         if (rays[i].end >= rays[i].begin) active.push_back(i);
     }
-    const auto reach = [&](const Walk &walk) { return reach_at(walk, lengths, max_steps); };
+    const auto reach = [&](const Walk &walk) { return tolerance_at(walk, lengths, max_steps); };
     Arrivals arrivals;
     while (!active.empty()) {
         // Who has run out of steps or of way is done.
@@ -138,9 +138,9 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
             const float t = walks[active[k]].t;
             worker.points.set(0, k, ray.origin + t * ray.direction);
         }
-        if (reaching)
-            reaches(worker, worker.points, worker.values.data(), worker.spans.data(),
-                    active.size());
+        if (by_curvature)
+            safe_radii(worker, worker.points, worker.values.data(), worker.spans.data(),
+                       active.size());
         else
             distances(worker, worker.points, worker.values.data(), active.size());
         arrivals.clear();
@@ -148,10 +148,10 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
             Walk &walk = walks[active[k]];
             const RayState &ray = rays[active[k]];
             walk.d = worker.values[k];
-            if (reaching) walk.span = worker.spans[k];
+            if (by_curvature) walk.span = worker.spans[k];
             ++walk.steps;
             if (!brute && walk.steps < max_steps && apart(walk)) {
-                go_back(walk, lengths, reaching);
+                go_back(walk, lengths, by_curvature);
             } else if (walk.d <= reach(walk)) {
                 arrivals.add(active[k], ray.origin + walk.t * ray.direction, walk.d,
                              lengths.arm(walk.t));
@@ -175,7 +175,7 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
 
 void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings,
            bool brute) {
-    if (worker.asker && !brute)
+    if (worker.evaluator && !brute)
         march_by_cells(worker, rays, landings);
     else
         march_together(worker, rays, landings, brute);
@@ -198,7 +198,7 @@ void shadows(Worker &worker, std::span<const ShadowRay> rays, float angle, std::
     std::vector<float> d, arms, truth;
     std::vector<char> bounds;
     for (std::size_t i = 0; i < rays.size(); ++i) states[i].s = rays[i].reach;
-    for (int turn = 0; turn < look::shadow_steps && !active.empty(); ++turn) {
+    for (int turn = 0; turn < shading::shadow_steps && !active.empty(); ++turn) {
         std::erase_if(active, [&](std::size_t i) { return !(states[i].s > rays[i].margin); });
         for (std::size_t k = 0; k < active.size(); ++k) {
             const ShadowRay &ray = rays[active[k]];

@@ -1,4 +1,4 @@
-// The CPU's pictures: ir/look.h over batches of rays, in float32 and in the order of
+// The CPU's pictures: ir/shading.h over batches of rays, in float32 and in the order of
 // backend-glsl/marcher.cpp, on all cores. Opens and prints nothing.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace fathom::cpu {
 struct Work {
     std::uint64_t rays = 0; // from the eye
     std::uint64_t hits = 0;
-    std::uint64_t steps = 0; // of rays from the eye: evaluations on their way, look.h's `steps`
+    std::uint64_t steps = 0; // of rays from the eye: evaluations on their way, shading.h's `steps`
     std::uint64_t shadow_steps = 0;
     std::uint64_t evaluations = 0; // of the distance, for whatever purpose
     // With pruning: of those, how many a far cell answered; what cells near the surface keep of the
@@ -40,16 +40,16 @@ struct Stage {
     ir::Frame frame;
     Inputs inputs;
     Program distance, hit, background;
-    Program reach; // Scene::reach, where `reaches`: not with pruning
+    Program safe_radius; // Scene::safe_radius, where `reaches`: not with pruning
     std::shared_ptr<const Pruning> pruning, hit_pruning; // none: not worth it
     std::vector<Program> surfaces;
     std::vector<ir::LightValue> lights;
-    bool has_background = false, reaches = false;
+    bool has_background = false, has_safe_radius = false;
     bool local_normals = false; // some surface reads its normal
-    struct Look {
+    struct Shading {
         float ambient[3] = {};
         float ambient_occlusion = 0, shadow_darkness = 0, soft_shadows = 0, specular_intensity = 0;
-    } look;
+    } shading;
 };
 Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int height, double time,
               Prune prune = Prune::Auto);

@@ -3,7 +3,7 @@
 // time.
 #include "backend-cpu/trace/rays.h"
 
-#include "ir/look.h"
+#include "ir/shading.h"
 
 #include <algorithm>
 #include <atomic>
@@ -95,8 +95,8 @@ Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int heigh
     stage.distance = compile(scene, scene.distance);
     stage.hit = compile(scene, scene.hit);
     prune(stage, how);
-    stage.reaches = scene.reach && !stage.pruning;
-    if (stage.reaches) stage.reach = compile(scene, scene.reach);
+    stage.has_safe_radius = scene.safe_radius && !stage.pruning;
+    if (stage.has_safe_radius) stage.safe_radius = compile(scene, scene.safe_radius);
     stage.has_background = static_cast<bool>(scene.background_function);
     if (stage.has_background) stage.background = compile(scene, scene.background_function);
     for (const ir::Surface &surface : scene.surfaces) {
@@ -109,21 +109,21 @@ Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int heigh
     stage.lights = ir::lights_of(scene, time, view);
     const ir::Lighting &lighting = scene.lighting;
     const auto ambient = ir::value_of(scene, lighting.ambient, time);
-    for (std::size_t c = 0; c < 3; ++c) stage.look.ambient[c] = static_cast<float>(ambient[c]);
-    stage.look.ambient_occlusion = number_of(scene, lighting.ambient_occlusion, time);
-    stage.look.shadow_darkness = number_of(scene, lighting.shadow_darkness, time);
-    stage.look.soft_shadows = number_of(scene, lighting.soft_shadows, time);
-    stage.look.specular_intensity = number_of(scene, lighting.specular_intensity, time);
+    for (std::size_t c = 0; c < 3; ++c) stage.shading.ambient[c] = static_cast<float>(ambient[c]);
+    stage.shading.ambient_occlusion = number_of(scene, lighting.ambient_occlusion, time);
+    stage.shading.shadow_darkness = number_of(scene, lighting.shadow_darkness, time);
+    stage.shading.soft_shadows = number_of(scene, lighting.soft_shadows, time);
+    stage.shading.specular_intensity = number_of(scene, lighting.specular_intensity, time);
     return stage;
 }
 
 Worker::Worker(const Stage &s)
     : stage(s), distance(make_scratch(s.distance, s.inputs)), hit(make_scratch(s.hit, s.inputs)) {
-    if (s.reaches) reach = make_scratch(s.reach, s.inputs);
+    if (s.has_safe_radius) safe_radius = make_scratch(s.safe_radius, s.inputs);
     if (s.has_background) background = make_scratch(s.background, s.inputs);
     for (const Program &surface : s.surfaces) surfaces.push_back(make_scratch(surface, s.inputs));
-    if (s.pruning) asker.emplace(*s.pruning, s.inputs);
-    if (s.hit_pruning) hit_asker.emplace(*s.hit_pruning, s.inputs);
+    if (s.pruning) evaluator.emplace(*s.pruning, s.inputs);
+    if (s.hit_pruning) hit_evaluator.emplace(*s.hit_pruning, s.inputs);
 }
 
 namespace {
@@ -224,8 +224,8 @@ std::vector<Landing> cast(const Stage &stage, std::span<const Ray> rays, bool br
     for (const Ray &ray : rays)
         states.push_back(clipped(stage, {ray.origin[0], ray.origin[1], ray.origin[2]},
                                  {ray.direction[0], ray.direction[1], ray.direction[2]}));
-    for (std::size_t first = 0; first < rays.size(); first += most_rays) {
-        const std::size_t count = std::min(most_rays, rays.size() - first);
+    for (std::size_t first = 0; first < rays.size(); first += max_rays) {
+        const std::size_t count = std::min(max_rays, rays.size() - first);
         march(worker, std::span(states).subspan(first, count),
               std::span(landings).subspan(first, count), brute);
     }
@@ -256,8 +256,8 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
             if (progress && !cancelled && !progress(done, tiles[i], picture)) cancelled = true;
         }
         const std::lock_guard lock(report);
-        if (worker.asker) {
-            const Asker::Tally &tally = worker.asker->tally;
+        if (worker.evaluator) {
+            const CellEvaluator::Tally &tally = worker.evaluator->tally;
             worker.work.far = tally.far;
             worker.work.near = tally.near;
             worker.work.near_shapes = tally.shapes;

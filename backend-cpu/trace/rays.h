@@ -53,7 +53,7 @@ class Columns {
 };
 
 inline constexpr int tile_side = 32;
-inline constexpr std::size_t most_rays = tile_side * tile_side;
+inline constexpr std::size_t max_rays = tile_side * tile_side;
 
 struct CellMarch;
 
@@ -61,16 +61,16 @@ struct CellMarch;
 struct Worker {
     explicit Worker(const Stage &stage);
     const Stage &stage;
-    Scratch distance, reach, hit, background;
-    std::optional<Asker> asker, hit_asker;
-    std::vector<float> limits = std::vector<float>(most_rays);
+    Scratch distance, safe_radius, hit, background;
+    std::optional<CellEvaluator> evaluator, hit_evaluator;
+    std::vector<float> limits = std::vector<float>(max_rays);
     std::vector<Scratch> surfaces;
-    Columns points{3, most_rays};
-    std::vector<float> values = std::vector<float>(most_rays);
-    std::vector<float> spans = std::vector<float>(most_rays);
-    Columns taps{3, most_rays};
-    std::vector<float> tap_values = std::vector<float>(most_rays);
-    Columns hits{9, most_rays};
+    Columns points{3, max_rays};
+    std::vector<float> values = std::vector<float>(max_rays);
+    std::vector<float> spans = std::vector<float>(max_rays);
+    Columns taps{3, max_rays};
+    std::vector<float> tap_values = std::vector<float>(max_rays);
+    Columns hits{9, max_rays};
     std::shared_ptr<CellMarch> cell_march; // made when first needed
     Work work;
 };
@@ -100,8 +100,8 @@ RayState clipped(const Stage &stage, Vec origin,
 // exact.
 void distances(Worker &worker, const Columns &points, float *out, std::size_t n,
                const float *limits = nullptr);
-// The distances, and how far they reach (Scene::reach).
-void reaches(Worker &worker, const Columns &points, float *out, float *spans, std::size_t n);
+// The distances, and how far they reach (Scene::safe_radius).
+void safe_radii(Worker &worker, const Columns &points, float *out, float *spans, std::size_t n);
 bool is_bound(const Worker &worker, std::size_t k); // of the last distances'
 void hits(Worker &worker, std::size_t n);           // at worker.points, into worker.hits
 // The gradients of the distance at n points, with arms h.

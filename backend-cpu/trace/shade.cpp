@@ -1,15 +1,15 @@
-// The colours of rays, by ir/look.h: normals, surfaces grouped by paint, lights with their shadows,
+// The colours of rays, by ir/shading.h: normals, surfaces grouped by paint, lights with their shadows,
 // occlusion. Names and order follow backend-glsl/marcher.cpp.
 #include "backend-cpu/trace/rays.h"
 
-#include "ir/look.h"
+#include "ir/shading.h"
 
 #include <algorithm>
 #include <bit>
 
 namespace fathom::cpu {
 
-namespace look = ir::look;
+namespace shading = ir::shading;
 
 namespace {
 
@@ -39,7 +39,7 @@ void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
 constexpr std::size_t paint_row = 1, point_row = 2,
                       extra_row = 5; // of a hit: distance, paint, point, extra
 
-void ask_hits(Worker &worker, std::span<const Vec> points) {
+void evaluate_hits(Worker &worker, std::span<const Vec> points) {
     for (std::size_t k = 0; k < points.size(); ++k) worker.points.set(0, k, points[k]);
     hits(worker, points.size());
 }
@@ -51,10 +51,10 @@ void find_materials(Worker &worker, Points &at) {
     if (stage.local_normals) { // the normal in the space where the paint stands
         std::vector<Vec> beside(count);
         for (std::size_t k = 0; k < count; ++k) beside[k] = at.p[k] + at.h[k] * at.n[k];
-        ask_hits(worker, beside);
+        evaluate_hits(worker, beside);
         for (std::size_t k = 0; k < count; ++k) local[k] = worker.hits.vec(point_row, k);
     }
-    ask_hits(worker, at.p);
+    evaluate_hits(worker, at.p);
     if (stage.local_normals)
         for (std::size_t k = 0; k < count; ++k) {
             const Vec turned = local[k] - worker.hits.vec(point_row, k);
@@ -90,10 +90,10 @@ std::vector<float> find_occlusion(Worker &worker, const Points &at) {
     std::vector<float> sum(count, 0.0f), d(count), dq, h, truth;
     std::vector<std::size_t> close;
     std::vector<Vec> q;
-    const float reach = look::occlusion_reach * static_cast<float>(worker.stage.frame.radius) /
-                        static_cast<float>(look::occlusion_samples);
+    const float reach = shading::occlusion_reach * static_cast<float>(worker.stage.frame.radius) /
+                        static_cast<float>(shading::occlusion_samples);
     float weight = 1, total = 0;
-    for (int sample = 0; sample < look::occlusion_samples; ++sample) {
+    for (int sample = 0; sample < shading::occlusion_samples; ++sample) {
         const float x = reach * static_cast<float>(sample + 1);
         weight *= 0.5f;
         total += weight;
@@ -127,11 +127,11 @@ void add_light(Worker &worker, std::span<const RayState> rays, const Points &at,
                const ir::LightValue &light, std::span<Vec> colors) {
     const Stage &stage = worker.stage;
     const Lengths lengths(stage);
-    const Stage::Look &lighting = stage.look;
+    const Stage::Shading &lighting = stage.shading;
     std::vector<Facing> lit;
     std::vector<ShadowRay> shadow_rays;
     for (std::size_t k = 0; k < at.size(); ++k) {
-        const float margin = look::shadow_bias * lengths.tolerance(at.t[k]);
+        const float margin = shading::shadow_bias * lengths.tolerance(at.t[k]);
         const Vec q = at.p[k] + margin * at.n[k];
         const Vec way = light.directional ? vec(light.position) : vec(light.position) - q;
         const float away = length(way);
@@ -146,7 +146,7 @@ void add_light(Worker &worker, std::span<const RayState> rays, const Points &at,
     std::vector<float> seen(lit.size(), 1.0f);
     if (lighting.shadow_darkness > 0) {
         std::vector<float> shadow(lit.size());
-        shadows(worker, shadow_rays, std::max(lighting.soft_shadows, look::least_angle), shadow);
+        shadows(worker, shadow_rays, std::max(lighting.soft_shadows, shading::min_angle), shadow);
         for (std::size_t i = 0; i < lit.size(); ++i)
             seen[i] -= lighting.shadow_darkness * (1.0f - shadow[i]);
     }
@@ -169,7 +169,7 @@ void see_background(Worker &worker, std::span<const RayState> rays,
         if (landings[i].t < 0) missed.push_back(i);
     if (!worker.stage.has_background) {
         for (std::size_t i : missed)
-            colors[i] = {look::background[0], look::background[1], look::background[2]};
+            colors[i] = {shading::background[0], shading::background[1], shading::background[2]};
         return;
     }
     for (std::size_t k = 0; k < missed.size(); ++k)
@@ -204,12 +204,12 @@ void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landi
         return;
     }
     std::vector<float> open(at.size(), 1.0f);
-    if (stage.look.ambient_occlusion > 0) {
+    if (stage.shading.ambient_occlusion > 0) {
         const std::vector<float> occlusion = find_occlusion(worker, at);
         for (std::size_t k = 0; k < at.size(); ++k)
-            open[k] -= stage.look.ambient_occlusion * occlusion[k];
+            open[k] -= stage.shading.ambient_occlusion * occlusion[k];
     }
-    const Vec ambient{stage.look.ambient[0], stage.look.ambient[1], stage.look.ambient[2]};
+    const Vec ambient{stage.shading.ambient[0], stage.shading.ambient[1], stage.shading.ambient[2]};
     for (std::size_t k = 0; k < at.size(); ++k) {
         const Material &m = at.material[k];
         colors[at.ray[k]] = open[k] * m.diffuse * ambient + m.emission;

@@ -165,7 +165,7 @@ float fathom_worley(vec3 p) {
 }
 
 $# A cell's spots, at most eight, are written out: as a loop's turns they would add up with the march's
-$# to more than llvmpipe grants a shader (turns_together).
+$# to more than llvmpipe grants a shader (iterations_together).
 $helper fathom_spot_noise needs fathom_worley_point fathom_hash_more
 float fathom_spot(vec3 x, vec3 corner, inout uint h, bool there) {
     h = fathom_hash_more(h, 1u);

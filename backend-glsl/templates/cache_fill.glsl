@@ -32,7 +32,7 @@ void fathom_fill(uint index) {
         if ($WIDE[which]) imageStore(fathom_cache_wide, 2 * place + corner, corners[i]);
         else imageStore(fathom_cache_pool, 2 * place + corner, corners[i]);
     }
-    // Between its corners the kept field's slope along x does not depend on x, and so on: the square of its steepness
+    // Between its corners the cached field's slope along x does not depend on x, and so on: the square of its steepness
     // is convex in each of x, y and z and so greatest at a corner, where it is that of the three edges that meet there.
     // Where that is more than what is proved of the field, steps could be too long: it is computed there.
     float steep = 0.0;

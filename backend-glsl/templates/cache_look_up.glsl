@@ -1,6 +1,6 @@
 $# Reading the noise cache in a picture (cache.h).
 
-// FATHOM_CACHE is defined by a host that runs the passes of the noise cache: then this text reads kept values alone, and
+// FATHOM_CACHE is defined by a host that runs the passes of the noise cache: then this text reads cached values alone, and
 // a pixel that wants one which is absent is left to the text with FATHOM_CACHE_LEARN, which computes every field.
 #if defined(FATHOM_CACHE) || defined(FATHOM_CACHE_LEARN)
 uniform int fathom_cache_bits = 0, fathom_cache_ages = 4;
@@ -32,7 +32,7 @@ float fathom_began() {
 }
 
 // Whether the field's value at p is in the cache, and where in the pool.
-bool fathom_kept(vec3 p, float cell, int field, out vec3 at) {
+bool fathom_cached(vec3 p, float cell, int field, out vec3 at) {
     at = vec3(0.0);
     vec3 q = p / cell;
     vec3 corner = floor(q);
@@ -65,11 +65,11 @@ const bool fathom_absent = false;
 float fathom_width = 0.0;
 void fathom_step(float t, float before, float stride, int steps) {}
 #ifdef FATHOM_CACHE_LEARN
-// Defined where every field is computed of what the kept values left over: of all that such a pixel asks, $WISHES by
+// Defined where every field is computed of what the cached values left over: of all that such a pixel asks, $WISHES by
 // chance are asked for. So the pixels of a frame together ask for what lies all along their rays, not for the next cell
 // alone.
 uniform uint fathom_cache_frame = 0u;
-uniform sampler2D fathom_cache_starts; // where the picture of kept values first asked for one
+uniform sampler2D fathom_cache_starts; // where the picture of cached values first asked for one
 
 ivec4 fathom_wishes[$WISHES], fathom_asked = ivec4(0, 0, 0, -1);
 uint fathom_asks = 0u, fathom_random = 0u;

@@ -5,14 +5,14 @@ layout(location = 0) out vec4 fathom_color;
 $else
 out vec4 fathom_color;
 $end
-$if KEPT
+$if CACHED
 $include cache_outputs
 $end
 
 void main() {
     vec2 place = vec2(gl_FragCoord.x, fathom_resolution.y - gl_FragCoord.y);
     fathom_color = fathom_picture(place + fathom_offset - 0.5);
-$if KEPT
+$if CACHED
 $include cache_output
 $end
 }

@@ -7,7 +7,7 @@ $INPUTS
 const float sdf_lipschitz = $BOUND;
 $FUNCTIONS
 $HIT
-$LOOKS
+$SHADING
 
 // What p, on or near a surface with that normal, is made of.
 fathom_Material material(vec3 p, vec3 normal) {

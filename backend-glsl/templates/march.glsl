@@ -1,5 +1,5 @@
-$# Ray marching by ir/look.h (LENGTHS, TRUE DISTANCE, MARCH), which explains; the sibling of
-$# backend-cpu/trace/march.cpp. The scene: float sdf(vec3), and with REACHES vec2 fathom_reach(vec3).
+$# Ray marching by ir/shading.h (LENGTHS, TRUE DISTANCE, MARCH), which explains; the sibling of
+$# backend-cpu/trace/march.cpp. The scene: float sdf(vec3), and with HAS_SAFE_RADIUS vec2 fathom_safe_radius(vec3).
 
 // ---- how rays are marched and points are shaded ----
 
@@ -23,7 +23,7 @@ float fathom_tolerance(float t) {
 float fathom_arm(float t) {
     return fathom_tolerance(t) + $NORMAL_SLACK * fathom_slack;
 }
-$if REACHES
+$if HAS_SAFE_RADIUS
 
 float fathom_span; // how far the last of the distances reaches
 $end
@@ -34,8 +34,8 @@ $include corner
 // the field was divided by a bound; else d again.
 $if APART
 float fathom_near(vec3 p, float h, float limit, out float d) {
-$if REACHES
-    vec2 f = fathom_reach(p);
+$if HAS_SAFE_RADIUS
+    vec2 f = fathom_safe_radius(p);
     d = f.x;
     fathom_span = f.y;
 $else
@@ -47,22 +47,22 @@ $end
         vec3 e = fathom_corner(i);
         sum += e * sdf(p + h * e);
     }
-    return d / clamp(length(0.75 / h * sum), $LEAST_SLOPE, 1.0);
+    return d / clamp(length(0.75 / h * sum), $MIN_SLOPE, 1.0);
 }
 $else
 float fathom_near(vec3 p, float h, float limit, out float d) {
     vec3 sum = vec3(0.0);
     for (int i = $ZERO; i < 5$AND_PRESENT; ++i) {
         vec3 e = i == 0 ? vec3(0.0) : fathom_corner(i - 1);
-$if REACHES
-        vec2 both = fathom_reach(p + h * e);
+$if HAS_SAFE_RADIUS
+        vec2 both = fathom_safe_radius(p + h * e);
         float f = both.x;
 $else
         float f = sdf(p + h * e);
 $end
         if (i == 0) {
             d = f;
-$if REACHES
+$if HAS_SAFE_RADIUS
             fathom_span = both.y;
 $end
             if (!(d <= limit)) return d;
@@ -70,7 +70,7 @@ $end
         }
         sum += e * f;
     }
-    return d / clamp(length(0.75 / h * sum), $LEAST_SLOPE, 1.0);
+    return d / clamp(length(0.75 / h * sum), $MIN_SLOPE, 1.0);
 }
 $end
 $end
@@ -93,11 +93,11 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     float before = 0.0;
     float stride = 0.0;
     float d = 0.0;
-$if REACHES
+$if HAS_SAFE_RADIUS
     float reached = 0.0;
 $end
     int steps = 0;
-$if KEPT
+$if CACHED
 $# What was reached by curvature is not remembered: 0 proves less, and costs a step.
     fathom_resume(t, before, stride, steps);
 $end
@@ -118,7 +118,7 @@ $end
         bool last = steps == $MAX_STEPS - 1;
         float reach = fathom_tolerance(t);
         if (last) reach = max(reach, fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t);
-$if KEPT
+$if CACHED
         fathom_width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
         fathom_step(t, before, stride, steps);
 $end
@@ -127,12 +127,12 @@ $if STEEP
 $else
         d = sdf(p);
 $end
-$if KEPT
-$# Where a kept value is absent the pixel is left to the text that computes all, so that
+$if CACHED
+$# Where a cached value is absent the pixel is left to the text that computes all, so that
 $# what the ray sees is one field (docs/noise-cache.md): its loops end at once.
         if (fathom_absent) break;
 $end
-$if REACHES
+$if HAS_SAFE_RADIUS
         if (!last && stride > before + max(d, 0.0) && !(d > 0.0 && stride <= reached + fathom_span)) {
             float to = reached + $NEARER_PART * min(fathom_span, reached);
             if (!(d > 0.0)) to = min(reached, stride * before / (before - d) - 0.5 * fathom_tolerance(t));
@@ -154,7 +154,7 @@ $end
         }
         d = max(d, 0.25 * fathom_slack);
         float next = d;
-$if REACHES
+$if HAS_SAFE_RADIUS
         float span = max(fathom_span, d);
         if (span > d) {
             next = span;
@@ -171,7 +171,7 @@ $end
         float proved = max(end, t + d);
         next = min(next, proved - t);
         before = d;
-$if REACHES
+$if HAS_SAFE_RADIUS
         reached = span;
 $end
         stride = next;

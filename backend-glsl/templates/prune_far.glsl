@@ -22,5 +22,5 @@ vec2 fathom_clear(vec3 p, vec3 direction, float margin) {
     float along = dot(away, direction);
     float half_chord = sqrt(along * along + inside);
     vec2 both = vec2(half_chord + along, half_chord - along);
-    return both.y > $LEAST_WAY * length(size) ? both : vec2(0.0);
+    return both.y > $MIN_WAY * length(size) ? both : vec2(0.0);
 }

@@ -1,4 +1,4 @@
-$# Shading by ir/look.h (SHADOW, OCCLUSION, SHADING); the sibling of backend-cpu/trace/shade.cpp.
+$# Shading by ir/shading.h (SHADOW, OCCLUSION, SHADING); the sibling of backend-cpu/trace/shade.cpp.
 $# The scene: Hit fathom_hit(vec3), fathom_material, fathom_lighting, fathom_light (marcher.h).
 $if !SKIP_SHADING
 
@@ -39,7 +39,7 @@ $end
 $if AROUND
         fathom_exact = false;
 $end
-$if KEPT
+$if CACHED
         if (fathom_absent) break;
 $end
         float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
@@ -146,7 +146,7 @@ $else
     vec3 color = open * m.diffuse * look.ambient + m.emission;
     float margin = $SHADOW_BIAS * fathom_tolerance(t);
     vec3 q = p + margin * n;
-    float angle = max(look.soft_shadows, $LEAST_ANGLE);
+    float angle = max(look.soft_shadows, $MIN_ANGLE);
 $if ONE_LIGHT
     {
         fathom_Light light = fathom_light(0);

@@ -1,4 +1,4 @@
-// By hand: what goes round a `float map(vec3)`. The same algorithm and look as Fathom's (ir/look.h):
+// By hand: what goes round a `float map(vec3)`. The same algorithm and look as Fathom's (ir/shading.h):
 // enhanced sphere tracing in the scene's box, a tetrahedron's gradient, five samples of occlusion,
 // one soft shadow, Phong. LO, HI: the box. LIPSCHITZ_DIVIDED: map was divided by a bound, so looks
 // need |f|/|grad f|.

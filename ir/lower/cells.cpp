@@ -89,7 +89,7 @@ NodeId Lowering::bent_by_cells(ShapeId id, Where frame) {
     const NodeId p = frame.p;
     const Region region = region_of(id, frame);
     const InCell here = in_cell(id, region_nearest(g, region, p));
-    const NodeId field = ask(Reading::Raw, shape(id).children.front(), inside(id, frame));
+    const NodeId field = expression_of(Reading::Raw, shape(id).children.front(), inside(id, frame));
     const NodeId bent = g.make(
         Op::Sqrt, {g.make(Op::Max, {g.mul(field, g.div(g.number(2), here.bend)), g.number(0)})});
     const NodeId held = g.make(Op::Min, {here.wall, g.neg(region_distance(g, region, p))});

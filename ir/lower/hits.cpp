@@ -17,12 +17,14 @@ NodeId Lowering::point3(NodeId p) {
 // The surface that shows on a shape whose distance is not a mere min or max of its children's.
 NodeId Lowering::colored(ShapeId id, Where frame) {
     const Shape &s = shape(id);
-    const auto child = [&](std::size_t i) { return ask(Reading::Hit, s.children[i], frame); };
+    const auto child = [&](std::size_t i) {
+        return expression_of(Reading::Hit, s.children[i], frame);
+    };
     if (s.kind == ShapeKind::Map)
-        return ask(Reading::Hit, s.children.front(), at(frame, read(s.args[0], frame)));
+        return expression_of(Reading::Hit, s.children.front(), at(frame, read(s.args[0], frame)));
     if (s.kind == ShapeKind::Within)
-        return ask(Reading::Hit, s.children.front(), inside(id, frame));
-    if (s.kind == ShapeKind::Many) return many(Reading::Hit, id, frame);
+        return expression_of(Reading::Hit, s.children.front(), inside(id, frame));
+    if (s.kind == ShapeKind::Instances) return many(Reading::Hit, id, frame);
     if (s.kind == ShapeKind::Lerp) { // the operand with the greater weight: t against 1 - t
         const NodeId t = read(s.args[0], frame), half = graph_.number(0.5);
         return least(Reading::Hit,
@@ -48,17 +50,19 @@ NodeId Lowering::painted(ShapeId id, Where frame) {
     const NodeId point = point3(frame.p), extra = pack(packing_of(std::move(vars)), frame);
     const ShapeId child = s.children.front();
     if (part_[child.index] || parts_below_[child.index])
-        return painted_part(ask(Reading::Hit, child, frame),
+        return painted_part(expression_of(Reading::Hit, child, frame),
                             s.kind == ShapeKind::Repaint || !colored_[child.index], paint, point,
                             extra);
     if (s.kind == ShapeKind::Repaint || !paint_[child.index])
-        return graph_.make(Op::MakeHit, {ask(Reading::Marched, child, frame), paint, point, extra});
-    return graph_.make(Op::FillPaint, {ask(Reading::Hit, child, frame), paint, point, extra});
+        return graph_.make(Op::MakeHit,
+                           {expression_of(Reading::Marched, child, frame), paint, point, extra});
+    return graph_.make(Op::FillPaint,
+                       {expression_of(Reading::Hit, child, frame), paint, point, extra});
 }
 
 // -- the four floats that travel with a hit
 // -------------------------------------------------------------------------- Variables that shapes
-// bind (ids of repetition, rows of families) are whole numbers. Up to four travel as they are; of
+// bind (ids of repetition, rows of instance_tables) are whole numbers. Up to four travel as they are; of
 // more, k share a float, each with 24/k bits: two keep -2048..2047, three -128..127. Beyond, ids
 // wrap and colours repeat.
 
@@ -174,7 +178,7 @@ std::int32_t Lowering::surface_of(std::uint32_t material, bool flat) {
 NodeId Lowering::mixed(ShapeId id, Where frame) {
     const NodeId paint = graph_.integer(mixed_surface(id));
     const NodeId extra = pack(packing_of(free_vars_[id.index]), frame);
-    const NodeId distance = ask(Reading::Marched, shape(id).children.front(), frame);
+    const NodeId distance = expression_of(Reading::Marched, shape(id).children.front(), frame);
     return graph_.make(Op::MakeHit, {distance, paint, point3(frame.p), extra});
 }
 
@@ -201,9 +205,10 @@ std::int32_t Lowering::mixed_surface(ShapeId id) {
 
     // What the paints found below look like; those of the operands are made first, so all of them
     // are known here.
-    using Look = std::array<NodeId, 4>; // diffuse, specular, exponent, emission
-    const auto look_of = [&](NodeId hit) {
-        Look look{g.vec3(0.448, 0.448, 0.448), g.vec3(1, 1, 1), g.number(32), g.vec3(0, 0, 0)};
+    using Appearance = std::array<NodeId, 4>; // diffuse, specular, exponent, emission
+    const auto appearance_of = [&](NodeId hit) {
+        Appearance appearance{g.vec3(0.448, 0.448, 0.448), g.vec3(1, 1, 1), g.number(32),
+                              g.vec3(0, 0, 0)};
         const NodeId paint = code_of(g.make(Op::HitPaint, {hit})),
                      point = g.make(Op::HitPoint, {hit}), extra = g.make(Op::HitExtra, {hit});
         for (std::size_t i = 0; i < scene_.surfaces.size(); ++i) {
@@ -214,19 +219,20 @@ std::int32_t Lowering::mixed_surface(ShapeId id) {
                 {one.point, point}, {one.extra, extra}, {one.normal, surface.normal}};
             const std::array parts{one.diffuse, one.specular, one.exponent, one.emission};
             for (std::size_t k = 0; k < parts.size(); ++k)
-                look[k] = g.make(Op::Select, {is, substitute(g, parts[k], map), look[k]});
+                appearance[k] =
+                    g.make(Op::Select, {is, substitute(g, parts[k], map), appearance[k]});
             surface.reads_normal |= one.reads_normal;
         }
-        return look;
+        return appearance;
     };
     std::vector<NodeId> hits, fields;
     for (ShapeId operand : operands) {
-        hits.push_back(ask(Reading::Hit, operand, frame));
-        fields.push_back(ask(Reading::Raw, operand, frame));
+        hits.push_back(expression_of(Reading::Hit, operand, frame));
+        fields.push_back(expression_of(Reading::Raw, operand, frame));
     }
     const NodeId r = blends ? read(shape(core).args[0], frame) : g.number(0);
     const NodeId width = g.make(Op::Max, {r, g.number(1e-9)});
-    Look look = look_of(hits.front());
+    Appearance appearance = appearance_of(hits.front());
     NodeId field = fields.front();
     for (std::size_t i = 1; i < hits.size(); ++i) {
         const NodeId d = g.sub(fields[i], field);
@@ -234,15 +240,16 @@ std::int32_t Lowering::mixed_surface(ShapeId id) {
         const NodeId t =
             g.make(Op::Clamp, {g.mul(g.sub(g.number(1), g.div(d, width)), g.number(0.5)),
                                g.number(0), g.number(1)});
-        const Look next = look_of(hits[i]);
-        for (std::size_t k = 0; k < look.size(); ++k)
-            look[k] = g.make(Op::Mix, {look[k], next[k], g.splat(t, g.type(look[k]))});
+        const Appearance next = appearance_of(hits[i]);
+        for (std::size_t k = 0; k < appearance.size(); ++k)
+            appearance[k] =
+                g.make(Op::Mix, {appearance[k], next[k], g.splat(t, g.type(appearance[k]))});
         field = g.make(Op::Union, {field, fields[i]});
     }
-    surface.diffuse = look[0];
-    surface.specular = look[1];
-    surface.exponent = look[2];
-    surface.emission = look[3];
+    surface.diffuse = appearance[0];
+    surface.specular = appearance[1];
+    surface.exponent = appearance[2];
+    surface.emission = appearance[3];
     const std::int32_t index = static_cast<std::int32_t>(scene_.surfaces.size());
     mixed_surfaces_.emplace(id, index);
     scene_.surfaces.push_back(surface);

@@ -20,7 +20,7 @@ const char *suffix(Reading reading) {
     case Reading::Raw: return "";
     case Reading::Marched: return "_marched";
     case Reading::Hit: return "_hit";
-    case Reading::Reach: return "_reach";
+    case Reading::SafeRadius: return "_reach";
     }
     return "";
 }
@@ -34,9 +34,9 @@ double operations_below(const Graph &graph, std::span<const NodeId> roots) {
         stack.pop_back();
         if (graph[id].count == 0 || !seen.insert(id).second) continue;
         ++count;
-        if (graph[id].op == Op::Fold) {
-            const Fold &fold = graph.fold(FoldId{std::size_t{graph[id].payload}});
-            stack.insert(stack.end(), fold.next.begin(), fold.next.end());
+        if (graph[id].op == Op::Loop) {
+            const Loop &loop = graph.loop(LoopId{std::size_t{graph[id].payload}});
+            stack.insert(stack.end(), loop.next.begin(), loop.next.end());
             count += 8; // a loop is never cheap
         }
         const std::span<const NodeId> args = graph.args(id);
@@ -69,7 +69,7 @@ bool is_transparent(const Shape &shape, const Shapes &shapes) {
     case ShapeKind::Extrude:
     case ShapeKind::Repeat:
     case ShapeKind::Within:
-    case ShapeKind::Many: return false;
+    case ShapeKind::Instances: return false;
     }
     return false;
 }
@@ -98,14 +98,14 @@ void Lowering::run() {
     find_free_vars();
     find_curved();
     const Where frame{p3_, 0};
-    const NodeId distance = ask(Reading::Marched, scene_.root, frame);
+    const NodeId distance = expression_of(Reading::Marched, scene_.root, frame);
     scene_.distance = graph_.add_function({"scene_distance", {}, {p3_}, distance});
-    const NodeId hit = ask(Reading::Hit, scene_.root, frame);
+    const NodeId hit = expression_of(Reading::Hit, scene_.root, frame);
     scene_.hit = graph_.add_function({"scene_hit", {}, {p3_}, hit});
-    scene_.reach = {};
+    scene_.safe_radius = {};
     if (curved_[scene_.root.index]) {
-        const NodeId reach = ask(Reading::Reach, scene_.root, frame);
-        scene_.reach = graph_.add_function({"scene_reach", {}, {p3_}, reach});
+        const NodeId reach = expression_of(Reading::SafeRadius, scene_.root, frame);
+        scene_.safe_radius = graph_.add_function({"scene_reach", {}, {p3_}, reach});
     }
 
     add_endless(frame);
@@ -141,7 +141,7 @@ void Lowering::count_uses() {
         const Shape &s = shape(ShapeId{i});
         double cost = operations_below(graph_, s.args) + (is_transparent(s, shapes_) ? 0 : 1);
         if (s.kind == ShapeKind::Repeat) cost += 8;
-        if (s.kind == ShapeKind::Many) cost += 8;
+        if (s.kind == ShapeKind::Instances) cost += 8;
         if (s.kind == ShapeKind::Within) cost += 8;
         bool paint = s.kind == ShapeKind::Paint || s.kind == ShapeKind::Repaint;
         for (ShapeId child : s.children) {
@@ -180,7 +180,7 @@ void Lowering::find_names() {
             case MapKind::Translate: return "moved";
             case MapKind::Rotate: return "turned";
             case MapKind::Scale: return "scaled";
-            case MapKind::Fold: return "folded";
+            case MapKind::MirrorFold: return "folded";
             case MapKind::Revolve: return "revolved";
             case MapKind::Twist: return "twisted";
             case MapKind::Bend: return "bent";
@@ -195,7 +195,7 @@ void Lowering::find_names() {
         case ShapeKind::Extrude: return "extruded";
         case ShapeKind::Repeat: return "repeated";
         case ShapeKind::Within: return "cut";
-        case ShapeKind::Many: return "many";
+        case ShapeKind::Instances: return "many";
         case ShapeKind::Empty:
         case ShapeKind::Leaf:
         case ShapeKind::Union:
@@ -247,7 +247,7 @@ void Lowering::find_free_vars() {
             expressions.insert(expressions.end(), {m.diffuse, m.specular, m.exponent, m.emission});
         }
         if (s.kind == ShapeKind::Repeat) bound = shapes_.repetitions[s.payload].id;
-        if (s.kind == ShapeKind::Many) bound = shapes_.families[s.payload].index;
+        if (s.kind == ShapeKind::Instances) bound = shapes_.instance_tables[s.payload].index;
         std::vector<NodeId> &free = free_vars_[i];
         for (NodeId expression : expressions)
             if (graph_.reads(expression).free_vars)
@@ -266,14 +266,14 @@ void Lowering::find_free_vars() {
 // would only call that.
 bool Lowering::is_wrapper(Reading reading, ShapeId id) const {
     if (reading == Reading::Raw) return false;
-    if (reading == Reading::Reach) return !curved_[id.index];
+    if (reading == Reading::SafeRadius) return !curved_[id.index];
     if (fact(id).guard && reading == Reading::Marched) return false;
     if (reading == Reading::Hit && !paint_[id.index]) return true;
     return !passes_through(id) && shape(id).kind != ShapeKind::Within &&
            reading == Reading::Marched;
 }
 
-NodeId Lowering::ask(Reading reading, ShapeId id, Where frame) {
+NodeId Lowering::expression_of(Reading reading, ShapeId id, Where frame) {
     const auto key = std::make_tuple(reading, id, frame.p, frame.values);
     if (const auto it = answers_.find(key); it != answers_.end()) return it->second;
     NodeId result;
@@ -337,8 +337,8 @@ void Lowering::add_endless(Where frame) {
     std::vector<NodeId> distances, hits;
     for (const TopLevel &part : scene_.top_level) {
         if (fact(part.shape).bounds.finite()) continue;
-        distances.push_back(ask(Reading::Marched, part.shape, frame));
-        hits.push_back(ask(Reading::Hit, part.shape, frame));
+        distances.push_back(expression_of(Reading::Marched, part.shape, frame));
+        hits.push_back(expression_of(Reading::Hit, part.shape, frame));
     }
     if (hits.empty() || hits.size() == scene_.top_level.size()) return;
     scene_.endless = graph_.add_function(

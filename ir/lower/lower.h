@@ -5,13 +5,13 @@
 // |f|/|grad f|) uses the marched one, normalised by its gradient.
 //   raw      the field itself, which offsets, blends and displacements consume
 //   marched  the distance that rays use. It goes through the outermost min/max tree (Union,
-//            Intersection, Complement, Xor, Paint, Repeat, Many, Library without claims, Extrude,
-//            and Maps that keep or undo lengths: rigid, uniformly scaled, Fold, Revolve) down to
+//            Intersection, Complement, Xor, Paint, Repeat, Instances, Library without claims, Extrude,
+//            and Maps that keep or undo lengths: rigid, uniformly scaled, MirrorFold, Revolve) down to
 //            its leaves, each divided there by its own bound (facts[s].lipschitz). Within answers
 //            by its region, with its child's bound, which has to hold in the region; `guard`ed
 //            shapes by max with their box's distance
 //   hit      marched, carrying which surface decides
-//   reach    marched, and how far that reaches by curvature (look.h); only where some displacement
+//   reach    marched, and how far that reaches by curvature (shading.h); only where some displacement
 //            has it, and through what reach.cpp names
 // A shape asked at more than one point becomes a function of its own (named after its library call
 // or place); so the lowered scene is linear in the shapes. Complete only after the analysis has
@@ -28,7 +28,7 @@ void lower(Scene &scene);
 // union, a blend or another combination. A hit's paint, where it is not negative, then holds two
 // numbers: code + stride * part, where the code stride - 1 says that nobody painted; part 0 is
 // none, part n is shapes[n - 1]. Only who decodes them (backend-glsl's Options::part_stride) may
-// ask for it.
+// expression_of for it.
 struct Parts {
     std::vector<ShapeId> shapes;
     int stride = 0;

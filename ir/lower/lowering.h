@@ -17,7 +17,7 @@ namespace fathom::ir {
 
 constexpr double nowhere = 1e9; // the distance to what is not there
 
-enum class Reading : std::uint8_t { Raw, Marched, Hit, Reach };
+enum class Reading : std::uint8_t { Raw, Marched, Hit, SafeRadius };
 
 // Where a field is asked.
 struct Where {
@@ -39,7 +39,7 @@ class Lowering {
 
   private:
     // -- asking
-    NodeId ask(Reading reading, ShapeId id, Where frame);
+    NodeId expression_of(Reading reading, ShapeId id, Where frame);
     NodeId answer(Reading reading, ShapeId id,
                   Where frame); // without a function of its own, unless its children's
     NodeId unmarked(Reading reading, ShapeId id,
@@ -55,10 +55,10 @@ class Lowering {
     NodeId guarded(Reading reading, ShapeId id, Where frame, NodeId value);
 
     // -- reach (reach.cpp)
-    bool hands_reach_on(const Shape &shape) const;
+    bool passes_safe_radius_on(const Shape &shape) const;
     void find_curved();
     NodeId both(NodeId distance);
-    NodeId reach(ShapeId id, Where frame);
+    NodeId safe_radius(ShapeId id, Where frame);
 
     // -- per kind
     NodeId within(Reading reading, ShapeId id, Where frame);
@@ -91,7 +91,7 @@ class Lowering {
     NodeId at_distance(Reading reading, NodeId value, NodeId distance);
     NodeId far_away(Reading reading);
     NodeId unpainted(NodeId distance);
-    // A Fold of `count` turns that begins far away: `each` says what the value so far becomes, with
+    // A Loop of `count` turns that begins far away: `each` says what the value so far becomes, with
     // `index` the turn's number.
     template <class F>
     NodeId least_of(Reading reading, NodeId count, int max_count, NodeId index, F each);
@@ -167,7 +167,7 @@ NodeId box_distance(Graph &graph, const Box &box, NodeId p);
 NodeId cylinder_distance(Graph &graph, const Box &box, int axis, double radius, NodeId p);
 
 // repeat.cpp: how many copies are evaluated one by one, before a loop does it
-constexpr int most_unrolled = 8;
+constexpr int max_unrolled = 8;
 int copies_evaluated(const Scene &scene, ShapeId repeat);
 
 } // namespace fathom::ir

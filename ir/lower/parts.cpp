@@ -30,7 +30,7 @@ bool combines(ShapeKind kind) {
     case ShapeKind::Paint:
     case ShapeKind::Repaint:
     case ShapeKind::Mixed:
-    case ShapeKind::Many:
+    case ShapeKind::Instances:
     case ShapeKind::Library:
     case ShapeKind::Contract: return false;
     }

@@ -1,4 +1,4 @@
-// Unions of many copies: lattices, rings, and families whose members differ by a row of numbers.
+// Unions of many copies: lattices, rings, and instance_tables whose members differ by a row of numbers.
 // (semantics.md, 14; lipschitz.md, 7: the nearest copy and the next on the side of the fraction.)
 // How many copies are asked is the analysis's.
 #include "ir/lower/lowering.h"
@@ -54,21 +54,21 @@ int copies_evaluated(const Scene &scene, ShapeId id) {
             std::max(1, static_cast<int>(scene.graph.as_number(shape.args[0]).value_or(1))));
     else
         for (int n : neighbors_of(scene, id)) copies *= std::max(n, 1);
-    return copies > most_unrolled ? 1 : copies;
+    return copies > max_unrolled ? 1 : copies;
 }
 
 template <class F>
 NodeId Lowering::least_of(Reading reading, NodeId count, int max_count, NodeId index, F each) {
     const NodeId start = far_away(reading);
     const NodeId best = graph_.fresh_var(graph_.type(start));
-    Fold fold;
-    fold.count = count;
-    fold.index = index;
-    fold.vars = {best};
-    fold.next = {each(best)};
-    fold.max_count = max_count;
-    const FoldId id = graph_.add_fold(std::move(fold));
-    return graph_.make(Op::Fold, graph_.type(start), {start}, id.index);
+    Loop loop;
+    loop.count = count;
+    loop.index = index;
+    loop.vars = {best};
+    loop.next = {each(best)};
+    loop.max_count = max_count;
+    const LoopId id = graph_.add_loop(std::move(loop));
+    return graph_.make(Op::Loop, graph_.type(start), {start}, id.index);
 }
 
 NodeId Lowering::repeated(Reading reading, ShapeId id, Where frame) {
@@ -150,7 +150,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
         const NodeId point = g.make(Op::Make, vector_type(dims), q);
         const Where there =
             bind(at(frame, point), repetition.id, g.make(Op::Make, Type::Vec3, cell_id));
-        const NodeId value = ask(reading, s.children.front(), there);
+        const NodeId value = expression_of(reading, s.children.front(), there);
         if (!known.repeat.hold) return value;
         return at_distance(
             reading, value,
@@ -158,7 +158,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
     };
 
     NodeId result;
-    if (total <= most_unrolled) {
+    if (total <= max_unrolled) {
         std::vector<NodeId> values;
         for (int t = 0; t < total; ++t) {
             std::array<NodeId, 3> k;
@@ -247,11 +247,12 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Where frame) {
         const NodeId point = g.make(Op::Make, vector_type(s.dims),
                                     std::span(q).first(static_cast<std::size_t>(s.dims)));
         const NodeId cell_id = g.make(Op::Make, Type::Vec3, {k, g.number(0), g.number(0)});
-        return ask(reading, s.children.front(), bind(at(frame, point), repetition.id, cell_id));
+        return expression_of(reading, s.children.front(),
+                             bind(at(frame, point), repetition.id, cell_id));
     };
 
     if (sectors >= count) {
-        if (count <= most_unrolled) {
+        if (count <= max_unrolled) {
             std::vector<NodeId> values;
             for (int k = 0; k < count; ++k) values.push_back(copy(g.number(k)));
             return least(reading, values);
@@ -270,7 +271,7 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Where frame) {
         const NodeId low = g.make(Op::Select, {g.make(Op::Less, {k, g.number(0)}), g.add(k, n), k});
         return g.make(Op::Select, {g.make(Op::Less, {low, n}), low, g.sub(low, n)});
     };
-    if (sectors <= most_unrolled) {
+    if (sectors <= max_unrolled) {
         std::vector<NodeId> values;
         for (int k = 0; k < sectors; ++k) values.push_back(copy(sector(g.number(k))));
         return least(reading, values);
@@ -287,14 +288,14 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Where frame) {
 NodeId Lowering::many(Reading reading, ShapeId id, Where frame) {
     Graph &g = graph_;
     const Shape &s = shape(id);
-    const Family &family = shapes_.families[s.payload];
-    const NodeId count = g.integer(family.count);
-    const bool smooth = family.smooth && reading == Reading::Raw;
+    const InstanceTable &instance_table = shapes_.instance_tables[s.payload];
+    const NodeId count = g.integer(instance_table.count);
+    const bool smooth = instance_table.smooth && reading == Reading::Raw;
     const NodeId k = smooth ? read(s.args[0], frame) : NodeId{};
     const NodeId row = g.fresh_var(Type::Int); // each loop counts for itself
-    const Where inside = bind(frame, family.index, row);
-    return least_of(reading, count, family.count, row, [&](NodeId best) {
-        const NodeId value = ask(reading, s.children.front(), inside);
+    const Where inside = bind(frame, instance_table.index, row);
+    return least_of(reading, count, instance_table.count, row, [&](NodeId best) {
+        const NodeId value = expression_of(reading, s.children.front(), inside);
         if (!smooth) return least(reading, std::array{best, value});
         return g.make(Op::Blend, Type::Float, {k, g.number(1), best, value},
                       static_cast<std::uint32_t>(Profile::Smooth));

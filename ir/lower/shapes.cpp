@@ -56,13 +56,13 @@ bool Lowering::passes_through(ShapeId id) const {
     case ShapeKind::Mixed:
     case ShapeKind::Empty:
     case ShapeKind::Contract: return true;
-    case ShapeKind::Many: return !shapes_.families[s.payload].smooth;
+    case ShapeKind::Instances: return !shapes_.instance_tables[s.payload].smooth;
     case ShapeKind::Library: return !shapes_.libraries[s.payload].has_claims;
     case ShapeKind::Map:
         switch (s.map) {
         case MapKind::Translate:
         case MapKind::Rotate:
-        case MapKind::Fold:
+        case MapKind::MirrorFold:
         case MapKind::Revolve: return true;
         case MapKind::Scale: { // uniform: then the factor undoes the map's contraction
             if (!graph_.is_constant(s.args[2])) return graph_[s.args[2]].op == Op::Splat;
@@ -106,17 +106,18 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Where frame) {
                                                   structural(reading, id, at(frame, q))});
     }
     if (reading == Reading::Raw) return structural(reading, id, frame);
-    if (reading == Reading::Reach) return reach(id, frame);
+    if (reading == Reading::SafeRadius) return safe_radius(id, frame);
     if (reading == Reading::Hit && !paint_[id.index])
-        return unpainted(ask(Reading::Marched, id, frame));
+        return unpainted(expression_of(Reading::Marched, id, frame));
     if (passes_through(id)) return guarded(reading, id, frame, structural(reading, id, frame));
     if (reading == Reading::Marched && shape(id).kind == ShapeKind::Within)
         return guarded(reading, id, frame, within(reading, id, frame));
     if (reading == Reading::Hit)
-        return graph_.make(Op::HitWith, {colored(id, frame), ask(Reading::Marched, id, frame)});
+        return graph_.make(Op::HitWith,
+                           {colored(id, frame), expression_of(Reading::Marched, id, frame)});
     if (shape(id).kind == ShapeKind::Displace)
         return guarded(reading, id, frame, displaced(reading, id, frame));
-    return guarded(reading, id, frame, divided(id, ask(Reading::Raw, id, frame)));
+    return guarded(reading, id, frame, divided(id, expression_of(Reading::Raw, id, frame)));
 }
 
 // The range shell: a displaced solid lies where f <= A, the most that it moves outward; further
@@ -128,11 +129,11 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Where frame) {
 // (lipschitz.md, 4).
 NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     const ShapeFact &known = fact(id);
-    const bool reaches = reading == Reading::Reach;
-    NodeId raw = ask(Reading::Raw, id, frame);
+    const bool reaches = reading == Reading::SafeRadius;
+    NodeId raw = expression_of(Reading::Raw, id, frame);
     if (!std::isfinite(known.outward)) return divided(id, raw);
     const ShapeId child = shape(id).children.front();
-    const NodeId base = ask(Reading::Raw, child, frame), amount = shape(id).args.front();
+    const NodeId base = expression_of(Reading::Raw, child, frame), amount = shape(id).args.front();
     struct Known {
         NodeId best;  // a lower bound of the distance
         NodeId field; // the base less the terms so far
@@ -164,7 +165,7 @@ NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     // The field is at most f - least, which is divided by the next bound at least.
     for (std::size_t i = steps.size(); i-- > 0;) {
         const Known &step = steps[i];
-        if (!std::isfinite(step.least) || cost_of(graph_, amount) - step.cost < ask_first_from)
+        if (!std::isfinite(step.least) || cost_of(graph_, amount) - step.cost < guard_cost)
             continue;
         const NodeId most = graph_.sub(step.field, graph_.number(step.least));
         const NodeId reach =
@@ -202,10 +203,10 @@ NodeId Lowering::guard(ShapeId id, Where frame) {
 
 NodeId Lowering::structural(Reading reading, ShapeId id, Where frame) {
     const Shape &s = shape(id);
-    const auto child = [&](std::size_t i) { return ask(reading, s.children[i], frame); };
+    const auto child = [&](std::size_t i) { return expression_of(reading, s.children[i], frame); };
     const auto children = [&] {
         std::vector<NodeId> values;
-        for (ShapeId one : s.children) values.push_back(ask(reading, one, frame));
+        for (ShapeId one : s.children) values.push_back(expression_of(reading, one, frame));
         return values;
     };
     switch (s.kind) {
@@ -221,9 +222,9 @@ NodeId Lowering::structural(Reading reading, ShapeId id, Where frame) {
         if (reading == Reading::Hit && shape(inner).kind == ShapeKind::Blend) {
             std::vector<NodeId> hits;
             for (ShapeId operand : shape(inner).children)
-                hits.push_back(negated(reading, ask(reading, operand, frame)));
+                hits.push_back(negated(reading, expression_of(reading, operand, frame)));
             return at_distance(reading, greatest(reading, hits),
-                               graph_.neg(ask(Reading::Marched, inner, frame)));
+                               graph_.neg(expression_of(Reading::Marched, inner, frame)));
         }
         return negated(reading, child(0));
     }
@@ -238,19 +239,19 @@ NodeId Lowering::structural(Reading reading, ShapeId id, Where frame) {
     }
     case ShapeKind::Map: {
         const NodeId q = read(s.args[0], frame), factor = read(s.args[1], frame);
-        const NodeId value = ask(reading, s.children.front(), at(frame, q));
+        const NodeId value = expression_of(reading, s.children.front(), at(frame, q));
         return at_distance(reading, value, graph_.mul(factor, distance_of(reading, value)));
     }
     case ShapeKind::Extrude: {
         const NodeId flat = graph_.swizzle(frame.p, std::array{0, 1});
-        const NodeId value = ask(reading, s.children.front(), at(frame, flat));
+        const NodeId value = expression_of(reading, s.children.front(), at(frame, flat));
         const NodeId half = graph_.mul(read(s.args[0], frame), graph_.number(0.5));
         const NodeId cap = graph_.sub(graph_.make(Op::Abs, {graph_.component(frame.p, 2)}), half);
         return at_distance(reading, value,
                            joined_distance(graph_, std::array{distance_of(reading, value), cap}));
     }
     case ShapeKind::Repeat: return repeated(reading, id, frame);
-    case ShapeKind::Many: return many(reading, id, frame);
+    case ShapeKind::Instances: return many(reading, id, frame);
     case ShapeKind::Within: return within(reading, id, frame);
     case ShapeKind::Paint:
     case ShapeKind::Repaint: return reading == Reading::Hit ? painted(id, frame) : child(0);
@@ -271,7 +272,9 @@ NodeId Lowering::structural(Reading reading, ShapeId id, Where frame) {
 
 NodeId Lowering::raw_only(ShapeId id, Where frame) {
     const Shape &s = shape(id);
-    const auto child = [&](std::size_t i) { return ask(Reading::Raw, s.children[i], frame); };
+    const auto child = [&](std::size_t i) {
+        return expression_of(Reading::Raw, s.children[i], frame);
+    };
     const auto arg = [&](std::size_t i) { return read(s.args[i], frame); };
     if (s.kind == ShapeKind::Leaf) return arg(0);
     if (s.kind == ShapeKind::Blend) return blend(s, frame);
@@ -293,15 +296,15 @@ NodeId Lowering::blend(const Shape &s, Where frame) {
                            : value);
     }
     args.resize(2, graph_.number(1)); // a profile without a count
-    for (ShapeId child : s.children) args.push_back(ask(Reading::Raw, child, frame));
+    for (ShapeId child : s.children) args.push_back(expression_of(Reading::Raw, child, frame));
     return graph_.make(Op::Blend, Type::Float, args, s.payload);
 }
 
 // The formulas of blends.h.
 NodeId Lowering::seam(const Shape &s, Where frame) {
     Graph &g = graph_;
-    const NodeId a = ask(Reading::Raw, s.children[0], frame),
-                 b = ask(Reading::Raw, s.children[1], frame);
+    const NodeId a = expression_of(Reading::Raw, s.children[0], frame),
+                 b = expression_of(Reading::Raw, s.children[1], frame);
     const NodeId r = read(s.args[0], frame), half = g.number(0.5);
     const NodeId depth = s.args.size() > 1 ? read(s.args[1], frame) : r;
     const auto away = [&] { return g.make(Op::Abs, {b}); };
@@ -324,8 +327,8 @@ NodeId Lowering::pseudonorm(const Shape &s, Where frame) {
     Graph &g = graph_;
     const NodeId zero = g.number(0), one = g.number(1);
     const NodeId p = g.make(Op::Max, {read(s.args[0], frame), one});
-    const NodeId a = ask(Reading::Raw, s.children[0], frame),
-                 b = ask(Reading::Raw, s.children[1], frame);
+    const NodeId a = expression_of(Reading::Raw, s.children[0], frame),
+                 b = expression_of(Reading::Raw, s.children[1], frame);
     const NodeId u = g.make(Op::Max, {g.sub(one, a), zero}),
                  v = g.make(Op::Max, {g.sub(one, b), zero});
     const NodeId most = g.make(Op::Max, {u, v});
@@ -371,7 +374,7 @@ NodeId Lowering::within(Reading reading, ShapeId id, Where frame) {
     const Region region = region_of(id, frame);
     const NodeId p = point3(frame.p);
     const ShapeId child = shape(id).children.front();
-    NodeId field = ask(Reading::Raw, child, inside(id, frame));
+    NodeId field = expression_of(Reading::Raw, child, inside(id, frame));
     const NodeId nearest = region_nearest(g, region, p);
     NodeId q = region_between_caps(g, region, nearest);
     if (reading == Reading::Marched) {
@@ -387,7 +390,7 @@ NodeId Lowering::within(Reading reading, ShapeId id, Where frame) {
         for (const Region &less : region.less) {
             NodeId mean = g.number(0);
             for (NodeId side : region_opposites(g, less, q))
-                mean = g.add(mean, ask(Reading::Raw, child, point_of(frame, side)));
+                mean = g.add(mean, expression_of(Reading::Raw, child, point_of(frame, side)));
             const WayOut out = region_way_out(g, less, q);
             field = g.make(Op::Mix, {g.mul(mean, g.number(0.5)), field, out.part});
             q = out.point;

@@ -1,6 +1,6 @@
 // The column `cost` of ir/ops.def. The numbers of noise and look-ups are measured
 // (docs/noise-cache.md); the others are by their number of instructions. What holds other
-// expressions (Call, Fold, Cached) costs what these do.
+// expressions (Call, Loop, Cached) costs what these do.
 #include "ir/passes/cost.h"
 
 #include <algorithm>
@@ -40,11 +40,11 @@ double cost_of(const Graph &graph, NodeId root) {
             cost += cost_of(graph, graph.function(FunctionId{node.payload}).result);
         if (node.op == Op::Cached)
             cost += cost_of(graph, graph.function(graph.cache(CacheId{node.payload}).field).result);
-        if (node.op == Op::Fold) {
-            const Fold &fold = graph.fold(FoldId{node.payload});
-            double turn = fold.condition ? cost_of(graph, fold.condition) : 0;
-            for (NodeId next : fold.next) turn += cost_of(graph, next);
-            cost += fold.max_count * turn;
+        if (node.op == Op::Loop) {
+            const Loop &loop = graph.loop(LoopId{node.payload});
+            double turn = loop.condition ? cost_of(graph, loop.condition) : 0;
+            for (NodeId next : loop.next) turn += cost_of(graph, next);
+            cost += loop.max_count * turn;
         }
         for (NodeId arg : graph.args(id)) todo.push_back(arg);
     }
@@ -63,25 +63,26 @@ bool reads_worley(const Graph &graph, NodeId root) {
         if (node.op == Op::Call) todo.push_back(graph.function(FunctionId{node.payload}).result);
         if (node.op == Op::Cached)
             todo.push_back(graph.function(graph.cache(CacheId{node.payload}).field).result);
-        if (node.op == Op::Fold)
-            for (NodeId next : graph.fold(FoldId{node.payload}).next) todo.push_back(next);
+        if (node.op == Op::Loop)
+            for (NodeId next : graph.loop(LoopId{node.payload}).next) todo.push_back(next);
         for (NodeId arg : graph.args(id)) todo.push_back(arg);
     }
     return false;
 }
 
-Kept kept(const Scene &scene, CacheId cache) {
+Cacheable cached(const Scene &scene, CacheId cache) {
     const NodeId field = scene.graph.function(scene.graph.cache(cache).field).result;
-    if (scene.graph.reads(field).time) return Kept::Moving;
+    if (scene.graph.reads(field).time) return Cacheable::Moving;
     const double cost = cost_of(scene.graph, field);
-    if (cost < look_up_cost) return Kept::Cheap;
-    if (reads_worley(scene.graph, field) && ridged_share * cost < look_up_cost) return Kept::Ridged;
+    if (cost < look_up_cost) return Cacheable::Cheap;
+    if (reads_worley(scene.graph, field) && ridged_share * cost < look_up_cost)
+        return Cacheable::Ridged;
     if (cache.index >= scene.caches.size() || !std::isfinite(scene.caches[cache.index].slope))
-        return Kept::Steep;
-    return Kept::Yes;
+        return Cacheable::Steep;
+    return Cacheable::Yes;
 }
 
-double kept_error(const Scene &scene, CacheId cache) {
+double cached_error(const Scene &scene, CacheId cache) {
     const CacheFact &fact = scene.caches[cache.index];
     const double by_slope = fact.slope * scene.graph.cache(cache).cell * std::sqrt(3.0) / 2;
     return std::min(by_slope, fact.span);

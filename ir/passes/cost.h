@@ -18,19 +18,19 @@ constexpr double octave_cost = 2.8, worley_cost = 20, spot_cost = 160;
 // 13, by what else the machine does.
 constexpr double look_up_cost = 11;
 // Of Worley noise about half of the cells lie at ridges and are refused (docs/noise-cache.md): a
-// field that reads it saves so much of its cost. Alone, kept all the same, it took 0.59 of the
+// field that reads it saves so much of its cost. Alone, cached all the same, it took 0.59 of the
 // exact rate.
 constexpr double ridged_share = 0.5;
-constexpr double ask_first_from = 5; // a field this dear is asked only where it can matter
+constexpr double guard_cost = 5; // a field this dear is asked only where it can matter
 
 // Why the values of a cached field are always computed.
-enum class Kept { Yes, Cheap, Ridged, Moving, Steep };
-Kept kept(const Scene &scene, CacheId cache);
+enum class Cacheable { Yes, Cheap, Ridged, Moving, Steep };
+Cacheable cached(const Scene &scene, CacheId cache);
 
-// The most by which a kept value, interpolated between the corners of its cell, differs from the
+// The most by which a cached value, interpolated between the corners of its cell, differs from the
 // field's: with a slope of at most G, sum w_i |f(x_i) - f(p)| <= G sum w_i |x_i - p| <= G sqrt(sum
 // w_i |x_i - p|^2), which is G * cell * sqrt(sum over the axes of u(1 - u)) <= G * cell *
 // sqrt(3)/2. Both lie in the field's range, too.
-double kept_error(const Scene &scene, CacheId cache);
+double cached_error(const Scene &scene, CacheId cache);
 
 } // namespace fathom::ir

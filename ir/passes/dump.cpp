@@ -26,7 +26,7 @@ const char *map_name(MapKind kind) {
     case MapKind::Translate: return "translate";
     case MapKind::Rotate: return "rotate";
     case MapKind::Scale: return "scale";
-    case MapKind::Fold: return "fold";
+    case MapKind::MirrorFold: return "fold";
     case MapKind::Revolve: return "revolve";
     case MapKind::Twist: return "twist";
     case MapKind::Bend: return "bend";
@@ -135,27 +135,27 @@ class Dumper {
             text +=
                 " " + graph_.function(cache.field).name + " cell " + format_shortest(cache.cell);
         } else if (node.op == Op::Column || node.op == Op::Image || node.op == Op::Grid ||
-                   node.op == Op::FoldResult) {
+                   node.op == Op::LoopResult) {
             text += " " + std::to_string(node.payload);
         }
         for (NodeId arg : graph_.args(id)) text += " " + name(arg, indent);
         const std::string own = "%" + std::to_string(lines_++);
-        if (node.op == Op::Fold) text += fold(FoldId{std::size_t{node.payload}}, indent + 1);
+        if (node.op == Op::Loop) text += loop(LoopId{std::size_t{node.payload}}, indent + 1);
         names_[id] = own;
         put(indent, own + ": " + type_name(node.type) + " = " + text);
     }
 
     // The body's lines come first; the head's end is handed back.
-    std::string fold(FoldId id, int indent) {
-        const Fold &fold = graph_.fold(id);
+    std::string loop(LoopId id, int indent) {
+        const Loop &loop = graph_.loop(id);
         std::string vars;
-        for (NodeId var : fold.vars) vars += " " + name(var, indent);
-        const std::string index = name(fold.index, indent), count = name(fold.count, indent);
+        for (NodeId var : loop.vars) vars += " " + name(var, indent);
+        const std::string index = name(loop.index, indent), count = name(loop.count, indent);
         std::string next;
-        for (NodeId result : fold.next) next += " " + name(result, indent);
+        for (NodeId result : loop.next) next += " " + name(result, indent);
         const std::string condition =
-            fold.condition ? " while " + name(fold.condition, indent) : "";
-        return " for " + index + " < " + count + " (at most " + std::to_string(fold.max_count) +
+            loop.condition ? " while " + name(loop.condition, indent) : "";
+        return " for " + index + " < " + count + " (at most " + std::to_string(loop.max_count) +
                ")" + condition + ":" + vars + " <-" + next;
     }
 
@@ -231,10 +231,11 @@ void dump_shape(Dumper &dumper, const Shapes &shapes, ShapeId id, int indent,
         if (repetition.id) text += " id " + dumper.name(repetition.id, indent + 1);
         break;
     }
-    case ShapeKind::Many: {
-        const Family &family = shapes.families[shape.payload];
-        text += " " + std::to_string(family.count) + (family.smooth ? " smooth" : "") + " by " +
-                dumper.name(family.index, indent + 1);
+    case ShapeKind::Instances: {
+        const InstanceTable &instance_table = shapes.instance_tables[shape.payload];
+        text += " " + std::to_string(instance_table.count) +
+                (instance_table.smooth ? " smooth" : "") + " by " +
+                dumper.name(instance_table.index, indent + 1);
         break;
     }
     case ShapeKind::Empty:

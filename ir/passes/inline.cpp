@@ -44,24 +44,24 @@ NodeId called(Graph &graph, NodeId call) {
 }
 
 namespace {
-Substitution of_iteration(Graph &graph, const Fold &fold, int iteration,
+Substitution of_iteration(Graph &graph, const Loop &loop, int iteration,
                           std::span<const NodeId> values) {
-    Substitution map{{fold.index, graph.integer(iteration)}};
-    for (std::size_t i = 0; i < values.size(); ++i) map[fold.vars[i]] = values[i];
+    Substitution map{{loop.index, graph.integer(iteration)}};
+    for (std::size_t i = 0; i < values.size(); ++i) map[loop.vars[i]] = values[i];
     return map;
 }
 } // namespace
 
-NodeId in_iteration(Graph &graph, const Fold &fold, int iteration, std::span<const NodeId> values,
+NodeId in_iteration(Graph &graph, const Loop &loop, int iteration, std::span<const NodeId> values,
                     NodeId expression) {
-    return substitute(graph, expression, of_iteration(graph, fold, iteration, values));
+    return substitute(graph, expression, of_iteration(graph, loop, iteration, values));
 }
 
-std::vector<NodeId> after_iteration(Graph &graph, const Fold &fold, int iteration,
+std::vector<NodeId> after_iteration(Graph &graph, const Loop &loop, int iteration,
                                     std::span<const NodeId> values) {
-    const Substitution map = of_iteration(graph, fold, iteration, values);
+    const Substitution map = of_iteration(graph, loop, iteration, values);
     std::vector<NodeId> after;
-    for (NodeId next : fold.next) after.push_back(substitute(graph, next, map));
+    for (NodeId next : loop.next) after.push_back(substitute(graph, next, map));
     return after;
 }
 

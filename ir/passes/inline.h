@@ -18,9 +18,9 @@ NodeId called(Graph &graph, NodeId call); // of a Call node
 
 // An expression of a loop's body in one iteration, by the values that the loop carries into it; and
 // these values after it. Its condition is not asked.
-NodeId in_iteration(Graph &graph, const Fold &fold, int iteration, std::span<const NodeId> values,
+NodeId in_iteration(Graph &graph, const Loop &loop, int iteration, std::span<const NodeId> values,
                     NodeId expression);
-std::vector<NodeId> after_iteration(Graph &graph, const Fold &fold, int iteration,
+std::vector<NodeId> after_iteration(Graph &graph, const Loop &loop, int iteration,
                                     std::span<const NodeId> values);
 
 // The expression with every call written out, loops' bodies apart. Where more than `most` nodes

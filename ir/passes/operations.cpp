@@ -24,7 +24,7 @@ class Counter {
             if (node.op == Op::Call) operations += function(FunctionId{node.payload});
             if (node.op == Op::Cached)
                 operations += function(graph_.cache(CacheId{node.payload}).field);
-            if (node.op == Op::Fold) operations += fold(FoldId{node.payload});
+            if (node.op == Op::Loop) operations += loop(LoopId{node.payload});
             for (NodeId arg : graph_.args(id)) todo.push_back(arg);
         }
         return operations;
@@ -37,19 +37,19 @@ class Counter {
         functions_[id] = operations;
         return operations;
     }
-    double fold(FoldId id) {
-        if (const auto known = folds_.find(id); known != folds_.end()) return known->second;
-        const Fold &fold = graph_.fold(id);
-        std::vector<NodeId> body = fold.next;
-        body.push_back(fold.condition);
-        const double operations = fold.max_count * (*this)(std::move(body));
-        folds_[id] = operations;
+    double loop(LoopId id) {
+        if (const auto known = loops_.find(id); known != loops_.end()) return known->second;
+        const Loop &loop = graph_.loop(id);
+        std::vector<NodeId> body = loop.next;
+        body.push_back(loop.condition);
+        const double operations = loop.max_count * (*this)(std::move(body));
+        loops_[id] = operations;
         return operations;
     }
 
     const Graph &graph_;
     std::unordered_map<FunctionId, double> functions_;
-    std::unordered_map<FoldId, double> folds_;
+    std::unordered_map<LoopId, double> loops_;
 };
 
 } // namespace

@@ -1,8 +1,8 @@
 // Expressions that are alike but for their constants, and the table of these. In come such
 // expressions; out go a skeleton to compare them by, the constants of each as a row, the columns
 // that differ, and one expression that reads them from a table. It never decides which expressions
-// are worth a table: the checker (typecheck/families.cpp) and the GLSL back end
-// (backend-glsl/roll.cpp) do.
+// are worth a table: the checker (typecheck/instances.cpp) and the GLSL back end
+// (backend-glsl/reroll.cpp) do.
 #pragma once
 
 #include "ir/graph.h"
@@ -37,6 +37,6 @@ int lay_out(const std::vector<std::vector<Constant>> &rows, const std::vector<bo
 void fill_row(const std::vector<Constant> &row, const std::vector<int> &column, float *out);
 NodeId read_table(Graph &graph, Type type, NodeId row, std::uint32_t slot);
 
-constexpr int most_columns = 4000; // of a table (Graph: table_slot)
+constexpr int max_columns = 4000; // of a table (Graph: table_slot)
 
 } // namespace fathom::ir

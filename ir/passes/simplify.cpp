@@ -317,7 +317,7 @@ constexpr OpTable<Rule> rules{
     {Op::Length, length_of_number},
     {Op::Log, simple_log},
     {Op::Log2, simple_log},
-    {Op::FoldResult, [](const Made &n) { return n.payload == 0 ? n.args[0] : NodeId{}; }},
+    {Op::LoopResult, [](const Made &n) { return n.payload == 0 ? n.args[0] : NodeId{}; }},
     {Op::Union, only_one},
     {Op::Intersection, only_one},
     {Op::NearestHit, only_one},

@@ -18,7 +18,7 @@ class Verifier {
         callable_ = graph_.function_count();
         signature(scene_.distance, "distance", Type::Float);
         signature(scene_.hit, "hit", Type::Hit);
-        if (scene_.reach) signature(scene_.reach, "reach", Type::Vec2);
+        if (scene_.safe_radius) signature(scene_.safe_radius, "reach", Type::Vec2);
         if (scene_.endless) signature(scene_.endless, "endless", Type::Float);
         if (scene_.endless_hit) signature(scene_.endless_hit, "endless_hit", Type::Hit);
         signature(scene_.background_function, "background", Type::Vec3);
@@ -272,14 +272,14 @@ class Verifier {
                  "there is no such grid");
             break;
         case Op::Call: call(id, args); break;
-        case Op::Fold: fold(id, args, stack); break;
-        case Op::FoldResult: {
+        case Op::Loop: loop(id, args, stack); break;
+        case Op::LoopResult: {
             const Node &of = graph_[args[0]];
             const bool fits =
-                of.op == Op::Fold &&
-                node.payload < graph_.fold(FoldId{std::size_t{of.payload}}).vars.size() &&
-                type(graph_.fold(FoldId{std::size_t{of.payload}}).vars[node.payload]) == node.type;
-            want(id, fits, "the fold has no such value");
+                of.op == Op::Loop &&
+                node.payload < graph_.loop(LoopId{std::size_t{of.payload}}).vars.size() &&
+                type(graph_.loop(LoopId{std::size_t{of.payload}}).vars[node.payload]) == node.type;
+            want(id, fits, "the loop has no such value");
             break;
         }
         case Op::Cached:
@@ -337,30 +337,30 @@ class Verifier {
         if (type(function.result) != graph_.type(id)) fail(id, "its type is not the function's");
     }
 
-    void fold(NodeId id, std::span<const NodeId> args, std::vector<NodeId> &stack) {
+    void loop(NodeId id, std::span<const NodeId> args, std::vector<NodeId> &stack) {
         const std::uint32_t payload = graph_[id].payload;
-        if (payload >= graph_.fold_count()) return fail(id, "there is no such fold");
-        const Fold &fold = graph_.fold(FoldId{std::size_t{payload}});
-        if (fold.vars.empty() || fold.vars.size() != args.size() || fold.next.size() != args.size())
+        if (payload >= graph_.loop_count()) return fail(id, "there is no such loop");
+        const Loop &loop = graph_.loop(LoopId{std::size_t{payload}});
+        if (loop.vars.empty() || loop.vars.size() != args.size() || loop.next.size() != args.size())
             return fail(id, "the carried values do not match");
-        if (type(fold.vars.front()) != graph_.type(id))
+        if (type(loop.vars.front()) != graph_.type(id))
             fail(id, "its type is not its first value's");
         for (std::size_t i = 0; i < args.size(); ++i)
-            if (graph_[fold.vars[i]].op != Op::Var || type(args[i]) != type(fold.vars[i]) ||
-                type(fold.next[i]) != type(fold.vars[i]))
+            if (graph_[loop.vars[i]].op != Op::Var || type(args[i]) != type(loop.vars[i]) ||
+                type(loop.next[i]) != type(loop.vars[i]))
                 fail(id, "a carried value's type changes");
-        if (graph_[fold.index].op != Op::Var || type(fold.index) != Type::Int)
+        if (graph_[loop.index].op != Op::Var || type(loop.index) != Type::Int)
             fail(id, "its index is no int variable");
-        if (type(fold.count) != Type::Int) fail(id, "its count is no int");
-        if (fold.condition && type(fold.condition) != Type::Bool)
+        if (type(loop.count) != Type::Int) fail(id, "its count is no int");
+        if (loop.condition && type(loop.condition) != Type::Bool)
             fail(id, "its condition is no bool");
-        if (fold.max_count < 0) fail(id, "it has no limit");
-        if (const std::optional<double> count = graph_.as_number(fold.count);
-            count && *count > fold.max_count)
+        if (loop.max_count < 0) fail(id, "it has no limit");
+        if (const std::optional<double> count = graph_.as_number(loop.count);
+            count && *count > loop.max_count)
             fail(id, "it counts past its limit");
-        stack.push_back(fold.count);
-        if (fold.condition) stack.push_back(fold.condition);
-        stack.insert(stack.end(), fold.next.begin(), fold.next.end());
+        stack.push_back(loop.count);
+        if (loop.condition) stack.push_back(loop.condition);
+        stack.insert(stack.end(), loop.next.begin(), loop.next.end());
     }
 
     const Scene &scene_;

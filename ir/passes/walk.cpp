@@ -8,10 +8,10 @@
 namespace fathom::ir {
 namespace {
 
-std::vector<NodeId> body_of(const Fold &fold) {
-    std::vector<NodeId> body{fold.count};
-    if (fold.condition) body.push_back(fold.condition);
-    body.insert(body.end(), fold.next.begin(), fold.next.end());
+std::vector<NodeId> body_of(const Loop &loop) {
+    std::vector<NodeId> body{loop.count};
+    if (loop.condition) body.push_back(loop.condition);
+    body.insert(body.end(), loop.next.begin(), loop.next.end());
     return body;
 }
 
@@ -25,11 +25,11 @@ std::vector<NodeId> unbound(const Graph &graph, std::vector<NodeId> stack) {
         const Node &node = graph[id];
         if (!graph.reads(id).free_vars || !seen.insert(id).second) continue;
         if (node.op == Op::Var) found.push_back(id);
-        if (node.op == Op::Fold) {
-            const Fold &fold = graph.fold(FoldId{std::size_t{node.payload}});
-            bound.insert(fold.index);
-            bound.insert(fold.vars.begin(), fold.vars.end());
-            for (NodeId part : body_of(fold)) stack.push_back(part);
+        if (node.op == Op::Loop) {
+            const Loop &loop = graph.loop(LoopId{std::size_t{node.payload}});
+            bound.insert(loop.index);
+            bound.insert(loop.vars.begin(), loop.vars.end());
+            for (NodeId part : body_of(loop)) stack.push_back(part);
         }
         for (NodeId arg : graph.args(id)) stack.push_back(arg);
     }
@@ -65,17 +65,17 @@ Graph::Reads Graph::reads_of(const Node &node) const {
     if (node.op == Op::Var) reads.free_vars = true;
     if (node.op == Op::Call) join_function(FunctionId{std::size_t{node.payload}});
     if (node.op == Op::Cached) join_function(cache(CacheId{std::size_t{node.payload}}).field);
-    if (node.op == Op::Fold) {
-        const Fold &fold = folds_[FoldId{std::size_t{node.payload}}];
+    if (node.op == Op::Loop) {
+        const Loop &loop = loops_[LoopId{std::size_t{node.payload}}];
         const bool outside = reads.free_vars;
-        const std::vector<NodeId> body = body_of(fold);
+        const std::vector<NodeId> body = body_of(loop);
         for (NodeId part : body) join(reads_[part.index]);
         reads.free_vars = outside;
         if (!outside) {
             std::vector<NodeId> free = unbound(*this, body);
             std::erase_if(free, [&](NodeId id) {
-                return id == fold.index ||
-                       std::find(fold.vars.begin(), fold.vars.end(), id) != fold.vars.end();
+                return id == loop.index ||
+                       std::find(loop.vars.begin(), loop.vars.end(), id) != loop.vars.end();
             });
             reads.free_vars = !free.empty();
         }
@@ -135,7 +135,7 @@ struct Copier {
             changed |= args.back() != arg;
         }
         std::uint32_t payload = node.payload;
-        if (node.op == Op::Fold) payload = fold(FoldId{std::size_t{node.payload}}).index;
+        if (node.op == Op::Loop) payload = loop(LoopId{std::size_t{node.payload}}).index;
         if (!changed && payload == node.payload) return id;
         return graph.make(node.op, node.type, args, payload);
     }
@@ -155,12 +155,12 @@ struct Copier {
 
     // A fold whose body changes gets fresh variables: the copy may come to stand inside the
     // original.
-    FoldId fold(FoldId id) {
-        const Fold old = graph.fold(id);
+    LoopId loop(LoopId id) {
+        const Loop old = graph.loop(id);
         const std::vector<NodeId> parts = body_of(old);
         if (!touches(parts)) return id;
         Copier inside{graph, done, points, any_kind};
-        Fold made = old;
+        Loop made = old;
         made.index = inside.done[old.index] = graph.fresh_var(Type::Int);
         for (NodeId &var : made.vars) {
             const NodeId fresh = graph.fresh_var(graph.type(var));
@@ -170,7 +170,7 @@ struct Copier {
         made.count = inside.copy(old.count);
         if (old.condition) made.condition = inside.copy(old.condition);
         for (NodeId &next : made.next) next = inside.copy(next);
-        return graph.add_fold(std::move(made));
+        return graph.add_loop(std::move(made));
     }
 };
 

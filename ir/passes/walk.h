@@ -7,7 +7,7 @@
 
 namespace fathom::ir {
 
-// A copy of `root` in which every node that `map` names is replaced. A copied Fold gets variables
+// A copy of `root` in which every node that `map` names is replaced. A copied Loop gets variables
 // of its own.
 using Substitution = std::unordered_map<NodeId, NodeId>;
 NodeId substitute(Graph &graph, NodeId root, const Substitution &map);

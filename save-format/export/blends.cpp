@@ -58,11 +58,11 @@ std::optional<TreeNode> TreeWriter::profile_blend(ShapeId id, bool complemented,
     static constexpr const char *profiles[] = {"Smooth", "Round", "Chamfer", "Stairs", "Columns"};
     std::vector<ShapeId> children = s.children;
     std::size_t profile = s.payload;
-    if (s.kind == ShapeKind::Many) {
+    if (s.kind == ShapeKind::Instances) {
         profile = 0;
         const auto listed = scene_.shapes.listed.find(id);
         if (listed == scene_.shapes.listed.end())
-            return otherwise(id, paint, "a smooth union of a family");
+            return otherwise(id, paint, "a smooth union of instances");
         children = listed->second;
     }
     const auto radius = numbers_.number(s.args[0]);

@@ -3,7 +3,7 @@
 // goes before it.
 #include "ir/background.h"
 #include "ir/view.h"
-#include "save-format/export/looks.h"
+#include "save-format/export/appearance.h"
 #include "save-format/export/tree.h"
 #include "save-format/program.h"
 #include "save-format/save_format.h"
@@ -440,12 +440,12 @@ static void report_labelled(const ir::Scene &scene, Numbers &numbers, const Tree
 std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
     KeptItems kept = read_kept(scene.kept);
     Numbers numbers(scene);
-    Looks looks(scene, numbers, std::move(kept.textures), std::move(kept.materials));
+    Appearances appearances(scene, numbers, std::move(kept.textures), std::move(kept.materials));
     TreeNode root;
     root.type = "Generic";
     root.name = "Distance field";
     root.named = root.head = true;
-    root.children = export_tree(scene, numbers, looks, diagnostics);
+    root.children = export_tree(scene, numbers, appearances, diagnostics);
     for (const TreeRecord *record : apply_records(kept.tree, root)) {
         std::string place;
         for (const std::size_t index : record->path)
@@ -463,8 +463,8 @@ std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
     version.text = written_version;
     version.plain = true;
     write_item(kept.version.value_or(version), 0, out);
-    write_item(looks.textures(), 0, out);
-    write_item(yaml_list(looks.materials()), 0, out);
+    write_item(appearances.textures(), 0, out);
+    write_item(yaml_list(appearances.materials()), 0, out);
     std::map<std::string, int> ordinals;
     Value lighting = lighting_value(scene, numbers, kept); // programs: before the caches they use
     const Value caches = caches_value(numbers), parameters = parameters_value(scene);

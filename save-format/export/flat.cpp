@@ -57,7 +57,7 @@ bool TreeWriter::flat_words(ShapeId id) {
     case ShapeKind::Repeat:
     case ShapeKind::Within:
     case ShapeKind::Mixed:
-    case ShapeKind::Many:
+    case ShapeKind::Instances:
     case ShapeKind::Contract: break;
     }
     return false;

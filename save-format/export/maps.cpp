@@ -236,7 +236,7 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
         if (!bend) vary(*result, "from", s.args[3]), vary(*result, "to", s.args[4]);
         return push(std::move(result));
     }
-    case ir::MapKind::Fold: {
+    case ir::MapKind::MirrorFold: {
         const NodeId q = numbers_.reduced(s.args[0]), p = graph.point();
         for (int axis = 0; axis < 3; ++axis) {
             // as the library writes it, p + (|dot(p, n)| - dot(p, n)) n, or by component

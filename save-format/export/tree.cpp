@@ -4,7 +4,7 @@
 #include "save-format/export/tree.h"
 
 #include "ir/passes/walk.h"
-#include "save-format/export/looks.h"
+#include "save-format/export/appearance.h"
 #include "save-format/export/tree_writer.h"
 #include "save-format/program.h"
 
@@ -76,11 +76,11 @@ void TreeWriter::united(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
     case ShapeKind::Union:
         for (const ShapeId child : s.children) united(child, paint, out);
         return;
-    case ShapeKind::Many: {
-        const ir::Family &family = scene_.shapes.families[s.payload];
-        if (family.smooth) break;
-        for (int i = 0; i < family.count; ++i) {
-            numbers_.set(family.index, {ir::Type::Int, {double(i)}});
+    case ShapeKind::Instances: {
+        const ir::InstanceTable &instance_table = scene_.shapes.instance_tables[s.payload];
+        if (instance_table.smooth) break;
+        for (int i = 0; i < instance_table.count; ++i) {
+            numbers_.set(instance_table.index, {ir::Type::Int, {double(i)}});
             united(s.children[0], paint, out);
         }
         return;
@@ -187,15 +187,15 @@ void TreeWriter::painted(ShapeId id, Paint paint, std::vector<TreeNode> &out) {
         paint.forced = s.kind == ShapeKind::Repaint;
         return united(s.children[0], paint, out);
     }
-    // Looks that depend on the point: a group that says so, whose shapes a 0.3 reader shows
+    // Appearances that depend on the point: a group that says so, whose shapes a 0.3 reader shows
     // plainly.
     const ir::Material &m = scene_.shapes.materials[s.payload];
     TreeNode group = made(NodeType::Generic);
-    Value looks;
-    looks.kind = Value::Kind::Mapping;
+    Value appearances;
+    appearances.kind = Value::Kind::Mapping;
     const auto part = [&](const char *key, NodeId expression) {
         auto program = steps(expression);
-        if (program) looks.entries.emplace_back(key, std::move(*program));
+        if (program) appearances.entries.emplace_back(key, std::move(*program));
         return program.has_value();
     };
     bool whole = part("Diffuse", m.diffuse);
@@ -206,8 +206,8 @@ void TreeWriter::painted(ShapeId id, Paint paint, std::vector<TreeNode> &out) {
         unsaved(diagnostics_, s.origin,
                 "the save format has no words for a part of this material: " + no_words)
             .note("it is left out of the file");
-    looks.entries.emplace_back("Repaint", yaml_switch(s.kind == ShapeKind::Repaint));
-    add(group, "Paint", std::move(looks));
+    appearances.entries.emplace_back("Repaint", yaml_switch(s.kind == ShapeKind::Repaint));
+    add(group, "Paint", std::move(appearances));
     paint.fill.clear();
     united(s.children[0], paint, group.children);
     if (!group.children.empty()) out.push_back(std::move(group));
@@ -236,14 +236,14 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
     case ShapeKind::Intersection: return intersection(id, paint);
     case ShapeKind::Complement: {
         const ShapeId child = bare(s.children[0]);
-        if (shape(child).kind == ShapeKind::Blend || shape(child).kind == ShapeKind::Many) {
+        if (shape(child).kind == ShapeKind::Blend || shape(child).kind == ShapeKind::Instances) {
             if (shape(child).args.size() > 0)
                 if (auto blend = profile_blend(child, true, paint)) return blend;
         }
         return one_child(NodeType::Complement, s.children[0], paint);
     }
     case ShapeKind::Blend:
-    case ShapeKind::Many: return profile_blend(id, false, paint);
+    case ShapeKind::Instances: return profile_blend(id, false, paint);
     case ShapeKind::Xor: {
         TreeNode result = made(NodeType::ProfileBlend);
         add(result, "Operation", yaml_word("Xor"));
@@ -388,9 +388,9 @@ void Numbers::open_copies(NodeId id) {
     words_.ids.push_back(id);
 }
 
-std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers, Looks &looks,
-                                  Diagnostics &diagnostics) {
-    TreeWriter writer(scene, numbers, looks, diagnostics);
+std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers,
+                                  Appearances &appearances, Diagnostics &diagnostics) {
+    TreeWriter writer(scene, numbers, appearances, diagnostics);
     std::vector<TreeNode> nodes;
     for (const ir::TopLevel &top : scene.top_level) writer.united(top.shape, {}, nodes);
     return nodes;

@@ -43,10 +43,10 @@ class Numbers {
 // What the file cannot hold: a warning, since the rest is written.
 Remark unsaved(Diagnostics &diagnostics, Span place, std::string message);
 
-class Looks;
+class Appearances;
 
 // The nodes that unite to the scene, in the order of its text.
-std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers, Looks &looks,
-                                  Diagnostics &diagnostics);
+std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers,
+                                  Appearances &appearances, Diagnostics &diagnostics);
 
 } // namespace fathom::save

@@ -4,7 +4,7 @@
 // fields.cpp (functions of the point). Private to those.
 #pragma once
 
-#include "save-format/export/looks.h"
+#include "save-format/export/appearance.h"
 #include "save-format/export/tree.h"
 #include "save-format/node_types.h"
 
@@ -25,8 +25,9 @@ struct Paint {
 
 class TreeWriter {
   public:
-    TreeWriter(const ir::Scene &scene, Numbers &numbers, Looks &looks, Diagnostics &diagnostics)
-        : scene_(scene), numbers_(numbers), looks_(looks), diagnostics_(diagnostics) {
+    TreeWriter(const ir::Scene &scene, Numbers &numbers, Appearances &appearances,
+               Diagnostics &diagnostics)
+        : scene_(scene), numbers_(numbers), looks_(appearances), diagnostics_(diagnostics) {
         const auto &maps = scene.shapes.displacement_maps;
         for (std::size_t i = 0; i < maps.size(); ++i)
             if (maps[i].whole) maps_.emplace(maps[i].whole, i);
@@ -84,7 +85,7 @@ class TreeWriter {
 
     const ir::Scene &scene_;
     Numbers &numbers_;
-    Looks &looks_;
+    Appearances &looks_;
     std::unordered_map<ShapeId, std::size_t> maps_; // displacement maps, by the whole they lie on
     std::unordered_set<std::size_t> open_maps_;     // whose nodes are being written
     Diagnostics &diagnostics_;

@@ -140,8 +140,8 @@ std::string verbatim_flow(std::string_view text, Span span) {
         while (column < span.begin && !at_line()) ++column;
     std::string slice(column, ' ');
     slice += text.substr(span.begin, span.end - span.begin);
-    Diagnostics unheard;
-    YamlReader reader(slice, SourceId{0}, Report{unheard, false}, 4000);
+    Diagnostics discarded;
+    YamlReader reader(slice, SourceId{0}, Report{discarded, false}, 4000);
     Event first = reader.next();
     std::string flow;
     if (first.kind != EventKind::Broken && first.kind != EventKind::End)

@@ -42,7 +42,7 @@ TEST_CASE("the noise cache's passes are written beside the picture's shader") {
     CHECK(!std::filesystem::exists(folder.path() / "b.fill.frag"));
 }
 
-TEST_CASE("a still picture is drawn by kept values where that is no dearer than computing it") {
+TEST_CASE("a still picture is drawn by cached values where that is no dearer than computing it") {
     const ScratchFolder folder;
     const auto picture = [&](const std::string &name, const std::string &camera,
                              const std::string &more) {
@@ -55,11 +55,11 @@ TEST_CASE("a still picture is drawn by kept values where that is no dearer than 
         CHECK(result.exit == 0);
         return result.err;
     };
-    CHECK(contains(picture("near.sdf", "at: [0, 0, 1.6], fov: 20deg", ""), "% by kept values"));
+    CHECK(contains(picture("near.sdf", "at: [0, 0, 1.6], fov: 20deg", ""), "% by cached values"));
     CHECK(contains(picture("near.sdf", "at: [0, 0, 1.6], fov: 20deg", "--samples 2"),
-                   "% by kept values"));
+                   "% by cached values"));
     CHECK(contains(picture("few.sdf", "at: [0, 0, 4], fov: 25deg", ""),
-                   "drawn exactly: its pixels share too few kept values"));
+                   "drawn exactly: its pixels share too few cached values"));
     CHECK(contains(picture("far.sdf", "at: [0, 0, 40], fov: 25deg", ""),
                    "drawn exactly: cells are narrower than pixels"));
 }

@@ -32,8 +32,8 @@ class Walker {
     Constant compute(NodeId id) {
         const ir::Node &node = g_[id];
         if (node.op == Op::Const) return rounded(g_.constant_of(id));
-        if (node.op == Op::Fold) return loop(id)[0];
-        if (node.op == Op::FoldResult) return loop(g_.arg(id, 0))[node.payload];
+        if (node.op == Op::Loop) return loop(id)[0];
+        if (node.op == Op::LoopResult) return loop(g_.arg(id, 0))[node.payload];
         std::vector<Constant> args;
         for (NodeId arg : g_.args(id)) args.push_back(value(arg));
         if (node.op == Op::Call) {
@@ -51,19 +51,19 @@ class Walker {
     }
 
     std::vector<Constant> loop(NodeId id) {
-        const ir::Fold &fold = g_.fold(ir::FoldId{g_[id].payload});
+        const ir::Loop &loop = g_.loop(ir::LoopId{g_[id].payload});
         std::vector<Constant> now;
         for (NodeId arg : g_.args(id)) now.push_back(value(arg));
-        const double count = std::min<double>(value(fold.count).value[0], fold.max_count);
+        const double count = std::min<double>(value(loop.count).value[0], loop.max_count);
         for (double i = 0; i < count; ++i) {
             Walker turn(g_);
             for (const auto &[var, constant] : known)
                 if (g_[var].op == Op::Var) turn.known[var] = constant;
-            turn.known[fold.index] = {Type::Int, {i}};
-            for (std::size_t k = 0; k < now.size(); ++k) turn.known[fold.vars[k]] = now[k];
-            if (fold.condition && turn.value(fold.condition).value[0] == 0) break;
+            turn.known[loop.index] = {Type::Int, {i}};
+            for (std::size_t k = 0; k < now.size(); ++k) turn.known[loop.vars[k]] = now[k];
+            if (loop.condition && turn.value(loop.condition).value[0] == 0) break;
             std::vector<Constant> next;
-            for (NodeId n : fold.next) next.push_back(turn.value(n));
+            for (NodeId n : loop.next) next.push_back(turn.value(n));
             now = std::move(next);
         }
         return now;
@@ -120,7 +120,7 @@ class Grower {
             case 13:
             case 14: call(); break;
             case 15:
-                if (depth < 3) fold(depth);
+                if (depth < 3) loop(depth);
                 break;
             }
         }
@@ -135,35 +135,37 @@ class Grower {
         (g_[made].type == Type::Float ? floats : vectors).push_back(made);
     }
 
-    void fold(int depth) {
-        ir::Fold fold;
-        fold.max_count = static_cast<int>(random_.below(4)) + 1;
+    void loop(int depth) {
+        ir::Loop record;
+        record.max_count = static_cast<int>(random_.below(4)) + 1;
         // The same number of turns for all, or each its own.
-        fold.count = random_.below(2)
-                         ? g_.integer(fold.max_count)
-                         : g_.make(Op::ToInt, Type::Int,
-                                   {g_.make(Op::Clamp, {scalar(), g_.number(0), g_.number(3)})});
-        fold.index = g_.fresh_var(Type::Int);
-        fold.vars = {g_.fresh_var(Type::Float), g_.fresh_var(Type::Vec3),
-                     g_.fresh_var(Type::Float)};
+        record.count = random_.below(2)
+                           ? g_.integer(record.max_count)
+                           : g_.make(Op::ToInt, Type::Int,
+                                     {g_.make(Op::Clamp, {scalar(), g_.number(0), g_.number(3)})});
+        record.index = g_.fresh_var(Type::Int);
+        record.vars = {g_.fresh_var(Type::Float), g_.fresh_var(Type::Vec3),
+                       g_.fresh_var(Type::Float)};
         Grower inner(g_, random_);
         inner.functions = functions;
-        inner.floats = {fold.vars[0], fold.vars[2], scalar(),
-                        g_.make(Op::ToFloat, Type::Float, {fold.index})};
-        inner.vectors = {fold.vars[1], vector()};
+        inner.floats = {record.vars[0], record.vars[2], scalar(),
+                        g_.make(Op::ToFloat, Type::Float, {record.index})};
+        inner.vectors = {record.vars[1], vector()};
         inner.grow(static_cast<int>(random_.below(10)) + 2, depth + 1);
         // Halved and clamped, so that nothing runs away.
         auto tame = [&](NodeId v) {
             return g_.make(Op::Clamp, {g_.mul(v, g_.number(0.5)), g_.number(-8), g_.number(8)});
         };
-        fold.next = {tame(inner.floats.back()), inner.vectors[random_.below(inner.vectors.size())],
-                     random_.below(3) ? tame(inner.scalar()) : fold.vars[0]};
-        if (random_.below(2)) fold.condition = g_.make(Op::Less, {inner.scalar(), g_.number(1.5)});
+        record.next = {tame(inner.floats.back()),
+                       inner.vectors[random_.below(inner.vectors.size())],
+                       random_.below(3) ? tame(inner.scalar()) : record.vars[0]};
+        if (random_.below(2))
+            record.condition = g_.make(Op::Less, {inner.scalar(), g_.number(1.5)});
         const NodeId start[] = {scalar(), vector(), random_.below(2) ? constant() : scalar()};
-        const NodeId loop = g_.make(Op::Fold, Type::Float, start, g_.add_fold(fold).index);
+        const NodeId loop = g_.make(Op::Loop, Type::Float, start, g_.add_loop(record).index);
         floats.push_back(loop);
-        vectors.push_back(g_.make(Op::FoldResult, Type::Vec3, {loop}, 1));
-        floats.push_back(g_.make(Op::FoldResult, Type::Float, {loop}, 2));
+        vectors.push_back(g_.make(Op::LoopResult, Type::Vec3, {loop}, 1));
+        floats.push_back(g_.make(Op::LoopResult, Type::Float, {loop}, 2));
     }
 
     Graph &g_;

@@ -65,7 +65,7 @@ Wrong compare(const ir::Scene &scene, ir::FunctionId function, const cpu::Cube &
     settings.enough = 4;
     settings.depth = 3;
     const cpu::Pruning pruning(program, inputs, cube, settings);
-    cpu::Asker asker(pruning, inputs);
+    cpu::CellEvaluator evaluator(pruning, inputs);
     const auto points = points_in(scene, distance, cube, n);
     const std::size_t count = points[0].size();
     const float *in[] = {points[0].data(), points[1].data(), points[2].data()};
@@ -76,7 +76,7 @@ Wrong compare(const ir::Scene &scene, ir::FunctionId function, const cpu::Cube &
         to.push_back(whole[c].data()), pruned_to.push_back(pruned[c].data());
     cpu::Scratch scratch = cpu::make_scratch(joined, inputs);
     cpu::evaluate(joined, scratch, in, to.data(), count);
-    cpu::ask(pruning, asker, in, pruned_to.data(), count);
+    cpu::evaluate(pruning, evaluator, in, pruned_to.data(), count);
     Wrong wrong;
     wrong.points = count;
     for (std::size_t c = 0; c < whole.size(); ++c)
@@ -86,11 +86,12 @@ Wrong compare(const ir::Scene &scene, ir::FunctionId function, const cpu::Cube &
             wrong.exact += number && std::bit_cast<std::uint32_t>(whole[c][k]) !=
                                          std::bit_cast<std::uint32_t>(pruned[c][k]);
         }
-    wrong.shapes = asker.tally.shapes / double(std::max<std::uint64_t>(asker.tally.near, 1));
-    wrong.again = double(asker.tally.again) / double(count);
+    wrong.shapes =
+        evaluator.tally.shapes / double(std::max<std::uint64_t>(evaluator.tally.near, 1));
+    wrong.again = double(evaluator.tally.again) / double(count);
     if (!far_cells) return wrong;
     const std::vector<float> limits(count, 0.001f * cube.side);
-    cpu::ask(pruning, asker, in, pruned_to.data(), count, limits.data());
+    cpu::evaluate(pruning, evaluator, in, pruned_to.data(), count, limits.data());
     for (std::size_t k = 0; k < count; ++k)
         wrong.bounds +=
             pruned[0][k] > whole[0][k] || (pruned[0][k] < whole[0][k] && pruned[0][k] < limits[k]);

@@ -48,7 +48,8 @@ std::string rough_scene(test::Dice &dice) {
 ir::Scene by_reach(ir::Scene scene) {
     ir::Graph &g = scene.graph;
     const ir::NodeId p = g.fresh_var(ir::Type::Vec3);
-    const ir::NodeId both = g.make(ir::Op::Call, ir::Type::Vec2, std::array{p}, scene.reach.index);
+    const ir::NodeId both =
+        g.make(ir::Op::Call, ir::Type::Vec2, std::array{p}, scene.safe_radius.index);
     scene.distance = g.add_function({"reach_alone", {}, {p}, g.component(both, 1)});
     return scene;
 }
@@ -63,7 +64,7 @@ TEST_CASE("what reaches is free, and no ray passes a surface") {
         INFO(text);
         driver::Compilation c = driver::compile_text("scene", text, {}, {});
         REQUIRE(c.good());
-        if (!c.scene.reach) continue;
+        if (!c.scene.safe_radius) continue;
         ++curved;
         test::Point3 lo = c.scene.bounds.lo, hi = c.scene.bounds.hi;
         const test::Spans spans = test::measure_spans(c.scene, lo, hi, 100'000);
@@ -73,9 +74,9 @@ TEST_CASE("what reaches is free, and no ray passes a surface") {
 
         constexpr int side = 40;
         const cpu::Stage stage = cpu::prepare(c.scene, ir::view_of(c.scene, 0, 1), side, side, 0);
-        REQUIRE(stage.reaches);
+        REQUIRE(stage.has_safe_radius);
         ir::Scene without = c.scene;
-        without.reach = {};
+        without.safe_radius = {};
         const cpu::Stage plain = cpu::prepare(without, stage.view, side, side, 0);
         std::vector<cpu::Ray> rays;
         for (int y = 0; y < side; ++y)
@@ -127,7 +128,7 @@ implicit(p => pow(p.x * p.x + p.y * p.y - w, 3) + 4 * p.z * p.z * p.z * p.z, wit
         INFO(text);
         driver::Compilation c = driver::compile_text("scene", text, {}, {});
         REQUIRE(c.good());
-        CHECK(c.scene.reach);
+        CHECK(c.scene.safe_radius);
         const test::Spans spans =
             test::measure_spans(c.scene, c.scene.bounds.lo, c.scene.bounds.hi, 100'000);
         CHECK(spans.cut == 0);
@@ -173,7 +174,7 @@ TEST_CASE("the shader reaches as far as the processor") {
         INFO(text);
         driver::Compilation c = driver::compile_text("scene", text, {}, {});
         REQUIRE(c.good());
-        if (!c.scene.reach) continue;
+        if (!c.scene.safe_radius) continue;
         const ir::Scene scene = by_reach(c.scene);
         test::Sampler sampler(scene);
         std::vector<test::Point3> points;

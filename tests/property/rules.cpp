@@ -345,7 +345,7 @@ Spans spans_of(const Case &test, double factor) {
     REQUIRE(!diagnostics.has_errors());
     lower(s.scene);
     REQUIRE(verify(s.scene).empty());
-    REQUIRE(s.scene.reach);
+    REQUIRE(s.scene.safe_radius);
     const double r = test.reach;
     return measure_spans(s.scene, {-r, -r, -r}, {r, r, r}, 1'000'000);
 }
@@ -376,7 +376,7 @@ TEST_CASE("nothing reaches by curvature through folds and cuts") {
         Diagnostics diagnostics;
         s.prove(shape, diagnostics);
         lower(s.scene);
-        return static_cast<bool>(s.scene.reach);
+        return static_cast<bool>(s.scene.safe_radius);
     };
     Scenery alone, cut, inverted, sharp, thin;
     CHECK(reaches(alone, rough(alone)));
@@ -493,7 +493,7 @@ TEST_CASE("kinds that must not lengthen, in float32") {
                                         s.g.vec3(1, 0.2, 0)));
                          return s.add(ShapeKind::Repeat, {motif}, {s.g.integer(7)}, 0);
                      }});
-    plain.push_back({"a twist of a union, by lever arm", [](Scenery &s) {
+    plain.push_back({"a twist of a union, by moment arm", [](Scenery &s) {
                          ShapeId arm = s.add(rotated(s.g, s.box(0.3, 0.3, 2),
                                                      rotation(s.g, s.g.vec3(1, 1, 0), s.n(0.7))));
                          ShapeId both = s.add(ShapeKind::Union,

@@ -242,7 +242,7 @@ TEST_CASE("every reference in code and pages leads somewhere") {
 
 TEST_CASE("references that lead nowhere are found") {
     Library library;
-    library.files = {"docs/rules.md", "docs/decisions/0001-one.md", "ir/look.h", "ir/cost.cpp"};
+    library.files = {"docs/rules.md", "docs/decisions/0001-one.md", "ir/shading.h", "ir/cost.cpp"};
     library.folders = {"docs", "docs/decisions", "ir"};
     library.pages["docs/rules.md"] =
         headings_of({"# Rules", "## 1. First", "### 1.1 Part", "## 2. Next", "```", "## 3. No"});
@@ -254,7 +254,7 @@ TEST_CASE("references that lead nowhere are found") {
     };
     using Said = std::vector<std::string>;
     SECTION("in comments") {
-        CHECK(dead("ir/a.cpp", {"int a; // rules.md, 1 and 2, look.h and `ir/cost`"}).empty());
+        CHECK(dead("ir/a.cpp", {"int a; // rules.md, 1 and 2, shading.h and `ir/cost`"}).empty());
         CHECK(dead("ir/a.cpp", {"call(\"none.md // none.h\");", "#include \"none.h\""}).empty());
         CHECK(dead("ir/a.cpp", {"", "// See none.md."}) == Said{"2: there is no none.md"});
         CHECK(dead("ir/a.cpp", {"case '\"': // none.h"}) == Said{"1: there is no none.h"});
@@ -275,7 +275,7 @@ TEST_CASE("references that lead nowhere are found") {
               Said{"1: there is no decision 0002"});
     }
     SECTION("on pages") {
-        CHECK(dead("docs/a.md", {"[x](rules.md#11-part), [y](../ir/look.h), [z](https://a.b/c)",
+        CHECK(dead("docs/a.md", {"[x](rules.md#11-part), [y](../ir/shading.h), [z](https://a.b/c)",
                                  "```", "[x](none)", "```", "`[x](none)`, `CODE.md`, `ir/*.md`"})
                   .empty());
         CHECK(dead("docs/a.md", {"", "[x](rules.md#3-no)"}) ==

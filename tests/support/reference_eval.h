@@ -109,12 +109,12 @@ class Reference {
         if (node.op == Op::Call) return call(ir::FunctionId{std::size_t{node.payload}}, args);
         if (node.op == Op::Cached)
             return call(graph_.cache(ir::CacheId{std::size_t{node.payload}}).field, args);
-        if (node.op == Op::Fold) return fold(node, args, scope).front();
-        if (node.op == Op::FoldResult) {
+        if (node.op == Op::Loop) return loop(node, args, scope).front();
+        if (node.op == Op::LoopResult) {
             const ir::NodeId of_fold = graph_.arg(id, 0);
             std::vector<Value> start;
             for (ir::NodeId arg : graph_.args(of_fold)) start.push_back(eval(arg, scope));
-            return fold(graph_[of_fold], start, scope).at(node.payload);
+            return loop(graph_[of_fold], start, scope).at(node.payload);
         }
         if (node.op == Op::TableRead) return table(node, args[0].value[0]);
         if (node.op == Op::Image) return image(node, args[0]);
@@ -134,21 +134,21 @@ class Reference {
         return v;
     }
 
-    std::vector<Value> fold(const ir::Node &node, std::vector<Value> values, Scope &outer) {
-        const ir::Fold &fold = graph_.fold(ir::FoldId{std::size_t{node.payload}});
-        const int count = static_cast<int>(eval(fold.count, outer).value[0]);
+    std::vector<Value> loop(const ir::Node &node, std::vector<Value> values, Scope &outer) {
+        const ir::Loop &loop = graph_.loop(ir::LoopId{std::size_t{node.payload}});
+        const int count = static_cast<int>(eval(loop.count, outer).value[0]);
         // Inside, only what was bound outside is kept: everything else may depend on the loop's
         // variables.
         Scope bound;
         for (const auto &[id, value] : outer)
             if (graph_[id].op == ir::Op::Var) bound[id] = value;
-        for (int i = 0; i < std::min(count, fold.max_count); ++i) {
+        for (int i = 0; i < std::min(count, loop.max_count); ++i) {
             Scope scope = bound;
-            scope[fold.index] = of(ir::Type::Int, {double(i)});
-            for (std::size_t k = 0; k < values.size(); ++k) scope[fold.vars[k]] = values[k];
-            if (fold.condition && eval(fold.condition, scope).value[0] == 0) break;
+            scope[loop.index] = of(ir::Type::Int, {double(i)});
+            for (std::size_t k = 0; k < values.size(); ++k) scope[loop.vars[k]] = values[k];
+            if (loop.condition && eval(loop.condition, scope).value[0] == 0) break;
             std::vector<Value> next;
-            for (ir::NodeId id : fold.next) next.push_back(eval(id, scope));
+            for (ir::NodeId id : loop.next) next.push_back(eval(id, scope));
             values = std::move(next);
         }
         return values;

@@ -1,5 +1,5 @@
 // The rule of curvature, measured: between two samples outside, no farther apart than their reaches
-// together, nothing of the solid lies (look.h, MARCH). Random segments that the balls of their ends
+// together, nothing of the solid lies (shading.h, MARCH). Random segments that the balls of their ends
 // do not cover, and points all along them; the same every time. On the processor, in float32.
 #pragma once
 
@@ -14,7 +14,7 @@ struct Spans {
 };
 
 inline Spans measure_spans(const ir::Scene &scene, Point3 lo, Point3 hi, int count) {
-    const cpu::Program reach = cpu::compile(scene, scene.reach);
+    const cpu::Program reach = cpu::compile(scene, scene.safe_radius);
     cpu::Scratch scratch = cpu::make_scratch(reach, cpu::inputs_of(scene, 0));
     Sampler sampler(scene);
     using Values = std::array<std::vector<float>, 2>; // the distance, and how far it reaches

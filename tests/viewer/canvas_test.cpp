@@ -260,7 +260,7 @@ TEST_CASE("to know its parts changes no pixel of a scene") {
     }
 }
 
-// From kept values to exact ones no pixel jumps: each frame of a fade lies between both pictures by
+// From cached values to exact ones no pixel jumps: each frame of a fade lies between both pictures by
 // its share, so two that follow one another differ by that share of their difference.
 TEST_CASE("a picture fades into the next by shares") {
     require_context();

@@ -253,7 +253,7 @@ TEST_CASE("the view of a save file is written as YAML, and the file stays one") 
 }
 
 TEST_CASE("a picture that takes its time is on the screen coarsely at once, and events are heard") {
-    // Many seconds of a software driver.
+    // Instances seconds of a software driver.
     const std::string heavy =
         "let bumps = p => 0.1 * fbm(3 * p, octaves: 6)\n"
         "for i in 0..4 { sphere(1).displace(bumps).translate([1.5 * i - 2, 0, 0]).paint(orange) }\n"
@@ -460,7 +460,7 @@ TEST_CASE("the noise cache's view learns until nothing is red, and the panel tel
 }
 
 TEST_CASE("moved through the noise cache, it comes to rest exactly") {
-    // Cells so coarse that kept values show.
+    // Cells so coarse that cached values show.
     const std::string text =
         "let bumps = cached(p => 0.15 * fbm(2.5 * p, octaves: 6), cell: 0.25)\n"
         "sphere(1).displace(bumps).paint(white)\n" +

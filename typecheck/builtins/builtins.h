@@ -1,17 +1,17 @@
 // What the files of shape intrinsics share. Private to typecheck.
 #pragma once
 
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 namespace fathom::typecheck {
 
 // The shape as a value; its place is the user's own call, also where the library made it.
-Value added(Evaluator &ev, ir::Shape shape, const CallSite &site, int dims);
+Value added(Interpreter &ev, ir::Shape shape, const CallSite &site, int dims);
 bool given(const Value &v); // an optional argument that is there
-bool is_empty(Evaluator &ev, ir::ShapeId id);
-std::optional<ir::ShapeId> first_shape(Evaluator &ev, const CallSite &site,
+bool is_empty(Interpreter &ev, ir::ShapeId id);
+std::optional<ir::ShapeId> first_shape(Interpreter &ev, const CallSite &site,
                                        const std::vector<Value> &args, int dims = 0);
-std::optional<int> axis_argument(Evaluator &ev, const CallSite &site, const Value &v,
+std::optional<int> axis_argument(Interpreter &ev, const CallSite &site, const Value &v,
                                  std::size_t i); // 0, 1, 2
 
 } // namespace fathom::typecheck

@@ -1,5 +1,5 @@
 // Lists, randomness and what helps to look into a scene: scene time only.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include "base/text.h"
 #include "ir/view.h"
@@ -12,7 +12,7 @@
 
 namespace fathom::typecheck {
 
-static Value len_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value len_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     if (args[0].kind == ValueKind::String) return integer(double(ev.strings[args[0].id].size()));
     if (args[0].kind == ValueKind::Range)
         return integer(
@@ -21,14 +21,14 @@ static Value len_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
     return list ? integer(double(list->size())) : poison();
 }
 
-static bool wants_function(Evaluator &ev, const CallSite &site, const Value &v, std::size_t i) {
+static bool wants_function(Interpreter &ev, const CallSite &site, const Value &v, std::size_t i) {
     if (is_function(v)) return true;
     report(ev, Code::TypeMismatch, site.arg(i),
            fmt::format("`{}` wants a function, this is {}", site.name, describe(ev, v)));
     return false;
 }
 
-static Value map_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value map_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto list = want_list(ev, args[0], site.arg(0), "`map`");
     if (!list || !wants_function(ev, site, args[1], 1)) return poison();
     std::vector<Value> out;
@@ -40,7 +40,7 @@ static Value map_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
     return list_value(ev, std::move(out));
 }
 
-static Value filter_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value filter_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto list = want_list(ev, args[0], site.arg(0), "`filter`");
     if (!list || !wants_function(ev, site, args[1], 1)) return poison();
     std::vector<Value> out;
@@ -54,7 +54,7 @@ static Value filter_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     return list_value(ev, std::move(out));
 }
 
-static Value fold_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value fold_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto list = want_list(ev, args[0], site.arg(0), "`fold`");
     if (!list || !wants_function(ev, site, args[2], 2)) return poison();
     Value total = args[1];
@@ -66,7 +66,7 @@ static Value fold_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     return total;
 }
 
-static Value zip_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value zip_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto a = want_list(ev, args[0], site.arg(0), "`zip`"),
          b = want_list(ev, args[1], site.arg(1), "`zip`");
     if (!a || !b || !wants_function(ev, site, args[2], 2)) return poison();
@@ -85,7 +85,7 @@ static Value zip_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
     return list_value(ev, std::move(out));
 }
 
-static Value concat_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value concat_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     std::vector<Value> out;
     std::vector<Value> lists{args[0]};
     if (!is(args[1], ValueKind::None)) {
@@ -105,14 +105,14 @@ static Value concat_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     return list_value(ev, std::move(out));
 }
 
-static Value reverse_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value reverse_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto list = want_list(ev, args[0], site.arg(0), "`reverse`");
     if (!list) return poison();
     std::reverse(list->begin(), list->end());
     return list_value(ev, std::move(*list));
 }
 
-static Value sort_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value sort_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto list = want_list(ev, args[0], site.arg(0), "`sort`");
     if (!list) return poison();
     std::vector<std::pair<double, Value>> keyed;
@@ -133,7 +133,7 @@ static Value sort_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     return list_value(ev, std::move(out));
 }
 
-static Value range_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value range_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     bool whole = true;
     for (const Value &a : args)
         whole = whole && (a.kind == ValueKind::Int || a.kind == ValueKind::None);
@@ -177,7 +177,7 @@ static double random_unit(double seed, double k) {
     return double(mixed(mixed(a) ^ (b + 0x632be59bd9b4e019ull)) >> 11) * 0x1p-53;
 }
 
-static std::optional<double> seed_of(Evaluator &ev, const CallSite &site, const Value &v,
+static std::optional<double> seed_of(Interpreter &ev, const CallSite &site, const Value &v,
                                      std::size_t i) {
     if (is_numeric(v) && ir::is_vector(numeric_type(ev, v)) && v.kind == ValueKind::Vec) {
         double total = 0;
@@ -189,7 +189,7 @@ static std::optional<double> seed_of(Evaluator &ev, const CallSite &site, const 
 }
 
 // random(seed), random(seed, k) in 0..1; random(lo, hi, seed)
-static Value random_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value random_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     bool no_lo = is(args[0], ValueKind::None), no_seed = is(args[2], ValueKind::None);
     if (no_lo && no_seed) {
         report(ev, Code::MissingArgument, site.call, "`random` wants a seed")
@@ -220,7 +220,7 @@ static Value random_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     return from_node(ev, g.add(*lo, g.mul(g.sub(*hi, *lo), g.vec(t))));
 }
 
-static Value pick_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value pick_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto list = want_list(ev, args[0], site.arg(0), "`pick`");
     auto seed = seed_of(ev, site, args[1], 1);
     if (!list || !seed) return poison();
@@ -232,7 +232,7 @@ static Value pick_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
         list->size() - 1, static_cast<std::size_t>(random_unit(*seed, 0) * double(list->size())))];
 }
 
-static Value shuffle_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value shuffle_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto list = want_list(ev, args[0], site.arg(0), "`shuffle`");
     auto seed = seed_of(ev, site, args[1], 1);
     if (!list || !seed) return poison();
@@ -246,13 +246,13 @@ static Value shuffle_call(Evaluator &ev, const CallSite &site, std::vector<Value
 // -- looking in, and refusing
 // ----------------------------------------------------------------------
 
-static Value print_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value print_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     if (is_poison(args[0])) return poison();
     report(ev, Code::Printed, site.call, print_value(ev, args[0]));
     return unit();
 }
 
-static Value assert_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value assert_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto holds = want_known_bool(ev, args[0], site.arg(0), "`assert`");
     if (!holds) return poison();
     std::string why =
@@ -262,7 +262,7 @@ static Value assert_call(Evaluator &ev, const CallSite &site, std::vector<Value>
 }
 
 // The library's own refusal: an error at the user's call.
-static Value check_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value check_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     const std::string wanted = args[1].kind == ValueKind::String ? ev.strings[args[1].id]
                                                                  : "this argument cannot be taken";
     if (is_numeric(args[0]) && args[0].kind == ValueKind::Field) {
@@ -278,7 +278,7 @@ static Value check_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     return unit();
 }
 
-static Value given_call(Evaluator &, const CallSite &, std::vector<Value> &args) {
+static Value given_call(Interpreter &, const CallSite &, std::vector<Value> &args) {
     return boolean(!is(args[0], ValueKind::None));
 }
 

@@ -1,7 +1,7 @@
 // GLSL's numeric functions by their names, constructors, and the library's noise primitives: names
 // for ops of the graph.
 #include "typecheck/binding.h"
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include "ir/maps.h"
 
@@ -15,7 +15,7 @@ using ir::Op;
 using ir::Type;
 
 template <Op op>
-static Value componentwise(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value componentwise(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     for (Value &a : args) {
         if (is_poison(a)) return poison();
         if (a.kind == ValueKind::List) {
@@ -46,7 +46,7 @@ static bool is_undefined(Op op, double x) {
 
 // A function of the op table; where it is undefined is an error at scene time.
 template <Op op>
-static Value function_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value function_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     if (args[0].kind == ValueKind::Int || args[0].kind == ValueKind::Float) {
         if (const double x = args[0].num[0]; is_undefined(op, x)) {
             report(ev, Code::NumberRange, site.arg(0),
@@ -57,7 +57,8 @@ static Value function_call(Evaluator &ev, const CallSite &site, std::vector<Valu
     return componentwise<op>(ev, site, args);
 }
 
-template <Op op> static Value most(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+template <Op op>
+static Value most(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     std::vector<Value> items{args[0]};
     if (!is(args[1], ValueKind::None)) {
         auto rest = want_list(ev, args[1], site.arg(1), quoted(site.name));
@@ -81,7 +82,7 @@ template <Op op> static Value most(Evaluator &ev, const CallSite &site, std::vec
     return best;
 }
 
-static Value atan_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value atan_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     if (is(args[1], ValueKind::None)) {
         args.pop_back();
         return componentwise<Op::Atan>(ev, site, args);
@@ -89,7 +90,7 @@ static Value atan_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     return componentwise<Op::Atan2>(ev, site, args);
 }
 
-static std::optional<Value> vector_argument(Evaluator &ev, const CallSite &site, const Value &raw,
+static std::optional<Value> vector_argument(Interpreter &ev, const CallSite &site, const Value &raw,
                                             std::size_t i) {
     Value v = raw;
     if (v.kind == ValueKind::List) {
@@ -105,14 +106,14 @@ static std::optional<Value> vector_argument(Evaluator &ev, const CallSite &site,
     return std::nullopt;
 }
 
-static Value length_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value length_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto v = vector_argument(ev, site, args[0], 0);
     if (!v) return poison();
     if (is_scalar(ev, *v)) return apply_op(ev, Op::Abs, {*v}, site.call, site.name);
     return from_node(ev, ev.scene.graph.make(Op::Length, {to_node(ev, *v)}));
 }
 
-static Value normalize_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value normalize_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto v = vector_argument(ev, site, args[0], 0);
     if (!v) return poison();
     if (is_scalar(ev, *v)) return apply_op(ev, Op::Sign, {*v}, site.call, site.name);
@@ -120,7 +121,7 @@ static Value normalize_call(Evaluator &ev, const CallSite &site, std::vector<Val
 }
 
 template <Op op>
-static Value product(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value product(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto a = vector_argument(ev, site, args[0], 0), b = vector_argument(ev, site, args[1], 1);
     if (!a || !b) return poison();
     Type ta = numeric_type(ev, *a), tb = numeric_type(ev, *b);
@@ -144,7 +145,7 @@ static Value product(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
 }
 
 // mix(a, b, t) where t may also be a bool: a choice without a jump in type.
-static Value mix_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value mix_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     if (is_numeric(args[2]) && numeric_type(ev, args[2]) == Type::Bool) {
         if (auto v = select_value(ev, args[2], args[1], args[0])) return *v;
         report(ev, Code::TypeMismatch, site.call, "`mix` wants two values of one type");
@@ -156,7 +157,7 @@ static Value mix_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
 // -- constructors --------------------------------------------------------------------------------
 
 template <int size>
-static Value vec_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value vec_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     std::vector<Value> parts;
     for (const Value &a : args) {
         if (is(a, ValueKind::None)) continue;
@@ -172,7 +173,7 @@ static Value vec_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
 
 // mat3(c0, c1, c2), mat3(9 numbers, by columns), mat3(s): s on the diagonal.
 template <int size>
-static Value mat_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value mat_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto list = want_list(ev, args[0], site.arg(0), quoted(site.name));
     if (!list) return poison();
     std::vector<Value> parts = *list;
@@ -206,7 +207,7 @@ static Value mat_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
     return from_node(ev, ev.scene.graph.make(Op::Make, ir::matrix_type(size), columns));
 }
 
-static Value transpose_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value transpose_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     if (!is_numeric(args[0]) || !ir::is_matrix(numeric_type(ev, args[0]))) {
         report(ev, Code::TypeMismatch, site.arg(0),
                fmt::format("`transpose` wants a matrix, this is {}", describe(ev, args[0])));
@@ -215,7 +216,7 @@ static Value transpose_call(Evaluator &ev, const CallSite &site, std::vector<Val
     return from_node(ev, ev.scene.graph.make(Op::Transpose, {to_node(ev, args[0])}));
 }
 
-static Value int_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value int_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     const Value &v = args[0];
     if (is_numeric(v) && (is_scalar(ev, v) || numeric_type(ev, v) == Type::Bool)) {
         if (numeric_type(ev, v) == Type::Int) return v;
@@ -232,7 +233,7 @@ static Value int_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
     return poison();
 }
 
-static Value float_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value float_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     const Value &v = args[0];
     if (is_numeric(v) && (is_scalar(ev, v) || numeric_type(ev, v) == Type::Bool))
         return to_float(ev, v);
@@ -241,7 +242,7 @@ static Value float_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     return poison();
 }
 
-static Value div_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value div_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     for (std::size_t i = 0; i < 2; ++i)
         if (!is_numeric(args[i]) || numeric_type(ev, args[i]) != Type::Int) {
             report(ev, Code::TypeMismatch, site.arg(i),
@@ -256,7 +257,7 @@ static Value div_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
 }
 
 // `rgb(255, 128, 0)`: whole numbers up to 255, of which one is too large for any light.
-static void warn_of_bytes(Evaluator &ev, const CallSite &site, const std::vector<Value> &args) {
+static void warn_of_bytes(Interpreter &ev, const CallSite &site, const std::vector<Value> &args) {
     constexpr double brightest = 16;
     double most = 0;
     for (const Value &v : args) {
@@ -272,7 +273,7 @@ static void warn_of_bytes(Evaluator &ev, const CallSite &site, const std::vector
         .help(fmt::format("write `{}` if parts of 255 are meant", hex), {{site.call, hex}});
 }
 
-static Value rgb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value rgb_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     // sRGB in the text, linear inside (docs/language.md)
     auto linear = [&](const Value &v) {
         if (v.kind != ValueKind::Field) {
@@ -307,13 +308,13 @@ static Value rgb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
 // -- noise ---------------------------------------------------------------------------------------
 
 template <Op op>
-static Value noise_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value noise_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto p = want_vec_node(ev, args[0], 3, site.arg(0), quoted(site.name));
     if (!p) return poison();
     return from_node(ev, ev.scene.graph.make(op, {*p}));
 }
 
-static Value spot_noise_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value spot_noise_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto p = want_vec_node(ev, args[0], 3, site.arg(0), "`spot_noise`");
     auto r = want_scalar_node(ev, args[1], site.arg(1), "`radius`"),
          d = want_scalar_node(ev, args[2], site.arg(2), "`density`");
@@ -321,7 +322,7 @@ static Value spot_noise_call(Evaluator &ev, const CallSite &site, std::vector<Va
     return from_node(ev, ev.scene.graph.make(Op::SpotNoise, Type::Float, {*p, *r, *d}));
 }
 
-static Value hash_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value hash_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto v = vector_argument(ev, site, args[0], 0);
     if (!v) return poison();
     if (is_scalar(ev, args[0]) && numeric_type(ev, args[0]) == Type::Int) v = args[0];
@@ -331,27 +332,28 @@ static Value hash_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
 // -- matrices of rotations (library only)
 // ----------------------------------------------------------
 
-static Value rotation_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value rotation_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto angle = want_scalar_node(ev, args[0], site.arg(0), "`angle`");
     auto axis = want_vec_node(ev, args[1], 3, site.arg(1), "`axis`");
     if (!angle || !axis) return poison();
     return from_node(ev, ir::rotation(ev.scene.graph, *axis, *angle));
 }
-static Value rotation2_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value rotation2_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto angle = want_scalar_node(ev, args[0], site.arg(0), "`angle`");
     return angle ? from_node(ev, ir::rotation2(ev.scene.graph, *angle)) : poison();
 }
-static Value rotation_euler_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value rotation_euler_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto angles = want_vec_node(ev, args[0], 3, site.arg(0), "`angles`");
     return angles ? from_node(ev, ir::rotation_euler(ev.scene.graph, *angles)) : poison();
 }
-static Value rotation_between_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value rotation_between_call(Interpreter &ev, const CallSite &site,
+                                   std::vector<Value> &args) {
     auto from = want_vec_node(ev, args[0], 3, site.arg(0), "`from`"),
          to = want_vec_node(ev, args[1], 3, site.arg(1), "`to`");
     if (!from || !to) return poison();
     return from_node(ev, ir::rotation_between(ev.scene.graph, *from, *to));
 }
-static Value axis_index_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value axis_index_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto axis = want_vec_node(ev, args[0], 3, site.arg(0), "`axis`");
     if (!axis) return poison();
     if (!ev.scene.graph.is_constant(*axis)) return integer(-1);

@@ -10,12 +10,12 @@ namespace fathom::typecheck {
 
 using ir::Type;
 
-static Value setting_value(Evaluator &ev, Setting s) {
+static Value setting_value(Interpreter &ev, Setting s) {
     ev.settings.push_back(std::move(s));
     return make_value(ValueKind::Setting, static_cast<std::uint32_t>(ev.settings.size() - 1));
 }
 
-static Value material_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value material_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     ir::Graph &g = ev.scene.graph;
     ir::NodeId normal = g.make(ir::Op::Normal, Type::Vec3, std::initializer_list<ir::NodeId>{});
     bool ok = true;
@@ -57,7 +57,7 @@ static Value material_call(Evaluator &ev, const CallSite &site, std::vector<Valu
     return make_value(ValueKind::Material, static_cast<std::uint32_t>(ev.materials.size() - 1));
 }
 
-static Value camera_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value camera_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     ir::Graph &g = ev.scene.graph;
     Setting s{Setting::Kind::Camera, {}, {}, {}, {}, {}, {}};
     auto at = want_vec_node(ev, args[0], 3, site.arg(0), "`at`");
@@ -79,7 +79,7 @@ static Value camera_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     return setting_value(ev, std::move(s));
 }
 
-static std::optional<ir::NodeId> light_color(Evaluator &ev, const CallSite &site,
+static std::optional<ir::NodeId> light_color(Interpreter &ev, const CallSite &site,
                                              const std::vector<Value> &args) {
     ir::Graph &g = ev.scene.graph;
     auto color = given(args[1]) ? want_color_node(ev, args[1], site.arg(1), "`color`")
@@ -90,7 +90,7 @@ static std::optional<ir::NodeId> light_color(Evaluator &ev, const CallSite &site
     return node_in_range(ev, g.mul(*color, *intensity), site.call);
 }
 
-static Value light_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value light_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     Setting s{Setting::Kind::Light, {}, {}, {}, {}, {}, {}};
     auto at = want_vec_node(ev, args[0], 3, site.arg(0), "`at`");
     auto color = light_color(ev, site, args);
@@ -99,7 +99,7 @@ static Value light_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     return setting_value(ev, std::move(s));
 }
 
-static Value sun_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value sun_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     ir::Graph &g = ev.scene.graph;
     Setting s{Setting::Kind::Light, {}, {}, {}, {}, {}, {}};
     auto direction = want_vec_node(ev, args[0], 3, site.arg(0), "`direction`");
@@ -114,13 +114,13 @@ static Value sun_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
     return setting_value(ev, std::move(s));
 }
 
-ir::Lighting default_lighting(Evaluator &ev) {
+ir::Lighting default_lighting(Interpreter &ev) {
     ir::Graph &g = ev.scene.graph;
     return {g.vec3(0.18, 0.18, 0.18), g.number(0.6), g.number(0.75),
             g.number(0.02),           g.number(0.4), false};
 }
 
-static Value lighting_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value lighting_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     Setting s{Setting::Kind::Lighting, {}, {}, default_lighting(ev), {}, {}, {}};
     bool ok = true;
     auto number_at = [&](std::size_t i, const char *what, ir::NodeId &out) {
@@ -146,7 +146,7 @@ static Value lighting_call(Evaluator &ev, const CallSite &site, std::vector<Valu
     return ok ? setting_value(ev, std::move(s)) : poison();
 }
 
-static Value background_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value background_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     Setting s{Setting::Kind::Background, {}, {}, {}, {}, {}, {}};
     ir::Graph &g = ev.scene.graph;
     args[0] = or_color(args[0]);
@@ -164,7 +164,7 @@ static Value background_call(Evaluator &ev, const CallSite &site, std::vector<Va
     return setting_value(ev, std::move(s));
 }
 
-static Value render_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value render_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     Setting s{Setting::Kind::Render, {}, {}, {}, {}, ev.scene.render, {}};
     bool ok = true;
     auto positive = [&](std::size_t i, const char *what) -> std::optional<double> {
@@ -186,7 +186,7 @@ static Value render_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     return ok ? setting_value(ev, std::move(s)) : poison();
 }
 
-static Value keep_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value keep_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto text = want_string(ev, args[0], site.arg(0), "`keep`");
     if (!text) return poison();
     Setting s{Setting::Kind::Keep, {}, {}, {}, {}, {}, *text};

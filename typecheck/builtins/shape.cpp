@@ -14,7 +14,7 @@ using ir::Op;
 using ir::ShapeKind;
 using ir::Type;
 
-Value added(Evaluator &ev, ir::Shape shape, const CallSite &site, int dims) {
+Value added(Interpreter &ev, ir::Shape shape, const CallSite &site, int dims) {
     shape.dims = static_cast<std::uint8_t>(dims);
     shape.origin = site.call;
     // inside the library the user's own call is the place to show
@@ -30,11 +30,11 @@ Value added(Evaluator &ev, ir::Shape shape, const CallSite &site, int dims) {
 }
 
 bool given(const Value &v) { return v.kind != ValueKind::None; }
-bool is_empty(Evaluator &ev, ir::ShapeId id) {
+bool is_empty(Interpreter &ev, ir::ShapeId id) {
     return ev.scene.shapes[id].kind == ShapeKind::Empty;
 }
 
-std::optional<ir::ShapeId> first_shape(Evaluator &ev, const CallSite &site,
+std::optional<ir::ShapeId> first_shape(Interpreter &ev, const CallSite &site,
                                        const std::vector<Value> &args, int dims) {
     std::string_view name = ev.calls.empty() ? site.name : ev.calls.back().name;
     return want_shape(ev, args[0], site.arg(0), quoted(name), dims);
@@ -43,7 +43,7 @@ std::optional<ir::ShapeId> first_shape(Evaluator &ev, const CallSite &site,
 // -- leaves --------------------------------------------------------------------------------------
 
 // A polygon's corners are kept for those who turn it about an axis; what is not known now is left.
-static void note_corners(Evaluator &ev, ir::ShapeId leaf, const Value &list) {
+static void note_corners(Interpreter &ev, ir::ShapeId leaf, const Value &list) {
     if (list.kind != ValueKind::List) return;
     std::vector<std::array<double, 2>> corners;
     for (const Value &item : ev.lists[list.id]) {
@@ -53,10 +53,10 @@ static void note_corners(Evaluator &ev, ir::ShapeId leaf, const Value &list) {
     ev.corners[leaf] = std::move(corners);
 }
 
-// _solid(f, exact, lipschitz, lo, hi, symmetric, lever, swell) and _flat(…, corners): a field with
+// _solid(f, exact, lipschitz, lo, hi, symmetric, moment_arm, growth_rate) and _flat(…, corners): a field with
 // the library's claims.
 template <int dims>
-static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value leaf_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     ir::Graph &g = ev.scene.graph;
     auto field = apply_field(ev, args[0], {g.point(ir::vector_type(dims))}, Type::Float,
                              site.arg(0), "a shape");
@@ -90,20 +90,20 @@ static Value leaf_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
         for (char a : axes.value_or("")) c.symmetric[static_cast<std::size_t>(a - 'x')] = true;
     }
     if (given(args[6])) {
-        auto lever = want_vec_node(ev, args[6], 3, site.arg(6), "`lever`", Limit::None);
-        if (lever)
+        auto moment_arm = want_vec_node(ev, args[6], 3, site.arg(6), "`moment_arm`", Limit::None);
+        if (moment_arm)
             for (int i = 0; i < 3; ++i)
-                c.lever[static_cast<std::size_t>(i)] = g.component(*lever, i);
+                c.moment_arm[static_cast<std::size_t>(i)] = g.component(*moment_arm, i);
     }
     if (given(args[7])) {
-        auto swell = want_scalar_node(ev, args[7], site.arg(7), "`swell`", Limit::None);
-        if (swell) c.swell = *swell;
+        auto growth_rate = want_scalar_node(ev, args[7], site.arg(7), "`growth_rate`", Limit::None);
+        if (growth_rate) c.growth_rate = *growth_rate;
     }
     return library_shape(ev, std::move(library), body, ev.scene.shapes[shape_of(body)].origin);
 }
 
 // implicit(f, within, lipschitz, estimate)
-static Value implicit_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value implicit_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     if (!is_function(args[0]) && !is_numeric(args[0])) {
         report(ev, Code::TypeMismatch, site.arg(0),
                fmt::format("`implicit` wants a function of the point, this is {}",
@@ -154,7 +154,7 @@ static Value implicit_call(Evaluator &ev, const CallSite &site, std::vector<Valu
 }
 
 // cached(f, cell): the same field; its values may come from the noise cache
-static Value cached_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value cached_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto cell = want_known_number(ev, args[1], site.arg(1), "`cell`");
     if (!cell) return poison();
     if (!(*cell > 0)) {
@@ -196,13 +196,13 @@ static Value cached_call(Evaluator &ev, const CallSite &site, std::vector<Value>
 // -- combination ---------------------------------------------------------------------------------
 
 static std::optional<std::vector<ir::ShapeId>>
-shapes_argument(Evaluator &ev, const CallSite &site, const Value &v, std::size_t i, int &dims) {
+shapes_argument(Interpreter &ev, const CallSite &site, const Value &v, std::size_t i, int &dims) {
     return want_shapes(ev, v, site.arg(i),
                        fmt::format("`{}`", ev.calls.empty() ? site.name : ev.calls.back().name),
                        dims);
 }
 
-static Value n_ary(Evaluator &ev, const CallSite &site, ShapeKind kind,
+static Value n_ary(Interpreter &ev, const CallSite &site, ShapeKind kind,
                    std::vector<ir::ShapeId> children, int dims) {
     if (dims == 0) dims = 3;
     if (children.empty()) {
@@ -216,7 +216,7 @@ static Value n_ary(Evaluator &ev, const CallSite &site, ShapeKind kind,
     return added(ev, std::move(s), site, dims);
 }
 
-static Value union_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value union_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     int dims = 0;
     auto shapes = shapes_argument(ev, site, args[0], 0, dims);
     if (!shapes) return poison();
@@ -224,7 +224,7 @@ static Value union_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     return shape_value(unite(ev, std::move(*shapes), dims, site.call), dims);
 }
 
-static Value intersection_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value intersection_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     int dims = 0;
     auto shapes = shapes_argument(ev, site, args[0], 0, dims);
     if (!shapes) return poison();
@@ -233,7 +233,7 @@ static Value intersection_call(Evaluator &ev, const CallSite &site, std::vector<
     return n_ary(ev, site, ShapeKind::Intersection, std::move(*shapes), dims);
 }
 
-static Value complement_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value complement_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = want_shape(ev, args[0], site.arg(0), "`complement`");
     if (!s) return poison();
     const ir::Shape &shape = ev.scene.shapes[*s];
@@ -244,7 +244,7 @@ static Value complement_call(Evaluator &ev, const CallSite &site, std::vector<Va
     return added(ev, std::move(out), site, args[0].size);
 }
 
-static Value xor_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value xor_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     int dims = 0;
     auto shapes = shapes_argument(ev, site, args[0], 0, dims);
     if (!shapes) return poison();
@@ -253,7 +253,7 @@ static Value xor_call(Evaluator &ev, const CallSite &site, std::vector<Value> &a
 }
 
 // _blend(profile, r, n, shapes)
-static Value blend_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value blend_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto profile = want_string(ev, args[0], site.arg(0), "the profile");
     auto r = want_scalar_node(ev, args[1], site.arg(1), "the blend's size"),
          n = want_scalar_node(ev, args[2], site.arg(2), "the blend's count");
@@ -269,7 +269,8 @@ static Value blend_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
                                             : ir::Profile::Columns;
     if (shapes->size() < 2) return n_ary(ev, site, ShapeKind::Union, std::move(*shapes), dims);
     if (p == ir::Profile::Smooth)
-        if (auto family = smooth_family(ev, *shapes, *r, dims)) return shape_value(*family, dims);
+        if (auto instance_table = smooth_instances(ev, *shapes, *r, dims))
+            return shape_value(*instance_table, dims);
     ir::Shape s;
     s.kind = ShapeKind::Blend;
     s.payload = static_cast<std::uint32_t>(p);
@@ -278,7 +279,7 @@ static Value blend_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     return added(ev, std::move(s), site, dims);
 }
 
-static Value mixed_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value mixed_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = want_shape(ev, args[0], site.arg(0), "`mix`");
     if (!s) return poison();
     if (ev.scene.shapes[*s].kind != ShapeKind::Blend) return args[0];
@@ -292,7 +293,7 @@ struct Pair {
     ir::ShapeId a, b;
     int dims;
 };
-static std::optional<Pair> pair_argument(Evaluator &ev, const CallSite &site,
+static std::optional<Pair> pair_argument(Interpreter &ev, const CallSite &site,
                                          const std::vector<Value> &args, std::size_t at) {
     auto a = want_shape(ev, args[at], site.arg(at), quoted(site.name));
     auto b = want_shape(ev, args[at + 1], site.arg(at + 1), quoted(site.name));
@@ -304,7 +305,7 @@ static std::optional<Pair> pair_argument(Evaluator &ev, const CallSite &site,
     return Pair{*a, *b, args[at].size};
 }
 
-static Value seam_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value seam_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto kind = want_string(ev, args[0], site.arg(0), "the seam");
     auto pair = pair_argument(ev, site, args, 1);
     auto r = want_scalar_node(ev, args[3], site.arg(3), "the seam's size");
@@ -322,7 +323,7 @@ static Value seam_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     return added(ev, std::move(s), site, pair->dims);
 }
 
-static Value lerp_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value lerp_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto pair = pair_argument(ev, site, args, 0);
     if (!pair) return poison();
     auto t = apply_field(ev, args[2], {ev.scene.graph.point(ir::vector_type(pair->dims))},
@@ -335,7 +336,7 @@ static Value lerp_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     return added(ev, std::move(s), site, pair->dims);
 }
 
-static Value pseudonorm_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value pseudonorm_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto pair = pair_argument(ev, site, args, 0);
     auto e = want_scalar_node(ev, args[2], site.arg(2), "`exponent`", Limit::None);
     if (!pair || !e) return poison();
@@ -349,7 +350,7 @@ static Value pseudonorm_call(Evaluator &ev, const CallSite &site, std::vector<Va
 // -- looks and looking into ----------------------------------------------------------------------
 
 template <ShapeKind kind>
-static Value paint_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value paint_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     auto m = want_material(ev, args[1], site.arg(1), "`paint`");
     if (!s || !m) return poison();
@@ -365,20 +366,20 @@ static Value paint_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     return added(ev, std::move(out), site, args[0].size);
 }
 
-static Value hide_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value hide_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     if (!s) return poison();
     return added(ev, ir::Shape{}, site, args[0].size);
 }
 
-static Value only_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value only_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args, 3);
     if (!s) return poison();
     ev.only_shapes[s->index] = true;
     return args[0];
 }
 
-static Value lipschitz_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value lipschitz_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     if (!s) return poison();
     auto l = ev.options.lipschitz ? ev.options.lipschitz(ev.scene, *s) : std::nullopt;
@@ -392,7 +393,7 @@ static Value lipschitz_call(Evaluator &ev, const CallSite &site, std::vector<Val
 
 // _extent(s, axis): where the shape begins and ends along an axis, as a vec2; none where it has no
 // ends
-static Value extent_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value extent_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args, 3);
     auto axis = axis_argument(ev, site, args[1], 1);
     if (!s || !axis) return poison();
@@ -402,17 +403,17 @@ static Value extent_call(Evaluator &ev, const CallSite &site, std::vector<Value>
 }
 
 // _known(x): whether a value, or all of a list, is known at scene time
-static bool is_known(Evaluator &ev, const Value &v) {
+static bool is_known(Interpreter &ev, const Value &v) {
     if (v.kind != ValueKind::List) return v.kind != ValueKind::Field;
     for (const Value &item : ev.lists[v.id])
         if (!is_known(ev, item)) return false;
     return true;
 }
-static Value known_call(Evaluator &ev, const CallSite &, std::vector<Value> &args) {
+static Value known_call(Interpreter &ev, const CallSite &, std::vector<Value> &args) {
     return boolean(is_known(ev, args[0]));
 }
 
-static Value is_flat_call(Evaluator &, const CallSite &, std::vector<Value> &args) {
+static Value is_flat_call(Interpreter &, const CallSite &, std::vector<Value> &args) {
     return boolean(args[0].kind == ValueKind::Shape && args[0].size == 2);
 }
 
@@ -421,9 +422,9 @@ void add_shape_builtins(std::vector<Builtin> &table) {
                    const char *doc = "") {
         table.push_back({name, std::move(parameters), false, name[0] == '_', call, "", doc});
     };
-    std::vector<BuiltinParameter> claims{{"f"},           {"exact", true}, {"lipschitz", true},
-                                         {"lo", true},    {"hi", true},    {"symmetric", true},
-                                         {"lever", true}, {"swell", true}};
+    std::vector<BuiltinParameter> claims{
+        {"f"},        {"exact", true},     {"lipschitz", true},  {"lo", true},
+        {"hi", true}, {"symmetric", true}, {"moment_arm", true}, {"growth_rate", true}};
     add("_solid", claims, leaf_call<3>);
     claims.push_back({"corners", true});
     add("_flat", claims, leaf_call<2>);

@@ -1,7 +1,7 @@
 // Transforms, repetition and the regions of `within:`: the intrinsics from which
 // stdlib/transforms.sdf is written.
-#include "typecheck/bases.h"
 #include "typecheck/builtins/builtins.h"
+#include "typecheck/rewrite_leaves.h"
 
 #include "ir/maps.h"
 
@@ -17,7 +17,7 @@ using ir::Type;
 
 // -- transforms ----------------------------------------------------------------------------------
 
-static Value translate_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value translate_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     if (!s) return poison();
     auto by = want_vec_node(ev, args[1], args[0].size, site.arg(1), "`by`");
@@ -25,7 +25,7 @@ static Value translate_call(Evaluator &ev, const CallSite &site, std::vector<Val
     return added(ev, ir::translated(ev.scene.graph, *s, *by), site, args[0].size);
 }
 
-static Value rotate_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value rotate_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     if (!s) return poison();
     if (!is_numeric(args[1]) || numeric_type(ev, args[1]) != ir::matrix_type(args[0].size)) {
@@ -37,7 +37,7 @@ static Value rotate_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     return added(ev, ir::rotated(ev.scene.graph, *s, to_node(ev, args[1])), site, args[0].size);
 }
 
-static Value scale_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value scale_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     if (!s) return poison();
     auto by = want_vec_node(ev, args[1], args[0].size, site.arg(1), "`by`");
@@ -52,7 +52,7 @@ static Value scale_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     return added(ev, ir::scaled(ev.scene.graph, *s, *by), site, args[0].size);
 }
 
-static Value fold_shape_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value fold_shape_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     if (!s) return poison();
     Type type = ir::vector_type(args[0].size);
@@ -63,9 +63,9 @@ static Value fold_shape_call(Evaluator &ev, const CallSite &site, std::vector<Va
 
 // The profile with the edges that lie on the line left out of its polygons' surfaces:
 // `open(corners, kept)` makes such a polygon, kept[i] whether the edge to corner i counts.
-static ir::ShapeId opened(Evaluator &ev, ir::ShapeId profile, Line axis, const Value &open,
+static ir::ShapeId opened(Interpreter &ev, ir::ShapeId profile, Line axis, const Value &open,
                           Span place_of_call) {
-    return dressed(
+    return rewrite_leaves(
         ev, profile, Paints::Keep,
         [&](ir::ShapeId base, const Below &below) {
             const auto found = ev.corners.find(
@@ -118,7 +118,7 @@ static ir::ShapeId opened(Evaluator &ev, ir::ShapeId profile, Line axis, const V
 }
 
 // _revolve(s, offset, open)
-static Value revolve_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value revolve_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args, 2);
     auto offset = want_scalar_node(ev, args[1], site.arg(1), "`offset`");
     if (!s || !offset) return poison();
@@ -127,7 +127,7 @@ static Value revolve_call(Evaluator &ev, const CallSite &site, std::vector<Value
     return added(ev, ir::revolved(ev.scene.graph, *s, *offset), site, 3);
 }
 
-static Value extrude_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value extrude_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args, 2);
     auto height = want_scalar_node(ev, args[1], site.arg(1), "`height`");
     if (!s || !height) return poison();
@@ -138,7 +138,7 @@ static Value extrude_call(Evaluator &ev, const CallSite &site, std::vector<Value
     return added(ev, std::move(out), site, 3);
 }
 
-std::optional<int> axis_argument(Evaluator &ev, const CallSite &site, const Value &v,
+std::optional<int> axis_argument(Interpreter &ev, const CallSite &site, const Value &v,
                                  std::size_t i) {
     auto axis = want_known_int(ev, v, site.arg(i), "an axis");
     if (axis && (*axis < 0 || *axis > 2)) {
@@ -148,7 +148,7 @@ std::optional<int> axis_argument(Evaluator &ev, const CallSite &site, const Valu
     return axis;
 }
 
-static Value twist_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value twist_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args, 3);
     auto rate = want_scalar_node(ev, args[1], site.arg(1), "`rate`");
     auto axis = axis_argument(ev, site, args[2], 2);
@@ -156,7 +156,7 @@ static Value twist_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     return added(ev, ir::twisted(ev.scene.graph, *s, *rate, *axis), site, 3);
 }
 
-static Value bend_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value bend_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args, 3);
     auto rate = want_scalar_node(ev, args[1], site.arg(1), "`rate`");
     auto axis = axis_argument(ev, site, args[2], 2), towards = axis_argument(ev, site, args[3], 3);
@@ -168,7 +168,7 @@ static Value bend_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     return added(ev, ir::bent(ev.scene.graph, *s, *rate, *axis, *towards), site, 3);
 }
 
-static Value taper_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value taper_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args, 3);
     auto ratio = want_scalar_node(ev, args[1], site.arg(1), "`ratio`");
     auto axis = axis_argument(ev, site, args[2], 2);
@@ -194,7 +194,7 @@ static Value taper_call(Evaluator &ev, const CallSite &site, std::vector<Value> 
     return added(ev, ir::tapered(ev.scene.graph, *s, *ratio, *ends[0], *ends[1], *axis), site, 3);
 }
 
-static Value within_shape(Evaluator &ev, const CallSite &site, const Value &shape,
+static Value within_shape(Interpreter &ev, const CallSite &site, const Value &shape,
                           const ir::Region &region) {
     if (region.kind == ir::RegionKind::Everywhere && region.less.empty()) return shape;
     ir::Shape within;
@@ -204,7 +204,7 @@ static Value within_shape(Evaluator &ev, const CallSite &site, const Value &shap
     return added(ev, std::move(within), site, shape.size);
 }
 
-static Value distort_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value distort_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     if (!s) return poison();
     Type type = ir::vector_type(args[0].size);
@@ -216,14 +216,14 @@ static Value distort_call(Evaluator &ev, const CallSite &site, std::vector<Value
     return region ? within_shape(ev, site, out, *region) : poison();
 }
 
-static Value within_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value within_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     auto region = want_region(ev, args[1], site.arg(1), "`within`");
     return s && region ? within_shape(ev, site, args[0], *region) : poison();
 }
 
 template <ShapeKind kind>
-static Value offset_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value offset_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     auto r = want_scalar_node(ev, args[1], site.arg(1),
                               kind == ShapeKind::Offset ? "`r`" : "`thickness`");
@@ -236,7 +236,7 @@ static Value offset_call(Evaluator &ev, const CallSite &site, std::vector<Value>
     return added(ev, std::move(out), site, args[0].size);
 }
 
-static Value displace_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value displace_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     if (!s) return poison();
     auto f = apply_field(ev, args[1], {ev.scene.graph.point(ir::vector_type(args[0].size))},
@@ -252,7 +252,7 @@ static Value displace_call(Evaluator &ev, const CallSite &site, std::vector<Valu
 // -- repetition ----------------------------------------------------------------------------------
 
 // The copies may differ: `copies(s, id)` is asked once, with a variable for the cell's id.
-static std::optional<ir::ShapeId> one_copy(Evaluator &ev, const CallSite &site,
+static std::optional<ir::ShapeId> one_copy(Interpreter &ev, const CallSite &site,
                                            const std::vector<Value> &args, std::size_t at,
                                            ir::NodeId &id) {
     ir::ShapeId child = shape_of(args[0]);
@@ -269,7 +269,7 @@ static std::optional<ir::ShapeId> one_copy(Evaluator &ev, const CallSite &site,
     return want_shape(ev, v, site.arg(at), "a copy", args[0].size);
 }
 
-static Value repeated(Evaluator &ev, const CallSite &site, ir::Repetition r, ir::ShapeId child,
+static Value repeated(Interpreter &ev, const CallSite &site, ir::Repetition r, ir::ShapeId child,
                       std::vector<ir::NodeId> numbers, int dims) {
     std::string key = fmt::format("repeat:{}{}{}{}{}{}:{}", r.polar, r.axis, r.along[0], r.along[1],
                                   r.along[2], r.mirrored, r.id.index);
@@ -284,7 +284,8 @@ static Value repeated(Evaluator &ev, const CallSite &site, ir::Repetition r, ir:
     return added(ev, std::move(s), site, dims);
 }
 
-static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &args, bool mirrored) {
+static Value lattice(Interpreter &ev, const CallSite &site, std::vector<Value> &args,
+                     bool mirrored) {
     auto s = first_shape(ev, site, args);
     if (!s) return poison();
     int dims = args[0].size;
@@ -349,17 +350,17 @@ static Value lattice(Evaluator &ev, const CallSite &site, std::vector<Value> &ar
     return repeated(ev, site, r, *child, {*cell, g.constant(count)}, dims);
 }
 
-static Value repeat_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value repeat_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     // `repeat(cell, (s, id) => …)`: the copies may stand where the count would
     if (is_function(args[2]) && args[2].kind != ValueKind::ConstField && !given(args[3]))
         args[3] = args[2], args[2] = none();
     return lattice(ev, site, args, false);
 }
-static Value repeat_mirror_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value repeat_mirror_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     return lattice(ev, site, args, true);
 }
 
-static Value repeat_polar_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value repeat_polar_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
     auto n = want_known_int(ev, args[1], site.arg(1), "`n`");
     auto axis = axis_argument(ev, site, args[2], 2);
@@ -380,12 +381,12 @@ static Value repeat_polar_call(Evaluator &ev, const CallSite &site, std::vector<
 
 // -- regions -------------------------------------------------------------------------------------
 
-static Value region_value(Evaluator &ev, ir::Region region) {
+static Value region_value(Interpreter &ev, ir::Region region) {
     ev.regions.push_back(std::move(region));
     return make_value(ValueKind::Region, static_cast<std::uint32_t>(ev.regions.size() - 1));
 }
 
-static bool positive_sizes(Evaluator &ev, const CallSite &site, ir::NodeId node, std::size_t i) {
+static bool positive_sizes(Interpreter &ev, const CallSite &site, ir::NodeId node, std::size_t i) {
     ir::Graph &g = ev.scene.graph;
     const std::string wanted = "a region needs a size above 0";
     for (int k = 0; k < ir::components(g.type(node)); ++k) {
@@ -401,7 +402,7 @@ static bool positive_sizes(Evaluator &ev, const CallSite &site, ir::NodeId node,
     return true;
 }
 
-static Value ball_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value ball_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto r = want_scalar_node(ev, args[0], site.arg(0), "`r`");
     auto at = given(args[1]) ? want_vec_node(ev, args[1], 3, site.arg(1), "`at`")
                              : std::optional(ev.scene.graph.vec3(0, 0, 0));
@@ -413,7 +414,7 @@ static Value ball_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     return region_value(ev, region);
 }
 
-static Value aabb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value aabb_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto lo = want_vec_node(ev, args[0], 3, site.arg(0), "`lo`"),
          hi = want_vec_node(ev, args[1], 3, site.arg(1), "`hi`");
     if (!lo || !hi) return poison();
@@ -428,7 +429,7 @@ static Value aabb_call(Evaluator &ev, const CallSite &site, std::vector<Value> &
     return region_value(ev, region);
 }
 
-static Value tube_call(Evaluator &ev, const CallSite &site, std::vector<Value> &args) {
+static Value tube_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto axis = want_vec_node(ev, args[0], 3, site.arg(0), "`axis`");
     auto r = want_scalar_node(ev, args[1], site.arg(1), "`r`");
     if (!axis || !r || !positive_sizes(ev, site, *r, 1)) return poison();

@@ -56,7 +56,7 @@ TEST_CASE(
     "every frame, from the first to the last miss, is within the stated bound of the exact field") {
     require_context();
     const driver::Compilation c = compiled(rock);
-    const double bound = ir::kept_error(c.scene, ir::CacheId{0});
+    const double bound = ir::cached_error(c.scene, ir::CacheId{0});
     CHECK(bound < 0.2);
     const gl::FrameInputs inputs = frame_of(c.scene, 32, 0, gl::Mode::Numbers);
     const gl::Pixels wanted = exact(c.scene, 32, gl::Mode::Numbers);
@@ -104,7 +104,7 @@ TEST_CASE("the shader with the cache's hooks and no cache draws the exact pictur
     Diagnostics diagnostics;
     const glsl::Output hooked =
         glsl::emit(c.scene, {.buffers = true, .noise_cache = true}, diagnostics);
-    REQUIRE(hooked.kept.size() == 1);
+    REQUIRE(hooked.cached.size() == 1);
     const auto program = gl::Program::build(hooked, c.scene);
     REQUIRE(std::holds_alternative<gl::Program>(program));
     gl::Request request;

@@ -68,7 +68,7 @@ void image(GLuint program, const char *name, GLuint unit, GLuint texture, GLenum
 }
 
 struct Host {
-    GLuint rest, kept, reserve, fill, publish;
+    GLuint rest, cached, reserve, fill, publish;
     GLuint hash, keys, pool, wide, index, ring, changed, buffer, counts;
     GLuint color, misses, wishes, hits, starts, places, depth, picture, learning, reserved,
         vertices;
@@ -78,7 +78,7 @@ struct Host {
         : reserve(program(passes.reserve)), fill(program(passes.fill.text)),
           publish(program(passes.publish)) {
         const std::size_t line = text.find('\n') + 1;
-        kept = program(text.substr(0, line) + "#define FATHOM_CACHE\n" + text.substr(line));
+        cached = program(text.substr(0, line) + "#define FATHOM_CACHE\n" + text.substr(line));
         rest = program(text.substr(0, line) + "#define FATHOM_CACHE_LEARN\n" + text.substr(line));
         const std::vector<std::uint32_t> ones(2 * cells, 0xffffffffu);
         std::vector<std::uint32_t> numbers(cells);
@@ -136,7 +136,7 @@ struct Host {
         glGenVertexArrays(1, &vertices);
     }
     ~Host() {
-        for (GLuint name : {rest, kept, reserve, fill, publish}) glDeleteProgram(name);
+        for (GLuint name : {rest, cached, reserve, fill, publish}) glDeleteProgram(name);
         for (GLuint name : {hash, keys, pool, wide, index, ring, changed, counts, color, misses,
                             wishes, hits, starts, places})
             glDeleteTextures(1, &name);
@@ -179,11 +179,11 @@ struct Host {
         glEnable(GL_DEPTH_TEST);
         glDepthMask(GL_TRUE);
         glDepthFunc(GL_ALWAYS);
-        use(kept);
-        glUniform1f(at(kept, "fathom_cache_least"), 0.0f);
-        sampler(kept, "fathom_cache_index", 0, GL_TEXTURE_3D, index);
-        sampler(kept, "fathom_cache_pool", 1, GL_TEXTURE_3D, pool);
-        sampler(kept, "fathom_cache_wide", 2, GL_TEXTURE_3D, wide);
+        use(cached);
+        glUniform1f(at(cached, "fathom_cache_least"), 0.0f);
+        sampler(cached, "fathom_cache_index", 0, GL_TEXTURE_3D, index);
+        sampler(cached, "fathom_cache_pool", 1, GL_TEXTURE_3D, pool);
+        sampler(cached, "fathom_cache_wide", 2, GL_TEXTURE_3D, wide);
         triangle();
 
         glBindFramebuffer(GL_FRAMEBUFFER, learning);
@@ -297,7 +297,7 @@ TEST_CASE("a host that follows the page draws what ours draws") {
     CHECK(frames > 3);
     warm(view, inputs, c.scene, 80);
     CHECK(apart(view.read_pixels().rgba, host.colors()) < 1e-6);
-    CHECK(apart(exact_colors, host.colors()) > 1e-4); // it is the kept one
+    CHECK(apart(exact_colors, host.colors()) > 1e-4); // it is the cached one
 }
 
 } // namespace fathom

@@ -1,4 +1,4 @@
-// The cache's passes on the context at hand: what is kept, found, moved and given up, and the rules
+// The cache's passes on the context at hand: what is cached, found, moved and given up, and the rules
 // that hold after every frame. The rules are the store's own reading of what lies on the card
 // (gl::check_cache): the CPU's hash against the GPU's, each place owned once.
 #include "ir/passes/cost.h"
@@ -11,7 +11,7 @@ namespace fathom {
 
 namespace {
 
-// Every kept cell's corners hold the field's own values there: `field` is Graph::caches' i-th.
+// Every cached cell's corners hold the field's own values there: `field` is Graph::caches' i-th.
 void check_values(const gl::CachedView &view, const ir::Scene &scene, std::uint32_t field,
                   std::size_t most = 40) {
     const gl::CacheStore::Dump dump = view.store().dump(true);
@@ -81,7 +81,7 @@ TEST_CASE("no place is lost and no value torn, however small the cache") {
         use(view, c.scene, {.bits = 2}); // 64 cells for thousands
         for (int frame = 0; frame < 40; ++frame) {
             view.draw(frame_of(c.scene, 16, 0.1 * frame), c.scene.params,
-                      {.max_age = age, .least_pixels = 0, .weigh = false});
+                      {.max_age = age, .min_pixels = 0, .weigh = false});
             REQUIRE(gl::check_cache(view.store().dump(false)) == "");
         }
         const gl::CacheOccupancy full = gl::occupancy(view.store().dump(false));
@@ -97,7 +97,7 @@ TEST_CASE("a cache that is too small for a view grows, and then holds it") {
     const gl::FrameInputs inputs = frame_of(c.scene, 24);
     gl::CachedView small, growing;
     use(small, c.scene, {.bits = 4}); // 4,096 cells, for more than 6,000
-    use(growing, c.scene, {.bits = 4, .most_bits = 5});
+    use(growing, c.scene, {.bits = 4, .max_bits = 5});
     CHECK(warm(small, inputs, c.scene, 40) == 40);
     CHECK(small.store().size().bits == 4);
     CHECK(warm(growing, inputs, c.scene, 40) < 40);
@@ -105,7 +105,7 @@ TEST_CASE("a cache that is too small for a view grows, and then holds it") {
     CHECK(gl::check_cache(growing.store().dump(false)) == "");
     check_values(growing, c.scene, 0);
     // It stays so for the next text, and no larger than it may.
-    use(growing, c.scene, {.bits = 4, .most_bits = 5});
+    use(growing, c.scene, {.bits = 4, .max_bits = 5});
     CHECK(growing.store().size().bits == 5);
     CHECK(warm(growing, inputs, c.scene, 1) == 0);
     CHECK(gl::CacheSize{.bits = 7}.bytes() == 8 * gl::CacheSize{.bits = 6}.bytes());
@@ -119,7 +119,7 @@ TEST_CASE("old keys move on, and are given up at the largest age") {
     gl::CacheCounts all;
     for (int frame = 0; frame < 30; ++frame) {
         view.draw(frame_of(c.scene, 24, 0.05 * frame), c.scene.params,
-                  {.max_age = 3, .least_pixels = 0, .weigh = false});
+                  {.max_age = 3, .min_pixels = 0, .weigh = false});
         const gl::CacheCounts counts = view.store().read_counts();
         all.inserted += counts.inserted, all.evicted += counts.evicted,
             all.deleted += counts.deleted;
@@ -140,7 +140,7 @@ TEST_CASE("a lower maximum age gives up what is older") {
     use(view, c.scene, {.bits = 3});
     for (int frame = 0; frame < 24; ++frame) {
         view.draw(frame_of(c.scene, 16, 0.05 * frame), c.scene.params,
-                  {.max_age = frame < 12 ? 7 : 1 + frame % 3, .least_pixels = 0, .weigh = false});
+                  {.max_age = frame < 12 ? 7 : 1 + frame % 3, .min_pixels = 0, .weigh = false});
         REQUIRE(gl::check_cache(view.store().dump(false)) == "");
     }
 }
@@ -152,7 +152,7 @@ TEST_CASE("ten thousand frames", "[.soak]") {
     use(view, c.scene, {.bits = 3});
     for (int frame = 0; frame < 10000; ++frame) {
         view.draw(frame_of(c.scene, 12, 0.03 * frame), c.scene.params,
-                  {.max_age = 1 + frame / 1000 % 7, .least_pixels = 0, .weigh = false});
+                  {.max_age = 1 + frame / 1000 % 7, .min_pixels = 0, .weigh = false});
         REQUIRE(gl::check_cache(view.store().dump(false)) == "");
         if (frame % 500 == 499) check_values(view, c.scene, 0);
     }
@@ -244,7 +244,7 @@ camera(at: [0, 0, 4], look_at: [0, 0, 0])
               10 * view.read_tally().misses); // most of it stays useful (figure 8.5)
     }
     SECTION("a param that the field reads, frame after frame") {
-        constexpr gl::CacheSettings weighed{.least_pixels = 0};
+        constexpr gl::CacheSettings weighed{.min_pixels = 0};
         for (int frame = 1; frame < 5; ++frame) { // drawn exactly: it would find nothing
             set("depth", 0.1 + 0.01 * frame);
             view.draw(inputs, c.scene.params, weighed);
@@ -257,7 +257,7 @@ camera(at: [0, 0, 4], look_at: [0, 0, 0])
         view.draw(inputs, c.scene.params, weighed);
         CHECK(view.looked_up());
         set("depth", 0.11);
-        view.draw(inputs, c.scene.params, all_cells); // kept all the same
+        view.draw(inputs, c.scene.params, all_cells); // cached all the same
         CHECK(view.looked_up());
     }
     SECTION("the text around the fields") {
@@ -318,20 +318,20 @@ camera(at: [0, 0, 4], look_at: [0, 0, 0])
     CHECK(tally.computed < 400);
     const gl::CacheStore::Dump dump = view.store().dump(true);
     const double slope = c.scene.caches[0].slope;
-    int kept = 0, refused = 0;
+    int cached = 0, refused = 0;
     for (std::uint32_t entry : dump.hash) {
         if (entry == glsl::cache_empty) continue;
         const std::uint32_t place = entry & ((1u << glsl::cache_place_bits) - 1);
         const bool steep = steepest(dump, place, 0.05) > slope * (1 + 1e-4);
         const bool marked = dump.keys[place][3] >= glsl::cache_refused;
         if (steep) CHECK(marked);
-        ++(marked ? refused : kept);
+        ++(marked ? refused : cached);
     }
-    CHECK(kept > 1000);
+    CHECK(cached > 1000);
     CHECK(refused > 0);
 }
 
-TEST_CASE("what reads a kept field is proved with its slope everywhere") {
+TEST_CASE("what reads a cached field is proved with its slope everywhere") {
     // The field's own text is far less steep where the ball is than far from it; interpolated, it
     // may be steeper than its text, and what the passes hold it to is its slope everywhere.
     const driver::Compilation c = compiled(R"(
@@ -340,7 +340,7 @@ sphere(1).displace(f)
 )");
     const double slope = c.scene.caches[0].slope;
     REQUIRE(std::isfinite(slope));
-    REQUIRE(ir::kept(c.scene, ir::CacheId{0}) == ir::Kept::Yes);
+    REQUIRE(ir::cached(c.scene, ir::CacheId{0}) == ir::Cacheable::Yes);
     CHECK(c.scene.facts[c.scene.top_level[0].shape.index].lipschitz_sup >= 1 + 0.999 * slope);
 }
 
@@ -357,7 +357,7 @@ TEST_CASE("misses are shown in red, and nothing else is") {
             count += pixels.rgba[i] > 0.8f && pixels.rgba[i] > 2 * pixels.rgba[i + 2];
         return count;
     };
-    const gl::CacheSettings shown{.least_pixels = 0, .show_misses = true, .weigh = false};
+    const gl::CacheSettings shown{.min_pixels = 0, .show_misses = true, .weigh = false};
     for (int frame = 0; frame < 4; ++frame) {
         view.draw(inputs, c.scene.params, shown);
         CHECK(red() == view.read_tally().misses);
@@ -373,16 +373,16 @@ TEST_CASE("cells that are narrower than a pixel are not looked for") {
     gl::CachedView view;
     use(view, c.scene);
     const gl::FrameInputs inputs = frame_of(c.scene, 24);
-    view.draw(inputs, c.scene.params, {.least_pixels = 1, .weigh = false});
+    view.draw(inputs, c.scene.params, {.min_pixels = 1, .weigh = false});
     CHECK(view.read_tally().misses == 0);
     CHECK(view.read_tally().computed > 200);
     CHECK(view.store().read_counts().inserted == 0);
     CHECK(view.read_pixels().rgba == exact(c.scene, 24, gl::Mode::Linear).rgba);
-    view.draw(inputs, c.scene.params, {.least_pixels = 0.25, .weigh = false});
+    view.draw(inputs, c.scene.params, {.min_pixels = 0.25, .weigh = false});
     CHECK(view.read_tally().misses > 200);
 }
 
-TEST_CASE("a field that is cheap or moves is not kept") {
+TEST_CASE("a field that is cheap or moves is not cached") {
     require_context();
     for (const char *field :
          {"0.1 * noise(2 * p)", "0.1 * fbm(2 * p + [time, 0, 0], octaves: 6)"}) {

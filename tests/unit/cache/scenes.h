@@ -40,7 +40,7 @@ inline gl::FrameInputs frame_of(const ir::Scene &scene, int side, double turn = 
 }
 
 // In pictures of a few pixels each is wider than a cell.
-constexpr gl::CacheSettings all_cells{.least_pixels = 0, .weigh = false};
+constexpr gl::CacheSettings all_cells{.min_pixels = 0, .weigh = false};
 
 inline void use(gl::CachedView &view, const ir::Scene &scene, const gl::CacheSize &size = {}) {
     Diagnostics diagnostics;

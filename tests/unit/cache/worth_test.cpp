@@ -15,17 +15,17 @@ constexpr gl::CacheWork all_missed{.left = 1, .steps = 30, .learnt = true};
 
 // How many of so many frames look values up, where each says what it counted.
 int kept_of(int frames, const std::function<gl::CacheWork(int)> &work, gl::CacheWorth worth = {}) {
-    int kept = 0;
+    int cached = 0;
     for (int frame = 0; frame < frames; ++frame) {
         if (!gl::looks_up_next(worth)) {
             gl::drew_exactly(worth);
             continue;
         }
-        ++kept;
-        gl::drew_kept(worth);
+        ++cached;
+        gl::drew_cached(worth);
         gl::judged(worth, work(frame), fbm);
     }
-    return kept;
+    return cached;
 }
 
 } // namespace
@@ -40,7 +40,7 @@ TEST_CASE("look-ups pay by what they save, less what was in vain") {
     CHECK(!gl::pays({.paid = 20, .wasted = 80, .left = 0.9, .steps = 30}, fbm));
 }
 
-TEST_CASE("a cache that pays after it has learnt is kept") {
+TEST_CASE("a cache that pays after it has learnt is cached") {
     const auto learns = [](int frame) { return frame < 10 ? all_missed : all_found; };
     CHECK(kept_of(200, learns) == 200);
     // Frames now and then that do not pay change nothing.
@@ -83,13 +83,13 @@ TEST_CASE("a view whose cells are narrower than pixels is drawn exactly, a neare
 
     gl::FrameInputs near = far;
     near.view.extent *= 0.1;
-    int frames = 0, kept = 0;
+    int frames = 0, cached = 0;
     for (; frames < 120; ++frames) {
         view.draw(near, c.scene.params, {});
-        kept += view.looked_up();
+        cached += view.looked_up();
     }
     CHECK(view.looked_up());
-    CHECK(kept > 40);
+    CHECK(cached > 40);
     CHECK(view.read_tally().misses == 0);
     CHECK(view.read_tally().hits > 1000);
     for (int frame = 0; frame < 20; ++frame) view.draw(far, c.scene.params, {});
@@ -115,9 +115,9 @@ TEST_CASE("two runs look values up in the same frames") {
     CHECK(runs[0].front() == '1');
 }
 
-TEST_CASE("what kept values leave over is drawn as if there were none, to the last bit") {
+TEST_CASE("what cached values leave over is drawn as if there were none, to the last bit") {
     require_context();
-    // It goes on where the picture of kept values first asked for one.
+    // It goes on where the picture of cached values first asked for one.
     const driver::Compilation c = compiled(rock);
     for (const gl::Mode mode : {gl::Mode::Linear, gl::Mode::Heat, gl::Mode::Numbers}) {
         gl::CachedView view;

@@ -22,10 +22,10 @@ TEST_CASE("a while loop that a counter ends is a loop of that many turns") {
     CHECK(compiled(folding("while k < 4", "    k += 1\n")).good());
     CHECK(compiled(folding("while k * k < 50", "    k = 2 * k + 1\n")).good());
     const auto loops = compiled(folding("while k < 7", "    k += 1\n")).scene.graph;
-    REQUIRE(loops.fold_count() > 0);
+    REQUIRE(loops.loop_count() > 0);
     bool counted = false;
-    for (std::size_t i = 0; i < loops.fold_count(); ++i)
-        counted = counted || loops.fold(ir::FoldId{i}).max_count == 7;
+    for (std::size_t i = 0; i < loops.loop_count(); ++i)
+        counted = counted || loops.loop(ir::LoopId{i}).max_count == 7;
     CHECK(counted);
 }
 

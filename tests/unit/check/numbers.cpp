@@ -187,10 +187,10 @@ bool constants_fit(const ir::Graph &graph, ir::NodeId root) {
                 if (!std::isinf(part) && !fits_single(part)) return false;
         if (node.op == ir::Op::Call)
             todo.push_back(graph.function(ir::FunctionId{std::size_t{node.payload}}).result);
-        if (node.op == ir::Op::Fold) {
-            const ir::Fold &fold = graph.fold(ir::FoldId{std::size_t{node.payload}});
-            todo.insert(todo.end(), fold.next.begin(), fold.next.end());
-            todo.push_back(fold.condition);
+        if (node.op == ir::Op::Loop) {
+            const ir::Loop &loop = graph.loop(ir::LoopId{std::size_t{node.payload}});
+            todo.insert(todo.end(), loop.next.begin(), loop.next.end());
+            todo.push_back(loop.condition);
         }
         const auto args = graph.args(id);
         todo.insert(todo.end(), args.begin(), args.end());

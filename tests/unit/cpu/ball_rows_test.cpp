@@ -80,22 +80,22 @@ TEST_CASE("only loops whose turns are a ball's joining are run in packs") {
         fathom::ir::Table rows{5, 4, {}};
         for (int i = 0; i < 20; ++i) rows.data.push_back(0.1f * static_cast<float>(i));
         const TableId table = f.g.add_table(rows);
-        Fold fold;
-        fold.count = f.g.integer(5);
-        fold.max_count = 5;
-        fold.index = f.g.fresh_var(Type::Int);
+        fathom::ir::Loop record;
+        record.count = f.g.integer(5);
+        record.max_count = 5;
+        record.index = f.g.fresh_var(Type::Int);
         const NodeId best = f.g.fresh_var(Type::Float);
-        fold.vars = {best};
+        record.vars = {best};
         const auto column = [&](Type type, int first) {
-            return f.g.make(Op::TableRead, type, {fold.index}, table_slot(table, first));
+            return f.g.make(Op::TableRead, type, {record.index}, table_slot(table, first));
         };
         const NodeId from = how == 2 ? f.g.mul(f.p, f.g.number(2)) : f.p; // a place of its own
         NodeId ball =
             f.g.sub(f.length(f.g.sub(from, column(Type::Vec3, 0))), column(Type::Float, 3));
         if (how == 3) ball = f.g.add(ball, f.g.mul(best, f.g.number(0.1)));
-        fold.next = {f.g.make(how == 1 ? Op::Intersection : Op::Union, {best, ball})};
+        record.next = {f.g.make(how == 1 ? Op::Intersection : Op::Union, {best, ball})};
         const NodeId d =
-            f.g.make(Op::Fold, Type::Float, {f.g.number(1e9)}, f.g.add_fold(fold).index);
+            f.g.make(Op::Loop, Type::Float, {f.g.number(1e9)}, f.g.add_loop(record).index);
         const Program program = compile(f.scene, f.function(d));
         INFO(how);
         CHECK((program.ball_loops.size() == 1) == (how == 0 || how == 2));

@@ -46,7 +46,7 @@ Points some_points(const Program &program) {
 Answers compare(const Program &program, PruneSettings settings, float limit) {
     const Inputs inputs;
     Pruning pruning(program, inputs, {{-2, -2, -2}, 4}, settings);
-    Asker asker(pruning, inputs);
+    CellEvaluator evaluator(pruning, inputs);
     const Points points = some_points(program);
     const std::size_t n = points.x.size(), results = program.results.size();
     const float *in[] = {points.x.data(), points.y.data(), points.z.data()};
@@ -57,7 +57,7 @@ Answers compare(const Program &program, PruneSettings settings, float limit) {
     Scratch scratch = make_scratch(program, inputs);
     evaluate(program, scratch, in, to.data(), n);
     const std::vector<float> limits(n, limit);
-    ask(pruning, asker, in, pruned_to.data(), n, limits.data());
+    evaluate(pruning, evaluator, in, pruned_to.data(), n, limits.data());
     Answers answers;
     for (std::size_t k = 0; k < n; ++k) {
         bool same = true;
@@ -68,7 +68,7 @@ Answers compare(const Program &program, PruneSettings settings, float limit) {
         (pruned[0][k] > whole[0][k] ? answers.above : answers.differ) += bound ? 0 : 1;
         answers.far += bound;
     }
-    answers.kernels = asker.tally.kernels / static_cast<double>(asker.tally.near);
+    answers.kernels = evaluator.tally.kernels / static_cast<double>(evaluator.tally.near);
     return answers;
 }
 
@@ -101,14 +101,14 @@ struct Shell : Fields {
             g.make(Op::TableRead, Type::Float, {index}, table_slot(id, 3)));
     }
     template <class F> NodeId loop(int n, NodeId start, F next) {
-        Fold fold;
-        fold.count = g.integer(n);
-        fold.max_count = n;
-        fold.index = g.fresh_var(Type::Int);
+        fathom::ir::Loop record;
+        record.count = g.integer(n);
+        record.max_count = n;
+        record.index = g.fresh_var(Type::Int);
         const NodeId var = g.fresh_var(g.type(start));
-        fold.vars = {var};
-        fold.next = {next(var, fold.index)};
-        return g.make(Op::Fold, g.type(start), {start}, g.add_fold(fold).index);
+        record.vars = {var};
+        record.next = {next(var, record.index)};
+        return g.make(Op::Loop, g.type(start), {start}, g.add_loop(record).index);
     }
     NodeId blended(Profile profile, double k, NodeId a, NodeId b) {
         return g.make(Op::Blend, Type::Float, {g.number(k), g.number(3), a, b},
@@ -238,7 +238,7 @@ TEST_CASE("what a turn makes of all before it is no row of a table") {
     check(compile(f.scene, f.function(last), Choices::Apart));
 }
 
-TEST_CASE("threads that ask at once find the same cells") {
+TEST_CASE("threads that evaluate at once find the same cells") {
     Shell f;
     const TableId rows = f.table(400);
     const NodeId d = f.loop(400, f.g.number(1e9), [&](NodeId best, NodeId i) {
@@ -252,11 +252,11 @@ TEST_CASE("threads that ask at once find the same cells") {
     std::vector<std::thread> threads;
     for (std::vector<float> &mine : out)
         threads.emplace_back([&] {
-            Asker asker(pruning, inputs);
+            CellEvaluator evaluator(pruning, inputs);
             const float *in[] = {points.x.data(), points.y.data(), points.z.data()};
             float *to[] = {mine.data()};
             const std::vector<float> limits(many, 0);
-            ask(pruning, asker, in, to, many, limits.data());
+            evaluate(pruning, evaluator, in, to, many, limits.data());
         });
     for (std::thread &thread : threads) thread.join();
     for (const std::vector<float> &other : out) CHECK(other == out[0]);

@@ -79,18 +79,18 @@ static FunctionId table_loop(Fields &f, NodeId count, NodeId condition_on = {}) 
         table.data.insert(table.data.end(), row, row + 4);
     }
     TableId id = g.add_table(table);
-    Fold fold;
-    fold.count = count;
-    fold.max_count = 100;
-    fold.index = g.fresh_var(Type::Int);
+    fathom::ir::Loop record;
+    record.count = count;
+    record.max_count = 100;
+    record.index = g.fresh_var(Type::Int);
     NodeId acc = g.fresh_var(Type::Float);
-    NodeId c = g.make(Op::TableRead, Type::Vec3, {fold.index}, table_slot(id, 0));
-    NodeId r = g.make(Op::TableRead, Type::Float, {fold.index}, table_slot(id, 3));
+    NodeId c = g.make(Op::TableRead, Type::Vec3, {record.index}, table_slot(id, 0));
+    NodeId r = g.make(Op::TableRead, Type::Float, {record.index}, table_slot(id, 3));
     NodeId d = g.sub(f.length(g.sub(f.p, c)), r);
-    fold.vars = {acc};
-    fold.next = {g.make(Op::Min, {acc, d})};
-    if (condition_on) fold.condition = g.make(Op::Less, {condition_on, acc});
-    NodeId loop = g.make(Op::Fold, Type::Float, {g.number(1e9)}, g.add_fold(fold).index);
+    record.vars = {acc};
+    record.next = {g.make(Op::Min, {acc, d})};
+    if (condition_on) record.condition = g.make(Op::Less, {condition_on, acc});
+    NodeId loop = g.make(Op::Loop, Type::Float, {g.number(1e9)}, g.add_loop(record).index);
     return f.function(loop);
 }
 
@@ -144,23 +144,23 @@ TEST_CASE("a point that is done keeps its value while others go on") {
 TEST_CASE("variables of a loop move on together") { // Fibonacci by (a, b) -> (b, a + b)
     Fields f;
     Graph &g = f.g;
-    Fold fold;
-    fold.count = g.integer(20);
-    fold.max_count = 20;
-    fold.index = g.fresh_var(Type::Int);
+    fathom::ir::Loop record;
+    record.count = g.integer(20);
+    record.max_count = 20;
+    record.index = g.fresh_var(Type::Int);
     NodeId a = g.fresh_var(Type::Float), b = g.fresh_var(Type::Float);
-    fold.vars = {a, b};
-    fold.next = {b, g.add(a, b)};
+    record.vars = {a, b};
+    record.next = {b, g.add(a, b)};
     SECTION("the same for all points") {
         NodeId loop =
-            g.make(Op::Fold, Type::Float, {g.number(0), g.number(1)}, g.add_fold(fold).index);
-        NodeId second = g.make(Op::FoldResult, Type::Float, {loop}, 1);
+            g.make(Op::Loop, Type::Float, {g.number(0), g.number(1)}, g.add_loop(record).index);
+        NodeId second = g.make(Op::LoopResult, Type::Float, {loop}, 1);
         Program program = compile(f.scene, f.function(g.add(g.mul(loop, g.number(0.5)), second)));
         CHECK(program.registers <= 3); // nothing but the point
         for (float v : values(program, spread(20))) REQUIRE(v == 6765 * 0.5f + 10946);
     }
     SECTION("different") {
-        NodeId loop = g.make(Op::Fold, Type::Float, {g.number(0), f.x()}, g.add_fold(fold).index);
+        NodeId loop = g.make(Op::Loop, Type::Float, {g.number(0), f.x()}, g.add_loop(record).index);
         Program program = compile(f.scene, f.function(loop));
         Points points = spread(20);
         std::vector<float> out = values(program, points);
@@ -175,7 +175,7 @@ TEST_CASE("variables of a loop move on together") { // Fibonacci by (a, b) -> (b
 TEST_CASE("loops in loops, and what does not change in one is computed before it") {
     Fields f;
     Graph &g = f.g;
-    Fold inner, outer;
+    fathom::ir::Loop inner, outer;
     outer.count = g.integer(4);
     outer.max_count = 4;
     outer.index = g.fresh_var(Type::Int);
@@ -190,10 +190,10 @@ TEST_CASE("loops in loops, and what does not change in one is computed before it
     inner.vars = {part};
     inner.next = {
         g.add(part, g.mul(g.add(fixed, turn), g.make(Op::ToFloat, Type::Float, {inner.index})))};
-    NodeId inner_loop = g.make(Op::Fold, Type::Float, {sum}, g.add_fold(inner).index);
+    NodeId inner_loop = g.make(Op::Loop, Type::Float, {sum}, g.add_loop(inner).index);
     outer.vars = {sum};
     outer.next = {inner_loop};
-    NodeId loop = g.make(Op::Fold, Type::Float, {g.number(0)}, g.add_fold(outer).index);
+    NodeId loop = g.make(Op::Loop, Type::Float, {g.number(0)}, g.add_loop(outer).index);
     Program program = compile(f.scene, f.function(loop));
     Points points = spread(50);
     std::vector<float> out = values(program, points);

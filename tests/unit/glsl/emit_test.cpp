@@ -41,10 +41,10 @@ std::size_t count(const std::string &text, const std::string &what) {
     return n;
 }
 
-NodeId fold(Graph &g, Fold record, NodeId start) {
-    const FoldId id = g.add_fold(std::move(record));
-    return g.make(Op::FoldResult, g[start].type,
-                  {g.make(Op::Fold, g[start].type, {start}, id.index)}, 0);
+NodeId loop(Graph &g, Loop record, NodeId start) {
+    const LoopId id = g.add_loop(std::move(record));
+    return g.make(Op::LoopResult, g[start].type,
+                  {g.make(Op::Loop, g[start].type, {start}, id.index)}, 0);
 }
 
 } // namespace
@@ -179,7 +179,7 @@ TEST_CASE("a loop stays a loop, and what does not change in it stands before") {
         const NodeId next = g.make(Op::Union, Type::Float,
                                    {x, g.mul(g.make(Op::ToFloat, Type::Float, {i}), steady)});
         const NodeId condition = g.make(Op::Less, {g.number(0), x});
-        return fold(g, {g.integer(8), i, {x}, {next}, condition, 8}, g.component(p, 0));
+        return loop(g, {g.integer(8), i, {x}, {next}, condition, 8}, g.component(p, 0));
     });
     CHECK(sdf_of(scene) == R"(float sdf(vec3 p) {
     float d1 = sin(p.y);

@@ -103,11 +103,11 @@ inline Scene table_of_spheres(int count, bool smooth = false) {
         const NodeId next =
             smooth ? g.make(Op::Blend, Type::Float, {g.number(0.1), g.number(0), least, d})
                    : g.make(Op::Union, Type::Float, {least, d});
-        Fold fold{g.integer(count), index, {least}, {next}, {}, count};
-        const FoldId id = g.add_fold(fold);
-        const NodeId loop = g.make(Op::Fold, Type::Float, {g.number(1e9)}, id.index);
+        Loop record{g.integer(count), index, {least}, {next}, {}, count};
+        const LoopId id = g.add_loop(record);
+        const NodeId loop = g.make(Op::Loop, Type::Float, {g.number(1e9)}, id.index);
         scene.distance =
-            g.add_function({"spheres", {}, {p}, g.make(Op::FoldResult, Type::Float, {loop}, 0)});
+            g.add_function({"spheres", {}, {p}, g.make(Op::LoopResult, Type::Float, {loop}, 0)});
     }
     {
         const NodeId p = g.fresh_var(Type::Vec3), index = g.fresh_var(Type::Int),
@@ -119,13 +119,13 @@ inline Scene table_of_spheres(int count, bool smooth = false) {
         const NodeId hit =
             g.make(Op::MakeHit, Type::Hit, {sphere_at(p, index), g.integer(0), p, extra});
         const NodeId next = g.make(Op::NearestHit, Type::Hit, {nearest, hit});
-        const FoldId id = g.add_fold({g.integer(count), index, {nearest}, {next}, {}, count});
+        const LoopId id = g.add_loop({g.integer(count), index, {nearest}, {next}, {}, count});
         const NodeId none =
             g.make(Op::MakeHit, Type::Hit,
                    {g.number(1e9), g.integer(-1), p, g.vec(std::array{0.0, 0.0, 0.0, 0.0})});
-        const NodeId loop = g.make(Op::Fold, Type::Hit, {none}, id.index);
+        const NodeId loop = g.make(Op::Loop, Type::Hit, {none}, id.index);
         scene.hit =
-            g.add_function({"spheres_hit", {}, {p}, g.make(Op::FoldResult, Type::Hit, {loop}, 0)});
+            g.add_function({"spheres_hit", {}, {p}, g.make(Op::LoopResult, Type::Hit, {loop}, 0)});
     }
     dress(scene, 1, cube(2.25));
     Surface &painted = scene.surfaces[0];

@@ -16,17 +16,20 @@ using glsl::Values;
 
 namespace {
 
-const std::vector<std::string> flags{
-    "BOXED", "STEEP",     "REACHES",   "APART",     "SKIP_SHADING", "LOCAL_NORMALS", "PICK",
-    "KEPT",  "FAR_CELLS", "AROUND",    "ONE_LIGHT", "BLENDED",      "PICTURE",       "FIELD_ONLY",
-    "TIME",  "ES",        "LOCATIONS", "MARKED",    "UNPAINTED",    "PAINTED",       "LIT"};
+const std::vector<std::string> flags{"BOXED",     "STEEP",        "HAS_SAFE_RADIUS",
+                                     "APART",     "SKIP_SHADING", "LOCAL_NORMALS",
+                                     "PICK",      "CACHED",       "FAR_CELLS",
+                                     "AROUND",    "ONE_LIGHT",    "BLENDED",
+                                     "PICTURE",   "FIELD_ONLY",   "TIME",
+                                     "ES",        "LOCATIONS",    "MARKED",
+                                     "UNPAINTED", "PAINTED",      "LIT"};
 
 // What a flag decides beside its own `$if`, as the emitter has it.
 Values values_with(std::string_view name, const std::set<std::string> &on) {
     const auto is = [&](const char *flag) { return on.contains(flag); };
     Values values{
         {"NEAR", is("STEEP") ? "near" : "d"},
-        {"AND_PRESENT", is("KEPT") ? " && !fathom_absent" : ""},
+        {"AND_PRESENT", is("CACHED") ? " && !fathom_absent" : ""},
         {"UNLIT", is("ONE_LIGHT") ? "return color" : "continue"},
         {"SUN_REACH", is("BOXED") ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
         {"OUTSIDE", "fathom_off(p)"},
@@ -51,7 +54,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
         {"FUNCTIONS", "struct Hit { float distance; };\n"
                       "struct fathom_Material { vec3 diffuse; };\n"
                       "float sdf(vec3 p) { return one; }\n"},
-        {"LOOKS",
+        {"SHADING",
          "fathom_Material fathom_material(Hit s, vec3 n) { return fathom_Material(n); }\n"},
         {"STATEMENTS", "    float x = 1.0;\n"},
         {"LIST", "vec3(1.0), 1.0, x, 0.0, 0.0"},
@@ -75,7 +78,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "EPSILON",
                                "FLOAT_SLACK",
                                "NORMAL_SLACK",
-                               "LEAST_SLOPE",
+                               "MIN_SLOPE",
                                "RELAXATION",
                                "FLATTEST",
                                "NEARER_PART",
@@ -83,8 +86,8 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "OCCLUSION_TOTAL",
                                "OCCLUSION_REACH",
                                "SHADOW_BIAS",
-                               "LEAST_ANGLE",
-                               "LEAST_WAY",
+                               "MIN_ANGLE",
+                               "MIN_WAY",
                                "FAR_FROM",
                                "RADIUS",
                                "SLOPE",
@@ -125,7 +128,7 @@ struct fathom_Material { vec3 diffuse, specular, emission; float exponent; };
 struct fathom_Lighting { vec3 ambient; float ambient_occlusion, soft_shadows, shadow_darkness, specular_intensity; };
 struct fathom_Light { bool directional; vec3 position, color; };
 float sdf(vec3 p) { return length(p) - 1.0; }
-vec2 fathom_reach(vec3 p) { return vec2(sdf(p)); }
+vec2 fathom_safe_radius(vec3 p) { return vec2(sdf(p)); }
 Hit fathom_hit(vec3 p) { return Hit(sdf(p), 0, p, vec4(0.0)); }
 fathom_Material fathom_material(Hit s, vec3 n) { return fathom_Material(n, n, n, 1.0); }
 fathom_Lighting fathom_lighting() { return fathom_Lighting(vec3(0.0), 0.0, 0.0, 0.0, 0.0); }
@@ -171,7 +174,7 @@ std::string with_entry(const glsl::TargetTraits &target, Values values) {
     std::string text;
     if (*target.inputs) text += glsl::expand(target.inputs, values);
     text += (target.hosted ? inputs.substr(inputs.find("uniform")) : camera) + drawn;
-    if (!values.at("KEPT").empty())
+    if (!values.at("CACHED").empty())
         text += glsl::expand("cache_look_up", values) + "int fathom_steps = 0;\n";
     text += glsl::expand(target.entry, values);
     if (!*target.host) return version + text;
@@ -262,7 +265,7 @@ bool of_target(std::string_view name) {
 TEST_CASE("a target's own templates are a shader together, whatever flags are set") {
     for (const glsl::Target target : glsl::all_targets())
         for (const std::set<std::string> &on : std::vector<std::set<std::string>>{
-                 {}, {"TIME"}, {"LOCATIONS"}, {"LOCATIONS", "KEPT"}, {"LOCATIONS", "PICK"}})
+                 {}, {"TIME"}, {"LOCATIONS"}, {"LOCATIONS", "CACHED"}, {"LOCATIONS", "PICK"}})
             for (const bool picture : {true, false}) {
                 const glsl::TargetTraits &traits = glsl::traits_of(target);
                 std::set<std::string> flags_on = on;
@@ -300,8 +303,8 @@ TEST_CASE("every template is a shader on its own, whatever flags are set") {
         }
         std::set<std::string> tried;
         for (std::set<std::string> &on : choices) {
-            if (!on.contains("STEEP")) on.erase("REACHES");  // only a steep field reaches
-            if (on.contains("KEPT")) on.insert("LOCATIONS"); // there are several outputs
+            if (!on.contains("STEEP")) on.erase("HAS_SAFE_RADIUS"); // only a steep field reaches
+            if (on.contains("CACHED")) on.insert("LOCATIONS");      // there are several outputs
             const Values values = values_with(name, on);
             for (const char *cached :
                  {"", "#define FATHOM_CACHE\n", "#define FATHOM_CACHE_LEARN\n"}) {

@@ -168,15 +168,15 @@ TEST_CASE("what a node reads") {
 namespace {
 // x + 1*y + 2*y + … as a loop: for i < n: acc = acc + i*y
 NodeId loop(Graph &g, NodeId count, NodeId start, NodeId y) {
-    Fold fold;
-    fold.count = count;
-    fold.index = g.fresh_var(Type::Int);
-    fold.vars = {g.fresh_var(Type::Float), g.fresh_var(Type::Float)};
-    fold.next = {g.add(fold.vars[0], g.mul(g.make(Op::ToFloat, {fold.index}), y)),
-                 g.add(fold.vars[1], g.number(1))};
-    fold.condition = g.make(Op::Less, {fold.vars[0], g.number(100)});
-    fold.max_count = 10;
-    return g.make(Op::Fold, Type::Float, {start, g.number(0)}, g.add_fold(fold).index);
+    Loop record;
+    record.count = count;
+    record.index = g.fresh_var(Type::Int);
+    record.vars = {g.fresh_var(Type::Float), g.fresh_var(Type::Float)};
+    record.next = {g.add(record.vars[0], g.mul(g.make(Op::ToFloat, {record.index}), y)),
+                   g.add(record.vars[1], g.number(1))};
+    record.condition = g.make(Op::Less, {record.vars[0], g.number(100)});
+    record.max_count = 10;
+    return g.make(Op::Loop, Type::Float, {start, g.number(0)}, g.add_loop(record).index);
 }
 } // namespace
 
@@ -185,8 +185,8 @@ TEST_CASE("folds carry values, stop at their condition, and bind their variables
     const NodeId x = g.component(g.point(), 0), y = g.component(g.point(), 1),
                  free = g.fresh_var(Type::Float);
     const NodeId sum = loop(g, g.integer(4), x, y);
-    const NodeId turns = g.make(Op::FoldResult, Type::Float, {sum}, 1);
-    CHECK(g.make(Op::FoldResult, Type::Float, {sum}, 0) == sum);
+    const NodeId turns = g.make(Op::LoopResult, Type::Float, {sum}, 1);
+    CHECK(g.make(Op::LoopResult, Type::Float, {sum}, 0) == sum);
     CHECK(!g.reads(sum).free_vars);
     CHECK(g.reads(loop(g, g.integer(4), x, free)).free_vars);
     CHECK(g.free_vars(loop(g, g.integer(4), x, free)) == std::vector{free});

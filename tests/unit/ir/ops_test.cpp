@@ -137,20 +137,20 @@ TEST_CASE("what `also` replaces is replaced in the function, not in the argument
 
 TEST_CASE("iterations written out are those of the loop") {
     Graph g;
-    Fold fold;
-    fold.count = g.integer(4);
-    fold.max_count = 4;
-    fold.index = g.fresh_var(Type::Int);
-    fold.vars = {g.fresh_var(Type::Float), g.fresh_var(Type::Float)};
+    Loop record;
+    record.count = g.integer(4);
+    record.max_count = 4;
+    record.index = g.fresh_var(Type::Int);
+    record.vars = {g.fresh_var(Type::Float), g.fresh_var(Type::Float)};
     // Both read the values before the iteration: the second takes over the first.
-    const NodeId index = g.make(Op::ToFloat, Type::Float, {fold.index});
-    fold.next = {g.add(g.mul(fold.vars[0], g.number(2)), index), fold.vars[0]};
+    const NodeId index = g.make(Op::ToFloat, Type::Float, {record.index});
+    record.next = {g.add(g.mul(record.vars[0], g.number(2)), index), record.vars[0]};
     const NodeId x = g.component(g.point(), 0);
     std::vector<NodeId> values{x, g.number(0)};
-    const NodeId loop = g.make(Op::Fold, Type::Float, values, g.add_fold(fold).index);
-    const NodeId second = g.make(Op::FoldResult, Type::Float, {loop}, 1);
-    CHECK(in_iteration(g, fold, 2, values, index) == g.number(2));
-    for (int i = 0; i < 4; ++i) values = after_iteration(g, fold, i, values);
+    const NodeId loop = g.make(Op::Loop, Type::Float, values, g.add_loop(record).index);
+    const NodeId second = g.make(Op::LoopResult, Type::Float, {loop}, 1);
+    CHECK(in_iteration(g, record, 2, values, index) == g.number(2));
+    for (int i = 0; i < 4; ++i) values = after_iteration(g, record, i, values);
     Reference reference(g);
     reference.point = {0.5, 0, 0};
     CHECK(reference.number(values[0]) == reference.number(loop));

@@ -1,4 +1,4 @@
-// Repetition and families against the plain union of all copies.
+// Repetition and instance_tables against the plain union of all copies.
 #include "ir/passes/verify.h"
 #include "tests/unit/ir/scenes.h"
 
@@ -173,22 +173,23 @@ TEST_CASE("a ring's copies know their number") {
     }
 }
 
-TEST_CASE("families: a loop over rows") {
+TEST_CASE("instances: a loop over rows") {
     for (bool smooth : {false, true}) {
         Builder t;
         Table table{6, 4, {}};
         Random random;
         for (int i = 0; i < 24; ++i) table.data.push_back(static_cast<float>(random.in(0.2, 1)));
         const TableId rows = t.g.add_table(table);
-        Family family{t.g.fresh_var(Type::Int), 6, smooth};
+        InstanceTable instance_table{t.g.fresh_var(Type::Int), 6, smooth};
         const NodeId center =
-            t.g.make(Op::TableRead, Type::Vec3, {family.index}, table_slot(rows, 0));
+            t.g.make(Op::TableRead, Type::Vec3, {instance_table.index}, table_slot(rows, 0));
         const NodeId size =
-            t.g.make(Op::TableRead, Type::Float, {family.index}, table_slot(rows, 3));
+            t.g.make(Op::TableRead, Type::Float, {instance_table.index}, table_slot(rows, 3));
         const ShapeId ball = t.add(translated(t.g, t.sphere(t.g.mul(size, t.n(0.3))), center));
-        t.scene.shapes.families.push_back(family);
-        const ShapeId all = t.add(ShapeKind::Many, {t.painted(ball, t.g.splat(size, Type::Vec3))},
-                                  smooth ? std::vector{t.n(0.2)} : std::vector<NodeId>{});
+        t.scene.shapes.instance_tables.push_back(instance_table);
+        const ShapeId all =
+            t.add(ShapeKind::Instances, {t.painted(ball, t.g.splat(size, Type::Vec3))},
+                  smooth ? std::vector{t.n(0.2)} : std::vector<NodeId>{});
         const Scene &scene = t.lowered(all);
         const auto row = [&](int i, std::size_t c) {
             return double(table.data[static_cast<std::size_t>(4 * i) + c]);

@@ -75,15 +75,15 @@ TEST_CASE("a function of the user's and a loop inside a shape") {
     // f(v) = length(v), called; and a loop that sums 4 waves
     const NodeId v = t.g.fresh_var(Type::Vec3);
     const FunctionId f = t.g.add_function({"f", {}, {v}, t.g.make(Op::Length, {v})});
-    Fold fold;
-    fold.count = t.g.integer(4);
-    fold.index = t.g.fresh_var(Type::Int);
-    fold.vars = {t.g.fresh_var(Type::Float)};
+    Loop record;
+    record.count = t.g.integer(4);
+    record.index = t.g.fresh_var(Type::Int);
+    record.vars = {t.g.fresh_var(Type::Float)};
     const NodeId phase =
-        t.g.add(t.g.component(t.g.point(), 0), t.g.make(Op::ToFloat, {fold.index}));
-    fold.next = {t.g.add(fold.vars[0], t.g.make(Op::Sin, {phase}))};
-    fold.max_count = 4;
-    const NodeId waves = t.g.make(Op::Fold, Type::Float, {t.n(0)}, t.g.add_fold(fold).index);
+        t.g.add(t.g.component(t.g.point(), 0), t.g.make(Op::ToFloat, {record.index}));
+    record.next = {t.g.add(record.vars[0], t.g.make(Op::Sin, {phase}))};
+    record.max_count = 4;
+    const NodeId waves = t.g.make(Op::Loop, Type::Float, {t.n(0)}, t.g.add_loop(record).index);
     const ShapeId leaf =
         t.leaf(t.g.add(t.g.call(f, std::array{t.g.point()}), t.g.mul(t.n(0.1), waves)));
     const ShapeId both = t.add(ShapeKind::Union, {leaf, t.moved(leaf, 3, 0, 0)});

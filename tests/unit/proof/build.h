@@ -34,7 +34,7 @@ struct Scenery {
     }
     // A library shape with claims, as the checker makes one.
     ShapeId claimed(std::string name, NodeId field, NodeId lo, NodeId hi,
-                    std::array<NodeId, 3> lever = {}, int dims = 3) {
+                    std::array<NodeId, 3> moment_arm = {}, int dims = 3) {
         Library library;
         library.name = std::move(name);
         library.has_claims = true;
@@ -42,7 +42,7 @@ struct Scenery {
         library.claims.lo = lo;
         library.claims.hi = hi;
         library.claims.symmetric = {true, true, true};
-        library.claims.lever = lever;
+        library.claims.moment_arm = moment_arm;
         scene.shapes.libraries.push_back(library);
         Shape shape;
         shape.kind = ShapeKind::Library;

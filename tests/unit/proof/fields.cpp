@@ -59,12 +59,12 @@ TEST_CASE("the Menger field, a loop whose scale changes by turn, has slope 1") {
     NodeId a = s.call(Op::Abs, s.p);
     NodeId most = g.make(
         Op::Max, {g.component(a, 0), g.make(Op::Max, {g.component(a, 1), g.component(a, 2)})});
-    Fold fold;
-    fold.count = g.integer(4);
-    fold.max_count = 4;
-    fold.index = g.fresh_var(Type::Int);
+    Loop record;
+    record.count = g.integer(4);
+    record.max_count = 4;
+    record.index = g.fresh_var(Type::Int);
     NodeId d = g.fresh_var(Type::Float), scale = g.fresh_var(Type::Float);
-    fold.vars = {d, scale};
+    record.vars = {d, scale};
     NodeId cell = g.sub(g.make(Op::Mod, {g.mul(s.p, scale), g.splat(s.n(2), Type::Vec3)}),
                         g.splat(s.n(1), Type::Vec3));
     NodeId next = g.mul(scale, s.n(3));
@@ -74,10 +74,10 @@ TEST_CASE("the Menger field, a loop whose scale changes by turn, has slope 1") {
     auto max = [&](NodeId u, NodeId v) { return g.make(Op::Max, {u, v}); };
     auto min = [&](NodeId u, NodeId v) { return g.make(Op::Min, {u, v}); };
     NodeId c = g.div(g.sub(min(max(rx, ry), min(max(ry, rz), max(rz, rx))), s.n(1)), next);
-    fold.next = {max(d, c), next};
-    FoldId id = g.add_fold(fold);
-    NodeId node = g.make(Op::Fold, Type::Float, {g.sub(most, s.n(1)), s.n(1)}, id.index);
-    NodeId result = g.make(Op::FoldResult, Type::Float, {node}, 0);
+    record.next = {max(d, c), next};
+    LoopId id = g.add_loop(record);
+    NodeId node = g.make(Op::Loop, Type::Float, {g.sub(most, s.n(1)), s.n(1)}, id.index);
+    NodeId result = g.make(Op::LoopResult, Type::Float, {node}, 0);
     auto b = s.bound(result, cube(1));
     INFO("evaluations " << b.evaluations);
     CHECK(b.lipschitz == Approx(1).epsilon(1e-9));

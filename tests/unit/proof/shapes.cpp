@@ -24,7 +24,7 @@ TEST_CASE("rigid motions and uniform scales keep an exact distance") {
     CHECK(g.bounds.hi[1] == Approx(5).epsilon(1e-5));
 }
 
-TEST_CASE("a twist costs its shear at the lever arm, and nothing at rate 0") {
+TEST_CASE("a twist costs its shear at the moment arm, and nothing at rate 0") {
     Scenery s;
     ShapeId box = s.box(1.2, 5, 1.2);
     NodeId rate = s.parameter(0, 2);
@@ -36,7 +36,7 @@ TEST_CASE("a twist costs its shear at the lever arm, and nothing at rate 0") {
     CHECK(f.lipschitz_sup == Approx(proof::sigma(1.2)).epsilon(1e-5));
     CHECK(s.g.reads(f.lipschitz).params);
     CHECK(f.bounds.hi[0] == Approx(0.6 * std::sqrt(2.0)).epsilon(1e-4));
-    CHECK(f.lever[1] == Approx(0.6).epsilon(1e-6));
+    CHECK(f.moment_arm[1] == Approx(0.6).epsilon(1e-6));
     CHECK(f.guard);
     ShapeId bend = s.add(bent(s.g, box, s.n(0.2), 1, 0));
     CHECK(s.prove(bend).lipschitz_sup == Approx(1 + 0.2 * 2.5).epsilon(1e-5));
@@ -184,7 +184,7 @@ TEST_CASE("a field that is steep in its corners keeps its bound cell by cell") {
 }
 
 // Found by random compositions: each was wrong once.
-TEST_CASE("what an offset moves, a lever arm and a blend's gap count") {
+TEST_CASE("what an offset moves, a moment arm and a blend's gap count") {
     Scenery s;
     auto circle = [&](double r) {
         return s.claimed("circle", s.g.sub(s.length(s.g.point(Type::Vec2)), s.n(r)),
@@ -280,7 +280,7 @@ TEST_CASE("the explanation names the operation that costs") {
     CHECK(t.factor == Approx(proof::sigma(1.5)).epsilon(1e-5));
 }
 
-TEST_CASE("what has bounds but no lever arm is deformed within its own box") {
+TEST_CASE("what has bounds but no moment arm is deformed within its own box") {
     Scenery s;
     ShapeId flat = s.add(scaled(s.g, s.sphere(1), s.g.vec3(1, 0.3, 0.5)));
     ShapeId bend = s.add(bent(s.g, flat, s.n(0.7), 0, 1));

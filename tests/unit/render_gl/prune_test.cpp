@@ -266,8 +266,8 @@ TEST_CASE("rows that move have the lists of their time") {
                                                                        {x, y, graph.number(0)}))});
             if (steep) d = graph.mul(d, d);
             const NodeId next = graph.make(Op::Union, {least, graph.sub(d, graph.number(0.02))});
-            const FoldId id = graph.add_fold({graph.integer(200), index, {least}, {next}, {}, 200});
-            return graph.make(Op::Fold, Type::Float, {graph.number(1e9)}, id.index);
+            const LoopId id = graph.add_loop({graph.integer(200), index, {least}, {next}, {}, 200});
+            return graph.make(Op::Loop, Type::Float, {graph.number(1e9)}, id.index);
         });
     };
     const Scene scene = made(false);

@@ -28,10 +28,10 @@ TEST_CASE("a loop's values are all of the turn before") {
                    const NodeId a = g.fresh_var(Type::Float), b = g.fresh_var(Type::Float),
                                 i = g.fresh_var(Type::Int);
                    const NodeId count = g.make(Op::ToInt, Type::Int, {g.component(p, 0)});
-                   const FoldId fold = g.add_fold({count, i, {a, b}, {b, g.add(a, b)}, {}, 100});
+                   const LoopId record = g.add_loop({count, i, {a, b}, {b, g.add(a, b)}, {}, 100});
                    const NodeId loop =
-                       g.make(Op::Fold, Type::Float, {g.number(0), g.number(1)}, fold.index);
-                   return g.make(Op::FoldResult, Type::Float, {loop}, 0);
+                       g.make(Op::Loop, Type::Float, {g.number(0), g.number(1)}, record.index);
+                   return g.make(Op::LoopResult, Type::Float, {loop}, 0);
                }),
                12);
     CHECK(found == std::vector<float>{0, 1, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89});
@@ -44,10 +44,10 @@ TEST_CASE("a loop ends before the turn whose condition fails") {
         values(of_field([](Graph &g, NodeId p) {
                    const NodeId x = g.fresh_var(Type::Float), i = g.fresh_var(Type::Int);
                    const NodeId condition = g.make(Op::LessEqual, {x, g.component(p, 0)});
-                   const FoldId fold =
-                       g.add_fold({g.integer(50), i, {x}, {g.mul(x, g.number(2))}, condition, 50});
-                   const NodeId loop = g.make(Op::Fold, Type::Float, {g.number(1)}, fold.index);
-                   return g.make(Op::FoldResult, Type::Float, {loop}, 0);
+                   const LoopId record =
+                       g.add_loop({g.integer(50), i, {x}, {g.mul(x, g.number(2))}, condition, 50});
+                   const NodeId loop = g.make(Op::Loop, Type::Float, {g.number(1)}, record.index);
+                   return g.make(Op::LoopResult, Type::Float, {loop}, 0);
                }),
                9);
     CHECK(found == std::vector<float>{1, 2, 4, 4, 8, 8, 8, 8, 16});
@@ -58,13 +58,13 @@ TEST_CASE("one loop begun twice is two loops") {
     const auto found =
         values(of_field([](Graph &g, NodeId p) {
                    const NodeId x = g.fresh_var(Type::Float), i = g.fresh_var(Type::Int);
-                   const FoldId fold =
-                       g.add_fold({g.integer(3), i, {x}, {g.add(g.mul(x, x), g.number(1))}, {}, 3});
+                   const LoopId record =
+                       g.add_loop({g.integer(3), i, {x}, {g.add(g.mul(x, x), g.number(1))}, {}, 3});
                    const NodeId one =
-                       g.make(Op::Fold, Type::Float, {g.component(p, 0)}, fold.index);
-                   const NodeId two = g.make(Op::Fold, Type::Float, {g.number(0)}, fold.index);
-                   return g.sub(g.make(Op::FoldResult, Type::Float, {one}, 0),
-                                g.make(Op::FoldResult, Type::Float, {two}, 0));
+                       g.make(Op::Loop, Type::Float, {g.component(p, 0)}, record.index);
+                   const NodeId two = g.make(Op::Loop, Type::Float, {g.number(0)}, record.index);
+                   return g.sub(g.make(Op::LoopResult, Type::Float, {one}, 0),
+                                g.make(Op::LoopResult, Type::Float, {two}, 0));
                }),
                3);
     CHECK(found == std::vector<float>{0, 21, 672});
@@ -79,13 +79,13 @@ TEST_CASE("loops nest, and what does not change in them is computed before") {
             const NodeId inner = g.fresh_var(Type::Float), j = g.fresh_var(Type::Int);
             const NodeId square = g.mul(g.component(p, 0), g.component(p, 0));
             const NodeId product = g.make(Op::ToFloat, Type::Float, {g.make(Op::Mul, {i, j})});
-            const FoldId over_j = g.add_fold(
+            const LoopId over_j = g.add_loop(
                 {g.integer(2), j, {inner}, {g.add(inner, g.add(square, product))}, {}, 2});
-            const NodeId row = g.make(Op::Fold, Type::Float, {outer}, over_j.index);
-            const FoldId over_i = g.add_fold(
-                {g.integer(3), i, {outer}, {g.make(Op::FoldResult, Type::Float, {row}, 0)}, {}, 3});
-            return g.make(Op::FoldResult, Type::Float,
-                          {g.make(Op::Fold, Type::Float, {g.number(0)}, over_i.index)}, 0);
+            const NodeId row = g.make(Op::Loop, Type::Float, {outer}, over_j.index);
+            const LoopId over_i = g.add_loop(
+                {g.integer(3), i, {outer}, {g.make(Op::LoopResult, Type::Float, {row}, 0)}, {}, 3});
+            return g.make(Op::LoopResult, Type::Float,
+                          {g.make(Op::Loop, Type::Float, {g.number(0)}, over_i.index)}, 0);
         }),
         4);
     CHECK(found == std::vector<float>{3, 9, 27, 57});

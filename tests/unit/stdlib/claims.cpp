@@ -1,6 +1,6 @@
 // Every entry that makes a solid against its independent definition: the sign everywhere, the
 // distance where it claims to be exact, the bound between pairs of points, and the claims of box,
-// mirror planes and lever arm.
+// mirror planes and moment arm.
 #include "definitions.h"
 
 #include <catch2/catch.hpp>
@@ -121,14 +121,14 @@ void check_claims(const Solid &solid, const Field &field) {
         }
     }
     std::vector<double> d = field.at(points);
-    if (claims.swell && claims.lo && claims.hi) {
-        const double swell = component(field.scene(), claims.swell, 0);
+    if (claims.growth_rate && claims.lo && claims.hi) {
+        const double growth_rate = component(field.scene(), claims.growth_rate, 0);
         // the field at hand is the marched one, divided by its bound
         const double slope = claims.lipschitz ? component(field.scene(), claims.lipschitz, 0) : 1;
         for (std::size_t i = 0; i < points.size(); ++i)
             for (int axis = 0; axis < 3; ++axis) {
                 const double x = points[i][static_cast<std::size_t>(axis)],
-                             by = swell * slope * std::max(d[i], 0.0) + 1e-5;
+                             by = growth_rate * slope * std::max(d[i], 0.0) + 1e-5;
                 if (x < component(field.scene(), claims.lo, axis) - by ||
                     x > component(field.scene(), claims.hi, axis) + by) {
                     FAIL_CHECK("the field is " << d[i] << " outside of the box grown by " << by);
@@ -148,10 +148,10 @@ void check_claims(const Solid &solid, const Field &field) {
     }
     const double h = 1e-2;
     for (int axis = 0; axis < 3; ++axis) {
-        ir::NodeId lever = claims.lever[static_cast<std::size_t>(axis)];
-        if (!lever) continue;
-        double bound = component(field.scene(), lever, 0), most = 0;
-        // turned a little about the axis, the field changes by at most the lever arm times the
+        ir::NodeId moment_arm = claims.moment_arm[static_cast<std::size_t>(axis)];
+        if (!moment_arm) continue;
+        double bound = component(field.scene(), moment_arm, 0), most = 0;
+        // turned a little about the axis, the field changes by at most the moment arm times the
         // angle
         std::vector<Point> turned = points;
         auto j = static_cast<std::size_t>((axis + 1) % 3),

@@ -77,13 +77,13 @@ TEST_CASE("closed expressions have values: params, time, functions, loops, table
     const NodeId sum = g.fresh_var(Type::Float), i = g.fresh_var(Type::Int);
     const NodeId outer = g.fresh_var(Type::Float), j = g.fresh_var(Type::Int);
     const NodeId row = g.make(Op::TableRead, Type::Float, {i}, table_slot(table, 0));
-    const FoldId inner_fold = g.add_fold({j, i, {sum}, {g.add(sum, row)}, {}, 4});
+    const LoopId inner_loop = g.add_loop({j, i, {sum}, {g.add(sum, row)}, {}, 4});
     const NodeId inner =
-        g.make(Op::FoldResult, Type::Float,
-               {g.make(Op::Fold, Type::Float, {g.number(0)}, inner_fold.index)}, 0);
-    const FoldId outer_fold = g.add_fold({g.integer(4), j, {outer}, {g.add(outer, inner)}, {}, 4});
-    const NodeId all = g.make(Op::FoldResult, Type::Float,
-                              {g.make(Op::Fold, Type::Float, {g.number(0)}, outer_fold.index)}, 0);
+        g.make(Op::LoopResult, Type::Float,
+               {g.make(Op::Loop, Type::Float, {g.number(0)}, inner_loop.index)}, 0);
+    const LoopId outer_loop = g.add_loop({g.integer(4), j, {outer}, {g.add(outer, inner)}, {}, 4});
+    const NodeId all = g.make(Op::LoopResult, Type::Float,
+                              {g.make(Op::Loop, Type::Float, {g.number(0)}, outer_loop.index)}, 0);
     CHECK(value_of(scene, all, 0)[0] == 0 + 1 + 11 + 111);
     CHECK(value_of(scene, {}, 0)[0] == 0);
 }

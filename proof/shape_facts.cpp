@@ -1,4 +1,4 @@
-#include "proof/known.h"
+#include "proof/shape_facts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,10 +29,10 @@ Box grow(const Box &box, const std::array<double, 3> &by) {
     return out;
 }
 Box grow(const Box &box, double by) { return grow(box, {by, by, by}); }
-Box reached(const Box &box, double swell, double t) {
-    if (t <= 0 || swell == 0) return box;
-    if (!std::isfinite(swell) || !std::isfinite(t)) return Box::everything();
-    return grow(box, up(swell * t));
+Box reached(const Box &box, double growth_rate, double t) {
+    if (t <= 0 || growth_rate == 0) return box;
+    if (!std::isfinite(growth_rate) || !std::isfinite(t)) return Box::everything();
+    return grow(box, up(growth_rate * t));
 }
 // Of sides a.hi < b.lo, grown by w*t: [b.lo - w*t, a.hi + w*t] lies within w*t of the middle.
 Box meeting(const Box &a, const Box &b) {

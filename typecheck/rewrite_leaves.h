@@ -3,7 +3,7 @@
 // nothing of images.
 #pragma once
 
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include <functional>
 
@@ -24,8 +24,8 @@ struct Below {
 };
 
 // A base shape is one of the library's solids, an extruded or turned flat shape, a flat shape, or a
-// field of the user's own. `dress` gives what shall stand in its place.
-using Dress = std::function<ir::ShapeId(ir::ShapeId, const Below &)>;
+// field of the user's own. `rewrite` gives what shall stand in its place.
+using RewriteLeaf = std::function<ir::ShapeId(ir::ShapeId, const Below &)>;
 
 enum class Paints : std::uint8_t {
     Keep,
@@ -33,7 +33,7 @@ enum class Paints : std::uint8_t {
     Strip
 }; // KeepWhole: what is painted already is left as it is
 
-ir::ShapeId dressed(Evaluator &ev, ir::ShapeId shape, Paints paints, const Dress &dress,
-                    Line axis = {});
+ir::ShapeId rewrite_leaves(Interpreter &ev, ir::ShapeId shape, Paints paints,
+                           const RewriteLeaf &rewrite, Line axis = {});
 
 } // namespace fathom::typecheck

@@ -4,7 +4,7 @@
 #include "tests/unit/glsl/scenes.h"
 
 #include "backend-glsl/emit.h"
-#include "backend-glsl/roll.h"
+#include "backend-glsl/reroll.h"
 
 #include <catch2/catch.hpp>
 
@@ -49,10 +49,10 @@ TEST_CASE("a loop over a list's operands has the list's values") {
     for (Op op : {Op::Blend, Op::Union, Op::Intersection})
         for (int kinds : {1, 3}) {
             const Scene scene = list_of(op, 1200, kinds);
-            const std::optional<glsl::Rolled> loops = glsl::rolled(scene);
+            const std::optional<glsl::Rerolled> loops = glsl::rerolled(scene);
             REQUIRE(loops);
             const NodeId result = loops->results.at(scene.distance.index);
-            REQUIRE(loops->scene.graph[result].op == Op::Fold);
+            REQUIRE(loops->scene.graph[result].op == Op::Loop);
             const NodeId p = scene.graph.function(scene.distance).params[0];
             for (int k = 0; k < 40; ++k) {
                 const std::array<double, 3> at{0.11 * k - 2, 0.07 * k - 1.4, 0.05 * (k % 9)};
@@ -74,7 +74,7 @@ TEST_CASE("the text of a long list is as long for twice the operands") {
 }
 
 TEST_CASE("a short list, and one whose operands are unlike, stay as they are") {
-    CHECK_FALSE(glsl::rolled(list_of(Op::Blend, 12, 1)));
+    CHECK_FALSE(glsl::rerolled(list_of(Op::Blend, 12, 1)));
     const Scene unlike = of_field([](Graph &g, NodeId p) {
         std::vector<NodeId> args;
         NodeId x = g.component(p, 0);
@@ -84,6 +84,6 @@ TEST_CASE("a short list, and one whose operands are unlike, stay as they are") {
         }
         return g.make(Op::Union, Type::Float, args);
     });
-    const std::optional<glsl::Rolled> loops = glsl::rolled(unlike);
+    const std::optional<glsl::Rerolled> loops = glsl::rerolled(unlike);
     CHECK((!loops || loops->results.empty()));
 }

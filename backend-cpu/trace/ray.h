@@ -1,9 +1,9 @@
-// One ray's way, sample by sample: ir/look.h's MARCH and BY CURVATURE in float32. Knows no fields:
+// One ray's way, sample by sample: ir/shading.h's MARCH and BY CURVATURE in float32. Knows no fields:
 // what is found at a sample is written into the walk by the caller.
 #pragma once
 
 #include "backend-cpu/trace/rays.h"
-#include "ir/look.h"
+#include "ir/shading.h"
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ struct Walk {
 };
 
 // How small the distance is at a hit; in the last turn a pixel's width will do.
-inline float reach_at(const Walk &walk, const Lengths &lengths, int max_steps) {
+inline float tolerance_at(const Walk &walk, const Lengths &lengths, int max_steps) {
     const float usual = lengths.tolerance(walk.t);
     return walk.steps == max_steps ? std::max(usual, lengths.width(walk.t)) : usual;
 }
@@ -34,17 +34,17 @@ inline bool apart(const Walk &walk) {
 }
 
 // How far beyond the last sample to look next, where what lies between is not known to be free.
-inline float nearer(const Walk &walk, const Lengths &lengths, bool reaching) {
-    if (!reaching) return walk.before;
+inline float nearer(const Walk &walk, const Lengths &lengths, bool by_curvature) {
+    if (!by_curvature) return walk.before;
     const float to =
-        walk.d > 0 ? walk.reached + ir::look::nearer * std::min(walk.span, walk.reached)
+        walk.d > 0 ? walk.reached + ir::shading::nearer * std::min(walk.span, walk.reached)
                    : std::min(walk.reached, walk.stride * walk.before / (walk.before - walk.d) -
                                                 0.5f * lengths.tolerance(walk.t));
     return std::max(walk.before, std::min(to, walk.stride));
 }
 
-inline void go_back(Walk &walk, const Lengths &lengths, bool reaching) {
-    const float stride = nearer(walk, lengths, reaching);
+inline void go_back(Walk &walk, const Lengths &lengths, bool by_curvature) {
+    const float stride = nearer(walk, lengths, by_curvature);
     walk.t += stride - walk.stride;
     walk.stride = stride;
 }
@@ -58,12 +58,12 @@ inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
         if (walk.stride > 0) {
             const float change = (span * span - walk.reached * walk.reached) / walk.stride;
             next = change < -span ? span * span / -change - 0.5f * lengths.tolerance(walk.t)
-                                  : span + ir::look::bent_relaxation * (span + change);
+                                  : span + ir::shading::bent_relaxation * (span + change);
             next = std::max(next, d);
         }
     } else if (!brute && walk.stride > 0)
-        next += ir::look::relaxation * d * std::max(walk.stride + d - walk.before, 0.0f) /
-                std::max(walk.stride - d + walk.before, ir::look::flattest * walk.stride);
+        next += ir::shading::relaxation * d * std::max(walk.stride + d - walk.before, 0.0f) /
+                std::max(walk.stride - d + walk.before, ir::shading::flattest * walk.stride);
     // what is not proved yet ends at the end exactly, rounding or not, so that it is still checked
     const float proved = std::max(end, walk.t + d);
     next = std::min(next, proved - walk.t);

@@ -12,7 +12,7 @@
 
 namespace fathom::proof {
 
-struct Turned {
+struct LinearMap {
     ir::NodeId of;                     // the vector v of M v + c
     double norm = 1;                   // a bound of M's spectral norm
     bool whole = false;                // M's rows are of one length and at right angles, as many as
@@ -22,9 +22,9 @@ struct Turned {
 
 // `vector` as M v + c; nothing where that is not seen. `varies` says which vectors may be v;
 // `turned` holds those already known to be: they are not looked into.
-std::optional<Turned> turned(ir::Graph &graph, ir::NodeId vector,
-                             const std::function<bool(ir::NodeId)> &varies,
-                             const std::unordered_set<ir::NodeId> &turned);
+std::optional<LinearMap> turned(ir::Graph &graph, ir::NodeId vector,
+                                const std::function<bool(ir::NodeId)> &varies,
+                                const std::unordered_set<ir::NodeId> &turned);
 
 // The same for a matrix alone: a bound of its spectral norm, from M M^T.
 std::optional<double> matrix_norm(ir::Graph &graph, ir::NodeId matrix);

@@ -1,7 +1,7 @@
 // Jumps that cancel, and those that do not.
 #include "build.h"
 
-#include "proof/steps.h"
+#include "proof/discontinuities.h"
 
 #include <catch2/catch.hpp>
 

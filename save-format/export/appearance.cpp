@@ -1,5 +1,5 @@
-// Textures and materials of a save file; see looks.h.
-#include "save-format/export/looks.h"
+// Textures and materials of a save file; see appearance.h.
+#include "save-format/export/appearance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,8 +82,8 @@ std::string stem(std::string_view file) {
 
 } // namespace
 
-Looks::Looks(const ir::Scene &scene, Numbers &numbers, std::vector<Value> textures,
-             std::vector<Value> materials)
+Appearances::Appearances(const ir::Scene &scene, Numbers &numbers, std::vector<Value> textures,
+                         std::vector<Value> materials)
     : scene_(scene), numbers_(numbers), materials_(std::move(materials)) {
     for (Value &texture : textures) {
         for (Entry &item : texture.entries) textures_.push_back(std::move(item));
@@ -96,7 +96,7 @@ Looks::Looks(const ir::Scene &scene, Numbers &numbers, std::vector<Value> textur
 }
 
 // A kept texture is found by its file, to which an import may have put the way from the .sdf.
-std::string Looks::texture(std::int32_t image) {
+std::string Appearances::texture(std::int32_t image) {
     if (image < 0 || static_cast<std::size_t>(image) >= scene_.images.size()) return {};
     const std::string &file = scene_.images[static_cast<std::size_t>(image)].name;
     const auto is_taken = [&](const std::string &name) {
@@ -115,41 +115,41 @@ std::string Looks::texture(std::int32_t image) {
     return name;
 }
 
-std::string Looks::material(std::uint32_t index) {
+std::string Appearances::material(std::uint32_t index) {
     const ir::Material &material = scene_.shapes.materials[index];
-    const std::optional<Look> look = look_of(material);
-    if (!look) return {};
+    const std::optional<Appearance> appearance = appearance_of(material);
+    if (!appearance) return {};
     if (const auto kept = by_name_.find(material.name); kept != by_name_.end()) {
-        update(materials_[kept->second], *look);
+        update(materials_[kept->second], *appearance);
         return material.name;
     }
     for (const auto &[name, i] : by_name_) {
-        if (same(materials_[i], *look)) return name;
+        if (same(materials_[i], *appearance)) return name;
     }
     std::string name = material.name;
     for (int i = 1; name.empty() || by_name_.contains(name); ++i)
         name = "Material " + std::to_string(i);
     by_name_.emplace(name, materials_.size());
-    Value specular = color_value(look->specular, 255);
-    specular.entries.emplace_back("Exponent", yaml_scalar(look->exponent));
+    Value specular = color_value(appearance->specular, 255);
+    specular.entries.emplace_back("Exponent", yaml_scalar(appearance->exponent));
     Value first = yaml_mapping({{"Name", yaml_word(name)},
-                                {"Diffuse", color_value(look->diffuse, 255)},
+                                {"Diffuse", color_value(appearance->diffuse, 255)},
                                 {"Specular", std::move(specular)}});
-    if (look->emission != std::array<double, 3>{})
-        first.entries.emplace_back("Emission", color_value(look->emission, 255));
+    if (appearance->emission != std::array<double, 3>{})
+        first.entries.emplace_back("Emission", color_value(appearance->emission, 255));
     materials_.push_back(yaml_list(
-        {std::move(first),
-         yaml_mapping(
-             {{"Color Texture", look->texture.empty() ? plain("<None>") : yaml_word(look->texture)},
-              {"Texture Scale", xy(look->texture_scale)},
-              {"Displacement Map", plain("<None>")},
-              {"Displacement Amount", yaml_scalar(0.1)},
-              {"Displacement Scale", xy({1, 1})}})}));
+        {std::move(first), yaml_mapping({{"Color Texture", appearance->texture.empty()
+                                                               ? plain("<None>")
+                                                               : yaml_word(appearance->texture)},
+                                         {"Texture Scale", xy(appearance->texture_scale)},
+                                         {"Displacement Map", plain("<None>")},
+                                         {"Displacement Amount", yaml_scalar(0.1)},
+                                         {"Displacement Scale", xy({1, 1})}})}));
     return name;
 }
 
-bool Looks::displaces(const std::string &material, const ir::DisplacementMap &map,
-                      double by) const {
+bool Appearances::displaces(const std::string &material, const ir::DisplacementMap &map,
+                            double by) const {
     const auto found = by_name_.find(material);
     if (found == by_name_.end()) return false;
     const Value &item = materials_[found->second];
@@ -164,7 +164,7 @@ bool Looks::displaces(const std::string &material, const ir::DisplacementMap &ma
            scale_of(item, "Displacement Scale") == map.map.scale;
 }
 
-Value Looks::textures() const {
+Value Appearances::textures() const {
     Value value;
     value.kind = Value::Kind::Mapping;
     value.entries = textures_;
@@ -172,8 +172,8 @@ Value Looks::textures() const {
 }
 
 // Of a texture `diffuse` is what shows where the image is transparent: the first of what is mixed.
-std::optional<Looks::Look> Looks::look_of(const ir::Material &material) {
-    Look look;
+std::optional<Appearances::Appearance> Appearances::appearance_of(const ir::Material &material) {
+    Appearance appearance;
     const auto read = [&](ir::NodeId id, std::array<double, 3> &out) {
         const auto value = numbers_.varies(id) ? std::nullopt : numbers_.vector(id);
         if (value)
@@ -182,35 +182,36 @@ std::optional<Looks::Look> Looks::look_of(const ir::Material &material) {
     };
     ir::NodeId diffuse = material.diffuse;
     if (material.texture.image >= 0) {
-        look.texture = texture(material.texture.image);
-        look.texture_scale = material.texture.scale;
+        appearance.texture = texture(material.texture.image);
+        appearance.texture_scale = material.texture.scale;
         if (scene_.graph[diffuse].op == ir::Op::Mix) diffuse = scene_.graph.arg(diffuse, 0);
     }
     const auto exponent =
         numbers_.varies(material.exponent) ? std::nullopt : numbers_.number(material.exponent);
-    if (!read(diffuse, look.diffuse) || !read(material.specular, look.specular) ||
-        !read(material.emission, look.emission) || !exponent)
+    if (!read(diffuse, appearance.diffuse) || !read(material.specular, appearance.specular) ||
+        !read(material.emission, appearance.emission) || !exponent)
         return std::nullopt;
-    look.exponent = *exponent;
-    return look;
+    appearance.exponent = *exponent;
+    return appearance;
 }
 
-bool Looks::same(const Value &item, const Look &look) const {
+bool Appearances::same(const Value &item, const Appearance &appearance) const {
     const Value *specular = entry(item, "Specular"), *emission = entry(item, "Emission");
     const Value *exponent = specular ? specular->find("Exponent") : nullptr;
-    const bool glows = look.emission != std::array<double, 3>{};
-    return same_color(entry(item, "Diffuse"), look.diffuse) &&
-           same_color(specular, look.specular) && exponent &&
-           number_of(*exponent) == look.exponent &&
-           (glows ? same_color(emission, look.emission) : emission == nullptr) &&
-           texture_of(item, "Color Texture") == look.texture &&
-           (look.texture.empty() || scale_of(item, "Texture Scale") == look.texture_scale) &&
+    const bool glows = appearance.emission != std::array<double, 3>{};
+    return same_color(entry(item, "Diffuse"), appearance.diffuse) &&
+           same_color(specular, appearance.specular) && exponent &&
+           number_of(*exponent) == appearance.exponent &&
+           (glows ? same_color(emission, appearance.emission) : emission == nullptr) &&
+           texture_of(item, "Color Texture") == appearance.texture &&
+           (appearance.texture.empty() ||
+            scale_of(item, "Texture Scale") == appearance.texture_scale) &&
            texture_of(item, "Displacement Map").empty();
 }
 
 // What the scene says by now. A value that made no sense in the file stays where its default is
 // still in use.
-void Looks::update(Value &item, const Look &look) const {
+void Appearances::update(Value &item, const Appearance &appearance) const {
     const auto channels = [&](const char *what, const std::array<double, 3> &color,
                               const std::array<double, 3> &fallback) {
         Value *value = entry(item, what);
@@ -224,20 +225,20 @@ void Looks::update(Value &item, const Look &look) const {
                 *part = yaml_scalar(color[i]);
         }
     };
-    channels("Diffuse", look.diffuse, {128, 128, 128});
-    channels("Specular", look.specular, {255, 255, 255});
-    channels("Emission", look.emission, {0, 0, 0});
+    channels("Diffuse", appearance.diffuse, {128, 128, 128});
+    channels("Specular", appearance.specular, {255, 255, 255});
+    channels("Emission", appearance.emission, {0, 0, 0});
     const Value *specular = entry(item, "Specular");
     Value *exponent = specular ? const_cast<Value *>(specular->find("Exponent")) : nullptr;
     const auto number = exponent ? number_of(*exponent) : std::nullopt;
-    if (exponent && (number ? *number != look.exponent : look.exponent != 32))
-        *exponent = yaml_scalar(look.exponent);
-    if (look.texture.empty()) return;
-    if (Value *name = entry(item, "Color Texture"); name && name->text != look.texture)
-        *name = yaml_word(look.texture);
+    if (exponent && (number ? *number != appearance.exponent : appearance.exponent != 32))
+        *exponent = yaml_scalar(appearance.exponent);
+    if (appearance.texture.empty()) return;
+    if (Value *name = entry(item, "Color Texture"); name && name->text != appearance.texture)
+        *name = yaml_word(appearance.texture);
     if (Value *scale = entry(item, "Texture Scale");
-        scale && scale_of(item, "Texture Scale") != look.texture_scale)
-        *scale = xy(look.texture_scale);
+        scale && scale_of(item, "Texture Scale") != appearance.texture_scale)
+        *scale = xy(appearance.texture_scale);
 }
 
 } // namespace fathom::save

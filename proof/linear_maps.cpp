@@ -2,7 +2,7 @@
 // are polynomials in the sines, cosines and numbers that M is made of; for rotations they are 0 and
 // 1 whatever the angles are, by sin^2 + cos^2 = 1 (continuity.h). By Gershgorin's theorem |M M^T|
 // is at most the greatest sum of absolute values in a row.
-#include "proof/turned.h"
+#include "proof/linear_maps.h"
 
 #include "ir/interval.h"
 #include "ir/passes/inline.h"
@@ -20,7 +20,7 @@ using ir::Graph;
 using ir::NodeId;
 using ir::Op;
 
-constexpr int most_steps = 2'000; // of one vector that is looked at
+constexpr int max_steps = 2'000; // of one vector that is looked at
 
 bool by_component(Op op) {
     return op == Op::Add || op == Op::Sub || op == Op::Neg || op == Op::Mul || op == Op::Div;
@@ -51,7 +51,7 @@ struct Reader {
 
     // What a call gives, with its arguments in place.
     NodeId entered(NodeId id) {
-        while (graph[id].op == Op::Call && ++steps < most_steps) {
+        while (graph[id].op == Op::Call && ++steps < max_steps) {
             NodeId &known = calls[id];
             if (!known) known = ir::called(graph, id);
             id = known;
@@ -69,7 +69,7 @@ struct Reader {
     // Entry i of a vector or, column by column, of a matrix, as a scalar; invalid where a matrix is
     // not made of such.
     NodeId part(NodeId id, int i) {
-        if (++steps > most_steps) failed = true;
+        if (++steps > max_steps) failed = true;
         if (failed) return {};
         const ir::Node whole = graph[id];
         if (!ir::is_matrix(whole.type) && turned && turned->contains(id) &&
@@ -146,7 +146,7 @@ struct Reader {
     }
 
     Sum read(NodeId id) {
-        if (++steps > most_steps) failed = true;
+        if (++steps > max_steps) failed = true;
         if (failed) return {};
         const ir::Node node = graph[id];
         constexpr ir::OpSet sums{Op::Add, Op::Sub, Op::Neg}, products{Op::Mul, Op::Div};
@@ -252,10 +252,11 @@ std::optional<Norm> rows_norm(Graph &graph, const std::vector<std::array<NodeId,
 
 } // namespace
 
-std::optional<Turned> turned(Graph &graph, NodeId vector, const std::function<bool(NodeId)> &varies,
-                             const std::unordered_set<NodeId> &known) {
+std::optional<LinearMap> turned(Graph &graph, NodeId vector,
+                                const std::function<bool(NodeId)> &varies,
+                                const std::unordered_set<NodeId> &known) {
     const int n = ir::components(graph[vector].type);
-    std::optional<Turned> found; // where something else may vary, which a loop's values may
+    std::optional<LinearMap> found; // where something else may vary, which a loop's values may
     for (const bool shallow : {false, true}) {
         Reader reader{graph, &varies, &known, vector, n};
         std::vector<std::array<NodeId, 4>> rows;
@@ -271,9 +272,9 @@ std::optional<Turned> turned(Graph &graph, NodeId vector, const std::function<bo
         if (!norm) continue;
         const bool still = std::none_of(reader.constants.begin(), reader.constants.end(), varies);
         if (still || !found)
-            found = Turned{reader.of, norm->norm,
-                           norm->even && ir::components(graph[reader.of].type) == n,
-                           std::move(reader.constants)};
+            found = LinearMap{reader.of, norm->norm,
+                              norm->even && ir::components(graph[reader.of].type) == n,
+                              std::move(reader.constants)};
         if (still) break;
     }
     return found;

@@ -1,6 +1,6 @@
-// The charts of charts.h, and the slopes that they state. In the comments x' are coordinates
+// The uv_maps of uv_maps.h, and the slopes that they state. In the comments x' are coordinates
 // divided by half sizes.
-#include "ir/charts.h"
+#include "ir/uv_maps.h"
 
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-// Short forms for what the charts are made of.
+// Short forms for what the uv_maps are made of.
 struct Pen {
     Graph &g;
     NodeId n(double x) const { return g.number(x); }
@@ -36,22 +36,22 @@ struct Pen {
 // q = (p - middle)/half. weight = min(4 rho', 4 |q| - 1) in 0..1: nothing at the poles' axis and
 // about the middle. With weight <= 4 rho', weight * |grad u| <= 4/(2 pi); where weight > 0, |q| >
 // 1/4, and weight/(pi |q|) is most at |q| = 1/2: 2/pi = 4/(2 pi). All per |grad q| <= 1/least half.
-Chart ball_chart(Graph &graph, NodeId lo, NodeId hi) {
+UvMap ball_uv_map(Graph &graph, NodeId lo, NodeId hi) {
     const Pen k{graph};
     const NodeId half = graph.mul(graph.sub(hi, lo), k.n(0.5)),
                  middle = graph.mul(graph.add(lo, hi), k.n(0.5));
     const NodeId q = graph.div(graph.sub(graph.point(), middle), half);
     const NodeId x = graph.component(q, 0), y = graph.component(q, 1), z = graph.component(q, 2);
     const NodeId size = k.of(Op::Length, q), around = k.length(x, z), least = k.least_of(half);
-    Chart chart;
-    chart.uv =
+    UvMap uv_map;
+    uv_map.uv =
         k.pair(k.round_y(x, z), graph.mul(k.of(Op::Atan2, around, graph.neg(y)), k.n(1 / pi)));
-    chart.weight =
+    uv_map.weight =
         k.saturated(k.least(graph.mul(around, k.n(4)), graph.sub(graph.mul(size, k.n(4)), k.n(1))));
-    chart.slope_u = chart.slope_v = graph.div(k.n(2 / pi), least);
-    chart.slope_weight = graph.div(k.n(4), least);
-    chart.around_u = true;
-    return chart;
+    uv_map.slope_u = uv_map.slope_v = graph.div(k.n(2 / pi), least);
+    uv_map.slope_weight = graph.div(k.n(4), least);
+    uv_map.around_u = true;
+    return uv_map;
 }
 
 // A point belongs to the cap or the side that it lies less deep below. At the depth t the cap's
@@ -59,7 +59,7 @@ Chart ball_chart(Graph &graph, NodeId lo, NodeId hi) {
 // t) both reach the edge there: the outline's length s goes on continuously. |grad s| <= sqrt(2)
 // R/(R - t). weight = min(4 rho/R, 2 - 4 t/m), m = min(R, h/2): weight * |grad s| is most at t =
 // m/4: 4/3 sqrt(2).
-Chart can_chart(Graph &graph, NodeId radius, NodeId height) {
+UvMap has_uv_map(Graph &graph, NodeId radius, NodeId height) {
     const Pen k{graph};
     const NodeId p = graph.point(), x = graph.component(p, 0), y = graph.component(p, 1),
                  z = graph.component(p, 2);
@@ -77,23 +77,23 @@ Chart can_chart(Graph &graph, NodeId radius, NodeId height) {
     const NodeId side = graph.add(graph.add(radius, half), on_side);
     const NodeId s = k.choose(k.of(Op::Less, below_cap, below_side), cap, side);
     const NodeId least = k.least(radius, half), depth = k.least(below_side, below_cap);
-    Chart chart;
-    chart.uv = k.pair(k.round_y(x, z), graph.div(s, total));
-    chart.weight =
+    UvMap uv_map;
+    uv_map.uv = k.pair(k.round_y(x, z), graph.div(s, total));
+    uv_map.weight =
         k.saturated(k.least(graph.mul(rho, graph.div(k.n(4), radius)),
                             graph.sub(k.n(2), graph.mul(depth, graph.div(k.n(4), least)))));
-    chart.slope_u = graph.div(k.n(2 / pi), radius);
-    chart.slope_v = graph.div(k.n(4.0 / 3 * std::sqrt(2)), total);
-    chart.slope_weight = graph.div(k.n(4), least);
-    chart.around_u = true;
-    return chart;
+    uv_map.slope_u = graph.div(k.n(2 / pi), radius);
+    uv_map.slope_v = graph.div(k.n(4.0 / 3 * std::sqrt(2)), total);
+    uv_map.slope_weight = graph.div(k.n(4), least);
+    uv_map.around_u = true;
+    return uv_map;
 }
 
 // As the can's: the face that the point lies least deep below, its other coordinates stretched by
 // h/(h - t). They are 0..1 over the face, and the weight falls to 0 along a band of m/4 before the
 // edges, where another face has another part of the image. With |grad stretched| <= sqrt(2) h/(h -
 // t), t <= m/2: |grad weight| <= 4/m * 2 sqrt(2).
-Chart box_chart(Graph &graph, NodeId half) {
+UvMap box_uv_map(Graph &graph, NodeId half) {
     const Pen k{graph};
     const NodeId p = graph.point();
     std::array<NodeId, 3> at, h, t;
@@ -128,77 +128,77 @@ Chart box_chart(Graph &graph, NodeId half) {
     const NodeId y_face = k.of(Op::Less, t[1], t[2]);
     const NodeId depth = k.least(t[0], k.least(t[1], t[2]));
     const NodeId over = graph.div(k.n(4), least);
-    Chart chart;
-    chart.uv = k.choose(x_face, uv[0], k.choose(y_face, uv[1], uv[2]));
+    UvMap uv_map;
+    uv_map.uv = k.choose(x_face, uv[0], k.choose(y_face, uv[1], uv[2]));
     const NodeId to_edge = k.choose(x_face, edge[0], k.choose(y_face, edge[1], edge[2]));
-    chart.weight =
+    uv_map.weight =
         k.saturated(k.least(graph.mul(to_edge, over), graph.sub(k.n(2), graph.mul(depth, over))));
-    chart.slope_u = chart.slope_v = graph.div(k.n(2.0 / 3 * std::sqrt(2)), least);
-    chart.slope_weight = graph.div(k.n(8 * std::sqrt(2)), least);
-    return chart;
+    uv_map.slope_u = uv_map.slope_v = graph.div(k.n(2.0 / 3 * std::sqrt(2)), least);
+    uv_map.slope_weight = graph.div(k.n(8 * std::sqrt(2)), least);
+    return uv_map;
 }
 
 // weight = min(4 rho/R, 4 |q|/r - 1), q the point in the tube's section: nothing on the axis and on
 // the centre line. weight/(2 pi |q|) is most at |q| = r/2: 1/(pi r).
-Chart ring_chart(Graph &graph, NodeId major, NodeId minor) {
+UvMap ring_uv_map(Graph &graph, NodeId major, NodeId minor) {
     const Pen k{graph};
     const NodeId p = graph.point(), x = graph.component(p, 0), y = graph.component(p, 1),
                  z = graph.component(p, 2);
     const NodeId rho = k.length(x, z), out = graph.sub(rho, major);
-    Chart chart;
+    UvMap uv_map;
     // From the inside below to the outside, over the top and back: the image's middle lies on the
     // outer rim.
-    chart.uv = k.pair(k.round_y(x, z),
-                      graph.add(k.n(0.5), graph.mul(k.of(Op::Atan2, y, out), k.n(0.5 / pi))));
-    chart.weight = k.saturated(
+    uv_map.uv = k.pair(k.round_y(x, z),
+                       graph.add(k.n(0.5), graph.mul(k.of(Op::Atan2, y, out), k.n(0.5 / pi))));
+    uv_map.weight = k.saturated(
         k.least(graph.mul(rho, graph.div(k.n(4), major)),
                 graph.sub(graph.mul(k.length(out, y), graph.div(k.n(4), minor)), k.n(1))));
-    chart.slope_u = graph.div(k.n(2 / pi), major);
-    chart.slope_v = graph.div(k.n(1 / pi), minor);
-    chart.slope_weight = graph.div(k.n(4), k.least(major, minor));
-    chart.around_u = chart.around_v = true;
-    return chart;
+    uv_map.slope_u = graph.div(k.n(2 / pi), major);
+    uv_map.slope_v = graph.div(k.n(1 / pi), minor);
+    uv_map.slope_weight = graph.div(k.n(4), k.least(major, minor));
+    uv_map.around_u = uv_map.around_v = true;
+    return uv_map;
 }
 
 // Right and up on the plane as seen against the normal n. Up is what is left of y; of a plane that
 // lies flat, of -z, so that a floor is read from the front.
-Chart plane_chart(Graph &graph, NodeId normal) {
+UvMap plane_uv_map(Graph &graph, NodeId normal) {
     const Pen k{graph};
     const NodeId n = k.of(Op::Normalize, normal), p = graph.point();
     const NodeId lies = k.of(Op::Less, k.n(0.99), k.of(Op::Abs, graph.component(n, 1)));
     const NodeId hint = graph.make(Op::Select, {lies, graph.vec3(0, 0, -1), graph.vec3(0, 1, 0)});
     const NodeId right = k.of(Op::Normalize, k.of(Op::Cross, hint, n)),
                  up = k.of(Op::Cross, n, right);
-    Chart chart;
-    chart.uv = k.pair(k.of(Op::Dot, p, right), k.of(Op::Dot, p, up));
-    chart.weight = chart.slope_u = chart.slope_v = k.n(1);
-    chart.slope_weight = k.n(0);
-    return chart;
+    UvMap uv_map;
+    uv_map.uv = k.pair(k.of(Op::Dot, p, right), k.of(Op::Dot, p, up));
+    uv_map.weight = uv_map.slope_u = uv_map.slope_v = k.n(1);
+    uv_map.slope_weight = k.n(0);
+    return uv_map;
 }
 
-Chart flat_chart(Graph &graph, Type point) {
+UvMap flat_uv_map(Graph &graph, Type point) {
     const Pen k{graph};
     const NodeId p = graph.point(point);
-    Chart chart;
-    chart.uv = k.pair(graph.component(p, 0), graph.component(p, 1));
-    chart.weight = chart.slope_u = chart.slope_v = k.n(1);
-    chart.slope_weight = k.n(0);
-    return chart;
+    UvMap uv_map;
+    uv_map.uv = k.pair(graph.component(p, 0), graph.component(p, 1));
+    uv_map.weight = uv_map.slope_u = uv_map.slope_v = k.n(1);
+    uv_map.slope_weight = k.n(0);
+    return uv_map;
 }
 
 // weight = 4 rho/R in 0..1, as the ball's.
-Chart turned_chart(Graph &graph, NodeId radius) {
+UvMap rotated_uv_map(Graph &graph, NodeId radius) {
     const Pen k{graph};
     const NodeId p = graph.point(), x = graph.component(p, 0), z = graph.component(p, 2);
     const NodeId over = graph.div(k.n(4), radius);
-    Chart chart;
-    chart.uv = k.pair(k.round_y(x, z), graph.component(p, 1));
-    chart.weight = k.saturated(graph.mul(k.length(x, z), over));
-    chart.slope_u = graph.div(k.n(2 / pi), radius);
-    chart.slope_v = k.n(1);
-    chart.slope_weight = over;
-    chart.around_u = true;
-    return chart;
+    UvMap uv_map;
+    uv_map.uv = k.pair(k.round_y(x, z), graph.component(p, 1));
+    uv_map.weight = k.saturated(graph.mul(k.length(x, z), over));
+    uv_map.slope_u = graph.div(k.n(2 / pi), radius);
+    uv_map.slope_v = k.n(1);
+    uv_map.slope_weight = over;
+    uv_map.around_u = true;
+    return uv_map;
 }
 
 } // namespace fathom::ir

@@ -14,10 +14,10 @@ using Vec = std::array<Interval, 3>;
 struct Ball {
     std::array<double, 3> centre{};
     double radius = ir::rounding::infinity;
-    double swell = 0; // {f < t} lies in it grown by swell*t, t >= 0
+    double growth_rate = 0; // {f < t} lies in it grown by growth_rate*t, t >= 0
 };
 
-struct Known {
+struct Derived {
     ir::ShapeFact fact;
     // Distance exact outside the solid: an offset or shell of it is what it says.
     bool exact_outside = false;
@@ -27,13 +27,13 @@ struct Known {
     // exact part whose nearest surface point lies in this box (lipschitz.md, 5.1).
     // Everything: unknown.
     Box parts = Box::everything();
-    // {f < t} lies in fact.bounds grown by swell*t, t >= 0; {f > -t} in outer grown by swell_out*t.
-    double swell = 0, swell_out = 0;
+    // {f < t} lies in fact.bounds grown by growth_rate*t, t >= 0; {f > -t} in outer grown by outer_growth_rate*t.
+    double growth_rate = 0, outer_growth_rate = 0;
     Box outer = Box::everything();
     Ball ball; // set anew after every rule (balls.cpp)
     // By how much the field may differ from that of a part that makes its gradient: an offset by r
     // moves surfaces, and not what gradients point away from.
-    double drift = 0;
+    double offset_slack = 0;
     double lowered = 0;  // outside, an exact field and at most this much (offsets by less than 0)
     NodeId leaf;         // of a field of one's own, that field
     bool failed = false; // reported, here or below
@@ -45,7 +45,7 @@ Cell to_cell(const Box &box);
 Box grow(const Box &box, double by); // outward on all sides; an empty box stays empty
 Box grow(const Box &box, const std::array<double, 3> &by);
 // What holds {f < t}, t >= 0, of a field whose solid lies in `box` and that swells so.
-Box reached(const Box &box, double swell, double t);
+Box reached(const Box &box, double growth_rate, double t);
 // What holds {max(f, g) < t} for all t >= 0, as the boxes grow: their meet, and in axes where they
 // are apart the middle between them. Nowhere empty, unless one of them is.
 Box meeting(const Box &a, const Box &b);

@@ -7,7 +7,7 @@
 // (continuity.h), the field does not see the jump, whatever the unknown steps are; so where steps
 // turn together without our knowing, their jumps can be taken one after another
 // (docs/lipschitz.md, 2).
-#include "proof/steps.h"
+#include "proof/discontinuities.h"
 
 #include "ir/passes/inline.h"
 #include "proof/continuity.h"
@@ -28,8 +28,8 @@ using ir::Graph;
 using ir::NodeId;
 using ir::Op;
 
-constexpr std::size_t most_nodes = 4'000; // of a field that is looked at
-constexpr int most_depth = 400;
+constexpr std::size_t max_nodes = 4'000; // of a field that is looked at
+constexpr int max_depth = 400;
 
 constexpr ir::OpSet is_step{Op::Floor, Op::Ceil, Op::Round, Op::Fract, Op::Mod, Op::Atan2};
 
@@ -90,7 +90,7 @@ struct Canonical {
 
     NodeId of(NodeId id, int depth = 0) {
         if (auto it = known.find(id); it != known.end()) return it->second;
-        if (depth > most_depth || known.size() > 4 * most_nodes) failed = true;
+        if (depth > max_depth || known.size() > 4 * max_nodes) failed = true;
         if (failed) return id;
         const ir::Node node = graph[id];
         NodeId out = id;
@@ -114,7 +114,7 @@ struct Canonical {
         if (node.op == Op::ToInt)
             if (auto w = whole(args[0])) return *w;
         if ((node.op == Op::Sin || node.op == Op::Cos) && node.type == ir::Type::Float)
-            args[0] = without_turns(graph, args[0]);
+            args[0] = without_iterations(graph, args[0]);
         if (node.op == Op::Length) {
             NodeId sum = graph.number(0);
             for (int i = 0; i < ir::components(graph[args[0]].type); ++i) {
@@ -326,7 +326,7 @@ bool cancels(Graph &graph, NodeId root, const Group &group) {
 std::vector<NodeId> reached(const Graph &graph, NodeId root, bool enter_calls) {
     std::vector<NodeId> out, todo{root};
     std::unordered_set<NodeId> seen;
-    while (!todo.empty() && out.size() <= most_nodes) {
+    while (!todo.empty() && out.size() <= max_nodes) {
         const NodeId id = todo.back();
         todo.pop_back();
         if (!seen.insert(id).second) continue;
@@ -339,16 +339,16 @@ std::vector<NodeId> reached(const Graph &graph, NodeId root, bool enter_calls) {
 }
 
 // All that the body of a loop is made of, the loops in it included.
-std::vector<NodeId> in_body(const Graph &graph, NodeId loop) {
+std::vector<NodeId> in_body(const Graph &graph, NodeId loop_node) {
     std::vector<NodeId> out;
-    const ir::Fold fold = graph.fold(ir::FoldId{graph[loop].payload});
-    std::vector<NodeId> roots = fold.next;
-    roots.push_back(fold.count);
-    if (fold.condition) roots.push_back(fold.condition);
+    const ir::Loop loop = graph.loop(ir::LoopId{graph[loop_node].payload});
+    std::vector<NodeId> roots = loop.next;
+    roots.push_back(loop.count);
+    if (loop.condition) roots.push_back(loop.condition);
     for (NodeId root : roots)
         for (NodeId id : reached(graph, root, true)) {
             out.push_back(id);
-            if (graph[id].op != Op::Fold) continue;
+            if (graph[id].op != Op::Loop) continue;
             const std::vector<NodeId> inner = in_body(graph, id);
             out.insert(out.end(), inner.begin(), inner.end());
         }
@@ -364,13 +364,13 @@ bool has_steps(const Graph &graph, NodeId root) {
 }
 
 NodeId written_out(Graph &graph, NodeId root) {
-    const ir::WithoutCalls out = ir::without_calls(graph, root, most_nodes);
+    const ir::WithoutCalls out = ir::without_calls(graph, root, max_nodes);
     return out.all ? out.root : root;
 }
 
 std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
     const std::vector<NodeId> nodes = reached(graph, root, false);
-    if (nodes.size() > most_nodes) return {};
+    if (nodes.size() > max_nodes) return {};
     std::map<std::pair<NodeId, int>, Group> groups;
     std::unordered_set<NodeId> steps;
     for (NodeId id : nodes) {
@@ -394,7 +394,7 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
         if (!cancels(graph, root, group))
             for (NodeId step : group.steps) steps.erase(step);
     for (NodeId id : nodes) // in a loop's body no border is entered
-        if (graph[id].op == Op::Fold)
+        if (graph[id].op == Op::Loop)
             for (NodeId inside : in_body(graph, id)) steps.erase(inside);
     return steps;
 }

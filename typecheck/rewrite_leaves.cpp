@@ -1,4 +1,4 @@
-#include "typecheck/bases.h"
+#include "typecheck/rewrite_leaves.h"
 
 #include <map>
 #include <tuple>
@@ -11,10 +11,10 @@ using ir::ShapeKind;
 
 namespace {
 
-struct Dresser {
-    Evaluator &ev;
+struct LeafRewriter {
+    Interpreter &ev;
     Paints paints;
-    const Dress &dress;
+    const RewriteLeaf &rewrite;
     std::map<std::tuple<ShapeId, bool, NodeId, Line>, ShapeId> done{};
 
     ShapeId rebuilt(ir::Shape shape, const Below &below) {
@@ -37,7 +37,7 @@ struct Dresser {
         case ir::MapKind::Rotate: // by the transposed matrix, whose columns are n[0..1] and n[2..3]
             return {{n[0] * at[0] + n[1] * at[1], n[2] * at[0] + n[3] * at[1]},
                     {n[0] * along[0] + n[1] * along[1], n[2] * along[0] + n[3] * along[1]}};
-        case ir::MapKind::Fold:
+        case ir::MapKind::MirrorFold:
         case ir::MapKind::Revolve:
         case ir::MapKind::Twist:
         case ir::MapKind::Bend:
@@ -47,7 +47,7 @@ struct Dresser {
         return {};
     }
 
-    // Unions gather like shapes into families, so the parts are taken as they were listed and
+    // Unions gather like shapes into instance_tables, so the parts are taken as they were listed and
     // united anew.
     ShapeId united(ShapeId id, std::vector<ShapeId> parts, const Below &below) {
         const ir::Shape shape = ev.scene.shapes[id];
@@ -69,9 +69,9 @@ struct Dresser {
         switch (shape.kind) {
         case ShapeKind::Empty: return id;
         case ShapeKind::Leaf:
-        case ShapeKind::Extrude: return dress(id, below);
+        case ShapeKind::Extrude: return rewrite(id, below);
         case ShapeKind::Library:
-            if (ev.scene.shapes.libraries[shape.payload].has_claims) return dress(id, below);
+            if (ev.scene.shapes.libraries[shape.payload].has_claims) return rewrite(id, below);
             return of(shape.children[0], below); // it is no longer what that call made
         case ShapeKind::Union: {
             const auto listed = ev.scene.shapes.listed.find(id);
@@ -79,9 +79,9 @@ struct Dresser {
                           listed == ev.scene.shapes.listed.end() ? shape.children : listed->second,
                           below);
         }
-        case ShapeKind::Many: {
+        case ShapeKind::Instances: {
             const auto listed = ev.scene.shapes.listed.find(id);
-            const bool is_union = !ev.scene.shapes.families[shape.payload].smooth;
+            const bool is_union = !ev.scene.shapes.instance_tables[shape.payload].smooth;
             if (is_union && listed != ev.scene.shapes.listed.end())
                 return united(id, listed->second, below);
             return rebuilt(shape, below);
@@ -89,7 +89,7 @@ struct Dresser {
         case ShapeKind::Complement:
             return rebuilt(shape, {!below.inverted, below.factor, below.axis});
         case ShapeKind::Map: {
-            if (shape.map == ir::MapKind::Revolve) return dress(id, below);
+            if (shape.map == ir::MapKind::Revolve) return rewrite(id, below);
             Below inner = below;
             if (shape.map == ir::MapKind::Scale) inner.factor = g.mul(below.factor, shape.args[1]);
             inner.axis = mapped(shape, below.axis);
@@ -121,9 +121,10 @@ struct Dresser {
 
 } // namespace
 
-ShapeId dressed(Evaluator &ev, ShapeId shape, Paints paints, const Dress &dress, Line axis) {
-    Dresser dresser{ev, paints, dress};
-    return dresser.of(shape, {false, ev.scene.graph.number(1), axis});
+ShapeId rewrite_leaves(Interpreter &ev, ShapeId shape, Paints paints, const RewriteLeaf &rewrite,
+                       Line axis) {
+    LeafRewriter rewriter{ev, paints, rewrite};
+    return rewriter.of(shape, {false, ev.scene.graph.number(1), axis});
 }
 
 } // namespace fathom::typecheck

@@ -1,4 +1,4 @@
-// The fourth reading: beside the marched distance how far it reaches by curvature (look.h, MARCH),
+// The fourth reading: beside the marched distance how far it reaches by curvature (shading.h, MARCH),
 // as one vec2, so that the octaves of a displacement are still asked only where they matter. Where
 // nothing is known but the ball, both are the same number. A union is nearest and reaches least far
 // by each component; lengths keep their size in isometries; a guard's distance is one that every
@@ -10,7 +10,7 @@ namespace fathom::ir {
 
 // Whether the shape's own combination hands its children's reach on. Folds do not: a mirror may
 // bend a field upward sharply. Intersections would need more than the lesser reach.
-bool Lowering::hands_reach_on(const Shape &s) const {
+bool Lowering::passes_safe_radius_on(const Shape &s) const {
     switch (s.kind) {
     case ShapeKind::Union:
     case ShapeKind::Paint:
@@ -34,7 +34,7 @@ bool Lowering::hands_reach_on(const Shape &s) const {
     case ShapeKind::Extrude:
     case ShapeKind::Repeat:
     case ShapeKind::Within:
-    case ShapeKind::Many: return false;
+    case ShapeKind::Instances: return false;
     }
     return false;
 }
@@ -46,7 +46,7 @@ void Lowering::find_curved() {
         curved_[i] = s.kind == ShapeKind::Displace && std::isfinite(fact(ShapeId{i}).curvature) &&
                      std::isfinite(fact(ShapeId{i}).outward);
         curved_[i] |= s.kind == ShapeKind::Within && !fact(ShapeId{i}).cells.bend.empty();
-        if (!hands_reach_on(s)) continue;
+        if (!passes_safe_radius_on(s)) continue;
         for (ShapeId child : s.children) curved_[i] |= curved_[child.index];
     }
 }
@@ -55,32 +55,33 @@ NodeId Lowering::both(NodeId distance) {
     return graph_.make(Op::Make, Type::Vec2, {distance, distance});
 }
 
-NodeId Lowering::reach(ShapeId id, Where frame) {
+NodeId Lowering::safe_radius(ShapeId id, Where frame) {
     const Shape &s = shape(id);
-    if (!curved_[id.index]) return both(ask(Reading::Marched, id, frame));
+    if (!curved_[id.index]) return both(expression_of(Reading::Marched, id, frame));
     NodeId value;
     if (s.kind == ShapeKind::Displace) {
-        value = displaced(Reading::Reach, id, frame);
+        value = displaced(Reading::SafeRadius, id, frame);
     } else if (s.kind == ShapeKind::Within) {
-        const NodeId distance = ask(Reading::Marched, id, frame);
+        const NodeId distance = expression_of(Reading::Marched, id, frame);
         value = graph_.make(Op::Make, Type::Vec2,
                             {distance, graph_.make(Op::Max, {distance, bent_by_cells(id, frame)})});
     } else if (s.kind == ShapeKind::Union) {
         std::vector<NodeId> plain; // by one number as long as they may
         for (ShapeId child : s.children) {
             if (!curved_[child.index]) {
-                plain.push_back(ask(Reading::Marched, child, frame));
+                plain.push_back(expression_of(Reading::Marched, child, frame));
                 continue;
             }
-            const NodeId one = ask(Reading::Reach, child, frame);
+            const NodeId one = expression_of(Reading::SafeRadius, child, frame);
             value = value ? graph_.make(Op::Min, {value, one}) : one;
         }
         if (!plain.empty())
             value = graph_.make(Op::Min, {value, both(graph_.make(Op::Union, Type::Float, plain))});
     } else if (s.kind == ShapeKind::Map) {
-        value = ask(Reading::Reach, s.children.front(), at(frame, read(s.args[0], frame)));
+        value = expression_of(Reading::SafeRadius, s.children.front(),
+                              at(frame, read(s.args[0], frame)));
     } else {
-        value = ask(Reading::Reach, s.children.front(), frame);
+        value = expression_of(Reading::SafeRadius, s.children.front(), frame);
     }
     if (!fact(id).guard) return value;
     return graph_.make(Op::Max, {value, both(guard(id, frame))});

@@ -1,9 +1,9 @@
 // Shapes that a loop made, and how they follow from its variable. After a loop in shape position
 // has run, its body runs once more, quietly, with a variable in place of the number: if that gives
 // shapes too, each shape of turn i is what these become at i. Whoever gathers the shapes into a
-// table (families.cpp) may then compute a column instead of listing it. Says nothing of numbers:
+// table (instances.cpp) may then compute a column instead of listing it. Says nothing of numbers:
 // what is noted here is checked row by row before it is used (closed_forms.cpp).
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include <cmath>
 #include <utility>
@@ -15,9 +15,10 @@ using ir::ShapeKind;
 
 namespace {
 
-void note(Evaluator &ev, ShapeId known, ShapeId symbolic, std::uint32_t variable, int turn_number) {
+void note(Interpreter &ev, ShapeId known, ShapeId symbolic, std::uint32_t variable,
+          int turn_number) {
     if (known == symbolic) return;
-    Turn turn;
+    Iteration turn;
     turn.symbolic = symbolic;
     // a loop inside has run with the outer variable free: its own note says more
     if (auto inner = ev.turns.find(symbolic.index); inner != ev.turns.end()) turn = inner->second;
@@ -32,7 +33,7 @@ void note(Evaluator &ev, ShapeId known, ShapeId symbolic, std::uint32_t variable
 }
 
 // The loop's variable as an expression of the turn's number, where it runs in equal steps.
-std::optional<Value> item_of(Evaluator &ev, const std::vector<Value> &items, ir::NodeId number) {
+std::optional<Value> item_of(Interpreter &ev, const std::vector<Value> &items, ir::NodeId number) {
     const Value &first = items[0];
     if (first.kind != ValueKind::Int && first.kind != ValueKind::Float) return std::nullopt;
     const double start = first.num[0], step = items[1].num[0] - start;
@@ -51,14 +52,14 @@ std::optional<Value> item_of(Evaluator &ev, const std::vector<Value> &items, ir:
 
 } // namespace
 
-void note_turns(
-    Evaluator &ev, const std::vector<Value> &items, const std::vector<std::size_t> &starts,
+void note_iterations(
+    Interpreter &ev, const std::vector<Value> &items, const std::vector<std::size_t> &starts,
     const std::vector<Contribution> &made,
     const std::function<void(const Value &item, std::vector<Contribution> &out)> &turn) {
     if (starts.size() < 2) return;
     const std::size_t each = starts[1] - starts[0], total = made.size() - starts[0];
     if (each == 0 || each * starts.size() != total) return;
-    if (total < least_computed && ev.symbolic_turns == 0) return;
+    if (total < min_computed && ev.symbolic_iterations == 0) return;
     for (std::size_t i = 0; i < starts.size(); ++i)
         if (starts[i] != starts[0] + i * each) return;
     const LoopVariable variable{ev.scene.graph.fresh_var(ir::Type::Int),
@@ -67,13 +68,13 @@ void note_turns(
     if (!item) return;
 
     JournalMark mark = journal_mark(ev);
-    ++ev.quiet, ++ev.symbolic_turns;
+    ++ev.quiet, ++ev.symbolic_iterations;
     std::size_t errors = std::exchange(ev.quiet_errors, 0);
     std::vector<Contribution> symbolic;
     turn(*item, symbolic);
     const bool failed = ev.quiet_errors > 0 || symbolic.size() != each;
     ev.quiet_errors = errors;
-    --ev.quiet, --ev.symbolic_turns;
+    --ev.quiet, --ev.symbolic_iterations;
     journal_take(ev, mark);
     if (failed) return;
 

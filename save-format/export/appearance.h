@@ -12,12 +12,12 @@ namespace fathom::save {
 double channel_of(double linear); // 0..255 by sRGB's curve; whole where it is one up to rounding
 Value color_value(const std::array<double, 3> &channels, double alpha);
 
-class Looks {
+class Appearances {
   public:
-    Looks(const ir::Scene &scene, Numbers &numbers, std::vector<Value> textures,
-          std::vector<Value> materials);
+    Appearances(const ir::Scene &scene, Numbers &numbers, std::vector<Value> textures,
+                std::vector<Value> materials);
 
-    // A material's name, by its index into Shapes::materials; empty where its looks depend on the
+    // A material's name, by its index into Shapes::materials; empty where its appearances depend on the
     // point.
     std::string material(std::uint32_t index);
     std::string texture(std::int32_t image); // the name of an image's file
@@ -28,15 +28,15 @@ class Looks {
     const std::vector<Value> &materials() const { return materials_; }
 
   private:
-    struct Look {
+    struct Appearance {
         std::array<double, 3> diffuse{}, specular{}, emission{};
         double exponent = 32;
         std::string texture; // a name, empty for none
         std::array<double, 2> texture_scale{1, 1};
     };
-    std::optional<Look> look_of(const ir::Material &material);
-    bool same(const Value &item, const Look &look) const;
-    void update(Value &item, const Look &look) const;
+    std::optional<Appearance> appearance_of(const ir::Material &material);
+    bool same(const Value &item, const Appearance &appearance) const;
+    void update(Value &item, const Appearance &appearance) const;
 
     const ir::Scene &scene_;
     Numbers &numbers_;

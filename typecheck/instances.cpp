@@ -1,10 +1,10 @@
 // Lists of like shapes become one shape over a table: `for i in 0..256 { sphere(0.1).translate([…])
-// }` is one `Many` whose rows hold what differs, so that neither the shader nor the proof grows
+// }` is one `Instances` whose rows hold what differs, so that neither the shader nor the proof grows
 // with the count.
 //
 // Two shapes are alike when their trees differ in constants only. A shape's *skeleton* is its tree
 // with the constants taken out, in the order of a walk; the constants, in that order, are its row.
-#include "typecheck/evaluator.h"
+#include "typecheck/interpreter.h"
 
 #include "ir/passes/rows.h"
 #include "ir/passes/walk.h"
@@ -23,7 +23,7 @@ using ir::Type;
 
 namespace {
 
-constexpr std::size_t least_family = 8;
+constexpr std::size_t min_instances = 8;
 constexpr std::size_t largest_walk = 4000; // parts of one shape; larger ones stay as they are
 
 struct Walk {
@@ -75,14 +75,15 @@ struct Walk {
             tree.words.push_back(static_cast<std::uint64_t>(l.claims.kind) << 4 |
                                  l.has_claims << 3 | l.claims.symmetric[0] << 2 |
                                  l.claims.symmetric[1] << 1 | l.claims.symmetric[2]);
-            node(l.claims.lipschitz), node(l.claims.lo), node(l.claims.hi), node(l.claims.swell);
-            for (NodeId lever : l.claims.lever) node(lever);
+            node(l.claims.lipschitz), node(l.claims.lo), node(l.claims.hi),
+                node(l.claims.growth_rate);
+            for (NodeId moment_arm : l.claims.moment_arm) node(moment_arm);
             in_statement = false;
             break;
         }
-        // these hold variables or a family of their own: alike only where they are the same
+        // these hold variables or a instance_table of their own: alike only where they are the same
         case ShapeKind::Repeat:
-        case ShapeKind::Many:
+        case ShapeKind::Instances:
         case ShapeKind::Contract:
         case ShapeKind::Blend:
         case ShapeKind::Seam:
@@ -108,7 +109,7 @@ struct Walk {
 
 // A tree of shapes with other expressions, in the same order.
 struct Rebuild {
-    Evaluator &ev;
+    Interpreter &ev;
     std::function<NodeId(NodeId)> node;
 
     ir::Region region(ir::Region r) {
@@ -130,8 +131,8 @@ struct Rebuild {
             ir::Library l = ev.scene.shapes.libraries[s.payload];
             for (auto &[name, argument] : l.arguments) argument = node(argument);
             l.claims.lipschitz = node(l.claims.lipschitz), l.claims.lo = node(l.claims.lo),
-            l.claims.hi = node(l.claims.hi), l.claims.swell = node(l.claims.swell);
-            for (NodeId &lever : l.claims.lever) lever = node(lever);
+            l.claims.hi = node(l.claims.hi), l.claims.growth_rate = node(l.claims.growth_rate);
+            for (NodeId &moment_arm : l.claims.moment_arm) moment_arm = node(moment_arm);
             s.payload = static_cast<std::uint32_t>(ev.scene.shapes.libraries.size());
             ev.scene.shapes.libraries.push_back(std::move(l));
         }
@@ -149,14 +150,14 @@ void region_nodes(const ir::Region &r, std::vector<NodeId> &out) {
 // The columns that differ, as a table: of those that evaluators read (stated: false), or of the
 // library's statements, so that a shader holds the first alone. Fills `replacement` for the columns
 // it took.
-bool add_columns(Evaluator &ev, const std::vector<std::vector<ir::Constant>> &rows,
+bool add_columns(Interpreter &ev, const std::vector<std::vector<ir::Constant>> &rows,
                  const std::vector<bool> &wanted, NodeId index, std::vector<NodeId> &replacement) {
     ir::Graph &g = ev.scene.graph;
     ir::Table table;
     std::vector<int> column;
     table.rows = static_cast<int>(rows.size());
     table.stride = ir::lay_out(rows, wanted, 0, column);
-    if (table.stride > ir::most_columns) return false;
+    if (table.stride > ir::max_columns) return false;
     if (table.stride == 0) return true;
     const auto stride = static_cast<std::size_t>(table.stride);
     table.data.resize(rows.size() * stride);
@@ -170,48 +171,49 @@ bool add_columns(Evaluator &ev, const std::vector<std::vector<ir::Constant>> &ro
     return true;
 }
 
-ShapeId add_family(Evaluator &ev, ir::Family family, ShapeId copy, NodeId k, int dims) {
+ShapeId add_instance_table(Interpreter &ev, ir::InstanceTable instance_table, ShapeId copy,
+                           NodeId k, int dims) {
     ir::Shape many;
-    many.kind = ShapeKind::Many;
+    many.kind = ShapeKind::Instances;
     many.dims = static_cast<std::uint8_t>(dims);
     many.children = {copy};
     many.origin = ev.scene.shapes[copy].origin;
-    if (family.smooth) many.args = {k};
-    many.payload = static_cast<std::uint32_t>(ev.scene.shapes.families.size());
-    ev.scene.shapes.families.push_back(family);
+    if (instance_table.smooth) many.args = {k};
+    many.payload = static_cast<std::uint32_t>(ev.scene.shapes.instance_tables.size());
+    ev.scene.shapes.instance_tables.push_back(instance_table);
     return ev.scene.shapes.add(std::move(many));
 }
 
-ir::Family family_of(Evaluator &ev, std::size_t count, bool smooth) {
+ir::InstanceTable instance_table_of(Interpreter &ev, std::size_t count, bool smooth) {
     return {ev.scene.graph.fresh_var(Type::Int), static_cast<int>(count), smooth};
 }
 
-ShapeId make_family(Evaluator &ev, const std::vector<ShapeId> &members,
-                    const std::vector<std::vector<ir::Constant>> &rows,
-                    const std::vector<bool> &stated, bool smooth, NodeId k, int dims) {
-    const ir::Family family = family_of(ev, members.size(), smooth);
+ShapeId make_instance_table(Interpreter &ev, const std::vector<ShapeId> &members,
+                            const std::vector<std::vector<ir::Constant>> &rows,
+                            const std::vector<bool> &stated, bool smooth, NodeId k, int dims) {
+    const ir::InstanceTable instance_table = instance_table_of(ev, members.size(), smooth);
     std::vector<NodeId> replacement(rows[0].size());
     std::vector<bool> read = stated;
     read.flip();
-    if (!add_columns(ev, rows, read, family.index, replacement)) return {};
-    if (!add_columns(ev, rows, stated, family.index, replacement)) return {};
-    const auto read_or_kept = [&](std::size_t c, NodeId constant) {
+    if (!add_columns(ev, rows, read, instance_table.index, replacement)) return {};
+    if (!add_columns(ev, rows, stated, instance_table.index, replacement)) return {};
+    const auto read_or_cached = [&](std::size_t c, NodeId constant) {
         return replacement[c] ? replacement[c] : constant;
     };
     std::size_t next = 0;
     Rebuild rebuild{
-        ev, [&](NodeId id) { return ir::put_together(ev.scene.graph, id, read_or_kept, next); }};
-    return add_family(ev, family, rebuild.shape(members[0]), k, dims);
+        ev, [&](NodeId id) { return ir::put_together(ev.scene.graph, id, read_or_cached, next); }};
+    return add_instance_table(ev, instance_table, rebuild.shape(members[0]), k, dims);
 }
 
 // The turns of one loop: its body's shape, which reads what hangs on the turn from a table. Columns
 // with a formula stand in a table of their own, so that a text may do without it.
-std::optional<ShapeId> family_of_turns(Evaluator &ev, const std::vector<ShapeId> &members,
-                                       bool smooth, NodeId k, int dims) {
-    const std::optional<TurnTable> turns = table_of_turns(ev, members);
+std::optional<ShapeId> instances_of_iterations(Interpreter &ev, const std::vector<ShapeId> &members,
+                                               bool smooth, NodeId k, int dims) {
+    const std::optional<IterationTable> turns = table_of_iterations(ev, members);
     if (!turns) return std::nullopt;
     ir::Graph &g = ev.scene.graph;
-    const ir::Family family = family_of(ev, members.size(), smooth);
+    const ir::InstanceTable instance_table = instance_table_of(ev, members.size(), smooth);
     ir::Substitution reads;
     for (bool computed : {true, false}) {
         ir::Table table;
@@ -224,7 +226,7 @@ std::optional<ShapeId> family_of_turns(Evaluator &ev, const std::vector<ShapeId>
             table.stride += ir::components(g.type(turns->places[c]));
         }
         if (columns.empty()) continue;
-        if (table.stride > ir::most_columns) return std::nullopt;
+        if (table.stride > ir::max_columns) return std::nullopt;
         for (const auto &row : turns->rows)
             for (std::size_t c : columns)
                 for (int i = 0; i < ir::components(row[c].type); ++i)
@@ -243,12 +245,12 @@ std::optional<ShapeId> family_of_turns(Evaluator &ev, const std::vector<ShapeId>
         ir::TableId id = g.add_table(std::move(table));
         for (std::size_t j = 0; j < columns.size(); ++j) {
             NodeId place = turns->places[columns[j]];
-            reads[place] =
-                ir::read_table(g, g.type(place), family.index, ir::table_slot(id, offset[j]));
+            reads[place] = ir::read_table(g, g.type(place), instance_table.index,
+                                          ir::table_slot(id, offset[j]));
         }
     }
     Rebuild rebuild{ev, [&](NodeId id) { return id ? ir::substitute(g, id, reads) : id; }};
-    return add_family(ev, family, rebuild.shape(turns->symbolic), k, dims);
+    return add_instance_table(ev, instance_table, rebuild.shape(turns->symbolic), k, dims);
 }
 
 } // namespace
@@ -267,8 +269,8 @@ void shape_nodes(const ir::Scene &scene, ShapeId id, std::vector<NodeId> &out) {
     if (s.kind == ShapeKind::Library) {
         const ir::Library &l = scene.shapes.libraries[s.payload];
         for (const auto &[name, argument] : l.arguments) out.push_back(argument);
-        out.insert(out.end(), {l.claims.lipschitz, l.claims.lo, l.claims.hi, l.claims.swell});
-        out.insert(out.end(), l.claims.lever.begin(), l.claims.lever.end());
+        out.insert(out.end(), {l.claims.lipschitz, l.claims.lo, l.claims.hi, l.claims.growth_rate});
+        out.insert(out.end(), l.claims.moment_arm.begin(), l.claims.moment_arm.end());
     }
     out.insert(out.end(), s.args.begin(), s.args.end());
     for (ShapeId child : s.children) shape_nodes(scene, child, out);
@@ -276,8 +278,8 @@ void shape_nodes(const ir::Scene &scene, ShapeId id, std::vector<NodeId> &out) {
 
 // Order matters to colours only on ties, so a plain union may gather its like members from anywhere
 // in the list.
-std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes, int dims) {
-    if (shapes.size() < least_family) return shapes;
+std::vector<ShapeId> gather_instances(Interpreter &ev, std::vector<ShapeId> shapes, int dims) {
+    if (shapes.size() < min_instances) return shapes;
     struct Group {
         std::vector<std::size_t> members;
         std::vector<std::vector<ir::Constant>> rows;
@@ -292,10 +294,10 @@ std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes,
     for (const auto &[symbolic, places] : loops) {
         std::vector<ShapeId> members;
         for (std::size_t i : places) members.push_back(shapes[i]);
-        auto family = family_of_turns(ev, members, false, {}, dims);
-        if (!family) continue;
+        auto instance_table = instances_of_iterations(ev, members, false, {}, dims);
+        if (!instance_table) continue;
         for (std::size_t i : places) taken[i] = true;
-        made[places[0]] = *family;
+        made[places[0]] = *instance_table;
     }
     std::map<std::vector<std::uint64_t>, Group> groups;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -309,13 +311,14 @@ std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes,
         g.stated = std::move(walk.stated);
     }
     for (auto &[skeleton, g] : groups) {
-        if (g.members.size() < least_family) continue;
+        if (g.members.size() < min_instances) continue;
         std::vector<ShapeId> members;
         for (std::size_t i : g.members) members.push_back(shapes[i]);
-        ShapeId family = make_family(ev, members, g.rows, g.stated, false, {}, dims);
-        if (!family) continue;
+        ShapeId instance_table =
+            make_instance_table(ev, members, g.rows, g.stated, false, {}, dims);
+        if (!instance_table) continue;
         for (std::size_t i : g.members) taken[i] = true;
-        made[g.members[0]] = family;
+        made[g.members[0]] = instance_table;
     }
     std::vector<ShapeId> out;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -328,11 +331,11 @@ std::vector<ShapeId> gather_families(Evaluator &ev, std::vector<ShapeId> shapes,
 }
 
 // A smooth union folds in the order written, so only a list that is alike as a whole becomes a
-// family.
-std::optional<ShapeId> smooth_family(Evaluator &ev, const std::vector<ShapeId> &shapes, NodeId k,
-                                     int dims) {
-    if (shapes.size() < least_family) return std::nullopt;
-    if (auto turns = family_of_turns(ev, shapes, true, k, dims)) {
+// instance_table.
+std::optional<ShapeId> smooth_instances(Interpreter &ev, const std::vector<ShapeId> &shapes,
+                                        NodeId k, int dims) {
+    if (shapes.size() < min_instances) return std::nullopt;
+    if (auto turns = instances_of_iterations(ev, shapes, true, k, dims)) {
         ev.scene.shapes.listed.emplace(*turns, shapes);
         return turns;
     }
@@ -347,14 +350,14 @@ std::optional<ShapeId> smooth_family(Evaluator &ev, const std::vector<ShapeId> &
         rows.push_back(std::move(walk.tree.row));
         stated = std::move(walk.stated);
     }
-    ShapeId family = make_family(ev, shapes, rows, stated, true, k, dims);
-    if (family) ev.scene.shapes.listed.emplace(family, shapes);
-    return family ? std::optional(family) : std::nullopt;
+    ShapeId instance_table = make_instance_table(ev, shapes, rows, stated, true, k, dims);
+    if (instance_table) ev.scene.shapes.listed.emplace(instance_table, shapes);
+    return instance_table ? std::optional(instance_table) : std::nullopt;
 }
 
 // The union, flat: unions inside are opened, what is nowhere is left out, what stands twice stands
 // once.
-ShapeId unite(Evaluator &ev, std::vector<ShapeId> shapes, int dims, Span origin) {
+ShapeId unite(Interpreter &ev, std::vector<ShapeId> shapes, int dims, Span origin) {
     std::vector<ShapeId> flat, listed;
     std::map<std::uint32_t, bool> seen;
     for (ShapeId id : shapes) {
@@ -371,7 +374,7 @@ ShapeId unite(Evaluator &ev, std::vector<ShapeId> shapes, int dims, Span origin)
         for (ShapeId part : parts)
             if (!std::exchange(seen[part.index], true)) flat.push_back(part);
     }
-    flat = gather_families(ev, std::move(flat), dims);
+    flat = gather_instances(ev, std::move(flat), dims);
     const bool gathered = flat != listed;
     ir::Shape out;
     out.dims = static_cast<std::uint8_t>(dims);

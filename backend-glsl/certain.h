@@ -10,7 +10,7 @@
 
 namespace fathom::glsl {
 
-struct Known {
+struct Certain {
     const ir::Graph &graph;
     const Schedule &plan; // counters' ranges
 

@@ -22,7 +22,7 @@
 //
 // TRUE DISTANCE (semantics.md, 10), so that a bound L does not change the picture
 //   near(p, d, h) = d where nothing in the scene is divided by a bound (`Frame::steep` is false),
-//   else d / clamp(|gradient(p, h)|, least_slope, 1).
+//   else d / clamp(|gradient(p, h)|, min_slope, 1).
 //
 // MARCH from `begin` to `end`: enhanced sphere tracing (Balint and Valasek 2018; the fallback is
 // that of Keinert et al. 2014)
@@ -46,7 +46,7 @@
 //   `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to 0..far;
 //   else 0..far.
 //
-//   BY CURVATURE, where the scene has Scene::reach, which gives d and a span >= d (lipschitz.md,
+//   BY CURVATURE, where the scene has Scene::safe_radius, which gives d and a span >= d (lipschitz.md,
 //   4): between two samples outside the solid nothing lies where the stride is at most the
 //   sum of their spans, though the balls do not touch. `reached` is the span of `before`, 0 at
 //   first.
@@ -89,7 +89,7 @@
 //   q = p + shadow_bias*tolerance(t)*n
 //   reach = the light's distance from q; for a sun, the way from q out of the box along l, or `far`
 //   without a box
-//   angle = max(soft_shadows, least_angle): half the light's angular size
+//   angle = max(soft_shadows, min_angle): half the light's angular size
 //   s = reach (what is left of the way), before = 0, shadow = 1; at most shadow_steps times while
 //   s > shadow_bias*tolerance(t):
 //     d = f(q + s*l); if d < shadow*angle*s: d' = near(q + s*l, d, h), else d' = d
@@ -106,11 +106,11 @@
 
 #include <array>
 
-namespace fathom::ir::look {
+namespace fathom::ir::shading {
 
 inline constexpr float float_slack = 1e-6f;
 inline constexpr float normal_slack = 50;
-inline constexpr float least_slope = 1.0f / 1024;
+inline constexpr float min_slope = 1.0f / 1024;
 inline constexpr float relaxation =
     0.9f; // performance.md, 2: best of those measured on scenes with L = 1
 inline constexpr float flattest = 1e-3f;
@@ -120,7 +120,7 @@ inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.08f;
 inline constexpr int shadow_steps = 128;
 inline constexpr float shadow_bias = 4;
-inline constexpr float least_angle = 0.002f; // a hard shadow's edge, soft enough not to flicker
+inline constexpr float min_angle = 0.002f; // a hard shadow's edge, soft enough not to flicker
 inline constexpr std::array<float, 3> background{0.35f, 0.45f, 0.6f};
 
-} // namespace fathom::ir::look
+} // namespace fathom::ir::shading

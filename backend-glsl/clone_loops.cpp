@@ -1,4 +1,4 @@
-#include "backend-glsl/unshare.h"
+#include "backend-glsl/clone_loops.h"
 
 #include "ir/passes/walk.h"
 
@@ -12,7 +12,7 @@ using ir::Op;
 
 namespace {
 
-// A Fold node whose record another Fold node below `roots` has too.
+// A Loop node whose record another Loop node below `roots` has too.
 NodeId find_shared(const ir::Graph &graph, std::span<const NodeId> roots) {
     std::vector<NodeId> todo(roots.begin(), roots.end());
     std::unordered_set<NodeId> seen;
@@ -22,37 +22,38 @@ NodeId find_shared(const ir::Graph &graph, std::span<const NodeId> roots) {
         todo.pop_back();
         if (!id || !seen.insert(id).second) continue;
         for (NodeId arg : graph.args(id)) todo.push_back(arg);
-        if (graph[id].op != Op::Fold) continue;
+        if (graph[id].op != Op::Loop) continue;
         if (!owner.try_emplace(graph[id].payload, id).second) return id;
-        const ir::Fold &fold = graph.fold(ir::FoldId{graph[id].payload});
-        todo.push_back(fold.count);
-        todo.push_back(fold.condition);
-        todo.insert(todo.end(), fold.next.begin(), fold.next.end());
+        const ir::Loop &loop = graph.loop(ir::LoopId{graph[id].payload});
+        todo.push_back(loop.count);
+        todo.push_back(loop.condition);
+        todo.insert(todo.end(), loop.next.begin(), loop.next.end());
     }
     return {};
 }
 
 // The same loop with variables of its own.
 NodeId copy_of(ir::Graph &graph, NodeId id) {
-    const ir::Fold fold = graph.fold(ir::FoldId{graph[id].payload});
+    const ir::Loop loop = graph.loop(ir::LoopId{graph[id].payload});
     ir::Substitution fresh;
-    ir::Fold copy = fold;
+    ir::Loop copy = loop;
     const auto rename = [&](NodeId var) { return fresh[var] = graph.fresh_var(graph[var].type); };
-    copy.index = rename(fold.index);
-    for (std::size_t k = 0; k < fold.vars.size(); ++k) copy.vars[k] = rename(fold.vars[k]);
-    for (std::size_t k = 0; k < fold.next.size(); ++k)
-        copy.next[k] = substitute(graph, fold.next[k], fresh);
-    if (fold.condition) copy.condition = substitute(graph, fold.condition, fresh);
+    copy.index = rename(loop.index);
+    for (std::size_t k = 0; k < loop.vars.size(); ++k) copy.vars[k] = rename(loop.vars[k]);
+    for (std::size_t k = 0; k < loop.next.size(); ++k)
+        copy.next[k] = substitute(graph, loop.next[k], fresh);
+    if (loop.condition) copy.condition = substitute(graph, loop.condition, fresh);
     const std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
-    return graph.make(Op::Fold, graph[id].type, args, graph.add_fold(std::move(copy)).index);
+    return graph.make(Op::Loop, graph[id].type, args, graph.add_loop(std::move(copy)).index);
 }
 
 } // namespace
 
-std::optional<Unshared> unshare(const ir::Graph &graph, std::span<const NodeId> roots) {
+std::optional<ClonedLoops> clone_shared_loops(const ir::Graph &graph,
+                                              std::span<const NodeId> roots) {
     NodeId shared = find_shared(graph, roots);
     if (!shared) return std::nullopt;
-    Unshared result{graph, {roots.begin(), roots.end()}};
+    ClonedLoops result{graph, {roots.begin(), roots.end()}};
     for (; shared; shared = find_shared(result.graph, result.roots)) {
         const ir::Substitution apart{{shared, copy_of(result.graph, shared)}};
         for (NodeId &root : result.roots) root = substitute(result.graph, root, apart);

@@ -1,4 +1,4 @@
-#include "backend-glsl/roll.h"
+#include "backend-glsl/reroll.h"
 
 #include "ir/passes/inline.h"
 #include "ir/passes/rows.h"
@@ -18,13 +18,13 @@ using ir::Type;
 
 namespace {
 
-constexpr std::uint32_t least_operands = 32;
+constexpr std::uint32_t min_operands = 32;
 constexpr std::size_t largest_operand = 2000; // nodes of its tree
-constexpr std::size_t most_kinds = 64;
-constexpr std::size_t least_gain = 4; // so many times shorter, or it stays as it is
+constexpr std::size_t max_kinds = 64;
+constexpr std::size_t min_gain = 4; // so many times shorter, or it stays as it is
 // Where kinds are mixed, a machine that takes both ways of a branch (llvmpipe) computes all kinds
 // in every turn: only what else would hardly compile is worth that. Nodes of all operands.
-constexpr std::size_t least_mixed = 6000;
+constexpr std::size_t min_mixed = 6000;
 constexpr double whole_floats = 16777216; // ints up to here are floats too
 
 // Operands that differ in constants only: which, and where each constant stands that differs.
@@ -82,12 +82,12 @@ std::optional<NodeId> loop_of(Graph &graph, NodeId id) {
         kinds[it->second].rows.push_back(std::move(skeleton.row));
     }
     const bool mixed = kinds.size() > 1;
-    if (kinds.size() > most_kinds || few * least_gain > all || (mixed && all < least_mixed))
+    if (kinds.size() > max_kinds || few * min_gain > all || (mixed && all < min_mixed))
         return std::nullopt;
     ir::Table table;
     table.rows = static_cast<int>(args.size() - first);
     table.stride = lay_out(kinds, mixed ? 1 : 0);
-    if (table.stride == 0 || table.stride > ir::most_columns) return std::nullopt;
+    if (table.stride == 0 || table.stride > ir::max_columns) return std::nullopt;
     table.data.assign(static_cast<std::size_t>(table.rows) * static_cast<std::size_t>(table.stride),
                       0.0f);
     for (std::size_t k = 0; k < kinds.size(); ++k)
@@ -97,17 +97,17 @@ std::optional<NodeId> loop_of(Graph &graph, NodeId id) {
             if (mixed) row[0] = static_cast<float>(k);
             ir::fill_row(kinds[k].rows[m], kinds[k].column, row);
         }
-    ir::Fold fold;
-    fold.count = graph.integer(table.rows);
-    fold.max_count = table.rows;
-    fold.index = graph.fresh_var(Type::Int);
-    fold.vars = {graph.fresh_var(node.type)};
+    ir::Loop loop;
+    loop.count = graph.integer(table.rows);
+    loop.max_count = table.rows;
+    loop.index = graph.fresh_var(Type::Int);
+    loop.vars = {graph.fresh_var(node.type)};
     const ir::TableId data = graph.add_table(std::move(table));
     const auto value_of = [&](std::size_t k) {
         const std::vector<int> &column = kinds[k].column;
         const auto read = [&](std::size_t c, NodeId constant) {
             return column[c] < 0 ? constant
-                                 : ir::read_table(graph, graph.type(constant), fold.index,
+                                 : ir::read_table(graph, graph.type(constant), loop.index,
                                                   ir::table_slot(data, column[c]));
         };
         std::size_t next = 0;
@@ -115,22 +115,22 @@ std::optional<NodeId> loop_of(Graph &graph, NodeId id) {
     };
     NodeId value = value_of(kinds.size() - 1);
     const NodeId which =
-        mixed ? ir::read_table(graph, Type::Int, fold.index, ir::table_slot(data, 0)) : NodeId{};
+        mixed ? ir::read_table(graph, Type::Int, loop.index, ir::table_slot(data, 0)) : NodeId{};
     for (std::size_t k = kinds.size() - 1; k-- > 0;)
         value = graph.make(Op::Select, {graph.make(Op::Equal, {which, graph.integer(int(k))}),
                                         value_of(k), value});
     std::vector<NodeId> joined(args.begin(), args.begin() + static_cast<std::ptrdiff_t>(numbers));
-    joined.push_back(fold.vars[0]);
+    joined.push_back(loop.vars[0]);
     joined.push_back(value);
-    fold.next = {graph.make(node.op, node.type, joined, node.payload)};
+    loop.next = {graph.make(node.op, node.type, joined, node.payload)};
     const NodeId start = args[numbers];
-    return graph.make(Op::Fold, node.type, {start}, graph.add_fold(std::move(fold)).index);
+    return graph.make(Op::Loop, node.type, {start}, graph.add_loop(std::move(loop)).index);
 }
 
 bool is_list(const ir::Node &node) {
     return (node.op == Op::Blend || node.op == Op::Union || node.op == Op::Intersection ||
             node.op == Op::NearestHit) &&
-           node.count >= least_operands;
+           node.count >= min_operands;
 }
 
 // A long list below `root`, innermost first, that was not looked at yet.
@@ -144,9 +144,9 @@ NodeId next_list(const Graph &graph, NodeId root, std::unordered_set<NodeId> &tr
         if (!id || !seen.insert(id).second) continue;
         if (is_list(graph[id]) && !tried.contains(id) && (!found || id < found)) found = id;
         for (NodeId arg : graph.args(id)) todo.push_back(arg);
-        if (graph[id].op != Op::Fold) continue;
-        const ir::Fold &fold = graph.fold(ir::FoldId{graph[id].payload});
-        todo.insert(todo.end(), fold.next.begin(), fold.next.end());
+        if (graph[id].op != Op::Loop) continue;
+        const ir::Loop &loop = graph.loop(ir::LoopId{graph[id].payload});
+        todo.insert(todo.end(), loop.next.begin(), loop.next.end());
     }
     tried.insert(found);
     return found;
@@ -154,8 +154,8 @@ NodeId next_list(const Graph &graph, NodeId root, std::unordered_set<NodeId> &tr
 
 } // namespace
 
-std::optional<Rolled> rolled(const ir::Scene &scene) {
-    std::optional<Rolled> result;
+std::optional<Rerolled> rerolled(const ir::Scene &scene) {
+    std::optional<Rerolled> result;
     for (std::size_t i = 0; i < scene.graph.function_count(); ++i) {
         std::unordered_set<NodeId> tried;
         NodeId root = scene.graph.function(ir::FunctionId{i}).result;
@@ -163,7 +163,7 @@ std::optional<Rolled> rolled(const ir::Scene &scene) {
             const Graph &graph = result ? result->scene.graph : scene.graph;
             const NodeId list = next_list(graph, root, tried);
             if (!list) break;
-            if (!result) result = Rolled{scene, {}};
+            if (!result) result = Rerolled{scene, {}};
             const std::optional<NodeId> loop = loop_of(result->scene.graph, list);
             if (!loop) continue;
             root = ir::substitute(result->scene.graph, root, {{list, *loop}});

@@ -2,7 +2,7 @@
 //
 // Evaluation is partial: an expression over known numbers is computed in double; as soon as a
 // point, a parameter or `time` takes part, nodes of the graph are made instead. An `if` on such a
-// number runs both arms and selects; a loop over such numbers becomes a Fold; a function called
+// number runs both arms and selects; a loop over such numbers becomes a Loop; a function called
 // with them becomes an ir::Function.
 #pragma once
 
@@ -24,7 +24,7 @@
 
 namespace fathom::typecheck {
 
-struct Evaluator;
+struct Interpreter;
 
 // A name, as a number: the builtins' first, in the order of their table.
 using Symbol = std::uint32_t;
@@ -55,7 +55,7 @@ struct Formal {
 
 // A file: its tree, and beside it what the evaluator found out about it once.
 struct File : lang::Ast {
-    std::size_t place = 0;                                   // in Evaluator::files
+    std::size_t place = 0;                                   // in Interpreter::files
     std::vector<Symbol> symbols;                             // by word
     std::vector<std::optional<std::vector<Formal>>> formals; // by function
 };
@@ -131,7 +131,7 @@ struct Builtin {
     std::vector<BuiltinParameter> parameters;
     bool variadic = false; // the last parameter takes a block, a list, or all further arguments
     bool library_only = false;
-    Value (*call)(Evaluator &, const CallSite &, std::vector<Value> &) = nullptr;
+    Value (*call)(Interpreter &, const CallSite &, std::vector<Value> &) = nullptr;
     std::string signature, doc; // for `fathom doc`
     bool computes = false;      // with its arguments, so that at field time none may be infinite
 };
@@ -180,17 +180,17 @@ struct Specialization {
 };
 
 // A shape that a loop made: what its body gives with the turn's number left open, and that number,
-// the innermost loop's first (turns.cpp).
+// the innermost loop's first (iterations.cpp).
 struct LoopVariable {
     ir::NodeId node; // Int: 0, 1, …
     int count = 0;
 };
-struct Turn {
+struct Iteration {
     ir::ShapeId symbolic;
-    std::vector<std::pair<std::uint32_t, int>> at; // index into Evaluator::loop_variables
+    std::vector<std::pair<std::uint32_t, int>> at; // index into Interpreter::loop_variables
 };
 
-struct Evaluator {
+struct Interpreter {
     Sources &sources;
     Diagnostics &diagnostics;
     const std::vector<LibraryFile> &library;
@@ -246,8 +246,8 @@ struct Evaluator {
     std::map<std::string, std::uint32_t>
         assets{}; // images and grids by what was asked for: their number
     std::vector<LoopVariable> loop_variables{};
-    std::unordered_map<std::uint32_t, Turn> turns{};   // by ShapeId
-    int symbolic_turns = 0;                            // > 0 while one runs
+    std::unordered_map<std::uint32_t, Iteration> turns{}; // by ShapeId
+    int symbolic_iterations = 0;                          // > 0 while one runs
     std::set<std::array<std::uint32_t, 6>> reported{}; // code and places, so that each is said once
     std::vector<std::string> usage_errors{};
 };
@@ -258,20 +258,21 @@ constexpr int max_call_depth = 1000;
 constexpr int max_depth = 40000; // nested evaluations; the stack is sized for it (check.cpp)
 constexpr int max_unrolled = 4096;
 constexpr std::size_t max_remembered = 100'000; // calls of the library
-constexpr int max_fold_turns = 100'000;
-constexpr int most_known_sets = 8; // of one function's arguments that its body is made for
+constexpr int max_loop_iterations = 100'000;
+constexpr int max_known_sets = 8; // of one function's arguments that its body is made for
 
 // -- names.cpp
-Symbol intern(Evaluator &ev, const std::string &text);
-std::uint32_t push_frame(Evaluator &ev, std::uint32_t parent);
-void pop_frame(Evaluator &ev, std::uint32_t frame);
-void declare(Evaluator &ev, std::uint32_t frame, Symbol name, Value value, bool is_var, Span place);
+Symbol intern(Interpreter &ev, const std::string &text);
+std::uint32_t push_frame(Interpreter &ev, std::uint32_t parent);
+void pop_frame(Interpreter &ev, std::uint32_t frame);
+void declare(Interpreter &ev, std::uint32_t frame, Symbol name, Value value, bool is_var,
+             Span place);
 struct Found {
     std::uint32_t frame = 0, slot = 0;
 };
-std::optional<Found> find_name(Evaluator &ev, std::uint32_t frame, Symbol name);
-std::optional<Value> look_up(Evaluator &ev, std::uint32_t frame, Symbol name);
-std::optional<std::uint32_t> slot_in_module(Evaluator &ev, std::uint32_t frame, Symbol name);
+std::optional<Found> find_name(Interpreter &ev, std::uint32_t frame, Symbol name);
+std::optional<Value> look_up(Interpreter &ev, std::uint32_t frame, Symbol name);
+std::optional<std::uint32_t> slot_in_module(Interpreter &ev, std::uint32_t frame, Symbol name);
 bool is_builtin(Symbol name);
 inline Symbol symbol_of(const File &file, const lang::Identifier &name) {
     return file.symbols[name.word];
@@ -279,104 +280,104 @@ inline Symbol symbol_of(const File &file, const lang::Identifier &name) {
 inline Symbol symbol_of(const File &file, const lang::Name &name) {
     return file.symbols[name.word];
 }
-std::vector<std::string> visible_names(Evaluator &ev, std::uint32_t frame);
+std::vector<std::string> visible_names(Interpreter &ev, std::uint32_t frame);
 // Adds what does to shapes what the name makes one expect, where something does: to an error about
 // a shape that was given to what takes none.
 void help_with_shape(Diagnostic &d, std::string_view name);
 // The name that another is likely to be meant for; empty: none.
-std::string likely_name(Evaluator &ev, std::uint32_t frame, const std::string &name);
-void report_unknown_name(Evaluator &ev, std::uint32_t frame, const std::string &name, Span place);
+std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string &name);
+void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place);
 // Whether a name may be one that a file which could not be read would have brought. Short names are
 // near to others by chance.
-bool lacking(const Evaluator &ev, const std::string &name, const std::string &near);
+bool lacking(const Interpreter &ev, const std::string &name, const std::string &near);
 std::string way_inside(const std::string &path); // how a file elsewhere can be read
-void check_names(Evaluator &ev, const File &ast, std::uint32_t module_frame);
+void check_names(Interpreter &ev, const File &ast, std::uint32_t module_frame);
 
 // -- report.cpp
-Diagnostic &report(Evaluator &ev, Code code, Span place, std::string message);
+Diagnostic &report(Interpreter &ev, Code code, Span place, std::string message);
 // What has to hold for all params and times; the proof says whether it does. What reads the point is
 // the field's own: the proof looks at that as it is.
-void require(Evaluator &ev, ir::NodeId condition, Span place, std::string wanted);
-bool is_library_place(const Evaluator &ev, Span span); // or no place at all
-std::string describe(const Evaluator &ev,
+void require(Interpreter &ev, ir::NodeId condition, Span place, std::string wanted);
+bool is_library_place(const Interpreter &ev, Span span); // or no place at all
+std::string describe(const Interpreter &ev,
                      const Value &value); // "a float", "a list of 3", "a shape"
-std::string print_value(const Evaluator &ev, const Value &value); // for print(…)
-bool spend(Evaluator &ev, Span place, std::size_t amount = 1);    // false once the budget is gone
+std::string print_value(const Interpreter &ev, const Value &value); // for print(…)
+bool spend(Interpreter &ev, Span place, std::size_t amount = 1);    // false once the budget is gone
 
 // -- numeric.cpp: numbers of both stages
 bool is_numeric(const Value &v); // Bool, Int, Float, Vec, Mat, Field
-ir::Type numeric_type(const Evaluator &ev, const Value &v);
-bool is_scalar(const Evaluator &ev, const Value &v); // Int or Float, known or not
-ir::NodeId to_node(Evaluator &ev, const Value &v);   // of a numeric value
-Value from_node(Evaluator &ev, ir::NodeId node,
+ir::Type numeric_type(const Interpreter &ev, const Value &v);
+bool is_scalar(const Interpreter &ev, const Value &v); // Int or Float, known or not
+ir::NodeId to_node(Interpreter &ev, const Value &v);   // of a numeric value
+Value from_node(Interpreter &ev, ir::NodeId node,
                 bool color = false); // constants come back as known numbers
-Value apply_op(Evaluator &ev, ir::Op op, std::vector<Value> args, Span place,
+Value apply_op(Interpreter &ev, ir::Op op, std::vector<Value> args, Span place,
                std::string_view name);
-Value arithmetic(Evaluator &ev, lang::BinaryOp op, const Value &a, const Value &b, Span place,
+Value arithmetic(Interpreter &ev, lang::BinaryOp op, const Value &a, const Value &b, Span place,
                  Span a_place, Span b_place);
-Value negate(Evaluator &ev, const Value &v, Span place);
-Value logical_and(Evaluator &ev, const Value &a, const Value &b);
-Value logical_or(Evaluator &ev, const Value &a, const Value &b);
-Value logical_not(Evaluator &ev, const Value &a);
-std::optional<Value> select_value(Evaluator &ev, const Value &condition, const Value &a,
+Value negate(Interpreter &ev, const Value &v, Span place);
+Value logical_and(Interpreter &ev, const Value &a, const Value &b);
+Value logical_or(Interpreter &ev, const Value &a, const Value &b);
+Value logical_not(Interpreter &ev, const Value &a);
+std::optional<Value> select_value(Interpreter &ev, const Value &condition, const Value &a,
                                   const Value &b);
-Value swizzle(Evaluator &ev, const Value &v, const std::string &letters, Span place);
+Value swizzle(Interpreter &ev, const Value &v, const std::string &letters, Span place);
 std::optional<std::vector<int>> swizzle_indices(const std::string &letters, int size);
-Value make_vector(Evaluator &ev, const std::vector<Value> &parts, int size, Span place);
-std::optional<Value> element_as_known(Evaluator &ev, const Value &v, Span place,
+Value make_vector(Interpreter &ev, const std::vector<Value> &parts, int size, Span place);
+std::optional<Value> element_as_known(Interpreter &ev, const Value &v, Span place,
                                       What what); // scene time demanded
-Value to_float(Evaluator &ev, const Value &v);
+Value to_float(Interpreter &ev, const Value &v);
 
 // -- range.cpp: which numbers there are
-bool is_infinite(Evaluator &ev, Value v); // a known number, or one of a known vector's
+bool is_infinite(Interpreter &ev, Value v); // a known number, or one of a known vector's
 // What was computed of the numbers `of`: 0 where it is smaller than single precision holds, and
 // refused where it is larger or none. Infinite it may be where one of those is.
-Value in_range(Evaluator &ev, Value v, std::span<const Value> of, Span place);
+Value in_range(Interpreter &ev, Value v, std::span<const Value> of, Span place);
 // The same, where `of` may not be infinite if the result is only known at field time.
-Value computed(Evaluator &ev, const Value &v, std::span<const Value> of, Span place, What what);
-bool finite_number(Evaluator &ev, const Value &v, Span place, What what); // else reported
+Value computed(Interpreter &ev, const Value &v, std::span<const Value> of, Span place, What what);
+bool finite_number(Interpreter &ev, const Value &v, Span place, What what); // else reported
 // What a shape or a setting may be made of: numbers up to `longest`, 0 where they are below
 // `shortest` (base/single.h). Poison after a report.
-Value sized(Evaluator &ev, Value v, Span place, What what);
-std::optional<ir::NodeId> node_in_range(Evaluator &ev, ir::NodeId node, Span place);
+Value sized(Interpreter &ev, Value v, Span place, What what);
+std::optional<ir::NodeId> node_in_range(Interpreter &ev, ir::NodeId node, Span place);
 
 // -- facts.cpp
-std::vector<NameFact> name_facts(const Evaluator &ev, std::uint32_t frame, SourceId source);
+std::vector<NameFact> name_facts(const Interpreter &ev, std::uint32_t frame, SourceId source);
 
 // -- convert.cpp: types as written, and conversions
-Value convert(Evaluator &ev, const Value &v, const lang::TypeExpr &type, Span place, What what,
+Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span place, What what,
               bool &ok);
-bool accepts(Evaluator &ev, const Value &v, const lang::TypeExpr &type);
+bool accepts(Interpreter &ev, const Value &v, const lang::TypeExpr &type);
 std::string type_text(const lang::TypeExpr &type);
-bool check_type(Evaluator &ev, const lang::TypeExpr &type); // reports a name that is none
+bool check_type(Interpreter &ev, const lang::TypeExpr &type); // reports a name that is none
 // Which numbers are wanted: those that make shapes (`sized`), all that are finite, or `inf` too.
 enum class Limit { Size, Finite, None };
-std::optional<double> want_known_number(Evaluator &ev, const Value &v, Span place, What what,
+std::optional<double> want_known_number(Interpreter &ev, const Value &v, Span place, What what,
                                         Limit limit = Limit::Size);
-std::optional<int> want_known_int(Evaluator &ev, const Value &v, Span place, What what);
-std::optional<bool> want_known_bool(Evaluator &ev, const Value &v, Span place, What what);
-std::optional<std::string> want_string(Evaluator &ev, const Value &v, Span place, What what);
-std::optional<ir::NodeId> want_scalar_node(Evaluator &ev, const Value &v, Span place, What what,
+std::optional<int> want_known_int(Interpreter &ev, const Value &v, Span place, What what);
+std::optional<bool> want_known_bool(Interpreter &ev, const Value &v, Span place, What what);
+std::optional<std::string> want_string(Interpreter &ev, const Value &v, Span place, What what);
+std::optional<ir::NodeId> want_scalar_node(Interpreter &ev, const Value &v, Span place, What what,
                                            Limit limit = Limit::Size);
-std::optional<ir::NodeId> want_vec_node(Evaluator &ev, const Value &v, int size, Span place,
+std::optional<ir::NodeId> want_vec_node(Interpreter &ev, const Value &v, int size, Span place,
                                         What what, Limit limit = Limit::Size);
-std::optional<ir::NodeId> want_color_node(Evaluator &ev, const Value &v, Span place, What what);
-std::optional<ir::ShapeId> want_shape(Evaluator &ev, const Value &v, Span place, What what,
+std::optional<ir::NodeId> want_color_node(Interpreter &ev, const Value &v, Span place, What what);
+std::optional<ir::ShapeId> want_shape(Interpreter &ev, const Value &v, Span place, What what,
                                       int dims = 0);
-std::optional<std::vector<Value>> want_list(Evaluator &ev, const Value &v, Span place, What what);
-std::optional<std::vector<ir::ShapeId>> want_shapes(Evaluator &ev, const Value &v, Span place,
+std::optional<std::vector<Value>> want_list(Interpreter &ev, const Value &v, Span place, What what);
+std::optional<std::vector<ir::ShapeId>> want_shapes(Interpreter &ev, const Value &v, Span place,
                                                     What what, int &dims);
-std::optional<ir::Region> want_region(Evaluator &ev, const Value &v, Span place, What what);
-std::optional<ir::Material> want_material(Evaluator &ev, const Value &v, Span place, What what);
-Value list_value(Evaluator &ev, std::vector<Value> items);
-Value string_value(Evaluator &ev, std::string text);
+std::optional<ir::Region> want_region(Interpreter &ev, const Value &v, Span place, What what);
+std::optional<ir::Material> want_material(Interpreter &ev, const Value &v, Span place, What what);
+Value list_value(Interpreter &ev, std::vector<Value> items);
+Value string_value(Interpreter &ev, std::string text);
 bool is_function(const Value &v);
 // Where a colour is wanted: `tan` is one beside GLSL's function; every other value is itself.
 Value or_color(const Value &v);
 
 // -- expressions.cpp, statements.cpp
-Value eval(Evaluator &ev, const File &ast, lang::ExprId expr, std::uint32_t frame);
-Outcome run_block(Evaluator &ev, const File &ast, lang::BlockId block,
+Value eval(Interpreter &ev, const File &ast, lang::ExprId expr, std::uint32_t frame);
+Outcome run_block(Interpreter &ev, const File &ast, lang::BlockId block,
                   std::uint32_t frame); // as an expression
 struct Contribution {
     Value value;
@@ -384,38 +385,38 @@ struct Contribution {
 };
 // Every expression of the block contributes; true where a `break` ended it. The frame is already
 // pushed.
-bool contribute_block(Evaluator &ev, const File &ast, lang::BlockId block, std::uint32_t frame,
+bool contribute_block(Interpreter &ev, const File &ast, lang::BlockId block, std::uint32_t frame,
                       std::vector<Contribution> &out);
 // Statements that declare or act the same wherever they stand: let, var, assignment, fn. False for
 // all others.
-bool run_simple(Evaluator &ev, const File &ast, const lang::Stmt &stmt, std::uint32_t frame);
-void run_assign(Evaluator &ev, const File &ast, const lang::Assign &node, Span place,
+bool run_simple(Interpreter &ev, const File &ast, const lang::Stmt &stmt, std::uint32_t frame);
+void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span place,
                 std::uint32_t frame); // assignment.cpp, as is the journal
-Outcome run_if(Evaluator &ev, const File &ast, const lang::If &node, std::uint32_t frame,
+Outcome run_if(Interpreter &ev, const File &ast, const lang::If &node, std::uint32_t frame,
                Span place);
-void hoist_functions(Evaluator &ev, const File &ast, lang::BlockId block, std::uint32_t frame);
-std::optional<std::vector<Value>> sequence_items(Evaluator &ev, const Value &v, Span place);
-void assign(Evaluator &ev, std::uint32_t frame, std::uint32_t slot, Value value);
+void hoist_functions(Interpreter &ev, const File &ast, lang::BlockId block, std::uint32_t frame);
+std::optional<std::vector<Value>> sequence_items(Interpreter &ev, const Value &v, Span place);
+void assign(Interpreter &ev, std::uint32_t frame, std::uint32_t slot, Value value);
 
 // -- loops.cpp: loops over numbers that are not known
-Outcome run_for(Evaluator &ev, const File &ast, const lang::For &node, std::uint32_t frame,
+Outcome run_for(Interpreter &ev, const File &ast, const lang::For &node, std::uint32_t frame,
                 Span place);
-Outcome run_while(Evaluator &ev, const File &ast, const lang::While &node, std::uint32_t frame,
+Outcome run_while(Interpreter &ev, const File &ast, const lang::While &node, std::uint32_t frame,
                   Span place);
 // Runs `rest` and keeps what it assigned only where `skip` is false.
-Exit run_unless(Evaluator &ev, const Value &skip, Span place, const std::function<Exit()> &rest);
+Exit run_unless(Interpreter &ev, const Value &skip, Span place, const std::function<Exit()> &rest);
 // The journal keeps what assignments overwrite, so that a trial can be undone and two arms can be
 // merged.
 struct JournalMark {
     std::size_t entries = 0, frames = 0;
 };
-JournalMark journal_mark(Evaluator &ev);
+JournalMark journal_mark(Interpreter &ev);
 struct Change {
     std::uint32_t frame, slot;
     Value before, after;
 };
 // What changed since the mark in frames that stood then; every change is undone.
-std::vector<Change> journal_take(Evaluator &ev, JournalMark mark);
+std::vector<Change> journal_take(Interpreter &ev, JournalMark mark);
 
 // -- calls.cpp
 struct Argument {
@@ -426,24 +427,25 @@ struct Argument {
     bool trailing = false;      // the block behind the call: belongs to the last parameter
     bool plain_literal = false; // a number without a unit, or a list of such
 };
-Value call_value(Evaluator &ev, const Value &callee, std::string_view name,
+Value call_value(Interpreter &ev, const Value &callee, std::string_view name,
                  std::span<const Argument> args, Span call, Span callee_span);
-Value call_with(Evaluator &ev, const Value &callee, const std::vector<Value> &args,
+Value call_with(Interpreter &ev, const Value &callee, const std::vector<Value> &args,
                 Span place); // positional
-Value eval_call(Evaluator &ev, const File &ast, lang::ExprId expr, const lang::Call &call,
+Value eval_call(Interpreter &ev, const File &ast, lang::ExprId expr, const lang::Call &call,
                 std::uint32_t frame);
-int parameter_count(Evaluator &ev, const Value &function); // -1: any
+int parameter_count(Interpreter &ev, const Value &function); // -1: any
 
 // One node for a call of a library shape: its name and numbers, with the claims that its body made
 // (semantics.md, 12).
-Value library_shape(Evaluator &ev, ir::Library library, const Value &body, Span origin);
-std::uint32_t intern_region(Evaluator &ev, const ir::Region &region); // index into Shapes::regions
-std::uint32_t intern_material(Evaluator &ev,
+Value library_shape(Interpreter &ev, ir::Library library, const Value &body, Span origin);
+std::uint32_t intern_region(Interpreter &ev,
+                            const ir::Region &region); // index into Shapes::regions
+std::uint32_t intern_material(Interpreter &ev,
                               const ir::Material &material); // index into Shapes::materials
 
 // -- fields.cpp: functions of the point
 // The field as an expression of `point` (and `normal`), a graph node of one of `types`.
-std::optional<ir::NodeId> apply_field(Evaluator &ev, const Value &field,
+std::optional<ir::NodeId> apply_field(Interpreter &ev, const Value &field,
                                       const std::vector<ir::NodeId> &inputs, ir::Type result,
                                       Span place, What what, bool *is_color = nullptr);
 
@@ -456,18 +458,18 @@ void add_transform_builtins(std::vector<Builtin> &table);
 void add_scene_builtins(std::vector<Builtin> &table);
 void add_texture_builtins(std::vector<Builtin> &table);
 
-// -- turns.cpp
+// -- iterations.cpp
 // After a loop in shape position: what its turns made, each from `starts[i]` on; `turn` runs its
 // body for a value of its variable.
-constexpr std::size_t least_computed =
-    64; // shapes from which on a table's rows are worth a formula
-void note_turns(Evaluator &ev, const std::vector<Value> &items,
-                const std::vector<std::size_t> &starts, const std::vector<Contribution> &made,
-                const std::function<void(const Value &item, std::vector<Contribution> &out)> &turn);
+constexpr std::size_t min_computed = 64; // shapes from which on a table's rows are worth a formula
+void note_iterations(
+    Interpreter &ev, const std::vector<Value> &items, const std::vector<std::size_t> &starts,
+    const std::vector<Contribution> &made,
+    const std::function<void(const Value &item, std::vector<Contribution> &out)> &turn);
 
 // -- closed_forms.cpp
 // What differs between shapes that one loop's body made.
-struct TurnTable {
+struct IterationTable {
     ir::ShapeId symbolic;                        // the shape with the loops' numbers left open
     std::vector<ir::NodeId> places;              // the expressions in it that hang on them alone
     std::vector<std::vector<ir::Constant>> rows; // their values, by member
@@ -475,24 +477,27 @@ struct TurnTable {
     ir::NodeId row;
 };
 // Nothing where these are no turns of one loop, or not all in equal steps.
-std::optional<TurnTable> table_of_turns(Evaluator &ev, const std::vector<ir::ShapeId> &members);
+std::optional<IterationTable> table_of_iterations(Interpreter &ev,
+                                                  const std::vector<ir::ShapeId> &members);
 
-// -- families.cpp
+// -- instances.cpp
 void shape_nodes(const ir::Scene &scene, ir::ShapeId id, std::vector<ir::NodeId> &out);
-std::vector<ir::ShapeId> gather_families(Evaluator &ev, std::vector<ir::ShapeId> shapes, int dims);
-std::optional<ir::ShapeId> smooth_family(Evaluator &ev, const std::vector<ir::ShapeId> &shapes,
-                                         ir::NodeId k, int dims);
-ir::ShapeId unite(Evaluator &ev, std::vector<ir::ShapeId> shapes, int dims, Span origin);
+std::vector<ir::ShapeId> gather_instances(Interpreter &ev, std::vector<ir::ShapeId> shapes,
+                                          int dims);
+std::optional<ir::ShapeId> smooth_instances(Interpreter &ev, const std::vector<ir::ShapeId> &shapes,
+                                            ir::NodeId k, int dims);
+ir::ShapeId unite(Interpreter &ev, std::vector<ir::ShapeId> shapes, int dims, Span origin);
 
 // -- modules.cpp
-Value import_module(Evaluator &ev, const lang::Import &import, Span place, std::uint32_t importer);
-void load_prelude(Evaluator &ev);
-void read_prelude_items(Evaluator &ev, Symbol name); // declares what the library has of this name
-void make_module_frame(Evaluator &ev, std::uint32_t frame);
-const File &parse_file(Evaluator &ev, SourceId source, Diagnostics &diagnostics);
-void declare_param(Evaluator &ev, const File &ast, const lang::Param &param, std::uint32_t frame);
+Value import_module(Interpreter &ev, const lang::Import &import, Span place,
+                    std::uint32_t importer);
+void load_prelude(Interpreter &ev);
+void read_prelude_items(Interpreter &ev, Symbol name); // declares what the library has of this name
+void make_module_frame(Interpreter &ev, std::uint32_t frame);
+const File &parse_file(Interpreter &ev, SourceId source, Diagnostics &diagnostics);
+void declare_param(Interpreter &ev, const File &ast, const lang::Param &param, std::uint32_t frame);
 // Every module's file: declares its names, in its frame, and gathers what it contributes.
-void run_module(Evaluator &ev, std::uint32_t module, std::vector<Contribution> &out);
+void run_module(Interpreter &ev, std::uint32_t module, std::vector<Contribution> &out);
 
 } // namespace fathom::typecheck
 
