@@ -73,11 +73,11 @@ typecheck::Options check_options(const CompileOptions &options) {
     return result;
 }
 
-void run_phases(Compilation &out, SceneFiles &files, const std::string &identity, SourceId root,
-                const CompileOptions &options) {
+void run_phases(Compilation &out, const typecheck::Loader &loader, const std::string &identity,
+                SourceId root, const CompileOptions &options) {
     enter(options, Phase::Check);
     typecheck::Checked checked =
-        typecheck::check(out.sources, root, identity, standard_library(), files.loader(),
+        typecheck::check(out.sources, root, identity, standard_library(), loader,
                          check_options(options), out.diagnostics);
     out.scene = std::move(checked.scene);
     out.usage_errors = std::move(checked.usage_errors);
@@ -131,8 +131,8 @@ constexpr int most_attempts = 32; // at a save file, each without the parts refu
 
 // The text of a save file, compiled; with those parts left out that no compiler takes, so that the
 // others are not lost with them.
-Compilation compile_imported(const std::string &name, const std::string &text, SceneFiles &files,
-                             const std::string &identity, save::ImportOptions &import,
+Compilation compile_imported(const std::string &name, const std::string &text,
+                             const typecheck::Loader &loader, const std::string &identity, save::ImportOptions &import,
                              const CompileOptions &options) {
     for (int attempt = 1;; ++attempt) {
         Compilation out;
@@ -141,11 +141,25 @@ Compilation compile_imported(const std::string &name, const std::string &text, S
             save::import_yaml(out.sources, save_file, out.diagnostics, import);
         const SourceId root =
             out.sources.add(name + " (imported)", std::move(result.sdf), save_file);
-        run_phases(out, files, identity, root, options);
+        run_phases(out, loader, identity, root, options);
         if (result.structural_error || attempt == most_attempts ||
             !note_unusable(out, root, result, import.unusable))
             return out;
     }
+}
+
+// A text whose name is a save file's is imported first.
+Compilation compile_source(const std::string &name, std::string text,
+                           const typecheck::Loader &loader, const std::string &identity,
+                           const CompileOptions &options) {
+    if (is_save_file(name)) {
+        save::ImportOptions import;
+        return compile_imported(name, text, loader, identity, import, options);
+    }
+    Compilation out;
+    const SourceId root = out.sources.add(name, std::move(text));
+    run_phases(out, loader, identity, root, options);
+    return out;
 }
 
 } // namespace
@@ -155,16 +169,19 @@ void leave_out_unusable(const std::string &name, const std::string &text,
     if (text.size() > most_asked) return;
     SceneFiles files(scene.parent_path(), {});
     const std::string identity = files.add_root(scene);
-    compile_imported(name, text, files, identity, import, {});
+    compile_imported(name, text, files.loader(), identity, import, {});
+}
+
+Compilation compile_loaded(std::string name, std::string text, const typecheck::Loader &loader,
+                           const CompileOptions &options) {
+    return compile_source(name, std::move(text), loader, "", options);
 }
 
 Compilation compile_text(std::string name, std::string text, const std::filesystem::path &folder,
                          const CompileOptions &options) {
-    Compilation out;
     SceneFiles files(folder, options.include_folders);
-    std::string identity = files.add_root(folder / "-");
-    SourceId root = out.sources.add(std::move(name), std::move(text));
-    run_phases(out, files, identity, root, options);
+    const std::string identity = files.add_root(folder / "-");
+    Compilation out = compile_source(name, std::move(text), files.loader(), identity, options);
     out.files = files.touched();
     return out;
 }
@@ -184,13 +201,7 @@ Compilation compile_file(const std::filesystem::path &file, const CompileOptions
         return compile_text("<stdin>", std::move(*text), "", options);
     } else {
         std::string identity = files.add_root(file);
-        if (is_save_file(file)) {
-            save::ImportOptions import;
-            out = compile_imported(file.string(), *text, files, identity, import, options);
-        } else {
-            const SourceId root = out.sources.add(file.string(), std::move(*text));
-            run_phases(out, files, identity, root, options);
-        }
+        out = compile_source(file.string(), std::move(*text), files.loader(), identity, options);
     }
     out.files = files.touched();
     return out;

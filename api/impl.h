@@ -1,0 +1,48 @@
+// What the library's handles hold, and the words of the compiler as the public headers have them.
+// The public names lie in fathom::v1 here, since the compiler's own have the same ones in fathom.
+#pragma once
+
+#include "driver/compile.h"
+
+#include <fathom/fathom.h>
+
+#include <exception>
+#include <new>
+
+namespace fathom::v1 {
+
+// What a scene was compiled from, to compile it again where a structural param is set.
+struct Origin {
+    bool is_file = false;
+    std::filesystem::path file;
+    std::string name, text;
+    CompileOptions options;
+};
+
+struct Scene::Impl {
+    std::shared_ptr<const Origin> origin;
+    std::shared_ptr<const driver::Compilation> compilation; // good
+    ir::Scene scene; // the compilation's, with the present values of its params
+    std::vector<Param> params;
+    Facts facts;
+};
+
+inline const ir::Scene &ir_of(const Scene &scene) { return scene.impl().scene; }
+
+Place place_of(Span span, const Sources &sources);
+Diagnostic translated(const fathom::Diagnostic &diagnostic, const Sources &sources);
+std::vector<Diagnostic> translated(const Diagnostics &diagnostics, const Sources &sources);
+Diagnostic sentence(std::string code, std::string message); // an error without a place
+
+// What a call gives whose work could not be done, for lack of memory or by a fault of ours.
+template <class Work, class Failed> auto guarded(Work work, Failed failed) noexcept {
+    try {
+        return work();
+    } catch (const std::bad_alloc &) {
+        return failed(sentence("memory", "there is not enough memory"));
+    } catch (const std::exception &error) {
+        return failed(sentence("internal", error.what()));
+    }
+}
+
+} // namespace fathom::v1

@@ -1,0 +1,285 @@
+#include "api/impl.h"
+
+#include "base/text.h"
+#include "driver/image.h"
+#include "driver/verdict.h"
+#include "lang/format.h"
+#include "lang/parse.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+namespace fathom::v1 {
+namespace {
+
+Param::Type type_of(ir::Type type) {
+    switch (ir::components(type)) {
+    case 2: return Param::Type::Vec2;
+    case 3: return Param::Type::Vec3;
+    case 4: return Param::Type::Vec4;
+    }
+    if (type == ir::Type::Bool) return Param::Type::Bool;
+    return type == ir::Type::Int ? Param::Type::Int : Param::Type::Float;
+}
+
+Status status_of(ir::ProofStatus status) {
+    switch (status) {
+    case ir::ProofStatus::Proved: return Status::Proved;
+    case ir::ProofStatus::Assumed: return Status::Assumed;
+    case ir::ProofStatus::Estimated: return Status::Estimated;
+    }
+    return Status::Estimated;
+}
+
+std::vector<Param> params_of(const ir::Scene &scene) {
+    std::vector<Param> all;
+    for (const ir::Param &from : scene.params) {
+        Param to{from.name,       from.label, type_of(from.type), from.is_color, from.has_range,
+                 from.structural, from.value, from.initial,       from.lo,       from.hi};
+        if (!from.has_range) {
+            to.lo.fill(-std::numeric_limits<double>::infinity());
+            to.hi.fill(std::numeric_limits<double>::infinity());
+        }
+        all.push_back(std::move(to));
+    }
+    return all;
+}
+
+// A single-precision box that holds the box.
+Box outward(const ir::Box &box) {
+    Box out;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float infinity = std::numeric_limits<float>::infinity();
+        out.lo[i] = static_cast<float>(box.lo[i]);
+        out.hi[i] = static_cast<float>(box.hi[i]);
+        if (out.lo[i] > box.lo[i]) out.lo[i] = std::nextafter(out.lo[i], -infinity);
+        if (out.hi[i] < box.hi[i]) out.hi[i] = std::nextafter(out.hi[i], infinity);
+    }
+    return out;
+}
+
+Facts facts_of(const driver::Compilation &compilation) {
+    const ir::Scene &scene = compilation.scene;
+    const driver::Verdict verdict = driver::judge(scene);
+    Facts facts;
+    facts.lipschitz = verdict.lipschitz;
+    facts.status = status_of(verdict.status);
+    facts.exact = verdict.exact;
+    if (scene.bounds.finite()) facts.bounds = outward(scene.bounds);
+    facts.time_end = scene.render.time_end;
+    for (const ir::TopLevel &top : scene.top_level) {
+        const ir::ShapeFact &fact = scene.facts[top.shape.index];
+        facts.shapes.push_back({place_of(top.span, compilation.sources), fact.lipschitz_sup,
+                                status_of(fact.status), fact.kind == ir::FieldKind::Exact});
+    }
+    return facts;
+}
+
+CompileResult result_of(driver::Compilation compilation, std::shared_ptr<const Origin> origin) {
+    CompileResult result;
+    result.diagnostics = translated(compilation.diagnostics, compilation.sources);
+    for (const auto &[file, stamp] : compilation.files) result.files.push_back(file);
+    if (!compilation.unreadable.empty())
+        result.diagnostics.push_back(
+            sentence("unreadable", fmt::format("cannot read `{}`: {}", origin->file.string(),
+                                               compilation.unreadable)));
+    for (const std::string &error : compilation.usage_errors)
+        result.diagnostics.push_back(sentence("usage", error));
+    if (!compilation.good()) return result;
+    auto impl = std::make_shared<Scene::Impl>();
+    impl->origin = std::move(origin);
+    impl->scene = compilation.scene;
+    impl->params = params_of(compilation.scene);
+    impl->facts = facts_of(compilation);
+    impl->compilation = std::make_shared<const driver::Compilation>(std::move(compilation));
+    result.scene.emplace(std::move(impl));
+    return result;
+}
+
+// `path` as seen from the file `from`, both relative to the scene's text; nothing where it leads
+// out of that folder.
+std::optional<std::string> inside(const std::string &path, const std::string &from) {
+    const std::filesystem::path whole =
+        (std::filesystem::path(from).parent_path() / path).lexically_normal();
+    if (whole.is_absolute() || whole.empty() || *whole.begin() == "..") return std::nullopt;
+    return whole.generic_string();
+}
+
+// What the scene names, from the provider alone.
+typecheck::Loader loader_of(const FileProvider &provider) {
+    using typecheck::LoadError;
+    const auto bytes_of =
+        [provider](const std::string &path, const std::string &from,
+                   std::string &identity) -> std::variant<std::string, LoadError> {
+        const std::optional<std::string> found = inside(path, from);
+        if (!found) return LoadError{LoadError::Reason::Outside, "leads out of the scene's folder"};
+        identity = *found;
+        std::optional<std::string> bytes = provider(*found);
+        if (!bytes) return LoadError{LoadError::Reason::NotFound, "no such file"};
+        return std::move(*bytes);
+    };
+    const auto asset =
+        [bytes_of]<class Data>(std::optional<Data> (*decode)(std::string_view, std::string &)) {
+            return [bytes_of, decode](const std::string &path,
+                                      const std::string &from) -> std::variant<Data, LoadError> {
+                std::string identity, why;
+                auto bytes = bytes_of(path, from, identity);
+                if (auto *error = std::get_if<LoadError>(&bytes)) return *error;
+                std::optional<Data> data = decode(std::get<std::string>(bytes), why);
+                if (!data) return LoadError{LoadError::Reason::Unreadable, why};
+                data->name = path;
+                return std::move(*data);
+            };
+        };
+    const auto text =
+        [bytes_of](const std::string &path,
+                   const std::string &from) -> std::variant<typecheck::LoadedText, LoadError> {
+        std::string identity;
+        auto bytes = bytes_of(path, from, identity);
+        if (auto *error = std::get_if<LoadError>(&bytes)) return *error;
+        return typecheck::LoadedText{identity, identity, std::move(std::get<std::string>(bytes))};
+    };
+    return {text, asset(driver::decode_image), asset(driver::decode_grid)};
+}
+
+driver::CompileOptions driver_options(const CompileOptions &options) {
+    driver::CompileOptions to;
+    to.include_folders = options.include_folders;
+    for (const auto &[name, text] : options.definitions) to.overrides.push_back({name, text});
+    return to;
+}
+
+CompileResult compile(std::shared_ptr<const Origin> origin) {
+    const driver::CompileOptions options = driver_options(origin->options);
+    if (origin->is_file) return result_of(driver::compile_file(origin->file, options), origin);
+    if (origin->options.files)
+        return result_of(driver::compile_loaded(origin->name, origin->text,
+                                                loader_of(origin->options.files), options),
+                         origin);
+    return result_of(driver::compile_text(origin->name, origin->text, "", options), origin);
+}
+
+CompileResult failed(Diagnostic why) {
+    CompileResult result;
+    result.diagnostics.push_back(std::move(why));
+    return result;
+}
+
+// A value as an expression of the language, to the last bit.
+std::string expression_of(const Param &param, const std::vector<double> &value) {
+    if (param.type == Param::Type::Bool) return value[0] != 0 ? "true" : "false";
+    std::string list;
+    for (double number : value) list += (list.empty() ? "" : ", ") + format_shortest(number);
+    return value.size() == 1 ? list : "[" + list + "]";
+}
+
+int components(Param::Type type) {
+    switch (type) {
+    case Param::Type::Bool:
+    case Param::Type::Int:
+    case Param::Type::Float: return 1;
+    case Param::Type::Vec2: return 2;
+    case Param::Type::Vec3: return 3;
+    case Param::Type::Vec4: return 4;
+    }
+    return 1;
+}
+
+// Why a param cannot have a value, or an empty text.
+std::string refusal(const Param &param, const std::vector<double> &value) {
+    if (value.size() != static_cast<std::size_t>(components(param.type)))
+        return fmt::format("`{}` takes {} numbers, not {}", param.name, components(param.type),
+                           value.size());
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        if (!std::isfinite(value[i])) return fmt::format("`{}` takes finite numbers", param.name);
+        if (value[i] < param.lo[i] || value[i] > param.hi[i])
+            return fmt::format("{} is outside of the range {}..{} of `{}`",
+                               format_shortest(value[i]), format_shortest(param.lo[i]),
+                               format_shortest(param.hi[i]), param.name);
+        if (param.type == Param::Type::Int && value[i] != std::floor(value[i]))
+            return fmt::format("`{}` takes whole numbers, not {}", param.name,
+                               format_shortest(value[i]));
+    }
+    return "";
+}
+
+} // namespace
+
+Scene::Scene(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+const std::vector<Param> &Scene::params() const { return impl_->params; }
+const Facts &Scene::facts() const { return impl_->facts; }
+
+CompileResult Scene::with(const std::map<std::string, std::vector<double>> &values) const {
+    const auto work = [&]() -> CompileResult {
+        auto changed = std::make_shared<Impl>(*impl_);
+        bool rebuild = false;
+        for (const auto &[name, value] : values) {
+            const auto param = std::ranges::find(changed->params, name, &Param::name);
+            if (param == changed->params.end())
+                return failed(sentence("usage", fmt::format("there is no param `{}`", name)));
+            if (const std::string why = refusal(*param, value); !why.empty())
+                return failed(sentence("usage", why));
+            rebuild = rebuild || param->structural;
+            std::ranges::copy(value, param->value.begin());
+            changed->scene.params[static_cast<std::size_t>(param - changed->params.begin())].value =
+                param->value;
+        }
+        if (!rebuild) {
+            CompileResult result;
+            result.scene.emplace(std::move(changed));
+            return result;
+        }
+        Origin origin = *impl_->origin;
+        for (const Param &param : changed->params)
+            if (param.value != param.initial)
+                origin.options.definitions[param.name] = expression_of(
+                    param, {param.value.begin(), param.value.begin() + components(param.type)});
+        return compile(std::make_shared<const Origin>(std::move(origin)));
+    };
+    return guarded(work, failed);
+}
+
+CompileResult compile_file(const std::filesystem::path &file, const CompileOptions &options) {
+    return guarded(
+        [&] {
+            if (options.files) {
+                const std::string name = file.generic_string();
+                const std::optional<std::string> text = options.files(name);
+                if (!text)
+                    return failed(sentence("unreadable",
+                                           fmt::format("cannot read `{}`: no such file", name)));
+                return compile_text(name, *text, options);
+            }
+            return compile(std::make_shared<const Origin>(Origin{true, file, "", "", options}));
+        },
+        failed);
+}
+
+CompileResult compile_text(std::string_view name, std::string_view text,
+                           const CompileOptions &options) {
+    return guarded(
+        [&] {
+            return compile(std::make_shared<const Origin>(
+                Origin{false, "", std::string(name), std::string(text), options}));
+        },
+        failed);
+}
+
+std::optional<std::string> format_text(std::string_view text) {
+    return guarded(
+        [&]() -> std::optional<std::string> {
+            Sources sources;
+            Diagnostics diagnostics;
+            const SourceId source = sources.add("", std::string(text));
+            const lang::Ast ast = lang::parse(sources, source, diagnostics);
+            if (diagnostics.has_errors()) return std::nullopt;
+            return lang::format(sources, ast);
+        },
+        [](const Diagnostic &) { return std::optional<std::string>(); });
+}
+
+std::string_view version() { return FATHOM_VERSION; }
+
+} // namespace fathom::v1

@@ -1,0 +1,90 @@
+#include "api/impl.h"
+
+#include "backend-glsl/emit.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace fathom::v1 {
+namespace {
+
+const glsl::Target *target_by_name(std::string_view name) {
+    for (const glsl::Target &target : glsl::all_targets())
+        if (name == glsl::traits_of(target).name) return &target;
+    return nullptr;
+}
+
+Texture texture_of(const ir::ImageData &image, std::string name) {
+    return {std::move(name), false, image.width, image.height, 1, image.rgba};
+}
+
+Texture texture_of(const ir::GridData &grid, std::string name) {
+    return {std::move(name), true, grid.size[0], grid.size[1], grid.size[2], grid.values};
+}
+
+std::optional<Shader> shader_of(const Scene &scene, const ShaderOptions &options,
+                                std::vector<Diagnostic> &said) {
+    const glsl::Target *target = target_by_name(options.target);
+    if (!target) {
+        said.push_back(sentence("usage", fmt::format("there is no target `{}`", options.target)));
+        return std::nullopt;
+    }
+    const ir::Scene &ir_scene = ir_of(scene);
+    const Sources &sources = scene.impl().compilation->sources;
+    glsl::Options to;
+    to.target = *target;
+    to.field_only = options.field_only;
+    to.buffers = options.buffers;
+    to.computed = true;
+    to.table_text = 256;
+    to.time = options.time;
+    to.title = options.title;
+    to.place = [&](Span span) {
+        if (!span.source) return std::string();
+        const Source &source = sources[span.source];
+        return fmt::format("{}:{}", source.name, position(source, span.begin).line);
+    };
+    Diagnostics diagnostics;
+    glsl::note_fixed_params(ir_scene, *target, diagnostics);
+    glsl::Output output = glsl::emit(ir_scene, to, diagnostics);
+    for (Diagnostic &diagnostic : translated(diagnostics, sources))
+        said.push_back(std::move(diagnostic));
+    if (diagnostics.has_errors()) return std::nullopt;
+    Shader shader;
+    shader.text = std::move(output.text);
+    shader.words = std::move(output.words);
+    shader.tables = std::move(output.tables);
+    shader.reads_time = output.reads_time;
+    for (const glsl::Uniform &uniform : output.uniforms) {
+        const Param &param = scene.params()[uniform.param];
+        shader.uniforms.push_back({uniform.name, param.name, param.type, uniform.location});
+    }
+    for (const glsl::Sampler &sampler : output.images)
+        shader.textures.push_back(texture_of(ir_scene.images[sampler.index], sampler.name));
+    for (const glsl::Sampler &sampler : output.grids)
+        shader.textures.push_back(texture_of(ir_scene.grids[sampler.index], sampler.name));
+    return shader;
+}
+
+} // namespace
+
+std::vector<std::string> shader_targets() {
+    std::vector<std::string> names;
+    for (const glsl::Target &target : glsl::all_targets())
+        names.emplace_back(glsl::traits_of(target).name);
+    return names;
+}
+
+std::optional<Shader> make_shader(const Scene &scene, const ShaderOptions &options,
+                                  std::vector<Diagnostic> *diagnostics) {
+    std::vector<Diagnostic> said;
+    std::optional<Shader> shader = guarded([&] { return shader_of(scene, options, said); },
+                                           [&](Diagnostic why) {
+                                               said.push_back(std::move(why));
+                                               return std::optional<Shader>();
+                                           });
+    if (diagnostics) *diagnostics = std::move(said);
+    return shader;
+}
+
+} // namespace fathom::v1

@@ -1,0 +1,10 @@
+/** @file
+ *  The whole library. */
+#pragma once
+
+#include <fathom/diagnostic.h>
+#include <fathom/field.h>
+#include <fathom/picture.h>
+#include <fathom/save_format.h>
+#include <fathom/scene.h>
+#include <fathom/shader.h>

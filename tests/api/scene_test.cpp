@@ -1,0 +1,275 @@
+// The library as its users meet it: by the public headers alone.
+#include <catch2/catch.hpp>
+
+#include <fathom/fathom.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace {
+
+fathom::Scene compiled(std::string_view text, const fathom::CompileOptions &options = {}) {
+    fathom::CompileResult result = fathom::compile_text("test.sdf", text, options);
+    for (const fathom::Diagnostic &d : result.diagnostics) UNSCOPED_INFO(d.message);
+    REQUIRE(result.scene);
+    return *result.scene;
+}
+
+fathom::Field field_of(const fathom::Scene &scene, double time = 0) {
+    std::optional<fathom::Field> field = fathom::make_field(scene, time);
+    REQUIRE(field);
+    return *field;
+}
+
+float at(const fathom::Field &field, fathom::Point point) {
+    float distance = 0;
+    REQUIRE(field.distances({&point, 1}, {&distance, 1}));
+    return distance;
+}
+
+// Points of a lattice about the origin.
+std::vector<fathom::Point> lattice(int side, float extent) {
+    std::vector<fathom::Point> points;
+    const auto place = [&](int i) {
+        return extent * (2 * (static_cast<float>(i) + 0.37f) / static_cast<float>(side) - 1);
+    };
+    for (int x = 0; x < side; ++x)
+        for (int y = 0; y < side; ++y)
+            for (int z = 0; z < side; ++z) points.push_back({place(x), place(y), place(z)});
+    return points;
+}
+
+} // namespace
+
+TEST_CASE("a text that does not compile says where and what to write") {
+    const fathom::CompileResult result = fathom::compile_text("a.sdf", "shpere(1)\n");
+    CHECK_FALSE(result);
+    REQUIRE(result.diagnostics.size() == 1);
+    const fathom::Diagnostic &d = result.diagnostics[0];
+    CHECK(d.code == "unknown-name");
+    CHECK(d.severity == fathom::Severity::Error);
+    CHECK(d.at.file == "a.sdf");
+    CHECK((d.at.line == 1 && d.at.column == 1 && d.at.end_column == 7));
+    REQUIRE(d.edits.size() == 1);
+    CHECK(d.edits[0].replacement == "sphere");
+    CHECK((d.edits[0].at.begin == 0 && d.edits[0].at.end == 6));
+}
+
+TEST_CASE("a file that is not there is a diagnostic") {
+    const fathom::CompileResult result = fathom::compile_file("no such file.sdf");
+    CHECK_FALSE(result);
+    REQUIRE(result.diagnostics.size() == 1);
+    CHECK(result.diagnostics[0].code == "unreadable");
+    CHECK(result.diagnostics[0].at.line == 0);
+}
+
+TEST_CASE("a provider stands for the file system") {
+    std::vector<std::string> asked;
+    fathom::CompileOptions options;
+    options.files = [&](const std::string &path) -> std::optional<std::string> {
+        asked.push_back(path);
+        if (path == "parts/a.sdf") return "import \"b.sdf\"\nfn a() = b(2)\n";
+        if (path == "parts/b.sdf") return "fn b(r) = sphere(r)\n";
+        return std::nullopt;
+    };
+    const fathom::Scene scene = compiled("import \"parts/a.sdf\"\na()\n", options);
+    CHECK(at(field_of(scene), {3, 0, 0}) == 1);
+    CHECK(asked == std::vector<std::string>{"parts/a.sdf", "parts/b.sdf"});
+
+    const auto missing = fathom::compile_text("test.sdf", "import \"c.sdf\"\nsphere(1)\n", options);
+    CHECK_FALSE(missing);
+    asked.clear();
+    const auto outside =
+        fathom::compile_text("test.sdf", "import \"../c.sdf\"\nsphere(1)\n", options);
+    CHECK_FALSE(outside);
+    CHECK(asked.empty()); // not even asked for
+}
+
+TEST_CASE("params are read and set") {
+    const fathom::Scene scene = compiled("param r = 1 in 0.5..2\nparam n = 2 in 1..4\n"
+                                         "union { for i in 0..n { sphere(r).translate(x: 9*i) } }");
+    REQUIRE(scene.params().size() == 2);
+    CHECK(scene.params()[0].name == "r");
+    CHECK(scene.params()[0].ranged);
+    CHECK((scene.params()[0].lo[0] == 0.5 && scene.params()[0].hi[0] == 2));
+    CHECK(scene.params()[1].structural);
+
+    const fathom::CompileResult larger = scene.with({{"r", {2}}});
+    REQUIRE(larger);
+    CHECK(at(field_of(*larger.scene), {-3, 0, 0}) == 1);
+    CHECK(at(field_of(scene), {-3, 0, 0}) == 2); // the old one is as it was
+
+    const fathom::CompileResult more = larger.scene->with({{"n", {3}}});
+    REQUIRE(more);
+    CHECK(at(field_of(*more.scene), {18, 0, 0}) == -2);
+    CHECK(more.scene->params()[0].value[0] == 2); // and what was set stays set
+
+    for (const auto &[name, value] : std::map<std::string, std::vector<double>>{
+             {"q", {1}}, {"r", {3}}, {"r ", {1}}, {"n", {1.5}}}) {
+        const fathom::CompileResult refused = scene.with({{name, value}});
+        CHECK_FALSE(refused);
+        REQUIRE(refused.diagnostics.size() == 1);
+        CHECK(refused.diagnostics[0].code == "usage");
+    }
+    CHECK_FALSE(scene.with({{"r", {1, 2}}}));
+    CHECK_FALSE(scene.with({{"r", {std::nan("")}}}));
+}
+
+TEST_CASE("facts say what was proved") {
+    const fathom::Scene ball = compiled("sphere(1).translate(x: 1)");
+    CHECK(ball.facts().exact);
+    CHECK(ball.facts().status == fathom::Status::Proved);
+    CHECK(ball.facts().lipschitz == 1.0);
+    REQUIRE(ball.facts().bounds);
+    CHECK((ball.facts().bounds->lo[0] <= 0 && ball.facts().bounds->hi[0] >= 2));
+
+    const fathom::Scene wave = compiled("implicit(p => p.y - sin(3 * p.x))");
+    CHECK(*wave.facts().lipschitz > 3);
+    CHECK_FALSE(wave.facts().exact);
+    CHECK_FALSE(wave.facts().bounds);
+}
+
+TEST_CASE("distances, gradients and intervals agree") {
+    const fathom::Scene scene = compiled(
+        "smooth_union(0.3, sphere(1), box(1.5).rotate(30deg, axis: X)) - cylinder(0.3, 4)");
+    const fathom::Field field = field_of(scene);
+    const std::vector<fathom::Point> points = lattice(13, 2);
+    std::vector<float> values(points.size()), again(points.size());
+    std::vector<fathom::Point> gradients(points.size());
+    REQUIRE(field.distances(points, values));
+    REQUIRE(field.gradients(points, again, gradients));
+    CHECK(values == again);
+    for (const fathom::Point &g : gradients) CHECK(std::hypot(g[0], g[1], g[2]) < 1.0001f);
+
+    // A box about each point, and one about all: each holds what is found in it.
+    std::vector<fathom::Box> boxes;
+    for (const fathom::Point &p : points)
+        boxes.push_back(
+            {{p[0] - 0.1f, p[1] - 0.1f, p[2] - 0.1f}, {p[0] + 0.1f, p[1] + 0.1f, p[2] + 0.1f}});
+    boxes.push_back({{-2, -2, -2}, {2, 2, 2}});
+    std::vector<fathom::Interval> intervals(boxes.size());
+    REQUIRE(field.intervals(boxes, intervals));
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        CHECK((intervals[k].lo <= values[k] && values[k] <= intervals[k].hi));
+        CHECK((intervals.back().lo <= values[k] && values[k] <= intervals.back().hi));
+        CHECK(intervals[k].hi - intervals[k].lo < 2);
+    }
+}
+
+TEST_CASE("spans of unlike lengths compute what all hold") {
+    const fathom::Field field = field_of(compiled("sphere(1)"));
+    const std::vector<fathom::Point> points{{2, 0, 0}, {3, 0, 0}, {4, 0, 0}};
+    std::vector<float> two(2, -9);
+    REQUIRE(field.distances(points, two));
+    CHECK(two == std::vector<float>{1, 2});
+    std::vector<float> none;
+    CHECK(field.distances(points, none));
+    CHECK(field.distances({}, two));
+}
+
+TEST_CASE("threads share a scene and a field") {
+    const fathom::Scene scene = compiled("sphere(1).displace(p => 0.1 * sin(5 * p.x + time))");
+    const fathom::Field field = field_of(scene, 0.5);
+    const std::vector<fathom::Point> points = lattice(12, 2);
+    std::vector<float> alone(points.size());
+    REQUIRE(field.distances(points, alone));
+    std::vector<std::vector<float>> found(8, std::vector<float>(points.size()));
+    std::vector<std::thread> threads;
+    for (std::vector<float> &values : found)
+        threads.emplace_back([&] {
+            for (int turn = 0; turn < 20; ++turn) field.distances(points, values);
+        });
+    for (std::thread &thread : threads) thread.join();
+    for (const std::vector<float> &values : found) CHECK(values == alone);
+}
+
+TEST_CASE("every target makes a shader, and tells its uniforms") {
+    const fathom::Scene scene = compiled("param r = 1 in 0.5..2\nsphere(r)");
+    const std::vector<std::string> targets = fathom::shader_targets();
+    CHECK(targets.size() > 3);
+    for (const std::string &target : targets) {
+        INFO(target);
+        fathom::ShaderOptions options;
+        options.target = target;
+        std::vector<fathom::Diagnostic> said;
+        const auto shader = fathom::make_shader(scene, options, &said);
+        REQUIRE(shader);
+        CHECK(shader->text.empty() != shader->words.empty());
+    }
+    const auto shader = fathom::make_shader(scene);
+    REQUIRE(shader);
+    REQUIRE(shader->uniforms.size() == 1);
+    CHECK(shader->uniforms[0].param == "r");
+    CHECK(shader->text.find(shader->uniforms[0].name) != std::string::npos);
+
+    fathom::ShaderOptions options;
+    options.target = "glsl999";
+    std::vector<fathom::Diagnostic> said;
+    CHECK_FALSE(fathom::make_shader(scene, options, &said));
+    REQUIRE(said.size() == 1);
+    CHECK(said[0].code == "usage");
+}
+
+TEST_CASE("a picture is drawn, and can be given up") {
+    const fathom::Scene scene = compiled("sphere(1).paint(#ff0000)\nbackground(#000000)");
+    fathom::PictureOptions options;
+    options.width = 40;
+    options.height = 30;
+    const fathom::Picture picture = fathom::draw(scene, options);
+    REQUIRE(picture.complete);
+    REQUIRE(picture.rgba.size() == std::size_t{4} * 40 * 30);
+    const std::size_t middle = 4 * (15 * 40 + 20);
+    CHECK(picture.rgba[middle] > 50);
+    CHECK(picture.rgba[middle + 1] < picture.rgba[middle]);
+    CHECK(picture.rgba[0] == 0);
+
+    options.progress = [](double) { return false; };
+    options.samples = 4;
+    CHECK_FALSE(fathom::draw(scene, options).complete);
+    options.width = 0;
+    CHECK_FALSE(fathom::draw(scene, options).complete);
+}
+
+TEST_CASE("the save format goes out and comes back") {
+    const fathom::Scene scene = compiled("box([1, 2, 3]).translate(x: 1)");
+    std::vector<fathom::Diagnostic> said;
+    const std::string yaml = fathom::export_yaml(scene, &said);
+    CHECK(said.empty());
+    const fathom::CompileResult back = fathom::compile_text("back.yaml", yaml);
+    REQUIRE(back);
+    const fathom::Field one = field_of(scene), two = field_of(*back.scene);
+    for (const fathom::Point &p : lattice(5, 3))
+        CHECK(at(one, p) == Approx(at(two, p)).margin(1e-6));
+    const fathom::Imported broken = fathom::import_yaml("b.yaml", "{[");
+    CHECK_FALSE(broken.complete);
+    CHECK_FALSE(broken.diagnostics.empty());
+}
+
+TEST_CASE("texts are formatted") {
+    CHECK(fathom::format_text("sphere( 1 )") == "sphere(1)\n");
+    CHECK_FALSE(fathom::format_text("sphere("));
+}
+
+TEST_CASE("public headers see only themselves and the standard library") {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::path(FATHOM_SOURCE_DIR) / "include/fathom";
+    int counted = 0;
+    for (const fs::directory_entry &entry : fs::directory_iterator(folder)) {
+        std::ifstream in(entry.path());
+        for (std::string line; std::getline(in, line);) {
+            if (line.rfind("#include", 0) != 0) continue;
+            ++counted;
+            INFO(entry.path() << ": " << line);
+            const std::string name =
+                line.substr(line.find('<') + 1, line.find('>') - line.find('<') - 1);
+            CHECK(line.find('"') == line.npos);
+            CHECK((name.rfind("fathom/", 0) == 0 || name.find('/') == name.npos));
+            if (name.rfind("fathom/", 0) == 0) CHECK(fs::exists(folder.parent_path() / name));
+        }
+    }
+    CHECK(counted > 20);
+}
