@@ -76,16 +76,17 @@ typecheck::Options check_options(const CompileOptions &options) {
 void run_phases(Compilation &out, const typecheck::Loader &loader, const std::string &identity,
                 SourceId root, const CompileOptions &options) {
     enter(options, Phase::Check);
-    typecheck::Checked checked =
-        typecheck::check(out.sources, root, identity, standard_library(), loader,
-                         check_options(options), out.diagnostics);
+    typecheck::Checked checked = typecheck::check(out.sources, root, identity, standard_library(),
+                                                  loader, check_options(options), out.diagnostics);
     out.scene = std::move(checked.scene);
     out.usage_errors = std::move(checked.usage_errors);
     out.names = std::move(checked.names);
     out.evaluations = checked.evaluations;
     // What checked is proved also where other statements did not: all errors in one run.
     enter(options, Phase::Prove);
-    proof::prove(out.scene, out.diagnostics);
+    proof::Options proof;
+    if (options.times) proof.times = ir::Interval(options.times->first, options.times->second);
+    proof::prove(out.scene, out.diagnostics, proof);
     if (out.good()) {
         enter(options, Phase::Lower);
         if (options.parts)
@@ -126,14 +127,15 @@ bool note_unusable(const Compilation &out, SourceId text, const save::ImportResu
     return more;
 }
 
-constexpr std::size_t most_asked = std::size_t{4} << 20; // bytes of a save file that is compiled
-constexpr int most_attempts = 32; // at a save file, each without the parts refused before
+constexpr std::size_t max_compiled_bytes = std::size_t{4}
+                                           << 20; // bytes of a save file that is compiled
+constexpr int max_attempts = 32; // at a save file, each without the parts refused before
 
 // The text of a save file, compiled; with those parts left out that no compiler takes, so that the
 // others are not lost with them.
 Compilation compile_imported(const std::string &name, const std::string &text,
-                             const typecheck::Loader &loader, const std::string &identity, save::ImportOptions &import,
-                             const CompileOptions &options) {
+                             const typecheck::Loader &loader, const std::string &identity,
+                             save::ImportOptions &import, const CompileOptions &options) {
     for (int attempt = 1;; ++attempt) {
         Compilation out;
         const SourceId save_file = out.sources.add(name, text);
@@ -142,7 +144,7 @@ Compilation compile_imported(const std::string &name, const std::string &text,
         const SourceId root =
             out.sources.add(name + " (imported)", std::move(result.sdf), save_file);
         run_phases(out, loader, identity, root, options);
-        if (result.structural_error || attempt == most_attempts ||
+        if (result.structural_error || attempt == max_attempts ||
             !note_unusable(out, root, result, import.unusable))
             return out;
     }
@@ -166,7 +168,7 @@ Compilation compile_source(const std::string &name, std::string text,
 
 void leave_out_unusable(const std::string &name, const std::string &text,
                         const std::filesystem::path &scene, save::ImportOptions &import) {
-    if (text.size() > most_asked) return;
+    if (text.size() > max_compiled_bytes) return;
     SceneFiles files(scene.parent_path(), {});
     const std::string identity = files.add_root(scene);
     compile_imported(name, text, files.loader(), identity, import, {});
