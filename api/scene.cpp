@@ -87,6 +87,9 @@ CompileResult result_of(driver::Compilation compilation, std::shared_ptr<const O
                                                compilation.unreadable)));
     for (const std::string &error : compilation.usage_errors)
         result.diagnostics.push_back(sentence("usage", error));
+    for (const typecheck::NameFact &name : compilation.names)
+        result.names.push_back(
+            {name.name, name.type, place_of(name.declared, compilation.sources)});
     if (!compilation.good()) return result;
     auto impl = std::make_shared<Scene::Impl>();
     impl->origin = std::move(origin);
@@ -278,6 +281,19 @@ std::optional<std::string> format_text(std::string_view text) {
             return lang::format(sources, ast);
         },
         [](const Diagnostic &) { return std::optional<std::string>(); });
+}
+
+std::vector<LibraryEntry> library_entries() {
+    return guarded(
+        [] {
+            std::vector<LibraryEntry> entries;
+            for (typecheck::LibraryEntry &entry :
+                 typecheck::library_entries(driver::standard_library()))
+                entries.push_back({std::move(entry.name), std::move(entry.signature),
+                                   std::move(entry.doc), std::move(entry.module)});
+            return entries;
+        },
+        [](const Diagnostic &) { return std::vector<LibraryEntry>(); });
 }
 
 std::string_view version() { return FATHOM_VERSION; }

@@ -193,6 +193,7 @@ struct Reader {
     FmtCommand fmt;
     DocCommand doc;
     ExplainCommand explain;
+    LspCommand lsp;
     BenchCommand bench;
     std::string help_about;
     CLI::App *help = nullptr;
@@ -347,6 +348,8 @@ struct Reader {
 
         sub = command("explain", "print a diagnostic's page", explain);
         sub->add_option("CODE", explain.code, "left out: list all codes")->type_name("");
+
+        command("lsp", "serve an editor over standard input and output", lsp);
 
         sub = command("bench", "measure the phases and a frame of a scene", bench);
         add_scene(sub, bench.scene, Read::Again);

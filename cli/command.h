@@ -97,6 +97,8 @@ struct DocCommand {
 struct ExplainCommand {
     std::string code;
 }; // empty: the list of all
+// `fathom lsp`.
+struct LspCommand {};
 // `fathom bench`.
 struct BenchCommand {
     SceneArguments scene;
@@ -109,7 +111,7 @@ struct BenchCommand {
 
 using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, EvalCommand, ViewCommand,
                              ImportCommand, ExportCommand, FmtCommand, DocCommand, ExplainCommand,
-                             BenchCommand>;
+                             LspCommand, BenchCommand>;
 
 // A command with the options that all commands share.
 struct Invocation {
@@ -137,6 +139,7 @@ Exit run(const ImportCommand &, Terminal &);
 Exit run(const ExportCommand &, Terminal &);
 Exit run(const FmtCommand &, Terminal &);
 Exit run(const DocCommand &, Terminal &);
+Exit run(const LspCommand &, Terminal &);
 Exit run(const ExplainCommand &, Terminal &);
 Exit run(const BenchCommand &, Terminal &);
 

@@ -26,44 +26,41 @@
 #include <string>
 #include <vector>
 
-namespace fathom {
-FATHOM_V1 {
+namespace fathom::FATHOM_V1 {
 
-    enum class Severity { Error, Warning, Note };
+enum class Severity { Error, Warning, Note };
 
-    /** A stretch of a text. Lines and columns count from 1, columns count Unicode code points; the end
+/** A stretch of a text. Lines and columns count from 1, columns count Unicode code points; the end
  *  is one past the last code point. Offsets are bytes. `line` is 0 where there is no place. */
-    struct Place {
-        std::string file;
-        int line = 0, column = 0, end_line = 0, end_column = 0;
-        std::size_t begin = 0, end = 0;
-    };
+struct Place {
+    std::string file;
+    int line = 0, column = 0, end_line = 0, end_column = 0;
+    std::size_t begin = 0, end = 0;
+};
 
-    /** A second place that a diagnostic points at, and what is there. */
-    struct Label {
-        Place at;
-        std::string message;
-    };
+/** A second place that a diagnostic points at, and what is there. */
+struct Label {
+    Place at;
+    std::string message;
+};
 
-    /** A replacement of a stretch of text; an insertion where the stretch is empty. */
-    struct Edit {
-        Place at;
-        std::string replacement;
-    };
+/** A replacement of a stretch of text; an insertion where the stretch is empty. */
+struct Edit {
+    Place at;
+    std::string replacement;
+};
 
-    /** One thing that is to be said. `code` is a name such as `unknown-name`, explained by
+/** One thing that is to be said. `code` is a name such as `unknown-name`, explained by
  *  `fathom explain CODE`; it does not change from version to version. */
-    struct Diagnostic {
-        Severity severity = Severity::Error;
-        std::string code;
-        std::string message; /**< lower case, no full stop, code in backticks */
-        Place at;
-        std::vector<Label> related;
-        std::vector<std::string> notes;
-        std::string help; /**< what to do; may be empty */
-        std::vector<Edit>
-            edits; /**< to be applied together; empty where no edit is known to help */
-    };
+struct Diagnostic {
+    Severity severity = Severity::Error;
+    std::string code;
+    std::string message; /**< lower case, no full stop, code in backticks */
+    Place at;
+    std::vector<Label> related;
+    std::vector<std::string> notes;
+    std::string help;        /**< what to do; may be empty */
+    std::vector<Edit> edits; /**< to be applied together; empty where no edit is known to help */
+};
 
-} // namespace v1
-} // namespace fathom
+} // namespace fathom::FATHOM_V1

@@ -10,7 +10,7 @@
 // All names lie in fathom::v1 and are written fathom::NAME. A change that would break a program
 // that uses them comes as v2.
 #ifdef FATHOM_BUILDS_ITSELF
-#define FATHOM_V1 namespace v1
+#define FATHOM_V1 v1
 #else
-#define FATHOM_V1 inline namespace v1
+#define FATHOM_V1 inline v1
 #endif

@@ -24,43 +24,41 @@
 
 #include <span>
 
-namespace fathom {
-FATHOM_V1 {
+namespace fathom::FATHOM_V1 {
 
-    /** All numbers from `lo` to `hi`; infinite ends where nothing is known. */
-    struct Interval {
-        float lo = 0, hi = 0;
-    };
+/** All numbers from `lo` to `hi`; infinite ends where nothing is known. */
+struct Interval {
+    float lo = 0, hi = 0;
+};
 
-    /** The marched distance of a scene at one time: negative inside, |d| never more than the distance
+/** The marched distance of a scene at one time: negative inside, |d| never more than the distance
  *  to the surface as far as the facts' status says. It is the field divided by its bound, so it may
  *  be less where the facts say that the field is not exact.
  *
  *  Values are those of single precision and the same on every machine. A Field is a value; any
  *  number of threads may evaluate one. As many values are computed as the shortest of a call's spans
  *  holds. A call gives false, and leaves the values as they are, only where there is no memory. */
-    class FATHOM_API Field {
-      public:
-        bool distances(std::span<const Point> points, std::span<float> distances) const noexcept;
+class FATHOM_API Field {
+  public:
+    bool distances(std::span<const Point> points, std::span<float> distances) const noexcept;
 
-        /** The distance and its gradient; at a kink, one of the sides' gradients. */
-        bool gradients(std::span<const Point> points, std::span<float> distances,
-                       std::span<Point> gradients) const noexcept;
+    /** The distance and its gradient; at a kink, one of the sides' gradients. */
+    bool gradients(std::span<const Point> points, std::span<float> distances,
+                   std::span<Point> gradients) const noexcept;
 
-        /** What the distance lies within over each box: an enclosure, not the least one. It holds every
+    /** What the distance lies within over each box: an enclosure, not the least one. It holds every
      *  value that `distances` gives at points of the box. The boxes are finite. */
-        bool intervals(std::span<const Box> boxes, std::span<Interval> intervals) const noexcept;
+    bool intervals(std::span<const Box> boxes, std::span<Interval> intervals) const noexcept;
 
-        struct Impl;
-        explicit Field(std::shared_ptr<const Impl> impl); // of the library's own use
+    struct Impl;
+    explicit Field(std::shared_ptr<const Impl> impl); // of the library's own use
 
-      private:
-        std::shared_ptr<const Impl> impl_;
-    };
+  private:
+    std::shared_ptr<const Impl> impl_;
+};
 
-    /** The field of a scene with the params' present values. `time`: seconds, in [0, Facts::time_end].
+/** The field of a scene with the params' present values. `time`: seconds, in [0, Facts::time_end].
  *  Nothing where there is no memory for it. */
-    FATHOM_API std::optional<Field> make_field(const Scene &scene, double time = 0) noexcept;
+FATHOM_API std::optional<Field> make_field(const Scene &scene, double time = 0) noexcept;
 
-} // namespace v1
-} // namespace fathom
+} // namespace fathom::FATHOM_V1

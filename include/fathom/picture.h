@@ -23,28 +23,26 @@
 
 #include <cstdint>
 
-namespace fathom {
-FATHOM_V1 {
+namespace fathom::FATHOM_V1 {
 
-    struct PictureOptions {
-        int width = 640, height = 360; /**< pixels, 1 to 65,536 each */
-        int samples = 1;               /**< rays a pixel, at least 1 */
-        double time = 0;               /**< seconds, in [0, Facts::time_end] */
-        unsigned threads = 0;          /**< 0: as many as the machine has cores */
-        /** Called now and then by one thread at a time, with the share that is done; false cancels. */
-        std::function<bool(double done)> progress;
-    };
+struct PictureOptions {
+    int width = 640, height = 360; /**< pixels, 1 to 65,536 each */
+    int samples = 1;               /**< rays a pixel, at least 1 */
+    double time = 0;               /**< seconds, in [0, Facts::time_end] */
+    unsigned threads = 0;          /**< 0: as many as the machine has cores */
+    /** Called now and then by one thread at a time, with the share that is done; false cancels. */
+    std::function<bool(double done)> progress;
+};
 
-    /** `rgba`: rows from the top, 8 bits a channel, sRGB. Without memory for it, or after a
+/** `rgba`: rows from the top, 8 bits a channel, sRGB. Without memory for it, or after a
  *  cancellation, `complete` is false and what is missing is 0. */
-    struct Picture {
-        int width = 0, height = 0;
-        std::vector<std::uint8_t> rgba;
-        bool complete = false;
-    };
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+    bool complete = false;
+};
 
-    /** From the scene's camera, or framed where it has none. */
-    FATHOM_API Picture draw(const Scene &scene, const PictureOptions &options = {});
+/** From the scene's camera, or framed where it has none. */
+FATHOM_API Picture draw(const Scene &scene, const PictureOptions &options = {});
 
-} // namespace v1
-} // namespace fathom
+} // namespace fathom::FATHOM_V1

@@ -19,22 +19,19 @@
 
 #include <fathom/scene.h>
 
-namespace fathom {
-FATHOM_V1 {
+namespace fathom::FATHOM_V1 {
 
-    struct Imported {
-        std::string text;      /**< of the language; what could be read, where it is not complete */
-        bool complete = false; /**< the file's structure was sound */
-        std::vector<Diagnostic> diagnostics;
-    };
+struct Imported {
+    std::string text;      /**< of the language; what could be read, where it is not complete */
+    bool complete = false; /**< the file's structure was sound */
+    std::vector<Diagnostic> diagnostics;
+};
 
-    /** `strict`: what is wrong in the content is an error instead of a warning. */
-    FATHOM_API Imported import_yaml(std::string_view name, std::string_view yaml,
-                                    bool strict = false);
+/** `strict`: what is wrong in the content is an error instead of a warning. */
+FATHOM_API Imported import_yaml(std::string_view name, std::string_view yaml, bool strict = false);
 
-    /** The scene at the present values of its params and at time 0. */
-    FATHOM_API std::string export_yaml(const Scene &scene,
-                                       std::vector<Diagnostic> *diagnostics = nullptr);
+/** The scene at the present values of its params and at time 0. */
+FATHOM_API std::string export_yaml(const Scene &scene,
+                                   std::vector<Diagnostic> *diagnostics = nullptr);
 
-} // namespace v1
-} // namespace fathom
+} // namespace fathom::FATHOM_V1

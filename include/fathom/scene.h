@@ -35,107 +35,119 @@
 #include <string_view>
 #include <vector>
 
-namespace fathom {
-FATHOM_V1 {
+namespace fathom::FATHOM_V1 {
 
-    using Point = std::array<float, 3>;
+using Point = std::array<float, 3>;
 
-    /** An axis-aligned box. Its ends may be infinite. */
-    struct Box {
-        Point lo{}, hi{};
-    };
+/** An axis-aligned box. Its ends may be infinite. */
+struct Box {
+    Point lo{}, hi{};
+};
 
-    /** A `param` of a scene. Unused components are 0; truths are 0 and 1. */
-    struct Param {
-        enum class Type { Bool, Int, Float, Vec2, Vec3, Vec4 };
-        std::string name, label;
-        Type type = Type::Float;
-        bool color = false;      /**< a Vec3 that is a linear colour */
-        bool ranged = false;     /**< `lo` and `hi` are given; else they are infinite */
-        bool structural = false; /**< it decides what shapes there are: setting it compiles anew */
-        std::array<double, 4> value{}, initial{}, lo{}, hi{};
-    };
+/** A `param` of a scene. Unused components are 0; truths are 0 and 1. */
+struct Param {
+    enum class Type { Bool, Int, Float, Vec2, Vec3, Vec4 };
+    std::string name, label;
+    Type type = Type::Float;
+    bool color = false;      /**< a Vec3 that is a linear colour */
+    bool ranged = false;     /**< `lo` and `hi` are given; else they are infinite */
+    bool structural = false; /**< it decides what shapes there are: setting it compiles anew */
+    std::array<double, 4> value{}, initial{}, lo{}, hi{};
+};
 
-    /** How sure a bound is: derived by rule, stated by the scene's author (`within:`, `lipschitz:`), or
+/** How sure a bound is: derived by rule, stated by the scene's author (`within:`, `lipschitz:`), or
  *  estimated from samples (`estimate:`). */
-    enum class Status { Proved, Assumed, Estimated };
+enum class Status { Proved, Assumed, Estimated };
 
-    /** What is known of one top-level shape. */
-    struct ShapeFacts {
-        Place at;
-        double lipschitz = 0; /**< of its field as written, before it is divided by the bound */
-        Status status = Status::Proved;
-        bool exact = false; /**< |f(p)| is the distance to the surface; else it never exceeds it */
-    };
+/** What is known of one top-level shape. */
+struct ShapeFacts {
+    Place at;
+    double lipschitz = 0; /**< of its field as written, before it is divided by the bound */
+    Status status = Status::Proved;
+    bool exact = false; /**< |f(p)| is the distance to the surface; else it never exceeds it */
+};
 
-    /** What is known of a scene, for all values of its params and all times that it covers. */
-    struct Facts {
-        std::optional<double> lipschitz; /**< the largest of the shapes'; none without a shape */
-        Status status = Status::Proved;  /**< the least sure of the shapes' */
-        bool exact = false;              /**< all shapes are */
-        std::optional<Box> bounds;       /**< holds all solids; none where one has no end */
-        double time_end = 0; /**< the facts hold for times in [0, time_end], in seconds */
-        std::vector<ShapeFacts> shapes;
-    };
+/** What is known of a scene, for all values of its params and all times that it covers. */
+struct Facts {
+    std::optional<double> lipschitz; /**< the largest of the shapes'; none without a shape */
+    Status status = Status::Proved;  /**< the least sure of the shapes' */
+    bool exact = false;              /**< all shapes are */
+    std::optional<Box> bounds;       /**< holds all solids; none where one has no end */
+    double time_end = 0;             /**< the facts hold for times in [0, time_end], in seconds */
+    std::vector<ShapeFacts> shapes;
+};
 
-    /** The bytes of the file that a scene names (by import, image or grid), or nothing. `path` is
+/** The bytes of the file that a scene names (by import, image or grid), or nothing. `path` is
  *  relative to the scene's text, with `/`, without `..`. */
-    using FileProvider = std::function<std::optional<std::string>(const std::string &path)>;
+using FileProvider = std::function<std::optional<std::string>(const std::string &path)>;
 
-    struct CompileOptions {
-        /** Folders where imports are looked for, after the scene's own. */
-        std::vector<std::filesystem::path> include_folders;
-        /** Params set by expressions of the language, as `-D name=text` does. */
-        std::map<std::string, std::string> definitions;
-        /** Where named files come from. None: the file system. With one, no file is opened. */
-        FileProvider files;
-    };
+struct CompileOptions {
+    /** Folders where imports are looked for, after the scene's own. */
+    std::vector<std::filesystem::path> include_folders;
+    /** Params set by expressions of the language, as `-D name=text` does. */
+    std::map<std::string, std::string> definitions;
+    /** Where named files come from. None: the file system. With one, no file is opened. */
+    FileProvider files;
+};
 
-    struct CompileResult;
+struct CompileResult;
 
-    /** A scene that compiled. A value: copies share what never changes; any number of threads may use
+/** A scene that compiled. A value: copies share what never changes; any number of threads may use
  *  one. It takes as much memory as its expressions, images and grids. */
-    class FATHOM_API Scene {
-      public:
-        const std::vector<Param> &params() const;
-        const Facts &facts() const;
+class FATHOM_API Scene {
+  public:
+    const std::vector<Param> &params() const;
+    const Facts &facts() const;
 
-        /** The same scene with other values: by name, as many components as the param has. A name that
+    /** The same scene with other values: by name, as many components as the param has. A name that
      *  there is not, a value out of its range or no number is an error, with the code `usage`.
      *  Structural params compile the text again, and may fail as a compilation does. */
-        CompileResult with(const std::map<std::string, std::vector<double>> &values) const;
+    CompileResult with(const std::map<std::string, std::vector<double>> &values) const;
 
-        struct Impl;
-        explicit Scene(std::shared_ptr<const Impl> impl);
-        const Impl &impl() const { return *impl_; } // of the library's own use
+    struct Impl;
+    explicit Scene(std::shared_ptr<const Impl> impl);
+    const Impl &impl() const { return *impl_; } // of the library's own use
 
-      private:
-        std::shared_ptr<const Impl> impl_;
-    };
+  private:
+    std::shared_ptr<const Impl> impl_;
+};
 
-    /** `scene` is there if and only if no diagnostic is an error. */
-    struct CompileResult {
-        std::optional<Scene> scene;
-        std::vector<Diagnostic> diagnostics;      /**< by place */
-        std::vector<std::filesystem::path> files; /**< read or looked for: what to watch */
-        explicit operator bool() const { return scene.has_value(); }
-    };
+/** A name that the scene's own text declares, and what it stands for: "float", "shape", "function". */
+struct Name {
+    std::string name, type;
+    Place at;
+};
 
-    /** Compiles a `.sdf` file or a save file (`.yaml`, `.yml`). Never throws: a file that cannot be
+/** `scene` is there if and only if no diagnostic is an error. `names` are there in both cases. */
+struct CompileResult {
+    std::optional<Scene> scene;
+    std::vector<Name> names;                  /**< as declared */
+    std::vector<Diagnostic> diagnostics;      /**< by place */
+    std::vector<std::filesystem::path> files; /**< read or looked for: what to watch */
+    explicit operator bool() const { return scene.has_value(); }
+};
+
+/** Compiles a `.sdf` file or a save file (`.yaml`, `.yml`). Never throws: a file that cannot be
  *  read is a diagnostic (`unreadable`), and so is a lack of memory (`memory`). */
-    FATHOM_API CompileResult compile_file(const std::filesystem::path &file,
-                                          const CompileOptions &options = {});
+FATHOM_API CompileResult compile_file(const std::filesystem::path &file,
+                                      const CompileOptions &options = {});
 
-    /** Compiles text. `name` is what diagnostics call it; where it ends in `.yaml` or `.yml` the text
+/** Compiles text. `name` is what diagnostics call it; where it ends in `.yaml` or `.yml` the text
  *  is a save file. Imports are relative to the current folder unless `options.files` is given. */
-    FATHOM_API CompileResult compile_text(std::string_view name, std::string_view text,
-                                          const CompileOptions &options = {});
+FATHOM_API CompileResult compile_text(std::string_view name, std::string_view text,
+                                      const CompileOptions &options = {});
 
-    /** The text in the one form that `fathom fmt` gives it, or nothing where it cannot be parsed. */
-    FATHOM_API std::optional<std::string> format_text(std::string_view text);
+/** The text in the one form that `fathom fmt` gives it, or nothing where it cannot be parsed. */
+FATHOM_API std::optional<std::string> format_text(std::string_view text);
 
-    /** "0.1.0" */
-    FATHOM_API std::string_view version();
+/** A function of the standard library. A name may have several entries. */
+struct LibraryEntry {
+    std::string name, signature, doc;
+    std::string module; /**< to be imported; empty for what is visible everywhere */
+};
+FATHOM_API std::vector<LibraryEntry> library_entries();
 
-} // namespace v1
-} // namespace fathom
+/** "0.1.0" */
+FATHOM_API std::string_view version();
+
+} // namespace fathom::FATHOM_V1

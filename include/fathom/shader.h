@@ -25,53 +25,49 @@
 
 #include <cstdint>
 
-namespace fathom {
-FATHOM_V1 {
+namespace fathom::FATHOM_V1 {
 
-    /** The names of the targets, as `fathom compile --target` takes them. */
-    FATHOM_API std::vector<std::string> shader_targets();
+/** The names of the targets, as `fathom compile --target` takes them. */
+FATHOM_API std::vector<std::string> shader_targets();
 
-    struct ShaderOptions {
-        std::string target = "glsl330";
-        bool field_only = false;     /**< `float sdf(vec3)` and the material alone, no marcher */
-        bool buffers = false;        /**< large tables as a buffer (Shader::tables), not as text */
-        double time = 0;             /**< the moment of the camera, for targets without a host */
-        std::string title = "scene"; /**< of a page */
-    };
+struct ShaderOptions {
+    std::string target = "glsl330";
+    bool field_only = false;     /**< `float sdf(vec3)` and the material alone, no marcher */
+    bool buffers = false;        /**< large tables as a buffer (Shader::tables), not as text */
+    double time = 0;             /**< the moment of the camera, for targets without a host */
+    std::string title = "scene"; /**< of a page */
+};
 
-    /** A uniform of the text for a param of the scene. `location` is -1 unless the text gives one. */
-    struct Uniform {
-        std::string name, param;
-        Param::Type type = Param::Type::Float;
-        int location = -1;
-    };
+/** A uniform of the text for a param of the scene. `location` is -1 unless the text gives one. */
+struct Uniform {
+    std::string name, param;
+    Param::Type type = Param::Type::Float;
+    int location = -1;
+};
 
-    /** A texture that the host binds. Images are RGBA, linear, rows from the top; grids are distances,
+/** A texture that the host binds. Images are RGBA, linear, rows from the top; grids are distances,
  *  x the fastest. */
-    struct Texture {
-        std::string name;
-        bool grid = false;
-        int width = 0, height = 0, depth = 1;
-        std::vector<float> values; /**< 4 a pixel, 1 a sample of a grid */
-    };
+struct Texture {
+    std::string name;
+    bool grid = false;
+    int width = 0, height = 0, depth = 1;
+    std::vector<float> values; /**< 4 a pixel, 1 a sample of a grid */
+};
 
-    /** A checked shader. `text` is what docs/shaders.md describes; `words` is SPIR-V, for the target
+/** A checked shader. `text` is what docs/shaders.md describes; `words` is SPIR-V, for the target
  *  that is binary. */
-    struct Shader {
-        std::string text;
-        std::vector<std::uint32_t> words;
-        std::vector<Uniform> uniforms;
-        std::vector<Texture> textures;
-        std::vector<float>
-            tables; /**< RGBA32F texels of `fathom_tables`, where buffers were allowed */
-        bool reads_time = false;
-    };
+struct Shader {
+    std::string text;
+    std::vector<std::uint32_t> words;
+    std::vector<Uniform> uniforms;
+    std::vector<Texture> textures;
+    std::vector<float> tables; /**< RGBA32F texels of `fathom_tables`, where buffers were allowed */
+    bool reads_time = false;
+};
 
-    /** Nothing where the scene cannot be said in the target, or there is no such target; `diagnostics`,
+/** Nothing where the scene cannot be said in the target, or there is no such target; `diagnostics`,
  *  if given, then says why. */
-    FATHOM_API std::optional<Shader> make_shader(const Scene &scene,
-                                                 const ShaderOptions &options = {},
-                                                 std::vector<Diagnostic> *diagnostics = nullptr);
+FATHOM_API std::optional<Shader> make_shader(const Scene &scene, const ShaderOptions &options = {},
+                                             std::vector<Diagnostic> *diagnostics = nullptr);
 
-} // namespace v1
-} // namespace fathom
+} // namespace fathom::FATHOM_V1

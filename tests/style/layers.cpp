@@ -31,9 +31,10 @@ const std::map<std::string, Names> sees{
       "driver"}},
     {"render-gl", {"base", "ir", "backend-glsl"}},
     {"viewer", {"base", "ir", "backend-glsl", "save-format", "driver", "render-gl"}},
+    {"lsp", {}}, // the library's public headers alone
     {"cli",
      {"base", "lang", "ir", "proof", "typecheck", "backend-glsl", "backend-cpu", "save-format",
-      "driver", "render-gl", "viewer"}},
+      "driver", "render-gl", "viewer", "lsp"}},
 };
 
 // Foreign headers, by how their names begin, and the only folder (or file) that may see them.

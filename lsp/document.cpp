@@ -1,0 +1,111 @@
+#include "lsp/document.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace fathom::lsp {
+namespace {
+
+// Bytes of the UTF-8 character that begins at `at`, at least 1, within the text.
+std::size_t length_at(std::string_view text, std::size_t at) {
+    const auto byte = static_cast<unsigned char>(text[at]);
+    const std::size_t length = byte >= 0xf0 ? 4 : byte >= 0xe0 ? 3 : byte >= 0xc0 ? 2 : 1;
+    return std::min(length, text.size() - at);
+}
+
+int units(std::size_t length) { return length == 4 ? 2 : 1; } // of UTF-16
+
+bool in_name(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' ||
+           static_cast<unsigned char>(c) >= 0x80;
+}
+
+} // namespace
+
+std::size_t offset_at(std::string_view text, Position position) {
+    std::size_t at = 0;
+    for (int line = 0; line < position.line; ++line) {
+        const std::size_t end = text.find('\n', at);
+        if (end == text.npos) return text.size();
+        at = end + 1;
+    }
+    for (int unit = 0; unit < position.character && at < text.size() && text[at] != '\n';) {
+        const std::size_t length = length_at(text, at);
+        unit += units(length);
+        at += length;
+    }
+    return at;
+}
+
+Position position_at(std::string_view text, std::size_t offset) {
+    offset = std::min(offset, text.size());
+    const std::string_view before = text.substr(0, offset);
+    Position position;
+    position.line = static_cast<int>(std::ranges::count(before, '\n'));
+    const std::size_t line_end = before.rfind('\n');
+    for (std::size_t at = line_end == before.npos ? 0 : line_end + 1; at < offset;) {
+        const std::size_t length = length_at(text, at);
+        position.character += units(length);
+        at += length;
+    }
+    return position;
+}
+
+Range range_of(std::string_view text, std::size_t begin, std::size_t end) {
+    return {position_at(text, begin), position_at(text, end)};
+}
+
+Range range_of(const fathom::v1::Place &place) {
+    return {{std::max(place.line - 1, 0), std::max(place.column - 1, 0)},
+            {std::max(place.end_line - 1, 0), std::max(place.end_column - 1, 0)}};
+}
+
+Word word_at(std::string_view text, std::size_t offset) {
+    Word word{std::min(offset, text.size()), std::min(offset, text.size())};
+    while (word.begin > 0 && in_name(text[word.begin - 1])) --word.begin;
+    while (word.end < text.size() && in_name(text[word.end])) ++word.end;
+    word.method = word.begin > 0 && text[word.begin - 1] == '.';
+    return word;
+}
+
+std::string uri_of(const std::string &path) {
+    constexpr std::string_view digits = "0123456789ABCDEF", plain = "-._~/";
+    std::string uri = "file://";
+    for (char c : path) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x80 && (std::isalnum(byte) || plain.find(c) != plain.npos)) {
+            uri += c;
+        } else {
+            uri += '%';
+            uri += digits[byte >> 4];
+            uri += digits[byte & 15];
+        }
+    }
+    return uri;
+}
+
+std::string path_of(std::string_view uri) {
+    constexpr std::string_view scheme = "file://";
+    if (!uri.starts_with(scheme)) return "";
+    uri.remove_prefix(scheme.size());
+    uri.remove_prefix(std::min(uri.find('/'), uri.size())); // a host's name
+    const auto digit = [](char c) {
+        return c >= '0' && c <= '9'   ? c - '0'
+               : c >= 'a' && c <= 'f' ? c - 'a' + 10
+               : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                      : -1;
+    };
+    std::string path;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 &&
+            digit(uri[i + 2]) >= 0) {
+            path += static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2]));
+            i += 2;
+        } else {
+            path += uri[i];
+        }
+    }
+    return path;
+}
+
+} // namespace fathom::lsp

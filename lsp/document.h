@@ -1,0 +1,40 @@
+// An open text, and places in it: the protocol counts lines and UTF-16 units from 0, the library
+// bytes. Knows nothing of messages.
+#pragma once
+
+#include <fathom/scene.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace fathom::lsp {
+
+// A place as the protocol has it.
+struct Position {
+    int line = 0, character = 0;
+};
+struct Range {
+    Position start, end;
+};
+
+// The byte of a position; positions beyond a line's end are its end, beyond the text's its end.
+std::size_t offset_at(std::string_view text, Position position);
+// The position of a byte, which may be the text's end.
+Position position_at(std::string_view text, std::size_t offset);
+Range range_of(std::string_view text, std::size_t begin, std::size_t end);
+// A stretch of a text that is not at hand: exact where its lines hold no character beyond U+FFFF.
+Range range_of(const fathom::v1::Place &place);
+
+// The name (letters, digits, `_`) that a byte lies in or at the end of; empty where there is none.
+struct Word {
+    std::size_t begin = 0, end = 0;
+    bool method = false; // a dot stands before it
+};
+Word word_at(std::string_view text, std::size_t offset);
+
+// A path as a `file:` address, and back; empty where the address is no file's.
+std::string uri_of(const std::string &path);
+std::string path_of(std::string_view uri);
+
+} // namespace fathom::lsp

@@ -1,0 +1,1 @@
+set(libs fathom_lsp fathom_calls)
