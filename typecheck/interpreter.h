@@ -125,6 +125,7 @@ struct CallSite {
 struct BuiltinParameter {
     std::string name;
     bool optional = false;
+    bool lists = false; // of the rest: each is a list itself
 };
 struct Builtin {
     std::string name;
