@@ -19,7 +19,8 @@ using ir::rounding::up;
 void Prover::report_not_cached(ir::CacheId id) {
     const ir::Function &field = graph.function(graph.cache(id).field);
     const auto say = [&](const std::string &why) {
-        diagnostics.add(Code::NotCached, field.origin, "this field is computed all the same: " + why);
+        diagnostics.add(Code::NotCached, field.origin,
+                        "this field is computed all the same: " + why);
     };
     switch (ir::cached(scene, id)) {
     case ir::Cacheable::Yes: return;

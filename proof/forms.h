@@ -22,8 +22,32 @@ struct WaveParts {
 };
 std::optional<WaveParts> wave(ir::Graph &graph, NodeId id);
 
+// sqrt of a choice as the choice of the roots, so that each has a form of its own: of min, max,
+// `if`, plus what is the same for both, times a number.
+struct RootOfChoice {
+    NodeId choice; // of roots
+    NodeId from;   // the choice as it stood
+};
+std::optional<RootOfChoice> root_inward(ir::Graph &graph, NodeId id);
+
 // The parts of which the node is the length, a square root of a sum of squares.
 std::optional<std::vector<NodeId>> norm_parts(ir::Graph &graph, NodeId id);
+
+// x, m, lo and hi of x - m*clamp(round(x/m), lo, hi), lo and hi whole numbers.
+struct HeldWaveParts {
+    NodeId x, m, lo, hi;
+};
+std::optional<HeldWaveParts> held_wave(ir::Graph &graph, NodeId id);
+
+// k*fract(x) - k/2 as k*(fract(x) - 1/2).
+std::optional<NodeId> scaled_wave(ir::Graph &graph, NodeId id);
+
+// The parts of (x^n + y^n + …)^(1/n), n >= 2: n is even, or each part a size |x|.
+struct PNormParts {
+    std::vector<NodeId> parts;
+    NodeId power;
+};
+std::optional<PNormParts> p_norm(ir::Graph &graph, NodeId id);
 
 // v of |max(v, 0)| + min(max of all components of v, 0), as everyone writes a box.
 std::optional<NodeId> corner(ir::Graph &graph, NodeId id);

@@ -9,8 +9,8 @@
 
 namespace fathom::proof {
 
-using ir::rounding::single_least;
-using ir::rounding::single_most;
+using ir::rounding::max_single;
+using ir::rounding::min_single;
 
 inline Row scaled(Interval factor, const Row &row) {
     return {factor * row[0], factor * row[1], factor * row[2]};
@@ -72,6 +72,7 @@ struct Step {
     void odd_power();
     void wave();
     void sinc();
+    void held_wave();
     void absolute();
     void angle();
     void smoothstep();
@@ -108,6 +109,7 @@ struct Step {
     void transpose();
     void length();
     void corner();
+    void p_norm();
     void smooth();
     void log_sum();
     void dot();
@@ -160,6 +162,14 @@ struct Step {
             set(c, f(x), scaled(d, grad(0, c)));
         }
         finish(ir::rounding::times(most, norm(0)), any_odd);
+    }
+    bool may_jump(int arg) const { // of itself, so that it need not pass a choice's border
+        return norm(arg) == ir::rounding::infinity || any_odd;
+    }
+    bool is_one_value() const {
+        for (int c = 0; c < n; ++c)
+            if (!machine.value_[at + static_cast<std::uint32_t>(c)].is_point()) return false;
+        return true;
     }
     // Constant by pieces: fine where one piece holds the cell.
     template <class F> void stepped(F f) {

@@ -59,7 +59,7 @@ void Step::quotient() {
             set(c, x / y, none);
             continue;
         }
-        if (y.mignitude() < single_least) {
+        if (y.mignitude() < min_single) {
             singular = true;
             set(c, Interval::everything(), none);
             continue;
@@ -197,6 +197,26 @@ void Step::wave() {
     if (bad) return fail(Trouble::Jump);
     finish(norm(0), any_odd);
     machine.cause_[out] = in.node;
+}
+
+// x - m*clamp(round(x/m), lo, hi): from one whole number to the next it goes from m/2 to -m/2.
+void Step::held_wave() {
+    bool bad = norm(1) > 0 || norm(2) > 0 || norm(3) > 0;
+    for (int c = 0; c < n; ++c) {
+        const Interval x = value(0, c), m = value(1, c), lo = value(2, c), hi = value(3, c);
+        bad = bad || m.lo <= 0 || !lo.is_point() || !hi.is_point() || lo.lo > hi.lo || odd(0, c);
+        const Interval turns = min(max(floor(x / m + Interval(0.5)), lo), hi);
+        if (bad || (turns.is_point() && turns.finite())) {
+            set(c, bad ? Interval::everything() : x - m * turns, grad(0, c));
+            continue;
+        }
+        const Interval below = x - m * lo, above = x - m * hi;
+        set(c, {std::min(-m.hi / 2, below.lo), std::max(m.hi / 2, above.hi)}, grad(0, c),
+            !in.cancels && !zero(grad(0, c)));
+    }
+    if (bad) return fail(Trouble::Jump);
+    finish(norm(0), false);
+    if (machine.norm_[out] != infinity) machine.cause_[out] = in.node;
 }
 
 // |(sin x / x)'| <= 0.4362, values in [-0.2173, 1]

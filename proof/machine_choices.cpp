@@ -99,10 +99,8 @@ void Step::step_at() {
         Interval edge = value(0, c), x = value(1, c);
         return truth_of(x.lo < edge.hi, x.hi >= edge.lo);
     });
-    for (int c = 0; c < n; ++c)
-        if (!machine.value_[at + static_cast<std::uint32_t>(c)].is_point() &&
-            (norm(0) > 0 || norm(1) > 0))
-            return fail(Trouble::Jump);
+    const bool turns = in.cancels ? may_jump(0) || may_jump(1) : norm(0) > 0 || norm(1) > 0;
+    if (turns && !is_one_value()) fail(Trouble::Jump);
 }
 
 void Step::sign_of() {
@@ -111,6 +109,7 @@ void Step::sign_of() {
         auto sign = [](double y) { return y < 0 ? -1.0 : y > 0 ? 1.0 : 0.0; };
         return Interval(sign(x.lo), sign(x.hi));
     });
+    if (in.cancels && may_jump(0) && !is_one_value()) fail(Trouble::Jump);
 }
 
 void Step::floor_of() {
@@ -163,8 +162,12 @@ void Step::choose() {
     if (c.lo > 0.5) return machine.copy(in.args[1], out);
     if (c.hi < 0.5) return machine.copy(in.args[2], out);
     machine.copy(in.args[1], out);
-    const bool agree = norm(0) == 0 || (in.form == Form::Joined && norm(0) != infinity);
+    const bool meets = in.form == Form::Joined || in.form == Form::Opposite,
+               agree = norm(0) == 0 || (meets && norm(0) != infinity);
     machine.join(out, in.args[2], !agree, in.node);
+    if (in.form != Form::Opposite || norm(0) == 0) return;
+    for (int c = 0; c < n; ++c) machine.odd_[at + static_cast<std::uint32_t>(c)] = true;
+    machine.cause_[out] = in.node;
 }
 
 void Step::to_float() {

@@ -107,7 +107,7 @@ void Step::worley() {
 
 void Step::spot_noise() {
     double radius = std::max(value(1, 0).lo, 1e-6),
-           density = std::clamp(value(2, 0).hi, 0.0, double(ir::sem::spot_most));
+           density = std::clamp(value(2, 0).hi, 0.0, double(ir::sem::spot_maximum));
     double spots = std::ceil(density),
            scale = std::sqrt(std::max(std::clamp(value(2, 0).lo, 0.0, 8.0), 1.0));
     double slope = up(ir::sem::spot_slope * spots / (radius * scale), 8),

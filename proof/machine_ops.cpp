@@ -9,7 +9,9 @@ namespace fathom::proof {
 namespace {
 
 bool even_aware(const Instruction &i) {
-    if (i.form == Form::Norm || i.form == Form::Square || i.form == Form::Joined) return true;
+    if (i.form == Form::Norm || i.form == Form::Square || i.form == Form::Joined ||
+        i.form == Form::Opposite || i.form == Form::PNorm || i.form == Form::HeldWave)
+        return true;
     switch (ir::info(i.op).parity) {
     case ir::OpParity::Even:
     case ir::OpParity::Product:
@@ -43,7 +45,7 @@ void Machine::step(const Instruction &instruction) {
 bool Step::overflows() const {
     const auto large = [&](int arg) {
         for (int c = 0; c < size(arg); ++c)
-            if (value(arg, c).magnitude() > single_most) return true;
+            if (value(arg, c).magnitude() > max_single) return true;
         return false;
     };
     int many = 0;
@@ -54,7 +56,7 @@ bool Step::overflows() const {
             if (value(arg, c).mignitude() < 1) return false;
         return true;
     };
-    if (in.form != Form::Plain && in.form != Form::Joined) return true;
+    if (in.form != Form::Plain && in.form != Form::Joined && in.form != Form::Opposite) return true;
     constexpr ir::OpSet bear{Op::Neg,          Op::Abs,     Op::Min,       Op::Max,      Op::Union,
                              Op::Intersection, Op::Clamp,   Op::Exp,       Op::Exp2,     Op::Atan,
                              Op::Tanh,         Op::Less,    Op::LessEqual, Op::Select,   Op::Make,
@@ -175,8 +177,11 @@ void Step::run() {
     case Form::OddPower: return odd_power();
     case Form::Smooth: return smooth();
     case Form::LogSum: return log_sum();
+    case Form::PNorm: return p_norm();
+    case Form::HeldWave: return held_wave();
     case Form::Plain:
     case Form::Joined:
+    case Form::Opposite:
     case Form::Loop: break;
     }
     (this->*rule_of_op[in.op])();

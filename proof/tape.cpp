@@ -1,6 +1,7 @@
 // Flattening: nodes in schedule order, one scope a function body and a loop body.
 #include "proof/tape.h"
 
+#include "proof/borders.h"
 #include "proof/continuity.h"
 #include "proof/discontinuities.h"
 #include "proof/forms.h"
@@ -65,7 +66,7 @@ struct Flattener {
     Tape tape;
     std::vector<bool> varies; // by slot
     std::size_t count = 0;
-    std::unordered_set<NodeId> cancelling; // steps
+    std::unordered_set<NodeId> cancelling; // steps and choices
     std::unordered_set<NodeId> known_linear;
     Supports supports{tape};
 
@@ -90,7 +91,8 @@ struct Flattener {
         for (Slot s : instruction.args) instruction.varies = instruction.varies || varies[s];
         instruction.out = fresh(instruction.type, instruction.varies);
         Slot out = instruction.out;
-        if (instruction.op == Op::Make || instruction.form == Form::Norm)
+        if (instruction.op == Op::Make || instruction.form == Form::Norm ||
+            instruction.form == Form::PNorm)
             instruction.groups = supports.groups(instruction.args);
         supports.follow(instruction);
         tape.grows = tape.grows || grows(instruction.op);
@@ -207,7 +209,15 @@ struct Flattener {
             return loop_results.at(graph.arg(id, 0))[node.payload];
         case Look::Sum: return sum(scope, id, std::move(out));
         case Look::Root:
+            if (const auto inward = root_inward(graph, id)) {
+                if (cancelling.contains(inward->from)) cancelling.insert(inward->choice);
+                return slot(scope, inward->choice);
+            }
             if (auto parts = norm_parts(graph, id)) return emit(scope, out, Form::Norm, *parts);
+            if (auto parts = p_norm(graph, id)) {
+                parts->parts.push_back(parts->power);
+                return emit(scope, out, Form::PNorm, parts->parts);
+            }
             break;
         case Look::Length: return emit(scope, out, Form::Norm, {graph.arg(id, 0)});
         case Look::Product: return product(scope, id, std::move(out));
@@ -224,6 +234,12 @@ struct Flattener {
             for (NodeId arg : args_of(id)) out.cancels = out.cancels || cancelling.contains(arg);
             return emit(scope, out, Form::Wave, {parts->x, parts->m});
         }
+        if (const auto parts = held_wave(graph, id)) {
+            for (NodeId arg : args_of(id)) out.cancels = out.cancels || cancelling.contains(arg);
+            return emit(scope, out, Form::HeldWave, {parts->x, parts->m, parts->lo, parts->hi});
+        }
+        if (const auto scaled = scaled_wave(graph, id); scaled && *scaled != id)
+            return slot(scope, *scaled);
         if (const auto smooth = smooth_extremum(graph, id);
             smooth && !varies[slot(scope, smooth->k)] && !varies[slot(scope, smooth->divisor)]) {
             out.payload = (smooth->greater ? 1u : 0u) + (smooth->divides ? 2u : 0u) +
@@ -276,13 +292,19 @@ struct Flattener {
         for (NodeId a : args) out.args.push_back(slot(scope, a));
         if (!varies[out.args[0]]) {
             out.form = Form::Joined; // either arm, the same for all points
+        } else if (out.cancels) {
+            out.form = Form::Joined;
         } else {
             const auto [known, is_new] = context.joined.emplace(id, false);
             if (is_new) {
                 const bool agree = arms_agree(graph, args[0], args[1], args[2]);
                 context.joined[id] = agree;
             }
-            if (context.joined[id]) out.form = Form::Joined;
+            if (context.joined[id])
+                out.form = Form::Joined;
+            else if (out.type == ir::Type::Float &&
+                     arms_agree(graph, args[0], args[1], graph.neg(args[2])))
+                out.form = Form::Opposite;
         }
         return emit(scope, std::move(out));
     }
@@ -362,9 +384,11 @@ std::size_t Tape::length() const {
 
 Tape flatten(Flattening &context, NodeId root) {
     Flattener flattener(context);
-    if (has_steps(context.graph, root)) {
+    const bool steps = has_steps(context.graph, root), choices = has_choices(context.graph, root);
+    if (steps || choices) {
         const NodeId whole = written_out(context.graph, root);
-        flattener.cancelling = cancelling_steps(context.graph, whole);
+        if (steps) flattener.cancelling = cancelling_steps(context.graph, whole);
+        if (choices) flattener.cancelling.merge(meeting_choices(context, whole));
         if (!flattener.cancelling.empty()) root = whole;
     }
     Scope scope;
