@@ -72,23 +72,22 @@ Derived Prover::know_twist(ShapeId id, Derived k) {
     k.growth_rate *= std::sqrt(2.0);
     forget_moment_arms(k);
     k.fact.moment_arm[a] = moment_arm; // turning about the axis commutes with the twist
-    bool still = rate == Interval(0.0);
-    if (!still) k.fact.symmetric = {false, false, false};
-    if (!std::isfinite(arm) && !still && own_box(shape, k)) {
+    k.fact.symmetric = {false, false, false};
+    if (!std::isfinite(arm) && own_box(shape, k)) {
         arm = radius_about(padded(k.fact.bounds), axis);
         alone = true;
     }
-    if (!std::isfinite(arm) && !still) {
+    if (!std::isfinite(arm)) {
         needs_region(id, k,
                      "a twist of " + operation_name(scene, shape.children[0]) +
                          ", whose surface is not all near the axis, has no bound");
         return k;
     }
     arm *= options.rules[Rule::Twist];
-    double sup = up(l * sigma(rate.magnitude() * (still ? 0 : arm)));
+    double sup = up(l * sigma(rate.magnitude() * arm));
     // sigma(s) = (s + sqrt(s^2 + 4))/2, s = |rate| * arm: grows with |rate|, so a slider at 0
     // pays nothing.
-    NodeId s = graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(still ? 0 : arm));
+    NodeId s = graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(arm));
     NodeId root = graph.make(Op::Sqrt, {graph.add(graph.mul(s, s), graph.number(4))});
     NodeId formula = graph.mul(graph.mul(graph.add(s, root), graph.number(0.5 * (1 + slack))),
                                inner.fact.lipschitz);
@@ -116,23 +115,22 @@ Derived Prover::know_bend(ShapeId id, Derived k) {
     k.fact.round = radius_about(padded(inner.fact.bounds), third) * options.rules[Rule::Round];
     k.growth_rate *= std::sqrt(2.0);
     forget_moment_arms(k);
-    bool still = rate == Interval(0.0);
     for (std::size_t i = 0; i < 3; ++i)
-        if (i != t && !still) k.fact.symmetric[i] = false;
-    if (!std::isfinite(arm) && !still && own_box(shape, k)) {
+        if (i != t) k.fact.symmetric[i] = false;
+    if (!std::isfinite(arm) && own_box(shape, k)) {
         arm = radius_about(padded(k.fact.bounds), third);
         alone = true;
     }
-    if (!std::isfinite(arm) && !still) {
+    if (!std::isfinite(arm)) {
         needs_region(id, k,
                      "a bend of " + operation_name(scene, shape.children[0]) +
                          ", whose surface is not all near the axis, has no bound");
         return k;
     }
     arm *= options.rules[Rule::Bend];
-    double add = still ? 0 : up(rate.magnitude() * arm);
-    NodeId excess = graph.mul(graph.make(Op::Abs, {shape.args[2]}),
-                              graph.number(still ? 0 : arm * (1 + slack)));
+    double add = up(rate.magnitude() * arm);
+    NodeId excess =
+        graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(arm * (1 + slack)));
     NodeId formula = graph.mul(graph.add(graph.number(1), excess), inner.fact.lipschitz);
     if (alone && !k.failed)
         keep_local(k, up(l * up(1 + add)), formula);
@@ -155,8 +153,6 @@ Derived Prover::know_taper(ShapeId id, Derived k) {
                            ? up(std::max(std::fabs(ratio.lo - 1), std::fabs(ratio.hi - 1)) / length)
                            : infinity;
     double most = std::max(1.0, ratio.hi);
-    bool still = ratio == Interval(1.0);
-    if (still) steepness = 0;
     // What was turned about the same axis before is seen through: its points and surface points
     // turn alike, and the turn adds k m to the slope along the axis, |m| at most the moment arm.
     const Shape below = scene.shapes[shape.children[0]];
@@ -175,14 +171,10 @@ Derived Prover::know_taper(ShapeId id, Derived k) {
                 const Interval side = Interval(k.fact.bounds.lo[i], k.fact.bounds.hi[i]) * sections;
                 k.fact.bounds.lo[i] = side.lo, k.fact.bounds.hi[i] = side.hi;
             }
-    k.fact.symmetric[a] = k.fact.symmetric[a] && still;
+    k.fact.symmetric[a] = false;
     // {c f(x/c) < t} needs f < t/c.
     k.growth_rate = ratio.lo > 0 ? up(k.growth_rate * most / std::min(1.0, ratio.lo)) : infinity;
     forget_moment_arms(k);
-    if (still) {
-        if (!k.failed) set_lipschitz(k, inner.fact.lipschitz, l);
-        return k;
-    }
     if (!std::isfinite(steepness)) {
         needs_region(id, k, "a taper whose two ends are at the same height");
         return k;
@@ -285,6 +277,10 @@ Derived Prover::know_distort(ShapeId id, Derived k) {
 Derived Prover::know_deformed(ShapeId id) {
     const Shape shape = scene.shapes[id];
     Derived k = of_child(shape);
+    const bool turns = shape.map == MapKind::Twist || shape.map == MapKind::Bend;
+    if ((turns && number(shape.args[2]) == Interval(0.0)) ||
+        (shape.map == MapKind::Taper && number(shape.args[2]) == Interval(1.0)))
+        return k; // at these values it is its child
     k.fact.kind = k.fact.kind == FieldKind::Estimate ? FieldKind::Estimate : FieldKind::Bound;
     k.exact_outside = k.parts_exact = false;
     k.outer = Box::everything(), k.outer_growth_rate = 0;

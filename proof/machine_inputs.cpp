@@ -37,15 +37,8 @@ void Step::time() {
 }
 
 void Step::param() {
-    const ir::Param &param = machine.ranges_.scene->params[in.payload];
-    for (int c = 0; c < n; ++c) {
-        auto i = static_cast<std::size_t>(c);
-        Interval v = param.has_range             ? Interval(param.lo[i], param.hi[i])
-                     : in.type == ir::Type::Bool ? Interval(0, 1)
-                     : param.is_color            ? Interval(0, 1)
-                                                 : Interval::everything();
-        set(c, v, none);
-    }
+    for (int c = 0; c < n; ++c)
+        set(c, machine.ranges_.params[in.payload][static_cast<std::size_t>(c)], none);
     finish(0, false);
 }
 
