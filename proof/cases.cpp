@@ -117,6 +117,47 @@ std::optional<Sum> root_of_square(const Sum &a) {
     return {};
 }
 
+std::optional<std::pair<std::uint32_t, Sum>> solved_for_atom(const Sum &sum) {
+    for (const auto &[m, c] : sum) {
+        if (m.size() != 1 || is_small(Sum{{m, c}}, sum)) continue;
+        const std::uint32_t a = m[0];
+        bool elsewhere = false;
+        for (const auto &[k, x] : sum)
+            elsewhere = elsewhere || (k != m && std::find(k.begin(), k.end(), a) != k.end());
+        if (elsewhere) continue;
+        Sum is;
+        for (const auto &[k, x] : sum)
+            if (k != m) is[k] = -x / c;
+        return std::pair(a, is);
+    }
+    return {};
+}
+
+Sum with_atom(const Sum &sum, std::uint32_t a, const Sum &is) {
+    Sum out;
+    for (const auto &[m, k] : sum) {
+        Sum term = constant(k);
+        for (std::uint32_t f : m) {
+            const auto product = multiply(term, f == a ? is : atom(f));
+            if (!product) return sum;
+            term = *product;
+        }
+        out = add(out, term);
+    }
+    return out;
+}
+
+void add_to_key(std::vector<double> &key, const Sum &sum) {
+    key.push_back(double(sum.size()));
+    for (const auto &[m, c] : sum) {
+        key.push_back(double(m.size()));
+        for (std::uint32_t a : m) key.push_back(a);
+        int exponent = 0;
+        const double mantissa = std::frexp(c, &exponent);
+        key.push_back(std::ldexp(std::round(std::ldexp(mantissa, 22)), exponent - 22));
+    }
+}
+
 bool contradict(std::vector<Inequality> all, const std::vector<Product> &never_negative) {
     for (const Product &m : never_negative) all.push_back({Sum{{m, 1.0}}, false});
     for (Inequality &row : all)

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace fathom::proof {
@@ -26,6 +27,12 @@ bool is_small(const Sum &a, const Sum &beside); // no more than float32 rounding
 std::optional<double> as_constant(const Sum &a);
 // s with s*s = a, or nothing. Its sign is either.
 std::optional<Sum> root_of_square(const Sum &a);
+
+// An atom that stands in one term alone, and what it is where sum = 0.
+std::optional<std::pair<std::uint32_t, Sum>> solved_for_atom(const Sum &sum);
+Sum with_atom(const Sum &sum, std::uint32_t a, const Sum &is); // as it is where that gets too large
+// So that sums that are equal but for rounding have one key.
+void add_to_key(std::vector<double> &key, const Sum &sum);
 
 // a >= 0, or a > 0
 struct Inequality {

@@ -146,10 +146,21 @@ std::optional<Arms> arms_of(Graph &graph, NodeId sum, int depth) {
     return {};
 }
 
+// Is a choice of sums of squares, so that no root of it is singular?
+bool chooses_squares(Graph &graph, NodeId sum, int depth) {
+    std::vector<NodeId> parts;
+    if (squares(graph, sum, parts)) return true;
+    if (depth > 8) return false;
+    const auto arms = arms_of(graph, sum, 0);
+    return arms && chooses_squares(graph, arms->first, depth + 1) &&
+           chooses_squares(graph, arms->second, depth + 1);
+}
+
 } // namespace
 
 std::optional<RootOfChoice> root_inward(Graph &graph, NodeId id) {
     if (graph[id].op != Op::Sqrt || graph[id].type != ir::Type::Float) return {};
+    if (!chooses_squares(graph, graph.arg(id, 0), 0)) return {};
     const auto arms = arms_of(graph, graph.arg(id, 0), 0);
     if (!arms) return {};
     const ir::Node choice = graph[arms->choice];
@@ -296,7 +307,7 @@ std::optional<PNormParts> p_norm(Graph &graph, NodeId id) {
         if (term.exponent != n || !(even || graph[term.base].op == Op::Abs)) return {};
         out.parts.push_back(term.base);
     }
-    if (!(n > 2) || std::fabs(n * exponent - 1) > 1e-6) return {};
+    if (!(n > 2) || std::fabs(n * exponent - 1) > 2e-7) return {};
     out.power = graph.number(n);
     return out;
 }

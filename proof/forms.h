@@ -22,8 +22,8 @@ struct WaveParts {
 };
 std::optional<WaveParts> wave(ir::Graph &graph, NodeId id);
 
-// sqrt of a choice as the choice of the roots, so that each has a form of its own: of min, max,
-// `if`, plus what is the same for both, times a number.
+// sqrt of a choice of sums of squares as the choice of the roots, so that each is a length: of min,
+// max, `if`, plus what is the same for both, times a number.
 struct RootOfChoice {
     NodeId choice; // of roots
     NodeId from;   // the choice as it stood
