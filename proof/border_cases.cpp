@@ -1,9 +1,6 @@
-// On the border the expression is written with the choice on either side, as sums of products of
-// atoms, by cases: each `min`, `abs`, `clamp`, `if` that is met decides one way or the other, with
-// an inequality for it; lengths become roots, which are |s| where s*s is below them. The equation
-// of the border is solved for an atom. A case is done where both sides are equal, where
-// inequalities say that they are, or where they contradict each other (cases.h). What is none of
-// these functions is an atom, one for equal arguments.
+// Each `min`, `abs`, `clamp`, `if` that is met decides one way or the other, with an inequality for
+// it; lengths become roots, which are |s| where s*s is below them. A case is done where both sides
+// are equal, where inequalities say so, or where they contradict each other (cases.h).
 #include "proof/border_cases.h"
 
 #include "proof/cases.h"
@@ -63,6 +60,7 @@ class Cases {
     std::optional<int> side_;                    // of the choice, while one is evaluated
     std::optional<bool> turned_;                 // of the comparison
     std::map<std::pair<NodeId, int>, Sum> done_; // values under side_
+    std::map<std::pair<NodeId, NodeId>, bool> reads_;
     std::map<AtomKey, std::uint32_t> index_;
     std::vector<Atom> atoms_;
     int count_ = 0, depth_ = 0;
@@ -226,8 +224,21 @@ class Cases {
         return atom(atom_of(std::move(key), about));
     }
 
-    // The way that this case has gone at a node, or a fork.
+    bool reads(NodeId id, NodeId what) {
+        if (id == what) return true;
+        const auto it = reads_.find({id, what});
+        if (it != reads_.end()) return it->second;
+        bool out = false;
+        for (NodeId a : graph_.args(id)) out = out || reads(a, what);
+        return reads_[{id, what}] = out;
+    }
+
+    // The way that this case has gone at a node, or a fork. What depends on the choice, or on the
+    // truth of its comparison, goes its own way on each side. `use`: which of a node's questions.
+    enum Use { Own = 0, Sizes = 100, Roots = 200, Upper = 300, Lengths = 400, PerSide = 1000 };
     std::optional<int> way(NodeId id, int i, std::vector<std::vector<Sum>> ways) {
+        if (side_ && reads(id, claim_.choice)) i += PerSide * (1 + *side_);
+        if (turned_ && reads(id, claim_.comparison)) i += 10 * PerSide * (1 + *turned_);
         if (const auto it = case_.way.find({id, i}); it != case_.way.end()) return it->second;
         if (!fork_) fork_ = Fork{{id, i}, std::move(ways)};
         return {};
@@ -257,7 +268,7 @@ class Cases {
                 return add({}, reduced(atom(a), case_), std::fabs(c));
             }
         }
-        const auto w = way(id, 100 + i, {{x}, {add({}, x, -1)}});
+        const auto w = way(id, i, {{x}, {add({}, x, -1)}});
         if (!w) return {};
         return *w == 0 ? x : add({}, x, -1);
     }
@@ -270,7 +281,7 @@ class Cases {
         if (node.op == Op::Min || node.op == Op::Max) {
             const auto a = root(graph_.arg(below, 0), graph_.arg(below, 0), i),
                        b = a ? root(graph_.arg(below, 1), graph_.arg(below, 1), i) : std::nullopt;
-            return b ? lesser(below, 200 + i, *a, *b, node.op == Op::Min) : std::nullopt;
+            return b ? lesser(below, Roots + i, *a, *b, node.op == Op::Min) : std::nullopt;
         }
         if (node.op == Op::Swizzle)
             return root(at, graph_.arg(below, 0), ir::swizzle_component(node.payload, i));
@@ -285,7 +296,7 @@ class Cases {
     std::optional<Sum> root_of(NodeId at, const Sum &x, int i, bool of_squares) {
         if (const auto c = as_constant(x)) return constant(*c > 0 ? std::sqrt(*c) : 0);
         const Sum sum = squares_known(x);
-        if (const auto s = root_of_square(sum)) return size_of(at, 300 + i, *s);
+        if (const auto s = root_of_square(sum)) return size_of(at, Lengths + i, *s);
         Atom about;
         about.never_negative = true;
         if (of_squares) about.square = sum; // of less than 0 the root is 0
@@ -400,14 +411,14 @@ class Cases {
         if (op == Op::Add || op == Op::Sub) return add(a, b, op == Op::Add ? 1 : -1);
         if (op == Op::Mul) return times(a, b);
         if (op == Op::Min || op == Op::Max) return lesser(id, i, a, b, op == Op::Min);
-        if (op == Op::Abs) return size_of(id, i, a);
+        if (op == Op::Abs) return size_of(id, Sizes + i, a);
         if (op == Op::Div) {
             if (const auto d = as_constant(b); d && *d != 0) return add({}, a, 1 / *d);
             return unknown(id, i);
         }
         if (op == Op::Clamp) { // min(max(x, lo), hi)
             const auto low = lesser(id, i, a, b, false);
-            return low ? lesser(id, 400 + i, *low, c, true) : std::nullopt;
+            return low ? lesser(id, Upper + i, *low, c, true) : std::nullopt;
         }
         if (op == Op::Mix) {
             const auto by = times(c, add(b, a, -1));
