@@ -90,24 +90,7 @@ bool is_open(const Graph &graph, NodeId id) { // turns with the point, and is a 
             (node.type == ir::Type::Int && node.op == Op::Select));
 }
 
-} // namespace
-
-bool has_choices(const Graph &graph, NodeId root) {
-    std::vector<NodeId> todo{root};
-    std::unordered_set<NodeId> seen;
-    while (!todo.empty() && seen.size() <= 4 * max_nodes_of_field) {
-        const NodeId id = todo.back();
-        todo.pop_back();
-        if (!seen.insert(id).second) continue;
-        if (is_choice[graph[id].op]) return true;
-        if (graph[id].op == Op::Call)
-            todo.push_back(graph.function(ir::FunctionId{graph[id].payload}).result);
-        for (NodeId a : graph.args(id)) todo.push_back(a);
-    }
-    return false;
-}
-
-std::unordered_set<NodeId> meeting_choices(Flattening &context, NodeId root) {
+std::unordered_set<NodeId> find_choices(Flattening &context, NodeId root) {
     Graph &graph = context.graph;
     Field field{graph, {}, {}};
     look_at(field, root);
@@ -142,6 +125,29 @@ std::unordered_set<NodeId> meeting_choices(Flattening &context, NodeId root) {
         }
     }
     return out;
+}
+
+} // namespace
+
+bool has_choices(const Graph &graph, NodeId root) {
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty() && seen.size() <= 4 * max_nodes_of_field) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        if (is_choice[graph[id].op]) return true;
+        if (graph[id].op == Op::Call)
+            todo.push_back(graph.function(ir::FunctionId{graph[id].payload}).result);
+        for (NodeId a : graph.args(id)) todo.push_back(a);
+    }
+    return false;
+}
+
+std::unordered_set<NodeId> meeting_choices(Flattening &context, NodeId root) {
+    const auto known = context.meeting.find(root);
+    if (known != context.meeting.end()) return known->second;
+    return context.meeting[root] = find_choices(context, root);
 }
 
 } // namespace fathom::proof

@@ -81,12 +81,20 @@ std::optional<Sum> multiply(const Sum &a, const Sum &b) {
     return out;
 }
 
-bool is_small(const Sum &a, const Sum &beside) { return largest(a) <= granted * largest(beside); }
-
 std::optional<double> as_constant(const Sum &a) {
     if (a.empty()) return 0.0;
     if (a.size() == 1 && a.begin()->first.empty()) return a.begin()->second;
     return {};
+}
+
+bool is_small(const Sum &a, const Sum &beside) {
+    for (const auto &[m, c] : a) {
+        double like = 0; // of the same degree: beside 1e13 y^8 a jump by 5 is one
+        for (const auto &[k, x] : beside)
+            if (k.size() == m.size()) like = std::max(like, std::fabs(x));
+        if (std::fabs(c) > granted * like) return false;
+    }
+    return true;
 }
 
 // As on paper: the leading term's root, then term by term what twice that goes into the rest.

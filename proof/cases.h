@@ -23,7 +23,8 @@ Sum constant(double c);
 Sum atom(std::uint32_t a);
 Sum add(const Sum &a, const Sum &b, double times = 1);   // a + times*b
 std::optional<Sum> multiply(const Sum &a, const Sum &b); // nothing where it would be very large
-bool is_small(const Sum &a, const Sum &beside); // no more than float32 rounding of what `beside` is
+bool is_small(const Sum &a, const Sum &beside);          // term by term no more than float32
+    // rounding of the terms of that degree in `beside`
 std::optional<double> as_constant(const Sum &a);
 // s with s*s = a, or nothing. Its sign is either.
 std::optional<Sum> root_of_square(const Sum &a);

@@ -7,6 +7,7 @@
 #include "ir/interval.h"
 
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace fathom::proof {
@@ -77,6 +78,8 @@ struct Tape {
 struct Flattening {
     ir::Graph &graph;
     std::unordered_map<NodeId, bool> joined; // by Select, remembered over fields
+    // By field: the choices that it does not see turn (borders.h), asked once a field.
+    std::unordered_map<NodeId, std::unordered_set<NodeId>> meeting{};
     std::vector<bool> cached{}; // by cached field: known by its bounds alone (Ranges::caches)
 };
 
