@@ -384,7 +384,8 @@ std::size_t Tape::length() const {
 
 Tape flatten(Flattening &context, NodeId root) {
     Flattener flattener(context);
-    const bool steps = has_steps(context.graph, root), choices = has_choices(context.graph, root);
+    const bool steps = has_steps(context.graph, root),
+               choices = context.borders && has_choices(context.graph, root);
     if (steps || choices) {
         const NodeId whole = written_out(context.graph, root);
         if (steps) flattener.cancelling = cancelling_steps(context.graph, whole);

@@ -78,6 +78,8 @@ struct Tape {
 struct Flattening {
     ir::Graph &graph;
     std::unordered_map<NodeId, bool> joined; // by Select, remembered over fields
+    bool borders =
+        true; // are choices asked for whether the field sees them turn? Slopes depend on it
     // By field: the choices that it does not see turn (borders.h), asked once a field.
     std::unordered_map<NodeId, std::unordered_set<NodeId>> meeting{};
     std::vector<bool> cached{}; // by cached field: known by its bounds alone (Ranges::caches)
