@@ -157,9 +157,10 @@ double Prover::core_made(ShapeId id, int depth) {
 // dips deeper is as long as L says. M grows with D, so there is one least D.
 double Prover::curvature_of(ShapeId id, const Derived &k) {
     const Shape shape = scene.shapes[id];
-    if (shape.kind != ShapeKind::Displace || k.failed || local || !std::isfinite(inward))
+    if (shape.kind != ShapeKind::Displace || k.failed || k.fact.local ||
+        !std::isfinite(k.fact.inward))
         return infinity;
-    const double slope = k.fact.lipschitz_sup, room = core_of(shape.children[0]) - inward;
+    const double slope = k.fact.lipschitz_sup, room = core_of(shape.children[0]) - k.fact.inward;
     if (!(room > 0) || !std::isfinite(slope) || slope <= 1 + slack) return infinity;
     const double bent = bend(shape.args[0], place(id).box);
     if (!std::isfinite(bent)) return infinity;
@@ -173,7 +174,7 @@ double Prover::curvature_of(ShapeId id, const Derived &k) {
     const double most = up(at(high) * (1 + 1e-4)); // float32
     // Of use where the reach sqrt(2f/M) is more than f/L, up to f = 2 L^2/M, on a good part of the
     // way from the range shell to the surface.
-    const bool worth = 2 * slope * slope / most > 0.25 * (outward + inward);
+    const bool worth = 2 * slope * slope / most > 0.25 * (k.fact.outward + k.fact.inward);
     return worth ? most * options.rules[Rule::Curvature] : infinity;
 }
 

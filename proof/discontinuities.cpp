@@ -281,10 +281,23 @@ struct Border {
             moves = moves || graph.reads(args.back()).point ||
                     reads_little(part(moving, step, i, component, depth));
         }
+        if (!moves && graph[step].op == Op::Mod)
+            if (const auto parity = parity_of(args[0], args[1])) return *parity;
         if (!moves) return graph.make(graph[step].op, ir::Type::Float, args, graph[step].payload);
         const auto [it, fresh] = unknown.try_emplace(key);
         if (fresh) it->second = graph.fresh_var(ir::Type::Float);
         return it->second;
+    }
+    // (j K + n) % 2, j and n whole, by K % 2.
+    std::optional<NodeId> parity_of(NodeId count, NodeId two) {
+        const auto sum = combination(graph, count, std::array{whole});
+        if (!sum || graph.as_number(two) != 2.0) return {};
+        const double j = (*sum)[0], n = (*sum)[1];
+        if (std::floor(j) != j || std::floor(n) != n) return {};
+        const bool odd = std::fmod(n, 2) != 0;
+        if (std::fmod(j, 2) == 0) return graph.number(odd ? 1 : 0);
+        const NodeId rest = graph.make(Op::Mod, ir::Type::Float, std::array{whole, two});
+        return odd ? graph.sub(graph.number(1), rest) : rest;
     }
     bool reads_little(NodeId id) const {
         for (NodeId var : graph.free_vars(id))
@@ -338,7 +351,8 @@ std::vector<NodeId> reached(const Graph &graph, NodeId root, bool enter_calls) {
     return out;
 }
 
-// All that the body of a loop is made of, the loops in it included.
+} // namespace
+
 std::vector<NodeId> in_body(const Graph &graph, NodeId loop_node) {
     std::vector<NodeId> out;
     const ir::Loop loop = graph.loop(ir::LoopId{graph[loop_node].payload});
@@ -354,8 +368,6 @@ std::vector<NodeId> in_body(const Graph &graph, NodeId loop_node) {
         }
     return out;
 }
-
-} // namespace
 
 bool has_steps(const Graph &graph, NodeId root) {
     for (NodeId id : reached(graph, root, true))

@@ -6,6 +6,7 @@
 #include "ir/graph.h"
 
 #include <unordered_set>
+#include <vector>
 
 namespace fathom::proof {
 
@@ -16,6 +17,9 @@ std::unordered_set<ir::NodeId> cancelling_steps(ir::Graph &graph, ir::NodeId roo
 
 // Does the expression, its calls included, hold such a step?
 bool has_steps(const ir::Graph &graph, ir::NodeId root);
+
+// All that the body of a loop is made of, the loops in it included.
+std::vector<ir::NodeId> in_body(const ir::Graph &graph, ir::NodeId loop);
 
 // The same expression with every call replaced by its function's body; `root` itself where that
 // would be very large.

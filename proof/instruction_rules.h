@@ -1,5 +1,5 @@
 // One step of the machine in progress: what its rules read and write, and the shapes that many
-// rules share. For machine_ops.cpp and machine_vectors.cpp alone.
+// rules share. For machine*.cpp alone.
 #pragma once
 
 #include "proof/machine.h"
@@ -44,6 +44,62 @@ struct Step {
     bool overflows() const;
     double bend() const; // machine_bend.cpp
 
+    // -- inputs (machine_inputs.cpp)
+    void constant();
+    void point();
+    void unit_vector();
+    void time();
+    void param();
+    void variable();
+    void table_read();
+    void hash();
+    void perlin();
+    void simplex();
+    void value_noise();
+    void worley();
+    void spot_noise();
+    void sampled();
+    void cached();
+
+    // -- by component (machine_arithmetic.cpp)
+    void negate();
+    void add();
+    void product();
+    void quotient();
+    void remainder();
+    void power();
+    void squared();
+    void odd_power();
+    void wave();
+    void sinc();
+    void held_wave();
+    void absolute();
+    void angle();
+    void smoothstep();
+    template <auto function, auto slope> void of_one() { unary(function, slope); }
+
+    // -- choices (machine_choices.cpp)
+    void extreme();
+    void combine();
+    void blend();
+    void clamped();
+    void mixed();
+    void step_at();
+    void sign_of();
+    void floor_of();
+    void ceil_of();
+    void round_of();
+    void trunc_of();
+    void fraction();
+    void compare();
+    void both();
+    void either();
+    void opposite();
+    void choose();
+    void to_float();
+
+    void nothing(); // has no rule: no bound
+
     // -- what mixes components (machine_vectors.cpp)
     double together() const;
     void splat();
@@ -53,6 +109,7 @@ struct Step {
     void transpose();
     void length();
     void corner();
+    void p_norm();
     void smooth();
     void log_sum();
     void dot();
@@ -105,6 +162,14 @@ struct Step {
             set(c, f(x), scaled(d, grad(0, c)));
         }
         finish(ir::rounding::times(most, norm(0)), any_odd);
+    }
+    bool may_jump(int arg) const { // of itself, so that it need not pass a choice's border
+        return norm(arg) == ir::rounding::infinity || any_odd;
+    }
+    bool is_one_value() const {
+        for (int c = 0; c < n; ++c)
+            if (!machine.value_[at + static_cast<std::uint32_t>(c)].is_point()) return false;
+        return true;
     }
     // Constant by pieces: fine where one piece holds the cell.
     template <class F> void stepped(F f) {

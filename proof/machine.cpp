@@ -1,5 +1,5 @@
 // The machine's frame: ranges, norms, loops, what happens to trouble. The rules for the ops:
-// machine_ops.cpp and machine_vectors.cpp.
+// machine_ops.cpp and what it names.
 #include "proof/instruction_rules.h"
 
 #include <algorithm>

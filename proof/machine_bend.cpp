@@ -88,7 +88,10 @@ double Step::bend() const {
     case Form::OddPower:
     case Form::Smooth:
     case Form::LogSum:
+    case Form::PNorm:
+    case Form::HeldWave:
     case Form::Joined:
+    case Form::Opposite:
     case Form::Loop: return infinity;
     case Form::Plain: break;
     }

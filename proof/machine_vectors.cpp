@@ -74,6 +74,31 @@ void Step::transpose() {
 // h(v) = |v+| + min(max v, 0) grows with every component, and its gradient is w on the unit sphere,
 // 0 <= w, with weights only where a component is positive, or the greatest: so the slope is at most
 // the norm of those rows.
+// |v|_n, n >= 2: its gradient's weights w have |w|_q = 1 for the dual exponent q <= 2, so that
+// |w|_2 <= 1; the value lies between the greatest |v_i| and that times k^(1/n), k the components.
+void Step::p_norm() {
+    const int last = int(in.args.size()) - 1;
+    const Interval power = value(last, 0);
+    double least = 0, most = 0;
+    int components = 0;
+    Row g;
+    for (int a = 0; a < last; ++a)
+        for (int c = 0; c < size(a); ++c, ++components) {
+            least = std::max(least, value(a, c).mignitude());
+            most = std::max(most, value(a, c).magnitude());
+        }
+    const double norms = together();
+    for (std::size_t j = 0; j < 3; ++j) {
+        double column = 0;
+        for (int a = 0; a < last; ++a)
+            for (int c = 0; c < size(a); ++c) column += std::pow(grad(a, c)[j].magnitude(), 2);
+        const double m = column == 0 ? 0 : std::min(up(std::sqrt(column), 4), norms);
+        g[j] = {-m, m};
+    }
+    set(0, {least, up(times(most, std::pow(double(components), 1 / power.lo)), 8)}, g);
+    finish(norms, false);
+}
+
 void Step::corner() {
     const Interval zero_at(0.0);
     const int m = size(0);

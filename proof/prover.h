@@ -31,13 +31,8 @@ struct Prover {
     Ranges ranges;
     std::vector<Derived> known;
     std::vector<Place> places;
-    std::deque<Zone> zones;              // stable addresses
-    double outward = 0;                  // ShapeFact::outward of the shape at hand
-    double inward = 0;                   // ShapeFact::inward
-    double round = 0;                    // ShapeFact::round
-    std::vector<ir::PartialSum> partial; // ShapeFact::partial
-    std::size_t deformed = 0;            // how many shapes are twisted, bent, tapered or distorted
-    bool local = false; // the shape at hand is proved in its own box alone (ShapeFact::local)
+    std::deque<Zone> zones;   // stable addresses
+    std::size_t deformed = 0; // how many shapes are twisted, bent, tapered or distorted
 
     Prover(ir::Scene &s, Diagnostics &d, const Options &o)
         : scene(s), diagnostics(d), options(o), graph(s.graph), flattening{s.graph, {}},
@@ -66,15 +61,35 @@ struct Prover {
     void find_places();
     void visit(ir::ShapeId child, const Box &box, const Zone *zone, bool reported);
 
-    // -- rules, from the leaves up
+    // -- rules, from the leaves up; each returns all that it found
+    Derived of_child(const ir::Shape &shape) const; // what a rule about the first child begins with
     Derived know(ir::ShapeId id);
     Derived know_leaf(ir::ShapeId id);
     Derived know_set(ir::ShapeId id); // union, intersection, xor, blend, seam, pseudo-norm
+    struct Steepness {
+        ir::NodeId formula;
+        double sup;
+    };
+    Derived join_operand(const ir::Shape &shape, Derived k, const Derived &first,
+                         const Derived &next);
+    Steepness join_bounds(const ir::Shape &shape, Steepness so_far, const Derived &next);
     Derived know_lerp(ir::ShapeId id);
+    Box varying_box(ir::NodeId weight, const Box &within); // lerp.cpp
+    double gap_of_exact(ir::ShapeId id);
     Derived know_displaced(ir::ShapeId id); // displace, offset, shell
     Derived know_extrude(ir::ShapeId id);
     Derived know_map(ir::ShapeId id);
-    Derived know_deformed(ir::ShapeId id); // twist, bend, taper, distort
+    Derived know_translate(ir::ShapeId id, Derived k); // k: of the child; so all below
+    Derived know_rotate(ir::ShapeId id, Derived k);
+    Derived know_scale(ir::ShapeId id, Derived k);
+    Derived know_fold(ir::ShapeId id, Derived k);
+    Derived know_revolve(ir::ShapeId id, Derived k);
+    Derived know_deformed(ir::ShapeId id);
+    Derived know_twist(ir::ShapeId id, Derived k);
+    Derived know_bend(ir::ShapeId id, Derived k);
+    Derived know_taper(ir::ShapeId id, Derived k);
+    Derived know_distort(ir::ShapeId id, Derived k);
+    void needs_region(ir::ShapeId id, Derived &k, const std::string &what);
     Derived know_repeat(ir::ShapeId id);
     Derived know_within(ir::ShapeId id);
     Derived know_instances(ir::ShapeId id);

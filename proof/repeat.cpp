@@ -31,8 +31,7 @@ Derived Prover::know_repeat(ShapeId id) {
     const Shape shape = scene.shapes[id];
     const ir::Repetition repetition = scene.shapes.repetitions[shape.payload];
     const Derived &motif = child(shape);
-    Derived k = motif;
-    k.fact.guard = false;
+    Derived k = of_child(shape);
     k.outer = Box::everything(), k.outer_growth_rate = 0;
     k.parts = Box::everything();
     k.fact.moment_arm = {infinity, infinity, infinity};

@@ -13,6 +13,30 @@ Interval side(const Box &box, std::size_t i) { return {box.lo[i], box.hi[i]}; }
 void set(Box &box, std::size_t i, Interval x) { box.lo[i] = x.lo, box.hi[i] = x.hi; }
 } // namespace
 
+void forget_moment_arms(Derived &k) {
+    k.parts = Box::everything();
+    k.fact.moment_arm = {infinity, infinity, infinity};
+}
+
+void unite(Derived &k, const Derived &c) {
+    k.fact.bounds = ir::hull(k.fact.bounds, c.fact.bounds);
+    k.growth_rate = std::max(k.growth_rate, c.growth_rate);
+    k.outer_growth_rate = std::max(k.outer_growth_rate, c.outer_growth_rate);
+    k.outer = meeting(k.outer, c.outer);
+}
+
+void inherit(Derived &k, const Derived &c) {
+    k.failed = k.failed || c.failed;
+    k.fact.status = std::max(k.fact.status, c.fact.status);
+    k.parts = ir::hull(k.parts, c.parts);
+    k.offset_slack = std::max(k.offset_slack, c.offset_slack);
+    k.lowered = std::max(k.lowered, c.lowered);
+    for (std::size_t a = 0; a < 3; ++a) {
+        k.fact.symmetric[a] = k.fact.symmetric[a] && c.fact.symmetric[a];
+        k.fact.moment_arm[a] = std::max(k.fact.moment_arm[a], c.fact.moment_arm[a]);
+    }
+}
+
 Cell to_cell(const Box &box) { return {{side(box, 0), side(box, 1), side(box, 2)}}; }
 Box from_cell(const Cell &cell, int dims) {
     Box box;

@@ -39,6 +39,13 @@ struct Derived {
     bool failed = false; // reported, here or below
 };
 
+void forget_moment_arms(Derived &k); // gradients no longer point from parts in a known box
+
+// Of a min of fields: {min < t} is in the hull of the children's; {min > -t} in the meet of theirs.
+void unite(Derived &k, const Derived &c);
+// What every combination of two inherits: the attributes of the gradients.
+void inherit(Derived &k, const Derived &c);
+
 inline Box empty_box() { return {}; }
 Box from_cell(const Cell &cell, int dims);
 Cell to_cell(const Box &box);

@@ -62,7 +62,8 @@ void Supports::follow(const Instruction &in) {
     }
     const bool by_component = ir::info(in.op).rule == ir::TypeRule::Same && in.op != Op::Cross &&
                               in.op != Op::Normalize && in.op != Op::Transpose &&
-                              in.form != Form::Norm && in.form != Form::Corner && !matrices;
+                              in.form != Form::Norm && in.form != Form::PNorm &&
+                              in.form != Form::Corner && !matrices;
     Support everything;
     for (Slot s : in.args) everything = both(everything, all(s));
     for (int c = 0; c < n; ++c) {

@@ -1,8 +1,10 @@
 // Flattening: nodes in schedule order, one scope a function body and a loop body.
 #include "proof/tape.h"
 
+#include "proof/borders.h"
 #include "proof/continuity.h"
 #include "proof/discontinuities.h"
+#include "proof/forms.h"
 #include "proof/linear_maps.h"
 #include "proof/segments.h"
 #include "proof/smooth.h"
@@ -64,7 +66,7 @@ struct Flattener {
     Tape tape;
     std::vector<bool> varies; // by slot
     std::size_t count = 0;
-    std::unordered_set<NodeId> cancelling; // steps
+    std::unordered_set<NodeId> cancelling; // steps and choices
     std::unordered_set<NodeId> known_linear;
     Supports supports{tape};
 
@@ -89,7 +91,8 @@ struct Flattener {
         for (Slot s : instruction.args) instruction.varies = instruction.varies || varies[s];
         instruction.out = fresh(instruction.type, instruction.varies);
         Slot out = instruction.out;
-        if (instruction.op == Op::Make || instruction.form == Form::Norm)
+        if (instruction.op == Op::Make || instruction.form == Form::Norm ||
+            instruction.form == Form::PNorm)
             instruction.groups = supports.groups(instruction.args);
         supports.follow(instruction);
         tape.grows = tape.grows || grows(instruction.op);
@@ -143,141 +146,6 @@ struct Flattener {
         return s ? *s : 0;
     }
 
-    std::optional<double> number(NodeId id) {
-        const ir::Node &node = graph[id];
-        if (node.op == Op::Splat) return number(graph.arg(id, 0));
-        if (node.op == Op::Neg) {
-            if (auto x = number(graph.arg(id, 0))) return -*x;
-            return {};
-        }
-        if (node.op != Op::Const) return {};
-        const ir::Constant &c = graph.constant_of(id);
-        for (int i = 1; i < ir::components(c.type); ++i)
-            if (c.value[static_cast<std::size_t>(i)] != c.value[0]) return {};
-        return c.value[0];
-    }
-
-    bool is_half(NodeId half, NodeId whole) {
-        auto a = number(half), b = number(whole);
-        if (a && b) return *a == *b / 2;
-        if (graph[half].op == Op::Splat && graph[whole].op == Op::Splat)
-            return is_half(graph.arg(half, 0), graph.arg(whole, 0));
-        if (graph[half].op == Op::Const && graph[whole].op == Op::Const) {
-            const auto &x = graph.constant_of(half), &y = graph.constant_of(whole);
-            for (int i = 0; i < ir::components(x.type); ++i)
-                if (x.value[static_cast<std::size_t>(i)] !=
-                    y.value[static_cast<std::size_t>(i)] / 2)
-                    return false;
-            return x.type == y.type;
-        }
-        if (graph[half].op == Op::Div && graph.arg(half, 0) == whole &&
-            number(graph.arg(half, 1)) == 2.0)
-            return true;
-        if (graph[half].op == Op::Mul)
-            for (int i = 0; i < 2; ++i)
-                if (graph.arg(half, i) == whole && number(graph.arg(half, 1 - i)) == 0.5)
-                    return true;
-        return false;
-    }
-
-    // x and m where the node is x % m - m/2, fract(x) - 1/2, or x - m*round(x/m).
-    struct WaveParts {
-        NodeId x, m;
-    };
-    std::optional<WaveParts> wave(NodeId id) {
-        const ir::Node node = graph[id]; // a copy: nodes are added below
-        if (node.op != Op::Sub && node.op != Op::Add) return {};
-        NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
-        auto less_half = [&](NodeId part, NodeId m) {
-            if (node.op == Op::Sub) return is_half(part, m);
-            if (graph[part].op == Op::Neg) return is_half(graph.arg(part, 0), m);
-            auto x = number(part), y = number(m);
-            return x && y && *x == -*y / 2;
-        };
-        for (int i = 0; i < (node.op == Op::Add ? 2 : 1); ++i, std::swap(a, b)) {
-            if (graph[a].op == Op::Mod && less_half(b, graph.arg(a, 1))) {
-                NodeId m = graph.arg(a, 1);
-                // x % m - m/2 = w(x - m/2), w the wave that passes through 0 at 0.
-                return WaveParts{graph.sub(graph.arg(a, 0), node.op == Op::Sub ? b : graph.neg(b)),
-                                 m};
-            }
-            if (graph[a].op == Op::Fract) {
-                auto half = number(b);
-                if (half && *half == (node.op == Op::Sub ? 0.5 : -0.5)) {
-                    NodeId one = graph.number(1);
-                    if (ir::components(node.type) > 1) one = graph.splat(one, node.type);
-                    return WaveParts{
-                        graph.sub(graph.arg(a, 0), graph.splat(graph.number(0.5), node.type)), one};
-                }
-            }
-        }
-        if (node.op == Op::Sub && graph[b].op == Op::Round && graph.arg(b, 0) == a)
-            return WaveParts{a, graph.splat(graph.number(1), node.type)};
-        if (node.op == Op::Sub && graph[b].op == Op::Mul)
-            for (int i = 0; i < 2; ++i) {
-                NodeId m = graph.arg(b, i), r = graph.arg(b, 1 - i);
-                if (graph[r].op != Op::Round) continue;
-                NodeId q = graph.arg(r, 0);
-                if (graph[q].op == Op::Div && graph.arg(q, 0) == a && graph.arg(q, 1) == m)
-                    return WaveParts{a, m};
-                auto step = number(m); // x/m may have become x*(1/m)
-                if (step && graph[q].op == Op::Mul)
-                    for (int k = 0; k < 2; ++k) {
-                        auto inverse = number(graph.arg(q, 1 - k));
-                        if (graph.arg(q, k) == a && inverse && *inverse * *step == 1)
-                            return WaveParts{a, m};
-                    }
-            }
-        return {};
-    }
-
-    // The parts whose squares the sum is made of; a constant c >= 0 is the square of its root.
-    bool squares(NodeId sum, std::vector<NodeId> &parts) {
-        const ir::Node node = graph[sum];
-        if (node.op == Op::Add)
-            return squares(graph.arg(sum, 0), parts) && squares(graph.arg(sum, 1), parts);
-        if ((node.op == Op::Mul || node.op == Op::Dot) && graph.arg(sum, 0) == graph.arg(sum, 1)) {
-            parts.push_back(graph.arg(sum, 0));
-            return true;
-        }
-        if (node.op == Op::Pow && number(graph.arg(sum, 1)) == 2.0) {
-            parts.push_back(graph.arg(sum, 0));
-            return true;
-        }
-        if (auto c = graph.as_number(sum); c && *c >= 0) {
-            parts.push_back(graph.number(std::sqrt(*c)));
-            return true;
-        }
-        return false;
-    }
-    std::optional<std::vector<NodeId>> norm_parts(NodeId id) {
-        const ir::Node node = graph[id];
-        if (node.type != ir::Type::Float) return {};
-        std::vector<NodeId> parts;
-        bool root = node.op == Op::Sqrt || (node.op == Op::Pow && number(graph.arg(id, 1)) == 0.5);
-        if (root && squares(graph.arg(id, 0), parts)) return parts;
-        return {};
-    }
-
-    // |max(v, 0)| + min(max of all components of v, 0), as everyone writes a box.
-    std::optional<NodeId> corner(NodeId id) {
-        if (graph[id].op != Op::Add || graph[id].type != ir::Type::Float) return {};
-        for (int i = 0; i < 2; ++i) {
-            const NodeId length = graph.arg(id, i), inside = graph.arg(id, 1 - i);
-            if (graph[length].op != Op::Length || graph[inside].op != Op::Min) continue;
-            const auto v = above_zero(Op::Max, graph.arg(length, 0)),
-                       most = above_zero(Op::Min, inside);
-            if (!v || !most) continue;
-            std::vector<NodeId> found, wanted;
-            greatest_of(*most, found);
-            for (int c = 0; c < ir::components(graph[*v].type); ++c)
-                wanted.push_back(graph.component(*v, c));
-            std::sort(found.begin(), found.end());
-            std::sort(wanted.begin(), wanted.end());
-            if (found == wanted) return v;
-        }
-        return {};
-    }
     // A vector that may be another one turned, or moved along a direction.
     Slot emit_turned(Scope &scope, NodeId id, Instruction out) {
         if (const auto way = moved_along(graph, id)) {
@@ -308,27 +176,17 @@ struct Flattener {
         if (still && t->whole && supports.is_base(of)) supports.make_base(made);
         return made;
     }
-    // x of max(x, 0), or of min(x, 0).
-    std::optional<NodeId> above_zero(Op op, NodeId id) {
-        if (graph[id].op != op) return {};
-        for (int i = 0; i < 2; ++i)
-            if (all_zero(graph.arg(id, i))) return graph.arg(id, 1 - i);
-        return {};
+    std::vector<NodeId> args_of(NodeId id) const { // a copy: flattening may add nodes
+        return {graph.args(id).begin(), graph.args(id).end()};
     }
-    bool all_zero(NodeId id) {
-        if (!graph.is_constant(id)) return false;
-        const ir::Constant &c = graph.constant_of(id);
-        for (int i = 0; i < ir::components(c.type); ++i)
-            if (c.value[static_cast<std::size_t>(i)] != 0) return false;
-        return true;
+    Slot emit(Scope &scope, Instruction out, Form form, const std::vector<NodeId> &args) {
+        out.form = form;
+        out.args.clear();
+        for (NodeId a : args) out.args.push_back(slot(scope, a));
+        return emit(scope, std::move(out));
     }
-    void greatest_of(NodeId id, std::vector<NodeId> &out) {
-        if (graph[id].op == Op::Max && graph[id].type == ir::Type::Float) {
-            greatest_of(graph.arg(id, 0), out);
-            greatest_of(graph.arg(id, 1), out);
-        } else if (out.size() < 4) {
-            out.push_back(id);
-        }
+    Slot emit_plain(Scope &scope, NodeId id, Instruction out) {
+        return emit(scope, std::move(out), Form::Plain, args_of(id));
     }
 
     Slot flatten_node(Scope &scope, NodeId id) {
@@ -346,117 +204,109 @@ struct Flattener {
             if (node.payload < context.cached.size() && context.cached[node.payload]) break;
             return call(scope, id, graph.cache(ir::CacheId{node.payload}).field);
         case Look::Loop: return loop(scope, id);
-        case Look::LoopResult: {
+        case Look::LoopResult:
             slot(scope, graph.arg(id, 0));
             return loop_results.at(graph.arg(id, 0))[node.payload];
-        }
-        case Look::Sum:
-            if (auto parts = wave(id)) {
-                out.form = Form::Wave;
-                out.args = {slot(scope, parts->x), slot(scope, parts->m)};
-                for (NodeId arg : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
-                    out.cancels = out.cancels || cancelling.contains(arg);
-                return emit(scope, out);
-            }
-            if (auto smooth = smooth_extremum(graph, id); smooth &&
-                                                          !varies[slot(scope, smooth->k)] &&
-                                                          !varies[slot(scope, smooth->divisor)]) {
-                out.form = Form::Smooth;
-                out.payload = (smooth->greater ? 1u : 0u) + (smooth->divides ? 2u : 0u) +
-                              (smooth->clipped ? 4u : 0u);
-                out.args = {slot(scope, smooth->x), slot(scope, smooth->y), slot(scope, smooth->k)};
-                return emit(scope, out);
-            }
-            if (const auto sum = log_sum(graph, id)) {
-                out.form = Form::LogSum;
-                out.op = sum->log;
-                out.args = {slot(scope, sum->a), slot(scope, sum->b)};
-                return emit(scope, out);
-            }
-            if (ir::is_vector(node.type)) {
-                for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
-                    out.args.push_back(slot(scope, a));
-                return emit_turned(scope, id, std::move(out));
-            }
-            if (auto v = corner(id)) {
-                out.form = Form::Corner;
-                out.args = {slot(scope, *v)};
-                return emit(scope, out);
-            }
-            break;
+        case Look::Sum: return sum(scope, id, std::move(out));
         case Look::Root:
-            if (auto parts = norm_parts(id)) {
-                out.form = Form::Norm;
-                for (NodeId part : *parts) out.args.push_back(slot(scope, part));
-                return emit(scope, out);
+            if (const auto inward = root_inward(graph, id)) {
+                if (cancelling.contains(inward->from)) cancelling.insert(inward->choice);
+                return slot(scope, inward->choice);
+            }
+            if (auto parts = norm_parts(graph, id)) return emit(scope, out, Form::Norm, *parts);
+            if (auto parts = p_norm(graph, id)) {
+                parts->parts.push_back(parts->power);
+                return emit(scope, out, Form::PNorm, parts->parts);
             }
             break;
-        case Look::Length:
-            out.form = Form::Norm;
-            out.args = {slot(scope, graph.arg(id, 0))};
-            return emit(scope, out);
-        case Look::Product:
-            if (graph.arg(id, 0) == graph.arg(id, 1)) {
-                out.form = Form::Square;
-                out.args = {slot(scope, graph.arg(id, 0))};
-                return emit(scope, out);
-            }
-            for (int i = 0; i < 2; ++i) {
-                NodeId x = graph.arg(id, i), power = graph.arg(id, 1 - i);
-                if (graph[power].op != Op::Pow || graph[graph.arg(power, 0)].op != Op::Abs)
-                    continue;
-                auto exponent = number(graph.arg(power, 1));
-                if (graph.arg(graph.arg(power, 0), 0) != x || !exponent || *exponent <= 0) continue;
-                out.form = Form::OddPower;
-                out.args = {slot(scope, x), slot(scope, graph.arg(power, 1))};
-                return emit(scope, out);
-            }
-            break;
-        case Look::Quotient: {
-            NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
-            if (graph[a].op == Op::Sin && graph.arg(a, 0) == b) {
-                out.form = Form::Sinc;
-                out.args = {slot(scope, b)};
-                return emit(scope, out);
-            }
-            if (graph[b].op == Op::Splat && graph[graph.arg(b, 0)].op == Op::Length &&
-                graph.arg(graph.arg(b, 0), 0) == a) {
-                out.op = Op::Normalize;
-                out.args = {slot(scope, a)};
-                return emit(scope, out);
-            }
-            break;
-        }
-        case Look::Vector: {
-            if (out.op == Op::MatMul && ir::is_vector(node.type))
-                for (int i = 0; i < 2; ++i)
-                    if (const NodeId m = graph.arg(id, i); ir::is_matrix(graph[m].type))
-                        out.norm = matrix_norm(graph, m).value_or(out.norm);
-            for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
-                out.args.push_back(slot(scope, a));
-            return emit_turned(scope, id, std::move(out));
-        }
-        case Look::Choice: {
-            NodeId condition = graph.arg(id, 0);
-            for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
-                out.args.push_back(slot(scope, a));
-            if (!varies[out.args[0]]) {
-                out.form = Form::Joined; // either arm, the same for all points
-            } else {
-                auto [known, is_new] = context.joined.emplace(id, false);
-                if (is_new) {
-                    bool agrees = arms_agree(graph, condition, graph.arg(id, 1), graph.arg(id, 2));
-                    context.joined[id] = agrees;
-                }
-                if (context.joined[id]) out.form = Form::Joined;
-            }
-            return emit(scope, out);
-        }
+        case Look::Length: return emit(scope, out, Form::Norm, {graph.arg(id, 0)});
+        case Look::Product: return product(scope, id, std::move(out));
+        case Look::Quotient: return quotient(scope, id, std::move(out));
+        case Look::Vector: return vector(scope, id, std::move(out));
+        case Look::Choice: return choice(scope, id, std::move(out));
         case Look::Plain: break;
         }
-        for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
-            out.args.push_back(slot(scope, a));
-        return emit(scope, out);
+        return emit_plain(scope, id, std::move(out));
+    }
+
+    Slot sum(Scope &scope, NodeId id, Instruction out) {
+        if (const auto parts = wave(graph, id)) {
+            for (NodeId arg : args_of(id)) out.cancels = out.cancels || cancelling.contains(arg);
+            return emit(scope, out, Form::Wave, {parts->x, parts->m});
+        }
+        if (const auto parts = held_wave(graph, id)) {
+            for (NodeId arg : args_of(id)) out.cancels = out.cancels || cancelling.contains(arg);
+            return emit(scope, out, Form::HeldWave, {parts->x, parts->m, parts->lo, parts->hi});
+        }
+        if (const auto scaled = scaled_wave(graph, id); scaled && *scaled != id)
+            return slot(scope, *scaled);
+        if (const auto smooth = smooth_extremum(graph, id);
+            smooth && !varies[slot(scope, smooth->k)] && !varies[slot(scope, smooth->divisor)]) {
+            out.payload = (smooth->greater ? 1u : 0u) + (smooth->divides ? 2u : 0u) +
+                          (smooth->clipped ? 4u : 0u);
+            return emit(scope, out, Form::Smooth, {smooth->x, smooth->y, smooth->k});
+        }
+        if (const auto logs = log_sum(graph, id)) {
+            out.op = logs->log;
+            return emit(scope, out, Form::LogSum, {logs->a, logs->b});
+        }
+        if (ir::is_vector(out.type)) {
+            for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
+            return emit_turned(scope, id, std::move(out));
+        }
+        if (const auto v = corner(graph, id)) return emit(scope, out, Form::Corner, {*v});
+        return emit_plain(scope, id, std::move(out));
+    }
+
+    Slot product(Scope &scope, NodeId id, Instruction out) {
+        if (graph.arg(id, 0) == graph.arg(id, 1))
+            return emit(scope, out, Form::Square, {graph.arg(id, 0)});
+        if (const auto parts = odd_power(graph, id))
+            return emit(scope, out, Form::OddPower, {parts->x, parts->exponent});
+        return emit_plain(scope, id, std::move(out));
+    }
+
+    Slot quotient(Scope &scope, NodeId id, Instruction out) {
+        const NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
+        if (graph[a].op == Op::Sin && graph.arg(a, 0) == b)
+            return emit(scope, out, Form::Sinc, {b});
+        if (graph[b].op == Op::Splat && graph[graph.arg(b, 0)].op == Op::Length &&
+            graph.arg(graph.arg(b, 0), 0) == a) {
+            out.op = Op::Normalize;
+            return emit(scope, out, Form::Plain, {a});
+        }
+        return emit_plain(scope, id, std::move(out));
+    }
+
+    Slot vector(Scope &scope, NodeId id, Instruction out) {
+        if (out.op == Op::MatMul && ir::is_vector(out.type))
+            for (int i = 0; i < 2; ++i)
+                if (const NodeId m = graph.arg(id, i); ir::is_matrix(graph[m].type))
+                    out.norm = matrix_norm(graph, m).value_or(out.norm);
+        for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
+        return emit_turned(scope, id, std::move(out));
+    }
+
+    Slot choice(Scope &scope, NodeId id, Instruction out) {
+        const std::vector<NodeId> args = args_of(id);
+        for (NodeId a : args) out.args.push_back(slot(scope, a));
+        if (!varies[out.args[0]]) {
+            out.form = Form::Joined; // either arm, the same for all points
+        } else if (out.cancels) {
+            out.form = Form::Joined;
+        } else {
+            const auto [known, is_new] = context.joined.emplace(id, false);
+            if (is_new) {
+                const bool agree = arms_agree(graph, args[0], args[1], args[2]);
+                context.joined[id] = agree;
+            }
+            if (context.joined[id])
+                out.form = Form::Joined;
+            else if (out.type == ir::Type::Float &&
+                     arms_agree(graph, args[0], args[1], graph.neg(args[2])))
+                out.form = Form::Opposite;
+        }
+        return emit(scope, std::move(out));
     }
 
     Slot call(Scope &scope, NodeId id, ir::FunctionId which) {
@@ -534,9 +384,12 @@ std::size_t Tape::length() const {
 
 Tape flatten(Flattening &context, NodeId root) {
     Flattener flattener(context);
-    if (has_steps(context.graph, root)) {
+    const bool steps = has_steps(context.graph, root),
+               choices = context.borders && has_choices(context.graph, root);
+    if (steps || choices) {
         const NodeId whole = written_out(context.graph, root);
-        flattener.cancelling = cancelling_steps(context.graph, whole);
+        if (steps) flattener.cancelling = cancelling_steps(context.graph, whole);
+        if (choices) flattener.cancelling.merge(meeting_choices(context, whole));
         if (!flattener.cancelling.empty()) root = whole;
     }
     Scope scope;

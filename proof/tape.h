@@ -7,6 +7,7 @@
 #include "ir/interval.h"
 
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace fathom::proof {
@@ -26,7 +27,10 @@ enum class Form : std::uint8_t {
     OddPower, // x*|x|^c, c > 0, whose slope (c + 1)*|x|^c is finite at 0 where that of |x|^c is not
     Smooth,   // smooth_extremum: of x, y, k; payload: 1 greater + 2 divides + 4 clipped
     LogSum,   // log(exp(a) + exp(b)); the op says of which base
+    PNorm,    // (sum of |x|^n)^(1/n) of all arguments' components but the last, which is n >= 2
+    HeldWave, // x - m*clamp(round(x/m), lo, hi), lo and hi whole: a Wave where the clamp is not
     Joined,   // a Select whose arms were proved to agree on the border
+    Opposite, // a Select whose arms were proved to be each other's negatives there
     Loop,
 };
 
@@ -74,6 +78,10 @@ struct Tape {
 struct Flattening {
     ir::Graph &graph;
     std::unordered_map<NodeId, bool> joined; // by Select, remembered over fields
+    bool borders =
+        true; // are choices asked for whether the field sees them turn? Slopes depend on it
+    // By field: the choices that it does not see turn (borders.h), asked once a field.
+    std::unordered_map<NodeId, std::unordered_set<NodeId>> meeting{};
     std::vector<bool> cached{}; // by cached field: known by its bounds alone (Ranges::caches)
 };
 

@@ -20,10 +20,14 @@ Interval joined_values(Interval x, Interval y) {
 }
 } // namespace
 
+// For values, symmetries and bends, which no choice's border decides.
 const Tape &Prover::tape_of(ir::NodeId field) {
     const auto found = tapes.find(field);
-    return found != tapes.end() ? found->second
-                                : tapes.emplace(field, flatten(flattening, field)).first->second;
+    if (found != tapes.end()) return found->second;
+    flattening.borders = false;
+    Tape tape = flatten(flattening, field);
+    flattening.borders = true;
+    return tapes.emplace(field, std::move(tape)).first->second;
 }
 
 Interval Prover::values(ShapeId id, const Cell &cell, int depth) {

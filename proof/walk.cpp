@@ -69,18 +69,10 @@ void Prover::run() {
         Derived k;
         set_lipschitz(k, 1);
         if (places[i].reached) { // what no one asks keeps facts that say nothing
-            local = false;
-            outward = inward = round = infinity;
-            partial.clear();
             k = know(ShapeId{i});
             if (!is_field(ShapeId{i})) k.leaf = {};
             find_extent(ShapeId{i}, k);
             keep_in_ball(ShapeId{i}, k);
-            k.fact.local = local;
-            k.fact.outward = outward;
-            k.fact.inward = inward;
-            k.fact.round = round;
-            k.fact.partial = partial;
             k.fact.curvature = curvature_of(ShapeId{i}, k);
             finish(ShapeId{i}, k);
         }
@@ -182,7 +174,7 @@ void Prover::set_lipschitz(Derived &k, NodeId formula, double sup) {
 // Within the box the field; outside sqrt(|p-q|^2 + max(f(q), 0)^2), whose two gradients are
 // perpendicular: max(L, 1).
 void Prover::keep_local(Derived &k, double sup, NodeId formula) {
-    local = true;
+    k.fact.local = true;
     k.growth_rate = 1;
     k.fact.moment_arm = {infinity, infinity, infinity};
     for (std::size_t a = 0; a < 3; ++a)
@@ -295,6 +287,16 @@ void Prover::find_places() {
 
 // -- facts
 
+// All but what a shape has of its own.
+Derived Prover::of_child(const Shape &shape) const {
+    Derived k = child(shape);
+    k.fact.repeat = {};
+    k.fact.guard = k.fact.local = false;
+    k.fact.outward = k.fact.inward = k.fact.round = infinity;
+    k.fact.partial.clear();
+    return k;
+}
+
 Derived Prover::know(ShapeId id) {
     const Shape shape = scene.shapes[id];
     switch (shape.kind) {
@@ -315,11 +317,10 @@ Derived Prover::know(ShapeId id) {
     case ShapeKind::Seam:
     case ShapeKind::PseudoNorm: return know_set(id);
     case ShapeKind::Complement: {
-        Derived k = child(shape);
+        Derived k = of_child(shape);
         std::swap(k.fact.bounds, k.outer);
         std::swap(k.growth_rate, k.outer_growth_rate);
         k.exact_outside = k.fact.kind == FieldKind::Exact;
-        k.fact.repeat = {};
         return k;
     }
     case ShapeKind::Lerp: return know_lerp(id);
@@ -333,8 +334,7 @@ Derived Prover::know(ShapeId id) {
     case ShapeKind::Paint:
     case ShapeKind::Repaint:
     case ShapeKind::Mixed: {
-        Derived k = child(shape);
-        k.fact.repeat = {};
+        Derived k = of_child(shape);
         return k;
     }
     case ShapeKind::Instances: return know_instances(id);

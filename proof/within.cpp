@@ -106,9 +106,7 @@ double slope_in_holes(const Zone &zone) {
 
 Derived Prover::know_within(ShapeId id) {
     const Shape shape = scene.shapes[id];
-    Derived k = child(shape);
-    k.fact.repeat = {};
-    k.fact.guard = false;
+    Derived k = of_child(shape);
     Zone zone = zone_of(scene.shapes.regions[shape.payload]);
     if (zone.kind == ir::RegionKind::Everywhere && zone.less.empty()) return k;
     Box region = from_cell(outer_box(zone), shape.dims);

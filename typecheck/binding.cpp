@@ -239,7 +239,7 @@ std::span<const Formal> formals_of(Interpreter &ev, const Builtin &builtin) {
     }
     if (builtin.variadic) {
         formals->back().takes_rest = true;
-        formals->back().opens_list = builtin.name != "concat"; // whose rest are lists
+        formals->back().opens_list = !builtin.parameters.back().lists;
     }
     return *formals;
 }

@@ -121,6 +121,7 @@ struct CallSite {
 struct BuiltinParameter {
     std::string name;
     bool optional = false;
+    bool lists = false; // of the rest: each is a list itself
 };
 // A function that the language cannot say itself.
 struct Builtin {

@@ -292,7 +292,7 @@ void add_list_builtins(std::vector<Builtin> &table) {
     add("fold", {{"list"}, {"start"}, {"f"}}, fold_call,
         "f(total, element) over all elements, from `start`");
     add("zip", {{"a"}, {"b"}, {"f"}}, zip_call, "f(element of a, element of b) for each pair");
-    add("concat", {{"a"}, {"b", true}}, concat_call, "the lists one after another", true);
+    add("concat", {{"a"}, {"b", true, true}}, concat_call, "the lists one after another", true);
     add("reverse", {{"list"}}, reverse_call, "the last element first");
     add("sort", {{"list"}, {"key", true}}, sort_call,
         "in rising order, of the numbers or of `key` of each element");

@@ -1,0 +1,153 @@
+// A choice's border is where the two sides of one of its comparisons are equal. The smallest
+// expression that all uses of the choice go through is asked there, then the next larger one
+// (border_cases.h).
+#include "proof/borders.h"
+
+#include "proof/border_cases.h"
+#include "proof/continuity.h"
+#include "proof/discontinuities.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace fathom::proof {
+namespace {
+
+using ir::Graph;
+
+constexpr ir::OpSet is_choice{Op::Select, Op::Sign, Op::Step};
+constexpr std::size_t max_nodes_of_field = 1500, max_choices = 40;
+constexpr int max_climb = 10, max_cases_of_field = 6000;
+
+struct Field {
+    Graph &graph;
+    std::vector<NodeId> nodes;                  // the root first, users before arguments
+    std::unordered_map<NodeId, NodeId> through; // the next node that all uses go through
+};
+
+void look_at(Field &field, NodeId root) {
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty() && seen.size() <= max_nodes_of_field) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        field.nodes.push_back(id);
+        for (NodeId a : field.graph.args(id)) todo.push_back(a);
+    }
+    std::sort(field.nodes.begin(), field.nodes.end(), [](NodeId a, NodeId b) { return b < a; });
+    field.through[root] = root;
+    for (NodeId user : field.nodes)
+        for (NodeId a : field.graph.args(user)) {
+            const auto [it, fresh] = field.through.try_emplace(a, user);
+            if (fresh) continue;
+            NodeId one = it->second, other = user;
+            while (one != other)
+                (one < other ? one : other) = field.through[one < other ? one : other];
+            it->second = one;
+        }
+}
+
+void comparisons_of(const Graph &graph, NodeId condition, std::vector<NodeId> &out, bool &all) {
+    const ir::Node node = graph[condition];
+    if (!graph.reads(condition).point && !graph.reads(condition).free_vars) return;
+    if (node.op == Op::Less || node.op == Op::LessEqual) {
+        all = all && graph[graph.arg(condition, 0)].type == ir::Type::Float;
+        out.push_back(condition);
+    } else if (node.op == Op::And || node.op == Op::Or || node.op == Op::Not) {
+        for (NodeId a : graph.args(condition)) comparisons_of(graph, a, out, all);
+    } else {
+        all = false;
+    }
+}
+
+// Does `of` have one value on every border of the choice?
+bool meets(Graph &graph, NodeId choice, NodeId of, int &work) {
+    const ir::Node node = graph[choice];
+    std::vector<Claim> claims;
+    if (node.op == Op::Select) {
+        std::vector<NodeId> comparisons;
+        bool all = true;
+        comparisons_of(graph, graph.arg(choice, 0), comparisons, all);
+        if (!all || comparisons.empty() || comparisons.size() > 8) return false;
+        for (NodeId c : comparisons)
+            claims.push_back({of, choice, c, graph.arg(c, 0), graph.arg(c, 1)});
+    } else if (node.op == Op::Step) {
+        if (node.type != ir::Type::Float) return false;
+        claims.push_back({of, choice, {}, graph.arg(choice, 1), graph.arg(choice, 0)});
+    } else {
+        if (node.type != ir::Type::Float) return false;
+        claims.push_back({of, choice, {}, graph.arg(choice, 0), graph.number(0)});
+    }
+    return std::all_of(claims.begin(), claims.end(),
+                       [&](const Claim &claim) { return is_proved(graph, claim, work); });
+}
+
+bool is_open(const Graph &graph, NodeId id) { // turns with the point, and is a number
+    const ir::Node node = graph[id];
+    return is_choice[node.op] && graph.reads(id).point &&
+           (node.type == ir::Type::Float || ir::is_vector(node.type) ||
+            (node.type == ir::Type::Int && node.op == Op::Select));
+}
+
+std::unordered_set<NodeId> find_choices(Flattening &context, NodeId root) {
+    Graph &graph = context.graph;
+    Field field{graph, {}, {}};
+    look_at(field, root);
+    if (field.nodes.size() > max_nodes_of_field) return {};
+    std::vector<NodeId> choices;
+    for (NodeId id : field.nodes)
+        if (is_open(graph, id)) {
+            if (graph[id].op == Op::Select) {
+                const auto [known, is_new] = context.joined.emplace(id, false);
+                if (is_new)
+                    context.joined[id] =
+                        arms_agree(graph, graph.arg(id, 0), graph.arg(id, 1), graph.arg(id, 2));
+                if (context.joined[id]) continue;
+            }
+            choices.push_back(id);
+        }
+    for (NodeId id : field.nodes) // what a loop's body reads is not followed through it
+        if (graph[id].op == Op::Loop)
+            for (NodeId inside : in_body(graph, id)) std::erase(choices, inside);
+    if (choices.size() > max_choices) return {};
+    std::unordered_set<NodeId> out;
+    int work = 0;
+    for (NodeId choice : choices) {
+        NodeId of = graph[choice].op == Op::Select ? choice : field.through[choice];
+        for (int climb = 0; climb < max_climb && work < max_cases_of_field; ++climb) {
+            if (meets(graph, choice, of, work)) {
+                out.insert(choice);
+                break;
+            }
+            if (of == root) break;
+            of = field.through[of];
+        }
+    }
+    return out;
+}
+
+} // namespace
+
+bool has_choices(const Graph &graph, NodeId root) {
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty() && seen.size() <= 4 * max_nodes_of_field) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        if (is_choice[graph[id].op]) return true;
+        if (graph[id].op == Op::Call)
+            todo.push_back(graph.function(ir::FunctionId{graph[id].payload}).result);
+        for (NodeId a : graph.args(id)) todo.push_back(a);
+    }
+    return false;
+}
+
+std::unordered_set<NodeId> meeting_choices(Flattening &context, NodeId root) {
+    const auto known = context.meeting.find(root);
+    if (known != context.meeting.end()) return known->second;
+    return context.meeting[root] = find_choices(context, root);
+}
+
+} // namespace fathom::proof

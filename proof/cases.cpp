@@ -1,0 +1,206 @@
+// Numbers are doubles, made of constants that are floats or written with few digits (0.57735 for
+// the root of a third): what is less than `granted` of the terms that it is the sum of is 0, as in
+// all that float32 evaluates (docs/lipschitz.md, 2, Rounding).
+#include "proof/cases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace fathom::proof {
+namespace {
+
+constexpr double rounding_of_cases = 1e-11, granted = 5e-7;
+constexpr std::size_t max_terms_of_cases = 60, max_degree_of_cases = 8, max_inequalities = 160;
+
+void drop_rounding(Sum &a, double size) {
+    for (auto it = a.begin(); it != a.end();)
+        it = std::fabs(it->second) <= rounding_of_cases * size ? a.erase(it) : std::next(it);
+}
+double largest(const Sum &a) {
+    double out = 0;
+    for (const auto &[m, c] : a) out = std::max(out, std::fabs(c));
+    return out;
+}
+
+// positive*low - negative*high, in which `m` has left
+Inequality without(const Inequality &low, const Inequality &high, const Product &m) {
+    const double a = low.sum.at(m), b = -high.sum.at(m); // both above 0
+    Inequality out{{}, low.strict || high.strict};
+    for (const auto &[k, c] : low.sum) out.sum[k] += c * b;
+    for (const auto &[k, c] : high.sum) out.sum[k] += c * a;
+    out.sum.erase(m);
+    out.size = low.size * b + high.size * a;
+    drop_rounding(out.sum, a + b);
+    return out;
+}
+
+// Every coefficient at most 1, so that rounding is measured alike.
+bool is_number(const Inequality &row) {
+    return row.sum.empty() || (row.sum.size() == 1 && row.sum.begin()->first.empty());
+}
+void normalize(Inequality &row) {
+    const double size = largest(row.sum);
+    if (!is_number(row))
+        for (auto &[m, c] : row.sum) c /= size;
+    if (!is_number(row)) row.size /= size;
+}
+bool is_false(const Inequality &row) {
+    const double c = row.sum.empty() ? 0 : row.sum.begin()->second;
+    const double nothing = granted * row.size;
+    return row.strict ? c <= nothing : c < -nothing;
+}
+
+} // namespace
+
+Sum constant(double c) { return c == 0 ? Sum{} : Sum{{{}, c}}; }
+Sum atom(std::uint32_t a) { return Sum{{{a}, 1.0}}; }
+
+Sum add(const Sum &a, const Sum &b, double times) {
+    Sum out = a;
+    for (const auto &[m, c] : b) {
+        double &to = out[m];
+        const double size = std::fabs(to) + std::fabs(times * c);
+        to += times * c;
+        if (std::fabs(to) <= rounding_of_cases * size) out.erase(m);
+    }
+    return out;
+}
+
+std::optional<Sum> multiply(const Sum &a, const Sum &b) {
+    Sum out;
+    for (const auto &[m, x] : a)
+        for (const auto &[k, y] : b) {
+            Product product = m;
+            product.insert(product.end(), k.begin(), k.end());
+            std::sort(product.begin(), product.end());
+            out[product] += x * y;
+            if (product.size() > max_degree_of_cases || out.size() > max_terms_of_cases) return {};
+        }
+    drop_rounding(out, largest(a) * largest(b));
+    return out;
+}
+
+std::optional<double> as_constant(const Sum &a) {
+    if (a.empty()) return 0.0;
+    if (a.size() == 1 && a.begin()->first.empty()) return a.begin()->second;
+    return {};
+}
+
+bool is_small(const Sum &a, const Sum &beside) {
+    for (const auto &[m, c] : a) {
+        double like = 0; // of the same degree: beside 1e13 y^8 a jump by 5 is one
+        for (const auto &[k, x] : beside)
+            if (k.size() == m.size()) like = std::max(like, std::fabs(x));
+        if (std::fabs(c) > granted * like) return false;
+    }
+    return true;
+}
+
+// As on paper: the leading term's root, then term by term what twice that goes into the rest.
+std::optional<Sum> root_of_square(const Sum &a) {
+    if (a.empty()) return Sum{};
+    const auto &[lead, c] = *a.begin();
+    if (c < 0 || lead.size() % 2 != 0) return {};
+    Product half;
+    for (std::size_t i = 0; i < lead.size(); i += 2) {
+        if (lead[i] != lead[i + 1]) return {};
+        half.push_back(lead[i]);
+    }
+    const double size = largest(a), first = std::sqrt(c);
+    Sum root{{half, first}};
+    for (int round = 0; round < 12; ++round) {
+        const auto square = multiply(root, root);
+        if (!square) return {};
+        Sum rest = a;
+        for (const auto &[m, x] : *square) rest[m] -= x;
+        drop_rounding(rest, 4 * size * granted / rounding_of_cases);
+        if (rest.empty()) return root;
+        const auto &[m, x] = *rest.begin();
+        Product term;
+        std::set_difference(m.begin(), m.end(), half.begin(), half.end(), std::back_inserter(term));
+        if (term.size() + half.size() != m.size() || root.contains(term)) return {};
+        root[term] = x / (2 * first);
+    }
+    return {};
+}
+
+std::optional<std::pair<std::uint32_t, Sum>> solved_for_atom(const Sum &sum) {
+    for (const auto &[m, c] : sum) {
+        if (m.size() != 1 || is_small(Sum{{m, c}}, sum)) continue;
+        const std::uint32_t a = m[0];
+        bool elsewhere = false;
+        for (const auto &[k, x] : sum)
+            elsewhere = elsewhere || (k != m && std::find(k.begin(), k.end(), a) != k.end());
+        if (elsewhere) continue;
+        Sum is;
+        for (const auto &[k, x] : sum)
+            if (k != m) is[k] = -x / c;
+        return std::pair(a, is);
+    }
+    return {};
+}
+
+Sum with_atom(const Sum &sum, std::uint32_t a, const Sum &is) {
+    Sum out;
+    for (const auto &[m, k] : sum) {
+        Sum term = constant(k);
+        for (std::uint32_t f : m) {
+            const auto product = multiply(term, f == a ? is : atom(f));
+            if (!product) return sum;
+            term = *product;
+        }
+        out = add(out, term);
+    }
+    return out;
+}
+
+void add_to_key(std::vector<double> &key, const Sum &sum) {
+    key.push_back(double(sum.size()));
+    for (const auto &[m, c] : sum) {
+        key.push_back(double(m.size()));
+        for (std::uint32_t a : m) key.push_back(a);
+        int exponent = 0;
+        const double mantissa = std::frexp(c, &exponent);
+        key.push_back(std::ldexp(std::round(std::ldexp(mantissa, 22)), exponent - 22));
+    }
+}
+
+bool contradict(std::vector<Inequality> all, const std::vector<Product> &never_negative) {
+    for (const Product &m : never_negative) all.push_back({Sum{{m, 1.0}}, false});
+    for (Inequality &row : all)
+        if (const auto it = row.sum.find({}); it != row.sum.end()) row.size = std::fabs(it->second);
+    for (;;) {
+        std::map<Product, std::pair<std::size_t, std::size_t>, ByDegree> uses;
+        std::vector<Inequality> open;
+        for (Inequality &row : all) {
+            normalize(row);
+            if (is_number(row)) {
+                if (is_false(row)) return true;
+                continue;
+            }
+            for (const auto &[m, c] : row.sum)
+                if (!m.empty()) (c > 0 ? uses[m].first : uses[m].second) += 1;
+            open.push_back(std::move(row));
+        }
+        if (open.empty()) return false;
+        const auto next =
+            std::min_element(uses.begin(), uses.end(), [](const auto &a, const auto &b) {
+                return a.second.first * a.second.second < b.second.first * b.second.second;
+            });
+        const Product m = next->first;
+        all.clear();
+        for (const Inequality &row : open)
+            if (!row.sum.contains(m)) all.push_back(row);
+        for (const Inequality &low : open)
+            for (const Inequality &high : open) {
+                const auto a = low.sum.find(m), b = high.sum.find(m);
+                if (a == low.sum.end() || b == high.sum.end() || a->second <= 0 || b->second >= 0)
+                    continue;
+                all.push_back(without(low, high, m));
+                if (all.size() > max_inequalities) return false;
+            }
+    }
+}
+
+} // namespace fathom::proof

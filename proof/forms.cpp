@@ -1,0 +1,357 @@
+// Forms are found on the nodes as written, factors in either order; nothing is expanded here.
+#include "proof/forms.h"
+
+#include "proof/continuity.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::proof {
+
+using ir::Graph;
+
+std::optional<double> number(Graph &graph, NodeId id) {
+    const ir::Node &node = graph[id];
+    if (node.op == Op::Splat) return number(graph, graph.arg(id, 0));
+    if (node.op == Op::Neg) {
+        if (auto x = number(graph, graph.arg(id, 0))) return -*x;
+        return {};
+    }
+    if (node.op != Op::Const) return {};
+    const ir::Constant &c = graph.constant_of(id);
+    for (int i = 1; i < ir::components(c.type); ++i)
+        if (c.value[static_cast<std::size_t>(i)] != c.value[0]) return {};
+    return c.value[0];
+}
+
+namespace {
+
+bool all_zero(Graph &graph, NodeId id) {
+    if (!graph.is_constant(id)) return false;
+    const ir::Constant &c = graph.constant_of(id);
+    for (int i = 0; i < ir::components(c.type); ++i)
+        if (c.value[static_cast<std::size_t>(i)] != 0) return false;
+    return true;
+}
+
+// x of max(x, 0), or of min(x, 0).
+std::optional<NodeId> above_zero(Graph &graph, Op op, NodeId id) {
+    if (graph[id].op != op) return {};
+    for (int i = 0; i < 2; ++i)
+        if (all_zero(graph, graph.arg(id, i))) return graph.arg(id, 1 - i);
+    return {};
+}
+void greatest_of(Graph &graph, NodeId id, std::vector<NodeId> &out) {
+    if (graph[id].op == Op::Max && graph[id].type == ir::Type::Float) {
+        greatest_of(graph, graph.arg(id, 0), out);
+        greatest_of(graph, graph.arg(id, 1), out);
+    } else if (out.size() < 4) {
+        out.push_back(id);
+    }
+}
+
+bool is_half(Graph &graph, NodeId half, NodeId whole) {
+    auto a = number(graph, half), b = number(graph, whole);
+    if (a && b) return *a == *b / 2;
+    if (graph[half].op == Op::Splat && graph[whole].op == Op::Splat)
+        return is_half(graph, graph.arg(half, 0), graph.arg(whole, 0));
+    if (graph[half].op == Op::Const && graph[whole].op == Op::Const) {
+        const auto &x = graph.constant_of(half), &y = graph.constant_of(whole);
+        for (int i = 0; i < ir::components(x.type); ++i)
+            if (x.value[static_cast<std::size_t>(i)] != y.value[static_cast<std::size_t>(i)] / 2)
+                return false;
+        return x.type == y.type;
+    }
+    if (graph[half].op == Op::Div && graph.arg(half, 0) == whole &&
+        number(graph, graph.arg(half, 1)) == 2.0)
+        return true;
+    if (graph[half].op == Op::Mul)
+        for (int i = 0; i < 2; ++i)
+            if (graph.arg(half, i) == whole && number(graph, graph.arg(half, 1 - i)) == 0.5)
+                return true;
+    return false;
+}
+
+// The parts whose squares the sum is made of; a constant c >= 0 is the square of its root.
+bool squares(Graph &graph, NodeId sum, std::vector<NodeId> &parts) {
+    const ir::Node node = graph[sum];
+    if (node.op == Op::Add)
+        return squares(graph, graph.arg(sum, 0), parts) && squares(graph, graph.arg(sum, 1), parts);
+    if ((node.op == Op::Mul || node.op == Op::Dot) && graph.arg(sum, 0) == graph.arg(sum, 1)) {
+        parts.push_back(graph.arg(sum, 0));
+        return true;
+    }
+    if (node.op == Op::Pow && number(graph, graph.arg(sum, 1)) == 2.0) {
+        parts.push_back(graph.arg(sum, 0));
+        return true;
+    }
+    if (auto c = graph.as_number(sum); c && *c >= 0) {
+        parts.push_back(graph.number(std::sqrt(*c)));
+        return true;
+    }
+    return false;
+}
+
+// q = x/m, which may have become x*(1/m)
+bool is_ratio(Graph &graph, NodeId q, NodeId x, NodeId m) {
+    if (graph[q].op == Op::Div && graph.arg(q, 0) == x && graph.arg(q, 1) == m) return true;
+    const auto step = number(graph, m);
+    if (step && *step == 1 && q == x) return true;
+    if (step && graph[q].op == Op::Mul)
+        for (int k = 0; k < 2; ++k) {
+            const auto inverse = number(graph, graph.arg(q, 1 - k));
+            if (graph.arg(q, k) == x && inverse && *inverse * *step == 1) return true;
+        }
+    return false;
+}
+
+bool all_whole(Graph &graph, NodeId id) {
+    if (graph[id].op == Op::Splat) return all_whole(graph, graph.arg(id, 0));
+    if (!graph.is_constant(id)) return false;
+    const ir::Constant &c = graph.constant_of(id);
+    for (int i = 0; i < ir::components(c.type); ++i)
+        if (c.value[static_cast<std::size_t>(i)] !=
+            std::floor(c.value[static_cast<std::size_t>(i)]))
+            return false;
+    return true;
+}
+
+// The choice that a sum is made of, and the sum with either of its arms in its place.
+struct Arms {
+    NodeId choice, first, second;
+};
+std::optional<Arms> arms_of(Graph &graph, NodeId sum, int depth) {
+    if (depth > 8) return {};
+    const ir::Node node = graph[sum];
+    if (node.op == Op::Min || node.op == Op::Max)
+        return Arms{sum, graph.arg(sum, 0), graph.arg(sum, 1)};
+    if (node.op == Op::Select) return Arms{sum, graph.arg(sum, 1), graph.arg(sum, 2)};
+    if (node.op == Op::Swizzle && node.type == ir::Type::Float) {
+        const NodeId own = component_of(graph, sum, 0);
+        return own == sum ? std::nullopt : arms_of(graph, own, depth + 1);
+    }
+    const bool scales = node.op == Op::Mul || node.op == Op::Div;
+    if (node.op != Op::Add && node.op != Op::Sub && !scales) return {};
+    for (int i = 0; i < (node.op == Op::Add || node.op == Op::Mul ? 2 : 1); ++i) {
+        const NodeId other = graph.arg(sum, 1 - i);
+        const auto factor = scales ? number(graph, other) : std::optional(1.0);
+        if (!factor || !(*factor > 0)) continue;
+        const auto arms = arms_of(graph, graph.arg(sum, i), depth + 1);
+        if (!arms) continue;
+        const auto with = [&](NodeId arm) {
+            return i == 0 ? graph.make(node.op, {arm, other}) : graph.make(node.op, {other, arm});
+        };
+        return Arms{arms->choice, with(arms->first), with(arms->second)};
+    }
+    return {};
+}
+
+// Is a choice of sums of squares, so that no root of it is singular?
+bool chooses_squares(Graph &graph, NodeId sum, int depth) {
+    std::vector<NodeId> parts;
+    if (squares(graph, sum, parts)) return true;
+    if (depth > 8) return false;
+    const auto arms = arms_of(graph, sum, 0);
+    return arms && chooses_squares(graph, arms->first, depth + 1) &&
+           chooses_squares(graph, arms->second, depth + 1);
+}
+
+} // namespace
+
+std::optional<RootOfChoice> root_inward(Graph &graph, NodeId id) {
+    if (graph[id].op != Op::Sqrt || graph[id].type != ir::Type::Float) return {};
+    if (!chooses_squares(graph, graph.arg(id, 0), 0)) return {};
+    const auto arms = arms_of(graph, graph.arg(id, 0), 0);
+    if (!arms) return {};
+    const ir::Node choice = graph[arms->choice];
+    const NodeId a = graph.make(Op::Sqrt, {arms->first}), b = graph.make(Op::Sqrt, {arms->second});
+    const NodeId out = choice.op == Op::Select
+                           ? graph.make(Op::Select, {graph.arg(arms->choice, 0), a, b})
+                           : graph.make(choice.op, {a, b});
+    return RootOfChoice{out, arms->choice};
+}
+
+std::optional<WaveParts> wave(Graph &graph, NodeId id) {
+    const ir::Node node = graph[id]; // a copy: nodes are added below
+    if (node.op != Op::Sub && node.op != Op::Add) return {};
+    NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
+    auto less_half = [&](NodeId part, NodeId m) {
+        if (node.op == Op::Sub) return is_half(graph, part, m);
+        if (graph[part].op == Op::Neg) return is_half(graph, graph.arg(part, 0), m);
+        auto x = number(graph, part), y = number(graph, m);
+        return x && y && *x == -*y / 2;
+    };
+    for (int i = 0; i < (node.op == Op::Add ? 2 : 1); ++i, std::swap(a, b)) {
+        if (graph[a].op == Op::Mod && less_half(b, graph.arg(a, 1))) {
+            NodeId m = graph.arg(a, 1);
+            // x % m - m/2 = w(x - m/2), w the wave that passes through 0 at 0.
+            return WaveParts{graph.sub(graph.arg(a, 0), node.op == Op::Sub ? b : graph.neg(b)), m};
+        }
+        if (graph[a].op == Op::Fract) {
+            auto half = number(graph, b);
+            if (half && *half == (node.op == Op::Sub ? 0.5 : -0.5)) {
+                NodeId one = graph.number(1);
+                if (ir::components(node.type) > 1) one = graph.splat(one, node.type);
+                return WaveParts{
+                    graph.sub(graph.arg(a, 0), graph.splat(graph.number(0.5), node.type)), one};
+            }
+        }
+    }
+    if (node.op == Op::Sub && graph[b].op == Op::Round && graph.arg(b, 0) == a)
+        return WaveParts{a, graph.splat(graph.number(1), node.type)};
+    if (node.op == Op::Sub && graph[b].op == Op::Mul)
+        for (int i = 0; i < 2; ++i) {
+            NodeId m = graph.arg(b, i), r = graph.arg(b, 1 - i);
+            if (graph[r].op == Op::Round && is_ratio(graph, graph.arg(r, 0), a, m))
+                return WaveParts{a, m};
+        }
+    return {};
+}
+
+std::optional<HeldWaveParts> held_wave(Graph &graph, NodeId id) {
+    if (graph[id].op != Op::Sub) return {};
+    const NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
+    const auto held = [&](NodeId clamp, NodeId m) -> std::optional<HeldWaveParts> {
+        if (graph[clamp].op != Op::Clamp) return {};
+        const NodeId r = graph.arg(clamp, 0), lo = graph.arg(clamp, 1), hi = graph.arg(clamp, 2);
+        if (graph[r].op != Op::Round || !all_whole(graph, lo) || !all_whole(graph, hi)) return {};
+        if (!is_ratio(graph, graph.arg(r, 0), a, m)) return {};
+        return HeldWaveParts{a, m, lo, hi};
+    };
+    if (graph[b].op == Op::Mul)
+        for (int i = 0; i < 2; ++i)
+            if (auto parts = held(graph.arg(b, i), graph.arg(b, 1 - i))) return parts;
+    return held(b, graph.splat(graph.number(1), graph[id].type));
+}
+
+std::optional<NodeId> scaled_wave(Graph &graph, NodeId id) {
+    const ir::Node node = graph[id];
+    if (node.op != Op::Add && node.op != Op::Sub) return {};
+    for (int i = 0; i < 2; ++i) {
+        const NodeId product = graph.arg(id, i), offset = graph.arg(id, 1 - i);
+        if (graph[product].op != Op::Mul) continue;
+        for (int k = 0; k < 2; ++k) {
+            const NodeId wave = graph.arg(product, k);
+            auto by = number(graph, graph.arg(product, 1 - k)), add = number(graph, offset);
+            if (graph[wave].op != Op::Fract || !by || !add) continue;
+            if (node.op == Op::Sub && i == 0) *add = -*add;
+            if (node.op == Op::Sub && i == 1) *by = -*by;
+            if (*by == 0 || *add != -*by / 2) continue;
+            const auto whole = [&](double x) { return graph.splat(graph.number(x), node.type); };
+            return graph.make(Op::Mul, {graph.sub(wave, whole(0.5)), whole(*by)});
+        }
+    }
+    return {};
+}
+
+namespace {
+
+// x and n of x^n, also of products of x by itself.
+struct PowerOf {
+    NodeId base;
+    double exponent = 1;
+};
+PowerOf power_of(Graph &graph, NodeId id) {
+    const ir::Node node = graph[id];
+    if (node.op == Op::Mul && graph.arg(id, 0) == graph.arg(id, 1)) {
+        const PowerOf inner = power_of(graph, graph.arg(id, 0));
+        return {inner.base, 2 * inner.exponent};
+    }
+    if (node.op == Op::Pow)
+        if (const auto n = number(graph, graph.arg(id, 1)); n && *n > 0 && *n == std::floor(*n)) {
+            const PowerOf inner = power_of(graph, graph.arg(id, 0));
+            return {inner.base, *n * inner.exponent};
+        }
+    if (node.op == Op::Swizzle && node.type == ir::Type::Float)
+        if (const NodeId own = component_of(graph, id, 0); own != id) return power_of(graph, own);
+    return {id, 1};
+}
+
+bool powers(Graph &graph, NodeId sum, std::vector<PowerOf> &out) {
+    const ir::Node node = graph[sum];
+    if (node.op == Op::Add)
+        return powers(graph, graph.arg(sum, 0), out) && powers(graph, graph.arg(sum, 1), out);
+    if (node.op == Op::Dot && graph.arg(sum, 0) == graph.arg(sum, 1)) {
+        for (int i = 0; i < ir::components(graph[graph.arg(sum, 0)].type); ++i) {
+            PowerOf part = power_of(graph, component_of(graph, graph.arg(sum, 0), i));
+            part.exponent *= 2;
+            out.push_back(part);
+        }
+        return true;
+    }
+    out.push_back(power_of(graph, sum));
+    return out.size() <= 15;
+}
+
+} // namespace
+
+std::optional<PNormParts> p_norm(Graph &graph, NodeId id) {
+    double exponent = 1; // of the roots, one of another
+    NodeId sum = id;
+    while (exponent > 1e-3) {
+        const ir::Node node = graph[sum];
+        const auto e = node.op == Op::Sqrt  ? std::optional(0.5)
+                       : node.op == Op::Pow ? number(graph, graph.arg(sum, 1))
+                                            : std::nullopt;
+        if (!e || !(*e > 0 && *e < 1)) break;
+        exponent *= *e;
+        sum = graph.arg(sum, 0);
+    }
+    if (exponent == 1 || graph[id].type != ir::Type::Float) return {};
+    std::vector<PowerOf> terms;
+    if (!powers(graph, sum, terms) || terms.size() < 2) return {};
+    PNormParts out;
+    const double n = terms[0].exponent;
+    for (const PowerOf &term : terms) {
+        const bool even = std::fmod(n, 2) == 0;
+        if (term.exponent != n || !(even || graph[term.base].op == Op::Abs)) return {};
+        out.parts.push_back(term.base);
+    }
+    if (!(n > 2) || std::fabs(n * exponent - 1) > 2e-7) return {};
+    out.power = graph.number(n);
+    return out;
+}
+
+std::optional<std::vector<NodeId>> norm_parts(Graph &graph, NodeId id) {
+    const ir::Node node = graph[id];
+    if (node.type != ir::Type::Float) return {};
+    std::vector<NodeId> parts;
+    bool root =
+        node.op == Op::Sqrt || (node.op == Op::Pow && number(graph, graph.arg(id, 1)) == 0.5);
+    if (root && squares(graph, graph.arg(id, 0), parts)) return parts;
+    return {};
+}
+
+std::optional<NodeId> corner(Graph &graph, NodeId id) {
+    if (graph[id].op != Op::Add || graph[id].type != ir::Type::Float) return {};
+    for (int i = 0; i < 2; ++i) {
+        const NodeId length = graph.arg(id, i), inside = graph.arg(id, 1 - i);
+        if (graph[length].op != Op::Length || graph[inside].op != Op::Min) continue;
+        const auto v = above_zero(graph, Op::Max, graph.arg(length, 0)),
+                   most = above_zero(graph, Op::Min, inside);
+        if (!v || !most) continue;
+        std::vector<NodeId> found, wanted;
+        greatest_of(graph, *most, found);
+        for (int c = 0; c < ir::components(graph[*v].type); ++c)
+            wanted.push_back(graph.component(*v, c));
+        std::sort(found.begin(), found.end());
+        std::sort(wanted.begin(), wanted.end());
+        if (found == wanted) return v;
+    }
+    return {};
+}
+
+std::optional<OddPowerParts> odd_power(Graph &graph, NodeId id) {
+    if (graph[id].op != Op::Mul) return {};
+    for (int i = 0; i < 2; ++i) {
+        const NodeId x = graph.arg(id, i), power = graph.arg(id, 1 - i);
+        if (graph[power].op != Op::Pow || graph[graph.arg(power, 0)].op != Op::Abs) continue;
+        const NodeId exponent = graph.arg(power, 1);
+        const auto c = number(graph, exponent);
+        if (graph.arg(graph.arg(power, 0), 0) == x && c && *c > 0)
+            return OddPowerParts{x, exponent};
+    }
+    return {};
+}
+
+} // namespace fathom::proof

@@ -1,0 +1,61 @@
+// Expressions whose smoothness only shows in combination: a centred wave, a square root of squares,
+// the distance to a corner. Each function says whether a node is one, and of what. Knows nothing of
+// tapes.
+#pragma once
+
+#include "ir/graph.h"
+
+#include <optional>
+#include <vector>
+
+namespace fathom::proof {
+
+using ir::NodeId;
+using ir::Op;
+
+// The number that all components of a constant are.
+std::optional<double> number(ir::Graph &graph, NodeId id);
+
+// x and m where the node is x % m - m/2, fract(x) - 1/2, or x - m*round(x/m).
+struct WaveParts {
+    NodeId x, m;
+};
+std::optional<WaveParts> wave(ir::Graph &graph, NodeId id);
+
+// sqrt of a choice of sums of squares as the choice of the roots, so that each is a length: of min,
+// max, `if`, plus what is the same for both, times a number.
+struct RootOfChoice {
+    NodeId choice; // of roots
+    NodeId from;   // the choice as it stood
+};
+std::optional<RootOfChoice> root_inward(ir::Graph &graph, NodeId id);
+
+// The parts of which the node is the length, a square root of a sum of squares.
+std::optional<std::vector<NodeId>> norm_parts(ir::Graph &graph, NodeId id);
+
+// x, m, lo and hi of x - m*clamp(round(x/m), lo, hi), lo and hi whole numbers.
+struct HeldWaveParts {
+    NodeId x, m, lo, hi;
+};
+std::optional<HeldWaveParts> held_wave(ir::Graph &graph, NodeId id);
+
+// k*fract(x) - k/2 as k*(fract(x) - 1/2).
+std::optional<NodeId> scaled_wave(ir::Graph &graph, NodeId id);
+
+// The parts of (x^n + y^n + …)^(1/n), n >= 2: n is even, or each part a size |x|.
+struct PNormParts {
+    std::vector<NodeId> parts;
+    NodeId power;
+};
+std::optional<PNormParts> p_norm(ir::Graph &graph, NodeId id);
+
+// v of |max(v, 0)| + min(max of all components of v, 0), as everyone writes a box.
+std::optional<NodeId> corner(ir::Graph &graph, NodeId id);
+
+// x and c of x*|x|^c, c > 0, whose slope (c + 1)*|x|^c is finite at 0 where that of |x|^c is not.
+struct OddPowerParts {
+    NodeId x, exponent;
+};
+std::optional<OddPowerParts> odd_power(ir::Graph &graph, NodeId id);
+
+} // namespace fathom::proof

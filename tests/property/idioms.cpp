@@ -1,0 +1,174 @@
+// Distance functions and operators as people write them, each as a field of the user's own
+// (idioms.sdf): what the checker says of them, beside the steepest slope that is found by trying.
+// docs/idioms.md is the table of it; FATHOM_UPDATE=1 writes it anew.
+#include "driver/compile.h"
+#include "tests/support/slopes.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+using namespace fathom;
+using namespace fathom::test;
+
+namespace {
+
+struct Idiom {
+    std::string name, text;
+};
+std::vector<Idiom> idioms() {
+    std::ifstream in(FATHOM_SOURCE_DIR "/tests/property/idioms.sdf");
+    std::vector<Idiom> out;
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("//==== "))
+            out.push_back({line.substr(7), ""});
+        else if (!out.empty())
+            out.back().text += line + "\n";
+    return out;
+}
+
+// The bound within ball(2); nothing where it is refused.
+std::optional<double> proved(const Idiom &idiom) {
+    const driver::Compilation c =
+        driver::compile_text("idiom.sdf", idiom.text + "implicit(f, within: ball(2))\n", "", {});
+    if (!c.good()) return {};
+    double bound = 0;
+    for (std::size_t i = 0; i < c.scene.shapes.size(); ++i)
+        if (c.scene.shapes[ir::ShapeId{i}].kind == ir::ShapeKind::Leaf)
+            bound = std::max(bound, c.scene.facts[i].lipschitz_sup);
+    return bound;
+}
+
+// The steepest slope between points of the ball and of gradients there, of the field as it is.
+double seen(const Idiom &idiom) {
+    const driver::Compilation c =
+        driver::compile_text("idiom.sdf", idiom.text + "implicit(f, estimate: 1)\n", "", {});
+    INFO(idiom.name);
+    REQUIRE(c.good());
+    Sampler sampler(c.scene);
+    double steepest = 0;
+    for (const double apart : {1e-3, 1e-2, 0.3}) {
+        std::vector<Point3> p, q;
+        for (int i = 0; i < 20'000; ++i) {
+            p.push_back(sampler.in_ball({0, 0, 0}, 1.9));
+            if (i % 4 == 0) p.back()[2] = 0;
+            q.push_back(sampler.in_ball(p.back(), apart));
+        }
+        const std::vector<float> a = sampler.values(p), b = sampler.values(q);
+        for (std::size_t i = 0; i < p.size(); ++i) {
+            double run = 0;
+            for (std::size_t k = 0; k < 3; ++k) run += (p[i][k] - q[i][k]) * (p[i][k] - q[i][k]);
+            run = std::sqrt(run);
+            if (run > 0.2 * apart) // float32 loses some units in the last place of what it adds
+                steepest = std::max(steepest, (std::fabs(double(a[i]) - b[i]) - 2e-6) / run);
+        }
+    }
+    return steepest;
+}
+
+constexpr const char *head = R"(# Idioms
+
+Distance functions and operators as people write them, from memory of the lists of Inigo Quilez, of
+hg_sdf and of the usual folds. Each is a field of the user's own, `implicit(f, within: ball(2))`, in
+`tests/property/idioms.sdf`. The bound is what the checker proves; beside it stands the steepest
+slope that was found by trying. A dash: no bound is proved, and the field is refused. Made by
+`tests/property/idioms.cpp`.
+
+| idiom | bound | seen |
+| --- | --- | --- |
+)";
+
+// Fields that jump, each next to one that does not: by another number, another sign, another point
+// that is read. None may be proved.
+constexpr std::array near_misses = {
+    "sign(p.x) * length(p.xy)",
+    "sign(p.x) * (abs(p.x) + 0.001)",
+    "sign(p.x) * abs(p.x - 0.01)",
+    "sign(p.y) * abs(p.x)",
+    "(if p.x < 0 { -1 } else { 1 }) * length(p)",
+    "(if p.x < 0 { -1 } else { 1 }) * max(p.x, 0.01)",
+    "1e-12 * sign(p.x) + 1e-12 * p.y",
+    "if p.x < 0 { 1e13 * pow(p.y, 8) + 5 } else { 1e13 * pow(p.y, 8) }",
+    "sign(p.y) * min(abs(p.x) * (if p.y > 0 { 1 } else { 0 }), 1)",
+    "if p.x < 0 { min(p.y, 1) } else { max(p.y, 1) }",
+    "sign(p.x) * max(min(p.y, p.z), abs(p.x))",
+    "1e6 * (p.y + 1e-3 * sign(p.x))",
+    "sign(if p.x > 0 { 1 } else { -1 }) + p.y",
+    "sign(if p.x > 0.5 { p.x } else { p.x - 2 }) * max(abs(p.x) - 1, 0) + sign(p.x - 0.5)",
+    "sign(fract(p.x) - 0.5) * abs(fract(p.x) - 0.5) + p.y",
+    "sign(((p.x + 0.5) % 1) - 0.5) * abs(p.y)",
+    "if p.x > 0 { length(p) } else { length(p - vec3(0, 0.001, 0)) }",
+    "if p.x > 0 and p.y > 0 { p.x } else { 0 }",
+    "if p.x > 0 or p.y > 0 { p.x } else { 0 }",
+    "if p.x * p.x > p.y { p.x - sqrt(max(p.y, 0)) } else { 0 }",
+    "if p.x * p.y > 0 { p.x } else { 0 }",
+    "if p.x > 0 { p.y } else { -p.y }",
+    "abs(if p.x > 0 { p.y } else { -p.y }) + (if p.x > 0 { p.y } else { -p.y })",
+    "sqrt(if p.x > 0 { p.y * p.y } else { p.z * p.z })",
+    "sqrt(max(if p.x > 0 { p.y } else { p.z }, 0))",
+    "float(p.x > 0) * length(p.xz)",
+    "step(0, p.x) * length(p)",
+    "step(p.y, p.x) * (p.x + p.y)",
+    "step(0, p.x) * p.y",
+    "sign(p.x * p.x - p.y) * (p.x - p.y)",
+    "sign(length(p) - 1) * (length(p.xy) - 1)",
+    "sign(max(p.x, p.y)) * min(abs(p.x), abs(p.y) + 0.01)",
+    "(if abs(p.x) < 1 { 1 } else { -1 }) * (p.x - 1)",
+    "(if p.x < 1 and p.x > -1 { 1 } else { -1 }) * (1 - p.x)",
+    "p.x - 0.7 * clamp(round(p.x / 0.7), -1.5, 1)",
+    "length(vec2(p.x - 0.7 * clamp(round(p.x / 0.6), -1, 1), p.y))",
+    "p.x - 0.7 * clamp(round(p.x / 0.7), -1, 1)",
+    "abs(p.x - 0.7 * clamp(round(p.x / 0.7), -1, 1) - 0.1)",
+    "2 * fract(p.x) - 1",
+    "abs(2 * fract(p.x) - 0.9)",
+    "abs((if p.x > 1 { p.x - 2 } else { p.x }) + 0.1)",
+    "abs(if p.x > 1 { p.x - 2.1 } else { p.x })",
+    "abs(if p.y > 1 { p.x - 2 } else { p.x })",
+    "(((p.x + 0.5) % 1) - 0.5) * ((floor(p.x + 0.5) % 3) * 2 - 1)",
+    "pow(p.x * p.x * p.x + pow(p.y, 3), 1 / 3)",
+    "pow(pow(p.x, 4) + pow(p.y, 4), 1 / 8)",
+    "pow(pow(p.x, 8) + pow(p.y, 4), 1 / 8)",
+    "pow(pow(p.x, 4) - pow(p.y, 4), 1 / 4)",
+    "sqrt(max(p.x, p.y) - 1)",
+    "sqrt(min(p.x * p.x, p.y))",
+};
+
+} // namespace
+
+TEST_CASE("what only nearly meets is refused") {
+    for (const char *field : near_misses) {
+        const Idiom idiom{field, "fn f(p: vec3) -> float = " + std::string(field) + "\n"};
+        const std::optional<double> bound = proved(idiom);
+        INFO(field << ": " << bound.value_or(0));
+        CHECK(!bound);
+    }
+}
+
+TEST_CASE("what people write has the bound that the table says, and no steeper slope") {
+    const std::vector<Idiom> all = idioms();
+    REQUIRE(all.size() > 100);
+    std::string page = head;
+    int accepted = 0;
+    for (const Idiom &idiom : all) {
+        const std::optional<double> bound = proved(idiom);
+        const double steepest = seen(idiom);
+        INFO(idiom.name << ": " << bound.value_or(-1) << ", seen " << steepest);
+        if (bound) CHECK(steepest <= *bound * 1.002);
+        accepted += bound.has_value();
+        page += fmt::format("| {} | {} | {:.2f} |\n", idiom.name,
+                            bound ? fmt::format("{:.3g}", *bound) : "-", steepest);
+    }
+    page += fmt::format("\nOf {} idioms {} are proved.\n", all.size(), accepted);
+    const std::string file = FATHOM_SOURCE_DIR "/docs/idioms.md";
+    std::stringstream now;
+    now << std::ifstream(file).rdbuf();
+    if (now.str() == page) return;
+    const char *update = std::getenv("FATHOM_UPDATE");
+    if (update && std::string(update) == "1") std::ofstream(file) << page;
+    FAIL("docs/idioms.md is not what the checker says now; FATHOM_UPDATE=1 writes it anew");
+}
