@@ -217,7 +217,8 @@ Box Prover::fold_preimage(NodeId q, const Box &box) {
 // p - q in one component.
 std::optional<NodeId> Prover::shift_of(NodeId q, int i) {
     NodeId p = graph.point(graph[q].type);
-    return difference(graph, graph.component(p, i), component_of(graph, q, i));
+    const NodeId of_p = graph.component(p, i);
+    return difference(graph, of_p, component_of(graph, q, i));
 }
 
 // The interval of p - q over all p, where that is limited.
@@ -337,9 +338,9 @@ Derived Prover::know_deformed(ShapeId id) {
         double sup = up(l * sigma(rate.magnitude() * arm));
         // sigma(s) = (s + sqrt(s^2 + 4))/2, s = |rate| * arm: grows with |rate|, so a slider at 0
         // pays nothing.
-        NodeId s = graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(arm));
-        NodeId root = graph.make(Op::Sqrt, {graph.add(graph.mul(s, s), graph.number(4))});
-        NodeId formula = graph.mul(graph.mul(graph.add(s, root), graph.number(0.5 * (1 + slack))),
+        NodeId s = graph.mul({graph.make(Op::Abs, {shape.args[2]}), graph.number(arm)});
+        NodeId root = graph.make(Op::Sqrt, {graph.add({graph.mul(s, s), graph.number(4)})});
+        NodeId formula = graph.mul(graph.mul({graph.add(s, root), graph.number(0.5 * (1 + slack))}),
                                    inner.fact.lipschitz);
         if (alone && !k.failed)
             keep_local(k, sup, formula);
@@ -374,7 +375,7 @@ Derived Prover::know_deformed(ShapeId id) {
         arm *= options.rules[Rule::Bend];
         double add = up(rate.magnitude() * arm);
         NodeId excess =
-            graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(arm * (1 + slack)));
+            graph.mul({graph.make(Op::Abs, {shape.args[2]}), graph.number(arm * (1 + slack))});
         NodeId formula = graph.mul(graph.add(graph.number(1), excess), inner.fact.lipschitz);
         if (alone && !k.failed)
             keep_local(k, up(l * up(1 + add)), formula);

@@ -445,7 +445,8 @@ struct Flattener {
             } else {
                 auto [known, is_new] = context.joined.emplace(id, false);
                 if (is_new) {
-                    bool agrees = arms_agree(graph, condition, graph.arg(id, 1), graph.arg(id, 2));
+                    bool agrees = arms_agree(graph, condition, graph.arg(id, 1), graph.arg(id, 2),
+                                             context.work);
                     context.joined[id] = agrees;
                 }
                 if (context.joined[id]) out.form = Form::Joined;

@@ -5,6 +5,7 @@
 
 #include "ir/graph.h"
 #include "ir/interval.h"
+#include "proof/work.h"
 
 #include <unordered_map>
 #include <vector>
@@ -75,6 +76,7 @@ struct Flattening {
     ir::Graph &graph;
     std::unordered_map<NodeId, bool> joined; // by Select, remembered over fields
     std::vector<bool> cached{}; // by cached field: known by its bounds alone (Ranges::caches)
+    Work &work;
 };
 
 Tape flatten(Flattening &context, NodeId root);

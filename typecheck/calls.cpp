@@ -26,12 +26,13 @@ static bool varies(Interpreter &ev, const Value &v) {
 // Values that hold no number of field time, and so mean the same in every call.
 static bool is_closed(Interpreter &ev, const Value &v, int depth = 0) {
     if (v.kind == ValueKind::Field || v.kind == ValueKind::Shape || v.kind == ValueKind::Material ||
-        depth > 4)
+        depth > 4 || !spend(ev, {}))
         return false;
     if (v.kind == ValueKind::Closure) return !ev.closures[v.id].in_field;
     if (v.kind == ValueKind::List || v.kind == ValueKind::ConstField ||
         v.kind == ValueKind::Overloads) {
-        const std::vector<Value> items = ev.lists[v.id];
+        const std::vector<Value> &items = ev.lists[v.id]; // a deque's: it stays where it is
+        if (!spend(ev, {}, items.size() / 8)) return false;
         if (items.size() > 64) {
             for (const Value &item : items)
                 if (item.kind == ValueKind::Field || item.kind == ValueKind::Shape) return false;
@@ -537,8 +538,9 @@ Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::C
             auto slot = slot_in_module(ev, module.frame, symbol_of(ast, m->name));
             if (!slot || m->name.text[0] == '_') {
                 std::vector<std::string> names;
-                for (const Binding &b : ev.frames[module.frame].bindings)
-                    names.push_back(ev.symbol_names[b.name]);
+                if (may_compare_names(ev, ev.frames[module.frame].bindings.size()))
+                    for (const Binding &b : ev.frames[module.frame].bindings)
+                        names.push_back(ev.symbol_names[b.name]);
                 Diagnostic &d =
                     report(ev, Code::UnknownMember, m->name.span,
                            m->name.text[0] == '_'
