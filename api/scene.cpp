@@ -113,38 +113,42 @@ std::optional<std::string> inside(const std::string &path, const std::string &fr
 // What the scene names, from the provider alone.
 typecheck::Loader loader_of(const FileProvider &provider) {
     using typecheck::LoadError;
-    const auto bytes_of =
-        [provider](const std::string &path, const std::string &from,
-                   std::string &identity) -> std::variant<std::string, LoadError> {
-        const std::optional<std::string> found = inside(path, from);
+    const auto identity = [](const std::string &path,
+                             const std::string &from) -> std::variant<std::string, LoadError> {
+        std::optional<std::string> found = inside(path, from);
         if (!found) return LoadError{LoadError::Reason::Outside, "leads out of the scene's folder"};
-        identity = *found;
-        std::optional<std::string> bytes = provider(*found);
+        return std::move(*found);
+    };
+    const auto bytes_of =
+        [provider](const std::string &file) -> std::variant<std::string, LoadError> {
+        std::optional<std::string> bytes = provider(file);
         if (!bytes) return LoadError{LoadError::Reason::NotFound, "no such file"};
         return std::move(*bytes);
     };
-    const auto asset =
-        [bytes_of]<class Data>(std::optional<Data> (*decode)(std::string_view, std::string &)) {
-            return [bytes_of, decode](const std::string &path,
-                                      const std::string &from) -> std::variant<Data, LoadError> {
-                std::string identity, why;
-                auto bytes = bytes_of(path, from, identity);
-                if (auto *error = std::get_if<LoadError>(&bytes)) return *error;
-                std::optional<Data> data = decode(std::get<std::string>(bytes), why);
-                if (!data) return LoadError{LoadError::Reason::Unreadable, why};
-                data->name = path;
-                return std::move(*data);
-            };
-        };
     const auto text =
-        [bytes_of](const std::string &path,
-                   const std::string &from) -> std::variant<typecheck::LoadedText, LoadError> {
-        std::string identity;
-        auto bytes = bytes_of(path, from, identity);
+        [=](const std::string &path,
+            const std::string &from) -> std::variant<typecheck::LoadedText, LoadError> {
+        const auto file = identity(path, from);
+        if (auto *error = std::get_if<LoadError>(&file)) return *error;
+        const std::string &name = std::get<std::string>(file);
+        auto bytes = bytes_of(name);
         if (auto *error = std::get_if<LoadError>(&bytes)) return *error;
-        return typecheck::LoadedText{identity, identity, std::move(std::get<std::string>(bytes))};
+        return typecheck::LoadedText{name, name, std::move(std::get<std::string>(bytes))};
     };
-    return {text, asset(driver::decode_image), asset(driver::decode_grid)};
+    const auto asset = [=]<class Data>(std::variant<Data, LoadError> (*decode)(std::string_view,
+                                                                               typecheck::Room &)) {
+        return [=](const std::string &path, const std::string &from,
+                   typecheck::Room &room) -> std::variant<Data, LoadError> {
+            const auto file = identity(path, from);
+            if (auto *error = std::get_if<LoadError>(&file)) return *error;
+            const auto bytes = bytes_of(std::get<std::string>(file));
+            if (auto *error = std::get_if<LoadError>(&bytes)) return *error;
+            std::variant<Data, LoadError> data = decode(std::get<std::string>(bytes), room);
+            if (auto *made = std::get_if<Data>(&data)) made->name = path;
+            return data;
+        };
+    };
+    return {identity, text, asset(driver::decode_image), asset(driver::decode_grid)};
 }
 
 driver::CompileOptions driver_options(const CompileOptions &options) {

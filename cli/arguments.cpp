@@ -129,6 +129,10 @@ void add_scene(CLI::App *app, SceneArguments &scene, Read read = Read::Once) {
         app, "-D", [&](const std::string &word) { return read_override(word, scene.overrides); },
         "set a param of the scene")
         ->type_name("NAME=VALUE");
+    option(
+        app, "--limit", [&](const std::string &word) { return set_limit(scene.limits, word); },
+        "allow more of what a scene may cost, or less (docs/limits.md)")
+        ->type_name("NAME=VALUE");
     app->add_option("-I", scene.include_folders, "look here too for imports, images and grids")
         ->type_name("DIR")
         ->check(quiet(CLI::ExistingDirectory))

@@ -26,8 +26,8 @@ Exit run(const ImportCommand &command, Terminal &terminal) {
     bool standard_input = command.file == "-";
     std::string error;
     std::optional<std::string> text =
-        standard_input ? driver::read_standard_input(driver::max_asset_bytes, error)
-                       : driver::read_file(command.file, driver::max_asset_bytes, error);
+        standard_input ? driver::read_standard_input(driver::max_save_bytes, error)
+                       : driver::read_file(command.file, driver::max_save_bytes, error);
     if (!text) {
         terminal.say(fmt::format("fathom: cannot read `{}`: {}", command.file, error));
         return device_error;

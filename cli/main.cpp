@@ -2,6 +2,7 @@
 #include "cli/terminal.h"
 
 #include <csignal>
+#include <new>
 
 int main(int count, char **arguments) {
     using namespace fathom::cli;
@@ -16,8 +17,13 @@ int main(int count, char **arguments) {
     }
     const Invocation &invocation = std::get<Invocation>(line);
     Terminal terminal(invocation.color);
-    Exit exit =
-        std::visit([&](const auto &command) { return run(command, terminal); }, invocation.command);
+    Exit exit = device_error;
+    try {
+        exit = std::visit([&](const auto &command) { return run(command, terminal); },
+                          invocation.command);
+    } catch (const std::bad_alloc &) {
+        terminal.say("fathom: the system has no memory left for this");
+    }
     Exit flushed = terminal.flush();
     return flushed != done ? flushed : exit;
 }

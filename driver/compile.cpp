@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <new>
 #include <utility>
 
 namespace fathom::driver {
@@ -41,30 +42,33 @@ void enter(const CompileOptions &options, Phase phase) {
 
 // What the proof says of one shape while the scene is still being built (`lipschitz(s)`, `taper`).
 // Its complaints are not for now: the whole scene is proved afterwards, where it can say them once.
-std::optional<ir::ShapeFact> prove_one(ir::Scene &scene, ir::ShapeId shape) {
+// Takes its steps off `work`.
+std::optional<ir::ShapeFact> prove_one(ir::Scene &scene, ir::ShapeId shape, std::size_t &work) {
     Diagnostics discarded;
     proof::Options options;
     options.test_assumptions = false;
+    options.work = work;
     ir::ShapeId root = std::exchange(scene.root, shape);
     std::vector<ir::TopLevel> top_level = std::exchange(scene.top_level, {{shape, {}}});
-    proof::prove(scene, discarded, options);
+    work -= proof::prove(scene, discarded, options);
     scene.root = root;
     scene.top_level = std::move(top_level);
     if (discarded.has_errors()) return std::nullopt;
     return scene.facts[shape.index];
 }
 
-typecheck::Options check_options(const CompileOptions &options) {
+typecheck::Options check_options(const CompileOptions &options, std::size_t &work) {
     typecheck::Options result;
     result.overrides = options.overrides;
-    result.lipschitz = [](ir::Scene &scene, ir::ShapeId shape) -> std::optional<double> {
-        std::optional<ir::ShapeFact> fact = prove_one(scene, shape);
+    result.limits = options.limits;
+    result.lipschitz = [&work](ir::Scene &scene, ir::ShapeId shape) -> std::optional<double> {
+        std::optional<ir::ShapeFact> fact = prove_one(scene, shape, work);
         if (!fact || !std::isfinite(fact->lipschitz_sup)) return std::nullopt;
         return fact->lipschitz_sup;
     };
-    result.extent = [](ir::Scene &scene, ir::ShapeId shape,
-                       int axis) -> std::optional<std::pair<double, double>> {
-        std::optional<ir::ShapeFact> fact = prove_one(scene, shape);
+    result.extent = [&work](ir::Scene &scene, ir::ShapeId shape,
+                            int axis) -> std::optional<std::pair<double, double>> {
+        std::optional<ir::ShapeFact> fact = prove_one(scene, shape, work);
         std::size_t i = static_cast<std::size_t>(axis);
         if (!fact || !std::isfinite(fact->bounds.lo[i]) || !std::isfinite(fact->bounds.hi[i]))
             return std::nullopt;
@@ -76,17 +80,26 @@ typecheck::Options check_options(const CompileOptions &options) {
 void run_phases(Compilation &out, const typecheck::Loader &loader, const std::string &identity,
                 SourceId root, const CompileOptions &options) {
     enter(options, Phase::Check);
-    typecheck::Checked checked = typecheck::check(out.sources, root, identity, standard_library(),
-                                                  loader, check_options(options), out.diagnostics);
+    std::size_t work = options.limits.proof;
+    typecheck::Checked checked =
+        typecheck::check(out.sources, root, identity, standard_library(), loader,
+                         check_options(options, work), out.diagnostics);
+    if (checked.no_memory) throw std::bad_alloc();
     out.scene = std::move(checked.scene);
     out.usage_errors = std::move(checked.usage_errors);
     out.names = std::move(checked.names);
     out.evaluations = checked.evaluations;
+    if (checked.over_limit) return;
     // What checked is proved also where other statements did not: all errors in one run.
     enter(options, Phase::Prove);
-    proof::Options proof;
-    if (options.times) proof.times = ir::Interval(options.times->first, options.times->second);
-    proof::prove(out.scene, out.diagnostics, proof);
+    proof::Options proof_options;
+    proof_options.work = work;
+    proof_options.limit_note = limit_note(options.limits, &Limits::proof);
+    proof_options.limit_help = limit_help(options.limits, &Limits::proof);
+    if (options.times)
+        proof_options.times = ir::Interval(options.times->first, options.times->second);
+    out.proof_steps =
+        options.limits.proof - work + proof::prove(out.scene, out.diagnostics, proof_options);
     if (out.good()) {
         enter(options, Phase::Lower);
         if (options.parts)
@@ -96,16 +109,30 @@ void run_phases(Compilation &out, const typecheck::Loader &loader, const std::st
         assert(ir::verify(out.scene).empty());
         const ir::Graph &graph = out.scene.graph;
         const double cost = ir::operations(graph, graph.function(out.scene.distance).result);
-        if (cost > ir::max_operations)
+        if (cost > double(options.limits.point))
             out.diagnostics
                 .add(Code::LoopLimit,
                      out.scene.top_level.empty() ? Span{root, 0, 0} : out.scene.top_level[0].span,
                      fmt::format("a point of this scene would take {:.0e} operations", cost))
-                .note(fmt::format("at most {:.0e} are allowed, so that every picture ends",
-                                  ir::max_operations))
-                .help("look for copies of copies, or loops in loops");
+                .note(limit_note(options.limits, &Limits::point))
+                .note("look for copies of copies, or loops in loops")
+                .help(limit_help(options.limits, &Limits::point));
     }
     enter(options, Phase::Done);
+}
+
+// The phases, or an error where the system gives no memory for them.
+void compile_phases(Compilation &out, const typecheck::Loader &loader, const std::string &identity,
+                    SourceId root, const CompileOptions &options) {
+    try {
+        run_phases(out, loader, identity, root, options);
+    } catch (const std::bad_alloc &) {
+        out.scene = {};
+        out.diagnostics
+            .add(Code::MemoryLimit, {root, 0, 0}, "the system has no memory left for this scene")
+            .help(fmt::format("`--limit memory={}` refuses it sooner, with the place",
+                              std::max<std::size_t>(1, options.limits.memory / 2)));
+    }
 }
 
 // A save file stands for the text that an import makes of it; what is to be said of the file itself
@@ -143,7 +170,7 @@ Compilation compile_imported(const std::string &name, const std::string &text,
             save::import_yaml(out.sources, save_file, out.diagnostics, import);
         const SourceId root =
             out.sources.add(name + " (imported)", std::move(result.sdf), save_file);
-        run_phases(out, loader, identity, root, options);
+        compile_phases(out, loader, identity, root, options);
         if (result.structural_error || attempt == max_attempts ||
             !note_unusable(out, root, result, import.unusable))
             return out;
@@ -160,7 +187,7 @@ Compilation compile_source(const std::string &name, std::string text,
     }
     Compilation out;
     const SourceId root = out.sources.add(name, std::move(text));
-    run_phases(out, loader, identity, root, options);
+    compile_phases(out, loader, identity, root, options);
     return out;
 }
 
@@ -169,7 +196,7 @@ Compilation compile_source(const std::string &name, std::string text,
 void leave_out_unusable(const std::string &name, const std::string &text,
                         const std::filesystem::path &scene, save::ImportOptions &import) {
     if (text.size() > max_compiled_bytes) return;
-    SceneFiles files(scene.parent_path(), {});
+    SceneFiles files(scene.parent_path(), {}, {});
     const std::string identity = files.add_root(scene);
     compile_imported(name, text, files.loader(), identity, import, {});
 }
@@ -181,7 +208,7 @@ Compilation compile_loaded(std::string name, std::string text, const typecheck::
 
 Compilation compile_text(std::string name, std::string text, const std::filesystem::path &folder,
                          const CompileOptions &options) {
-    SceneFiles files(folder, options.include_folders);
+    SceneFiles files(folder, options.include_folders, options.limits);
     const std::string identity = files.add_root(folder / "-");
     Compilation out = compile_source(name, std::move(text), files.loader(), identity, options);
     out.files = files.touched();
@@ -193,10 +220,11 @@ Compilation compile_file(const std::filesystem::path &file, const CompileOptions
     bool standard_input = file == "-";
     Compilation out;
     std::string error;
-    SceneFiles files(file.parent_path(), options.include_folders);
+    SceneFiles files(file.parent_path(), options.include_folders, options.limits);
     if (!standard_input) files.touch(file);
-    std::optional<std::string> text = standard_input ? read_standard_input(max_source_bytes, error)
-                                                     : read_file(file, max_source_bytes, error);
+    const std::size_t most = options.limits.source * mebibyte;
+    std::optional<std::string> text =
+        standard_input ? read_standard_input(most, error) : read_file(file, most, error);
     if (!text) {
         out.unreadable = error;
     } else if (standard_input) {

@@ -26,6 +26,7 @@ enum class Phase { Read, Check, Prove, Lower, Done };
 struct CompileOptions {
     std::vector<std::filesystem::path> include_folders; // -I
     std::vector<Override> overrides;                    // -D
+    Limits limits;                                      // --limit
     std::function<void(Phase)> entered;                 // may be empty
     // Proved for the params' present values and from the first to the last of these times alone, in
     // seconds: for what is drawn once. None: for all that the scene allows.
@@ -43,9 +44,9 @@ struct Compilation {
     std::vector<std::string> usage_errors; // of the overrides: the command line is wrong
     std::string unreadable;                // why the scene's own file cannot be used, or empty
     std::map<std::filesystem::path, FileStamp>
-        files;                              // all that was read or looked for: what to watch
-    std::vector<typecheck::NameFact> names; // of the scene's own file: types and stages
-    std::size_t evaluations = 0;
+        files;                                    // all that was read or looked for: what to watch
+    std::vector<typecheck::NameFact> names;       // of the scene's own file: types and stages
+    std::size_t evaluations = 0, proof_steps = 0; // counted work
 
     bool good() const {
         return unreadable.empty() && usage_errors.empty() && !diagnostics.has_errors();

@@ -2,6 +2,8 @@
 // one. Knows nothing of what the bytes mean; reports failures as sentences, never by exceptions.
 #pragma once
 
+#include "base/limits.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,9 +14,9 @@
 
 namespace fathom::driver {
 
-// The largest file that is read, by what it is for.
-inline constexpr std::size_t max_source_bytes = std::size_t{64} << 20;
-inline constexpr std::size_t max_asset_bytes = std::size_t{512} << 20;
+// The largest text and the largest save file that is read where no option says another.
+inline constexpr std::size_t max_source_bytes = Limits{}.source * mebibyte;
+inline constexpr std::size_t max_save_bytes = 4 * max_source_bytes;
 
 // What tells one state of a file from the next without reading it.
 struct FileStamp {

@@ -41,7 +41,7 @@ struct Header {
     std::array<std::size_t, 3> sizes{};
     std::array<double, 3> spacings{1, 1, 1};
     std::optional<std::array<double, 3>> origin;
-    std::size_t dimension = 0;
+    double dimension = 0;
     std::string error;
 };
 
@@ -105,8 +105,7 @@ Header read_header(std::string_view &bytes) {
         if (field == "type") header.type = value;
         if (field == "encoding") header.encoding = value;
         if (field == "endian") header.endian = value;
-        if (field == "dimension")
-            header.dimension = static_cast<std::size_t>(parse_number(value).value_or(0));
+        if (field == "dimension") header.dimension = parse_number(value).value_or(0);
         read_place(header, field, value);
         if (!header.error.empty()) return header;
         if (field == "data file" || field == "datafile")
@@ -128,10 +127,9 @@ template <class Float> Float read_raw(const char *at, bool swap) {
 
 } // namespace
 
-std::optional<ir::GridData> decode_grid(std::string_view bytes, std::string &error) {
-    auto fail = [&](std::string why) {
-        error = std::move(why);
-        return std::nullopt;
+std::variant<ir::GridData, LoadError> decode_grid(std::string_view bytes, Room &room) {
+    auto fail = [](std::string why) {
+        return LoadError{LoadError::Reason::Unreadable, std::move(why)};
     };
     if (!bytes.starts_with("NRRD000")) return fail("not an NRRD grid");
     Header header = read_header(bytes);
@@ -145,6 +143,10 @@ std::optional<ir::GridData> decode_grid(std::string_view bytes, std::string &err
             return fail("an NRRD grid whose `sizes` are not three numbers from 2 to 4096");
     std::size_t count = header.sizes[0] * header.sizes[1] * header.sizes[2];
     if (count > max_values) return fail("an NRRD grid of more than 64 million values");
+    if (count * sizeof(float) > room.bytes)
+        return LoadError{LoadError::Reason::TooLarge, "takes more memory than is left"};
+    if (count / 16 > room.steps)
+        return LoadError{LoadError::Reason::TooMuchWork, "takes more work than is left"};
 
     ir::GridData grid;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -176,6 +178,8 @@ std::optional<ir::GridData> decode_grid(std::string_view bytes, std::string &err
     for (float value : grid.values)
         if (!std::isfinite(value))
             return fail("an NRRD grid with a value that is no finite number");
+    room.bytes -= count * sizeof(float);
+    room.steps -= count / 16;
     return grid;
 }
 

@@ -7,13 +7,17 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fmt/format.h>
 #include <jpeglib.h>
 #include <png.h>
 
 namespace fathom::driver {
 namespace {
 
-constexpr std::size_t max_pixels = std::size_t{1} << 24;
+constexpr std::size_t pixels_a_step = 16; // of one scan
+constexpr std::size_t kept_a_pixel = 4 * sizeof(float);
+constexpr std::size_t needed_a_pixel = kept_a_pixel + 16; // while it is decoded
+constexpr std::size_t scan_itself = 4096;                 // pixels that an empty scan is as dear as
 
 // The linear value of each byte of sRGB.
 const std::array<float, 256> &linear_table() {
@@ -42,28 +46,38 @@ ir::ImageData to_linear(std::size_t width, std::size_t height,
     return image;
 }
 
-bool too_large(std::size_t width, std::size_t height) {
-    return width == 0 || height == 0 || width > max_pixels || height > max_pixels / width;
+using Reason = LoadError::Reason;
+
+// Why there is no room for a picture of this size; else takes it.
+std::optional<LoadError> take_room(std::size_t width, std::size_t height, Room &room) {
+    if (width == 0 || height == 0) return LoadError{Reason::Unreadable, "has no pixels"};
+    if (width > room.pixels || height > room.pixels / width)
+        return LoadError{Reason::TooManyPixels,
+                         fmt::format("{} x {} pixels are too many", width, height)};
+    const std::size_t pixels = width * height;
+    if (pixels > room.bytes / needed_a_pixel)
+        return LoadError{Reason::TooLarge, "takes more memory than is left"};
+    if (pixels / pixels_a_step > room.steps)
+        return LoadError{Reason::TooMuchWork, "takes more work than is left"};
+    room.bytes -= pixels * kept_a_pixel;
+    room.steps -= pixels / pixels_a_step;
+    return std::nullopt;
 }
 
-std::optional<ir::ImageData> decode_png(std::string_view bytes, std::string &error) {
+std::variant<ir::ImageData, LoadError> decode_png(std::string_view bytes, Room &room) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
-    if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())) {
-        error = std::string("a broken PNG: ") + image.message;
-        return std::nullopt;
-    }
-    if (too_large(image.width, image.height)) {
-        error = "more than 16 million pixels";
+    const auto broken = [&] {
+        return LoadError{Reason::Unreadable, std::string("a broken PNG: ") + image.message};
+    };
+    if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())) return broken();
+    if (auto error = take_room(image.width, image.height, room)) {
         png_image_free(&image);
-        return std::nullopt;
+        return *error;
     }
     image.format = PNG_FORMAT_RGBA;
     std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
-    if (!png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr)) {
-        error = std::string("a broken PNG: ") + image.message;
-        return std::nullopt;
-    }
+    if (!png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr)) return broken();
     return to_linear(image.width, image.height, pixels, 4);
 }
 
@@ -86,10 +100,37 @@ void no_message(j_common_ptr, int) {}
 struct JpegPixels {
     std::size_t width = 0, height = 0;
     std::uint8_t *rgb = nullptr; // malloc
+    Room *room = nullptr;
+    int scans = 1;        // that room was taken for
+    bool has_room = true; // else the picture was left for this
+    LoadError why;
 };
+
+// A progressive picture may have any number of scans, each of which goes over all pixels.
+void count_scans(j_common_ptr info) {
+    auto *pixels = static_cast<JpegPixels *>(info->client_data);
+    const int scan = reinterpret_cast<j_decompress_ptr>(info)->input_scan_number;
+    const std::size_t cost = (pixels->width * pixels->height + scan_itself) / pixels_a_step;
+    for (; pixels->scans < scan; ++pixels->scans) {
+        pixels->has_room = cost <= pixels->room->steps;
+        if (!pixels->has_room) leave_jpeg(info);
+        pixels->room->steps -= cost;
+    }
+}
+
+// A call of its own, so that nothing with a destructor is on the way that libjpeg leaves by.
+bool jpeg_has_room(JpegPixels *pixels) {
+    if (auto error = take_room(pixels->width, pixels->height, *pixels->room)) {
+        pixels->has_room = false;
+        pixels->why = *error;
+    }
+    return pixels->has_room;
+}
 
 bool read_jpeg(std::string_view bytes, JpegPixels *pixels, JpegErrors *errors) {
     jpeg_decompress_struct info;
+    jpeg_progress_mgr progress{};
+    progress.progress_monitor = count_scans;
     info.err = jpeg_std_error(&errors->base);
     errors->base.error_exit = leave_jpeg;
     errors->base.emit_message = no_message;
@@ -99,17 +140,18 @@ bool read_jpeg(std::string_view bytes, JpegPixels *pixels, JpegErrors *errors) {
         return false;
     }
     jpeg_create_decompress(&info);
+    info.client_data = pixels;
+    info.progress = &progress;
     jpeg_mem_src(&info, reinterpret_cast<const unsigned char *>(bytes.data()), bytes.size());
     jpeg_read_header(&info, TRUE);
-    if (too_large(info.image_width, info.image_height)) {
-        std::strcpy(errors->message, "more than 16 million pixels");
+    pixels->width = info.image_width;
+    pixels->height = info.image_height;
+    if (!jpeg_has_room(pixels)) {
         jpeg_destroy_decompress(&info);
         return false;
     }
     info.out_color_space = JCS_RGB;
     jpeg_start_decompress(&info);
-    pixels->width = info.output_width;
-    pixels->height = info.output_height;
     pixels->rgb = static_cast<std::uint8_t *>(std::malloc(pixels->width * pixels->height * 3));
     while (pixels->rgb && info.output_scanline < info.output_height) {
         JSAMPROW row = pixels->rgb + std::size_t{info.output_scanline} * pixels->width * 3;
@@ -120,16 +162,22 @@ bool read_jpeg(std::string_view bytes, JpegPixels *pixels, JpegErrors *errors) {
     return pixels->rgb != nullptr;
 }
 
-std::optional<ir::ImageData> decode_jpeg(std::string_view bytes, std::string &error) {
+std::variant<ir::ImageData, LoadError> decode_jpeg(std::string_view bytes, Room &room) {
     JpegPixels pixels;
+    pixels.room = &room;
     JpegErrors errors;
-    bool good = read_jpeg(bytes, &pixels, &errors);
-    std::optional<ir::ImageData> image;
-    if (good) {
+    std::variant<ir::ImageData, LoadError> image;
+    if (read_jpeg(bytes, &pixels, &errors)) {
         std::vector<std::uint8_t> rgb(pixels.rgb, pixels.rgb + pixels.width * pixels.height * 3);
         image = to_linear(pixels.width, pixels.height, rgb, 3);
+    } else if (!pixels.has_room) {
+        image = pixels.why.why.empty()
+                    ? LoadError{Reason::TooMuchWork, fmt::format("its {} scans and more take more "
+                                                                 "work than is left",
+                                                                 pixels.scans)}
+                    : pixels.why;
     } else {
-        error = std::string("a broken JPEG: ") + errors.message;
+        image = LoadError{Reason::Unreadable, std::string("a broken JPEG: ") + errors.message};
     }
     std::free(pixels.rgb);
     return image;
@@ -188,11 +236,10 @@ std::string encode_jpeg(int width, int height, std::span<const std::uint8_t> rgb
     return bytes;
 }
 
-std::optional<ir::ImageData> decode_image(std::string_view bytes, std::string &error) {
-    if (bytes.starts_with("\x89PNG")) return decode_png(bytes, error);
-    if (bytes.starts_with("\xff\xd8")) return decode_jpeg(bytes, error);
-    error = "neither a PNG nor a JPEG picture";
-    return std::nullopt;
+std::variant<ir::ImageData, LoadError> decode_image(std::string_view bytes, Room &room) {
+    if (bytes.starts_with("\x89PNG")) return decode_png(bytes, room);
+    if (bytes.starts_with("\xff\xd8")) return decode_jpeg(bytes, room);
+    return LoadError{Reason::Unreadable, "neither a PNG nor a JPEG picture"};
 }
 
 } // namespace fathom::driver

@@ -3,17 +3,23 @@
 #pragma once
 
 #include "ir/scene.h"
+#include "typecheck/check.h"
 
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 
 namespace fathom::driver {
 
-// Nothing, and why, where the bytes are no picture or hold more than 16 million pixels.
-std::optional<ir::ImageData> decode_image(std::string_view bytes, std::string &error);
+using typecheck::LoadError;
+using typecheck::Room;
+
+// Or why the bytes are no picture, or one for which there is no room. What it takes is taken off
+// `room`: 16 bytes a pixel, a step for 16 pixels of each scan.
+std::variant<ir::ImageData, LoadError> decode_image(std::string_view bytes, Room &room);
 
 // A whole JPEG file of rows from the top, RGBA, sRGB-encoded; of a quality from 1 to 100 in
 // libjpeg's scale, with colours as fine as lightness. Empty where there are no pixels, or more of
@@ -21,6 +27,7 @@ std::optional<ir::ImageData> decode_image(std::string_view bytes, std::string &e
 std::string encode_jpeg(int width, int height, std::span<const std::uint8_t> rgba, int quality);
 
 // A grid of distances: NRRD, three dimensions, float or double, raw or ascii, x the fastest.
-std::optional<ir::GridData> decode_grid(std::string_view bytes, std::string &error);
+// Takes 4 bytes a value, and a step for 16 of them.
+std::variant<ir::GridData, LoadError> decode_grid(std::string_view bytes, Room &room);
 
 } // namespace fathom::driver

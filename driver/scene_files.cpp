@@ -10,8 +10,10 @@ namespace fs = std::filesystem;
 using typecheck::LoadedText;
 using typecheck::LoadError;
 
-SceneFiles::SceneFiles(fs::path scene_folder, std::vector<fs::path> include_folders)
-    : scene_folder_(std::move(scene_folder)), include_folders_(std::move(include_folders)) {
+SceneFiles::SceneFiles(fs::path scene_folder, std::vector<fs::path> include_folders,
+                       const Limits &limits)
+    : scene_folder_(std::move(scene_folder)), include_folders_(std::move(include_folders)),
+      limits_(limits) {
     std::error_code error;
     auto add = [&](const fs::path &folder) {
         fs::path canonical = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
@@ -78,30 +80,37 @@ typecheck::Loader SceneFiles::loader() {
         if (auto *error = std::get_if<LoadError>(&found)) return *error;
         const Found &file = std::get<Found>(found);
         std::string error;
-        std::optional<std::string> bytes = read_file(file.file, max_source_bytes, error);
+        std::optional<std::string> bytes = read_file(file.file, limits_.source * mebibyte, error);
         if (!bytes) return unreadable(error);
         std::string identity = file.file.string();
         auto [known, is_new] = printed_.try_emplace(identity, file.printed);
         return LoadedText{identity, known->second.string(), std::move(*bytes)};
     };
+    auto identity = [this](const std::string &path,
+                           const std::string &from) -> std::variant<std::string, LoadError> {
+        auto found = find(path, from);
+        if (auto *error = std::get_if<LoadError>(&found)) return *error;
+        return std::get<Found>(found).file.string();
+    };
     // Images and grids differ in the decoder alone.
     auto asset =
-        [this]<class Data>(std::optional<Data> (*decode)(std::string_view, std::string &)) {
-            return [this, decode](const std::string &path,
-                                  const std::string &from) -> std::variant<Data, LoadError> {
+        [this]<class Data>(std::variant<Data, LoadError> (*decode)(std::string_view, Room &)) {
+            return [this, decode](const std::string &path, const std::string &from,
+                                  Room &room) -> std::variant<Data, LoadError> {
                 auto found = find(path, from);
                 if (auto *error = std::get_if<LoadError>(&found)) return *error;
+                const fs::path file = std::get<Found>(found).file;
+                if (stamp_of(file).size > room.bytes)
+                    return LoadError{LoadError::Reason::TooLarge, "takes more memory than is left"};
                 std::string error;
-                std::optional<std::string> bytes =
-                    read_file(std::get<Found>(found).file, max_asset_bytes, error);
+                std::optional<std::string> bytes = read_file(file, room.bytes, error);
                 if (!bytes) return unreadable(error);
-                std::optional<Data> data = decode(*bytes, error);
-                if (!data) return unreadable(error);
-                data->name = path;
-                return std::move(*data);
+                std::variant<Data, LoadError> data = decode(*bytes, room);
+                if (auto *made = std::get_if<Data>(&data)) made->name = path;
+                return data;
             };
         };
-    return {text, asset(decode_image), asset(decode_grid)};
+    return {identity, text, asset(decode_image), asset(decode_grid)};
 }
 
 } // namespace fathom::driver

@@ -17,7 +17,7 @@ class SceneFiles {
   public:
     // `scene_folder` as the user wrote it, for the names that are printed.
     SceneFiles(std::filesystem::path scene_folder,
-               std::vector<std::filesystem::path> include_folders);
+               std::vector<std::filesystem::path> include_folders, const Limits &limits);
 
     // The scene's own file: registers the identity that its imports come back with.
     std::string add_root(const std::filesystem::path &file);
@@ -40,6 +40,7 @@ class SceneFiles {
 
     std::filesystem::path scene_folder_;
     std::vector<std::filesystem::path> include_folders_;
+    Limits limits_;
     std::vector<std::filesystem::path> roots_;             // canonical
     std::map<std::string, std::filesystem::path> printed_; // by identity: how that file is printed
     std::map<std::filesystem::path, FileStamp> touched_;

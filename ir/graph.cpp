@@ -304,6 +304,14 @@ NodeId Graph::call(FunctionId id, std::span<const NodeId> args) {
 
 // -- what nodes refer to
 
+std::size_t Graph::bytes() const {
+    constexpr std::size_t hashed = 48; // what a hash table adds
+    return nodes_.size() * (sizeof(Node) + sizeof(Reads) + 2 * sizeof(NodeId)) +
+           args_.size() * sizeof(NodeId) + constants_.size() * (sizeof(Constant) + hashed) +
+           functions_.size() * (sizeof(Function) + hashed) +
+           loops_.size() * (sizeof(Loop) + hashed) + table_bytes_;
+}
+
 FunctionId Graph::add_function(Function function) { return functions_.add(std::move(function)); }
 LoopId Graph::add_loop(Loop loop) { return loops_.add(std::move(loop)); }
 TableId Graph::add_table(Table table) {
@@ -318,6 +326,7 @@ TableId Graph::add_table(Table table) {
             std::equal(have.data.begin(), have.data.end(), table.data.begin(), table.data.end()))
             return it->second;
     }
+    table_bytes_ += sizeof table + table.data.size() * sizeof(float);
     const TableId id = tables_.add(std::move(table));
     interned_tables_.emplace(h, id);
     return id;

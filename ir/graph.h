@@ -121,6 +121,7 @@ class Graph {
     NodeId arg(NodeId id, int i) const { return args(id)[static_cast<std::size_t>(i)]; }
     Type type(NodeId id) const { return nodes_[id].type; }
     std::size_t size() const { return nodes_.size(); }
+    std::size_t bytes() const; // of memory, about
 
     // Makes a node, or finds the equal one; folds constants and a few identities (x+0, x*1, x*0,
     // min(x,x), swizzle of Make, Select of a constant, …; ir/passes/fold.cpp). Types of
@@ -146,6 +147,17 @@ class Graph {
     NodeId sub(NodeId a, NodeId b);
     NodeId mul(NodeId a, NodeId b);
     NodeId div(NodeId a, NodeId b);
+    // The same of arguments in braces. Where both make nodes they stand so: `add({mul(a, b), mul(c,
+    // d)})`. The order in which a compiler evaluates the arguments of a call is its own, that of
+    // elements in braces is not; so the nodes, and the text of a shader, are the same of every
+    // compiler. scripts/argument_order.sh finds calls that miss the braces.
+    struct Pair {
+        NodeId a, b;
+    };
+    NodeId add(Pair of) { return add(of.a, of.b); }
+    NodeId sub(Pair of) { return sub(of.a, of.b); }
+    NodeId mul(Pair of) { return mul(of.a, of.b); }
+    NodeId div(Pair of) { return div(of.a, of.b); }
     NodeId neg(NodeId a);
     NodeId component(NodeId vector, int i); // Swizzle of one
     NodeId swizzle(NodeId vector, std::span<const int> components);
@@ -193,6 +205,7 @@ class Graph {
     Arena<Table> tables_;
     Arena<Cache> caches_;
     std::uint32_t vars_ = 0;
+    std::size_t table_bytes_ = 0;
     std::vector<Constant> folding_; // the arguments of the fold in hand
     std::vector<NodeId> slots_;     // open addressing by content; a power of two, at most half full
     std::unordered_multimap<std::uint64_t, std::uint32_t> interned_constants_;

@@ -25,8 +25,8 @@ NodeId turned_back(Graph &graph, NodeId p, int u, int v, NodeId angle) {
     const NodeId pu = graph.component(p, u), pv = graph.component(p, v);
     std::array<NodeId, 3> q;
     q[static_cast<std::size_t>(3 - u - v)] = graph.component(p, 3 - u - v);
-    q[static_cast<std::size_t>(u)] = graph.add(graph.mul(c, pu), graph.mul(s, pv));
-    q[static_cast<std::size_t>(v)] = graph.sub(graph.mul(c, pv), graph.mul(s, pu));
+    q[static_cast<std::size_t>(u)] = graph.add({graph.mul(c, pu), graph.mul(s, pv)});
+    q[static_cast<std::size_t>(v)] = graph.sub({graph.mul(c, pv), graph.mul(s, pu)});
     return graph.make(Op::Make, Type::Vec3, q);
 }
 
@@ -102,8 +102,8 @@ Shape bent(Graph &graph, ShapeId child, NodeId rate, int axis, int towards) {
 
 NodeId taper_factor(Graph &graph, NodeId height, NodeId ratio, NodeId from, NodeId to) {
     const NodeId zero = graph.number(0), one = graph.number(1);
-    const NodeId t =
-        graph.make(Op::Clamp, {graph.div(graph.sub(height, from), graph.sub(to, from)), zero, one});
+    const NodeId t = graph.make(
+        Op::Clamp, {graph.div({graph.sub(height, from), graph.sub(to, from)}), zero, one});
     return graph.make(Op::Max, {graph.make(Op::Mix, {one, ratio, t}), graph.number(min_taper)});
 }
 
@@ -152,7 +152,7 @@ NodeId rotation(Graph &graph, NodeId axis, NodeId angle) {
     for (int column = 0; column < 3; ++column)
         for (int row = 0; row < 3; ++row) {
             const NodeId outer =
-                graph.mul(t, graph.mul(graph.component(a, row), graph.component(a, column)));
+                graph.mul(t, graph.mul({graph.component(a, row), graph.component(a, column)}));
             NodeId value;
             if (row == column) {
                 value = graph.add(c, outer);
@@ -177,8 +177,8 @@ NodeId rotation2(Graph &graph, NodeId angle) {
 NodeId rotation_euler(Graph &graph, NodeId angles) {
     NodeId result;
     for (int axis = 0; axis < 3; ++axis) {
-        const NodeId turn =
-            rotation(graph, axis_vector(graph, axis), graph.component(angles, axis));
+        const NodeId about = axis_vector(graph, axis);
+        const NodeId turn = rotation(graph, about, graph.component(angles, axis));
         result = result ? graph.make(Op::MatMul, Type::Mat3, {turn, result}) : turn;
     }
     return result;
@@ -208,10 +208,10 @@ NodeId rotation_between(Graph &graph, NodeId from, NodeId to) {
         std::array<NodeId, 9> m;
         for (int c = 0; c < 3; ++c)
             for (int r = 0; r < 3; ++r)
-                m[static_cast<std::size_t>(3 * c + r)] =
-                    graph.sub(graph.number(r == c ? 1 : 0),
-                              graph.mul(graph.number(2),
-                                        graph.mul(graph.component(v, r), graph.component(v, c))));
+                m[static_cast<std::size_t>(3 * c + r)] = graph.sub(
+                    {graph.number(r == c ? 1 : 0),
+                     graph.mul({graph.number(2),
+                                graph.mul({graph.component(v, r), graph.component(v, c)})})});
         return matrix3(graph, m);
     };
     return graph.make(Op::MatMul, Type::Mat3, {reflected(b), reflected(u)});

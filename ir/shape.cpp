@@ -99,9 +99,16 @@ ShapeId Shapes::add(Shape shape) {
             if (!origin.source) origin = shape.origin;
             return it->second;
         }
+    listed_ += shape.children.size() + shape.args.size();
     const ShapeId id = shapes_.add(std::move(shape));
     interned_.emplace(h, id);
     return id;
+}
+
+std::size_t Shapes::bytes() const {
+    constexpr std::size_t beside = 900; // an entry of the hash table, and facts of the proof
+    return shapes_.size() * (sizeof(Shape) + beside) + listed_ * sizeof(ShapeId) +
+           libraries.size() * (sizeof(Library) + 128);
 }
 
 void Shapes::forget_origins(std::size_t from) {

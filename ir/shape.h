@@ -207,6 +207,7 @@ class Shapes {
     void forget_origins(std::size_t from);
     const Shape &operator[](ShapeId id) const { return shapes_[id]; }
     std::size_t size() const { return shapes_.size(); }
+    std::size_t bytes() const; // of memory, about, with what passes keep beside each shape
 
     std::vector<Region> regions;
     std::vector<Repetition> repetitions;
@@ -223,6 +224,7 @@ class Shapes {
   private:
     Arena<Shape> shapes_;
     std::unordered_multimap<std::uint64_t, ShapeId> interned_;
+    std::size_t listed_ = 0; // children and arguments of all
 };
 
 } // namespace fathom::ir

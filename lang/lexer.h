@@ -27,6 +27,7 @@ class Lexer {
     void sign(std::uint32_t begin, std::uint32_t end);
     void strange(std::uint32_t begin, std::uint32_t end); // bytes that begin no word
 
+    std::size_t count() const { return words_.tokens.size(); }
     Words take() { return std::move(words_); }
 
   private:

@@ -7,6 +7,7 @@
 #include "lang/builder.h"
 #include "lang/lexer.h"
 
+#include <fmt/format.h>
 #include <tao/pegtl.hpp>
 
 namespace fathom::lang {
@@ -444,12 +445,24 @@ template <> struct action<block> : with_range<&Builder::block_close> {};
 } // namespace
 
 static Words read_words(const Source &source, SourceId id, std::uint32_t begin, std::uint32_t end,
-                        Diagnostics &diagnostics) {
+                        Diagnostics &diagnostics, std::size_t most_words) {
     Lexer lexer(source, id, diagnostics);
     const char *start = source.text.data();
     pegtl::memory_input<pegtl::tracking_mode::lazy, pegtl::eol::lf> in(start + begin, start + end,
                                                                        std::string());
     while (!in.empty()) {
+        if (lexer.count() >= most_words) {
+            const auto at = static_cast<std::uint32_t>(in.current() - start);
+            diagnostics
+                .add(Code::MemoryLimit, {id, at, at + 1},
+                     fmt::format("this text has more than {} words, and its tree has no room in "
+                                 "memory",
+                                 most_words))
+                .note(
+                    "the limit `memory` counts what scene time makes, and half of it is for texts")
+                .help("make many like shapes by a loop; `--limit memory=N` allows N MiB");
+            return Lexer(source, id, diagnostics).take(); // one cause, one report
+        }
         if (in.peek_char() == '#') {
             const char *begin = in.current();
             pegtl::parse<words::hash>(in);
@@ -464,18 +477,19 @@ static Words read_words(const Source &source, SourceId id, std::uint32_t begin, 
 }
 
 Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics) {
-    return read_words(source, id, 0, static_cast<std::uint32_t>(source.text.size()), diagnostics);
+    return read_words(source, id, 0, static_cast<std::uint32_t>(source.text.size()), diagnostics,
+                      std::size_t(-1));
 }
 
-Ast parse(const Sources &sources, SourceId id, Diagnostics &diagnostics) {
+Ast parse(const Sources &sources, SourceId id, Diagnostics &diagnostics, std::size_t most_words) {
     return parse_part(sources, id, 0, static_cast<std::uint32_t>(sources[id].text.size()),
-                      diagnostics);
+                      diagnostics, most_words);
 }
 
 Ast parse_part(const Sources &sources, SourceId id, std::uint32_t begin, std::uint32_t end,
-               Diagnostics &diagnostics) {
+               Diagnostics &diagnostics, std::size_t most_words) {
     const Source &source = sources[id];
-    const Words words = read_words(source, id, begin, end, diagnostics);
+    const Words words = read_words(source, id, begin, end, diagnostics, most_words);
     const Tokens tokens = lay_out(source, id, words, diagnostics);
     Builder builder(source, id, tokens, diagnostics);
     grammar::Input in(tokens.kinds);

@@ -3,16 +3,22 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "base/limits.h"
 #include "lang/ast.h"
 
 namespace fathom::lang {
 
+constexpr std::size_t bytes_of_a_word = 128; // what the tree takes, about
+constexpr std::size_t usual_words = Limits{}.memory * mebibyte / 2 / bytes_of_a_word;
+
 // Never fails: what cannot be read is reported and becomes Poison or Bad, and reading goes on at
-// the next statement. Time and memory are linear in the text.
-Ast parse(const Sources &sources, SourceId source, Diagnostics &diagnostics);
+// the next statement. Time and memory are linear in the text; a text of more than `most_words` is
+// refused at that word.
+Ast parse(const Sources &sources, SourceId source, Diagnostics &diagnostics,
+          std::size_t most_words = usual_words);
 
 // Some whole statements of the text, as if they were all of it; places are those in the text.
 Ast parse_part(const Sources &sources, SourceId source, std::uint32_t begin, std::uint32_t end,
-               Diagnostics &diagnostics);
+               Diagnostics &diagnostics, std::size_t most_words = usual_words);
 
 } // namespace fathom::lang

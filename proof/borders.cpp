@@ -101,8 +101,8 @@ std::unordered_set<NodeId> find_choices(Flattening &context, NodeId root) {
             if (graph[id].op == Op::Select) {
                 const auto [known, is_new] = context.joined.emplace(id, false);
                 if (is_new)
-                    context.joined[id] =
-                        arms_agree(graph, graph.arg(id, 0), graph.arg(id, 1), graph.arg(id, 2));
+                    context.joined[id] = arms_agree(graph, graph.arg(id, 0), graph.arg(id, 1),
+                                                    graph.arg(id, 2), context.work);
                 if (context.joined[id]) continue;
             }
             choices.push_back(id);

@@ -186,10 +186,15 @@ bool same(Graph &graph, NodeId a, NodeId b) {
 namespace {
 
 // The arms for u = v: u replaced by v, v by u, or one atom of u - v by what the others make it.
-bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b) {
+bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b, Work &work) {
     auto agree = [&](NodeId from, NodeId to) {
-        ir::Substitution map{{from, to}};
-        return same(graph, ir::substitute(graph, a, map), ir::substitute(graph, b, map));
+        if (work.spent()) return false;
+        const ir::Substitution map{{from, to}};
+        std::size_t visited = 0;
+        const NodeId first = ir::substitute(graph, a, map, visited),
+                     second = ir::substitute(graph, b, map, visited);
+        work.take(2 * visited); // dearer than an operation on intervals
+        return same(graph, first, second);
     };
     if (same(graph, a, b)) return true;
     if (!graph.is_constant(u) && agree(u, v)) return true;
@@ -232,7 +237,7 @@ std::optional<Solved> solved(Graph &graph, NodeId scalar, NodeId is) {
         Polynomial rest;
         for (const auto &[m, k] : *sum)
             if (m != atom && k != 0) rest[m] = -k / c;
-        const NodeId value = graph.add(graph.mul(is, graph.number(1 / c)), rebuilt(graph, rest));
+        const NodeId value = graph.add({graph.mul(is, graph.number(1 / c)), rebuilt(graph, rest)});
         return Solved{graph.arg(atom[0], 0), ir::swizzle_component(node.payload, 0), value};
     }
     return {};
@@ -332,23 +337,23 @@ bool keeps_length(Graph &graph, NodeId q) {
     return true;
 }
 
-bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b) {
+bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b, Work &work) {
     const ir::Node node = graph[condition];
     if (node.op == Op::Less || node.op == Op::LessEqual) {
         NodeId u = graph.arg(condition, 0), v = graph.arg(condition, 1);
         if (graph[u].type != ir::Type::Float) return false;
-        if (agree_where_equal(graph, u, v, a, b)) return true;
+        if (agree_where_equal(graph, u, v, a, b, work)) return true;
         if (!ir::is_vector(graph[a].type)) return false;
         for (int i = 0; i < ir::components(graph[a].type); ++i)
             if (!agree_where_equal(graph, u, v, component_of(graph, a, i),
-                                   component_of(graph, b, i)))
+                                   component_of(graph, b, i), work))
                 return false;
         return true;
     }
-    if (node.op == Op::Not) return arms_agree(graph, graph.arg(condition, 0), b, a);
+    if (node.op == Op::Not) return arms_agree(graph, graph.arg(condition, 0), b, a, work);
     if (node.op == Op::And || node.op == Op::Or) { // the border is part of the two together
         NodeId left = graph.arg(condition, 0), right = graph.arg(condition, 1);
-        return arms_agree(graph, left, a, b) && arms_agree(graph, right, a, b);
+        return arms_agree(graph, left, a, b, work) && arms_agree(graph, right, a, b, work);
     }
     return false; // a border that is not given by a comparison
 }

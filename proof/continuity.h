@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ir/graph.h"
+#include "proof/work.h"
 
 #include <optional>
 #include <span>
@@ -11,8 +12,8 @@
 namespace fathom::proof {
 
 // True where `condition ? a : b` is proved continuous across the condition's border, given that a
-// and b are.
-bool arms_agree(ir::Graph &graph, ir::NodeId condition, ir::NodeId a, ir::NodeId b);
+// and b are. Takes its steps off `work`; without any left nothing is proved.
+bool arms_agree(ir::Graph &graph, ir::NodeId condition, ir::NodeId a, ir::NodeId b, Work &work);
 
 // One component of a vector, written with scalars as far as that goes.
 ir::NodeId component_of(ir::Graph &graph, ir::NodeId vector, int i);

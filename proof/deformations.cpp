@@ -87,9 +87,9 @@ Derived Prover::know_twist(ShapeId id, Derived k) {
     double sup = up(l * sigma(rate.magnitude() * arm));
     // sigma(s) = (s + sqrt(s^2 + 4))/2, s = |rate| * arm: grows with |rate|, so a slider at 0
     // pays nothing.
-    NodeId s = graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(arm));
-    NodeId root = graph.make(Op::Sqrt, {graph.add(graph.mul(s, s), graph.number(4))});
-    NodeId formula = graph.mul(graph.mul(graph.add(s, root), graph.number(0.5 * (1 + slack))),
+    NodeId s = graph.mul({graph.make(Op::Abs, {shape.args[2]}), graph.number(arm)});
+    NodeId root = graph.make(Op::Sqrt, {graph.add({graph.mul(s, s), graph.number(4)})});
+    NodeId formula = graph.mul(graph.mul({graph.add(s, root), graph.number(0.5 * (1 + slack))}),
                                inner.fact.lipschitz);
     if (alone && !k.failed)
         keep_local(k, sup, formula);
@@ -130,7 +130,7 @@ Derived Prover::know_bend(ShapeId id, Derived k) {
     arm *= options.rules[Rule::Bend];
     double add = up(rate.magnitude() * arm);
     NodeId excess =
-        graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(arm * (1 + slack)));
+        graph.mul({graph.make(Op::Abs, {shape.args[2]}), graph.number(arm * (1 + slack))});
     NodeId formula = graph.mul(graph.add(graph.number(1), excess), inner.fact.lipschitz);
     if (alone && !k.failed)
         keep_local(k, up(l * up(1 + add)), formula);

@@ -56,6 +56,17 @@ static std::pair<std::string, std::string> two_points(const std::array<double, 3
 
 Diagnostic *Prover::report(ShapeId id, Code code, std::string message) {
     if (!place(id).reported) return nullptr;
+    if (work.spent()) { // what was not proved might be with more of it
+        if (std::exchange(told_of_work, true)) return nullptr;
+        code = Code::ProofLimit;
+        message = "the proof of this scene takes more work than is allowed";
+    }
+    if (code == Code::ProofLimit) {
+        diagnostics.add(code, scene.shapes[id].origin, std::move(message))
+            .note(options.limit_note)
+            .help(options.limit_help);
+        return nullptr; // for the caller's own words: they are of something else
+    }
     return &diagnostics.add(code, scene.shapes[id].origin, std::move(message));
 }
 
@@ -350,6 +361,10 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
     if (!here.reported || !options.test_assumptions) return;
     const Tape &tape = tape_of(field);
     if (tape.too_large) return;
+    if (work.spent()) {
+        report(id, Code::ProofLimit, "");
+        return;
+    }
     Machine machine(tape, ranges);
     Dice dice{0xa55e55};
     int dims = scene.shapes[id].dims;

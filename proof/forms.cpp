@@ -193,7 +193,7 @@ std::optional<WaveParts> wave(Graph &graph, NodeId id) {
                 NodeId one = graph.number(1);
                 if (ir::components(node.type) > 1) one = graph.splat(one, node.type);
                 return WaveParts{
-                    graph.sub(graph.arg(a, 0), graph.splat(graph.number(0.5), node.type)), one};
+                    graph.sub({graph.arg(a, 0), graph.splat(graph.number(0.5), node.type)}), one};
             }
         }
     }

@@ -104,7 +104,7 @@ struct Reader {
             const int j = (i + 1) % 3, k = (i + 2) % 3;
             const NodeId aj = part(a, j), ak = part(a, k), bj = part(b, j), bk = part(b, k);
             if (failed) return {};
-            return graph.sub(graph.mul(aj, bk), graph.mul(ak, bj));
+            return graph.sub({graph.mul(aj, bk), graph.mul(ak, bj)});
         }
         if (node.op == Op::MatMul && ir::is_vector(node.type)) {
             const NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);

@@ -69,8 +69,11 @@ namespace {
 Interval single(double x) { return hull(Interval(x), Interval(static_cast<float>(x))); }
 } // namespace
 
-Ranges ranges_of(const ir::Scene &scene, const std::optional<Interval> &times) {
+Ranges ranges_of(const ir::Scene &scene, Work &work, const std::optional<Interval> &times) {
     Ranges ranges;
+    ranges.work = &work;
+    for (const ir::ImageData &image : scene.images) work.take(image.rgba.size() / 8);
+    for (const ir::GridData &grid : scene.grids) work.take(grid.values.size() / 2);
     ranges.scene = &scene;
     ranges.time =
         times ? hull(single(times->lo), single(times->hi)) : Interval(0, scene.render.time_end);
@@ -147,9 +150,12 @@ Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
 void Machine::run(const Cell &cell) {
     constexpr double far = 1e6; // further off whatever grows has left single precision
     cell_ = cell;
+    if (ranges_.work->spent()) return know_nothing();
+    const std::size_t before = work_;
     in_reach_ = tape_.grows && std::all_of(cell.p.begin(), cell.p.end(),
                                            [](const Interval &x) { return x.magnitude() <= far; });
     run(tape_.each);
+    ranges_.work->take(work_ - before);
     Slot s = tape_.result;
     result_norm_ = norm_[s];
     for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
@@ -162,6 +168,16 @@ void Machine::run(const Cell &cell) {
             result_norm_ = infinity;
             trouble_[s] = Trouble::Jump;
         }
+}
+
+void Machine::know_nothing() {
+    std::ranges::fill(value_, Interval::everything());
+    std::ranges::fill(grad_,
+                      Row{Interval::everything(), Interval::everything(), Interval::everything()});
+    std::ranges::fill(norm_, infinity);
+    std::ranges::fill(bend_, infinity);
+    result_norm_ = infinity;
+    work_ += tape_.length() + 1;
 }
 
 void Machine::run(const std::vector<Instruction> &block) {

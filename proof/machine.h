@@ -37,9 +37,12 @@ struct Ranges {
         double slope = 0; // of all components together
     };
     std::vector<Cached> caches;
+    Work *work = nullptr; // of all machines together
 };
 // Of params and time all that the scene allows, or the present values at these times (prove.h).
-Ranges ranges_of(const ir::Scene &scene, const std::optional<Interval> &times = {});
+// Reads the images and grids, which takes steps off `work`.
+Ranges ranges_of(const ir::Scene &scene, Work &work,
+                 const std::optional<Interval> &times = {});
 
 enum class Trouble : std::uint8_t { None, Jump, Singular, Overflow };
 
@@ -57,7 +60,7 @@ class Machine {
   public:
     // bends: bounds second derivatives too (machine_bend.cpp).
     Machine(const Tape &tape, const Ranges &ranges, bool bends = false);
-    void run(const Cell &cell);
+    void run(const Cell &cell); // without work left: nothing is known of any value
 
     int size() const { return tape_.size[tape_.result]; }
     Interval value(int i) const {
@@ -89,6 +92,7 @@ class Machine {
     static constexpr double infinity_ = ir::rounding::infinity;
     friend struct Step; // the rules of one instruction (instruction_rules.h)
     void run(const std::vector<Instruction> &block);
+    void know_nothing();
     void run_loop(const Instruction &instruction);
     void step(const Instruction &instruction);
     void finish(const Instruction &instruction, double norm, bool odd_used);

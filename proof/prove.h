@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "base/limits.h"
 #include "ir/interval.h"
 #include "ir/scene.h"
 #include "proof/rules.h"
@@ -21,13 +22,15 @@ struct Options {
     Rules rules;                              // tests weaken one to see it caught
     std::size_t field_instructions = 250'000; // work per field: interval instructions, never time
     bool tighten = true; // deformed shapes by their own expressions, too; tests ask for rules alone
-    bool test_assumptions = true; // sample `lipschitz:` and `estimate:`
+    bool test_assumptions = true;           // sample `lipschitz:` and `estimate:`
+    std::size_t work = Limits{}.proof;      // steps in all
+    std::string limit_note{}, limit_help{}; // for an error that there was too much
 };
 
 // Fills scene.facts (one a shape), scene.bounds and scene.far. A shape without a proof is reported
 // once, gets lipschitz_sup = infinity and facts that can be used all the same. The scene's graph
-// grows by the bounds' formulas.
-void prove(ir::Scene &scene, Diagnostics &diagnostics, const Options &options = {});
+// grows by the bounds' formulas. Returns how many steps it took.
+std::size_t prove(ir::Scene &scene, Diagnostics &diagnostics, const Options &options = {});
 
 // Why a shape's bound is what it is: what `check --explain` prints. Children in order.
 struct Explanation {

@@ -27,16 +27,20 @@ struct Prover {
     Diagnostics &diagnostics;
     const Options &options;
     ir::Graph &graph;
+    Work work;
     Flattening flattening;
     Ranges ranges;
-    std::vector<Derived> known;
+    std::deque<Derived> derived;      // the first is that of shapes that no one asks
+    std::vector<std::uint32_t> known; // by shape: its place in `derived`
     std::vector<Place> places;
     std::deque<Zone> zones;   // stable addresses
     std::size_t deformed = 0; // how many shapes are twisted, bent, tapered or distorted
+    bool told_of_work = false;
 
     Prover(ir::Scene &s, Diagnostics &d, const Options &o)
-        : scene(s), diagnostics(d), options(o), graph(s.graph), flattening{s.graph, {}},
-          ranges(ranges_of(s, o.times)) {}
+        : scene(s), diagnostics(d), options(o),
+          graph(s.graph), work{o.work}, flattening{s.graph, work},
+          ranges(ranges_of(s, work, o.times)) {}
 
     void run();
 
@@ -45,7 +49,7 @@ struct Prover {
     Vec vector(ir::NodeId id);      // of a closed vector (a flat one's z is 0)
     std::array<Interval, 16> numbers(ir::NodeId id);
     bool reads_point(ir::NodeId id) const { return graph.reads(id).point; }
-    const Derived &of(ir::ShapeId id) const { return known[id.index]; }
+    const Derived &of(ir::ShapeId id) const { return derived[known[id.index]]; }
     const Derived &child(const ir::Shape &shape, std::size_t i = 0) const {
         return of(shape.children[i]);
     }

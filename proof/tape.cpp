@@ -297,13 +297,13 @@ struct Flattener {
         } else {
             const auto [known, is_new] = context.joined.emplace(id, false);
             if (is_new) {
-                const bool agree = arms_agree(graph, args[0], args[1], args[2]);
+                const bool agree = arms_agree(graph, args[0], args[1], args[2], context.work);
                 context.joined[id] = agree;
             }
             if (context.joined[id])
                 out.form = Form::Joined;
             else if (out.type == ir::Type::Float &&
-                     arms_agree(graph, args[0], args[1], graph.neg(args[2])))
+                     arms_agree(graph, args[0], args[1], graph.neg(args[2]), context.work))
                 out.form = Form::Opposite;
         }
         return emit(scope, std::move(out));

@@ -5,6 +5,7 @@
 
 #include "ir/graph.h"
 #include "ir/interval.h"
+#include "proof/work.h"
 
 #include <unordered_map>
 #include <unordered_set>
@@ -77,7 +78,8 @@ struct Tape {
 // Border questions: is this Select continuous (continuity.h)? Asked once a Select that varies.
 struct Flattening {
     ir::Graph &graph;
-    std::unordered_map<NodeId, bool> joined; // by Select, remembered over fields
+    Work &work;
+    std::unordered_map<NodeId, bool> joined{}; // by Select, remembered over fields
     bool borders =
         true; // are choices asked for whether the field sees them turn? Slopes depend on it
     // By field: the choices that it does not see turn (borders.h), asked once a field.

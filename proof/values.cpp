@@ -32,7 +32,8 @@ const Tape &Prover::tape_of(ir::NodeId field) {
 
 Interval Prover::values(ShapeId id, const Cell &cell, int depth) {
     const Shape shape = scene.shapes[id];
-    if (depth > 64) return Interval::everything();
+    if (depth > 64 || work.spent()) return Interval::everything();
+    work.take(1); // shapes share their parts
     auto inner = [&](std::size_t i, const Cell &there) {
         return values(shape.children[i], there, depth + 1);
     };

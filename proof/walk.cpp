@@ -22,14 +22,17 @@ using ir::ShapeKind;
 using ir::rounding::infinity;
 using ir::rounding::up;
 
-void prove(ir::Scene &scene, Diagnostics &diagnostics, const Options &options) {
+std::size_t prove(ir::Scene &scene, Diagnostics &diagnostics, const Options &options) {
     Prover prover(scene, diagnostics, options);
     prover.run();
+    return options.work - prover.work.left;
 }
 
 void Prover::run() {
     std::size_t count = scene.shapes.size();
-    known.assign(count, {});
+    work.take(count / 4);
+    known.assign(count, 0);
+    set_lipschitz(derived.emplace_back(), 1);
     places.assign(count, {});
     scene.facts.assign(count, {});
     for (std::size_t i = 0; i < count; ++i) { // variables that shapes bind
@@ -66,8 +69,7 @@ void Prover::run() {
                      shape.map == MapKind::Taper || shape.map == MapKind::Distort);
     }
     for (std::size_t i = 0; i < count; ++i) {
-        Derived k;
-        set_lipschitz(k, 1);
+        Derived k = derived.front();
         if (places[i].reached) { // what no one asks keeps facts that say nothing
             k = know(ShapeId{i});
             if (!is_field(ShapeId{i})) k.leaf = {};
@@ -76,7 +78,10 @@ void Prover::run() {
             k.fact.curvature = curvature_of(ShapeId{i}, k);
             finish(ShapeId{i}, k);
         }
-        known[i] = k;
+        if (places[i].reached) {
+            known[i] = static_cast<std::uint32_t>(derived.size());
+            derived.push_back(k);
+        }
         scene.facts[i] = k.fact; // padded there alone, so that the slack does not add up
         scene.facts[i].bounds = padded(k.fact.bounds);
         scene.facts[i].repeat.copy = padded(k.fact.repeat.copy);

@@ -330,8 +330,9 @@ Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::C
             auto slot = slot_in_module(ev, module.frame, symbol_of(ast, m->name));
             if (!slot || m->name.text[0] == '_') {
                 std::vector<std::string> names;
-                for (const Binding &b : ev.frames[module.frame].bindings)
-                    names.push_back(ev.symbol_names[b.name]);
+                if (may_compare_names(ev, ev.frames[module.frame].bindings.size()))
+                    for (const Binding &b : ev.frames[module.frame].bindings)
+                        names.push_back(ev.symbol_names[b.name]);
                 Diagnostic &d =
                     report(ev, Code::UnknownMember, m->name.span,
                            m->name.text[0] == '_'

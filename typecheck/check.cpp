@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <new>
 #include <pthread.h>
 #include <set>
 
@@ -19,26 +20,41 @@ ir::Lighting default_lighting(Interpreter &ev); // builtins/scene.cpp
 namespace {
 
 // Evaluation recurses with the scene's own recursion (max_depth, max_call_depth), so it gets a
-// stack made for that.
-constexpr std::size_t stack_bytes = std::size_t{1}
-                                    << 30; // reserved, not used: pages come as they are touched
+// stack made for that: as large as the system grants. Evaluation ends in time before its end.
+constexpr std::size_t most_stack = std::size_t{1} << 30; // reserved: pages come as they are touched
+constexpr std::size_t least_stack = std::size_t{4} << 20;      // below, what is ours already serves
+constexpr std::size_t most_of_one_step = std::size_t{1} << 18; // of a builtin, a report, the parser
+
+// An address that evaluation on this thread's stack must not pass.
+const char *end_of_stack() {
+    pthread_attr_t attributes;
+    void *lowest = nullptr;
+    std::size_t size = 0;
+    if (pthread_getattr_np(pthread_self(), &attributes) == 0) {
+        pthread_attr_getstack(&attributes, &lowest, &size);
+        pthread_attr_destroy(&attributes);
+    }
+    return static_cast<const char *>(lowest) + std::max(most_of_one_step, size / 16);
+}
 
 void with_stack(const std::function<void()> &work) {
-    pthread_attr_t attributes;
-    pthread_attr_init(&attributes);
-    pthread_attr_setstacksize(&attributes, stack_bytes);
-    pthread_t thread;
     auto run = [](void *f) -> void * {
         (*static_cast<const std::function<void()> *>(f))();
         return nullptr;
     };
-    int failed =
-        pthread_create(&thread, &attributes, run, const_cast<std::function<void()> *>(&work));
-    pthread_attr_destroy(&attributes);
-    if (failed != 0)
-        work(); // no room for one: the ordinary stack serves all but the deepest scenes
-    else
+    for (std::size_t bytes = most_stack; bytes >= least_stack; bytes /= 4) {
+        pthread_attr_t attributes;
+        pthread_attr_init(&attributes);
+        pthread_attr_setstacksize(&attributes, bytes);
+        pthread_t thread;
+        const int failed =
+            pthread_create(&thread, &attributes, run, const_cast<std::function<void()> *>(&work));
+        pthread_attr_destroy(&attributes);
+        if (failed != 0) continue;
         pthread_join(thread, nullptr);
+        return;
+    }
+    work();
 }
 
 void apply(Interpreter &ev, const Setting &s) {
@@ -58,8 +74,10 @@ void add_top_level(Interpreter &ev, const Value &v, Span span, std::vector<ir::S
     case ValueKind::Unit: return;
     case ValueKind::Setting: apply(ev, ev.settings[v.id]); return;
     case ValueKind::List:
-        for (const Value &item : std::vector<Value>(ev.lists[v.id]))
+        for (const Value &item : std::vector<Value>(ev.lists[v.id])) {
+            if (!spend(ev, span)) return;
             add_top_level(ev, item, span, shapes);
+        }
         return;
     case ValueKind::Shape:
         if (v.size == 2) {
@@ -223,8 +241,9 @@ Checked check(Sources &sources, SourceId root, const std::string &root_identity,
               const std::vector<LibraryFile> &library, const Loader &loader, const Options &options,
               Diagnostics &diagnostics) {
     Checked out;
-    with_stack([&] {
+    const auto run = [&] {
         Interpreter ev{sources, diagnostics, library, loader, options};
+        ev.stack_end = end_of_stack();
         load_prelude(ev);
         Module m;
         m.identity = root_identity;
@@ -253,6 +272,15 @@ Checked check(Sources &sources, SourceId root, const std::string &root_identity,
         out.scene = std::move(ev.scene);
         out.usage_errors = std::move(ev.usage_errors);
         out.evaluations = ev.evaluations;
+        out.over_limit = ev.out_of_budget;
+    };
+    with_stack([&] { // no exception leaves a thread
+        try {
+            run();
+        } catch (const std::bad_alloc &) {
+            out = {};
+            out.no_memory = true;
+        }
     });
     return out;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "base/limits.h"
 #include "ir/scene.h"
 
 #include <functional>
@@ -23,22 +24,32 @@ struct LoadedText {
 };
 // Why a text cannot be imported, as a sentence.
 struct LoadError {
-    enum class Reason { NotFound, Outside, Unreadable };
+    enum class Reason { NotFound, Outside, Unreadable, TooLarge, TooMuchWork, TooManyPixels };
     Reason reason = Reason::NotFound;
     std::string why; // for people: "no such file", "is not a PNG or JPEG image", …
+};
+
+// What an image or a grid may still take, in bytes and steps of scene time; what it took is taken
+// off.
+struct Room {
+    std::size_t bytes = std::size_t(-1), steps = std::size_t(-1), pixels = std::size_t(-1);
 };
 
 // What a scene may read of the world; paths are as the user wrote them, `from` the identity of the
 // file that reads.
 struct Loader {
+    // Of a file, however it was named; the same of every spelling.
+    std::function<std::variant<std::string, LoadError>(const std::string &path,
+                                                       const std::string &from)>
+        identity;
     std::function<std::variant<LoadedText, LoadError>(const std::string &path,
                                                       const std::string &from)>
         text;
     std::function<std::variant<ir::ImageData, LoadError>(const std::string &path,
-                                                         const std::string &from)>
+                                                         const std::string &from, Room &room)>
         image;
     std::function<std::variant<ir::GridData, LoadError>(const std::string &path,
-                                                        const std::string &from)>
+                                                        const std::string &from, Room &room)>
         grid;
 };
 
@@ -69,8 +80,7 @@ struct Options {
     std::function<std::optional<double>(ir::Scene &, ir::ShapeId)> lipschitz;
     std::function<std::optional<std::pair<double, double>>(ir::Scene &, ir::ShapeId, int axis)>
         extent;
-    // What scene time may cost before the scene is refused; stated in docs/language.md.
-    std::size_t max_evaluations = 20'000'000, max_list_elements = 10'000'000;
+    Limits limits; // what the scene may cost before it is refused
 };
 
 // When a value is known: while the scene is read, once its parameters are set, or where a point or
@@ -90,6 +100,8 @@ struct Checked {
         usage_errors;            // overrides that name no param or are out of range: exit 2
     std::vector<NameFact> names; // of the scene's own file, as declared
     std::size_t evaluations = 0; // counted work of scene time
+    bool no_memory = false;      // the system gave no more: all else is empty
+    bool over_limit = false;     // evaluation ended at a limit, which is reported: not worth a proof
 };
 
 // `root` is already in `sources`; imported files are added to it. Reports every independent error.

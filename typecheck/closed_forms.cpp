@@ -163,7 +163,7 @@ struct Formula {
         if (!a || !b || !positive(b)) return {};
         if (op == Op::ToInt) return g.make(Op::Div, {a, b});
         const NodeId rest = g.make(Op::Mod, {a, b});
-        if (op == Op::Fract) return g.div(to_float(rest), to_float(b));
+        if (op == Op::Fract) return g.div({to_float(rest), to_float(b)});
         return to_float(g.make(Op::Div, {g.make(Op::Sub, {a, rest}), b}));
     }
 
@@ -212,9 +212,10 @@ struct Formula {
         const double within = k - parts * std::floor(k / parts);
         const NodeId phase = g.make(
             Op::Mod,
-            {g.mul(g.make(Op::Mod, {angle->whole, m}), g.integer(static_cast<int>(within))), m});
-        return g.add(g.mul(to_float(phase), g.number(turn / parts)),
-                     g.add(g.mul(to_float(angle->whole), g.number(rest)), g.number(angle->offset)));
+            {g.mul({g.make(Op::Mod, {angle->whole, m}), g.integer(static_cast<int>(within))}), m});
+        return g.add(
+            {g.mul({to_float(phase), g.number(turn / parts)}),
+             g.add({g.mul({to_float(angle->whole), g.number(rest)}), g.number(angle->offset)})});
     }
 };
 

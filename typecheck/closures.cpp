@@ -20,12 +20,13 @@ static bool varies(Interpreter &ev, const Value &v) {
 // Values that hold no number of field time, and so mean the same in every call.
 static bool is_closed(Interpreter &ev, const Value &v, int depth = 0) {
     if (v.kind == ValueKind::Field || v.kind == ValueKind::Shape || v.kind == ValueKind::Material ||
-        depth > 4)
+        depth > 4 || !spend(ev, {}))
         return false;
     if (v.kind == ValueKind::Closure) return !ev.closures[v.id].in_field;
     if (v.kind == ValueKind::List || v.kind == ValueKind::ConstField ||
         v.kind == ValueKind::Overloads) {
-        const std::vector<Value> items = ev.lists[v.id];
+        const std::vector<Value> &items = ev.lists[v.id]; // a deque's: it stays where it is
+        if (!spend(ev, {}, items.size() / 8)) return false;
         if (items.size() > 64) {
             for (const Value &item : items)
                 if (item.kind == ValueKind::Field || item.kind == ValueKind::Shape) return false;

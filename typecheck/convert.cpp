@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fathom::typecheck {
@@ -58,12 +59,18 @@ bool is_function(const Value &v) {
 }
 
 Value list_value(Interpreter &ev, std::vector<Value> items) {
-    ev.list_elements += items.size();
+    ev.made += 64 + items.size() * sizeof(Value);
+    int height = 1;
+    for (const Value &item : items)
+        if (item.kind == ValueKind::List) height = std::max(height, 1 + ev.list_heights[item.id]);
+    ev.list_height = std::max(ev.list_height, height);
+    ev.list_heights.push_back(static_cast<std::uint16_t>(std::min(height, 2 * max_list_height)));
     ev.lists.push_back(std::move(items));
     return make_value(ValueKind::List, static_cast<std::uint32_t>(ev.lists.size() - 1));
 }
 
 Value string_value(Interpreter &ev, std::string text) {
+    ev.made += sizeof text + text.size();
     ev.strings.push_back(std::move(text));
     return make_value(ValueKind::String, static_cast<std::uint32_t>(ev.strings.size() - 1));
 }
@@ -202,6 +209,7 @@ static std::optional<Value> as_type(Interpreter &ev, const Value &v, const lang:
             return std::nullopt;
         bool changed = v.kind != ValueKind::List;
         for (Value &item : items) {
+            if (!spend(ev, {})) return std::nullopt;
             auto converted = as_type(ev, item, type.items[0]);
             if (!converted) return std::nullopt;
             changed = changed || !(*converted == item);
@@ -354,8 +362,8 @@ std::optional<ir::ShapeId> want_shape(Interpreter &ev, const Value &v, Span plac
 
 std::optional<std::vector<Value>> want_list(Interpreter &ev, const Value &v, Span place,
                                             What what) {
-    if (v.kind == ValueKind::List) return ev.lists[v.id];
-    if (v.kind == ValueKind::Range || (is_numeric(v) && ir::is_vector(numeric_type(ev, v))))
+    if (v.kind == ValueKind::List || v.kind == ValueKind::Range ||
+        (is_numeric(v) && ir::is_vector(numeric_type(ev, v))))
         return sequence_items(ev, v, place);
     want(ev, v, place, what, "a list");
     return std::nullopt;
@@ -375,6 +383,7 @@ std::optional<std::vector<ir::ShapeId>> want_shapes(Interpreter &ev, const Value
     }
     std::vector<ir::ShapeId> shapes;
     for (const Value &item : items) {
+        if (!spend(ev, place)) return std::nullopt;
         if (is_poison(item)) continue; // reported; the others still make a picture
         if (item.kind == ValueKind::List) {
             auto inner = want_shapes(ev, item, place, what, dims);

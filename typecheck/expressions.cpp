@@ -132,6 +132,13 @@ static Value eval_logic(Interpreter &ev, const File &ast, const lang::Binary &b,
     return total;
 }
 
+// How many regions it is made of: each is kept whole.
+static std::size_t parts_of(const ir::Region &region) {
+    std::size_t parts = 1;
+    for (const ir::Region &less : region.less) parts += parts_of(less);
+    return parts;
+}
+
 static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b, Span place,
                          std::uint32_t frame) {
     using lang::BinaryOp;
@@ -168,9 +175,14 @@ static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b
                                 {total_place, right_place}, whole);
         } else if (b.ops[i] == BinaryOp::Sub && total.kind == ValueKind::Region &&
                    right.kind == ValueKind::Region) {
+            const std::size_t size =
+                parts_of(ev.regions[total.id]) + parts_of(ev.regions[right.id]);
+            if (!spend(ev, whole, size) || !has_room(ev, whole, size * sizeof(ir::Region)))
+                return poison();
             ir::Region region = ev.regions[total.id];
             region.less.push_back(ev.regions[right.id]);
-            ev.regions.push_back(region);
+            ev.made += size * sizeof(ir::Region);
+            ev.regions.push_back(std::move(region));
             total =
                 make_value(ValueKind::Region, static_cast<std::uint32_t>(ev.regions.size() - 1));
         } else {
@@ -315,7 +327,7 @@ static Value eval_member(Interpreter &ev, const File &ast, const lang::Member &m
                fmt::format("`{}` declares no `{}`", module.name, m.name.text));
         return poison();
     }
-    if (object.kind == ValueKind::List) {
+    if (object.kind == ValueKind::List && ev.lists[object.id].size() <= 4) {
         std::vector<Value> items = ev.lists[object.id];
         if (items.size() <= 4 && items.size() >= 2 && is_scalar(ev, items[0]))
             object = make_vector(ev, items, int(items.size()), place);
@@ -426,6 +438,7 @@ static Value eval_kind(Interpreter &ev, const File &ast, lang::ExprId id, std::u
             contribute_block(ev, ast, c.body, inner, items);
             pop_frame(ev, inner);
             std::vector<Value> values;
+            if (!has_room(ev, span, items.size() * sizeof(Value))) return poison();
             for (const Contribution &item : items) values.push_back(item.value);
             return list_value(ev, std::move(values));
         }
@@ -446,7 +459,9 @@ static Value eval_kind(Interpreter &ev, const File &ast, lang::ExprId id, std::u
 
 Value eval(Interpreter &ev, const File &ast, lang::ExprId id, std::uint32_t frame) {
     if (!spend(ev, ast.exprs[id].span)) return poison();
-    if (ev.depth >= max_depth) {
+    const char here =
+        0; // the stack grows downwards, and its end is that of the system that runs us
+    if (ev.depth >= max_depth || &here < ev.stack_end) {
         report(ev, Code::RecursionLimit, ast.exprs[id].span, "this nests too deep to be evaluated");
         return poison();
     }

@@ -41,6 +41,10 @@ Stage stage_of_node(const ir::Scene &scene, ir::NodeId id) {
 }
 
 using ShapeStages = std::unordered_map<std::uint32_t, Stage>; // what was found so far
+struct Known {
+    ShapeStages shapes;
+    std::unordered_map<std::uint32_t, Stage> lists; // lists share their parts
+};
 
 // Of a shape's numbers, the point apart: every field depends on it.
 Stage stage_of_shape(const ir::Scene &scene, ir::ShapeId root, ShapeStages &known) {
@@ -70,13 +74,14 @@ Stage stage_of_shape(const ir::Scene &scene, ir::ShapeId root, ShapeStages &know
     return known[root.index];
 }
 
-Stage stage_of(const Interpreter &ev, const Value &v, ShapeStages &known) {
-    Stage stage = Stage::Scene;
+Stage stage_of(const Interpreter &ev, const Value &v, Known &known) {
     if (v.kind == ValueKind::Field) return stage_of_node(ev.scene, node_of(v));
-    if (v.kind == ValueKind::Shape) return stage_of_shape(ev.scene, shape_of(v), known);
-    if (v.kind == ValueKind::List)
-        for (const Value &item : ev.lists[v.id]) stage = later(stage, stage_of(ev, item, known));
-    return stage;
+    if (v.kind == ValueKind::Shape) return stage_of_shape(ev.scene, shape_of(v), known.shapes);
+    if (v.kind != ValueKind::List) return Stage::Scene;
+    if (const auto it = known.lists.find(v.id); it != known.lists.end()) return it->second;
+    Stage stage = Stage::Scene;
+    for (const Value &item : ev.lists[v.id]) stage = later(stage, stage_of(ev, item, known));
+    return known.lists[v.id] = stage;
 }
 
 } // namespace
@@ -92,7 +97,7 @@ const char *stage_name(Stage stage) {
 
 std::vector<NameFact> name_facts(const Interpreter &ev, std::uint32_t frame, SourceId source) {
     std::vector<NameFact> facts;
-    ShapeStages known;
+    Known known;
     for (const Binding &b : ev.frames[frame].bindings)
         if (b.declared.source == source)
             facts.push_back({ev.symbol_names[b.name], type_of(ev, b.value),

@@ -217,6 +217,8 @@ struct Interpreter {
     // values
     std::vector<std::string> strings{};
     std::deque<std::vector<Value>> lists{};
+    std::vector<std::uint16_t> list_heights{}; // by list: 1, or more than its tallest element
+    int list_height = 0;                       // the tallest of all
     std::vector<std::array<double, 16>> matrices{};
     std::vector<Closure> closures{};
     std::vector<ir::Material> materials{};
@@ -227,13 +229,15 @@ struct Interpreter {
     std::vector<JournalEntry> journal{};
     int journaling = 0;
     std::vector<ActiveCall> calls{};
-    int depth = 0;    // nested evaluations, of any kind
-    int in_field = 0; // > 0 while a field's body is evaluated
-    int quiet = 0;    // > 0: errors are counted, not reported (overload resolution, trial loops)
+    int depth = 0;                   // nested evaluations, of any kind
+    const char *stack_end = nullptr; // evaluation goes no deeper than this address
+    int in_field = 0;                // > 0 while a field's body is evaluated
+    int quiet = 0; // > 0: errors are counted, not reported (overload resolution, trial loops)
     std::size_t quiet_errors = 0;
     std::size_t evaluations = 0;
-    std::size_t list_elements = 0;
+    std::size_t made = 0; // bytes of what the arenas below do not count themselves: see `held`
     bool out_of_budget = false;
+    std::size_t names_compared = 0;
     std::map<std::vector<std::uint64_t>, Specialization> specializations{};
     std::unordered_map<std::vector<std::uint64_t>, Value, HashOfWords> remembered{};
     std::map<std::pair<const File *, std::uint32_t>, bool>
@@ -255,10 +259,11 @@ struct Interpreter {
     std::vector<std::string> usage_errors{};
 };
 
-// The limits that bound what a scene can make the checker do; stated in docs/language.md. Work and
-// lists have theirs in `Options`.
+// The limits that bound what a scene can make the checker do, beside those of base/limits.def, which
+// a user can raise; stated in docs/limits.md.
 constexpr int max_call_depth = 1000;
-constexpr int max_depth = 40000; // nested evaluations; the stack is sized for it (check.cpp)
+constexpr int max_depth = 40000; // nested evaluations, as far as the stack reaches
+constexpr int max_list_height = 256;
 constexpr int max_unrolled = 4096;
 constexpr std::size_t max_remembered = 100'000; // calls of the library
 constexpr int max_loop_iterations = 100'000;
@@ -287,6 +292,9 @@ std::vector<std::string> visible_names(Interpreter &ev, std::uint32_t frame);
 // Adds what does to shapes what the name makes one expect, where something does: to an error about
 // a shape that was given to what takes none.
 void help_with_shape(Diagnostic &d, std::string_view name);
+// Whether so many names more may be compared with one that nobody declared: a text of nothing else
+// has thousands of them, and only the first are worth a suggestion.
+bool may_compare_names(Interpreter &ev, std::size_t count);
 // The name that another is likely to be meant for; empty: none.
 std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string &name);
 void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place);
@@ -305,7 +313,11 @@ bool is_library_place(const Interpreter &ev, Span span); // or no place at all
 std::string describe(const Interpreter &ev,
                      const Value &value); // "a float", "a list of 3", "a shape"
 std::string print_value(const Interpreter &ev, const Value &value); // for print(…)
-bool spend(Interpreter &ev, Span place, std::size_t amount = 1);    // false once the budget is gone
+// Counts steps of work; false once they or the memory are gone, which is reported once.
+bool spend(Interpreter &ev, Span place, std::size_t amount = 1);
+// Whether so many bytes more may be made; where not, it is reported once. Counts nothing.
+bool has_room(Interpreter &ev, Span place, std::size_t bytes);
+Room room_left(const Interpreter &ev);
 
 // -- numeric.cpp: numbers of both stages
 bool is_numeric(const Value &v); // Bool, Int, Float, Vec, Mat, Field
@@ -399,6 +411,7 @@ Outcome run_if(Interpreter &ev, const File &ast, const lang::If &node, std::uint
                Span place);
 void hoist_functions(Interpreter &ev, const File &ast, lang::BlockId block, std::uint32_t frame);
 std::optional<std::vector<Value>> sequence_items(Interpreter &ev, const Value &v, Span place);
+bool may_list(Interpreter &ev, Span place, std::size_t count); // so many elements; else reported
 void assign(Interpreter &ev, std::uint32_t frame, std::uint32_t slot, Value value);
 
 // -- loops.cpp: loops over numbers that are not known

@@ -45,10 +45,10 @@ std::optional<Value> item_of(Interpreter &ev, const std::vector<Value> &items, i
             return std::nullopt;
     ir::Graph &g = ev.scene.graph;
     if (first.kind == ValueKind::Int)
-        return from_node(ev, g.add(g.mul(number, g.integer(static_cast<int>(step))),
-                                   g.integer(static_cast<int>(start))));
+        return from_node(ev, g.add({g.mul(number, g.integer(static_cast<int>(step))),
+                                    g.integer(static_cast<int>(start))}));
     const ir::NodeId n = g.make(ir::Op::ToFloat, ir::Type::Float, {number});
-    return from_node(ev, g.add(g.mul(n, g.number(step)), g.number(start)));
+    return from_node(ev, g.add({g.mul(n, g.number(step)), g.number(start)}));
 }
 
 } // namespace

@@ -90,10 +90,11 @@ struct LoopInput {
 // How many iterations a loop has whose condition depends on nothing but numbers that are known
 // before it and change in a known way, as a counter does; none where it depends on more, or goes on
 // for `limit`.
-std::optional<int> known_iterations(ir::Graph &g, ir::NodeId condition,
+std::optional<int> known_iterations(Interpreter &ev, Span place, ir::NodeId condition,
                                     const std::vector<ir::NodeId> &vars,
                                     const std::vector<ir::NodeId> &next,
                                     const std::vector<ir::NodeId> &initial, int limit) {
+    ir::Graph &g = ev.scene.graph;
     std::vector<std::size_t> used;
     std::vector<ir::NodeId> todo{condition};
     while (!todo.empty()) {
@@ -114,7 +115,7 @@ std::optional<int> known_iterations(ir::Graph &g, ir::NodeId condition,
     }
     ir::Substitution now;
     for (std::size_t k : used) now[vars[k]] = initial[k];
-    for (int iteration = 0; iteration < limit; ++iteration) {
+    for (int iteration = 0; iteration < limit && spend(ev, place, 1 + used.size()); ++iteration) {
         const ir::NodeId go = ir::substitute(g, condition, now);
         if (!g.is_constant(go)) return std::nullopt;
         if (g.constant_of(go).value[0] == 0) return iteration;
@@ -146,11 +147,11 @@ std::optional<Value> as_carried(Interpreter &ev, Carried &k, const Value &v, boo
 
 bool takes_too_long(Interpreter &ev, ir::NodeId loop, Span place) {
     const double cost = ir::operations(ev.scene.graph, loop);
-    if (cost <= ir::max_operations) return false;
+    if (cost <= double(ev.options.limits.point)) return false;
     report(ev, Code::LoopLimit, place,
            fmt::format("this loop would take {:.0e} operations a point", cost))
-        .note(fmt::format("at most {:.0e} are allowed, so that every picture ends",
-                          ir::max_operations));
+        .note(limit_note(ev.options.limits, &Limits::point))
+        .help(limit_help(ev.options.limits, &Limits::point));
     return true;
 }
 
@@ -240,8 +241,9 @@ std::optional<Exit> try_loop(Interpreter &ev, const LoopInput &input,
         Value go = *condition;
         int count = input.count;
         const std::optional<int> iterations =
-            always(go) ? std::nullopt
-                       : known_iterations(g, to_node(ev, go), vars, next, initial, input.count);
+            always(go)
+                ? std::nullopt
+                : known_iterations(ev, place, to_node(ev, go), vars, next, initial, input.count);
         if (iterations) count = *iterations, go = boolean(true);
         if (!iterations && !input.has_limit) return std::nullopt;
         ir::Loop loop;

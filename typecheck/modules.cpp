@@ -67,7 +67,10 @@ static const File &add_file(Interpreter &ev, lang::Ast ast) {
 }
 
 const File &parse_file(Interpreter &ev, SourceId source, Diagnostics &diagnostics) {
-    return add_file(ev, lang::parse(ev.sources, source, diagnostics));
+    const std::size_t words = room_left(ev).bytes / 2 / lang::bytes_of_a_word;
+    lang::Ast ast = lang::parse(ev.sources, source, diagnostics, words);
+    ev.made += ast.exprs.size() * 2 * lang::bytes_of_a_word + ev.sources[source].text.size();
+    return add_file(ev, std::move(ast));
 }
 
 static std::uint32_t add_module(Interpreter &ev, Module m) {

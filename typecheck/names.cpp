@@ -37,6 +37,7 @@ void declare(Interpreter &ev, std::uint32_t frame, Symbol name, Value value, boo
              Span place) {
     Frame &f = ev.frames[frame];
     if (!f.index) {
+        (void)spend(ev, place, f.bindings.size() / 8); // they are searched
         for (const Binding &b : f.bindings) {
             if (b.name != name || !b.declared.source || !place.source) continue;
             report(ev, Code::DuplicateName, place,
@@ -111,10 +112,17 @@ std::vector<std::string> visible_names(Interpreter &ev, std::uint32_t frame) {
     return result;
 }
 
+bool may_compare_names(Interpreter &ev, std::size_t count) {
+    constexpr std::size_t most_compared = 3'000'000; // names, over all that nobody declared
+    ev.names_compared += count;
+    return ev.names_compared <= most_compared;
+}
+
 std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string &name) {
     if (const std::string_view known = name_from_elsewhere(name); !known.empty())
         return std::string(known);
     if (!way_from_elsewhere(name).empty()) return {};
+    if (!may_compare_names(ev, ev.symbol_names.size())) return {};
     std::vector<std::string> names = visible_names(ev, frame);
     // `sdBox`, `opUnion`, `sdf_sphere`: a library of shader code has its prefixes
     for (const std::string_view prefix : {"sdf_", "sd_", "op_", "sdf", "sd", "op"}) {

@@ -214,9 +214,10 @@ static Value compare(Interpreter &ev, lang::BinaryOp op, const Value &a, const V
     }
     if (equality && a.kind == b.kind && a.kind != ValueKind::Field) {
         bool same = false;
-        if (a.kind == ValueKind::String)
+        if (a.kind == ValueKind::String) {
+            if (!spend(ev, place, ev.strings[a.id].size() / 64)) return poison();
             same = ev.strings[a.id] == ev.strings[b.id];
-        else if (a.kind == ValueKind::Bool || a.kind == ValueKind::Vec)
+        } else if (a.kind == ValueKind::Bool || a.kind == ValueKind::Vec)
             same = a.size == b.size && a.num == b.num;
         else if (a.kind == ValueKind::None)
             same = true;
@@ -337,8 +338,10 @@ static Value combined(Interpreter &ev, lang::BinaryOp op, const Value &left, con
         op == BinaryOp::GreaterEqual || op == BinaryOp::Equal || op == BinaryOp::NotEqual)
         return compare(ev, op, a, b, place);
     if (op == BinaryOp::Add && a.kind == ValueKind::String) {
-        ev.strings.push_back(ev.strings[a.id] + print_value(ev, b));
-        return make_value(ValueKind::String, static_cast<std::uint32_t>(ev.strings.size() - 1));
+        const std::size_t shown = b.kind == ValueKind::String ? ev.strings[b.id].size() : 0;
+        const std::size_t size = ev.strings[a.id].size() + shown;
+        if (!spend(ev, place, size / 64) || !has_room(ev, place, size)) return poison();
+        return string_value(ev, ev.strings[a.id] + print_value(ev, b));
     }
     auto numeric = [&](const Value &v) {
         return is_numeric(v) && numeric_type(ev, v) != Type::Bool;

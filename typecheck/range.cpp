@@ -20,8 +20,9 @@ static std::span<double> known_numbers(Interpreter &ev, Value &v) {
 }
 
 bool is_infinite(Interpreter &ev, Value v) {
-    if (v.kind == ValueKind::List && ev.lists[v.id].size() <= 16) // as many as a matrix has
-        return std::ranges::any_of(ev.lists[v.id],
+    if (v.kind == ValueKind::List) // as many as a matrix has, and no lists in lists of lists
+        return ev.lists[v.id].size() <= 16 && ev.list_heights[v.id] <= 2 &&
+               std::ranges::any_of(ev.lists[v.id],
                                    [&](const Value &item) { return is_infinite(ev, item); });
     if (v.kind == ValueKind::Field) { // a vector that was written with a known part
         const ir::Graph &g = ev.scene.graph;
@@ -80,6 +81,7 @@ Value sized(Interpreter &ev, Value v, Span place, What what) {
         std::vector<Value> items = ev.lists[v.id];
         bool changed = false;
         for (Value &item : items) {
+            if (!spend(ev, place)) return poison();
             if (is_poison(item)) continue; // reported
             const Value in = sized(ev, item, place, what);
             if (is_poison(in)) return in;

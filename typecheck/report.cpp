@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace fathom::typecheck {
 
 bool is_library_place(const Interpreter &ev, Span span) {
@@ -53,6 +55,10 @@ std::string with_place(std::string message, std::string_view inside) {
 
 Diagnostic &report(Interpreter &ev, Code code, Span place, std::string message) {
     static thread_local Diagnostic swallowed;
+    if (ev.out_of_budget) { // what comes of that is no cause of its own
+        swallowed = {};
+        return swallowed;
+    }
     if (code_severity(code) == Severity::Error && ev.quiet > 0) {
         ++ev.quiet_errors;
         swallowed = {};
@@ -123,38 +129,50 @@ std::string describe(const Interpreter &ev, const Value &v) {
     return "";
 }
 
-std::string print_value(const Interpreter &ev, const Value &v) {
+// Appends what is printed of a value, until the text is long: a list of lists that share their parts
+// may print without end.
+static void print_into(const Interpreter &ev, const Value &v, std::string &out) {
+    constexpr std::size_t most_items = 100, most_bytes = 10'000;
     switch (v.kind) {
-    case ValueKind::Bool: return v.num[0] != 0 ? "true" : "false";
+    case ValueKind::Bool: out += v.num[0] != 0 ? "true" : "false"; return;
     case ValueKind::Int:
-    case ValueKind::Float: return format_shortest(v.num[0]);
+    case ValueKind::Float: out += format_shortest(v.num[0]); return;
     case ValueKind::Vec: {
-        std::string out = v.color ? "rgb(" : "[";
+        out += v.color ? "rgb(" : "[";
         for (int i = 0; i < v.size; ++i)
             out += (i ? ", " : "") + format_shortest(v.num[static_cast<std::size_t>(i)]);
-        return out + (v.color ? ")" : "]");
+        out += v.color ? ")" : "]";
+        return;
     }
     case ValueKind::Mat: {
-        std::string out = fmt::format("mat{}(", int{v.size});
+        out += fmt::format("mat{}(", int{v.size});
         for (int i = 0; i < v.size * v.size; ++i)
             out +=
                 (i ? ", " : "") + format_shortest(ev.matrices[v.id][static_cast<std::size_t>(i)]);
-        return out + ")";
+        out += ")";
+        return;
     }
-    case ValueKind::String: return ev.strings[v.id];
+    case ValueKind::String: out += ev.strings[v.id]; return;
     case ValueKind::List: {
-        std::string out = "[";
+        out += "[";
         for (std::size_t i = 0; i < ev.lists[v.id].size(); ++i) {
-            if (i == 100) return out + ", …]";
-            out += (i ? ", " : "") + print_value(ev, ev.lists[v.id][i]);
+            if (i > 0) out += ", ";
+            if (i == most_items || out.size() > most_bytes) {
+                out += "…";
+                break;
+            }
+            print_into(ev, ev.lists[v.id][i], out);
         }
-        return out + "]";
+        out += "]";
+        return;
     }
     case ValueKind::Range:
-        return v.num[2] == 1 ? fmt::format("{}..{}", v.num[0], v.num[1])
+        out += v.num[2] == 1 ? fmt::format("{}..{}", v.num[0], v.num[1])
                              : fmt::format("range({}, {}, {})", v.num[0], v.num[1], v.num[2]);
+        return;
     case ValueKind::Field:
-        return fmt::format("{} that depends on the point, a param or time", describe(ev, v));
+        out += fmt::format("{} that depends on the point, a param or time", describe(ev, v));
+        return;
     case ValueKind::Poison:
     case ValueKind::Unit:
     case ValueKind::None:
@@ -168,25 +186,72 @@ std::string print_value(const Interpreter &ev, const Value &v) {
     case ValueKind::Material:
     case ValueKind::Region:
     case ValueKind::Setting:
-    case ValueKind::Module: return describe(ev, v);
+    case ValueKind::Module: out += describe(ev, v); return;
     }
-    return "";
+}
+
+std::string print_value(const Interpreter &ev, const Value &v) {
+    std::string out;
+    print_into(ev, v, out);
+    return out;
+}
+
+// Bytes of all that evaluation made: of shapes with the facts that the proof will add.
+static std::size_t held(const Interpreter &ev) {
+    return ev.made + ev.scene.graph.bytes() + ev.scene.shapes.bytes() +
+           ev.closures.size() * sizeof(Closure) + ev.frame_count * (sizeof(Frame) + 128) +
+           ev.matrices.size() * sizeof(ev.matrices[0]) +
+           ev.scene.shapes.materials.size() * sizeof(ir::Material) +
+           ev.materials.size() * sizeof(ir::Material) + ev.settings.size() * sizeof(Setting) +
+           ev.remembered.size() * 256 + ev.reported.size() * 64 + ev.journal.size() * 64;
+}
+
+// The one error that no trial may hide.
+static bool refuse(Interpreter &ev, Code code, Span place, const char *what,
+                   std::size_t Limits::*limit, const char *help) {
+    if (ev.out_of_budget) return false;
+    const int quiet = std::exchange(ev.quiet, 0);
+    Diagnostic &d = report(ev, code, place, what);
+    if (limit)
+        d.note(limit_note(ev.options.limits, limit))
+            .note(help)
+            .help(limit_help(ev.options.limits, limit));
+    else
+        d.help(help);
+    ev.quiet = quiet;
+    ev.out_of_budget = true;
+    return false;
+}
+
+bool has_room(Interpreter &ev, Span place, std::size_t bytes) {
+    if (ev.out_of_budget) return false;
+    const std::size_t most = ev.options.limits.memory * mebibyte, now = held(ev);
+    if (now <= most && bytes <= most - now) return true;
+    return refuse(ev, Code::MemoryLimit, place, "this scene takes more memory than is allowed",
+                  &Limits::memory, "look for a list or a string that grows with every iteration");
+}
+
+Room room_left(const Interpreter &ev) {
+    const auto left = [](std::size_t most, std::size_t used) {
+        return most - std::min(most, used);
+    };
+    return {left(ev.options.limits.memory * mebibyte, held(ev)),
+            left(ev.options.limits.work, ev.evaluations), ev.options.limits.pixels};
 }
 
 bool spend(Interpreter &ev, Span place, std::size_t amount) {
+    const std::size_t before = ev.evaluations;
     ev.evaluations += amount;
     if (ev.out_of_budget) return false;
-    if (ev.evaluations <= ev.options.max_evaluations &&
-        ev.list_elements <= ev.options.max_list_elements)
-        return true;
-    ev.out_of_budget = true;
-    int quiet = std::exchange(ev.quiet, 0); // the one error that no trial may hide
-    report(ev, Code::LoopLimit, place, "this scene takes more work than is allowed")
-        .note(fmt::format("scene time may take {} evaluations and {} list elements",
-                          ev.options.max_evaluations, ev.options.max_list_elements))
-        .help("look for a loop or a recursion that does not end where it should");
-    ev.quiet = quiet;
-    return false;
+    if (ev.evaluations > ev.options.limits.work)
+        return refuse(ev, Code::LoopLimit, place, "this scene takes more work than is allowed",
+                      &Limits::work,
+                      "look for a loop or a recursion that does not end where it should");
+    if (ev.list_height > max_list_height)
+        return refuse(ev, Code::RecursionLimit, place, "lists are nested too deep here", nullptr,
+                      "a list in a list in a list ends after 256; `concat` joins lists");
+    constexpr std::size_t often = 64; // counting has a price of its own
+    return before / often == ev.evaluations / often || has_room(ev, place, 0);
 }
 
 } // namespace fathom::typecheck

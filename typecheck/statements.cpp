@@ -349,6 +349,7 @@ static bool contribute_stmt(Interpreter &ev, const File &ast, const lang::Stmt &
         if (auto *choice = std::get_if<lang::If>(&ast.exprs[e->value].kind))
             return contribute_if(ev, ast, *choice, frame, out);
         Value v = eval(ev, ast, e->value, frame);
+        ev.made += sizeof(Contribution);
         if (v.kind != ValueKind::Unit) out.push_back({v, stmt.span});
     } else if (auto *f = std::get_if<lang::For>(&stmt.kind)) {
         Value seq = eval(ev, ast, f->sequence, frame);
@@ -385,18 +386,34 @@ static bool contribute_stmt(Interpreter &ev, const File &ast, const lang::Stmt &
     return false;
 }
 
+static std::size_t numbers_in(const Value &range) {
+    return static_cast<std::size_t>(
+        std::clamp(std::ceil((range.num[1] - range.num[0]) / range.num[2]), 0.0, 1e18));
+}
+
+bool may_list(Interpreter &ev, Span place, std::size_t count) {
+    constexpr std::size_t copies = 4; // that stand side by side while a list is made from lists
+    if (count > ev.options.limits.work) {
+        report(ev, Code::LoopLimit, place, fmt::format("a range of {} numbers is too long", count))
+            .note(limit_note(ev.options.limits, &Limits::work));
+        return false;
+    }
+    return spend(ev, place, count) && has_room(ev, place, copies * count * sizeof(Value));
+}
+
 std::optional<std::vector<Value>> sequence_items(Interpreter &ev, const Value &v, Span place) {
     if (is_poison(v)) return std::nullopt;
-    if (v.kind == ValueKind::List) return ev.lists[v.id];
+    if (v.kind == ValueKind::List) { // copied, which is quicker than making
+        if (!spend(ev, place, ev.lists[v.id].size() / 8)) return std::nullopt;
+        return ev.lists[v.id];
+    }
     if (v.kind == ValueKind::Range) {
-        double count = std::max(0.0, std::ceil((v.num[1] - v.num[0]) / v.num[2]));
-        if (count > 10'000'000 || !spend(ev, place, static_cast<std::size_t>(count))) {
-            report(ev, Code::LoopLimit, place,
-                   fmt::format("a range of {:.0f} numbers is too long", count));
-            return std::nullopt;
-        }
+        const std::size_t count = numbers_in(v);
+        if (!may_list(ev, place, count)) return std::nullopt;
         std::vector<Value> items;
-        for (double i = 0; i < count; ++i) items.push_back(integer(v.num[0] + i * v.num[2]));
+        items.reserve(count);
+        for (std::size_t i = 0; i < count; ++i)
+            items.push_back(integer(v.num[0] + double(i) * v.num[2]));
         return items;
     }
     if (is_numeric(v) && ir::is_vector(numeric_type(ev, v))) {

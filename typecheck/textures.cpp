@@ -26,10 +26,19 @@ using ir::Type;
 
 static void refuse(Interpreter &ev, Span place, const char *what, const std::string &path,
                    const LoadError &error) {
-    const Code code =
-        error.reason == LoadError::Reason::Outside ? Code::ImportOutside : Code::FileNotFound;
+    using Reason = LoadError::Reason;
+    const Limits &limits = ev.options.limits;
+    const Code code = error.reason == Reason::Outside    ? Code::ImportOutside
+                      : error.reason == Reason::TooLarge ? Code::MemoryLimit
+                      : error.reason == Reason::TooMuchWork || error.reason == Reason::TooManyPixels
+                          ? Code::LoopLimit
+                          : Code::FileNotFound;
     Diagnostic &d = report(ev, code, place, fmt::format("the {} `{}`: {}", what, path, error.why));
     if (code == Code::ImportOutside) d.help(way_inside(path));
+    for (const auto &[of, limit] : {std::pair(Reason::TooLarge, &Limits::memory),
+                                    std::pair(Reason::TooMuchWork, &Limits::work),
+                                    std::pair(Reason::TooManyPixels, &Limits::pixels)})
+        if (error.reason == of) d.note(limit_note(limits, limit)).help(limit_help(limits, limit));
 }
 
 // The file whose text names it: a path is looked up beside it, also where the library's own text
@@ -43,23 +52,37 @@ static const std::string &naming_file(const Interpreter &ev) {
     return ev.modules[ev.current_module].identity;
 }
 
-// A file that is named twice is read once.
+// A file that is named twice is read once, however its name is spelled.
 template <class Data, class Load>
 static std::optional<std::uint32_t> loaded(Interpreter &ev, const Load &load,
                                            std::vector<Data> &all, const char *what,
                                            const std::string &path, Span place) {
     const std::string from = naming_file(ev);
-    auto [it, added] = ev.assets.try_emplace(fmt::format("{}\n{}\n{}", what, from, path), 0);
-    if (!added) return it->second;
-    auto data = load(path, from);
-    if (auto *error = std::get_if<LoadError>(&data)) {
-        refuse(ev, place, what, path, *error);
-        ev.assets.erase(it);
+    const auto named = ev.assets.try_emplace(fmt::format("{}\n{}\n{}", what, from, path), 0);
+    std::uint32_t &index = named.first->second;
+    if (!named.second) return index;
+    const auto fail = [&](const LoadError &error) {
+        refuse(ev, place, what, path, error);
+        ev.assets.erase(named.first);
         return std::nullopt;
+    };
+    const auto identity = ev.loader.identity(path, from);
+    if (auto *error = std::get_if<LoadError>(&identity)) return fail(*error);
+    const auto same =
+        ev.assets.try_emplace(fmt::format("{}\n{}", what, std::get<std::string>(identity)), 0);
+    if (!same.second) return index = same.first->second;
+    const Room before = room_left(ev);
+    Room room = before;
+    auto data = load(path, from, room);
+    if (auto *error = std::get_if<LoadError>(&data)) {
+        ev.assets.erase(same.first);
+        return fail(*error);
     }
-    it->second = static_cast<std::uint32_t>(all.size());
+    ev.made += before.bytes - room.bytes;
+    (void)spend(ev, place, before.steps - room.steps);
+    index = same.first->second = static_cast<std::uint32_t>(all.size());
     all.push_back(std::move(std::get<Data>(data)));
-    return it->second;
+    return index;
 }
 
 static Value image_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
@@ -168,8 +191,8 @@ static std::optional<ir::UvMap> uv_map_of(Interpreter &ev, ShapeId id) {
     if (called({"box", "rounded_box", "box_frame", "menger", "menger_sponge", "gdf_cube"}))
         return ir::box_uv_map(g, hi);
     if (called({"cylinder", "rounded_cylinder", "prism"}))
-        return ir::has_uv_map(g, part(0), g.mul(part(1), g.number(2)));
-    if (called({"torus"})) return ir::ring_uv_map(g, g.sub(part(0), part(1)), part(1));
+        return ir::has_uv_map(g, part(0), g.mul({part(1), g.number(2)}));
+    if (called({"torus"})) return ir::ring_uv_map(g, g.sub({part(0), part(1)}), part(1));
     if (g.is_constant(lo) && g.is_constant(hi))
         for (std::size_t i = 0; i < 3; ++i)
             if (!std::isfinite(g.constant_of(hi).value[i] - g.constant_of(lo).value[i]))
@@ -295,9 +318,9 @@ static Value displace_map_call(Interpreter &ev, const CallSite &site, std::vecto
                 heights.slope_u * std::fabs(images_along(map->scale[0], uv_map->around_u));
             const double along_v =
                 heights.slope_v * std::fabs(images_along(map->scale[1], uv_map->around_v));
-            const NodeId slope = g.add(g.add(g.mul(uv_map->slope_u, g.number(along_u)),
-                                             g.mul(uv_map->slope_v, g.number(along_v))),
-                                       g.mul(uv_map->slope_weight, g.number(span)));
+            const NodeId slope = g.add({g.add({g.mul(uv_map->slope_u, g.number(along_u)),
+                                               g.mul(uv_map->slope_v, g.number(along_v))}),
+                                        g.mul(uv_map->slope_weight, g.number(span))});
             const NodeId a = g.mul(here, g.number(heights.minimum)),
                          b = g.mul(here, g.number(heights.maximum));
             const ir::Shape inner = ev.scene.shapes[base];

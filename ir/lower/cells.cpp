@@ -32,13 +32,13 @@ Lowering::InCell Lowering::in_cell(ShapeId id, NodeId q) {
         size[i] = (cells.box.hi[i] - lo[i]) / cells.count[i];
         last[i] = cells.count[i] - 1;
     }
-    const NodeId u = g.div(g.sub(q, g.vec(lo)), g.vec(size)); // in cells
+    const NodeId u = g.div({g.sub(q, g.vec(lo)), g.vec(size)}); // in cells
     const NodeId cell =
         g.make(Op::Clamp, {g.make(Op::Floor, {u}), g.vec(std::array<double, 3>{}), g.vec(last)});
     const std::array<double, 3> strides{1, cells.count[0] + 1.0,
                                         (cells.count[0] + 1.0) * (cells.count[1] + 1.0)};
     const NodeId first = g.make(Op::ToInt, Type::Int,
-                                {g.add(g.make(Op::Dot, {cell, g.vec(strides)}), g.number(0.5))});
+                                {g.add({g.make(Op::Dot, {cell, g.vec(strides)}), g.number(0.5)})});
     const auto found = cell_tables_.try_emplace(id);
     if (found.second) found.first->second = g.add_table(corner_table(cells));
     const NodeId part = g.make(Op::Clamp, {g.sub(u, cell), g.vec(std::array<double, 3>{}),
@@ -63,7 +63,7 @@ Lowering::InCell Lowering::in_cell(ShapeId id, NodeId q) {
     // |u - middle| cells from the middle; the walls are half a cell from there.
     const NodeId from_middle =
         g.make(Op::Abs, {g.sub(u, g.add(cell, g.vec(std::array{0.5, 0.5, 0.5})))});
-    const NodeId left = g.mul(g.sub(g.vec(std::array{0.5, 0.5, 0.5}), from_middle), g.vec(size));
+    const NodeId left = g.mul({g.sub(g.vec(std::array{0.5, 0.5, 0.5}), from_middle), g.vec(size)});
     const NodeId wall =
         g.make(Op::Min, {g.component(left, 0),
                          g.make(Op::Min, {g.component(left, 1), g.component(left, 2)})});

@@ -125,7 +125,7 @@ NodeId Lowering::unpack(const Packing &packing, std::size_t which, NodeId extra)
         if (shared > 1) {
             const NodeId shifted =
                 g.make(Op::Floor, {g.div(part, g.number(std::pow(radix, next % shared)))});
-            part = g.sub(g.make(Op::Mod, {shifted, g.number(radix)}), g.number(radix / 2));
+            part = g.sub({g.make(Op::Mod, {shifted, g.number(radix)}), g.number(radix / 2)});
         }
         parts.push_back(part);
     }
@@ -238,7 +238,7 @@ std::int32_t Lowering::mixed_surface(ShapeId id) {
         const NodeId d = g.sub(fields[i], field);
         // 0 where the next is greater by r or more, 1 where it is less by r or more.
         const NodeId t =
-            g.make(Op::Clamp, {g.mul(g.sub(g.number(1), g.div(d, width)), g.number(0.5)),
+            g.make(Op::Clamp, {g.mul({g.sub({g.number(1), g.div(d, width)}), g.number(0.5)}),
                                g.number(0), g.number(1)});
         const Appearance next = appearance_of(hits[i]);
         for (std::size_t k = 0; k < appearance.size(); ++k)

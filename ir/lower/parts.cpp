@@ -139,7 +139,7 @@ NodeId Lowering::farthest_part(NodeId farthest, NodeId first) {
     const NodeId own = g.make(Op::HitPaint, {farthest}), other = g.make(Op::HitPaint, {first});
     const NodeId bare = g.make(Op::And, {g.make(Op::Less, {code_of(own), g.integer(0)}),
                                          g.make(Op::LessEqual, {g.integer(0), code_of(other)})});
-    const NodeId paint = g.make(Op::Select, {bare, g.add(part_only(own), code_of(other)), own});
+    const NodeId paint = g.make(Op::Select, {bare, g.add({part_only(own), code_of(other)}), own});
     const auto of = [&](Op op) {
         return g.make(Op::Select, {bare, g.make(op, {first}), g.make(op, {farthest})});
     };

@@ -60,8 +60,8 @@ NodeId convex_distance(Graph &graph, const Region &region, NodeId p) {
     case RegionKind::Tube:
         return graph.sub(graph.make(Op::Length, {across(graph, p, region.axis)}), region.size);
     case RegionKind::Box: {
-        const NodeId d = graph.sub(graph.make(Op::Abs, {graph.sub(p, region.center)}),
-                                   graph.mul(region.size, graph.number(0.5)));
+        const NodeId d = graph.sub({graph.make(Op::Abs, {graph.sub(p, region.center)}),
+                                    graph.mul(region.size, graph.number(0.5))});
         return joined_distance(
             graph, std::array{graph.component(d, 0), graph.component(d, 1), graph.component(d, 2)});
     }
@@ -107,7 +107,7 @@ WayOut region_way_out(Graph &graph, const Region &hole, NodeId p) {
         const NodeId v = tube ? across(graph, p, hole.axis) : graph.sub(p, hole.center);
         const NodeId out = lengthened(graph, v, hole.size);
         const NodeId part =
-            graph.div(graph.make(Op::Length, {v}), graph.make(Op::Max, {hole.size, some}));
+            graph.div({graph.make(Op::Length, {v}), graph.make(Op::Max, {hole.size, some})});
         return {tube ? with_across(graph, p, hole.axis, out) : graph.add(hole.center, out),
                 graph.make(Op::Min, {part, one})};
     }
@@ -146,7 +146,7 @@ std::array<NodeId, 2> region_opposites(Graph &graph, const Region &hole, NodeId 
                 with_across(graph, p, hole.axis, graph.neg(by))};
     }
     case RegionKind::Box: {
-        const NodeId half = graph.mul(graph.component(hole.size, 0), graph.number(0.5));
+        const NodeId half = graph.mul({graph.component(hole.size, 0), graph.number(0.5)});
         const NodeId by = graph.make(Op::Make, Type::Vec3, {half, zero, zero});
         return {graph.add(hole.center, by), graph.sub(hole.center, by)};
     }
@@ -161,7 +161,7 @@ NodeId region_between_caps(Graph &graph, const Region &region, NodeId q) {
     for (const Region &less : region.less) {
         if (less.kind != RegionKind::Tube) continue;
         const NodeId rest =
-            graph.sub(graph.mul(region.size, region.size), graph.mul(less.size, less.size));
+            graph.sub({graph.mul(region.size, region.size), graph.mul(less.size, less.size)});
         const NodeId height = graph.make(Op::Sqrt, {graph.make(Op::Max, {rest, graph.number(0)})});
         const NodeId middle = graph.component(region.center, less.axis);
         std::array<NodeId, 3> parts;
@@ -181,8 +181,8 @@ NodeId box_distance(Graph &graph, const Box &box, NodeId p) {
                      hi = box.hi[static_cast<std::size_t>(i)];
         const NodeId x = graph.component(p, i);
         if (std::isfinite(lo) && std::isfinite(hi))
-            d.push_back(graph.sub(graph.make(Op::Abs, {graph.sub(x, graph.number((lo + hi) / 2))}),
-                                  graph.number((hi - lo) / 2)));
+            d.push_back(graph.sub({graph.make(Op::Abs, {graph.sub(x, graph.number((lo + hi) / 2))}),
+                                   graph.number((hi - lo) / 2)}));
         else if (std::isfinite(lo))
             d.push_back(graph.sub(graph.number(lo), x));
         else if (std::isfinite(hi))
@@ -195,10 +195,10 @@ NodeId cylinder_distance(Graph &graph, const Box &box, int axis, double radius, 
     const double lo = box.lo[static_cast<std::size_t>(axis)],
                  hi = box.hi[static_cast<std::size_t>(axis)];
     const NodeId side =
-        graph.sub(graph.make(Op::Length, {across(graph, p, axis)}), graph.number(radius));
-    const NodeId along = graph.sub(graph.component(p, axis), graph.number((lo + hi) / 2));
-    return joined_distance(graph, std::array{side, graph.sub(graph.make(Op::Abs, {along}),
-                                                             graph.number((hi - lo) / 2))});
+        graph.sub({graph.make(Op::Length, {across(graph, p, axis)}), graph.number(radius)});
+    const NodeId along = graph.sub({graph.component(p, axis), graph.number((lo + hi) / 2)});
+    return joined_distance(graph, std::array{side, graph.sub({graph.make(Op::Abs, {along}),
+                                                              graph.number((hi - lo) / 2)})});
 }
 
 } // namespace fathom::ir

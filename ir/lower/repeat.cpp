@@ -65,7 +65,7 @@ NodeId nearest_of_others(Graph &g, const std::array<LatticeAxis, 3> &axes, int d
         if (!std::isfinite(lo) || !std::isfinite(hi) || (a.repeats && !a.last)) return {};
         const NodeId reach = a.repeats ? g.mul(a.shift, a.cell) : g.number(0);
         return g.make(Op::Max, {g.sub(g.sub(g.number(lo), reach), a.x),
-                                g.sub(g.sub(a.x, reach), g.number(hi))});
+                                g.sub({g.sub(a.x, reach), g.number(hi)})});
     };
     for (int i = 0; i < dims; ++i) {
         const LatticeAxis &a = axes[static_cast<std::size_t>(i)];
@@ -74,8 +74,8 @@ NodeId nearest_of_others(Graph &g, const std::array<LatticeAxis, 3> &axes, int d
                      hi = held.hi[static_cast<std::size_t>(i)];
         if (!std::isfinite(lo) || !std::isfinite(hi)) continue;
         const NodeId before = g.sub(a.base, g.number(1)), after = g.add(a.base, g.number(a.copies));
-        NodeId left = g.sub(a.x, g.add(g.mul(g.sub(before, a.shift), a.cell), g.number(hi)));
-        NodeId right = g.sub(g.add(g.mul(g.sub(after, a.shift), a.cell), g.number(lo)), a.x);
+        NodeId left = g.sub(a.x, g.add({g.mul(g.sub(before, a.shift), a.cell), g.number(hi)}));
+        NodeId right = g.sub(g.add({g.mul(g.sub(after, a.shift), a.cell), g.number(lo)}), a.x);
         const NodeId none = g.number(nowhere);
         if (a.last) {
             left = g.make(Op::Select, {g.make(Op::Less, {before, g.number(0)}), none, left});
@@ -147,11 +147,11 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
         a.cell = g.component(cells, i);
         const NodeId count = g.component(counts, i);
         const bool endless = g.as_number(count).value_or(0) >= infinite_count;
-        a.shift = endless ? g.number(0) : g.mul(g.sub(count, g.number(1)), g.number(0.5));
+        a.shift = endless ? g.number(0) : g.mul({g.sub(count, g.number(1)), g.number(0.5)});
         const NodeId u = g.add(g.div(a.x, a.cell), a.shift);
         const bool even = a.copies % 2 == 0;
-        a.base = g.sub(g.make(even ? Op::Floor : Op::Round, {u}),
-                       g.number(even ? a.copies / 2 - 1 : a.copies / 2));
+        a.base = g.sub({g.make(even ? Op::Floor : Op::Round, {u}),
+                        g.number(even ? a.copies / 2 - 1 : a.copies / 2)});
         if (!endless) {
             a.last = g.sub(count, g.number(1));
             a.fewer = !(g.as_number(count).value_or(0) >= a.copies);
@@ -183,9 +183,9 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
             cell_id[static_cast<std::size_t>(i)] = index;
             NodeId local = g.sub(a.x, g.mul(g.sub(index, a.shift), a.cell));
             if (repetition.mirrored)
-                local =
-                    g.mul(local, g.sub(g.number(1),
-                                       g.mul(g.number(2), g.make(Op::Mod, {index, g.number(2)}))));
+                local = g.mul(local,
+                              g.sub({g.number(1),
+                                     g.mul({g.number(2), g.make(Op::Mod, {index, g.number(2)})})}));
             q.push_back(local);
         }
         const NodeId point = g.make(Op::Make, vector_type(dims), q);
@@ -250,8 +250,8 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Where frame) {
         const NodeId c = g.make(Op::Cos, {angle}), sine = g.make(Op::Sin, {angle});
         std::array<NodeId, 3> q;
         if (s.dims == 3) q[static_cast<std::size_t>(axis)] = g.component(frame.p, axis);
-        q[static_cast<std::size_t>(u)] = g.add(g.mul(c, x), g.mul(sine, y));
-        q[static_cast<std::size_t>(v)] = turned(g.sub(g.mul(c, y), g.mul(sine, x)));
+        q[static_cast<std::size_t>(u)] = g.add({g.mul(c, x), g.mul(sine, y)});
+        q[static_cast<std::size_t>(v)] = turned(g.sub({g.mul(c, y), g.mul(sine, x)}));
         const NodeId point = g.make(Op::Make, vector_type(s.dims),
                                     std::span(q).first(static_cast<std::size_t>(s.dims)));
         const NodeId cell_id = g.make(Op::Make, Type::Vec3, {k, g.number(0), g.number(0)});
@@ -271,10 +271,10 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Where frame) {
                            std::array{best, copy(g.make(Op::ToFloat, Type::Float, {turn}))});
         });
     }
-    const NodeId t = g.mul(g.make(Op::Atan2, {y, x}), g.number(1 / step)); // -n/2 .. n/2
+    const NodeId t = g.mul({g.make(Op::Atan2, {y, x}), g.number(1 / step)}); // -n/2 .. n/2
     const bool even = sectors % 2 == 0;
-    const NodeId base = g.sub(g.make(even ? Op::Floor : Op::Round, {t}),
-                              g.number(even ? sectors / 2 - 1 : sectors / 2));
+    const NodeId base = g.sub({g.make(even ? Op::Floor : Op::Round, {t}),
+                               g.number(even ? sectors / 2 - 1 : sectors / 2)});
     const auto sector = [&](NodeId offset) { // into 0 .. n-1; base + offset lies in -n .. 2n
         const NodeId k = g.add(base, offset), n = g.number(count);
         const NodeId low = g.make(Op::Select, {g.make(Op::Less, {k, g.number(0)}), g.add(k, n), k});

@@ -143,7 +143,7 @@ NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     std::vector<Known> steps{
         {divided(child, graph_.sub(base, graph_.number(known.outward))), base, -known.inward, 0}};
     const auto slope_with = [&](double slope) { // of the base and so much of the sum
-        return graph_.add(fact(child).lipschitz, graph_.number(slope));
+        return graph_.add({fact(child).lipschitz, graph_.number(slope)});
     };
     const std::size_t nested = known.partial.empty() ? 0 : known.partial.size() - 1;
     if (nested > 0) raw = graph_.sub(base, read(known.partial.back().terms, frame));
@@ -151,8 +151,8 @@ NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     for (std::size_t i = 0; i < nested; ++i) {
         const PartialSum &partial = known.partial[i];
         const NodeId field = graph_.sub(base, read(partial.terms, frame));
-        const NodeId bound = graph_.div(graph_.sub(field, graph_.number(partial.maximum)),
-                                        slope_with(partial.slope));
+        const NodeId bound = graph_.div(
+            {graph_.sub(field, graph_.number(partial.maximum)), slope_with(partial.slope)});
         steps.push_back({graph_.make(Op::Max, {steps.back().best, bound}), field, partial.minimum,
                          cost_of(graph_, partial.terms)});
     }
@@ -223,7 +223,8 @@ NodeId Lowering::structural(Reading reading, ShapeId id, Where frame) {
             std::vector<NodeId> hits;
             for (ShapeId operand : shape(inner).children)
                 hits.push_back(negated(reading, expression_of(reading, operand, frame)));
-            return at_distance(reading, maximum(reading, hits),
+            const NodeId farthest = maximum(reading, hits);
+            return at_distance(reading, farthest,
                                graph_.neg(expression_of(Reading::Marched, inner, frame)));
         }
         return negated(reading, child(0));
@@ -245,7 +246,7 @@ NodeId Lowering::structural(Reading reading, ShapeId id, Where frame) {
     case ShapeKind::Extrude: {
         const NodeId flat = graph_.swizzle(frame.p, std::array{0, 1});
         const NodeId value = expression_of(reading, s.children.front(), at(frame, flat));
-        const NodeId half = graph_.mul(read(s.args[0], frame), graph_.number(0.5));
+        const NodeId half = graph_.mul({read(s.args[0], frame), graph_.number(0.5)});
         const NodeId cap = graph_.sub(graph_.make(Op::Abs, {graph_.component(frame.p, 2)}), half);
         return at_distance(reading, value,
                            joined_distance(graph_, std::array{distance_of(reading, value), cap}));
@@ -282,9 +283,10 @@ NodeId Lowering::raw_only(ShapeId id, Where frame) {
     if (s.kind == ShapeKind::PseudoNorm) return pseudonorm(s, frame);
     if (s.kind == ShapeKind::Lerp) return graph_.make(Op::Mix, {child(1), child(0), arg(0)});
     if (s.kind == ShapeKind::Shell)
-        return graph_.sub(graph_.make(Op::Abs, {child(0)}), graph_.mul(arg(0), graph_.number(0.5)));
+        return graph_.sub(
+            {graph_.make(Op::Abs, {child(0)}), graph_.mul({arg(0), graph_.number(0.5)})});
     assert(s.kind == ShapeKind::Offset || s.kind == ShapeKind::Displace);
-    return graph_.sub(child(0), arg(0));
+    return graph_.sub({child(0), arg(0)});
 }
 
 NodeId Lowering::blend(const Shape &s, Where frame) {
@@ -312,13 +314,13 @@ NodeId Lowering::seam(const Shape &s, Where frame) {
     case SeamKind::Pipe:
         return g.sub(g.make(Op::Length, {g.make(Op::Make, Type::Vec2, {a, b})}), r);
     case SeamKind::Engrave:
-        return g.make(Op::Intersection, {a, g.mul(g.sub(g.add(a, r), away()), half)});
+        return g.make(Op::Intersection, {a, g.mul(g.sub({g.add(a, r), away()}), half)});
     case SeamKind::Groove:
         return g.make(Op::Intersection,
-                      {a, g.make(Op::Union, {g.add(a, depth), g.sub(g.mul(r, half), away())})});
+                      {a, g.make(Op::Union, {g.add(a, depth), g.sub({g.mul(r, half), away()})})});
     case SeamKind::Tongue:
         return g.make(Op::Union, {a, g.make(Op::Intersection,
-                                            {g.sub(a, depth), g.sub(away(), g.mul(r, half))})});
+                                            {g.sub(a, depth), g.sub({away(), g.mul(r, half)})})});
     }
     return {};
 }
@@ -332,7 +334,8 @@ NodeId Lowering::pseudonorm(const Shape &s, Where frame) {
     const NodeId u = g.make(Op::Max, {g.sub(one, a), zero}),
                  v = g.make(Op::Max, {g.sub(one, b), zero});
     const NodeId larger = g.make(Op::Max, {u, v});
-    const NodeId ratio = g.div(g.make(Op::Min, {u, v}), g.make(Op::Max, {larger, g.number(1e-9)}));
+    const NodeId ratio =
+        g.div({g.make(Op::Min, {u, v}), g.make(Op::Max, {larger, g.number(1e-9)})});
     const NodeId norm =
         g.mul(larger, g.make(Op::Pow, {g.add(one, g.make(Op::Pow, {ratio, p})), g.div(one, p)}));
     return g.sub(g.make(Op::Max, {one, g.make(Op::Union, {a, b})}), norm);

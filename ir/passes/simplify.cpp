@@ -122,8 +122,8 @@ NodeId log_of_exponentials(Graph &graph, Op log, Type type, NodeId sum) {
     for (std::size_t i = 1; i < terms.size(); ++i) {
         const NodeId way = graph.make(Op::Abs, type, {graph.sub(all, terms[i])});
         const NodeId rest = graph.make(exponential, type, {graph.neg(way)});
-        all = graph.add(graph.make(Op::Max, type, {all, terms[i]}),
-                        graph.make(log, type, {graph.add(one, rest)}));
+        all = graph.add({graph.make(Op::Max, type, {all, terms[i]}),
+                         graph.make(log, type, {graph.add(one, rest)})});
     }
     return all;
 }

@@ -177,12 +177,19 @@ struct Copier {
 } // namespace
 
 NodeId substitute(Graph &graph, NodeId root, const Substitution &map) {
+    std::size_t visited = 0;
+    return substitute(graph, root, map, visited);
+}
+
+NodeId substitute(Graph &graph, NodeId root, const Substitution &map, std::size_t &visited) {
     Copier copier{graph, map, false, false};
     for (const auto &[from, to] : map) {
         copier.points |= graph[from].op == Op::Point;
         copier.any_kind |= graph[from].op != Op::Point && graph[from].op != Op::Var;
     }
-    return copier.copy(root);
+    const NodeId copy = copier.copy(root);
+    visited += copier.done.size();
+    return copy;
 }
 
 } // namespace fathom::ir

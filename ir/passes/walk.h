@@ -11,5 +11,7 @@ namespace fathom::ir {
 // of its own.
 using Substitution = std::unordered_map<NodeId, NodeId>;
 NodeId substitute(Graph &graph, NodeId root, const Substitution &map);
+// The same, and counts the nodes that it looked at.
+NodeId substitute(Graph &graph, NodeId root, const Substitution &map, std::size_t &visited);
 
 } // namespace fathom::ir

@@ -1,6 +1,6 @@
 // Results: that a file holds what its name says, that what cannot be written is refused with what
 // to write, and that no option is taken and then not read.
-#include "driver/image.h"
+#include "tests/support/decoded.h"
 #include "shell.h"
 
 #include "backend-glsl/targets.h"
@@ -59,8 +59,8 @@ TEST_CASE("a JPEG shows the picture that the PNG shows, as finely as is asked") 
     CHECK(folder.read("a.jpg") == folder.read("b.jpg"));
     CHECK(folder.read("c.jpg").size() < folder.read("a.jpg").size());
     std::string error;
-    const auto png = fathom::driver::decode_image(folder.read("a.png"), error);
-    const auto jpeg = fathom::driver::decode_image(folder.read("a.jpg"), error);
+    const auto png = fathom::test::decoded_image(folder.read("a.png"), error);
+    const auto jpeg = fathom::test::decoded_image(folder.read("a.jpg"), error);
     REQUIRE(png);
     REQUIRE(jpeg);
     REQUIRE(jpeg->width == 64);

@@ -27,12 +27,17 @@ inline Answer whole_compiler(const std::string &text) {
     const SourceId root = sources.add("a.sdf", text);
     const typecheck::LoadError missing{typecheck::LoadError::Reason::NotFound, "no such file"};
     typecheck::Loader loader;
+    loader.identity = [&](const std::string &, const std::string &) { return missing; };
     loader.text = [&](const std::string &, const std::string &) { return missing; };
-    loader.image = [&](const std::string &, const std::string &) { return missing; };
-    loader.grid = [&](const std::string &, const std::string &) { return missing; };
+    loader.image = [&](const std::string &, const std::string &, typecheck::Room &) {
+        return missing;
+    };
+    loader.grid = [&](const std::string &, const std::string &, typecheck::Room &) {
+        return missing;
+    };
     typecheck::Options options;
-    options.max_evaluations = 200'000;
-    options.max_list_elements = 100'000;
+    options.limits.work = 200'000;
+    options.limits.memory = 32;
     typecheck::Checked checked = typecheck::check(
         sources, root, "a.sdf", driver::standard_library(), loader, options, diagnostics);
     proof::Options proof_options;

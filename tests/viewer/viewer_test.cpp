@@ -428,7 +428,7 @@ TEST_CASE("no frame is blank while the driver works on the next shader") {
     for (const fs::directory_entry &entry :
          fs::directory_iterator(window.folder / "scene-frames")) {
         std::string error;
-        const auto frame = driver::decode_image(
+        const auto frame = fathom::test::decoded_image(
             window.folder.read("scene-frames/" + entry.path().filename().string()), error);
         REQUIRE(frame);
         ++frames;

@@ -3,8 +3,8 @@
 // machine; nothing here measures time.
 #pragma once
 
-#include "driver/image.h"
 #include "scratch_folder.h"
+#include "tests/support/decoded.h"
 
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -197,7 +197,7 @@ class Window {
         const fs::path file = folder / (fmt::format("scene-{}.png", ++pictures_));
         REQUIRE(waited([&] { return fs::exists(file) || !process_->runs(); }));
         std::string error;
-        auto image = driver::decode_image(folder.read(file.filename().string()), error);
+        auto image = fathom::test::decoded_image(folder.read(file.filename().string()), error);
         REQUIRE(image);
         // Kept for whoever wants to look at what the tests saw.
         if (const char *keep = std::getenv("FATHOM_KEEP_PICTURES")) {

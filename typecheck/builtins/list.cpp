@@ -14,6 +14,7 @@ namespace fathom::typecheck {
 
 static Value len_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     if (args[0].kind == ValueKind::String) return integer(double(ev.strings[args[0].id].size()));
+    if (args[0].kind == ValueKind::List) return integer(double(ev.lists[args[0].id].size()));
     if (args[0].kind == ValueKind::Range)
         return integer(
             std::max(0.0, std::ceil((args[0].num[1] - args[0].num[0]) / args[0].num[2])));
@@ -99,7 +100,9 @@ static Value concat_call(Interpreter &ev, const CallSite &site, std::vector<Valu
     }
     for (const Value &l : lists) {
         auto items = want_list(ev, l, site.call, "`concat`");
-        if (!items || !spend(ev, site.call, items->size())) return poison();
+        if (!items || !spend(ev, site.call, items->size()) ||
+            !has_room(ev, site.call, (out.size() + items->size()) * sizeof(Value)))
+            return poison();
         out.insert(out.end(), items->begin(), items->end());
     }
     return list_value(ev, std::move(out));
@@ -147,12 +150,8 @@ static Value range_call(Interpreter &ev, const CallSite &site, std::vector<Value
         report(ev, Code::BadArgument, site.arg(2), "`range` wants a step that is not 0");
         return poison();
     }
-    double count = std::max(0.0, std::ceil((*b - *a) / *step - 1e-9));
-    if (count > 10'000'000 || !spend(ev, site.call, static_cast<std::size_t>(count))) {
-        report(ev, Code::LoopLimit, site.call,
-               fmt::format("a range of {:.0f} numbers is too long", count));
-        return poison();
-    }
+    const double count = std::clamp(std::ceil((*b - *a) / *step - 1e-9), 0.0, 1e18);
+    if (!may_list(ev, site.call, static_cast<std::size_t>(count))) return poison();
     std::vector<Value> out;
     for (double i = 0; i < count; ++i)
         out.push_back(whole ? integer(*a + i * *step) : number(*a + i * *step));
@@ -217,7 +216,7 @@ static Value random_call(Interpreter &ev, const CallSite &site, std::vector<Valu
     if (!lo || !hi) return poison();
     std::vector<double> t{random_unit(*seed, 1), random_unit(*seed, 2), random_unit(*seed, 3)};
     ir::Graph &g = ev.scene.graph;
-    return from_node(ev, g.add(*lo, g.mul(g.sub(*hi, *lo), g.vec(t))));
+    return from_node(ev, g.add(*lo, g.mul({g.sub(*hi, *lo), g.vec(t)})));
 }
 
 static Value pick_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {

@@ -284,7 +284,7 @@ static Value rgb_call(Interpreter &ev, const CallSite &site, std::vector<Value> 
         ir::NodeId c = to_node(ev, to_float(ev, v));
         ir::NodeId low = g.div(c, g.number(12.92));
         ir::NodeId base =
-            g.make(Op::Max, {g.div(g.add(c, g.number(0.055)), g.number(1.055)), g.number(0)});
+            g.make(Op::Max, {g.div({g.add(c, g.number(0.055)), g.number(1.055)}), g.number(0)});
         ir::NodeId high = g.make(Op::Pow, {base, g.number(2.4)});
         return from_node(
             ev, g.make(Op::Select, {g.make(Op::LessEqual, {c, g.number(0.04045)}), low, high}));

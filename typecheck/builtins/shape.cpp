@@ -407,7 +407,7 @@ static Value extent_call(Interpreter &ev, const CallSite &site, std::vector<Valu
 static bool is_known(Interpreter &ev, const Value &v) {
     if (v.kind != ValueKind::List) return v.kind != ValueKind::Field;
     for (const Value &item : ev.lists[v.id])
-        if (!is_known(ev, item)) return false;
+        if (!spend(ev, {}) || !is_known(ev, item)) return false;
     return true;
 }
 static Value known_call(Interpreter &ev, const CallSite &, std::vector<Value> &args) {

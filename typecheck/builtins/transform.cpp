@@ -422,7 +422,7 @@ static Value aabb_call(Interpreter &ev, const CallSite &site, std::vector<Value>
     ir::Region region;
     region.kind = ir::RegionKind::Box;
     const ir::NodeId half = g.number(0.5);
-    region.center = g.add(g.mul(*lo, half), g.mul(*hi, half));
+    region.center = g.add({g.mul(*lo, half), g.mul(*hi, half)});
     auto size = node_in_range(ev, g.sub(*hi, *lo), site.call);
     if (!size || !positive_sizes(ev, site, *size, 1)) return poison();
     region.size = *size;

@@ -50,3 +50,15 @@ TEST_CASE("the programs on the pages of docs/ work") {
     }
     CHECK(count > 20);
 }
+
+TEST_CASE("docs/limits.md lists every limit with what it is unless said") {
+    const std::string page = file_text(std::filesystem::path(FATHOM_SOURCE_DIR) / "docs/limits.md");
+    for (const LimitRow &row : limit_rows()) {
+        std::string usual = std::to_string(row.usual);
+        for (std::size_t i = usual.size(); i > 3; i -= 3) usual.insert(i - 3, ",");
+        const std::string line = std::string("| `") + row.name + "` | " + usual + " | " + row.unit +
+                                 " | " + row.what + " |\n";
+        INFO(line);
+        CHECK(page.find(line) != std::string::npos);
+    }
+}

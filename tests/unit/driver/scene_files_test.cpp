@@ -1,9 +1,9 @@
 // What a scene may read: its own folder and the -I folders, and nothing else, whatever its paths
 // say.
 #include "base/picture.h"
-#include "driver/image.h"
 #include "driver/scene_files.h"
 #include "scratch_folder.h"
+#include "tests/support/decoded.h"
 
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -37,7 +37,7 @@ TEST_CASE("an import is found beside its importer, then in the -I folders") {
     folder.write("scene/parts/a.sdf", "a");
     folder.write("scene/parts/b.sdf", "b");
     folder.write("library/c.sdf", "c");
-    SceneFiles files(folder / "scene", {folder / "library"});
+    SceneFiles files(folder / "scene", {folder / "library"}, {});
     std::string root = files.add_root(folder / "scene/main.sdf");
     Answer a = ask(files, "parts/a.sdf", root);
     CHECK(a.text == "a");
@@ -56,7 +56,7 @@ TEST_CASE("nothing outside is read, nor told whether it exists") {
     folder.write("scene/main.sdf", "");
     fs::create_symlink(folder / "secret.sdf", folder / "scene/innocent.sdf");
     fs::create_directory_symlink(folder.path(), folder / "scene/up");
-    SceneFiles files(folder / "scene", {});
+    SceneFiles files(folder / "scene", {}, {});
     std::string root = files.add_root(folder / "scene/main.sdf");
     for (std::string path : {"../secret.sdf", "innocent.sdf", "up/secret.sdf", "../nothing.sdf"}) {
         INFO(path);
@@ -72,7 +72,7 @@ TEST_CASE("nothing outside is read, nor told whether it exists") {
 }
 
 TEST_CASE("a missing file beside a scene that is named without a folder is missing, not outside") {
-    SceneFiles files("", {});
+    SceneFiles files("", {}, {});
     Answer a = ask(files, "there is no such file.png", files.add_root("scene.sdf"));
     CHECK_FALSE(a.outside);
     CHECK(a.error == "no such file");
@@ -82,7 +82,7 @@ TEST_CASE("a link within the allowed folders is followed") {
     ScratchFolder folder;
     folder.write("scene/real.sdf", "real");
     fs::create_symlink("real.sdf", folder / "scene/link.sdf");
-    SceneFiles files(folder / "scene", {});
+    SceneFiles files(folder / "scene", {}, {});
     std::string root = files.add_root(folder / "scene/main.sdf");
     CHECK(ask(files, "link.sdf", root).identity == ask(files, "real.sdf", root).identity);
 }
@@ -90,7 +90,7 @@ TEST_CASE("a link within the allowed folders is followed") {
 TEST_CASE("all that was looked for is remembered, found or not, for the watcher") {
     ScratchFolder folder;
     folder.write("scene/a.sdf", "a");
-    SceneFiles files(folder / "scene", {folder / "scene"});
+    SceneFiles files(folder / "scene", {folder / "scene"}, {});
     std::string root = files.add_root(folder / "scene/main.sdf");
     ask(files, "a.sdf", root);
     ask(files, "missing.sdf", root);
@@ -103,7 +103,7 @@ TEST_CASE("all that was looked for is remembered, found or not, for the watcher"
 TEST_CASE("a picture goes through PNG and comes back linear") {
     std::string png = encode_png({2, 1, {255, 0, 128, 255, 0, 255, 10, 255}});
     std::string error;
-    std::optional<ir::ImageData> image = driver::decode_image(png, error);
+    std::optional<ir::ImageData> image = test::decoded_image(png, error);
     REQUIRE(image);
     CHECK(image->width == 2);
     CHECK(image->height == 1);
@@ -114,9 +114,9 @@ TEST_CASE("a picture goes through PNG and comes back linear") {
     CHECK(image->rgba[6] == Approx(10 / 255.0 / 12.92).epsilon(1e-4));
     for (std::size_t size = 0; size < png.size() - 12;
          ++size) // cut off anywhere before the end mark
-        CHECK_FALSE(driver::decode_image(png.substr(0, size), error));
-    CHECK_FALSE(driver::decode_image("\xff\xd8 and no JPEG", error));
-    CHECK_FALSE(driver::decode_image("GIF89a", error));
+        CHECK_FALSE(test::decoded_image(png.substr(0, size), error));
+    CHECK_FALSE(test::decoded_image("\xff\xd8 and no JPEG", error));
+    CHECK_FALSE(test::decoded_image("GIF89a", error));
     CHECK(error == "neither a PNG nor a JPEG picture");
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("a grid is read from raw and from ascii, and a broken one is refused")
     std::string header = "NRRD0004\n# a comment\ntype: float\ndimension: 3\nsizes: 2 2 3\n";
     std::string error;
     auto ascii =
-        driver::decode_grid(header + "encoding: ascii\n\n0 1 2 3 4 5 6 7 8 9 10 11\n", error);
+        test::decoded_grid(header + "encoding: ascii\n\n0 1 2 3 4 5 6 7 8 9 10 11\n", error);
     REQUIRE(ascii);
     CHECK(ascii->size == std::array<int, 3>{2, 2, 3});
     CHECK(ascii->values[11] == 11.0f);
@@ -133,13 +133,67 @@ TEST_CASE("a grid is read from raw and from ascii, and a broken one is refused")
         float value = static_cast<float>(i);
         std::memcpy(raw.data() + i * sizeof(float), &value, sizeof value);
     }
-    auto binary = driver::decode_grid(header + "encoding: raw\nendian: little\n\n" + raw, error);
+    auto binary = test::decoded_grid(header + "encoding: raw\nendian: little\n\n" + raw, error);
     REQUIRE(binary);
     CHECK(binary->values == ascii->values);
-    CHECK_FALSE(driver::decode_grid(header + "encoding: raw\n\n" + raw.substr(1), error));
-    CHECK_FALSE(driver::decode_grid(header + "encoding: ascii\n\n0 1 nan", error));
-    CHECK_FALSE(driver::decode_grid(
-        "NRRD0004\ntype: float\ndimension: 3\nsizes: 4096 4096 4096\n\n", error));
-    CHECK_FALSE(driver::decode_grid("NRRD0004\ntype: float", error));
-    CHECK_FALSE(driver::decode_grid("", error));
+    CHECK_FALSE(test::decoded_grid(header + "encoding: raw\n\n" + raw.substr(1), error));
+    CHECK_FALSE(test::decoded_grid(header + "encoding: ascii\n\n0 1 nan", error));
+    CHECK_FALSE(test::decoded_grid("NRRD0004\ntype: float\ndimension: 3\nsizes: 4096 4096 4096\n\n",
+                                   error));
+    CHECK_FALSE(test::decoded_grid("NRRD0004\ntype: float", error));
+    CHECK_FALSE(test::decoded_grid("", error));
+    for (const char *dimension : {"-3", "3.5", "1e300", "many", "-inf"})
+        CHECK_FALSE(test::decoded_grid("NRRD0004\ntype: float\ndimension: " +
+                                           std::string(dimension) +
+                                           "\nsizes: 2 2 2\nencoding: ascii\n\n0 1 2 3 4 5 6 7\n",
+                                       error));
+}
+
+// A progressive JPEG of one component whose every block is empty, with `scans` scans of 12 bytes
+// each that say nothing more (ITU T.81, G).
+static std::string scanned_jpeg(int side, int scans) {
+    const auto marker = [](std::initializer_list<int> bytes) {
+        std::string out;
+        for (int b : bytes) out += static_cast<char>(b);
+        return out;
+    };
+    const auto table = [&](int kind, int symbol) { // one code, of one bit
+        return marker({0xff, 0xc4, 0, 20, kind, 1}) + std::string(15, '\0') + marker({symbol});
+    };
+    std::string bytes = marker({0xff, 0xd8, 0xff, 0xdb, 0, 67, 0}) + std::string(64, '\1');
+    bytes +=
+        marker({0xff, 0xc2, 0, 11, 8, side >> 8, side & 255, side >> 8, side & 255, 1, 1, 0x11, 0});
+    bytes += table(0x00, 0) + table(0x10, 0xe0); // an end of 2^14 blocks and as many as 14 bits say
+    bytes += marker({0xff, 0xda, 0, 8, 1, 1, 0, 0, 0, 0});
+    bytes += std::string(static_cast<std::size_t>(side / 8 * (side / 8) / 8), '\0');
+    for (int i = 0; i < scans; ++i) bytes += marker({0xff, 0xda, 0, 8, 1, 1, 0, 1, 63, 0, 0, 1});
+    return bytes + marker({0xff, 0xd9});
+}
+
+TEST_CASE("a JPEG of many scans takes room for each, and no more than there is") {
+    typecheck::Room room{std::size_t{1} << 30, 20'000'000, std::size_t{1} << 24};
+    const auto few = driver::decode_image(scanned_jpeg(1024, 5), room);
+    REQUIRE(std::holds_alternative<ir::ImageData>(few));
+    CHECK(std::get<ir::ImageData>(few).width == 1024);
+    CHECK(room.steps < 20'000'000 - 5 * 1024 * 1024 / 16);
+    CHECK(room.bytes == (std::size_t{1} << 30) - std::size_t{1024} * 1024 * 16);
+    const auto many = driver::decode_image(scanned_jpeg(1024, 20'000), room);
+    REQUIRE(std::holds_alternative<LoadError>(many));
+    CHECK(std::get<LoadError>(many).reason == LoadError::Reason::TooMuchWork);
+}
+
+TEST_CASE("images and grids are refused for which there is no room") {
+    using Reason = LoadError::Reason;
+    const auto reason = [](const auto &answer) { return std::get<LoadError>(answer).reason; };
+    const std::string png = encode_png({64, 64, std::vector<std::uint8_t>(4 * 64 * 64)});
+    typecheck::Room small{64 * 64 * 16, 1'000'000, 1'000'000};
+    CHECK(reason(driver::decode_image(png, small)) == Reason::TooLarge);
+    typecheck::Room few{1'000'000, 1'000'000, 64 * 64 - 1};
+    CHECK(reason(driver::decode_image(png, few)) == Reason::TooManyPixels);
+    typecheck::Room idle{1'000'000, 10, 1'000'000};
+    CHECK(reason(driver::decode_image(png, idle)) == Reason::TooMuchWork);
+    const std::string grid =
+        "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n0 1 2 3 4 5 6 7\n";
+    typecheck::Room none{31, 1'000, 0};
+    CHECK(reason(driver::decode_grid(grid, none)) == Reason::TooLarge);
 }

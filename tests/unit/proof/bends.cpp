@@ -17,8 +17,9 @@ struct Bend {
 };
 
 Bend bend(Scenery &s, NodeId field, double lo, double hi) {
-    proof::Flattening context{s.g, {}};
-    const proof::Ranges ranges = proof::ranges_of(s.scene);
+    proof::Work work;
+    proof::Flattening context{s.g, work};
+    const proof::Ranges ranges = proof::ranges_of(s.scene, work);
     const proof::Tape tape = proof::flatten(context, field);
     proof::Machine machine(tape, ranges, true);
     machine.run(Cell{{Interval(lo, hi), Interval(lo, hi), Interval(lo, hi)}});

@@ -119,8 +119,9 @@ struct Scenery {
         return prove(id, diagnostics);
     }
     proof::FieldBound bound(NodeId field, proof::Cell box = {}) {
-        proof::Flattening context{g, {}};
-        proof::Ranges ranges = proof::ranges_of(scene);
+        proof::Work work;
+        proof::Flattening context{g, work};
+        proof::Ranges ranges = proof::ranges_of(scene, work);
         return proof::bound_field(context, ranges, field, {box, nullptr}, {});
     }
 };

@@ -61,10 +61,11 @@ CheckedText check_text(std::string sdf) {
     loader.text = [](const std::string &, const std::string &) {
         return typecheck::LoadError{typecheck::LoadError::Reason::NotFound, "no such file"};
     };
-    loader.image = [](const std::string &name, const std::string &) {
+    loader.identity = [](const std::string &name, const std::string &) { return name; };
+    loader.image = [](const std::string &name, const std::string &, typecheck::Room &) {
         return ir::ImageData{name, 1, 1, {1, 1, 1, 1}};
     };
-    loader.grid = [](const std::string &name, const std::string &) {
+    loader.grid = [](const std::string &name, const std::string &, typecheck::Room &) {
         return ir::GridData{name, {2, 2, 2}, {1, 1, 1, 1, 1, 1, 1, 1}};
     };
     made.checked =

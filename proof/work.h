@@ -1,0 +1,16 @@
+// Counted work, so that no scene keeps the proof busy without end: what is left of `--limit proof`.
+// What finds none left says that it knows nothing, which is always true.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+namespace fathom::proof {
+
+struct Work {
+    std::size_t left = std::size_t(-1); // operations on intervals, nodes rewritten, pixels read
+    bool spent() const { return left == 0; }
+    void take(std::size_t steps) { left -= std::min(left, steps); }
+};
+
+} // namespace fathom::proof
