@@ -35,10 +35,10 @@ template <class Memory> class Pool {
 struct Field::Impl {
     explicit Impl(const ir::Scene &scene, double time)
         : program(cpu::compile(scene, scene.distance)), inputs(cpu::inputs_of(scene, time)),
-          parts(cpu::parts_of(program, inputs)), whole(cpu::whole_tape(parts)) {}
+          parts(cpu::prune_program_of(program, inputs)), whole(cpu::whole_tape(parts)) {}
     const cpu::Program program;
     const cpu::Inputs inputs;
-    const cpu::Parts parts; // refers to `program`
+    const cpu::PruneProgram parts; // refers to `program`
     const cpu::ShortTape whole;
     mutable Pool<cpu::Scratch> values;
     mutable Pool<cpu::GradientScratch> gradients;

@@ -62,6 +62,7 @@ struct TypeExpr {
     Span span;
     std::string name; // Name: as written, "float", "shape", …
     TypeName named = TypeName::Unknown;
+    bool in_radians = false;         // Name: `angle` (a float) and `angles` (a vec3)
     std::optional<double> lipschitz; // Name, `shape<L>` only
     std::vector<TypeExpr> items;     // List: one; Function: the parameters, then the result
 };

@@ -84,7 +84,8 @@ TypeName type_named(std::string_view text) {
         {"shape2", TypeName::Shape2},   {"material", TypeName::Material},
         {"light", TypeName::Light},     {"region", TypeName::Region},
         {"_shape", TypeName::AnyShape}, {"_field", TypeName::AnyField},
-        {"_any", TypeName::Any}};
+        {"_any", TypeName::Any},        {"angle", TypeName::Float},
+        {"angles", TypeName::Vec3}};
     const auto it = names.find(text);
     return it == names.end() ? TypeName::Unknown : it->second;
 }
@@ -94,6 +95,7 @@ void Builder::type_name(Index at) {
     type.span = span(at);
     type.name = text(at);
     type.named = type_named(type.name);
+    type.in_radians = type.name == "angle" || type.name == "angles";
     types_.push_back(std::move(type));
 }
 

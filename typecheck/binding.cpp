@@ -187,11 +187,6 @@ static bool is_shape_list(const lang::TypeExpr &type) {
             type.items[0].named == lang::TypeName::AnyShape);
 }
 
-static bool is_angle(std::string_view name) {
-    return name == "angle" || name == "angles" || name == "fov" || name == "rate" ||
-           name == "twist";
-}
-
 static bool is_place(std::string_view name) {
     return name == "at" || name == "look_at" || name == "direction" || name == "by" ||
            name == "axis" || name == "normal";
@@ -208,7 +203,7 @@ std::span<const Formal> formals_of(Interpreter &ev, const Closure &c) {
         formal.name = p.name.text;
         formal.optional = p.default_value.has_value();
         formal.takes_rest = &p == &f.parameters.back() && p.type && is_shape_list(*p.type);
-        formal.is_angle = is_angle(p.name.text);
+        formal.is_angle = p.type && p.type->in_radians;
         if (p.type && p.type->named == lang::TypeName::Vec2) formal.vector_size = 2;
         if (p.type && p.type->named == lang::TypeName::Vec3) formal.vector_size = 3;
         formal.is_place = c.library && formal.vector_size > 0 && is_place(p.name.text);
@@ -232,7 +227,7 @@ std::span<const Formal> formals_of(Interpreter &ev, const Builtin &builtin) {
         formal.symbol = intern(ev, p.name);
         formal.name = p.name;
         formal.optional = p.optional;
-        formal.is_angle = is_angle(p.name);
+        formal.is_angle = p.is_angle;
         formal.is_place = is_place(p.name);
         if (formal.is_place) formal.vector_size = 3;
         formals->push_back(formal);

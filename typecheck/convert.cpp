@@ -43,8 +43,8 @@ bool check_type(Interpreter &ev, const lang::TypeExpr &type) {
         return false;
     }
     static const std::vector<std::string> names = {
-        "float", "int",  "bool",  "string", "vec2",   "vec3",     "vec4",  "mat2",
-        "mat3",  "mat4", "color", "shape",  "shape2", "material", "light", "region"};
+        "float", "int",   "bool",  "string", "vec2",     "vec3",  "vec4",   "mat2",  "mat3",
+        "mat4",  "color", "shape", "shape2", "material", "light", "region", "angle", "angles"};
     Diagnostic &d = ev.diagnostics.add(Code::UnknownName, type.span,
                                        fmt::format("there is no type `{}`", type.name));
     const std::string near = nearest_name(type.name, names);

@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t min_instances = 8;
 constexpr std::size_t largest_walk = 4000; // parts of one shape; larger ones stay as they are
 
-struct Walk {
+struct SkeletonBuilder {
     const ir::Scene &scene;
     ir::Skeleton tree{};
     std::vector<bool>
@@ -303,13 +303,13 @@ std::vector<ShapeId> gather_instances(Interpreter &ev, std::vector<ShapeId> shap
     std::map<std::vector<std::uint64_t>, Group> groups;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         if (taken[i]) continue;
-        Walk walk{ev.scene};
-        walk.shape(shapes[i]);
-        if (walk.too_large || walk.tree.row.empty()) continue;
-        Group &g = groups[walk.tree.words];
+        SkeletonBuilder builder{ev.scene};
+        builder.shape(shapes[i]);
+        if (builder.too_large || builder.tree.row.empty()) continue;
+        Group &g = groups[builder.tree.words];
         g.members.push_back(i);
-        g.rows.push_back(std::move(walk.tree.row));
-        g.stated = std::move(walk.stated);
+        g.rows.push_back(std::move(builder.tree.row));
+        g.stated = std::move(builder.stated);
     }
     for (auto &[skeleton, g] : groups) {
         if (g.members.size() < min_instances) continue;
@@ -344,12 +344,13 @@ std::optional<ShapeId> smooth_instances(Interpreter &ev, const std::vector<Shape
     std::vector<std::uint64_t> skeleton;
     std::vector<bool> stated;
     for (ShapeId s : shapes) {
-        Walk walk{ev.scene};
-        walk.shape(s);
-        if (walk.too_large || (!rows.empty() && walk.tree.words != skeleton)) return std::nullopt;
-        skeleton = std::move(walk.tree.words);
-        rows.push_back(std::move(walk.tree.row));
-        stated = std::move(walk.stated);
+        SkeletonBuilder builder{ev.scene};
+        builder.shape(s);
+        if (builder.too_large || (!rows.empty() && builder.tree.words != skeleton))
+            return std::nullopt;
+        skeleton = std::move(builder.tree.words);
+        rows.push_back(std::move(builder.tree.row));
+        stated = std::move(builder.stated);
     }
     ShapeId instance_table = make_instance_table(ev, shapes, rows, stated, true, k, dims);
     if (instance_table) ev.scene.shapes.listed.emplace(instance_table, shapes);

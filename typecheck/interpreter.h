@@ -121,7 +121,8 @@ struct CallSite {
 struct BuiltinParameter {
     std::string name;
     bool optional = false;
-    bool lists = false; // of the rest: each is a list itself
+    bool lists = false;    // of the rest: each is a list itself
+    bool is_angle = false; // in radians
 };
 // A function that the language cannot say itself.
 struct Builtin {

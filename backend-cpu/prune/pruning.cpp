@@ -50,7 +50,7 @@ Boxes boxes_inside(const Pruning &pruning, const Place &place, int level) {
     return boxes;
 }
 
-void pack(const Parts &parts, const ShortTape &tape, PruneBlock &block) {
+void pack(const PruneProgram &parts, const ShortTape &tape, PruneBlock &block) {
     for (std::uint32_t id : tape.steps) {
         Step step = parts.table[id];
         const std::uint32_t *operands = parts.operands.data() + step.operands;
@@ -223,7 +223,7 @@ std::uint32_t group_of(CellEvaluator &evaluator, const PruneCell *cell) {
 } // namespace
 
 Pruning::Pruning(const Program &p, const Inputs &inputs, const Cube &c, const PruneSettings &wanted)
-    : program(p), parts(parts_of(program, inputs)), cube(c), settings(wanted),
+    : program(p), parts(prune_program_of(program, inputs)), cube(c), settings(wanted),
       whole(whole_tape(parts)) {
     float maximum = 0;
     for (float x : cube.lo) maximum = std::max({maximum, std::fabs(x), std::fabs(x + cube.side)});

@@ -50,7 +50,7 @@ struct Pruning {
     Pruning(const Pruning &) = delete;
     Pruning &operator=(const Pruning &) = delete;
     const Program program;
-    const Parts parts;
+    const PruneProgram parts;
     const Cube cube;
     const PruneSettings settings;
     const ShortTape whole;

@@ -18,7 +18,7 @@ constexpr float min_round = 1e-15f; // of smaller radii the squares are no float
 // Runs steps over ranges and notes what wins.
 class RangeRunner {
   public:
-    RangeRunner(const Parts &parts, Shortener &memory, std::size_t boxes)
+    RangeRunner(const PruneProgram &parts, Shortener &memory, std::size_t boxes)
         : parts_(parts), program_(*parts.program), memory_(memory),
           loops_(range_loops()), cells_{memory.lo.data(), memory.hi.data()}, n_(boxes) {}
 
@@ -396,7 +396,7 @@ class RangeRunner {
     struct Decided {
         std::uint64_t wins[2];
     };
-    const Parts &parts_;
+    const PruneProgram &parts_;
     const Program &program_;
     Shortener &memory_;
     RangeLoops loops_;
@@ -407,7 +407,7 @@ class RangeRunner {
 
 } // namespace
 
-Shortener::Shortener(const Parts &parts) {
+Shortener::Shortener(const PruneProgram &parts) {
     const Program &program = *parts.program;
     lo.resize(program.cells + batch_size);
     hi.resize(program.cells + batch_size);
@@ -430,7 +430,8 @@ Shortener::Shortener(const Parts &parts) {
     }
 }
 
-void run_over(const Parts &parts, Shortener &shortener, const Selection &from, const Boxes &boxes) {
+void run_over(const PruneProgram &parts, Shortener &shortener, const Selection &from,
+              const Boxes &boxes) {
     const Program &program = *parts.program;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         std::copy_n(boxes.lo[axis].begin(), boxes.count,

@@ -16,7 +16,7 @@ constexpr float worth_a_cut = 0.3f; // of the rows left: a chain that was cut ta
 // above it too.
 class Backward {
   public:
-    Backward(const Parts &parts, Shortener &memory, const Selection &from, std::size_t box,
+    Backward(const PruneProgram &parts, Shortener &memory, const Selection &from, std::size_t box,
              bool cuts)
         : parts_(parts), memory_(memory), from_(from), box_(box), bit_(std::uint64_t{1} << box),
           may_cut_(cuts) {}
@@ -143,7 +143,7 @@ class Backward {
             need(parts_.slots[part.first_slot + part.writes + k], infinite);
     }
 
-    const Parts &parts_;
+    const PruneProgram &parts_;
     Shortener &memory_;
     const Selection &from_;
     std::size_t box_;
@@ -153,8 +153,8 @@ class Backward {
 
 } // namespace
 
-void shorten(const Parts &parts, Shortener &shortener, const Selection &from, std::size_t box,
-             bool cuts, ShortTape &tape) {
+void shorten(const PruneProgram &parts, Shortener &shortener, const Selection &from,
+             std::size_t box, bool cuts, ShortTape &tape) {
     tape.clear();
     Backward(parts, shortener, from, box, cuts).run(tape);
 }

@@ -22,7 +22,7 @@ enum class Choice : std::uint8_t { None, Least, Greatest, Blend, Select };
 
 // What shortening knows of a step.
 struct Part {
-    std::uint32_t first_slot = 0; // in Parts::slots: those written, then those read
+    std::uint32_t first_slot = 0; // in PruneProgram::slots: those written, then those read
     std::uint32_t writes = 0, reads = 0;
     std::uint32_t operands = 0; // how many stand in the table's
     std::uint32_t surely = 0;   // the first of those written: whatever happens
@@ -56,7 +56,7 @@ struct RowLoop {
 };
 
 // The steps of a program with what may be left out of each.
-struct Parts {
+struct PruneProgram {
     const Program *program = nullptr;
     Inputs inputs;
     std::vector<Step> table; // the program's steps, then what they may become
@@ -69,7 +69,7 @@ struct Parts {
     std::vector<std::array<float, 2>> image_ranges; // by Program::images and channel
 };
 // Analyses a program for given inputs.
-Parts parts_of(const Program &program, const Inputs &inputs);
+PruneProgram prune_program_of(const Program &program, const Inputs &inputs);
 
 // A Selection with its memory.
 struct ShortTape {
@@ -79,9 +79,9 @@ struct ShortTape {
     float shapes = 1; // operands of choices, and rows: what a cell may leave out
     bool cut = false; // has a Cut that the tape it was made from does not have
     void clear();
-    Selection selection(const Parts &parts) const;
+    Selection selection(const PruneProgram &parts) const;
 };
-ShortTape whole_tape(const Parts &parts);
+ShortTape whole_tape(const PruneProgram &parts);
 
 // Up to `max_boxes` axis-parallel boxes, one bit each in the results.
 struct Boxes {
@@ -91,7 +91,7 @@ struct Boxes {
 
 // One thread's memory for it.
 struct Shortener {
-    explicit Shortener(const Parts &parts);
+    explicit Shortener(const PruneProgram &parts);
     std::vector<float> lo, hi; // by address
     struct Chosen {
         std::uint64_t wins[2] = {0, 0}; // bit k: in box k
@@ -124,9 +124,10 @@ struct Shortener {
 };
 
 // First what a tape that holds in all boxes comes to in each, then, box by box, what of it is left.
-void run_over(const Parts &parts, Shortener &shortener, const Selection &from, const Boxes &boxes);
+void run_over(const PruneProgram &parts, Shortener &shortener, const Selection &from,
+              const Boxes &boxes);
 // False for `cuts`: no Cut but those that the tape had.
-void shorten(const Parts &parts, Shortener &shortener, const Selection &from, std::size_t box,
-             bool cuts, ShortTape &tape);
+void shorten(const PruneProgram &parts, Shortener &shortener, const Selection &from,
+             std::size_t box, bool cuts, ShortTape &tape);
 
 } // namespace fathom::cpu

@@ -51,7 +51,8 @@ void prune(Stage &stage, Prune how) {
     if (how == Prune::Never) return;
     const ir::Scene &scene = *stage.scene;
     Program distance = compile(scene, scene.distance, Choices::Apart);
-    if (how == Prune::Auto && whole_tape(parts_of(distance, stage.inputs)).shapes < prune_from)
+    if (how == Prune::Auto &&
+        whole_tape(prune_program_of(distance, stage.inputs)).shapes < prune_from)
         return;
     stage.distance = std::move(distance);
     stage.hit = compile(scene, scene.hit, Choices::Apart);
@@ -81,7 +82,7 @@ void prune(Stage &stage, Prune how) {
 } // namespace
 
 float shapes_of(const ir::Scene &scene) {
-    return whole_tape(parts_of(compile(scene, scene.distance, Choices::Apart), {})).shapes;
+    return whole_tape(prune_program_of(compile(scene, scene.distance, Choices::Apart), {})).shapes;
 }
 
 Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int height, double time,

@@ -211,8 +211,12 @@ void add_scene_builtins(std::vector<Builtin> &table) {
         "and the normal; `texture` an image that lies on each base shape by its natural "
         "parametrisation, in the "
         "place of `diffuse`");
-    add("camera", {{"at"}, {"look_at", true}, {"fov", true}, {"orthographic", true}}, camera_call,
-        "where the scene is seen from; `fov` is vertical");
+    add("camera",
+        {{"at"},
+         {"look_at", true},
+         {.name = "fov", .optional = true, .is_angle = true},
+         {"orthographic", true}},
+        camera_call, "where the scene is seen from; `fov` is vertical");
     add("light", {{"at"}, {"color", true}, {"intensity", true}}, light_call, "a light at a place");
     add("sun", {{"direction"}, {"color", true}, {"intensity", true}}, sun_call,
         "a light from far away; the direction points towards it");

@@ -21,7 +21,7 @@ class PartMaker {
         made_.inputs = inputs;
     }
 
-    Parts run() {
+    PruneProgram run() {
         made_.table = program_.steps;
         made_.operands = program_.operands;
         made_.slot_count = slot(static_cast<std::uint32_t>(program_.cells)) + 2;
@@ -356,11 +356,11 @@ class PartMaker {
     }
 
     const Program &program_;
-    Parts made_;
+    PruneProgram made_;
     std::vector<Uses> block_of_;
 };
 
-void splice(const Parts &parts, std::uint32_t block, ShortTape &tape) {
+void splice(const PruneProgram &parts, std::uint32_t block, ShortTape &tape) {
     const Program &program = *parts.program;
     for (std::uint32_t i = program.blocks[block].first; i < program.blocks[block].last; ++i) {
         const Step &step = program.steps[i];
@@ -385,11 +385,11 @@ void splice(const Parts &parts, std::uint32_t block, ShortTape &tape) {
 
 } // namespace
 
-Parts parts_of(const Program &program, const Inputs &inputs) {
+PruneProgram prune_program_of(const Program &program, const Inputs &inputs) {
     return PartMaker(program, inputs).run();
 }
 
-Selection ShortTape::selection(const Parts &parts) const {
+Selection ShortTape::selection(const PruneProgram &parts) const {
     return {parts.table.data(), parts.operands.data(), steps, loops, rows.data()};
 }
 
@@ -398,7 +398,7 @@ void ShortTape::clear() {
     cost = 0, shapes = 1, cut = false;
 }
 
-ShortTape whole_tape(const Parts &parts) {
+ShortTape whole_tape(const PruneProgram &parts) {
     ShortTape tape;
     splice(parts, static_cast<std::uint32_t>(parts.program->blocks.size() - 1), tape);
     return tape;
