@@ -49,7 +49,7 @@ template <class Cell> class Runner {
                 if (rows->all)
                     loop(program_.loops[step.target]);
                 else
-                    turns(program_.loops[step.target], selection.rows + rows->first, *rows);
+                    iterations(program_.loops[step.target], selection.rows + rows->first, *rows);
                 ++rows;
             } else {
                 one(step, operands);
@@ -94,13 +94,13 @@ template <class Cell> class Runner {
                 else if (balls.smooth)
                     loops.smooth(points, numbers, n, number_at(cells_[balls.k]));
                 else
-                    loops.least(points, numbers, n);
+                    loops.minimum(points, numbers, n);
             };
             if (!rows) return run(balls.numbers.data(), count);
-            constexpr std::size_t most = 128;
-            alignas(64) float pack[4 * most];
-            for (std::size_t first = 0; first < count; first += most) {
-                const std::size_t n = std::min(most, count - first);
+            constexpr std::size_t maximum = 128;
+            alignas(64) float pack[4 * maximum];
+            for (std::size_t first = 0; first < count; first += maximum) {
+                const std::size_t n = std::min(maximum, count - first);
                 for (std::size_t i = 0; i < n; ++i)
                     std::memcpy(pack + 4 * i,
                                 balls.numbers.data() + 4 * std::size_t{rows[first + i]},
@@ -125,7 +125,8 @@ template <class Cell> class Runner {
         return std::is_same_v<Cell, Word> && loop.balls >= 0 && n_ % 16 == 0;
     }
 
-    void turns(const Loop &loop, const std::uint32_t *rows, const Selection::Rows &which) const {
+    void iterations(const Loop &loop, const std::uint32_t *rows,
+                    const Selection::Rows &which) const {
         if (is_balls(loop))
             return balls(program_.ball_loops[static_cast<std::size_t>(loop.balls)], rows,
                          which.count, which.cut);
@@ -144,8 +145,8 @@ template <class Cell> class Runner {
         if (is_balls(loop))
             return balls(program_.ball_loops[static_cast<std::size_t>(loop.balls)], nullptr,
                          static_cast<std::size_t>(std::max(count, 0)));
-        for (std::int32_t turn = 0; turn < count; ++turn) {
-            store_word(cells_[loop.index], turn);
+        for (std::int32_t iteration = 0; iteration < count; ++iteration) {
+            store_word(cells_[loop.index], iteration);
             if (!run(loop.block)) break;
         }
     }

@@ -23,6 +23,7 @@ struct Inputs {
 };
 Inputs inputs_of(const ir::Scene &scene, double time); // with the params' present values
 
+// What one step of a tape does.
 enum class StepKind : std::uint8_t {
     Run,        // target: a kernel's variant; operands: outputs, then inputs
     TableRead,  // target: index into Program::reads; operands: outputs, then the row
@@ -30,9 +31,10 @@ enum class StepKind : std::uint8_t {
     Grid,       // target: Program::grids; operands: the output, then x, y, z
     Call,       // target: Program::blocks; arguments and results are copied by Runs around it
     Loop,       // target: Program::loops
-    BreakUnless // operands: a bool; leaves the loop when no point wants another turn
+    BreakUnless // operands: a bool; leaves the loop when no point wants another iteration
 };
 
+// One step of a tape: what it does, to what, and where its operands stand.
 struct Step {
     StepKind kind = StepKind::Run;
     bool once = false; // the operands are the same for every point: run for one
@@ -56,18 +58,20 @@ struct Loop {
     std::int32_t balls = -1; // into Program::ball_loops
 };
 
-// A loop whose turns each join a ball to what it carries (ball_rows.h).
+// A loop whose iterations each join a ball to what it carries (ball_rows.h).
 struct BallRows {
     bool smooth = false;                             // blended with radius k, or the lesser
     std::uint32_t carried = 0, place[3] = {}, k = 0; // addresses
     std::vector<float> numbers;                      // four a row: the centre, the radius
 };
 
+// A read of one row of a table; the row number is clamped.
 struct Read {
     std::uint32_t first = 0; // into Program::table_data
     int rows = 0, stride = 0, columns = 0;
 };
 
+// A compiled function: blocks of steps, and the data that they read. Immutable.
 struct Program {
     struct Block {
         std::uint32_t first = 0, last = 0; // steps
@@ -87,7 +91,7 @@ struct Program {
 
     std::vector<Step> steps;
     std::vector<std::uint32_t> operands;
-    std::vector<Block> blocks; // the last is the function asked for
+    std::vector<Block> blocks; // the last is the compiled function itself
     std::vector<Loop> loops;
     std::vector<BallRows> ball_loops;
     std::vector<Read> reads;
@@ -139,7 +143,7 @@ struct Cut {
 };
 
 // Some steps of a program's last block, in an order of their own, calls spliced in: what is left of
-// it where parts are known not to matter (shorten.h). Of each loop among them the turns that
+// it where parts are known not to matter (shorten.h). Of each loop among them the iterations that
 // matter.
 struct Selection {
     struct Rows {

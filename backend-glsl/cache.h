@@ -44,7 +44,7 @@ constexpr int cache_refused = 256; // in a key's field
 // age says the cell), and the highest bit where it is refused; y the place, the field from bit 21,
 // the age from bit 29.
 constexpr int cache_high_bits = 10;
-constexpr int cache_most_fields = 256;
+constexpr int max_cache_fields = 256;
 constexpr int cache_wishes = 4;  // cells that a pixel may ask for in one frame: a uvec4 of places
 constexpr int cache_many = 8;    // hits from which on a pixel asks only for what is not there
 constexpr int cache_sampled = 4; // one pixel in a square of that side is weighed

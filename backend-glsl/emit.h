@@ -60,7 +60,7 @@ struct Sampler {
 
 // A field that a text with `noise_cache` reads through the cache. The host sets
 // fathom_cache_fields[i], i its place in Output::cached, to a number of its own choice below
-// cache_most_fields.
+// max_cache_fields.
 struct CachedField {
     std::uint32_t cache = 0;   // index into Graph::caches
     bool wide = false;         // vectors: its values lie in fathom_cache_wide

@@ -136,7 +136,7 @@ class Gatherer {
     }
 
     void keep(ir::CacheId id) {
-        if (module_.cached.size() >= cache_most_fields ||
+        if (module_.cached.size() >= max_cache_fields ||
             ir::cached(module_.scene, id) != ir::Cacheable::Yes)
             return;
         const ir::Cache &cache = graph_.cache(id);

@@ -11,6 +11,7 @@
 
 namespace fathom {
 
+// How much a diagnostic matters: only errors make a compilation fail.
 enum class Severity { Error, Warning, Note };
 
 // One enumerator per row of codes.def: `lipschitz-unbounded` is Code::LipschitzUnbounded.
@@ -23,9 +24,12 @@ enum class Code {
 std::string_view code_name(Code code);    // "unknown-name"
 std::string_view code_summary(Code code); // one line, for `fathom explain` and the docs
 Severity code_severity(Code code);        // the severity a code has unless said
+// The code of that kebab-case name; none where there is no such code.
 std::optional<Code> code_by_name(std::string_view name);
+// All codes, in the order of codes.def.
 std::vector<Code> all_codes();
 
+// A further place in the text, with words about it.
 struct Label {
     Span span;
     std::string message; // may be empty for the primary label
@@ -37,11 +41,13 @@ struct Edit {
     std::string replacement;
 };
 
+// A proposed edit of the text, with the words that propose it.
 struct Fix {
     std::string message;     // printed after `help: `
     std::vector<Edit> edits; // empty where the fix is not mechanical
 };
 
+// One report: a code, a place, a message, and what helps to understand it.
 struct Diagnostic {
     Code code{};
     Severity severity = Severity::Error;
@@ -87,9 +93,9 @@ class Diagnostics {
 // related labels, notes and the help. `color` adds ANSI colours.
 std::string to_text(const Diagnostic &diagnostic, const Sources &sources, bool color);
 
-// One JSON object, as `check --json` prints it, without a trailing line end: "code severity message file line column
-// end_line end_column label labels notes fix". Ends are one past the last code point. Without a
-// place, file and numbers are null.
+// One JSON object, as `check --json` prints it, without a trailing line end: "code severity message
+// file line column end_line end_column label labels notes fix". Ends are one past the last code
+// point. Without a place, file and numbers are null.
 std::string to_json(const Diagnostic &diagnostic, const Sources &sources);
 
 } // namespace fathom

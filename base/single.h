@@ -6,13 +6,13 @@
 namespace fathom {
 
 constexpr double largest_single = 0x1.fffffep127; // 3.4028235e38
-constexpr double least_single = 0x1p-126;         // 1.1754944e-38: the least that is not subnormal
+constexpr double smallest_normal = 0x1p-126;      // 1.1754944e-38: the least that is not subnormal
 
 // A number that rounds to one of single precision, or is smaller than all of them.
 inline bool fits_single(double x) { return std::abs(x) < 0x1.ffffffp127; }
 
 // What is smaller than every normal number is 0, as on graphics cards.
-inline double flushed(double x) { return std::abs(x) < least_single ? 0 : x; }
+inline double flushed(double x) { return std::abs(x) < smallest_normal ? 0 : x; }
 
 // The lengths that single precision can square, and divide by the square of. Solids lie within the
 // longest, and are no thinner than the shortest.

@@ -14,6 +14,7 @@ namespace fathom {
 struct Source;
 using SourceId = Id<Source>;
 
+// A text with its name and the offsets of its lines.
 struct Source {
     std::string
         name; // as the user wrote it on the command line or in `import`; raw bytes (encode.h)
@@ -40,6 +41,7 @@ struct Position {
     std::uint32_t column = 1;
 };
 
+// All texts of a compilation, by id.
 class Sources {
   public:
     SourceId add(std::string name, std::string text, SourceId made_from = {});
@@ -50,8 +52,10 @@ class Sources {
     Arena<Source> sources_;
 };
 
+// Line and column, from 1, of a byte offset.
 Position position(const Source &source, std::uint32_t offset);
 std::string_view line_text(const Source &source, std::uint32_t line); // without its line end
+// The text that a span covers.
 std::string_view text(const Sources &sources, Span span);
 
 } // namespace fathom

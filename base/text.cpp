@@ -72,13 +72,13 @@ CodePoint decode_utf8(std::string_view text, std::size_t offset) {
     const std::size_t left = text.size() - offset;
     const unsigned char lead = byte(0);
     if (lead < 0x80) return {lead, 1, true};
-    std::uint32_t length = 0, value = 0, least = 0;
+    std::uint32_t length = 0, value = 0, minimum = 0;
     if (lead >= 0xC2 && lead < 0xE0)
-        length = 2, value = lead & 0x1Fu, least = 0x80;
+        length = 2, value = lead & 0x1Fu, minimum = 0x80;
     else if (lead >= 0xE0 && lead < 0xF0)
-        length = 3, value = lead & 0x0Fu, least = 0x800;
+        length = 3, value = lead & 0x0Fu, minimum = 0x800;
     else if (lead >= 0xF0 && lead < 0xF5)
-        length = 4, value = lead & 0x07u, least = 0x10000;
+        length = 4, value = lead & 0x07u, minimum = 0x10000;
     else
         return not_utf8;
     if (left < length) return not_utf8;
@@ -87,7 +87,7 @@ CodePoint decode_utf8(std::string_view text, std::size_t offset) {
         value = value << 6 | (byte(i) & 0x3Fu);
     }
     const bool surrogate = value >= 0xD800 && value < 0xE000;
-    if (value < least || value > 0x10FFFF || surrogate) return not_utf8;
+    if (value < minimum || value > 0x10FFFF || surrogate) return not_utf8;
     return {value, length, true};
 }
 

@@ -11,6 +11,7 @@
 namespace fathom {
 
 std::string format_shortest(double value); // shortest form that reads back equal: "0.1", "1e+30"
+// The same for a float: the fewest digits that read back as it.
 std::string format_shortest(float value);
 std::optional<double> parse_number(std::string_view text); // the whole text, or nothing
 

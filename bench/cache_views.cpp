@@ -1,6 +1,6 @@
 // The noise cache against exact frames from three distances: near, as the scene's own camera has
 // it, and so far away that cells are about as wide as pixels. However little look-ups gain, a warm
-// view must not be slower than 0.95 of the exact one. Both kinds of frames in turn in one run;
+// view must not be slower than 0.95 of the exact one. Both kinds of frames alternately in one run;
 // where the CPU draws, its own time counts.
 #include "bench/measure.h"
 
@@ -52,7 +52,7 @@ void measure_views(Table &table, double &worst, const std::string &what,
              .unit = "frames/s",
              .baseline = "exact",
              .baseline_value = 1e3 / times.exact,
-             .least = 0.95});
+             .minimum = 0.95});
     }
 }
 
@@ -68,7 +68,7 @@ void measure_cache_views(Table &table) {
             table, worst, std::string("  ") + name,
             driver::compile_file(std::string(FATHOM_SOURCE_DIR "/examples/") + name + ".sdf", {}));
     table.push_back(
-        {.what = "  the worst of these", .value = worst, .unit = "of exact", .least = 0.95});
+        {.what = "  the worst of these", .value = worst, .unit = "of exact", .minimum = 0.95});
 }
 
 } // namespace fathom::bench

@@ -51,7 +51,7 @@ PhaseTimes median_times(int runs, const std::function<PhaseTimes()> &run) {
     return all[all.size() / 2];
 }
 
-void measure_proof(Table &table, const std::string &what, const std::string &text, double most) {
+void measure_proof(Table &table, const std::string &what, const std::string &text, double maximum) {
     std::string wrong;
     const PhaseTimes times = median_times(7, [&] {
         PhaseTimes each;
@@ -59,7 +59,7 @@ void measure_proof(Table &table, const std::string &what, const std::string &tex
         return each;
     });
     if (wrong.empty())
-        table.push_back({.what = what, .value = times.prove, .unit = "ms", .most = most});
+        table.push_back({.what = what, .value = times.prove, .unit = "ms", .maximum = maximum});
     else
         table.push_back({.what = what, .missing = wrong});
 }
@@ -102,11 +102,11 @@ void measure_front_end(Table &table) {
             lang::parse(sources, source, diagnostics);
             parses.push_back((processor_seconds() - begin) * 1e3);
         }
-        auto row = [&](const std::string &of, double milliseconds, double most) {
+        auto row = [&](const std::string &of, double milliseconds, double maximum) {
             table.push_back({.what = of,
                              .value = milliseconds / (lines / 1000.0),
                              .unit = "ms/1000 lines",
-                             .most = most});
+                             .maximum = maximum});
         };
         row(what, times.all(), 5);
         row("  of it parse", median(parses), 0);

@@ -1,6 +1,6 @@
 // Our shaders against the same scenes written by hand (by_hand/*.frag, with by_hand/march.glsl
-// round each): the same algorithm and look, so that only the code differs. Frames of both by turns
-// on the driver at hand, once each of them draws what the other does.
+// round each): the same algorithm and look, so that only the code differs. Frames of both
+// alternately on the driver at hand, once each of them draws what the other does.
 #include "bench/measure.h"
 
 #include "backend-glsl/emit.h"
@@ -35,10 +35,10 @@ std::variant<gl::Program, gl::ProgramError> by_hand(const std::string &name,
 double differing(const gl::Pixels &a, const gl::Pixels &b) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
-        float most = 0;
+        float maximum = 0;
         for (std::size_t c = 0; c < 3; ++c)
-            most = std::max(most, std::fabs(a.rgba[i + c] - b.rgba[i + c]));
-        count += most > 0.02f;
+            maximum = std::max(maximum, std::fabs(a.rgba[i + c] - b.rgba[i + c]));
+        count += maximum > 0.02f;
     }
     return 4000.0 * static_cast<double>(count) / static_cast<double>(a.rgba.size());
 }
@@ -78,7 +78,7 @@ void compare(Table &table, const gl::Context &context, const std::string &what,
         return ((software ? processor_seconds() : seconds_now()) - begin) * 1e3;
     };
     double best = 1e9, best_by_hand = 1e9, spent = 0;
-    for (int turn = 0; turn < 9 || (spent < 2500 && turn < 120); ++turn) {
+    for (int iteration = 0; iteration < 9 || (spent < 2500 && iteration < 120); ++iteration) {
         const double a = taken(ours), b = taken(theirs);
         best = std::min(best, a);
         best_by_hand = std::min(best_by_hand, b);
@@ -89,7 +89,7 @@ void compare(Table &table, const gl::Context &context, const std::string &what,
                      .unit = software ? "ms of processor" : "ms",
                      .baseline = "written by hand",
                      .baseline_value = best_by_hand,
-                     .most = 1.1});
+                     .maximum = 1.1});
 }
 
 } // namespace

@@ -39,7 +39,7 @@ std::string shell_text(int count, bool blended) {
     return text + "}\ncamera(at: [2, 1.6, 3] * " + formatted("%.4f", radius) + ", fov: 45deg)\n";
 }
 
-// Shapes of several kinds by turns, blended in that order: not one loop over like shapes.
+// Shapes of several kinds alternately, blended in that order: not one loop over like shapes.
 std::string unlike_text(int count) {
     std::mt19937 random(2);
     std::uniform_real_distribution<double> part(0, 1);
@@ -104,7 +104,7 @@ void measure_link(Table &table, const std::string &what, const std::string &text
             best.link = std::min(best.link, draw(compilation.scene, false, false).link);
     }
     if (best.missing.empty())
-        table.push_back({.what = what, .value = best.link, .unit = "ms", .most = 150});
+        table.push_back({.what = what, .value = best.link, .unit = "ms", .maximum = 150});
     else
         table.push_back({.what = what, .missing = best.missing});
 }
@@ -125,7 +125,7 @@ void measure_frame(Table &table, const std::string &what, const std::string &tex
                      .unit = "ms",
                      .baseline = "all rows everywhere",
                      .baseline_value = plain.frame,
-                     .most = 1 / times});
+                     .maximum = 1 / times});
     table.push_back({.what = "  and making the lists, once", .value = pruned.lists, .unit = "ms"});
 }
 

@@ -38,7 +38,7 @@ Rates rates(double amount, const std::function<void()> &run, double other_amount
     double best = 1e30, best_other = 1e30, spent = 0;
     run();
     other();
-    for (int turn = 0; turn < 5 || spent < 0.5; ++turn) {
+    for (int iteration = 0; iteration < 5 || spent < 0.5; ++iteration) {
         const double a = seconds(run), b = seconds(other);
         best = std::min(best, a);
         best_other = std::min(best_other, b);
@@ -50,7 +50,7 @@ Rates rates(double amount, const std::function<void()> &run, double other_amount
 double rate(double amount, const std::function<void()> &run) {
     double best = 1e30, spent = 0;
     run();
-    for (int turn = 0; turn < 5 || spent < 0.25; ++turn) {
+    for (int iteration = 0; iteration < 5 || spent < 0.25; ++iteration) {
         const double a = seconds(run);
         best = std::min(best, a);
         spent += a;
@@ -84,10 +84,10 @@ void print(const Table &table) {
             std::printf("%7.3f ", judged);
         else
             std::printf("%7s ", "");
-        const double goal = row.least > 0 ? row.least : row.most;
-        const bool reached = row.least > 0 ? judged >= row.least : judged <= row.most;
+        const double goal = row.minimum > 0 ? row.minimum : row.maximum;
+        const bool reached = row.minimum > 0 ? judged >= row.minimum : judged <= row.maximum;
         if (goal > 0)
-            std::printf("%s %6.4g%s", row.least > 0 ? ">=" : "<=", goal, reached ? " " : "!");
+            std::printf("%s %6.4g%s", row.minimum > 0 ? ">=" : "<=", goal, reached ? " " : "!");
         else
             std::printf("%9s ", "");
         if (compared) std::printf(" %s (%.4g)", row.baseline.c_str(), row.baseline_value);

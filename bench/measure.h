@@ -18,9 +18,9 @@ struct Row {
     std::string unit{};     // "M points/s"
     std::string baseline{}; // what it is compared with; empty: nothing
     double baseline_value = 0;
-    double least = 0; // of the ratio, or of the value where there is no baseline: the least that
-                      // will do; 0: none
-    double most = 0;  // or the most
+    double minimum = 0; // of the ratio, or of the value where there is no baseline: the least that
+                        // will do; 0: none
+    double maximum = 0; // or the most
     std::string missing{}; // why there is no value
 };
 using Table = std::vector<Row>;

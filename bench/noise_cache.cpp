@@ -15,8 +15,8 @@
 namespace fathom::bench {
 namespace {
 
-constexpr int side = 48, turns = 32; // pixels; evaluations a pixel
-constexpr double whole = 800;        // what is drawn is the middle of a picture of that size
+constexpr int side = 48, iterations = 32; // pixels; evaluations a pixel
+constexpr double whole = 800;             // what is drawn is the middle of a picture of that size
 
 driver::Compilation scene_of(const std::string &field, double cell) {
     return compiled_text("cached.sdf",
@@ -26,7 +26,7 @@ driver::Compilation scene_of(const std::string &field, double cell) {
 }
 
 void measure_scene(Table &table, const std::string &what, const driver::Compilation &c,
-                   double least) {
+                   double minimum) {
     if (!c.good()) return table.push_back({.what = what, .missing = complaint(c)});
     gl::CachedView view;
     Diagnostics diagnostics;
@@ -43,10 +43,10 @@ void measure_scene(Table &table, const std::string &what, const driver::Compilat
                      .unit = "frames/s",
                      .baseline = "exact",
                      .baseline_value = 1e3 / times.exact,
-                     .least = least});
+                     .minimum = minimum});
 }
 
-// Nanoseconds, of two threads together, that `statement` takes a turn, in a text that ends in
+// Nanoseconds, of two threads together, that `statement` takes an iteration, in a text that ends in
 // functions.
 double nanoseconds(const std::string &functions, const std::string &statement,
                    const glsl::Output &output, const ir::Scene &scene, int ages = 1) {
@@ -54,8 +54,8 @@ double nanoseconds(const std::string &functions, const std::string &statement,
     measured.text = functions +
                     "layout(location = 0) out vec4 measured;\nvoid main() {\n"
                     "    vec3 p = vec3(gl_FragCoord.xy * 0.013, 0.3);\n"
-                    "    vec4 sum = vec4(0.0);\n    for (int turn = 0; turn < " +
-                    std::to_string(turns) + "; ++turn) {\n        " + statement +
+                    "    vec4 sum = vec4(0.0);\n    for (int iteration = 0; iteration < " +
+                    std::to_string(iterations) + "; ++iteration) {\n        " + statement +
                     "\n        p += vec3(0.0137, 0.0071, 0.0193);\n    }\n    measured = sum;\n}\n";
     auto built = gl::Program::build(measured, scene);
     const auto *program = std::get_if<gl::Program>(&built);
@@ -70,7 +70,7 @@ double nanoseconds(const std::string &functions, const std::string &statement,
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
     glViewport(0, 0, size, size);
     std::vector<double> times;
-    for (int turn = 0; turn < 6; ++turn) {
+    for (int iteration = 0; iteration < 6; ++iteration) {
         const double begin = processor_seconds();
         program->use();
         for (int unit = 0; unit < 2; ++unit)
@@ -81,11 +81,11 @@ double nanoseconds(const std::string &functions, const std::string &statement,
         glUniform1i(glGetUniformLocation(program->name(), "fathom_cache_ages"), ages);
         gl::draw_triangle();
         gl::finish();
-        if (turn > 0) times.push_back(processor_seconds() - begin); // the first makes the code
+        if (iteration > 0) times.push_back(processor_seconds() - begin); // the first makes the code
     }
     glDeleteFramebuffers(1, &framebuffer);
     glDeleteTextures(1, &texture);
-    return 1e9 * median(times) / (2.0 * size * size * turns);
+    return 1e9 * median(times) / (2.0 * size * size * iterations);
 }
 
 std::string before_main(const std::string &text) {
@@ -183,7 +183,7 @@ FrameTimes frame_times(gl::CachedView &view, const ir::Scene &scene,
         return 1e3 * (processor_seconds() - begin);
     };
     std::vector<double> cached, exact;
-    for (int turn = 0; turn < 7; ++turn) {
+    for (int iteration = 0; iteration < 7; ++iteration) {
         cached.push_back(time([&] { view.draw(inputs, scene.params, {}); }));
         exact.push_back(time([&] { view.draw_exactly(inputs, scene.params); }));
     }

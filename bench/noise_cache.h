@@ -1,4 +1,4 @@
-// What the measures of the noise cache share: scenes, views, and frames of both kinds in turn.
+// What the measures of the noise cache share: scenes, views, and frames of both kinds alternately.
 // Needs a current context of GL 4.2.
 #pragma once
 
@@ -15,7 +15,8 @@ driver::Compilation spot_noise();
 // from what it looks at.
 gl::FrameInputs middle_of(const ir::Scene &scene, double times_as_far);
 
-// Milliseconds, the medians of a few frames, in turn so that what slows the machine slows both.
+// Milliseconds, the medians of a few frames, alternately, so that what slows the machine slows
+// both.
 struct FrameTimes {
     double cached = 0, exact = 0;
 };

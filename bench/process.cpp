@@ -68,11 +68,11 @@ void measure_process(Table &table) {
     table.push_back({.what = "fathom check 03_colonnade, process, wall",
                      .value = median(wall),
                      .unit = "ms",
-                     .most = 30});
+                     .maximum = 30});
     table.push_back({.what = "fathom check 03_colonnade, user + system",
                      .value = median(processor),
                      .unit = "ms",
-                     .most = 30});
+                     .maximum = 30});
 }
 
 } // namespace fathom::bench

@@ -118,7 +118,7 @@ void add(Table &table, const std::string &what, const std::string &text, int eve
                      .unit = "pictures/s",
                      .baseline = "the whole tape, point by point",
                      .baseline_value = 1 / point_seconds,
-                     .least = goal});
+                     .minimum = goal});
 }
 
 // What all pictures take: rays are made and marched to one sphere.
@@ -176,7 +176,7 @@ void add_share(Table &table, const std::string &name) {
     table.push_back({.what = name + ": kernels left in a cell near the surface, of 64^3",
                      .value = 100 * left,
                      .unit = "%",
-                     .most = 11});
+                     .maximum = 11});
 }
 
 } // namespace

@@ -76,7 +76,7 @@ void measure_events(Table &table) {
     table.push_back(
         {.what = "save to event, median of 200", .value = at_share(taken, 0.5), .unit = "ms"});
     table.push_back(
-        {.what = "save to event, p99", .value = at_share(taken, 0.99), .unit = "ms", .most = 5});
+        {.what = "save to event, p99", .value = at_share(taken, 0.99), .unit = "ms", .maximum = 5});
 }
 
 // -- the window
@@ -183,11 +183,11 @@ void measure_window(Table &table) {
     table.push_back({.what = "reload, front end, median",
                      .value = median(front_end),
                      .unit = "ms",
-                     .most = 20});
+                     .maximum = 20});
     table.push_back({.what = "save to error on the screen, median",
                      .value = median(error),
                      .unit = "ms",
-                     .most = 50});
+                     .maximum = 50});
     table.push_back({.what = "save to new picture, a number edited, median",
                      .value = median(number),
                      .unit = "ms"});
@@ -202,7 +202,7 @@ void measure_window(Table &table) {
     table.push_back({.what = "50 saves in a second, reloads after the last",
                      .value = static_cast<double>(lines_of(said).size() - at_last),
                      .unit = "",
-                     .most = 2});
+                     .maximum = 2});
 }
 
 } // namespace

@@ -12,8 +12,8 @@ namespace fathom::bench {
 
 namespace {
 
-// A loop over very many shapes whose body computes from the turn's number: its shader has the loop,
-// so that its text is as long for 10,000 turns as for 100.
+// A loop over very many shapes whose body computes from the iteration's number: its shader has the
+// loop, so that its text is as long for 10,000 iterations as for 100.
 void measure_long_loop(Table &table) {
     std::string wrong;
     double bytes = 0;
@@ -39,13 +39,13 @@ void measure_long_loop(Table &table) {
         table.push_back({.what = what, .missing = wrong});
         return;
     }
-    table.push_back({.what = what, .value = took, .unit = "s", .most = 1});
+    table.push_back({.what = what, .value = took, .unit = "s", .maximum = 1});
     table.push_back({.what = "loop over 10,000 spheres, GLSL",
                      .value = bytes / 1024,
                      .unit = "KB",
                      .baseline = "for 100 spheres",
                      .baseline_value = few / 1024,
-                     .most = 1.01}); // the count has more digits
+                     .maximum = 1.01}); // the count has more digits
 }
 
 } // namespace
@@ -73,7 +73,7 @@ void measure_shader(Table &table) {
     table.push_back({.what = size,
                      .value = static_cast<double>(text.text.size()) / 1024,
                      .unit = "KB",
-                     .most = 64});
+                     .maximum = 64});
 
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 1); // else the second run would measure the disk
     auto context = gl::Context::make();
@@ -87,7 +87,7 @@ void measure_shader(Table &table) {
         table.push_back({.what = link, .missing = error->message});
         return;
     }
-    table.push_back({.what = link, .value = linking, .unit = "s", .most = 1});
+    table.push_back({.what = link, .value = linking, .unit = "s", .maximum = 1});
     // Drivers may leave work for the first time that a program draws: Mesa's llvmpipe makes its
     // machine code then.
     gl::Request request;

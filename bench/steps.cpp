@@ -130,7 +130,7 @@ Count trace_plainly(const ir::Scene &scene, const cpu::Stage &from, bool boxed) 
     return count;
 }
 
-void compare(Table &table, const std::string &what, const std::string &file, double most) {
+void compare(Table &table, const std::string &what, const std::string &file, double maximum) {
     const driver::Compilation compilation = compiled(file);
     if (!compilation.good()) {
         table.push_back({.what = what, .missing = complaint(compilation)});
@@ -156,10 +156,10 @@ void compare(Table &table, const std::string &what, const std::string &file, dou
                          .unit = unit,
                          .baseline = to,
                          .baseline_value = theirs / rays,
-                         .most = goal});
+                         .maximum = goal});
     };
     const std::string in_the_box = std::string(global) + ", in the box";
-    row("steps a ray: " + what, double(work.steps), "steps", global, double(plain.steps), most);
+    row("steps a ray: " + what, double(work.steps), "steps", global, double(plain.steps), maximum);
     double proved = 0;
     for (const ir::ShapeFact &fact : scene.facts) proved = std::max(proved, fact.lipschitz_sup);
     if (proved < bound) {
@@ -169,7 +169,7 @@ void compare(Table &table, const std::string &what, const std::string &file, dou
             double(trace_plainly(plainly_lowered(scene, proved), stage, false).steps), 0);
     }
     row("  which has the box too", double(work.steps), "steps", in_the_box, double(boxed.steps), 0);
-    // Where a field was divided by a bound, what is near the surface is asked for its gradient too.
+    // Where a field was divided by a bound, points near the surface need the gradient too.
     row("  every evaluation counted", double(work.evaluations), "evaluations", in_the_box,
         double(boxed.steps), 0);
     row("  rays that hit", 100 * double(work.hits), "%", global, 100 * double(plain.hits), 0);
@@ -215,7 +215,7 @@ void compare_with_trial(Table &table, const std::string &what, const std::string
                      .unit = "steps",
                      .baseline = constant,
                      .baseline_value = double(best.steps) / all,
-                     .most = 1.25});
+                     .maximum = 1.25});
 }
 
 } // namespace

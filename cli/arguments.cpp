@@ -15,7 +15,6 @@ namespace {
 constexpr const char *version_text = "fathom " FATHOM_VERSION "\n";
 
 // -- words of the line
-// -----------------------------------------------------------------------------
 
 // Each reads one word into its place, or says what it wanted.
 std::string read_pair(const std::string &word, int &first, int &second) {
@@ -86,7 +85,6 @@ std::string read_override(const std::string &word, std::vector<typecheck::Overri
 }
 
 // -- commands
-// --------------------------------------------------------------------------------------
 
 // An option whose words are read by a function that says what is wrong with them.
 template <class Read>
@@ -412,7 +410,7 @@ std::string contradiction(const Reader &reader) {
     const std::string &watched = is("check") ? reader.check.scene.file : reader.compile.scene.file;
     if (watches && watched == "-") return "--watch follows a file, and standard input is none";
     if (is("check") && reader.check.json && reader.check.explain)
-        return "--explain is for people, --json for programs: ask for one of them";
+        return "--explain is for people, --json for programs: give one of them";
     const glsl::TargetTraits &target = glsl::traits_of(reader.compile.target);
     if (is("compile") && reader.compile.field_only && *target.field_by)
         return fmt::format("--field-only leaves out the picture that a page shows; `--target {} "

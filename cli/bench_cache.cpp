@@ -1,6 +1,6 @@
 // fathom bench --noise-cache: what the thesis measured of its cache (figures 8.2 to 8.6), of one
-// scene. Times are ratios of two ways taken in turn in one run; where the CPU draws, its own time
-// counts, since others may share the machine.
+// scene. Times are ratios of two ways taken alternately in one run; where the CPU draws, its own
+// time counts, since others may share the machine.
 #include "cli/bench.h"
 #include "ir/passes/cost.h"
 #include "render-gl/cache_passes.h"
@@ -156,20 +156,20 @@ void print_difference(const Bench &bench, gl::CachedView &view) {
     const gl::Pixels cached = view.read_pixels();
     view.draw_exactly(inputs, bench.scene.params);
     const gl::Pixels exact = view.read_pixels();
-    double most = 0, sum = 0;
+    double maximum = 0, sum = 0;
     std::size_t both = 0, one = 0;
     for (std::size_t i = 0; i < cached.rgba.size(); i += 4) {
         const bool here = cached.rgba[i + 3] > 0, there = exact.rgba[i + 3] > 0;
         if (here != there) ++one;
         if (!here || !there) continue;
         const double d = std::abs(cached.rgba[i + 1] - exact.rgba[i + 1]);
-        most = std::max(most, d), sum += d, ++both;
+        maximum = std::max(maximum, d), sum += d, ++both;
     }
     bench.put(fmt::format("\ndifference from exact (figure 8.4), a still view after {} frames\n",
                           frames));
     bench.put(fmt::format(
         "  along the ray: mean {:.3g}, most {:.3g}; pixels that only one of them hits: {} of {}\n",
-        sum / static_cast<double>(std::max<std::size_t>(both, 1)), most, one, both + one));
+        sum / static_cast<double>(std::max<std::size_t>(both, 1)), maximum, one, both + one));
     bench.put("  misses by frame:");
     for (std::size_t i = 0; i < misses.size() && i < 12; ++i)
         bench.put(fmt::format(" {}", misses[i]));
@@ -189,7 +189,7 @@ void print_speeds(const Bench &bench, gl::CachedView &view, int frames) {
               "  rad/s   cached ms   exact ms   speed-up   misses a frame   pixels that "
               "miss   hits a frame\n");
     for (double speed : {0.0, 0.1, 0.5, 1.0, 2.0, 4.0}) {
-        // A still view is learnt until it asks for nothing new, a turning one settles to its own
+        // A still view is learnt until it needs nothing new, a turning one settles to its own
         // share of misses.
         if (speed == 0) learn(bench, view);
         const Motion m = move(bench, view, {.speed = speed, .settle = frames, .frames = frames});

@@ -54,11 +54,12 @@ void explain_params(const ir::Scene &scene, Terminal &terminal) {
 // Which cells hold which shapes is found while a picture is drawn; whether it will be is known now.
 void explain_pruning(const ir::Scene &scene, Terminal &terminal) {
     const float shapes = cpu::shapes_of(scene);
-    terminal.put(fmt::format("pruning: {}, with {:.0f} shapes to choose from\n",
-                             shapes >= cpu::prune_from
-                                 ? "the processor asks in each cell of space what can matter there"
-                                 : "not worth it",
-                             shapes));
+    terminal.put(
+        fmt::format("pruning: {}, with {:.0f} shapes to choose from\n",
+                    shapes >= cpu::prune_from
+                        ? "the processor computes for each cell of space what can matter there"
+                        : "not worth it",
+                    shapes));
 }
 
 Exit say(const CheckCommand &command, const driver::Compilation &compilation, Terminal &terminal) {

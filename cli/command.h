@@ -1,4 +1,4 @@
-// What the command line asks for, as values: one struct a command. Reading the line (arguments.cpp)
+// What the command line says, as values: one struct a command. Reading the line (arguments.cpp)
 // knows nothing of what the commands do, the commands nothing of how the line is written.
 #pragma once
 
@@ -22,6 +22,7 @@ enum Exit {
     device_error = 3 // a file named on it, or the device, cannot be used
 };
 
+// Whether diagnostics are coloured: where a terminal is, always, or never.
 enum class ColorChoice { Auto, Always, Never };
 
 // What every command that reads a scene takes.
@@ -31,10 +32,12 @@ struct SceneArguments {
     std::vector<std::filesystem::path> include_folders; // -I
 };
 
+// `fathom check`.
 struct CheckCommand {
     SceneArguments scene;
     bool json = false, explain = false, watch = false;
 };
+// `fathom compile`.
 struct CompileCommand {
     SceneArguments scene;
     std::string out;       // empty: standard output
@@ -42,7 +45,9 @@ struct CompileCommand {
     bool field_only = false, watch = false;
     bool noise_cache = false; // with the cache's hooks, and its passes beside `out`
 };
+// What draws a picture: GL where it works, GL, or the CPU.
 enum class Backend { Auto, Gl, Cpu };
+// `fathom render`.
 struct RenderCommand {
     SceneArguments scene;
     std::string out;
@@ -55,36 +60,44 @@ struct RenderCommand {
     int quality = 90;   // of a JPEG
     bool cache = false; // through the noise cache
 };
+// `fathom eval`.
 struct EvalCommand {
     SceneArguments scene;
     std::vector<std::array<double, 3>> at;
     bool points = false; // more on standard input
     double time = 0;
 };
+// `fathom view`.
 struct ViewCommand {
     SceneArguments scene;
     int width = 1280, height = 800;
     std::string record; // a folder for a picture after every reload
     bool save_view = false, times = false, still = false, one_context = false;
 };
+// `fathom import`.
 struct ImportCommand {
     std::string file, out;
     bool strict = false, partial = false;
 };
+// `fathom export`.
 struct ExportCommand {
     SceneArguments scene;
     std::string out;
 };
+// `fathom fmt`.
 struct FmtCommand {
     std::vector<std::string> files;
     bool check = false;
 };
+// `fathom doc`.
 struct DocCommand {
     std::string name;
 }; // empty: the list of all
+// `fathom explain`.
 struct ExplainCommand {
     std::string code;
 }; // empty: the list of all
+// `fathom bench`.
 struct BenchCommand {
     SceneArguments scene;
     int width = 400, height = 400;
@@ -98,6 +111,7 @@ using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, EvalCo
                              ImportCommand, ExportCommand, FmtCommand, DocCommand, ExplainCommand,
                              BenchCommand>;
 
+// A command with the options that all commands share.
 struct Invocation {
     ColorChoice color = ColorChoice::Auto;
     Command command;
@@ -109,9 +123,11 @@ struct Answer {
     std::string results, words; // to standard output, to standard error; encoded for a terminal
 };
 
+// Reads the command line. An Answer is what to print instead (help, version or a usage error).
 std::variant<Invocation, Answer> read_arguments(int count, const char *const *arguments);
 
 class Terminal;
+// Each runs one command and returns the exit status of the program.
 Exit run(const CheckCommand &, Terminal &);
 Exit run(const CompileCommand &, Terminal &);
 Exit run(const RenderCommand &, Terminal &);

@@ -67,8 +67,8 @@ bool read_point(std::string_view line, std::array<double, 3> &point, bool &empty
     return empty || count == 3;
 }
 
-// Answers each block of lines as it comes, so that a program may ask, read the answer, and ask
-// again.
+// Answers each block of lines as it comes, so that a program may send a point, read the answer, and
+// send again.
 Exit answer_standard_input(Evaluator &evaluator, Terminal &terminal) {
     std::string pending;
     std::array<char, 1 << 16> block;

@@ -4,6 +4,7 @@
 
 namespace fathom::cli {
 
+// While it lives, the first Ctrl-C sets a flag instead of ending the program.
 class Interrupts {
   public:
     Interrupts(); // from now on they are noticed

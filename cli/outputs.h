@@ -16,6 +16,7 @@ Content content_of(glsl::Target target); // by its suffix
 std::string targets_with(bool glsl::TargetTraits::*trait);
 std::string listed(const std::vector<std::string> &names);
 
+// The picture files that can be written.
 enum class PictureFormat { Png, Jpeg };
 
 // By the suffix of `out`. Standard output, devices and pipes take PNGs. None: the suffix is of no

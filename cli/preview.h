@@ -9,6 +9,7 @@
 
 namespace fathom::cli {
 
+// Size of a preview, in characters.
 struct PreviewSize {
     int columns = 0, rows = 0; // of characters; 0: the terminal cannot
 };

@@ -262,7 +262,7 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
             terminal.flush();
             Interrupts::obey();
         }
-        // Who asks for cached values is told what became of it.
+        // `--cached` is answered by what became of it.
         if (!status.empty() && (terminal.interactive() || (command.cache && !command.frames)))
             terminal.say(out + ": " + status);
         if (!picture) {

@@ -11,6 +11,7 @@
 
 namespace fathom::cli {
 
+// Both output streams of a command, with what it knows of them (colours, width).
 class Terminal {
   public:
     explicit Terminal(ColorChoice color);

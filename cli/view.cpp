@@ -27,7 +27,7 @@ Exit run(const ViewCommand &command, Terminal &terminal) {
     }
     {
         // A wrong file name or -D is told at once; an error of the scene is shown in the window,
-        // until it is mended.
+        // until it is fixed.
         driver::Compilation first =
             driver::compile_file(command.scene.file, compile_options(command.scene));
         if (to_come(command.scene.file))

@@ -126,8 +126,9 @@ bool note_unusable(const Compilation &out, SourceId text, const save::ImportResu
     return more;
 }
 
-constexpr std::size_t most_asked = std::size_t{4} << 20; // bytes of a save file that is compiled
-constexpr int most_attempts = 32; // at a save file, each without the parts refused before
+constexpr std::size_t max_compiled_bytes = std::size_t{4}
+                                           << 20; // bytes of a save file that is compiled
+constexpr int max_attempts = 32; // at a save file, each without the parts refused before
 
 // The text of a save file, compiled; with those parts left out that no compiler takes, so that the
 // others are not lost with them.
@@ -142,7 +143,7 @@ Compilation compile_imported(const std::string &name, const std::string &text, S
         const SourceId root =
             out.sources.add(name + " (imported)", std::move(result.sdf), save_file);
         run_phases(out, files, identity, root, options);
-        if (result.structural_error || attempt == most_attempts ||
+        if (result.structural_error || attempt == max_attempts ||
             !note_unusable(out, root, result, import.unusable))
             return out;
     }
@@ -152,7 +153,7 @@ Compilation compile_imported(const std::string &name, const std::string &text, S
 
 void leave_out_unusable(const std::string &name, const std::string &text,
                         const std::filesystem::path &scene, save::ImportOptions &import) {
-    if (text.size() > most_asked) return;
+    if (text.size() > max_compiled_bytes) return;
     SceneFiles files(scene.parent_path(), {});
     const std::string identity = files.add_root(scene);
     compile_imported(name, text, files, identity, import, {});

@@ -17,8 +17,10 @@ namespace fathom::driver {
 
 using typecheck::Override;
 
+// The phases of a compilation, in their order.
 enum class Phase { Read, Check, Prove, Lower, Done };
 
+// What a compilation is told besides the text.
 struct CompileOptions {
     std::vector<std::filesystem::path> include_folders; // -I
     std::vector<Override> overrides;                    // -D
@@ -27,11 +29,12 @@ struct CompileOptions {
         false; // lower so that hits tell their parts (ir::lower_with_parts): for the viewer alone
 };
 
+// All that came of a compilation; `scene` is whole only where there are no errors.
 struct Compilation {
     Sources sources;
     Diagnostics diagnostics;
     ir::Scene scene;                       // proved and lowered where `good()`, else poisoned
-    ir::Parts parts;                       // where they were asked for
+    ir::Parts parts;                       // where they were wanted
     std::vector<std::string> usage_errors; // of the overrides: the command line is wrong
     std::string unreadable;                // why the scene's own file cannot be used, or empty
     std::map<std::filesystem::path, FileStamp>
@@ -55,7 +58,7 @@ Compilation compile_text(std::string name, std::string text, const std::filesyst
 
 // Adds to `import.unusable` what of a save file no compiler takes (a twist of what has no end, a
 // grid that is not there), so that an import leaves out that alone. `scene` is where the text will
-// stand. Files above 4 MiB are not asked.
+// stand. Files above 4 MiB are not compiled.
 void leave_out_unusable(const std::string &name, const std::string &text,
                         const std::filesystem::path &scene, save::ImportOptions &import);
 

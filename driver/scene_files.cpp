@@ -49,7 +49,7 @@ std::variant<SceneFiles::Found, LoadError> SceneFiles::find(const std::string &p
         std::error_code error;
         // Of a name without a folder that does not exist, weakly_canonical makes nothing absolute.
         fs::path canonical = fs::weakly_canonical(fs::absolute(printed, error), error);
-        // What lies outside is not even asked for: whether such a file exists is nobody's business.
+        // What lies outside is not even looked up: whether such a file exists is nobody's business.
         if (error || !allowed(canonical)) {
             outside = true;
             continue;

@@ -12,6 +12,7 @@
 
 namespace fathom::driver {
 
+// Resolves, checks and reads the files that one scene names, and remembers them.
 class SceneFiles {
   public:
     // `scene_folder` as the user wrote it, for the names that are printed.
@@ -23,7 +24,7 @@ class SceneFiles {
 
     typecheck::Loader loader(); // good while this lives
 
-    // Every file that was asked for, with its state just before it was read; those that were not
+    // Every file that was looked up, with its state just before it was read; those that were not
     // found too, at each place where they were looked for.
     const std::map<std::filesystem::path, FileStamp> &touched() const { return touched_; }
     void touch(const std::filesystem::path &file) { touched_.try_emplace(file, stamp_of(file)); }

@@ -10,6 +10,7 @@
 
 namespace fathom::driver {
 
+// The facts of a checked scene that a verdict states.
 struct Verdict {
     std::optional<double> lipschitz; // the largest before division among the top-level shapes;
                                      // none: no shape, no bound
@@ -18,6 +19,7 @@ struct Verdict {
 };
 
 Verdict judge(const ir::Scene &scene); // of a good compilation
+// `proved`, `assumed` or `estimated`.
 std::string_view status_name(ir::ProofStatus status);
 std::string verdict_json(const Compilation &compilation); // with its line end
 

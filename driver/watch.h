@@ -14,6 +14,7 @@
 
 namespace fathom::driver {
 
+// Waits until one of a set of files is saved.
 class Watcher {
   public:
     Watcher();

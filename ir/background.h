@@ -6,6 +6,7 @@
 
 namespace fathom::ir {
 
+// The expression of a direction that gives the sky its colour.
 inline NodeId usual_background(Graph &graph) {
     const NodeId direction = graph.make(Op::Direction, Type::Vec3, std::initializer_list<NodeId>{});
     const NodeId up = graph.make(

@@ -15,18 +15,18 @@
 
 namespace fathom::ir::sem {
 
-template <class T> T least(T a, T b) { return b < a ? b : a; }
-template <class T> T greatest(T a, T b) { return a < b ? b : a; }
+template <class T> T minimum(T a, T b) { return b < a ? b : a; }
+template <class T> T maximum(T a, T b) { return a < b ? b : a; }
 template <class T> T gap(T a, T b) { return a < b ? b - a : a - b; } // |a - b|
 
 constexpr float min_radius = 1e-9f; // in place of 0, where a radius divides
 
 // Quilez' quadratic: g = (k - d)^2 / 4k. dg/dk in [0, 1/4]. At d = 0 it is k/4.
 template <class T> T blend_smooth(T a, T b, T k) {
-    const T h = greatest(k - gap(a, b), T(0));
+    const T h = maximum(k - gap(a, b), T(0));
     const T scale =
-        T(0.25) / greatest(k, T(min_radius)); // one division where k is the same for many
-    return least(a, b) - h * h * scale;
+        T(0.25) / maximum(k, T(min_radius)); // one division where k is the same for many
+    return minimum(a, b) - h * h * scale;
 }
 
 // A fillet: the quarter circle of radius r about (r, r). With u = r - m, where m is the lesser
@@ -34,14 +34,14 @@ template <class T> T blend_smooth(T a, T b, T k) {
 // d/sqrt(2r^2 - d^2))/2 in [-1/2, 0].
 template <class T> T blend_round(T a, T b, T r) {
     using std::sqrt;
-    const T radius = greatest(r, T(0)), d = least(gap(a, b), radius);
-    const T u = T(0.5) * (d + sqrt(greatest(T(2) * radius * radius - d * d, T(0))));
-    return least(a, b) - greatest(radius - u, T(0));
+    const T radius = maximum(r, T(0)), d = minimum(gap(a, b), radius);
+    const T u = T(0.5) * (d + sqrt(maximum(T(2) * radius * radius - d * d, T(0))));
+    return minimum(a, b) - maximum(radius - u, T(0));
 }
 
 // The line a + b = r, which cuts r off both walls: g = (r - d)/2.
 template <class T> T blend_chamfer(T a, T b, T r) {
-    return least(a, b) - T(0.5) * greatest(r - gap(a, b), T(0));
+    return minimum(a, b) - T(0.5) * maximum(r - gap(a, b), T(0));
 }
 
 // n steps between (0, r) and (r, 0): n treads and n + 1 risers of s = r/(n+1). The contour is a + b
@@ -49,11 +49,11 @@ template <class T> T blend_chamfer(T a, T b, T r) {
 // g' is 0 or -1.
 template <class T> T blend_stairs(T a, T b, T r, T n) {
     using std::floor;
-    const T s = greatest(r, T(min_radius)) / (greatest(floor(n + T(0.5)), T(0)) + T(1));
-    const T d = gap(a, b), x = (greatest(r, T(0)) - d) / (s + s);
-    const T turn = x - floor(x);                       // 0..1 through one step
-    const T wave = (s + s) * least(turn, T(1) - turn); // 0..s
-    return least(a, b) - T(0.5) * greatest(greatest(r, T(0)) - d - wave, T(0));
+    const T s = maximum(r, T(min_radius)) / (maximum(floor(n + T(0.5)), T(0)) + T(1));
+    const T d = gap(a, b), x = (maximum(r, T(0)) - d) / (s + s);
+    const T turn = x - floor(x);                         // 0..1 through one step
+    const T wave = (s + s) * minimum(turn, T(1) - turn); // 0..s
+    return minimum(a, b) - T(0.5) * maximum(maximum(r, T(0)) - d - wave, T(0));
 }
 
 // n columns of radius c side by side on the chamfer a + b = r - 2c, c = r*sqrt2 / (2(n-1) + sqrt2),
@@ -64,17 +64,17 @@ template <class T> T blend_columns(T a, T b, T r, T n) {
     using std::floor;
     using std::sqrt;
     const T root2(1.41421356237309504880), half_root2(0.70710678118654752440);
-    const T count = greatest(floor(n + T(0.5)), T(1));
-    const T radius = greatest(r, T(0));
+    const T count = maximum(floor(n + T(0.5)), T(1));
+    const T radius = maximum(r, T(0));
     const T c = radius * root2 / (T(2) * (count - T(1)) + root2);
-    const T line = greatest(radius - (c + c) - gap(a, b), T(0)); // the chamfer behind them
+    const T line = maximum(radius - (c + c) - gap(a, b), T(0)); // the chamfer behind them
     const T across = (a + b - (radius - (c + c))) * half_root2, along = (b - a) * half_root2;
     const T half = T(0.5) * (count - T(1));
-    const T k = floor(along / greatest(c + c, T(min_radius)) + half +
-                      T(0.5)); // the nearest column's number
-    const T y = along - (c + c) * (least(greatest(k, T(0)), count - T(1)) - half);
+    const T k =
+        floor(along / maximum(c + c, T(min_radius)) + half + T(0.5)); // the nearest column's number
+    const T y = along - (c + c) * (minimum(maximum(k, T(0)), count - T(1)) - half);
     const T column = sqrt(across * across + y * y) - c;
-    return least(least(a, b) - T(0.5) * line, column);
+    return minimum(minimum(a, b) - T(0.5) * line, column);
 }
 
 // Hart 1996: superelliptic union within distance 1 of both: 1 - |((1-a)+, (1-b)+)|_p, and min
@@ -82,10 +82,10 @@ template <class T> T blend_columns(T a, T b, T r, T n) {
 // = (La^p + Lb^p)^(1/p). p is at least 1.
 template <class T> T pseudonorm(T a, T b, T exponent) {
     using std::pow;
-    const T p = greatest(exponent, T(1));
-    const T u = greatest(T(1) - a, T(0)), v = greatest(T(1) - b, T(0));
-    const T most = greatest(u, v), ratio = least(u, v) / greatest(most, T(min_radius));
-    return greatest(T(1), least(a, b)) - most * pow(T(1) + pow(ratio, p), T(1) / p);
+    const T p = maximum(exponent, T(1));
+    const T u = maximum(T(1) - a, T(0)), v = maximum(T(1) - b, T(0));
+    const T larger = maximum(u, v), ratio = minimum(u, v) / maximum(larger, T(min_radius));
+    return maximum(T(1), minimum(a, b)) - larger * pow(T(1) + pow(ratio, p), T(1) / p);
 }
 
 } // namespace fathom::ir::sem

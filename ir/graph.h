@@ -3,8 +3,8 @@
 // builds on this).
 //
 // A *closed* expression depends on inputs alone. `Point` is the point of the space in which an
-// expression stands; `Var`s are bound by functions, folds and the shapes Repeat and Instances. A node's
-// value is a function of those.
+// expression stands; `Var`s are bound by functions, loops and the shapes Repeat and Instances. A
+// node's value is a function of those.
 #pragma once
 
 #include "base/ids.h"
@@ -22,6 +22,7 @@
 
 namespace fathom::ir {
 
+// The type of a node. Hit is what a hit function returns: a distance and what was hit.
 enum class Type : std::uint8_t { Bool, Int, Float, Vec2, Vec3, Vec4, Mat2, Mat3, Mat4, Hit };
 
 int components(Type type);  // 1, 2, 3, 4, 4, 9, 16; of a Hit 9 (distance, paint, point 3, extra 4)
@@ -29,6 +30,7 @@ Type vector_type(int size); // 1 -> Float, 2 -> Vec2, …
 Type matrix_type(int size); // 2 -> Mat2, …
 int side(Type matrix);      // Mat3 -> 3
 bool is_vector(Type type);  // Vec2, Vec3, Vec4
+// Whether it is Mat2, Mat3 or Mat4.
 bool is_matrix(Type type);
 const char *type_name(Type type); // the language's and GLSL's name: "vec3"
 
@@ -47,6 +49,7 @@ using LoopId = Id<Loop>;
 using TableId = Id<Table>;
 using CacheId = Id<Cache>;
 
+// One operation: its arguments stand in the graph, `payload` depends on the op.
 struct Node {
     Op op = Op::Const;
     Type type = Type::Float;
@@ -71,10 +74,10 @@ struct Function {
     NodeId result;
 };
 
-// A loop. vars[k] has value args[k] before the first turn and next[k] after each; `index` (Int)
-// counts 0, 1, … The loop ends after `count` turns (an Int node, evaluated once before), or before
-// the first turn in which `condition` (a Bool over index and vars, invalid id: always true) is
-// false. Results are the vars' last values.
+// A loop. vars[k] has value args[k] before the first iteration and next[k] after each; `index`
+// (Int) counts 0, 1, … The loop ends after `count` iterations (an Int node, evaluated once before),
+// or before the first iteration in which `condition` (a Bool over index and vars, invalid id:
+// always true) is false. Results are the vars' last values.
 struct Loop {
     NodeId count;
     NodeId index;             // Var, Int
@@ -110,6 +113,7 @@ std::uint32_t swizzle_mask(std::span<const int> components);
 int swizzle_size(std::uint32_t mask);
 int swizzle_component(std::uint32_t mask, int i);
 
+// All nodes of a scene, with the functions, loops, tables and caches that they name.
 class Graph {
   public:
     const Node &operator[](NodeId id) const { return nodes_[id]; }
@@ -166,14 +170,15 @@ class Graph {
     std::size_t cache_count() const { return caches_.size(); }
     std::uint32_t var_count() const { return vars_; }
 
-    // What a node reads, transitively, through calls and folds too.
+    // What a node reads, transitively, through calls and loops too.
     struct Reads {
         bool point = false, normal = false, direction = false, time = false, params = false;
         bool free_vars = false; // Vars that nothing below the node binds
         friend bool operator==(Reads, Reads) = default;
     };
     Reads reads(NodeId id) const { return reads_[id.index]; }
-    std::vector<NodeId> free_vars(NodeId id) const; // in order of payload; walks, so ask once
+    std::vector<NodeId>
+    free_vars(NodeId id) const; // in order of payload; walks the graph, so call it once
 
   private:
     NodeId folded(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload); // or none

@@ -14,6 +14,7 @@
 
 namespace fathom::ir {
 
+// A closed interval, lo <= hi; ends may be infinite.
 struct Interval {
     double lo = 0, hi = 0;
 
@@ -47,7 +48,7 @@ inline double times(double a, double b) {
 } // 0 * infinity is 0 here
 constexpr double library = 8;
 // Evaluators count in single precision: beyond the one is infinity, below the other 0.
-constexpr double single_most = 1e38, single_least = 1.2e-38;
+constexpr double max_single = 1e38, min_single = 1.2e-38;
 } // namespace rounding
 
 inline double Interval::middle() const {
@@ -207,11 +208,11 @@ inline Interval exp2(Interval a) {
     return ir::exp2(a) * Interval(0.69314718055994528, 0.69314718055994534);
 }
 inline Interval log(Interval a) {
-    return a.lo < rounding::single_least ? Interval::everything() : Interval(1.0) / a;
+    return a.lo < rounding::min_single ? Interval::everything() : Interval(1.0) / a;
 }
 inline Interval log2(Interval a) {
-    return a.lo < rounding::single_least ? Interval::everything()
-                                         : Interval(1.4426950408889632, 1.4426950408889636) / a;
+    return a.lo < rounding::min_single ? Interval::everything()
+                                       : Interval(1.4426950408889632, 1.4426950408889636) / a;
 }
 inline Interval sin(Interval a) { return ir::cos(a); }
 inline Interval cos(Interval a) { return -ir::sin(a); }

@@ -1,4 +1,4 @@
-// How each kind of Map asks its child, built as expressions.
+// The point at which each kind of Map evaluates its child, as expressions.
 #include "ir/maps.h"
 
 #include <cassert>
@@ -104,7 +104,7 @@ NodeId taper_factor(Graph &graph, NodeId height, NodeId ratio, NodeId from, Node
     const NodeId zero = graph.number(0), one = graph.number(1);
     const NodeId t =
         graph.make(Op::Clamp, {graph.div(graph.sub(height, from), graph.sub(to, from)), zero, one});
-    return graph.make(Op::Max, {graph.make(Op::Mix, {one, ratio, t}), graph.number(taper_least)});
+    return graph.make(Op::Max, {graph.make(Op::Mix, {one, ratio, t}), graph.number(min_taper)});
 }
 
 Shape tapered(Graph &graph, ShapeId child, NodeId ratio, NodeId from, NodeId to, int axis) {
@@ -192,10 +192,10 @@ NodeId rotation_between(Graph &graph, NodeId from, NodeId to) {
     const NodeId x = graph.make(Op::Abs, {graph.component(a, 0)});
     const NodeId y = graph.make(Op::Abs, {graph.component(a, 1)});
     const NodeId z = graph.make(Op::Abs, {graph.component(a, 2)});
-    const NodeId x_least =
+    const NodeId min_x =
         graph.make(Op::And, {graph.make(Op::LessEqual, {x, y}), graph.make(Op::LessEqual, {x, z})});
     const NodeId other = graph.make(
-        Op::Select, {x_least, axis_vector(graph, 0),
+        Op::Select, {min_x, axis_vector(graph, 0),
                      graph.make(Op::Select, {graph.make(Op::LessEqual, {y, z}),
                                              axis_vector(graph, 1), axis_vector(graph, 2)})});
     const NodeId sum = graph.add(a, b);

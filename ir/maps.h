@@ -36,9 +36,9 @@ inline int turning_axis(const Shape &shape) {
 
 // The cross-section is scaled by c(h), 1 at h = from and `ratio` at h = to, linear between,
 // constant beyond: c * f(p / c across the axis, p along it). ratio >= 0; c is kept above
-// taper_least.
+// min_taper.
 Shape tapered(Graph &graph, ShapeId child, NodeId ratio, NodeId from, NodeId to, int axis);
-constexpr double taper_least = 1e-4;
+constexpr double min_taper = 1e-4;
 NodeId taper_factor(Graph &graph, NodeId height, NodeId ratio, NodeId from, NodeId to); // c(h)
 
 // Any q in Point (vec3 -> vec3; flat: vec2 -> vec2). `lipschitz` and `estimate` go into the Shape's

@@ -140,8 +140,8 @@ template <class T> T value_noise(T px, T py, T pz) {
 // -- simplex noise
 
 // One corner's part: (1/2 - d^2)+^4 (g.d). The radius^2 is 1/2, not Perlin's 0.6, because 1/2 is
-// the squared distance of a corner to the far side of its simplices: with more the noise jumps
-// there and has no slope bound at all.
+// the squared distance of a corner to the far side of its simplices: with more the noise is
+// discontinuous there and has no slope bound at all.
 template <class T> T simplex_corner(std::uint32_t h, T x, T y, T z) {
     const T s = T(0.5) - (x * x + y * y + z * z);
     const T t = s < T(0) ? T(0) : s;
@@ -201,14 +201,14 @@ template <class T> T worley(T px, T py, T pz) {
     const auto fx = floor(plain(px)), fy = floor(plain(py)), fz = floor(plain(pz));
     const std::uint32_t ix = lattice(fx), iy = lattice(fy), iz = lattice(fz);
     const T x = px - T(fx), y = py - T(fy), z = pz - T(fz);
-    T least(1);
+    T minimum(1);
     const auto cell = [&](int i, int j, int k) {
         const V3<T> q = worley_point<T>(hash_lattice(ix + std::uint32_t(i), iy + std::uint32_t(j),
                                                      iz + std::uint32_t(k), 0x1b56c4e9u));
         const T dx = x - (T(float(i)) + q.x), dy = y - (T(float(j)) + q.y),
                 dz = z - (T(float(k)) + q.z);
         const T d = dx * dx + dy * dy + dz * dz;
-        least = d < least ? d : least;
+        minimum = d < minimum ? d : minimum;
     };
     // Written out, not looped over: loops over batches of points vectorise only where none is
     // inside.
@@ -216,7 +216,7 @@ template <class T> T worley(T px, T py, T pz) {
         (cell(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1), ...);
     }
     (std::make_integer_sequence<int, 27>{});
-    return sqrt(least);
+    return sqrt(minimum);
 }
 
 // -- spot noise (sparse convolution; Lewis 1989, thesis 7.1)
@@ -229,14 +229,14 @@ template <class T> T worley(T px, T py, T pz) {
 // With at most n = ceil(density) spots in a cell the sums over the 27 cells of what one spot there
 // can do are at most 27.5 for the slope (a spot's is 6t(1-t^2)^2 <= 96/(25 sqrt 5)) and 8.1 for the
 // value (tests/unit/ir/certify_test.cpp).
-constexpr int spot_most = 8;        // density is clamped to 0..8
+constexpr int spot_maximum = 8;     // density is clamped to 0..8
 constexpr double spot_slope = 27.5; // |grad| <= spot_slope * n / (radius * sqrt(max(density, 1)))
 constexpr double spot_range = 8.1;  // |value| <= spot_range * n / sqrt(max(density, 1))
 template <class T> T spot_noise(T px, T py, T pz, T radius, T density) {
     using std::floor;
     using std::sqrt;
     const T r = radius < T(1e-6f) ? T(1e-6f) : radius;
-    const T n = density < T(0) ? T(0) : (density < T(spot_most) ? density : T(spot_most));
+    const T n = density < T(0) ? T(0) : (density < T(spot_maximum) ? density : T(spot_maximum));
     const T qx = px / r, qy = py / r, qz = pz / r;
     const auto fx = floor(plain(qx)), fy = floor(plain(qy)), fz = floor(plain(qz));
     const std::uint32_t ix = lattice(fx), iy = lattice(fy), iz = lattice(fz);

@@ -10,6 +10,7 @@
 
 namespace fathom::ir {
 
+// One name for each row of ops.def.
 enum class Op : std::uint8_t {
 #define FATHOM_OP(name, ...) name,
 #include "ir/ops.def"
@@ -38,6 +39,7 @@ enum class OpParity : std::uint8_t {
     Own,     // a rule of its own in proof/parity.cpp
 };
 
+// One row of ops.def.
 struct OpInfo {
     const char *name;
     int arity; // -1: any number

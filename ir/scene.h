@@ -28,12 +28,12 @@ struct CellBounds {
     std::vector<double> bend;      // of second derivatives along lines; empty: known of no cell
 };
 
-// Of a displacement that is a sum: what its first terms say before the others are asked.
+// Of a displacement that is a sum: what its first terms say before the others are evaluated.
 struct PartialSum {
-    NodeId terms;     // their sum, an expression in Point
-    double slope = 0; // of the sum
-    double most = 0;  // all other terms together, at most
-    double least = 0; // … and at least
+    NodeId terms;       // their sum, an expression in Point
+    double slope = 0;   // of the sum
+    double maximum = 0; // all other terms together, at most
+    double minimum = 0; // … and at least
 };
 
 // What the analysis proved of one shape, in the shape's own space.
@@ -52,9 +52,9 @@ struct ShapeFact {
     double inward = std::numeric_limits<double>::infinity();  // … and inward
     std::vector<PartialSum> partial; // Displace: shorter sums first, all of it last; or none
     // Displace: M, an upper bound of the raw field's second derivative along any line, down to the
-    // depth that the reach sqrt(2 f/M) asks for (shading.h); infinity: none of use.
+    // depth that the safe radius sqrt(2 f/M) needs (shading.h); infinity: none of use.
     double curvature = std::numeric_limits<double>::infinity();
-    bool local = false; // the bound holds within `bounds` alone: the raw field is asked at the
+    bool local = false; // the bound holds within `bounds` alone: the raw field is evaluated at the
                         // nearest point there, and joined with the way to it as Within's is
     bool guard = false; // when marched, take the max with the distance to `bounds` (cheap far away)
     double round = std::numeric_limits<double>::infinity(); // Twist, Bend: the solid lies as near
@@ -73,6 +73,7 @@ struct CacheFact {
     double span = std::numeric_limits<double>::infinity();  // >= the distance of any two values
 };
 
+// A number or colour that a user may change: its value, its range, where it is declared.
 struct Param {
     std::string name, label;
     Type type = Type::Float; // Bool, Int, Float, Vec2..Vec4; a colour is a Vec3 with is_color
@@ -83,12 +84,14 @@ struct Param {
     Span origin;
 };
 
+// One light; colours are linear.
 struct Light {
     bool directional = true;
     NodeId position; // vec3: towards the sun (unit), or the light's place
     NodeId color;    // vec3, linear, times the intensity
 };
 
+// All lights of a scene.
 struct Lighting {
     NodeId ambient;           // vec3, linear
     NodeId ambient_occlusion; // 0 none … 1 full strength
@@ -98,6 +101,7 @@ struct Lighting {
     bool skip = false; // `Skip Shadows & Shading`
 };
 
+// Where the picture is taken from; closed expressions, angles in radians.
 struct Camera {
     NodeId at, look_at; // vec3
     NodeId fov;         // vertical, radians
@@ -105,6 +109,7 @@ struct Camera {
     bool given = false; // false: framed by the rule of semantics.md, 23, from `bounds`
 };
 
+// Limits of the sphere tracer.
 struct RenderSettings {
     int max_steps = 256;
     double epsilon = 5e-4;  // hit tolerance at distance 1, grows with the distance
@@ -122,18 +127,21 @@ struct Surface {
     NodeId diffuse, specular, exponent, emission;
 };
 
-// What a library function asks of its arguments, where they hang on params or time: to be proved.
+// What a library function demands of its arguments, where they depend on params or time: to be
+// proved.
 struct Condition {
     NodeId holds; // Bool
     Span at;      // the user's call
     std::string wanted;
 };
 
+// A named value of the file, for documentation and tests.
 struct TopLevel {
     ShapeId shape;
     Span span;
 };
 
+// An image as linear floats, row by row from the bottom.
 struct ImageData {
     std::string name;
     int width = 0, height = 0;
@@ -148,6 +156,7 @@ struct GridData {
     std::array<double, 3> lo{-0.5, -0.5, -0.5}, hi{0.5, 0.5, 0.5};
 };
 
+// A whole scene: shapes and expressions, and after lowering its functions.
 struct Scene {
     Graph graph;
     Shapes shapes;
@@ -170,7 +179,7 @@ struct Scene {
     // Filled by ir::lower.
     FunctionId distance; // (vec3) -> float: marched: a step of its length never passes a surface
     FunctionId
-        safe_radius; // (vec3) -> vec2, or none: the same distance, and how far it reaches beside
+        safe_radius; // (vec3) -> vec2, or none: the same distance, and the safe radius beside
                      // another sample (shading.h, MARCH), at least as far
     FunctionId hit;  // (vec3) -> Hit: the same distance, with the surface that decides
     FunctionId endless, endless_hit; // the same of the parts without an end alone, where the scene

@@ -4,7 +4,7 @@
 //
 // A shape is a *raw field*, a function of a point (vec3, or vec2 for flat ones), negative inside.
 // Expressions in `args` stand in the shape's own space (where `Point` is the point that the shape
-// is asked at) unless said.
+// is evaluated at) unless said.
 #pragma once
 
 #include "ir/graph.h"
@@ -51,6 +51,7 @@ enum class ShapeKind : std::uint8_t {
 };
 const char *shape_kind_name(ShapeKind kind);
 
+// The profiles that stand along the line where two surfaces meet.
 enum class SeamKind : std::uint8_t { Pipe, Engrave, Groove, Tongue };
 
 // How q depends on p, so that the analysis need not rediscover it.
@@ -68,6 +69,7 @@ enum class MapKind : std::uint8_t {
     Distort     // any q
 };
 
+// The forms of a `within:` region.
 enum class RegionKind : std::uint8_t { Everywhere, Ball, Box, Tube };
 
 // A convex region, less others (`ball(2) - tube(Y, 0.3)`). Numbers are expressions without Point.
@@ -131,8 +133,10 @@ enum class FieldKind : std::uint8_t {
     Estimate // nothing is known
 };
 
+// How sure a bound is: proved, stated by the user, or sampled.
 enum class ProofStatus : std::uint8_t { Proved, Assumed, Estimated };
 
+// An axis-parallel box; sides may be infinite.
 struct Box {
     std::array<double, 3> lo{std::numeric_limits<double>::infinity(),
                              std::numeric_limits<double>::infinity(),
@@ -144,7 +148,9 @@ struct Box {
     bool finite() const;
     static Box everything();
 };
+// The smallest box that holds both.
 Box hull(Box a, Box b);
+// What both have in common; may be empty.
 Box intersect(Box a, Box b);
 
 // What only the embedded library may state of a body (semantics.md, 12). Expressions without Point,
@@ -161,6 +167,7 @@ struct Claims {
         moment_arm{}; // sup |(p x grad f)_axis| (lipschitz.md, 5.1); invalid: derived from the box
 };
 
+// A call of a library shape: its name, its arguments and its claims.
 struct Library {
     std::string name; // "sphere"
     std::vector<std::pair<std::string, NodeId>>
@@ -170,11 +177,13 @@ struct Library {
     Claims claims;
 };
 
+// A bound that a parameter's type demands of a shape.
 struct Contract {
     double lipschitz = 1;
     Span demanded; // where the type was written
 };
 
+// One node of the tree: a kind, child shapes, and expressions.
 struct Shape {
     ShapeKind kind = ShapeKind::Empty;
     std::uint8_t dims = 3;              // 2: flat
@@ -190,6 +199,7 @@ struct Shape {
                  // trials apart
 };
 
+// All shapes of a scene, hash-consed.
 class Shapes {
   public:
     ShapeId add(Shape shape); // hash-consed, the origin apart
@@ -206,8 +216,8 @@ class Shapes {
     std::vector<Library> libraries;
     std::vector<Contract> contracts;
     // Unions as the scene lists them, by the shape that they became where that says less (like
-    // copies gathered, doubles left out). Only what reads a scene back for people asks: the save
-    // format.
+    // copies gathered, doubles left out). Only what reads a scene back for people needs it: the
+    // save format.
     std::unordered_map<ShapeId, std::vector<ShapeId>> listed;
 
   private:

@@ -15,15 +15,16 @@ struct Pen {
     NodeId n(double x) const { return g.number(x); }
     NodeId of(Op op, NodeId a) const { return g.make(op, {a}); }
     NodeId of(Op op, NodeId a, NodeId b) const { return g.make(op, {a, b}); }
-    NodeId least(NodeId a, NodeId b) const { return of(Op::Min, a, b); }
-    NodeId most(NodeId a, NodeId b) const { return of(Op::Max, a, b); }
+    NodeId minimum(NodeId a, NodeId b) const { return of(Op::Min, a, b); }
+    NodeId maximum(NodeId a, NodeId b) const { return of(Op::Max, a, b); }
     NodeId saturated(NodeId a) const { return g.make(Op::Clamp, {a, n(0), n(1)}); }
     NodeId within(NodeId a, NodeId half) const { return g.make(Op::Clamp, {a, g.neg(half), half}); }
     NodeId choose(NodeId c, NodeId a, NodeId b) const { return g.make(Op::Select, {c, a, b}); }
     NodeId pair(NodeId a, NodeId b) const { return g.make(Op::Make, Type::Vec2, {a, b}); }
     NodeId length(NodeId a, NodeId b) const { return of(Op::Length, pair(a, b)); }
-    NodeId least_of(NodeId vector) const {
-        return least(g.component(vector, 0), least(g.component(vector, 1), g.component(vector, 2)));
+    NodeId minimum_of(NodeId vector) const {
+        return minimum(g.component(vector, 0),
+                       minimum(g.component(vector, 1), g.component(vector, 2)));
     }
     // The angle round y from +z towards +x, in turns from 0 at the back: |grad| = 1/(2 pi rho).
     NodeId round_y(NodeId x, NodeId z) const {
@@ -42,14 +43,14 @@ UvMap ball_uv_map(Graph &graph, NodeId lo, NodeId hi) {
                  middle = graph.mul(graph.add(lo, hi), k.n(0.5));
     const NodeId q = graph.div(graph.sub(graph.point(), middle), half);
     const NodeId x = graph.component(q, 0), y = graph.component(q, 1), z = graph.component(q, 2);
-    const NodeId size = k.of(Op::Length, q), around = k.length(x, z), least = k.least_of(half);
+    const NodeId size = k.of(Op::Length, q), around = k.length(x, z), minimum = k.minimum_of(half);
     UvMap uv_map;
     uv_map.uv =
         k.pair(k.round_y(x, z), graph.mul(k.of(Op::Atan2, around, graph.neg(y)), k.n(1 / pi)));
-    uv_map.weight =
-        k.saturated(k.least(graph.mul(around, k.n(4)), graph.sub(graph.mul(size, k.n(4)), k.n(1))));
-    uv_map.slope_u = uv_map.slope_v = graph.div(k.n(2 / pi), least);
-    uv_map.slope_weight = graph.div(k.n(4), least);
+    uv_map.weight = k.saturated(
+        k.minimum(graph.mul(around, k.n(4)), graph.sub(graph.mul(size, k.n(4)), k.n(1))));
+    uv_map.slope_u = uv_map.slope_v = graph.div(k.n(2 / pi), minimum);
+    uv_map.slope_weight = graph.div(k.n(4), minimum);
     uv_map.around_u = true;
     return uv_map;
 }
@@ -67,7 +68,7 @@ UvMap has_uv_map(Graph &graph, NodeId radius, NodeId height) {
     const NodeId below_side = graph.sub(radius, rho), below_cap = graph.sub(half, k.of(Op::Abs, y));
     const auto stretched = [&](NodeId value, NodeId size, NodeId depth) {
         const NodeId left =
-            k.most(graph.sub(size, k.most(depth, k.n(0))), graph.mul(size, k.n(0.5)));
+            k.maximum(graph.sub(size, k.maximum(depth, k.n(0))), graph.mul(size, k.n(0.5)));
         return k.within(graph.mul(value, graph.div(size, left)), size);
     };
     const NodeId on_cap = stretched(rho, radius, below_cap),
@@ -76,15 +77,15 @@ UvMap has_uv_map(Graph &graph, NodeId radius, NodeId height) {
     const NodeId cap = k.choose(k.of(Op::Less, y, k.n(0)), on_cap, graph.sub(total, on_cap));
     const NodeId side = graph.add(graph.add(radius, half), on_side);
     const NodeId s = k.choose(k.of(Op::Less, below_cap, below_side), cap, side);
-    const NodeId least = k.least(radius, half), depth = k.least(below_side, below_cap);
+    const NodeId minimum = k.minimum(radius, half), depth = k.minimum(below_side, below_cap);
     UvMap uv_map;
     uv_map.uv = k.pair(k.round_y(x, z), graph.div(s, total));
     uv_map.weight =
-        k.saturated(k.least(graph.mul(rho, graph.div(k.n(4), radius)),
-                            graph.sub(k.n(2), graph.mul(depth, graph.div(k.n(4), least)))));
+        k.saturated(k.minimum(graph.mul(rho, graph.div(k.n(4), radius)),
+                              graph.sub(k.n(2), graph.mul(depth, graph.div(k.n(4), minimum)))));
     uv_map.slope_u = graph.div(k.n(2 / pi), radius);
     uv_map.slope_v = graph.div(k.n(4.0 / 3 * std::sqrt(2)), total);
-    uv_map.slope_weight = graph.div(k.n(4), least);
+    uv_map.slope_weight = graph.div(k.n(4), minimum);
     uv_map.around_u = true;
     return uv_map;
 }
@@ -102,10 +103,10 @@ UvMap box_uv_map(Graph &graph, NodeId half) {
         at[j] = graph.component(p, i), h[j] = graph.component(half, i);
         t[j] = graph.sub(h[j], k.of(Op::Abs, at[j]));
     }
-    const NodeId least = k.least(h[0], k.least(h[1], h[2]));
+    const NodeId minimum = k.minimum(h[0], k.minimum(h[1], h[2]));
     const auto on_face = [&](std::size_t i, std::size_t face) { // -1..1
         const NodeId left =
-            k.most(graph.sub(h[i], k.most(t[face], k.n(0))), graph.mul(h[i], k.n(0.5)));
+            k.maximum(graph.sub(h[i], k.maximum(t[face], k.n(0))), graph.mul(h[i], k.n(0.5)));
         return k.within(graph.div(at[i], left), k.n(1));
     };
     const auto turned = [&](NodeId value, std::size_t face) { // seen from the other side
@@ -121,20 +122,20 @@ UvMap box_uv_map(Graph &graph, NodeId half) {
     const std::array<NodeId, 3> uv{image(graph.neg(turned(on_face(2, 0), 0)), on_face(1, 0)),
                                    image(on_face(0, 1), graph.neg(turned(on_face(2, 1), 1))),
                                    image(turned(on_face(0, 2), 2), on_face(1, 2))};
-    const std::array<NodeId, 3> edge{k.least(band(1, 0), band(2, 0)),
-                                     k.least(band(0, 1), band(2, 1)),
-                                     k.least(band(0, 2), band(1, 2))};
+    const std::array<NodeId, 3> edge{k.minimum(band(1, 0), band(2, 0)),
+                                     k.minimum(band(0, 1), band(2, 1)),
+                                     k.minimum(band(0, 2), band(1, 2))};
     const NodeId x_face = k.of(Op::And, k.of(Op::Less, t[0], t[1]), k.of(Op::Less, t[0], t[2]));
     const NodeId y_face = k.of(Op::Less, t[1], t[2]);
-    const NodeId depth = k.least(t[0], k.least(t[1], t[2]));
-    const NodeId over = graph.div(k.n(4), least);
+    const NodeId depth = k.minimum(t[0], k.minimum(t[1], t[2]));
+    const NodeId over = graph.div(k.n(4), minimum);
     UvMap uv_map;
     uv_map.uv = k.choose(x_face, uv[0], k.choose(y_face, uv[1], uv[2]));
     const NodeId to_edge = k.choose(x_face, edge[0], k.choose(y_face, edge[1], edge[2]));
     uv_map.weight =
-        k.saturated(k.least(graph.mul(to_edge, over), graph.sub(k.n(2), graph.mul(depth, over))));
-    uv_map.slope_u = uv_map.slope_v = graph.div(k.n(2.0 / 3 * std::sqrt(2)), least);
-    uv_map.slope_weight = graph.div(k.n(8 * std::sqrt(2)), least);
+        k.saturated(k.minimum(graph.mul(to_edge, over), graph.sub(k.n(2), graph.mul(depth, over))));
+    uv_map.slope_u = uv_map.slope_v = graph.div(k.n(2.0 / 3 * std::sqrt(2)), minimum);
+    uv_map.slope_weight = graph.div(k.n(8 * std::sqrt(2)), minimum);
     return uv_map;
 }
 
@@ -151,11 +152,11 @@ UvMap ring_uv_map(Graph &graph, NodeId major, NodeId minor) {
     uv_map.uv = k.pair(k.round_y(x, z),
                        graph.add(k.n(0.5), graph.mul(k.of(Op::Atan2, y, out), k.n(0.5 / pi))));
     uv_map.weight = k.saturated(
-        k.least(graph.mul(rho, graph.div(k.n(4), major)),
-                graph.sub(graph.mul(k.length(out, y), graph.div(k.n(4), minor)), k.n(1))));
+        k.minimum(graph.mul(rho, graph.div(k.n(4), major)),
+                  graph.sub(graph.mul(k.length(out, y), graph.div(k.n(4), minor)), k.n(1))));
     uv_map.slope_u = graph.div(k.n(2 / pi), major);
     uv_map.slope_v = graph.div(k.n(1 / pi), minor);
-    uv_map.slope_weight = graph.div(k.n(4), k.least(major, minor));
+    uv_map.slope_weight = graph.div(k.n(4), k.minimum(major, minor));
     uv_map.around_u = uv_map.around_v = true;
     return uv_map;
 }

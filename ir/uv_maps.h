@@ -14,6 +14,7 @@
 
 namespace fathom::ir {
 
+// An image's coordinates on a shape, with the slopes that bound a texture's.
 struct UvMap {
     NodeId uv;               // vec2
     NodeId weight;           // 0..1

@@ -20,6 +20,7 @@ using ExprId = Id<Expr>;
 using BlockId = Id<Block>;
 using FunctionId = Id<Function>;
 
+// A name and where it stands.
 struct Identifier {
     std::string text;
     Span span;
@@ -88,6 +89,7 @@ enum class BinaryOp {
 };
 
 struct Poison {}; // a place where the parser already reported an error
+// A literal number; an angle is in radians already.
 struct Number {
     double value = 0; // in radians where an angle's unit stood behind it
     bool is_int = false;
@@ -162,6 +164,7 @@ struct BlockExpr {
 using ExprKind = std::variant<Poison, Number, String, Bool, Color, Name, List, Comprehension, Range,
                               Unary, Binary, Call, Index, Member, Lambda, If, BlockExpr>;
 
+// An expression: its kind and its place.
 struct Expr {
     ExprKind kind;
     Span span; // the whole expression, without surrounding parentheses
@@ -170,6 +173,7 @@ struct Expr {
 
 // -- statements ----------------------------------------------------------------------------------
 
+// A parameter of a function, with its type and its default where they are given.
 struct Parameter {
     Identifier name;
     std::optional<TypeExpr> type;
@@ -243,6 +247,7 @@ struct Bad {}; // a statement that could not be read; already reported
 
 using StmtKind = std::variant<Bad, ExprStmt, Let, Var, Assign, FunctionDecl, Param, Import, For,
                               While, Break, Return>;
+// A statement: its kind and its place.
 struct Stmt {
     StmtKind kind;
     Span span;
@@ -256,6 +261,7 @@ struct Block {
     Span span;
 };
 
+// A whole text as arrays of expressions, blocks and functions.
 struct Ast {
     SourceId source;
     Arena<Expr> exprs;

@@ -60,6 +60,7 @@ enum class Wanted {
     StatementEnd
 };
 
+// Removes the last element and returns it.
 template <class T> T take_back(std::vector<T> &stack) {
     assert(!stack.empty());
     T top = std::move(stack.back());
@@ -67,6 +68,7 @@ template <class T> T take_back(std::vector<T> &stack) {
     return top;
 }
 
+// Builds one Ast from the actions of the grammar.
 class Builder {
   public:
     using Index = std::uint32_t; // of a token
@@ -320,7 +322,8 @@ class Builder {
     std::vector<std::string_view> declared_;
     std::unordered_set<std::string_view> known_names_; // the first known_ of them
     std::size_t known_ = 0;
-    std::optional<std::unordered_set<std::string_view>> all_declared_; // made when it is asked for
+    std::optional<std::unordered_set<std::string_view>>
+        all_declared_; // made when it is first needed
     bool has_import_ = false;
 };
 

@@ -23,9 +23,9 @@ constexpr ForeignWord statement_words[] = {
     {"class", "there are no classes", "a function with parameters makes the variants of a shape"},
     {"struct", "there are no records", "give each part a name of its own with `let`"},
     {"enum", "there are no enumerations", "give each number a name of its own with `let`"},
-    {"interface", "there are no types of one's own", "the types are those of the language"},
-    {"typedef", "there are no types of one's own", "the types are those of the language"},
-    {"type", "there are no types of one's own", "the types are those of the language"},
+    {"interface", "there are no user-defined types", "the types are those of the language"},
+    {"typedef", "there are no user-defined types", "the types are those of the language"},
+    {"type", "there are no user-defined types", "the types are those of the language"},
     {"from", "the library needs no import", "a file is brought in by `import \"file.sdf\"`", true},
     {"include", "a file is brought in by `import`", "write `import \"file.sdf\"`"},
     {"use", "a file is brought in by `import`", "write `import \"file.sdf\"`"},
@@ -204,7 +204,7 @@ void Builder::foreign_colon(Index at) {
     d.help("write `{ … }`", whole ? std::move(edits) : std::vector<Edit>{});
 }
 
-// -- bodies without braces ---------------------------------------------------------------------------
+// -- bodies without braces
 
 // `if a then b else c`, `for i in 0..3 do b`.
 void Builder::foreign_then(Index at) {

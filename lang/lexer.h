@@ -6,6 +6,7 @@
 
 namespace fathom::lang {
 
+// Collects the words of a text.
 class Lexer {
   public:
     Lexer(const Source &source, SourceId id, Diagnostics &diagnostics)

@@ -32,6 +32,7 @@ inline bool is_close(Tok kind) {
     return kind == Tok::Close || kind == Tok::ListClose || kind == Tok::BraceClose;
 }
 
+// The words and comments of a text in order.
 std::vector<Piece> read_pieces(const Source &source, const Tokens &tokens,
                                const std::vector<Comment> &comments);
 

@@ -91,12 +91,14 @@ inline bool is_one_of(Tok kind, std::initializer_list<Tok> some) {
     return std::find(some.begin(), some.end(), kind) != some.end();
 }
 
+// A word: its kind and its place.
 struct Token {
     Tok kind = Tok::End;
     bool first_on_line = false;
     std::uint32_t begin = 0, end = 0; // bytes
 };
 
+// The place of a comment in the text.
 struct Comment {
     std::uint32_t begin = 0, end = 0; // without the line end
     bool is_line = false;             // `// …`, `/// …`
@@ -116,6 +118,7 @@ struct Tokens {
 };
 
 Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics); // in parse.cpp
+// Settles where statements end, and reports what cannot be a word.
 Tokens lay_out(const Source &source, SourceId id, const Words &words, Diagnostics &diagnostics);
 
 inline std::string_view text_of(const Source &source, const Token &token) {

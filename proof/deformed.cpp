@@ -32,9 +32,9 @@ Section section(const Deformation &d, const Interval &y) {
     t = {std::clamp(t.lo, 0.0, 1.0), std::clamp(t.hi, 0.0, 1.0)};
     Interval factor = Interval(1) + (d.ratio - Interval(1)) * t;
     const Interval slope = (d.ratio - Interval(1)) / length;
-    const bool between = y.lo > d.from.hi && y.hi < d.to.lo && factor.lo > ir::taper_least;
+    const bool between = y.lo > d.from.hi && y.hi < d.to.lo && factor.lo > ir::min_taper;
     const bool beyond = y.hi < d.from.lo || y.lo > d.to.hi;
-    factor = {std::max(factor.lo, ir::taper_least), std::max(factor.hi, ir::taper_least)};
+    factor = {std::max(factor.lo, ir::min_taper), std::max(factor.hi, ir::min_taper)};
     return {factor, beyond ? Interval(0) : between ? slope : hull(slope, Interval(0))};
 }
 

@@ -9,8 +9,8 @@
 
 namespace fathom::proof {
 
-using ir::rounding::single_least;
-using ir::rounding::single_most;
+using ir::rounding::max_single;
+using ir::rounding::min_single;
 
 inline Row scaled(Interval factor, const Row &row) {
     return {factor * row[0], factor * row[1], factor * row[2]};

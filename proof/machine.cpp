@@ -140,7 +140,7 @@ void Machine::run(const Cell &cell) {
     Slot s = tape_.result;
     result_norm_ = norm_[s];
     for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
-        if (in_reach_ && result_norm_ > 0 && value_[tape_.first[s] + i].magnitude() > single_most) {
+        if (in_reach_ && result_norm_ > 0 && value_[tape_.first[s] + i].magnitude() > max_single) {
             result_norm_ = infinity;
             trouble_[s] = Trouble::Overflow;
         }

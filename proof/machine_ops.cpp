@@ -54,7 +54,7 @@ void Machine::step(const Instruction &instruction) {
 bool Step::overflows() const {
     const auto large = [&](int arg) {
         for (int c = 0; c < size(arg); ++c)
-            if (value(arg, c).magnitude() > single_most) return true;
+            if (value(arg, c).magnitude() > max_single) return true;
         return false;
     };
     int many = 0;
@@ -225,7 +225,7 @@ void Step::run() {
                 set(c, x / y, none);
                 continue;
             }
-            if (y.mignitude() < single_least) {
+            if (y.mignitude() < min_single) {
                 singular = true;
                 set(c, Interval::everything(), none);
                 continue;
@@ -579,7 +579,7 @@ void Step::run() {
         return finish(times(ir::sem::worley_slope, norm(0)), any_odd);
     case Op::SpotNoise: {
         double radius = std::max(value(1, 0).lo, 1e-6),
-               density = std::clamp(value(2, 0).hi, 0.0, double(ir::sem::spot_most));
+               density = std::clamp(value(2, 0).hi, 0.0, double(ir::sem::spot_maximum));
         double spots = std::ceil(density),
                scale = std::sqrt(std::max(std::clamp(value(2, 0).lo, 0.0, 8.0), 1.0));
         double slope = up(ir::sem::spot_slope * spots / (radius * scale), 8),

@@ -132,8 +132,8 @@ std::vector<ir::PartialSum> Prover::partial_sums(ShapeId id, double slope) {
         if (rest[i].finite() && own + partial.slope <= worth * (own + slope) &&
             (out.empty() || shorter <= worth * (own + partial.slope))) {
             const double loose = 1e-5 * rest[i].magnitude(); // as of the range shell: float32
-            partial.most = up(partial.most + loose) * options.rules[Rule::Octaves];
-            partial.least = -up(-partial.least + loose);
+            partial.maximum = up(partial.maximum + loose) * options.rules[Rule::Octaves];
+            partial.minimum = -up(-partial.minimum + loose);
             out.push_back(partial);
         }
         sum = graph.add(sum, terms[i]);

@@ -14,7 +14,7 @@ void enter(CacheChoice &choice, State state) {
 
 } // namespace
 
-bool keeps_next(const CacheChoice &choice) {
+bool uses_cache_next(const CacheChoice &choice) {
     switch (choice.state) {
     case State::Learning:
         // At the end of it the exact frame is the measure, where there is none yet.

@@ -24,8 +24,8 @@ struct CacheChoice {
     int since_exact = 0; // cached frames
 };
 
-bool keeps_next(const CacheChoice &choice);
-// A frame was drawn, cached or not (whatever was asked for), and took so long.
+bool uses_cache_next(const CacheChoice &choice);
+// A frame was drawn, cached or not (whatever was wanted), and took so long.
 void took(CacheChoice &choice, bool cached, double milliseconds);
 // Another scene: what was measured says nothing of it.
 inline void start_again(CacheChoice &choice) { choice = {}; }

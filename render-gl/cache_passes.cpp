@@ -139,7 +139,7 @@ void CachedView::number_fields() {
         std::memcpy(&first, known.data(), sizeof first);
         return first == meaning;
     };
-    std::vector<bool> taken(glsl::cache_most_fields, false);
+    std::vector<bool> taken(glsl::max_cache_fields, false);
     for (std::size_t i = 0; i < fields.size(); ++i)
         for (const auto &[number, known] : meanings_)
             if (!taken[static_cast<std::size_t>(number)] && means(known, fields[i].meaning)) {
@@ -151,7 +151,7 @@ void CachedView::number_fields() {
         if (number < 0) {
             // Better one that was never used than one whose cells have to be given up.
             const auto unused = [&](bool new_ones) {
-                for (int n = 0; n < glsl::cache_most_fields; ++n)
+                for (int n = 0; n < glsl::max_cache_fields; ++n)
                     if (!taken[static_cast<std::size_t>(n)] &&
                         (!new_ones || !meanings_.contains(n)))
                         return n;
@@ -300,8 +300,8 @@ void CachedView::begin_picture() const {
     glDisable(GL_DEPTH_TEST);
 }
 
-// The picture from cached values alone; a pixel that wants an absent one keeps its depth of 1. Those
-// are drawn by computing all: the card skips the others before it shades them.
+// The picture from cached values alone; a pixel that wants an absent one keeps its depth of 1.
+// Those are drawn by computing all: the card skips the others before it shades them.
 void CachedView::draw_cached_frame(const FrameInputs &inputs, const std::vector<ir::Param> &params,
                                    const CacheSettings &settings) {
     const Program &cached = programs_->cached;

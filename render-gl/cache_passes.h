@@ -19,6 +19,7 @@ namespace fathom::gl {
 // Whether the current context can draw through the cache; else why not, in words.
 std::string cache_unavailable();
 
+// Size, precision and ageing of the noise cache.
 struct CacheSettings {
     int max_age = 4; // 1 to cache_ages
     // Pixels whose cells would be narrower than so many of them are computed: what no two pixels
@@ -38,6 +39,7 @@ struct CacheTally {
     std::uint64_t hits = 0, misses = 0, computed = 0;
 };
 
+// What a CachedView is made with.
 struct CacheOptions {
     int part_stride = 0; // of a scene that was lowered with its parts
     bool pick = false;   // the programs write what each pixel shows, too (emit.h)
@@ -57,6 +59,7 @@ struct CachePrograms {
 std::variant<CachePrograms, std::string>
 build_cache_programs(const ir::Scene &scene, const CacheOptions &options, Diagnostics &diagnostics);
 
+// One view of a scene through the noise cache, and the cache itself.
 class CachedView {
   public:
     CachedView() = default;

@@ -13,6 +13,7 @@
 
 namespace fathom::gl {
 
+// How many cells a cache has, and what they hold.
 struct CacheSize {
     int bits = 6;      // 2^bits cells an axis, 2 to 7
     int max_bits = 0;  // where more than `bits`: what it may grow to (cache_worth.h)
@@ -35,6 +36,7 @@ struct CacheCounts {
 // Where a key of that age lies: the CPU's reading of thesis, 7.1.
 std::array<int, 3> cache_slot(const std::array<int, 4> &key, int age, int bits);
 
+// The textures of one noise cache.
 class CacheStore {
   public:
     CacheStore() = default;
@@ -90,7 +92,7 @@ class CacheStore {
 struct CacheOccupancy {
     std::size_t cells = 0, keys = 0;
     std::array<std::size_t, glsl::cache_ages> ages{};
-    std::array<std::size_t, glsl::cache_most_fields> fields{};
+    std::array<std::size_t, glsl::max_cache_fields> fields{};
 };
 CacheOccupancy occupancy(const CacheStore::Dump &dump);
 

@@ -4,6 +4,7 @@
 
 namespace fathom::gl {
 
+// The framebuffers of the passes, at the size of the picture.
 struct CacheTargets {
     CacheTargets() = default;
     ~CacheTargets() { release(); }

@@ -1,7 +1,7 @@
 // Whether look-ups in the noise cache pay, by the work that frames counted: the same on every card
-// and every run (cache_choice.h asks the clock instead, for what no count sees). A view whose cells
-// are narrower than pixels, or that leaves them behind with every frame, is drawn exactly, and
-// tried again at growing intervals. Plain numbers: knows no GL.
+// and every run (cache_choice.h reads the clock instead, for what no count sees). A view whose
+// cells are narrower than pixels, or that leaves them behind with every frame, is drawn exactly,
+// and tried again at growing intervals. Plain numbers: knows no GL.
 #pragma once
 
 namespace fathom::gl {
@@ -23,6 +23,7 @@ struct CachePrices {
 // gained has to make up for what keeping costs everywhere, a twentieth of the picture.
 bool pays(const CacheWork &work, const CachePrices &prices);
 
+// What the last frames counted, and when to try the cache again.
 struct CacheWorth {
     static constexpr int learning = 12, trial = 8; // frames that do not pay, until it is left
     static constexpr int first_gap = 64, longest_gap = 1024; // exact frames before a trial
@@ -40,7 +41,9 @@ struct CacheGrowth {
 };
 bool too_small(CacheGrowth &growth, double lost, double cells);
 
+// Whether the next frame looks values up.
 bool looks_up_next(const CacheWorth &worth);
+// A frame was drawn without the cache.
 void drew_exactly(CacheWorth &worth);
 void drew_cached(CacheWorth &worth); // begins a trial, where it is one
 void judged(CacheWorth &worth, const CacheWork &work, const CachePrices &prices); // a cached frame

@@ -51,7 +51,7 @@ Picture read_bytes(GLuint framebuffer, int width, int height) {
 } // namespace
 
 std::string lost_context() {
-    // Where the window was asked for without robustness the driver says nothing, and then ends the
+    // Where the window was made without robustness the driver says nothing, and then ends the
     // program itself.
     if (epoxy_gl_version() < 45 && !epoxy_has_gl_extension("GL_ARB_robustness")) return "";
     const GLenum status =

@@ -1,6 +1,6 @@
-// A picture cached on the graphics card: drawn when something in it changed, sample by sample, shown
-// as often as a window wants. Beside the colours it keeps what each pixel shows (part, distance,
-// steps, slope). Knows nothing of windows; needs a current context.
+// A picture cached on the graphics card: drawn when something in it changed, sample by sample,
+// shown as often as a window wants. Beside the colours it keeps what each pixel shows (part,
+// distance, steps, slope). Knows nothing of windows; needs a current context.
 #pragma once
 
 #include "base/picture.h"
@@ -33,6 +33,7 @@ struct Pick {
     float t = -1, steps = 0, slope = 0;
 };
 
+// A picture on the card with the data of its pixels.
 class Canvas {
   public:
     Canvas() = default;
@@ -93,6 +94,7 @@ class Canvas {
 // Another framebuffer's first colours over the whole window, both of that size.
 void show_in_window(unsigned framebuffer, int width, int height);
 
+// Fills the current framebuffer with a gray of 0..1.
 void clear_window(int width, int height, float gray);
 
 // What the window's back buffer holds, to be called before it is swapped.

@@ -8,6 +8,7 @@
 
 namespace fathom::gl {
 
+// An EGL context without a surface; current in the thread that made it.
 class Context {
   public:
     // The newest core context from 4.6 down to 3.3: of the device EGL offers first, of Mesa without

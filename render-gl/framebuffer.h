@@ -1,10 +1,11 @@
-// What canvases and the noise cache's targets ask of the framebuffer they have put together.
+// Whether the framebuffer that a canvas or a target of the noise cache put together is complete.
 #pragma once
 
 #include <epoxy/gl.h>
 
 namespace fathom::gl {
 
+// Whether the bound framebuffer can be drawn into.
 inline bool complete() {
     return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }

@@ -7,8 +7,10 @@
 
 namespace fathom::gl {
 
+// What the colours of the window mean.
 enum class Look { Picture, Heat, Bound, Slice, Check };
 
+// How a picture is turned into colours.
 struct PostSettings {
     Look look = Look::Picture;
     bool fxaa = true;    // smooths pictures of one sample
@@ -19,6 +21,7 @@ struct PostSettings {
     double isolines = 0.1; // Slice: the distance from one line to the next
 };
 
+// The GL programs of post-processing.
 class Post {
   public:
     Post() = default;

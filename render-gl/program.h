@@ -16,8 +16,10 @@ namespace fathom::gl {
 
 class Pruning;
 
+// What a scene's shader writes; the numbers stand in its text.
 enum class Mode { Picture = 0, Heat = 1, Numbers = 2, Linear = 3, Slice = 4, Check = 5 };
 
+// What changes from frame to frame: view, time, params, mode.
 struct FrameInputs {
     ir::View view;
     ir::Triple sun{0, 1, 0}; // ir::lights_of's, where the scene has none
@@ -28,6 +30,7 @@ struct FrameInputs {
     std::array<double, 4> plane{0, 0, 1, 0}; // Mode::Slice: unit normal, offset
 };
 
+// A linked scene shader with its data on the card.
 class Program {
   public:
     // `output` is of Target::Glsl330 or Glsl450; the images and grids that it names are taken from

@@ -23,9 +23,10 @@ std::vector<int> sides_for(int rows) {
 }
 
 int max_rows(const glsl::Pruning &pruning) {
-    int most = 0;
-    for (const glsl::PruneKernel &kernel : pruning.kernels) most = std::max(most, kernel.rows);
-    return most;
+    int maximum = 0;
+    for (const glsl::PruneKernel &kernel : pruning.kernels)
+        maximum = std::max(maximum, kernel.rows);
+    return maximum;
 }
 
 unsigned buffer_of(std::size_t bytes, const void *data) {
@@ -136,7 +137,7 @@ void Pruning::remake(const std::vector<ir::Param> &params, double time) {
     make_far(params, time);
 }
 
-// A level that has no room for its lists is made again with as much as it asked for; where that is
+// A level that has no room for its lists is made again with as much as it needs; where that is
 // too much, the level before has to do.
 void Pruning::make_lists(const std::vector<ir::Param> &params, double time) {
     const auto rows = static_cast<std::size_t>(max_rows(source_));

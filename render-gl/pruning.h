@@ -16,6 +16,7 @@ namespace fathom::gl {
 bool can_prune();   // whether the current context can
 bool is_software(); // whether it draws on the processor
 
+// The cell lists of one scene on the card.
 class Pruning {
   public:
     static std::variant<std::unique_ptr<Pruning>, ProgramError> build(const glsl::Pruning &pruning);

@@ -10,7 +10,7 @@ namespace fathom::gl {
 
 namespace {
 
-constexpr int strips = 32; // a picture; between two of them `progress` is asked
+constexpr int strips = 32; // a picture; between two of them `progress` is called
 
 // A float texture to draw into, and what was bound before.
 class Target {

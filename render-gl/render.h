@@ -11,12 +11,13 @@
 
 namespace fathom::gl {
 
+// An off-screen picture: size, view, time and samples.
 struct Request {
     int width = 800, height = 600;
     int samples = 1; // a pixel
     double time = 0;
     std::optional<ir::View> view{};         // else the scene's own
-    std::function<bool(double)> progress{}; // asked now and then with 0..1; false stops
+    std::function<bool(double)> progress{}; // called now and then with 0..1; false stops
 };
 
 // Rows from the top, RGBA.
@@ -25,7 +26,7 @@ struct Pixels {
     std::vector<float> rgba;
 };
 
-// Waits until all that was asked for is drawn.
+// Waits until all commands given so far are done.
 void finish();
 
 // The largest width and height that the context can draw at once.

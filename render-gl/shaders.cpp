@@ -108,12 +108,12 @@ void set_params(unsigned program, const std::vector<glsl::Uniform> &uniforms,
 
 std::optional<ProgramError> TableData::fill(const std::vector<float> &texels) {
     if (texels.empty()) return std::nullopt;
-    GLint most = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-    if (texels.size() / 4 > static_cast<std::size_t>(most))
+    GLint maximum = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &maximum);
+    if (texels.size() / 4 > static_cast<std::size_t>(maximum))
         return ProgramError{0,
                             "the scene's tables have " + std::to_string(texels.size() / 4) +
-                                " entries, and this GL holds " + std::to_string(most),
+                                " entries, and this GL holds " + std::to_string(maximum),
                             ""};
     glGenBuffers(1, &buffer_);
     glBindBuffer(GL_TEXTURE_BUFFER, buffer_);

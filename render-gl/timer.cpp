@@ -5,13 +5,13 @@
 namespace fathom::gl {
 
 Timer::~Timer() {
-    if (queries_[0]) glDeleteQueries(static_cast<GLsizei>(most), queries_.data());
+    if (queries_[0]) glDeleteQueries(static_cast<GLsizei>(maximum), queries_.data());
 }
 
 bool Timer::begin() {
-    if (!queries_[0]) glGenQueries(static_cast<GLsizei>(most), queries_.data());
-    if (asked_ - answered_ == most) return false;
-    glBeginQuery(GL_TIME_ELAPSED, queries_[asked_ % most]);
+    if (!queries_[0]) glGenQueries(static_cast<GLsizei>(maximum), queries_.data());
+    if (asked_ - answered_ == maximum) return false;
+    glBeginQuery(GL_TIME_ELAPSED, queries_[asked_ % maximum]);
     open_ = true;
     return true;
 }
@@ -26,7 +26,7 @@ void Timer::end() {
 
 std::optional<double> Timer::poll() {
     if (answered_ == asked_) return std::nullopt;
-    const GLuint query = queries_[answered_ % most];
+    const GLuint query = queries_[answered_ % maximum];
     GLint there = 0;
     glGetQueryObjectiv(query, GL_QUERY_RESULT_AVAILABLE, &there);
     if (!there) return std::nullopt;

@@ -7,6 +7,7 @@
 
 namespace fathom::gl {
 
+// Measures spans of GPU time without waiting.
 class Timer {
   public:
     Timer() = default;
@@ -19,8 +20,8 @@ class Timer {
     std::optional<double> poll(); // the next answer that is there, in milliseconds, in order
 
   private:
-    static constexpr std::size_t most = 8; // asked and not yet answered
-    std::array<unsigned, most> queries_{};
+    static constexpr std::size_t maximum = 8; // begun and not yet read
+    std::array<unsigned, maximum> queries_{};
     std::size_t asked_ = 0, answered_ = 0;
     bool open_ = false;
 };

@@ -86,7 +86,7 @@ void set_properties(TreeNode &node, const Value &properties) {
         bool untouched = type->kind == PropertyKind::Carried ||
                          (number && *number == type->fallback) ||
                          (type->kind == PropertyKind::Whole && number && kept &&
-                          *number == std::clamp(*kept, type->least, type->most));
+                          *number == std::clamp(*kept, type->minimum, type->maximum));
         if (type->kind == PropertyKind::Vector) {
             untouched = std::all_of(
                 present->second.entries.begin(), present->second.entries.end(),

@@ -10,17 +10,20 @@
 
 namespace fathom::save {
 
+// An item that belongs to a node of the tree.
 struct TreeRecord {
     std::string label;             // name, type, properties, group, node, extra
     std::vector<std::size_t> path; // from the root
     Value value;
 };
 
+// An item of the main list.
 struct MainItem {
     std::string label; // steps, camera, view, setting
     Value value;
 };
 
+// All items of an imported file that the language has no words for.
 struct KeptItems {
     std::optional<Value> version;
     std::vector<Value> textures, materials, lights;
@@ -30,6 +33,7 @@ struct KeptItems {
     std::vector<std::string> unread; // statements that are none of these
 };
 
+// Parses the texts of `keep` statements.
 KeptItems read_kept(const std::vector<std::string> &statements);
 
 // A node of the file to be. `given` names and types were in a file; others follow from the scene.

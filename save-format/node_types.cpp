@@ -26,8 +26,8 @@ constexpr P vector(const char *name, double fallback) {
 constexpr P sizes(const char *name, double fallback) {
     return {name, K::Vector, fallback, "", 0, 1e9, true, false};
 }
-constexpr P whole(const char *name, double fallback, double least, double most) {
-    return {name, K::Whole, fallback, "", least, most, false, false};
+constexpr P whole(const char *name, double fallback, double minimum, double maximum) {
+    return {name, K::Whole, fallback, "", minimum, maximum, false, false};
 }
 constexpr P exponent(const char *name, double fallback) {
     return {name, K::Number, fallback, "", 1, none, false, false};

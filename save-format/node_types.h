@@ -11,6 +11,7 @@
 
 namespace fathom::save {
 
+// The node types of the format, the labelled ones of this project last.
 enum class NodeType : std::uint8_t {
     Generic,
     Sphere,
@@ -49,6 +50,7 @@ enum class NodeType : std::uint8_t {
 
 inline constexpr NodeType first_labelled = NodeType::LibraryShape;
 
+// What values a property takes.
 enum class PropertyKind : std::uint8_t {
     Number,
     Whole,
@@ -60,19 +62,22 @@ enum class PropertyKind : std::uint8_t {
     Tree      // any value, read whole (field programs, argument lists)
 };
 
+// A property: its name, kind, default and limits.
 struct PropertyType {
     const char *name = nullptr;
     PropertyKind kind = PropertyKind::Number;
     double fallback = 0;   // of Number, Whole, every component of Vector, Switch
     const char *word = ""; // of Word and Material; of Carried its usual value in flow form
-    double least = -std::numeric_limits<double>::infinity();
-    double most = std::numeric_limits<double>::infinity();
+    double minimum = -std::numeric_limits<double>::infinity();
+    double maximum = std::numeric_limits<double>::infinity();
     bool open = false;     // `least` itself is not allowed
     bool labelled = false; // of this project: written only where it differs from the default
 };
 
+// How many children a node has.
 enum class Arity : std::uint8_t { Leaf, One, Two, Many };
 
+// A node type with its properties and spellings.
 struct NodeTypeRow {
     NodeType type;
     const char *name;
@@ -80,6 +85,7 @@ struct NodeTypeRow {
     std::span<const PropertyType> properties;
 };
 
+// All rows, in the order of NodeType.
 std::span<const NodeTypeRow> node_types();
 const NodeTypeRow &row_of(NodeType type);
 const NodeTypeRow *find_node_type(std::string_view name); // any spelling; null for an unknown one
@@ -99,7 +105,7 @@ int find_vector_set(std::string_view name);
 bool is_library_solid(std::string_view function);       // what a `Library Shape` may call
 bool is_library_deformation(std::string_view function); // what a `Deformation` may call
 
-// What another version changes would be said here, and asked for by reader and writer; 0.3 is the
+// What another version changes would be said here, and read by reader and writer; 0.3 is the
 // only one known.
 struct Dialect {
     bool known = true;      // false: read as 0.3 as far as it goes, with a warning

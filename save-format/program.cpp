@@ -32,7 +32,7 @@ std::string filled(std::string_view form, const std::vector<std::string> &argume
     }
     return text;
 }
-constexpr std::size_t most_inline = 20000; // characters of an expression without names
+constexpr std::size_t max_inline = 20000; // characters of an expression without names
 
 constexpr std::string_view constructors[] = {"vec2", "vec3", "vec4", "mat2", "mat3", "mat4"};
 
@@ -67,7 +67,7 @@ class Program {
             const bool last = i + 1 == steps_.items.size();
             // A value that is used twice, or grows long, gets a name; others stand where they are
             // used, as all do where no block can stand.
-            if (expression.size() > most_inline) {
+            if (expression.size() > max_inline) {
                 why_ = "it is too long for a number";
                 return {};
             }

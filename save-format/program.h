@@ -47,9 +47,9 @@ struct FlowWords {
     std::vector<ir::NodeId> ids; // of the repetitions around, whose copies differ
 };
 
-// The steps of an expression in flow form, its loops turn by turn; empty where an operation has no
-// words there (images, grids, long loops). `present` stands for variables, in what is called too.
-// The graph grows by what the turns are.
+// The steps of an expression in flow form, its loops iteration by iteration; empty where an
+// operation has no words there (images, grids, long loops). `present` stands for variables, in what
+// is called too. The graph grows by what the iterations are.
 std::string program_flow(ir::Graph &graph, ir::NodeId root, const ir::Substitution &present,
                          FlowWords &words);
 

@@ -41,8 +41,8 @@ Term operator+(const Term &a, const Term &b) { return joined(ir::Op::Add, a, b);
 Term operator-(const Term &a, const Term &b) { return joined(ir::Op::Sub, a, b); }
 Term operator*(const Term &a, const Term &b) { return joined(ir::Op::Mul, a, b); }
 Term operator/(const Term &a, const Term &b) { return joined(ir::Op::Div, a, b); }
-Term least(const Term &a, const Term &b) { return joined(ir::Op::Min, a, b); }
-Term greatest(const Term &a, const Term &b) { return joined(ir::Op::Max, a, b); }
+Term minimum(const Term &a, const Term &b) { return joined(ir::Op::Min, a, b); }
+Term maximum(const Term &a, const Term &b) { return joined(ir::Op::Max, a, b); }
 Term gap(const Term &a, const Term &b) { return of_one(ir::Op::Abs, a - b); }
 Term floor(const Term &a) { return of_one(ir::Op::Floor, a); }
 Term sqrt(const Term &a) { return of_one(ir::Op::Sqrt, a); }

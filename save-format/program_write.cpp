@@ -1,6 +1,6 @@
-// The steps of an expression of the IR: calls and caches written out where they stand, loops turn
-// by turn. The graph does the work: what a turn or a call leaves constant it folds, and what two of
-// them share it finds again.
+// The steps of an expression of the IR: calls and caches written out where they stand, loops
+// iteration by iteration. The graph does the work: what an iteration or a call leaves constant it
+// folds, and what two of them share it finds again.
 #include "save-format/program.h"
 
 #include "ir/passes/inline.h"
@@ -94,25 +94,26 @@ class StepWriter {
         return at < 0 ? -1 : push("Cached, " + std::to_string(index) + ", " + std::to_string(at));
     }
 
-    // What a loop's variables are after its last turn; none where there are too many turns. After
-    // the first turn whose condition is false nothing changes any more.
+    // What a loop's variables are after its last iteration; none where there are too many. After
+    // the first iteration whose condition is false nothing changes any more.
     const std::vector<NodeId> *results(NodeId id) {
         if (const auto found = loops_.find(id); found != loops_.end()) return &found->second;
         const ir::Loop loop = graph_.loop(ir::LoopId{graph_[id].payload});
         const auto known = graph_.as_number(loop.count);
-        const double turns = known.value_or(loop.max_count);
-        if (turns > max_iterations) return nullptr;
+        const double iterations = known.value_or(loop.max_count);
+        if (iterations > max_iterations) return nullptr;
         std::vector<NodeId> values(graph_.args(id).begin(), graph_.args(id).end());
         NodeId running = graph_.boolean(true);
-        for (int turn = 0; turn < static_cast<int>(turns); ++turn) {
+        for (int iteration = 0; iteration < static_cast<int>(iterations); ++iteration) {
             if (graph_.size() > max_nodes_) return nullptr;
             if (!known)
                 running = graph_.make(
-                    Op::And, {running, graph_.make(Op::Less, {graph_.integer(turn), loop.count})});
+                    Op::And,
+                    {running, graph_.make(Op::Less, {graph_.integer(iteration), loop.count})});
             if (loop.condition)
-                running = graph_.make(Op::And, {running, ir::in_iteration(graph_, loop, turn,
+                running = graph_.make(Op::And, {running, ir::in_iteration(graph_, loop, iteration,
                                                                           values, loop.condition)});
-            const std::vector<NodeId> next = ir::after_iteration(graph_, loop, turn, values);
+            const std::vector<NodeId> next = ir::after_iteration(graph_, loop, iteration, values);
             for (std::size_t k = 0; k < values.size(); ++k)
                 values[k] = graph_.make(Op::Select, {running, next[k], values[k]});
         }

@@ -13,6 +13,7 @@
 
 namespace fathom::save {
 
+// How an import is done.
 struct ImportOptions {
     bool strict = false;         // what is wrong in the content is an error, not a warning
     std::size_t max_depth = 256; // of nodes within nodes; deeper is a structural error
@@ -25,6 +26,7 @@ struct ImportOptions {
                               // both lie in one folder
 };
 
+// The text of the language that a save file became.
 struct ImportResult {
     std::string
         sdf; // complete text, also where it holds only what could be read until the structure broke

@@ -44,6 +44,7 @@ struct Report {
     Remark structure(Span span, std::string message);
 };
 
+// The kinds of YAML events.
 enum class EventKind {
     Scalar,
     SequenceStart,
@@ -54,6 +55,7 @@ enum class EventKind {
     Broken // nothing can be read any more; reported once, and given for ever
 };
 
+// One YAML event with its place.
 struct Event {
     EventKind kind = EventKind::End;
     Span span;
@@ -112,12 +114,14 @@ struct Value {
     const Value *find(std::string_view key) const; // without regard to case, spaces, `-` and `_`
 };
 
+// A key and its value.
 struct Entry {
     std::string first; // the key
     Value second;
     Entry(std::string key, Value value) : first(std::move(key)), second(std::move(value)) {}
 };
 
+// A value and its text in flow form.
 struct TakenValue {
     Value value;
     std::string flow;

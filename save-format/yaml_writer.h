@@ -10,9 +10,11 @@
 
 namespace fathom::save {
 
+// A number.
 Value yaml_scalar(double number);
 Value yaml_word(std::string_view text); // plain where it reads back as text
 Value yaml_switch(bool on);             // True, False
+// A mapping in the order given.
 Value yaml_mapping(std::initializer_list<Entry> entries);
 Value yaml_xyz(double x, double y, double z);
 Value yaml_list(std::vector<Value> items);

@@ -24,6 +24,7 @@ std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_vi
 std::span<const Formal> formals_of(Interpreter &ev, const Closure &c);
 std::span<const Formal> formals_of(Interpreter &ev, const Builtin &builtin);
 
+// Warns where a plain literal for an angle looks like degrees.
 void warn_of_degrees(Interpreter &ev, const Formal &formal, const Given &given, const Value &v);
 
 } // namespace fathom::typecheck

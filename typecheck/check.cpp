@@ -303,7 +303,7 @@ std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &librar
                 (i ? ", " : "") + b.parameters[i].name + (b.parameters[i].optional ? " = …" : "");
         out.push_back({b.name, signature + ")", b.doc, "built in", ""});
     }
-    // What is visible everywhere first: who asks for `box` means that.
+    // What is visible everywhere first: `box` means that one.
     std::stable_partition(out.begin(), out.end(),
                           [](const LibraryEntry &e) { return e.module.empty(); });
     return out;

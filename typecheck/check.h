@@ -15,19 +15,21 @@
 
 namespace fathom::typecheck {
 
+// An imported text and its identity.
 struct LoadedText {
     std::string identity; // equal for the same file however it was named; handed back as `from`
     std::string name;     // as printed in diagnostics
     std::string text;
 };
+// Why a text cannot be imported, as a sentence.
 struct LoadError {
     enum class Reason { NotFound, Outside, Unreadable };
     Reason reason = Reason::NotFound;
     std::string why; // for people: "no such file", "is not a PNG or JPEG image", …
 };
 
-// What a scene may ask of the world; paths are as the user wrote them, `from` the identity of the
-// file that asks.
+// What a scene may read of the world; paths are as the user wrote them, `from` the identity of the
+// file that reads.
 struct Loader {
     std::function<std::variant<LoadedText, LoadError>(const std::string &path,
                                                       const std::string &from)>
@@ -59,8 +61,9 @@ struct LibraryEntry {
     std::string module; // "dfmodel"; empty for what is visible everywhere
 };
 
-// The checker asks the analysis two things while it evaluates: `lipschitz(s)`, and the exact extent
-// of a shape along an axis (`taper` without `from:` and `to:`). The driver wires them to the proof.
+// The checker calls the analysis for two things while it evaluates: `lipschitz(s)`, and the exact
+// extent of a shape along an axis (`taper` without `from:` and `to:`). The driver wires them to the
+// proof.
 struct Options {
     std::vector<Override> overrides;
     std::function<std::optional<double>(ir::Scene &, ir::ShapeId)> lipschitz;
@@ -71,7 +74,7 @@ struct Options {
 };
 
 // When a value is known: while the scene is read, once its parameters are set, or where a point or
-// the time is asked for. Of a shape: its latest number but the point.
+// the time is wanted. Of a shape: its latest number but the point.
 enum class Stage { Scene, Parameter, Field };
 const char *stage_name(Stage stage);
 struct NameFact {
@@ -80,6 +83,7 @@ struct NameFact {
     Span declared;
 };
 
+// What checking gives: the scene, and what is known of its names.
 struct Checked {
     ir::Scene scene; // without what diagnostics refused; the rest can still be proved
     std::vector<std::string>
@@ -93,6 +97,7 @@ Checked check(Sources &sources, SourceId root, const std::string &root_identity,
               const std::vector<LibraryFile> &library, const Loader &loader, const Options &options,
               Diagnostics &diagnostics);
 
+// The public names of the library with their documentation.
 std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &library);
 
 } // namespace fathom::typecheck

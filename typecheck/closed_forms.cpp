@@ -1,8 +1,8 @@
 // The table of shapes that one loop's body made, and formulas for its columns. Where shapes come of
-// one body (iterations.cpp), what differs between them is what hangs on the loops' numbers, and these
-// follow from the row: of two loops, row = i*m + j. A formula stands beside the data, and a text
-// may hold it in its place. It is taken only if float32 arithmetic, each inexact result pushed by a
-// unit in its last place, gives every row to within `close_enough`: so no floor or comparison
+// one body (iterations.cpp), what differs between them is what depends on the loops' numbers, and
+// these follow from the row: of two loops, row = i*m + j. A formula stands beside the data, and a
+// text may hold it in its place. It is taken only if float32 arithmetic, each inexact result pushed
+// by a unit in its last place, gives every row to within `close_enough`: so no floor or comparison
 // stands at an edge, and a shader shows what was proved of the data.
 #include "typecheck/interpreter.h"
 
@@ -28,7 +28,7 @@ constexpr double close_enough = 2e-5;        // of the column's largest number
 constexpr std::size_t max_work = 20'000'000; // operations to try all rows
 constexpr std::size_t longest = 2000;        // nodes of all formulas of a instance_table
 
-// -- what hangs on the loops' numbers alone
+// -- what depends on the loops' numbers alone
 
 struct Places {
     const ir::Graph &graph;
@@ -49,33 +49,33 @@ struct Places {
 
 // -- the loops' numbers from the row
 
-// The turns count through, the innermost loop's number fastest: place = row * step + first for the
-// whole table of instances, and each loop's number is a digit of the place.
-bool numbers_of_row(Interpreter &ev, const std::vector<const Iteration *> &turns, NodeId row,
+// The iterations count through, the innermost loop's number fastest: place = row * step + first for
+// the whole table of instances, and each loop's number is a digit of the place.
+bool numbers_of_row(Interpreter &ev, const std::vector<const Iteration *> &iterations, NodeId row,
                     ir::Substitution &numbers) {
-    const auto &at = turns[0]->at;
-    auto place_of = [&](const Iteration &turn) {
+    const auto &at = iterations[0]->at;
+    auto place_of = [&](const Iteration &iteration) {
         double place = 0, stride = 1;
-        for (const auto &[variable, number] : turn.at) {
+        for (const auto &[variable, number] : iteration.at) {
             place += number * stride;
             stride *= ev.loop_variables[variable].count;
         }
         return place;
     };
-    const double first = place_of(*turns[0]), step = place_of(*turns[1]) - first;
-    for (std::size_t r = 0; r < turns.size(); ++r) {
-        if (turns[r]->at.size() != at.size()) return false;
+    const double first = place_of(*iterations[0]), step = place_of(*iterations[1]) - first;
+    for (std::size_t r = 0; r < iterations.size(); ++r) {
+        if (iterations[r]->at.size() != at.size()) return false;
         for (std::size_t k = 0; k < at.size(); ++k)
-            if (turns[r]->at[k].first != at[k].first) return false;
-        if (place_of(*turns[r]) != first + step * static_cast<double>(r)) return false;
+            if (iterations[r]->at[k].first != at[k].first) return false;
+        if (place_of(*iterations[r]) != first + step * static_cast<double>(r)) return false;
     }
-    if (step < 1 || first + step * static_cast<double>(turns.size()) > 1e9) return false;
+    if (step < 1 || first + step * static_cast<double>(iterations.size()) > 1e9) return false;
 
     ir::Graph &g = ev.scene.graph;
     auto times = [&](NodeId a, double b) { return g.mul(a, g.integer(static_cast<int>(b))); };
     auto plus = [&](NodeId a, double b) { return g.add(a, g.integer(static_cast<int>(b))); };
     NodeId place =
-        g.make(Op::Clamp, {row, g.integer(0), g.integer(static_cast<int>(turns.size()) - 1)});
+        g.make(Op::Clamp, {row, g.integer(0), g.integer(static_cast<int>(iterations.size()) - 1)});
     place = plus(times(place, step), first);
     for (std::size_t k = 0; k < at.size(); ++k) {
         const LoopVariable v = ev.loop_variables[at[k].first];
@@ -313,14 +313,15 @@ std::optional<IterationTable> table_of_iterations(Interpreter &ev,
                                                   const std::vector<ShapeId> &members) {
     if (members.size() < min_computed) return std::nullopt;
     IterationTable table;
-    std::vector<const Iteration *> turns;
+    std::vector<const Iteration *> iterations;
     for (ShapeId member : members) {
-        auto it = ev.turns.find(member.index);
-        if (it == ev.turns.end() || (!turns.empty() && it->second.symbolic != turns[0]->symbolic))
+        auto it = ev.iterations.find(member.index);
+        if (it == ev.iterations.end() ||
+            (!iterations.empty() && it->second.symbolic != iterations[0]->symbolic))
             return std::nullopt;
-        turns.push_back(&it->second);
+        iterations.push_back(&it->second);
     }
-    table.symbolic = turns[0]->symbolic;
+    table.symbolic = iterations[0]->symbolic;
     std::vector<NodeId> nodes;
     shape_nodes(ev.scene, table.symbolic, nodes);
     if (nodes.size() > longest) return std::nullopt;
@@ -331,7 +332,7 @@ std::optional<IterationTable> table_of_iterations(Interpreter &ev,
     table.places = std::move(places.found);
     table.row = ev.scene.graph.fresh_var(Type::Int);
     Formula formula{ev, {}};
-    if (!numbers_of_row(ev, turns, table.row, formula.known)) return std::nullopt;
+    if (!numbers_of_row(ev, iterations, table.row, formula.known)) return std::nullopt;
     formula.known[table.row] = table.row;
     for (NodeId place : table.places) table.formulas.push_back(formula.node(place));
     if (!formula.possible) return std::nullopt;

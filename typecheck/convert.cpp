@@ -240,7 +240,7 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
     return poison();
 }
 
-// -- what builtins ask of their arguments --------------------------------------------------------
+// -- what builtins demand of their arguments
 
 static void want(Interpreter &ev, const Value &v, Span place, What what, std::string_view wanted) {
     if (is_poison(v)) return;

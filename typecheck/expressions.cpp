@@ -130,7 +130,7 @@ static Value eval_logic(Interpreter &ev, const File &ast, const lang::Binary &b,
         }
         total = is_and ? logical_and(ev, total, v) : logical_or(ev, total, v);
         if (total.kind == ValueKind::Bool && (total.num[0] != 0) != is_and)
-            return total; // decided: the rest is not asked
+            return total; // decided: the rest is not evaluated
     }
     return total;
 }

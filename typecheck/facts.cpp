@@ -42,7 +42,7 @@ Stage stage_of_node(const ir::Scene &scene, ir::NodeId id) {
 
 using ShapeStages = std::unordered_map<std::uint32_t, Stage>; // what was found so far
 
-// Of a shape's numbers, the point apart: every field hangs on it.
+// Of a shape's numbers, the point apart: every field depends on it.
 Stage stage_of_shape(const ir::Scene &scene, ir::ShapeId root, ShapeStages &known) {
     // children are older than what they are parts of, so a list of the ones below, sorted, will do
     std::vector<ir::ShapeId> below, todo{root};

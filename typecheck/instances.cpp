@@ -1,6 +1,6 @@
 // Lists of like shapes become one shape over a table: `for i in 0..256 { sphere(0.1).translate([…])
-// }` is one `Instances` whose rows hold what differs, so that neither the shader nor the proof grows
-// with the count.
+// }` is one `Instances` whose rows hold what differs, so that neither the shader nor the proof
+// grows with the count.
 //
 // Two shapes are alike when their trees differ in constants only. A shape's *skeleton* is its tree
 // with the constants taken out, in the order of a walk; the constants, in that order, are its row.
@@ -206,12 +206,12 @@ ShapeId make_instance_table(Interpreter &ev, const std::vector<ShapeId> &members
     return add_instance_table(ev, instance_table, rebuild.shape(members[0]), k, dims);
 }
 
-// The turns of one loop: its body's shape, which reads what hangs on the turn from a table. Columns
-// with a formula stand in a table of their own, so that a text may do without it.
+// The iterations of one loop: its body's shape, which reads what depends on the iteration from a
+// table. Columns with a formula stand in a table of their own, so that a text may do without it.
 std::optional<ShapeId> instances_of_iterations(Interpreter &ev, const std::vector<ShapeId> &members,
                                                bool smooth, NodeId k, int dims) {
-    const std::optional<IterationTable> turns = table_of_iterations(ev, members);
-    if (!turns) return std::nullopt;
+    const std::optional<IterationTable> iterations = table_of_iterations(ev, members);
+    if (!iterations) return std::nullopt;
     ir::Graph &g = ev.scene.graph;
     const ir::InstanceTable instance_table = instance_table_of(ev, members.size(), smooth);
     ir::Substitution reads;
@@ -220,37 +220,38 @@ std::optional<ShapeId> instances_of_iterations(Interpreter &ev, const std::vecto
         table.rows = static_cast<int>(members.size());
         std::vector<std::size_t> columns;
         std::vector<int> offset;
-        for (std::size_t c = 0; c < turns->places.size(); ++c) {
-            if (static_cast<bool>(turns->formulas[c]) != computed) continue;
+        for (std::size_t c = 0; c < iterations->places.size(); ++c) {
+            if (static_cast<bool>(iterations->formulas[c]) != computed) continue;
             columns.push_back(c), offset.push_back(table.stride);
-            table.stride += ir::components(g.type(turns->places[c]));
+            table.stride += ir::components(g.type(iterations->places[c]));
         }
         if (columns.empty()) continue;
         if (table.stride > ir::max_columns) return std::nullopt;
-        for (const auto &row : turns->rows)
+        for (const auto &row : iterations->rows)
             for (std::size_t c : columns)
                 for (int i = 0; i < ir::components(row[c].type); ++i)
                     table.data.push_back(
                         static_cast<float>(row[c].value[static_cast<std::size_t>(i)]));
         for (std::size_t j = 0; j < columns.size() && computed; ++j) {
-            NodeId formula = turns->formulas[columns[j]];
+            NodeId formula = iterations->formulas[columns[j]];
             Type type = g.type(formula);
             if (type == Type::Int || type == Type::Bool)
                 formula = g.make(Op::ToFloat, Type::Float, {formula});
             table.computed.emplace_back(
-                offset[j],
-                g.add_function(
-                    {"of_row", ev.scene.shapes[turns->symbolic].origin, {turns->row}, formula}));
+                offset[j], g.add_function({"of_row",
+                                           ev.scene.shapes[iterations->symbolic].origin,
+                                           {iterations->row},
+                                           formula}));
         }
         ir::TableId id = g.add_table(std::move(table));
         for (std::size_t j = 0; j < columns.size(); ++j) {
-            NodeId place = turns->places[columns[j]];
+            NodeId place = iterations->places[columns[j]];
             reads[place] = ir::read_table(g, g.type(place), instance_table.index,
                                           ir::table_slot(id, offset[j]));
         }
     }
     Rebuild rebuild{ev, [&](NodeId id) { return id ? ir::substitute(g, id, reads) : id; }};
-    return add_instance_table(ev, instance_table, rebuild.shape(turns->symbolic), k, dims);
+    return add_instance_table(ev, instance_table, rebuild.shape(iterations->symbolic), k, dims);
 }
 
 } // namespace
@@ -287,10 +288,10 @@ std::vector<ShapeId> gather_instances(Interpreter &ev, std::vector<ShapeId> shap
     };
     std::vector<bool> taken(shapes.size(), false);
     std::map<std::size_t, ShapeId> made; // by the first member's place, to keep a stable order
-    std::map<ShapeId, std::vector<std::size_t>> loops; // turns by their body's shape
+    std::map<ShapeId, std::vector<std::size_t>> loops; // iterations by their body's shape
     for (std::size_t i = 0; i < shapes.size(); ++i)
-        if (auto turn = ev.turns.find(shapes[i].index); turn != ev.turns.end())
-            loops[turn->second.symbolic].push_back(i);
+        if (auto iteration = ev.iterations.find(shapes[i].index); iteration != ev.iterations.end())
+            loops[iteration->second.symbolic].push_back(i);
     for (const auto &[symbolic, places] : loops) {
         std::vector<ShapeId> members;
         for (std::size_t i : places) members.push_back(shapes[i]);
@@ -335,9 +336,9 @@ std::vector<ShapeId> gather_instances(Interpreter &ev, std::vector<ShapeId> shap
 std::optional<ShapeId> smooth_instances(Interpreter &ev, const std::vector<ShapeId> &shapes,
                                         NodeId k, int dims) {
     if (shapes.size() < min_instances) return std::nullopt;
-    if (auto turns = instances_of_iterations(ev, shapes, true, k, dims)) {
-        ev.scene.shapes.listed.emplace(*turns, shapes);
-        return turns;
+    if (auto iterations = instances_of_iterations(ev, shapes, true, k, dims)) {
+        ev.scene.shapes.listed.emplace(*iterations, shapes);
+        return iterations;
     }
     std::vector<std::vector<ir::Constant>> rows;
     std::vector<std::uint64_t> skeleton;

@@ -60,6 +60,7 @@ struct File : lang::Ast {
     std::vector<std::optional<std::vector<Formal>>> formals; // by function
 };
 
+// What a name stands for.
 struct Binding {
     Symbol name = 0;
     Value value;
@@ -76,6 +77,7 @@ struct Frame {
     bool captured = false;                                            // a closure refers to it
 };
 
+// A function value with the frame it was made in.
 struct Closure {
     const File *ast = nullptr;
     lang::FunctionId function;
@@ -85,12 +87,13 @@ struct Closure {
     bool library = false;
 };
 
-// A declaration of the prelude, whose text is read when its name is first asked for.
+// A declaration of the prelude, whose text is read when its name is first used.
 struct LibraryItem {
     std::uint32_t module = 0;
     std::uint32_t begin = 0, end = 0; // in the module's text
 };
 
+// A file or a part of the library that can be imported.
 struct Module {
     std::string identity, name;
     SourceId source;
@@ -103,6 +106,7 @@ struct Module {
         false; // an import into it failed, so that nobody knows what it would have brought
 };
 
+// A statement about the whole scene (camera, lights, background, …).
 struct Setting {
     enum class Kind { Camera, Light, Lighting, Background, Render, Keep } kind;
     ir::Camera camera;
@@ -122,10 +126,12 @@ struct CallSite {
     Span arg(std::size_t i) const { return i < args.size() ? args[i] : call; }
 };
 
+// A parameter of a builtin.
 struct BuiltinParameter {
     std::string name;
     bool optional = false;
 };
+// A function that the language cannot say itself.
 struct Builtin {
     std::string name;
     std::vector<BuiltinParameter> parameters;
@@ -144,11 +150,13 @@ struct Exit {
     Value broke = boolean(false);
 };
 
+// How a block ended, and its value.
 struct Outcome {
     Value value = unit(); // of the last expression
     Exit exit;
 };
 
+// The value that an assignment overwrote.
 struct JournalEntry {
     std::uint32_t frame, slot;
     Value old;
@@ -163,6 +171,7 @@ struct ActiveCall {
     std::uint32_t module = 0;
 };
 
+// Hash of a list of words.
 struct HashOfWords {
     std::size_t operator()(const std::vector<std::uint64_t> &words) const {
         std::uint64_t h = words.size();
@@ -174,13 +183,14 @@ struct HashOfWords {
     }
 };
 
+// A function called with graph nodes: the ir::Function made for it.
 struct Specialization {
     ir::FunctionId function;
     Value shape_of_result; // a Field or constant: kind and colour of what it returns
 };
 
-// A shape that a loop made: what its body gives with the turn's number left open, and that number,
-// the innermost loop's first (iterations.cpp).
+// A shape that a loop made: what its body gives with the iteration's number left open, and that
+// number, the innermost loop's first (iterations.cpp).
 struct LoopVariable {
     ir::NodeId node; // Int: 0, 1, …
     int count = 0;
@@ -190,6 +200,7 @@ struct Iteration {
     std::vector<std::pair<std::uint32_t, int>> at; // index into Interpreter::loop_variables
 };
 
+// All state of one evaluation.
 struct Interpreter {
     Sources &sources;
     Diagnostics &diagnostics;
@@ -244,10 +255,10 @@ struct Interpreter {
     std::map<ir::ShapeId, std::vector<std::array<double, 2>>>
         corners{}; // of polygons' fields, where known
     std::map<std::string, std::uint32_t>
-        assets{}; // images and grids by what was asked for: their number
+        assets{}; // images and grids by what was named: their number
     std::vector<LoopVariable> loop_variables{};
-    std::unordered_map<std::uint32_t, Iteration> turns{}; // by ShapeId
-    int symbolic_iterations = 0;                          // > 0 while one runs
+    std::unordered_map<std::uint32_t, Iteration> iterations{}; // by ShapeId
+    int symbolic_iterations = 0;                               // > 0 while one runs
     std::set<std::array<std::uint32_t, 6>> reported{}; // code and places, so that each is said once
     std::vector<std::string> usage_errors{};
 };
@@ -295,8 +306,8 @@ void check_names(Interpreter &ev, const File &ast, std::uint32_t module_frame);
 
 // -- report.cpp
 Diagnostic &report(Interpreter &ev, Code code, Span place, std::string message);
-// What has to hold for all params and times; the proof says whether it does. What reads the point is
-// the field's own: the proof looks at that as it is.
+// What has to hold for all params and times; the proof says whether it does. What reads the point
+// is the field's own: the proof looks at that as it is.
 void require(Interpreter &ev, ir::NodeId condition, Span place, std::string wanted);
 bool is_library_place(const Interpreter &ev, Span span); // or no place at all
 std::string describe(const Interpreter &ev,
@@ -459,24 +470,24 @@ void add_scene_builtins(std::vector<Builtin> &table);
 void add_texture_builtins(std::vector<Builtin> &table);
 
 // -- iterations.cpp
-// After a loop in shape position: what its turns made, each from `starts[i]` on; `turn` runs its
-// body for a value of its variable.
+// After a loop in shape position: what its iterations made, each from `starts[i]` on; `iteration`
+// runs its body for a value of its variable.
 constexpr std::size_t min_computed = 64; // shapes from which on a table's rows are worth a formula
 void note_iterations(
     Interpreter &ev, const std::vector<Value> &items, const std::vector<std::size_t> &starts,
     const std::vector<Contribution> &made,
-    const std::function<void(const Value &item, std::vector<Contribution> &out)> &turn);
+    const std::function<void(const Value &item, std::vector<Contribution> &out)> &iteration);
 
 // -- closed_forms.cpp
 // What differs between shapes that one loop's body made.
 struct IterationTable {
     ir::ShapeId symbolic;                        // the shape with the loops' numbers left open
-    std::vector<ir::NodeId> places;              // the expressions in it that hang on them alone
+    std::vector<ir::NodeId> places;              // the expressions in it that depend on them alone
     std::vector<std::vector<ir::Constant>> rows; // their values, by member
     std::vector<ir::NodeId> formulas;            // in `row`; invalid where float32 would miss a row
     ir::NodeId row;
 };
-// Nothing where these are no turns of one loop, or not all in equal steps.
+// Nothing where these are no iterations of one loop, or not all in equal steps.
 std::optional<IterationTable> table_of_iterations(Interpreter &ev,
                                                   const std::vector<ir::ShapeId> &members);
 

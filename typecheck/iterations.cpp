@@ -1,7 +1,7 @@
 // Shapes that a loop made, and how they follow from its variable. After a loop in shape position
 // has run, its body runs once more, quietly, with a variable in place of the number: if that gives
-// shapes too, each shape of turn i is what these become at i. Whoever gathers the shapes into a
-// table (instances.cpp) may then compute a column instead of listing it. Says nothing of numbers:
+// shapes too, each shape of iteration i is what these become at i. Whoever gathers the shapes into
+// a table (instances.cpp) may then compute a column instead of listing it. Says nothing of numbers:
 // what is noted here is checked row by row before it is used (closed_forms.cpp).
 #include "typecheck/interpreter.h"
 
@@ -16,23 +16,24 @@ using ir::ShapeKind;
 namespace {
 
 void note(Interpreter &ev, ShapeId known, ShapeId symbolic, std::uint32_t variable,
-          int turn_number) {
+          int iteration_number) {
     if (known == symbolic) return;
-    Iteration turn;
-    turn.symbolic = symbolic;
+    Iteration iteration;
+    iteration.symbolic = symbolic;
     // a loop inside has run with the outer variable free: its own note says more
-    if (auto inner = ev.turns.find(symbolic.index); inner != ev.turns.end()) turn = inner->second;
-    turn.at.emplace_back(variable, turn_number);
+    if (auto inner = ev.iterations.find(symbolic.index); inner != ev.iterations.end())
+        iteration = inner->second;
+    iteration.at.emplace_back(variable, iteration_number);
     // the parts of a union come to stand in a list one by one
     const ir::Shape &a = ev.scene.shapes[known], &b = ev.scene.shapes[symbolic];
     if (a.kind == ShapeKind::Union && b.kind == ShapeKind::Union &&
         a.children.size() == b.children.size())
         for (std::size_t k = 0; k < a.children.size(); ++k)
-            note(ev, a.children[k], b.children[k], variable, turn_number);
-    ev.turns[known.index] = std::move(turn);
+            note(ev, a.children[k], b.children[k], variable, iteration_number);
+    ev.iterations[known.index] = std::move(iteration);
 }
 
-// The loop's variable as an expression of the turn's number, where it runs in equal steps.
+// The loop's variable as an expression of the iteration's number, where it runs in equal steps.
 std::optional<Value> item_of(Interpreter &ev, const std::vector<Value> &items, ir::NodeId number) {
     const Value &first = items[0];
     if (first.kind != ValueKind::Int && first.kind != ValueKind::Float) return std::nullopt;
@@ -55,7 +56,7 @@ std::optional<Value> item_of(Interpreter &ev, const std::vector<Value> &items, i
 void note_iterations(
     Interpreter &ev, const std::vector<Value> &items, const std::vector<std::size_t> &starts,
     const std::vector<Contribution> &made,
-    const std::function<void(const Value &item, std::vector<Contribution> &out)> &turn) {
+    const std::function<void(const Value &item, std::vector<Contribution> &out)> &iteration) {
     if (starts.size() < 2) return;
     const std::size_t each = starts[1] - starts[0], total = made.size() - starts[0];
     if (each == 0 || each * starts.size() != total) return;
@@ -71,7 +72,7 @@ void note_iterations(
     ++ev.quiet, ++ev.symbolic_iterations;
     std::size_t errors = std::exchange(ev.quiet_errors, 0);
     std::vector<Contribution> symbolic;
-    turn(*item, symbolic);
+    iteration(*item, symbolic);
     const bool failed = ev.quiet_errors > 0 || symbolic.size() != each;
     ev.quiet_errors = errors;
     --ev.quiet, --ev.symbolic_iterations;

@@ -1,7 +1,7 @@
-// Loops in bodies. While all numbers are known a loop simply runs. As soon as a turn assigns a
-// number that is not known, the loop becomes a Loop: its body is evaluated once with variables for
-// the index and for all that it assigns. Where that cannot be (the body needs the index at scene
-// time, say), the turns are written out one by one.
+// Loops in bodies. While all numbers are known a loop simply runs. As soon as an iteration assigns
+// a number that is not known, the loop becomes a Loop: its body is evaluated once with variables
+// for the index and for all that it assigns. Where that cannot be (the body needs the index at
+// scene time, say), the iterations are written out one by one.
 #include "typecheck/interpreter.h"
 
 #include "ir/lower/lower.h"
@@ -25,9 +25,9 @@ struct Iterations {
     double first = 0, step = 1; // of a range
 };
 
-Value item_at(const Iterations &turns, int i) {
-    return turns.items.empty() ? integer(turns.first + i * turns.step)
-                               : turns.items[static_cast<std::size_t>(i)];
+Value item_at(const Iterations &iterations, int i) {
+    return iterations.items.empty() ? integer(iterations.first + i * iterations.step)
+                                    : iterations.items[static_cast<std::size_t>(i)];
 }
 
 bool unknown(const Value &v) { return v.kind == ValueKind::Field; }
@@ -48,21 +48,22 @@ struct Carried {
 };
 
 // The loop's variable in a Loop: computed from the index, or read from a table of the list's items.
-std::optional<Value> symbolic_item(Interpreter &ev, const Iterations &turns, ir::NodeId index) {
+std::optional<Value> symbolic_item(Interpreter &ev, const Iterations &iterations,
+                                   ir::NodeId index) {
     ir::Graph &g = ev.scene.graph;
-    if (turns.items.empty()) {
+    if (iterations.items.empty()) {
         ir::NodeId i = index;
-        if (turns.step != 1) i = g.mul(i, g.integer(static_cast<int>(turns.step)));
-        if (turns.first != 0) i = g.add(i, g.integer(static_cast<int>(turns.first)));
+        if (iterations.step != 1) i = g.mul(i, g.integer(static_cast<int>(iterations.step)));
+        if (iterations.first != 0) i = g.add(i, g.integer(static_cast<int>(iterations.first)));
         return from_node(ev, i);
     }
-    const Value &first = turns.items[0];
+    const Value &first = iterations.items[0];
     if (!is_numeric(first) || unknown(first) || first.kind == ValueKind::Mat) return std::nullopt;
     Type type = numeric_type(ev, first);
     ir::Table table;
-    table.rows = turns.count;
+    table.rows = iterations.count;
     table.stride = ir::components(type);
-    for (const Value &item : turns.items) {
+    for (const Value &item : iterations.items) {
         if (!is_numeric(item) || unknown(item) || numeric_type(ev, item) != type)
             return std::nullopt;
         for (int c = 0; c < table.stride; ++c)
@@ -81,13 +82,14 @@ struct LoopInput {
     int count = 0;
     ir::NodeId index;
     std::function<std::optional<Value>()>
-        condition;              // evaluated before each turn; none: always true
+        condition;              // evaluated before each iteration; none: always true
     std::function<Exit()> body; // with the index set
-    bool has_limit = true;      // else only a loop whose turns can be counted is one
+    bool has_limit = true;      // else only a loop whose iterations can be counted is one
 };
 
-// How often a loop turns whose condition hangs on nothing but numbers that are known before it and
-// change in a known way, as a counter does; none where it hangs on more, or goes on for `limit`.
+// How many iterations a loop has whose condition depends on nothing but numbers that are known
+// before it and change in a known way, as a counter does; none where it depends on more, or goes on
+// for `limit`.
 std::optional<int> known_iterations(ir::Graph &g, ir::NodeId condition,
                                     const std::vector<ir::NodeId> &vars,
                                     const std::vector<ir::NodeId> &next,
@@ -112,10 +114,10 @@ std::optional<int> known_iterations(ir::Graph &g, ir::NodeId condition,
     }
     ir::Substitution now;
     for (std::size_t k : used) now[vars[k]] = initial[k];
-    for (int turn = 0; turn < limit; ++turn) {
+    for (int iteration = 0; iteration < limit; ++iteration) {
         const ir::NodeId go = ir::substitute(g, condition, now);
         if (!g.is_constant(go)) return std::nullopt;
-        if (g.constant_of(go).value[0] == 0) return turn;
+        if (g.constant_of(go).value[0] == 0) return iteration;
         ir::Substitution after;
         for (std::size_t k : used) {
             after[vars[k]] = ir::substitute(g, next[k], now);
@@ -218,11 +220,11 @@ std::optional<Exit> try_fold(Interpreter &ev, const LoopInput &input,
         if (vars.empty()) return Exit{};
         Value go = *condition;
         int count = input.count;
-        const std::optional<int> turns =
+        const std::optional<int> iterations =
             always(go) ? std::nullopt
                        : known_iterations(g, to_node(ev, go), vars, next, initial, input.count);
-        if (turns) count = *turns, go = boolean(true);
-        if (!turns && !input.has_limit) return std::nullopt;
+        if (iterations) count = *iterations, go = boolean(true);
+        if (!iterations && !input.has_limit) return std::nullopt;
         ir::Loop loop;
         loop.count = g.integer(count);
         loop.max_count = count;
@@ -267,19 +269,19 @@ Outcome run_for(Interpreter &ev, const File &ast, const lang::For &node, std::ui
     Outcome out;
     Value seq = eval(ev, ast, node.sequence, frame);
     if (is_poison(seq)) return out;
-    Iterations turns;
+    Iterations iterations;
     if (seq.kind == ValueKind::Range) {
-        turns.count = static_cast<int>(
+        iterations.count = static_cast<int>(
             std::min(2e9, std::max(0.0, std::ceil((seq.num[1] - seq.num[0]) / seq.num[2]))));
-        turns.first = seq.num[0];
-        turns.step = seq.num[2];
+        iterations.first = seq.num[0];
+        iterations.step = seq.num[2];
     } else {
         auto items = sequence_items(ev, seq, ast.exprs[node.sequence].span);
         if (!items) return out;
-        turns.items = std::move(*items);
-        turns.count = static_cast<int>(turns.items.size());
+        iterations.items = std::move(*items);
+        iterations.count = static_cast<int>(iterations.items.size());
     }
-    auto turn = [&](const Value &item) {
+    auto iteration = [&](const Value &item) {
         std::uint32_t inner = push_frame(ev, frame);
         declare(ev, inner, symbol_of(ast, node.variable), item, false, node.variable.span);
         Outcome o = run_block(ev, ast, node.body, inner);
@@ -290,18 +292,18 @@ Outcome run_for(Interpreter &ev, const File &ast, const lang::For &node, std::ui
         return o.exit;
     };
     int unrolled = 0;
-    for (int i = 0; i < turns.count; ++i) {
+    for (int i = 0; i < iterations.count; ++i) {
         if (!spend(ev, place)) return out;
         JournalMark mark = journal_mark(ev);
-        Exit exit = turn(item_at(turns, i));
+        Exit exit = iteration(item_at(iterations, i));
         std::vector<Change> changes = journal_take(ev, mark);
         bool touched = touches_unknown(exit, changes);
-        if (touched && i == 0 && turns.count > 2 && turns.count <= max_loop_iterations) {
+        if (touched && i == 0 && iterations.count > 2 && iterations.count <= max_loop_iterations) {
             LoopInput input;
-            input.count = turns.count;
+            input.count = iterations.count;
             input.index = ev.scene.graph.fresh_var(Type::Int);
-            if (auto item = symbolic_item(ev, turns, input.index)) {
-                input.body = [&] { return turn(*item); };
+            if (auto item = symbolic_item(ev, iterations, input.index)) {
+                input.body = [&] { return iteration(*item); };
                 if (auto folded = try_fold(ev, input, changes, place)) {
                     out.exit = *folded;
                     return out;
@@ -309,27 +311,27 @@ Outcome run_for(Interpreter &ev, const File &ast, const lang::For &node, std::ui
             }
         }
         if (touched && ++unrolled > max_unrolled) {
-            report(
-                ev, Code::LoopLimit, place,
-                fmt::format("this loop cannot stay a loop, and {} turns are too many to write out",
-                            turns.count));
+            report(ev, Code::LoopLimit, place,
+                   fmt::format(
+                       "this loop cannot stay a loop, and {} iterations are too many to write out",
+                       iterations.count));
             return out;
         }
         for (const Change &c : changes) assign(ev, c.frame, c.slot, c.after);
-        // how the turn was left
+        // how the iteration was left
         if (always(exit.broke)) return out;
         if (always(exit.returned)) {
             out.exit = exit;
             return out;
         }
         if (never(exit.broke) && never(exit.returned)) continue;
-        // the further turns happen only where this one was not left
+        // the further iterations happen only where this one was not left
         Value left = logical_or(ev, exit.returned, exit.broke);
         std::function<Exit(int)> run_rest = [&](int at) -> Exit {
-            if (at >= turns.count) return {};
-            Exit e = turn(item_at(turns, at));
+            if (at >= iterations.count) return {};
+            Exit e = iteration(item_at(iterations, at));
             Value gone = logical_or(ev, e.returned, e.broke);
-            if (always(gone) || at + 1 >= turns.count || at - i > 256) return e;
+            if (always(gone) || at + 1 >= iterations.count || at - i > 256) return e;
             Exit r = never(gone) ? run_rest(at + 1)
                                  : run_unless(ev, gone, place, [&] { return run_rest(at + 1); });
             Exit both;
@@ -374,14 +376,14 @@ Outcome run_while(Interpreter &ev, const File &ast, const lang::While &node, std
                fmt::format("a condition is a bool, this is {}", describe(ev, v)));
         return std::nullopt;
     };
-    auto turn = [&] { return run_block(ev, ast, node.body, frame).exit; };
+    auto iteration = [&] { return run_block(ev, ast, node.body, frame).exit; };
     for (int i = 0; i < limit; ++i) {
         if (!spend(ev, place)) return out;
         auto go = condition();
         if (!go || never(*go)) return out;
         std::size_t said = ev.diagnostics.items().size() + ev.quiet_errors;
         JournalMark mark = journal_mark(ev);
-        Exit exit = turn();
+        Exit exit = iteration();
         std::vector<Change> changes = journal_take(ev, mark);
         if (unknown(*go) || touches_unknown(exit, changes)) {
             LoopInput input;
@@ -389,7 +391,7 @@ Outcome run_while(Interpreter &ev, const File &ast, const lang::While &node, std
             input.has_limit = node.limit.has_value();
             input.index = ev.scene.graph.fresh_var(Type::Int);
             input.condition = condition;
-            input.body = turn;
+            input.body = iteration;
             if (auto folded = try_fold(ev, input, changes, place)) {
                 out.exit = *folded;
                 return out;
@@ -397,12 +399,12 @@ Outcome run_while(Interpreter &ev, const File &ast, const lang::While &node, std
             if (ev.diagnostics.items().size() + ev.quiet_errors > said) return out; // one cause
             if (!node.limit) {
                 report(ev, Code::LoopLimit, place,
-                       "a loop over numbers that hang on the point needs a limit")
-                    .help("say how many turns it takes at most: `while … limit 32 { … }`");
+                       "a loop over numbers that depend on the point needs a limit")
+                    .help("say how many iterations it takes at most: `while … limit 32 { … }`");
                 return out;
             }
             report(ev, Code::StageMismatch, place,
-                   "this loop's variables have to be numbers of one type, since it hangs on the "
+                   "this loop's variables have to be numbers of one type, since it depends on the "
                    "point");
             return out;
         }
@@ -415,7 +417,7 @@ Outcome run_while(Interpreter &ev, const File &ast, const lang::While &node, std
     }
     if (!node.limit)
         report(ev, Code::LoopLimit, place,
-               fmt::format("this loop did not end within {} turns", limit));
+               fmt::format("this loop did not end within {} iterations", limit));
     return out;
 }
 

@@ -274,7 +274,7 @@ static void find_items(Interpreter &ev, std::uint32_t module, std::string_view t
 void read_prelude_items(Interpreter &ev, Symbol name) {
     const auto node = ev.prelude_items.extract(name);
     if (node.empty()) return;
-    // what the library declares does not hang on who asks for it first
+    // what the library declares does not depend on who uses it first
     const int in_field = std::exchange(ev.in_field, 0);
     const std::uint32_t before = ev.current_module;
     for (const LibraryItem &item : node.mapped()) {
@@ -348,7 +348,7 @@ std::string way_inside(const std::string &path) {
 }
 
 static Value import_failed(Interpreter &ev, const lang::Import &import) {
-    // the names it would have brought are unknown, so those that are asked of it stay quiet
+    // the names it would have brought are unknown, so uses of them report nothing
     if (!import.as) ev.modules[ev.current_module].lacks_names = true;
     if (import.as)
         declare(ev, ev.modules[ev.current_module].frame, intern(ev, import.as->text), poison(),

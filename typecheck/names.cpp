@@ -23,7 +23,8 @@ std::uint32_t push_frame(Interpreter &ev, std::uint32_t parent) {
     return ev.frame_count++;
 }
 
-// A frame that no closure refers to is given back, so that a loop of a million turns needs one.
+// A frame that no closure refers to is given back, so that a loop of a million iterations needs
+// one.
 void pop_frame(Interpreter &ev, std::uint32_t frame) {
     if (frame + 1 != ev.frame_count || ev.frames[frame].captured) return;
     ev.frames[frame].bindings.clear();
@@ -72,7 +73,7 @@ std::optional<std::uint32_t> slot_in_module(Interpreter &ev, std::uint32_t frame
 
 std::optional<Found> find_name(Interpreter &ev, std::uint32_t frame, Symbol name) {
     for (;;) {
-        const Frame &f = ev.frames[frame]; // stale once a module was asked
+        const Frame &f = ev.frames[frame]; // stale once a module was read
         if (f.index) {
             if (auto slot = slot_in_module(ev, frame, name)) return Found{frame, *slot};
         } else {

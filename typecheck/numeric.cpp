@@ -546,8 +546,8 @@ Value make_vector(Interpreter &ev, const std::vector<Value> &parts, int size, Sp
     return from_node(ev, ev.scene.graph.make(Op::Make, ir::vector_type(size), nodes));
 }
 
-// A number that scene time needs. One that hangs on params alone is taken at their present values,
-// and those params become structural: moving them builds the scene anew (semantics.md, 25).
+// A number that scene time needs. One that depends on params alone is taken at their present
+// values, and those params become structural: moving them builds the scene anew (semantics.md, 25).
 std::optional<Value> element_as_known(Interpreter &ev, const Value &v, Span place, What what) {
     if (v.kind != ValueKind::Field) return v;
     ir::Graph &g = ev.scene.graph;

@@ -63,7 +63,7 @@ Diagnostic &report(Interpreter &ev, Code code, Span place, std::string message) 
         return swallowed;
     }
     const Shown where = shown(ev, place);
-    // In a loop the same thing is wrong in every turn.
+    // In a loop the same thing is wrong in every iteration.
     const std::array<std::uint32_t, 6> key{
         static_cast<std::uint32_t>(code), where.at.source.index, where.at.begin, where.at.end,
         where.of_call.source.index,       where.of_call.begin};

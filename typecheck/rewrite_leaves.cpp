@@ -47,8 +47,8 @@ struct LeafRewriter {
         return {};
     }
 
-    // Unions gather like shapes into instance_tables, so the parts are taken as they were listed and
-    // united anew.
+    // Unions gather like shapes into instance_tables, so the parts are taken as they were listed
+    // and united anew.
     ShapeId united(ShapeId id, std::vector<ShapeId> parts, const Below &below) {
         const ir::Shape shape = ev.scene.shapes[id];
         for (ShapeId &part : parts) part = of(part, below);
@@ -105,7 +105,7 @@ struct LeafRewriter {
         case ShapeKind::Blend:
         case ShapeKind::Mixed:
         case ShapeKind::Contract: return rebuilt(shape, below);
-        // what makes new surfaces of the old ones, or asks elsewhere
+        // what makes new surfaces of the old ones, or evaluates them elsewhere
         case ShapeKind::Seam:
         case ShapeKind::Lerp:
         case ShapeKind::PseudoNorm:

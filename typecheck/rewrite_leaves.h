@@ -16,7 +16,7 @@ struct Line {
     friend auto operator<=>(const Line &, const Line &) = default;
 };
 
-// Where a base shape stands below the shape that was asked.
+// Where a base shape stands below the shape that is rewritten.
 struct Below {
     bool inverted = false; // below an odd number of complements: its outside is the whole's inside
     ir::NodeId factor;     // its lengths times this are those of the whole
@@ -27,6 +27,7 @@ struct Below {
 // field of the user's own. `rewrite` gives what shall stand in its place.
 using RewriteLeaf = std::function<ir::ShapeId(ir::ShapeId, const Below &)>;
 
+// Whether the paint of a rewritten shape stays.
 enum class Paints : std::uint8_t {
     Keep,
     KeepWhole,

@@ -156,9 +156,10 @@ Exit run_unless(Interpreter &ev, const Value &skip, Span place, const std::funct
     for (const Change &c : journal_take(ev, mark)) {
         auto merged = select_value(ev, skip, c.before, c.after);
         if (!merged) {
-            report(ev, Code::StageMismatch, place,
-                   "what is assigned after this hangs on the point, so it has to be numbers of one "
-                   "type");
+            report(
+                ev, Code::StageMismatch, place,
+                "what is assigned after this depends on the point, so it has to be numbers of one "
+                "type");
             merged = poison();
         }
         assign(ev, c.frame, c.slot, *merged);
@@ -280,9 +281,10 @@ static Outcome run_branches(Interpreter &ev, const File &ast, const lang::If &no
         return run_otherwise(ev, ast, node, branch + 1, frame, place);
     }
     if (auto both = run_both(ev, ast, node, branch, *condition, frame, place)) return *both;
-    report(ev, Code::StageMismatch, ast.exprs[node.branches[branch].condition].span,
-           "this condition hangs on the point or on time, so both arms have to give numbers of one "
-           "type")
+    report(
+        ev, Code::StageMismatch, ast.exprs[node.branches[branch].condition].span,
+        "this condition depends on the point or on time, so both arms have to give numbers of one "
+        "type")
         .help("choose between shapes with their fields: `blend(a, b, p => …)`, or cut them with "
               "`within:` or `&`");
     Outcome out;
@@ -355,7 +357,7 @@ static bool contribute_stmt(Interpreter &ev, const File &ast, const lang::Stmt &
             out.push_back({poison(), stmt.span}); // what it would have given is not nothing
             return false;
         }
-        auto turn = [&](const Value &item, std::vector<Contribution> &made) {
+        auto iteration = [&](const Value &item, std::vector<Contribution> &made) {
             std::uint32_t inner = push_frame(ev, frame);
             declare(ev, inner, symbol_of(ast, f->variable), item, false, f->variable.span);
             bool broke = contribute_block(ev, ast, f->body, inner, made);
@@ -366,9 +368,9 @@ static bool contribute_stmt(Interpreter &ev, const File &ast, const lang::Stmt &
         for (const Value &item : *items) {
             if (!spend(ev, stmt.span)) return true;
             starts.push_back(out.size());
-            if (turn(item, out)) return false;
+            if (iteration(item, out)) return false;
         }
-        note_iterations(ev, *items, starts, out, turn);
+        note_iterations(ev, *items, starts, out, iteration);
     } else if (std::holds_alternative<lang::While>(stmt.kind)) {
         report(ev, Code::WrongPlace, stmt.span, "`while` stands inside a function")
             .help("use `for`, or a function that calls itself");

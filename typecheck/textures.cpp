@@ -31,8 +31,8 @@ static void refuse(Interpreter &ev, Span place, const char *what, const std::str
     if (code == Code::ImportOutside) d.help(way_inside(path));
 }
 
-// The file whose text asks: a path is looked up beside it, also where the library's own text hands
-// the path on.
+// The file whose text names it: a path is looked up beside it, also where the library's own text
+// hands the path on.
 static const std::string &naming_file(const Interpreter &ev) {
     std::size_t i = ev.calls.size();
     while (i > 0 && ev.calls[i - 1].library) --i;
@@ -181,7 +181,7 @@ static void report_no_uv_map(Interpreter &ev, ShapeId id, Span place, const char
     const std::string name =
         shape.kind == ShapeKind::Library
             ? fmt::format("`{}`", ev.scene.shapes.libraries[shape.payload].name)
-            : "a field of one's own";
+            : "a user-defined field";
     Diagnostic &d =
         report(ev, Code::BadArgument, place,
                fmt::format("{} lies on a shape by its natural parametrisation, and {} has none",
@@ -243,7 +243,7 @@ static std::uint32_t heights_of(Interpreter &ev, std::uint32_t image) {
 }
 
 struct Heights {
-    double least = 0, most = 0, mean = 0;
+    double minimum = 0, maximum = 0, mean = 0;
     double slope_u = 0, slope_v = 0; // per image: bilinear, so the largest step between neighbours
 };
 static Heights measured(const ir::ImageData &image) {
@@ -256,7 +256,7 @@ static Heights measured(const ir::ImageData &image) {
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
             const double h = at(x, y);
-            out.least = std::min(out.least, h), out.most = std::max(out.most, h);
+            out.minimum = std::min(out.minimum, h), out.maximum = std::max(out.maximum, h);
             out.mean += h / (double(image.width) * image.height);
             out.slope_u = std::max(out.slope_u, std::fabs(at(x + 1, y) - h) * image.width);
             out.slope_v = std::max(out.slope_v, std::fabs(at(x, y + 1) - h) * image.height);
@@ -275,7 +275,7 @@ static Value displace_map_call(Interpreter &ev, const CallSite &site, std::vecto
     ir::Graph &g = ev.scene.graph;
     const std::uint32_t image = heights_of(ev, static_cast<std::uint32_t>(map->image));
     const Heights heights = measured(ev.scene.images[image]);
-    const double span = std::max(heights.most - heights.mean, heights.mean - heights.least);
+    const double span = std::max(heights.maximum - heights.mean, heights.mean - heights.minimum);
     ev.scene.shapes.displacement_maps.push_back({*map, *amount, {}});
     const auto record = static_cast<std::uint32_t>(ev.scene.shapes.displacement_maps.size());
     bool ok = true;
@@ -299,8 +299,8 @@ static Value displace_map_call(Interpreter &ev, const CallSite &site, std::vecto
             const NodeId slope = g.add(g.add(g.mul(uv_map->slope_u, g.number(along_u)),
                                              g.mul(uv_map->slope_v, g.number(along_v))),
                                        g.mul(uv_map->slope_weight, g.number(span)));
-            const NodeId a = g.mul(here, g.number(heights.least)),
-                         b = g.mul(here, g.number(heights.most));
+            const NodeId a = g.mul(here, g.number(heights.minimum)),
+                         b = g.mul(here, g.number(heights.maximum));
             const ir::Shape inner = ev.scene.shapes[base];
             ir::Shape out;
             out.kind = ShapeKind::Displace;

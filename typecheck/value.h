@@ -12,6 +12,7 @@
 
 namespace fathom::typecheck {
 
+// The kinds of values of the language.
 enum class ValueKind : std::uint8_t {
     Poison,      // an error was reported; everything made of it is poison too
     Unit,        // nothing: a `for` run for its effect, `print(…)`
@@ -38,6 +39,7 @@ enum class ValueKind : std::uint8_t {
     Module       // id: modules
 };
 
+// A value: numbers that are known now, or the id of a node, shape, list or closure.
 struct Value {
     ValueKind kind = ValueKind::Poison;
     std::uint8_t size = 0;

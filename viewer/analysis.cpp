@@ -81,7 +81,7 @@ void show_look(Controls &controls, const Shown &shown, Asked &asked) {
 // What the noise cache did in its last frame, and how old its keys are (thesis, figure 8.3).
 void show_cache(Controls &controls, const CacheFigures &cache) {
     ImGui::Separator();
-    ImGui::Checkbox("noise cache while moving", &controls.keep);
+    ImGui::Checkbox("noise cache while moving", &controls.use_cache);
     ImGui::SameLine();
     ImGui::Checkbox("misses red", &controls.cache);
     const auto line = [](const std::string &text) { ImGui::TextUnformatted(text.c_str()); };
@@ -95,12 +95,12 @@ void show_cache(Controls &controls, const CacheFigures &cache) {
     line(fmt::format("{} inserted, {} evicted", cache.counts.inserted, cache.counts.evicted));
     line(fmt::format("{} deleted, {} without room", cache.counts.deleted,
                      cache.counts.crowded + cache.counts.full));
-    line(fmt::format("kept {:.1f} ms, exact {:.1f} ms: {}", cache.choice.cached_ms,
+    line(fmt::format("cached {:.1f} ms, exact {:.1f} ms: {}", cache.choice.cached_ms,
                      cache.choice.exact_ms,
                      !cache.looked_up ? "look-ups do not pay here"
                      : cache.choice.state == gl::CacheChoice::State::Exact    ? "drawn exactly"
                      : cache.choice.state == gl::CacheChoice::State::Learning ? "learning"
-                                                                              : "kept"));
+                                                                              : "cached"));
     std::array<float, glsl::cache_ages> ages{};
     for (std::size_t i = 0; i < ages.size(); ++i)
         ages[i] = std::log2(1 + static_cast<float>(there.ages[i]));

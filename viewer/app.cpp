@@ -144,7 +144,6 @@ void App::param_changed(const ir::Param &param) {
 }
 
 // -- back into the text
-// ----------------------------------------------------------------------------
 
 namespace {
 
@@ -189,7 +188,7 @@ bool App::write_view() {
             return driver::save_file_with_camera(text, camera, file.parent_path(),
                                                  settings.options);
         if (!driver::can_be_read(text))
-            return driver::EditError{"mend its errors first, so that a place for it is found"};
+            return driver::EditError{"fix its errors first, so that a place for it is found"};
         std::vector<std::string> others;
         for (int i = 1; i < views.count; ++i)
             others.push_back(camera_line(views.cameras[static_cast<std::size_t>(i)]));

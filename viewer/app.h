@@ -20,6 +20,7 @@ struct GLFWwindow;
 namespace fathom::viewer {
 
 using Clock = std::chrono::steady_clock;
+// Clock time since `start`.
 double milliseconds_since(Clock::time_point start);
 
 // All that a picture depends on, program and params apart: while it stays, nothing is drawn anew.
@@ -31,6 +32,7 @@ struct Shot {
     friend bool operator==(const Shot &, const Shot &) = default;
 };
 
+// The state of the window.
 struct App {
     explicit App(const Settings &s) : settings(s) {}
 
@@ -57,7 +59,7 @@ struct App {
     bool measured = false;                 // it is known what a picture by this program takes
     bool resting = false;                  // the picture that is drawn is not moved
     int coarse = 1;         // then: it is drawn in every so-manieth pixel first, 1 is in full
-    bool drew_now = false;  // in this turn of the loop
+    bool drew_now = false;  // in this iteration of the loop
     bool probed = false;    // the probe shows what is drawn
     bool finished = false;  // what is shown is what was drawn
     bool on_screen = false; // something of the newest good build was shown
@@ -141,7 +143,8 @@ struct App {
     void keep_picks();
     void finish_picture(double scale);
     bool draw_cached_frame(double scale);
-    bool keeps(bool by_hand) const; // whether the next picture may come through the noise cache
+    bool
+    uses_cache(bool by_hand) const; // whether the next picture may come through the noise cache
 
     // draw.cpp
     void draw(double seconds);

@@ -7,13 +7,13 @@ namespace fathom::viewer {
 void Cached::scene_changed() {
     view_.drop();
     why_not_.clear();
-    asked_ = false;
+    requested_ = false;
     frames_ = 0;
     gl::start_again(choice);
 }
 
 void Cached::take(std::variant<gl::CachePrograms, std::string> programs) {
-    asked_ = true;
+    requested_ = true;
     if (std::string *why = std::get_if<std::string>(&programs))
         why_not_ = std::move(*why);
     else

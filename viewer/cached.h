@@ -20,6 +20,7 @@ struct CacheFigures {
     bool looked_up = false;
 };
 
+// The cached view of the window's scene, once it is built.
 class Cached {
   public:
     // Another scene is shown: cells stay where they are still right, programs are another's.
@@ -30,7 +31,7 @@ class Cached {
     void take(std::variant<gl::CachePrograms, std::string> programs);
     // Builds them here, where no worker can.
     void build(const ir::Scene &scene, int part_stride);
-    bool asked() const { return asked_; } // there are programs, or it is known why not
+    bool requested() const { return requested_; } // there are programs, or it is known why not
     bool ready() const { return view_.ready(); }
     bool looked_up() const {
         return view_.looked_up();
@@ -58,7 +59,7 @@ class Cached {
     std::string why_not_;
     int frames_ = 0; // since something changed
     int counted_ = 0;
-    bool asked_ = false;
+    bool requested_ = false;
 };
 
 } // namespace fathom::viewer

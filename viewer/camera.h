@@ -7,6 +7,7 @@
 
 namespace fathom::viewer {
 
+// A point of view on a sphere round the target; angles in radians.
 struct Camera {
     ir::Triple target{};
     double yaw = 0, pitch = 0; // of the eye as seen from the target: yaw 0 on +z, pitch up; radians
@@ -16,8 +17,10 @@ struct Camera {
     friend bool operator==(const Camera &, const Camera &) = default;
 };
 
+// The standard views of the keys.
 enum class Side { Front, Right, Top };
 
+// The orbit camera that sees what a view sees, roll apart.
 Camera camera_of(const ir::View &view);
 ir::View view_of(const Camera &camera);
 

@@ -128,9 +128,9 @@ bool App::draw_cached(int width, int height) {
     const Shot shot{views, time, width, height};
     if (cached_shot != shot) cached.view_changed();
     cached_shot = shot;
-    if (!cached.asked() && !worker->lent())
+    if (!cached.requested() && !worker->lent())
         cached.build(scene->compilation.scene, scene->compilation.parts.stride);
-    if (!cached.asked()) return false; // the worker is at it
+    if (!cached.requested()) return false; // the worker is at it
     if (!cached.ready()) {
         controls.cache = false;
         note("no noise cache: " + cached.why_not());

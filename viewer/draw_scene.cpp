@@ -14,9 +14,9 @@ constexpr int coarsest = 16;     // pixels a side for one of a coarse picture
 constexpr double quick_ms = 150; // a picture that takes longer is drawn coarsely before
 
 // The finest coarseness, up to a limit, at which a picture is quick.
-int finest_quick(double frame_ms, int most) {
+int finest_quick(double frame_ms, int maximum) {
     int coarse = 1;
-    while (coarse < most && frame_ms / (coarse * coarse) > quick_ms) coarse *= 2;
+    while (coarse < maximum && frame_ms / (coarse * coarse) > quick_ms) coarse *= 2;
     return coarse;
 }
 
@@ -55,9 +55,9 @@ int App::first_coarseness(bool same_view) const {
     return first;
 }
 
-// One sample of the picture, or as many of its rows as fit into a turn of the loop: a slow scene
-// does not keep events waiting, and what was shown stays until the new picture is whole. True when
-// it is.
+// One sample of the picture, or as many of its rows as fit into an iteration of the loop: a slow
+// scene does not keep events waiting, and what was shown stays until the new picture is whole. True
+// when it is.
 bool App::draw_rows(bool whole) {
     constexpr double turn_ms = 30, band_ms = 10;
     const Clock::time_point start = Clock::now();
@@ -93,9 +93,9 @@ bool App::draw_rows(bool whole) {
 // While it is moved by hand, the picture is drawn as coarsely as it takes to keep up; at rest
 // coarse to fine, then smoothed by more samples.
 void App::draw_scene(int width, int height, bool moving, bool drew_before) {
-    constexpr double wanted_ms = 30, least_scale = 1.0 / 32;
+    constexpr double wanted_ms = 30, min_scale = 1.0 / 32;
     if (!measured) measure(width, height);
-    if (moving && controls.keep && !cached.asked() && !worker->lent() &&
+    if (moving && controls.use_cache && !cached.requested() && !worker->lent() &&
         scene->compilation.scene.graph.cache_count() > 0)
         cached.build(scene->compilation.scene, scene->compilation.parts.stride);
     const double expected_ms = drawn_cached && cached.choice.state == gl::CacheChoice::State::Cached
@@ -105,15 +105,15 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
     const bool same_view = !stale && drawn == shot;
     double scale = 1;
     if (moving && expected_ms > wanted_ms)
-        scale = std::clamp(std::sqrt(wanted_ms / expected_ms), least_scale, 1.0);
+        scale = std::clamp(std::sqrt(wanted_ms / expected_ms), min_scale, 1.0);
     if (!moving) {
         if (!same_view || !resting) coarse = first_coarseness(same_view);
         scale = 1.0 / coarse;
     }
     resting = !moving;
-    const bool kept = keeps(moving);
+    const bool through_cache = uses_cache(moving);
     const bool anew = !same_view || drawn_scale != scale || (controls.always && !drawing) ||
-                      (drawn_cached && !kept);
+                      (drawn_cached && !through_cache);
     if (anew) {
         // Until the next picture is whole, what is under the mouse is told by the one that is
         // shown.
@@ -125,7 +125,7 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
         drawn_height = std::max(1, static_cast<int>(height * scale));
         stale = probed = false;
         const bool before = std::exchange(drawn_cached, false);
-        if (kept && gl::keeps_next(cached.choice) && draw_cached_frame(scale)) {
+        if (through_cache && gl::uses_cache_next(cached.choice) && draw_cached_frame(scale)) {
             drawn_cached = true;
             ++cached_frames;
             drawing = false;
@@ -135,13 +135,13 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
             drew_now = true;
             return;
         }
-        if (cached_frames > 0 && !kept && settings.tell)
+        if (cached_frames > 0 && !through_cache && settings.tell)
             settings.tell(
                 fmt::format("moved: {} frames through the noise cache, the last {:.1f} ms, "
                             "exact {:.1f} ms",
                             cached_frames, cached.choice.cached_ms, cached.choice.exact_ms));
-        if (!kept) cached_frames = 0;
-        if (before && !kept) {
+        if (!through_cache) cached_frames = 0;
+        if (before && !through_cache) {
             canvas.keep_before();
             fade_begin = Clock::time_point::max(); // begins when the exact picture is there
         }
@@ -207,9 +207,10 @@ void App::finish_picture(double scale) {
 
 // A picture that is recorded, looked at in other colours or drawn for its time is exact; so are
 // several views.
-bool App::keeps(bool moving) const {
-    return (moving || controls.rotate) && controls.keep && cached.ready() && views.count == 1 &&
-           controls.look == gl::Look::Picture && !controls.always && sequence == 0;
+bool App::uses_cache(bool moving) const {
+    return (moving || controls.rotate) && controls.use_cache && cached.ready() &&
+           views.count == 1 && controls.look == gl::Look::Picture && !controls.always &&
+           sequence == 0;
 }
 
 bool App::draw_cached_frame(double scale) {

@@ -7,12 +7,13 @@
 
 namespace fathom::viewer {
 
+// The newest times, in milliseconds.
 struct FrameTimes {
-    static constexpr std::size_t most = 240;
+    static constexpr std::size_t maximum = 240;
     std::vector<float> milliseconds; // the newest last
 
     void add(double value) {
-        if (milliseconds.size() == most) milliseconds.erase(milliseconds.begin());
+        if (milliseconds.size() == maximum) milliseconds.erase(milliseconds.begin());
         milliseconds.push_back(static_cast<float>(value));
     }
     // The value below which that share of all lie (nearest rank); 0 where there are none.

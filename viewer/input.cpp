@@ -22,7 +22,6 @@ constexpr double fine_step = 0.01, coarse_step = 0.1; // of a param's range
 } // namespace
 
 // -- keys
-// ------------------------------------------------------------------------------------------
 
 void App::toggle_look(gl::Look look) {
     controls.look = controls.look == look ? gl::Look::Picture : look;
@@ -169,8 +168,8 @@ void App::key(int key, int mods) {
         note("");
         break;
     case GLFW_KEY_4:
-        controls.keep = !controls.keep;
-        note(controls.keep ? "moved by the noise cache" : "moved exactly");
+        controls.use_cache = !controls.use_cache;
+        note(controls.use_cache ? "moved by the noise cache" : "moved exactly");
         break;
     case GLFW_KEY_X:
         controls.fxaa = !controls.fxaa;
@@ -246,7 +245,6 @@ void App::fly_by_keys(double seconds) {
 }
 
 // -- the mouse
-// -------------------------------------------------------------------------------------
 
 void App::move_cursor(double x, double y) {
     int width = 1, height = 1;
@@ -307,7 +305,7 @@ void App::open_selected() {
 }
 
 // An editor with a window of its own jumps to the line at each click; one in a terminal only when
-// asked by its key.
+// when its key is pressed.
 void App::select(bool open) {
     if (!scene) return;
     const gl::Pick pick = pick_at_cursor();

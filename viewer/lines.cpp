@@ -26,13 +26,13 @@ struct Stretch { // lines [begin, end) of both, from 0
 };
 
 // Beyond that many pairs of lines only what both ends share is found.
-constexpr std::size_t most_pairs = 4'000'000;
+constexpr std::size_t max_pairs = 4'000'000;
 
 // The longest common subsequence, by its table of lengths.
 void pair_common(const Lines &a, const Lines &b, const Stretch &part,
                  std::vector<std::uint32_t> &to) {
     const std::size_t rows = part.end_a - part.begin_a, columns = part.end_b - part.begin_b;
-    if (rows == 0 || columns == 0 || rows * columns > most_pairs) return;
+    if (rows == 0 || columns == 0 || rows * columns > max_pairs) return;
     std::vector<std::uint32_t> length((rows + 1) * (columns + 1), 0);
     const auto at = [&](std::size_t i, std::size_t k) -> std::uint32_t & {
         return length[i * (columns + 1) + k];

@@ -11,6 +11,7 @@
 
 namespace fathom::viewer {
 
+// A linked program and what it took.
 struct Link {
     std::optional<gl::Program> program; // where one had to be made; else the one before goes on
     std::vector<float> edited;          // what stands in its slots
@@ -18,6 +19,7 @@ struct Link {
     std::string error; // of the driver, as printed
 };
 
+// Links texts of one kind of shader.
 class Linker {
   public:
     Link link(const glsl::Output &output, const ir::Scene &scene);

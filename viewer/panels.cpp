@@ -42,7 +42,7 @@ void show_diagnostic(const std::string &text, const ImVec4 &head) {
 
 void show_messages(const char *name, const std::vector<std::string> &messages, const ImVec4 &head,
                    float top) {
-    constexpr std::size_t most = 6;
+    constexpr std::size_t maximum = 6;
     ImVec2 size = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({12, top});
     ImGui::SetNextWindowBgAlpha(0.85f);
@@ -50,9 +50,9 @@ void show_messages(const char *name, const std::vector<std::string> &messages, c
         {0, 0}, {std::max(size.x - 24, 50.0f), std::max(size.y - 80, 50.0f)});
     ImGui::Begin(name, nullptr,
                  plain | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_HorizontalScrollbar);
-    for (std::size_t i = 0; i < std::min(most, messages.size()); ++i)
+    for (std::size_t i = 0; i < std::min(maximum, messages.size()); ++i)
         show_diagnostic(messages[i], head);
-    if (messages.size() > most) ImGui::Text("and %zu more", messages.size() - most);
+    if (messages.size() > maximum) ImGui::Text("and %zu more", messages.size() - maximum);
     ImGui::End();
 }
 

@@ -13,6 +13,7 @@
 
 namespace fathom::viewer {
 
+// What the status line says.
 struct Status {
     double front_end_ms = 0, driver_ms = 0, frame_ms = 0;
     std::size_t shader_bytes = 0;
@@ -25,6 +26,7 @@ struct Status {
     int width = 0, height = 0; // of the viewport, in pixels
 };
 
+// A number at a line of equal distance.
 struct IsolineLabel {
     float x = 0, y = 0; // in the window
     double value = 0;
@@ -47,6 +49,7 @@ struct Shown {
     double reach = 1; // how far a slice can be moved
 };
 
+// What the user did in the panels this frame.
 struct Asked {
     std::vector<std::size_t> changed; // params with a new value
     std::vector<std::size_t> write;   // params whose value is to stand in the text
@@ -55,6 +58,7 @@ struct Asked {
     std::array<int, 2> size{0, 0};    // a size for the window
 };
 
+// Draws all panels.
 Asked show_panels(Controls &controls, const Shown &shown, std::vector<ir::Param> &params);
 
 // analysis.cpp

@@ -9,6 +9,7 @@
 
 namespace fathom::viewer {
 
+// What is shown about the part under the pointer.
 struct Part {
     int number = 0;    // 0: none
     std::string words; // "box(2).at(X)", one line of them
@@ -20,6 +21,7 @@ struct Part {
     ir::FieldKind kind = ir::FieldKind::Bound;
 };
 
+// The part of that number; empty where there is none.
 Part part_of(const driver::Compilation &compilation, int number);
 
 // The same part in a scene that was compiled anew: on the line that was the part's before the edit

@@ -8,7 +8,7 @@
 namespace fathom::viewer {
 namespace {
 
-constexpr std::size_t most = 512; // GL 3.3 grants a fragment shader 1024 uniform floats
+constexpr std::size_t maximum = 512; // GL 3.3 grants a fragment shader 1024 uniform floats
 
 struct Range {
     std::size_t begin = 0, end = 0;
@@ -96,7 +96,7 @@ std::optional<Slots> widened(const Slots &slots, const std::string &fresh) {
     Slots result{fresh, {}};
     std::set_union(slots.edited.begin(), slots.edited.end(), changed->begin(), changed->end(),
                    std::back_inserter(result.edited));
-    if (result.edited.size() > most) return std::nullopt;
+    if (result.edited.size() > maximum) return std::nullopt;
     return result;
 }
 

@@ -9,6 +9,7 @@
 
 namespace fathom::viewer {
 
+// A text with its edited literals as uniforms, and their values.
 struct Slots {
     std::string text; // as emitted
     std::vector<std::size_t>

@@ -121,7 +121,7 @@ std::string loop(App &app) {
             }
             app.take(std::move(build));
         }
-        if (app.scene && !app.cached.asked())
+        if (app.scene && !app.cached.requested())
             if (auto kept = app.worker->take_cached(app.scene->number)) {
                 app.cached.take(std::move(*kept));
                 app.frames_due = 3;

@@ -9,6 +9,7 @@
 
 namespace fathom::viewer {
 
+// What `fathom view` is told.
 struct Settings {
     std::filesystem::path file;
     driver::CompileOptions options;

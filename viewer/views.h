@@ -11,6 +11,7 @@
 
 namespace fathom::viewer {
 
+// How many views there are, and which is active.
 struct Views {
     std::array<Camera, 4> cameras; // the first is the scene's
     int count = 1, active = 0;     // 1, 2 or 4 are shown; the active one takes keys
@@ -23,6 +24,7 @@ struct Views {
 // without perspective.
 void show_views(Views &views, int count);
 
+// Where each view lies in the window, in pixels.
 std::vector<gl::Tile> tiles_of(const Views &views, int width, int height);
 int tile_at(const std::vector<gl::Tile> &tiles, double x, double y); // -1 on the lines between
 

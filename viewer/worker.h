@@ -22,7 +22,7 @@ namespace fathom::viewer {
 struct Build {
     driver::Compilation compilation;
     glsl::Output picture;          // empty where there is an error
-    glsl::Output probe;            // where it was asked for
+    glsl::Output probe;            // where it was wanted
     Link picture_link, probe_link; // where `linked`
     bool linked = false;           // else whoever takes it links
     std::size_t number = 0;        // of this build
@@ -48,6 +48,7 @@ struct Linkers {
     void link(Build &build); // errors of the driver become the build's
 };
 
+// The worker thread and the newest of its builds.
 class Worker {
   public:
     struct Hooks {

@@ -100,7 +100,7 @@ class FunctionBuilder {
 
     Values node(Frame &frame, NodeId id);
     Values call(FunctionId id, const std::vector<Values> &arguments);
-    Values fold(Frame &frame, NodeId id);
+    Values loop(Frame &frame, NodeId id);
     Value moved(const LoopCode &loop, Value next);
     Values outside(const LoopCode &loop) const;
 
@@ -121,7 +121,8 @@ Values FunctionBuilder::node(Frame &frame, NodeId id) {
     if (node.op != Op::LoopResult) // anywhere else a Loop stands for its first carried value
         for (std::size_t k = 0; k < args.size(); ++k)
             args[k].resize(static_cast<std::size_t>(components(types[k])));
-    // Where one coordinate is a point's own, all are: what is read is not asked which are shared.
+    // If one coordinate differs by point, all count as differing: a read does not say which are
+    // shared.
     auto data = [&](InstructionKind kind) {
         Values at = args[0];
         const auto shared = [&](Value v) { return code_.values[v].shared; };
@@ -154,7 +155,7 @@ Values FunctionBuilder::node(Frame &frame, NodeId id) {
     if (node.op == Op::Grid) return data(InstructionKind::Grid);
     if (node.op == Op::Call) return call(FunctionId{node.payload}, args);
     if (node.op == Op::Cached) return call(graph_.cache(CacheId{node.payload}).field, args);
-    if (node.op == Op::Loop) return fold(frame, id);
+    if (node.op == Op::Loop) return loop(frame, id);
     if (node.op == Op::LoopResult) {
         const ir::Loop &record = graph_.loop(LoopId{graph_[graph_.arg(id, 0)].payload});
         std::size_t first = 0;
@@ -188,7 +189,7 @@ Values FunctionBuilder::call(FunctionId id, const std::vector<Values> &arguments
                                 scalar_types(graph_[function.result].type));
 }
 
-Values FunctionBuilder::fold(Frame &frame, NodeId id) {
+Values FunctionBuilder::loop(Frame &frame, NodeId id) {
     const ir::Loop &record = graph_.loop(LoopId{graph_[id].payload});
     Values count = frame.values.at(record.count);
     LoopCode loop;
@@ -198,8 +199,8 @@ Values FunctionBuilder::fold(Frame &frame, NodeId id) {
     loop.index = builder_.variable(Type::Int, true, depth_);
     frame.values[record.index] = {loop.index};
 
-    // A variable is shared if it begins so and no turn makes it differ; whether turns happen must
-    // not differ either.
+    // A variable is shared if it begins so and no iteration makes it differ; whether iterations
+    // happen must not differ either.
     std::size_t n = record.vars.size();
     std::vector<bool> shared(n);
     std::vector<std::vector<NodeId>> reads(n);
@@ -254,7 +255,7 @@ Values FunctionBuilder::fold(Frame &frame, NodeId id) {
             loop.next.push_back(moved(loop, next[c]));
     }
 
-    // What the body made belongs to this turn of this loop alone.
+    // What the body made belongs to this iteration of this loop alone.
     std::erase_if(frame.made, [&](const auto &entry) {
         if (entry.second < depth_) return false;
         frame.values.erase(entry.first);

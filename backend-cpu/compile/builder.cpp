@@ -1,4 +1,4 @@
-// Grows a Code: finds equal instructions, asks fuse.cpp for a shorter way, and spreads shared
+// Grows a Code: finds equal instructions, calls fuse.cpp for a shorter form, and spreads shared
 // operands into registers where no variant of the kernel takes them as they are.
 #include "backend-cpu/compile/code.h"
 

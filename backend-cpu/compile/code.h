@@ -16,6 +16,7 @@ using Value = Id<ValueInfo>;
 struct Instruction;
 using InstructionId = Id<Instruction>;
 
+// What is known of one value: one number for each point, or one for all.
 struct ValueInfo {
     ir::Type type = ir::Type::Float;  // Float, Int or Bool
     bool shared = false;              // the same for every point
@@ -25,8 +26,10 @@ struct ValueInfo {
     static constexpr std::uint32_t no_source = std::numeric_limits<std::uint32_t>::max();
 };
 
+// What an instruction does: runs a kernel, reads data, calls a function or loops.
 enum class InstructionKind : std::uint8_t { Kernel, TableRead, Image, Grid, Call, Loop };
 
+// One step of a function before it has an order and registers.
 struct Instruction {
     InstructionKind kind = InstructionKind::Kernel;
     Kernel kernel{};   // Kernel
@@ -45,9 +48,10 @@ struct SourceValue {
     Value value;
 };
 
+// A loop of a function before layout: its block, what it carries, and when it ends.
 struct LoopCode {
-    Value count, index, condition;       // condition: none when there is none
-    Value active;                        // where turns differ by point: which points still turn
+    Value count, index, condition; // condition: none when there is none
+    Value active;                  // where iteration counts differ by point: which points go on
     std::vector<Value> vars, init, next; // one a component
     int max_count = 0;
     std::uint16_t level = 0; // of its body
@@ -121,6 +125,7 @@ Calls plan_calls(const ir::Scene &scene, const Body &root);
 // Marks in `calls.shared` what the calls that it makes hand over.
 Code build(const ir::Scene &scene, Calls &calls, std::size_t body, Choices choices);
 
+// Orders the instructions of all functions, gives values registers, and writes the tape.
 Program lay_out(const ir::Scene &scene, const Calls &calls, std::vector<Code> codes);
 
 } // namespace fathom::cpu

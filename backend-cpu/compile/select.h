@@ -6,7 +6,7 @@
 namespace fathom::cpu {
 
 // One value a component of each argument, in and out. Not for what build.cpp does itself: inputs,
-// calls, folds, data.
+// calls, loops, data.
 std::vector<Value> select(Builder &builder, const ir::Node &node,
                           std::span<const std::vector<Value>> args,
                           std::span<const ir::Type> types);

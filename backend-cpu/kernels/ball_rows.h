@@ -14,7 +14,7 @@ struct BallPoints {
     std::size_t count = 0;
 };
 struct BallLoops {
-    void (*least)(const BallPoints &points, const float *rows, std::size_t count);
+    void (*minimum)(const BallPoints &points, const float *rows, std::size_t count);
     void (*smooth)(const BallPoints &points, const float *rows, std::size_t count, float k);
     // And by how much a row was less than what was carried, at most, if it is more than `drop`.
     void (*smooth_dropping)(const BallPoints &points, const float *rows, std::size_t count, float k,

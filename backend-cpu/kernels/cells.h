@@ -9,6 +9,7 @@ namespace fathom::cpu {
 
 using Word = std::uint32_t;
 
+// Four words of memory: a number and its gradient by x, y and z.
 struct alignas(16) DualCell {
     std::array<Word, 4> words;
 };

@@ -17,6 +17,7 @@
 
 namespace fathom::cpu {
 
+// A number and its derivatives by x, y and z.
 struct Dual {
     float value = 0, dx = 0, dy = 0, dz = 0;
 
@@ -135,7 +136,7 @@ inline Dual pow(Dual a, Dual b) {
 } // namespace fathom::cpu
 
 namespace fathom::ir::sem {
-// Where these jump they have the value that floats have, whatever the number grows to.
+// At a discontinuity they have the value that floats have, whatever the number grows to.
 template <> inline cpu::Dual sign(cpu::Dual x) { return cpu::Dual(sign(x.value)); }
 template <> inline cpu::Dual step(cpu::Dual edge, cpu::Dual x) {
     return cpu::Dual(step(edge.value, x.value));

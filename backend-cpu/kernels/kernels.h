@@ -14,6 +14,7 @@
 
 namespace fathom::cpu {
 
+// One name for each row of kernels.def.
 enum class Kernel : std::uint8_t {
 #define FATHOM_KERNEL(name, parameters, expression, ...) name,
 #include "backend-cpu/kernels/kernels.def"
@@ -48,6 +49,7 @@ Mask mask_of_variant(std::uint32_t index);
 template <class Cell> using Loops =
     std::span<void (*const)(Cell *cells, const std::uint32_t *operands, std::size_t n)>;
 
+// All loops compiled for one instruction set.
 struct LoopSet {
     const char *name; // the instruction set
     Loops<std::uint32_t> loops;

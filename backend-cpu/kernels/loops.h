@@ -38,8 +38,8 @@ template <class Cell, class T> struct Operand<Cell, T, true> {
     T operator[](std::size_t) const { return value; }
 };
 
-// An output may stand in the register of an input that ends here, number by number: no turn depends
-// on another.
+// An output may stand in the register of an input that ends here, number by number: no iteration
+// depends on another.
 template <class Row, class Cell, Mask mask, class R, class... P, std::size_t... i>
 void loop_of(R (*)(P...), std::index_sequence<i...>, Cell *cells, const std::uint32_t *operands,
              std::size_t n) {

@@ -33,7 +33,7 @@ all_passes(const BallPoints &points, const float *rows, std::size_t count, Join 
     for (; i < count; ++i) pass<1>(points, rows + i * numbers, join);
 }
 
-[[gnu::flatten]] void least(const BallPoints &points, const float *rows, std::size_t count) {
+[[gnu::flatten]] void minimum(const BallPoints &points, const float *rows, std::size_t count) {
     all_passes(points, rows, count,
                [](float a, float x, float y, float z, float cx, float cy, float cz, float r) {
                    return MinBallRow<float>::run(a, x, y, z, cx, cy, cz, r);
@@ -56,16 +56,16 @@ pass_dropping(const BallPoints &points, const float *rows, float k, float *drop)
     const std::size_t count = points.count;
     FATHOM_INDEPENDENT
     for (std::size_t p = 0; p < count; ++p) {
-        float a = load<float>(carried[p]), most = drop[p];
+        float a = load<float>(carried[p]), maximum = drop[p];
         for (std::size_t i = 0; i < n; ++i) {
             const float b = BallRow<float>::run(
                 load<float>(x[p]), load<float>(y[p]), load<float>(z[p]), row[i * numbers],
                 row[i * numbers + 1], row[i * numbers + 2], row[i * numbers + 3]);
-            most = most < a - b ? a - b : most;
+            maximum = maximum < a - b ? a - b : maximum;
             a = BlendSmoothRow<float>::run(a, b, k);
         }
         store(carried[p], a);
-        drop[p] = most;
+        drop[p] = maximum;
     }
 }
 [[gnu::flatten]] void smooth_dropping(const BallPoints &points, const float *rows,
@@ -79,6 +79,6 @@ pass_dropping(const BallPoints &points, const float *rows, float k, float *drop)
 } // namespace
 
 BallLoops ball_loops();
-BallLoops ball_loops() { return {least, smooth, smooth_dropping}; }
+BallLoops ball_loops() { return {minimum, smooth, smooth_dropping}; }
 
 } // namespace fathom::cpu::FATHOM_ISA

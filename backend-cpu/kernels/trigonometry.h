@@ -23,15 +23,15 @@ inline Quadrant quadrant(float x) {
     // adding and taking away 1.5 * 2^52 rounds a double to a whole number (any |number| below 2^51)
     constexpr double rounder = 6755399441055744.0;
     constexpr double half_pi = 1.57079632679489661923, half_pi_rest = 6.12323399573676603587e-17;
-    constexpr double most = 0.78539816339744830962;
+    constexpr double maximum = 0.78539816339744830962;
     const double wide = x;
     const double turns = (wide * (1 / half_pi) + rounder) - rounder;
     const double fours = (turns * 0.25 + rounder) - rounder;
     double rest = (wide - turns * half_pi) - turns * half_pi_rest;
     // where floats are farther apart than a turn: some angle still, so that sin and cos stay within
     // -1..1
-    rest = rest > most ? most : rest;
-    rest = rest < -most ? -most : rest;
+    rest = rest > maximum ? maximum : rest;
+    rest = rest < -maximum ? -maximum : rest;
     return {static_cast<float>(rest), static_cast<float>(turns - 4 * fours)};
 }
 

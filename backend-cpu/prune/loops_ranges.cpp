@@ -113,13 +113,12 @@ std::uint64_t in_reach(const Eights &eights, std::size_t n, const float *row, fl
     for (std::size_t e = 0; e < n; ++e) {
         float square = 0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const float way = sem::greatest(
-                sem::greatest(eights.lo[axis][e] - row[axis], row[axis] - eights.hi[axis][e]),
-                0.0f);
+            const float way = sem::maximum(
+                sem::maximum(eights.lo[axis][e] - row[axis], row[axis] - eights.hi[axis][e]), 0.0f);
             square += way * way;
         }
         const float a = eights.carried[e];
-        const float reach = sem::greatest(
+        const float reach = sem::maximum(
             a + k + row[3] + 1e-5f * (sem::abs(a) + sem::abs(k) + sem::abs(row[3])), 0.0f);
         truths[e] = !(square >= reach * reach * 1.00001f);
     }
@@ -144,21 +143,21 @@ template <bool is_smooth>
     float *carried_lo = in.carried_lo, *carried_hi = in.carried_hi;
     const Range k{in.k_lo, in.k_hi};
     Eights eights;
-    const auto most = [](const float *numbers) {
-        float greatest = numbers[0];
-        for (std::size_t i = 1; i < eight; ++i) greatest = sem::greatest(greatest, numbers[i]);
-        return greatest;
+    const auto largest = [](const float *numbers) {
+        float result = numbers[0];
+        for (std::size_t i = 1; i < eight; ++i) result = sem::maximum(result, numbers[i]);
+        return result;
     };
     for (std::size_t e = 0; e < max_eights; ++e) {
         const std::size_t first = (e < eights_count ? e : 0) * eight;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            float least = in.lo[axis][first];
+            float lowest = in.lo[axis][first];
             for (std::size_t i = 1; i < eight; ++i)
-                least = sem::least(least, in.lo[axis][first + i]);
-            eights.lo[axis][e] = least;
-            eights.hi[axis][e] = most(in.hi[axis] + first);
+                lowest = sem::minimum(lowest, in.lo[axis][first + i]);
+            eights.lo[axis][e] = lowest;
+            eights.hi[axis][e] = largest(in.hi[axis] + first);
         }
-        eights.carried[e] = most(in.carried_hi + first);
+        eights.carried[e] = largest(in.carried_hi + first);
     }
     const std::uint64_t all = eights_count == max_eights ? 0xff : (1u << eights_count) - 1;
     for (std::size_t i = 0; i < in.count; ++i) {
@@ -192,7 +191,7 @@ template <bool is_smooth>
             neutral &= ~((signs_of(same) ^ 0xff) << first);
             renewed |= signs_of(fresh) << first;
             if (found.lows) std::memcpy(found.lows + i * n + first, lo, sizeof lo);
-            eights.carried[e] = most(in.carried_hi + first);
+            eights.carried[e] = largest(in.carried_hi + first);
         }
         found.neutral[i * found.stride] = neutral;
         found.renewed[i * found.stride] = renewed;

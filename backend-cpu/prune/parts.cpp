@@ -1,5 +1,5 @@
 // What shortening knows of a tape before it sees any box: what each step reads and writes, what it
-// may become, which loops may leave turns out.
+// may become, which loops may leave iterations out.
 #include "backend-cpu/prune/shorten.h"
 
 #include <algorithm>
@@ -106,7 +106,7 @@ class PartMaker {
             const Uses &inner = uses(loop.block);
             std::set<std::uint32_t> written = inner.writes, read = inner.reads;
             for (const Loop::Carried &carried : loop.carried) {
-                written.insert(slot(carried.var)); // also where no turn is left
+                written.insert(slot(carried.var)); // also where no iteration is left
                 read.insert(slot(carried.var));
             }
             written.insert(slot(loop.index));
@@ -267,7 +267,7 @@ class PartMaker {
     bool renewable(const Loop &loop, RowLoop &rows) {
         if (rows.decisions.size() == 1 &&
             made_.parts[rows.decisions[0].part].choice == Choice::Least)
-            rows.least = 0;
+            rows.minimum = 0;
         const Program::Block body = program_.blocks[loop.block];
         std::set<std::uint32_t> readers;
         for (const RowLoop::Decision &decision : rows.decisions) {
@@ -281,18 +281,18 @@ class PartMaker {
             readers.insert(condition);
             const std::uint32_t *compared =
                 program_.operands.data() + program_.steps[condition].operands + 1;
-            bool is_least = false;
+            bool is_minimum = false;
             for (std::size_t k = 0; k < rows.decisions.size(); ++k) {
                 const Part &other = made_.parts[rows.decisions[k].part];
                 if (other.choice != Choice::Select || rows.decisions[k].kept != 1 ||
                     other.margin != made.margin || compared[1] != loop.carried[k].var ||
                     compared[0] != other.operand[0])
                     continue;
-                is_least = true;
-                if (rows.least < 0) rows.least = static_cast<std::int32_t>(k);
-                if (rows.least != static_cast<std::int32_t>(k)) return false; // of two minima
+                is_minimum = true;
+                if (rows.minimum < 0) rows.minimum = static_cast<std::int32_t>(k);
+                if (rows.minimum != static_cast<std::int32_t>(k)) return false; // of two minima
             }
-            if (!is_least || decision.kept != 1) return false;
+            if (!is_minimum || decision.kept != 1) return false;
         }
         for (std::uint32_t i = body.first; i < body.last; ++i) {
             if (readers.contains(i)) continue;
@@ -313,7 +313,7 @@ class PartMaker {
         });
         rows.droppable = !loop.breaks && known != program_.shared.end() && !loop.carried.empty();
         if (rows.droppable)
-            rows.turns = std::clamp(static_cast<std::int32_t>(known->bits), 0, loop.max_count);
+            rows.iterations = std::clamp(static_cast<std::int32_t>(known->bits), 0, loop.max_count);
         for (const Loop::Carried &carried : loop.carried) {
             if (!rows.droppable) break;
             const auto decision = decision_of(loop, carried);
@@ -324,7 +324,7 @@ class PartMaker {
         for (std::size_t k = 0; k < rows.decisions.size(); ++k)
             made_.parts[rows.decisions[k].part].decision = static_cast<std::int32_t>(k);
         rows.renewable = rows.droppable && renewable(loop, rows);
-        if (!rows.renewable) rows.least = -1;
+        if (!rows.renewable) rows.minimum = -1;
         rows.chain = rows.renewable && loop.balls >= 0 &&
                      program_.ball_loops[static_cast<std::size_t>(loop.balls)].smooth;
         made_.loops[index] = std::move(rows);
@@ -375,7 +375,7 @@ void splice(const Parts &parts, std::uint32_t block, ShortTape &tape) {
         const RowLoop &loop = parts.loops[step.target];
         Selection::Rows rows{static_cast<std::uint32_t>(tape.rows.size()), 0, !loop.droppable, {}};
         if (loop.droppable) {
-            rows.count = static_cast<std::uint32_t>(loop.turns);
+            rows.count = static_cast<std::uint32_t>(loop.iterations);
             for (std::uint32_t row = 0; row < rows.count; ++row) tape.rows.push_back(row);
         }
         tape.shapes += static_cast<float>(rows.count);

@@ -1,4 +1,4 @@
-// The cells: made by the first who asks, 64 at once, each from its parent's tape. And points
+// The cells: made when first needed, 64 at once, each from its parent's tape. And points
 // gathered by cell, so that each tape runs over a batch.
 #include "backend-cpu/prune/pruning.h"
 
@@ -108,9 +108,9 @@ int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
         PruneCell &made = block.cells[k];
         made.above = &cell;
         pieces[k] = {block.steps.size(), block.loops.size(), block.packed.size()};
-        const float least = evaluator.shortener.result_lo[k];
-        if (pruning.settings.far_cells && least >= pruning.settings.far * half_diagonal) {
-            made.far = least; // and where exact values are asked for, the cell above has them
+        const float minimum = evaluator.shortener.result_lo[k];
+        if (pruning.settings.far_cells && minimum >= pruning.settings.far * half_diagonal) {
+            made.far = minimum; // where exact values are wanted, the cell above computes them
             continue;
         }
         shorten(pruning.parts, evaluator.shortener, from.tape, k, true, tape);
@@ -209,11 +209,11 @@ const PruneCell *find(const Pruning &pruning, CellEvaluator &evaluator, const Pl
 std::uint32_t group_of(CellEvaluator &evaluator, const PruneCell *cell) {
     const std::size_t mask = evaluator.seen.size() - 1;
     std::size_t at = (reinterpret_cast<std::uintptr_t>(cell) / sizeof(PruneCell)) & mask;
-    while (evaluator.seen[at].turn == evaluator.turn && evaluator.seen[at].cell != cell)
+    while (evaluator.seen[at].query == evaluator.query && evaluator.seen[at].cell != cell)
         at = (at + 1) & mask;
     CellEvaluator::Seen &seen = evaluator.seen[at];
-    if (seen.turn != evaluator.turn) {
-        seen = {cell, evaluator.turn, static_cast<std::uint32_t>(evaluator.groups.size())};
+    if (seen.query != evaluator.query) {
+        seen = {cell, evaluator.query, static_cast<std::uint32_t>(evaluator.groups.size())};
         evaluator.groups.push_back(cell);
         evaluator.counts.push_back(0);
     }
@@ -225,11 +225,11 @@ std::uint32_t group_of(CellEvaluator &evaluator, const PruneCell *cell) {
 Pruning::Pruning(const Program &p, const Inputs &inputs, const Cube &c, const PruneSettings &wanted)
     : program(p), parts(parts_of(program, inputs)), cube(c), settings(wanted),
       whole(whole_tape(parts)) {
-    float most = 0;
-    for (float x : cube.lo) most = std::max({most, std::fabs(x), std::fabs(x + cube.side)});
+    float maximum = 0;
+    for (float x : cube.lo) maximum = std::max({maximum, std::fabs(x), std::fabs(x + cube.side)});
     cells = static_cast<float>(std::int32_t{1} << bits_a_level * settings.depth);
     scale = cells / cube.side;
-    slack = 4e-7f * (cube.side + most);
+    slack = 4e-7f * (cube.side + maximum);
     root.tape = whole.selection(parts);
     root.cost = whole.cost;
     root.shapes = whole.shapes;
@@ -259,8 +259,8 @@ namespace {
 void evaluate_exactly(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
                       const float *const *in, float *const *out, std::size_t n);
 
-// The points evaluator.unknown, by the cell above, whose tape has more rows and a Cut far beyond, or
-// none as the whole tape.
+// The points evaluator.unknown, by the cell above, whose tape has more rows and a Cut far beyond,
+// or none as the whole tape.
 void evaluate_in_parent(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
                         const float *const *in, float *const *out, std::size_t n) {
     const std::vector<std::uint32_t> which(
@@ -305,7 +305,7 @@ void evaluate_in(const Pruning &pruning, CellEvaluator &evaluator, const PruneCe
 
 void evaluate(const Pruning &pruning, CellEvaluator &evaluator, const float *const *in,
               float *const *out, std::size_t n, const float *limits) {
-    ++evaluator.turn;
+    ++evaluator.query;
     if (evaluator.seen.size() < 4 * n) evaluator.seen.assign(std::bit_ceil(4 * n), {});
     evaluator.groups.clear(), evaluator.counts.clear();
     evaluator.order.clear(), evaluator.group_of.clear();

@@ -21,25 +21,28 @@ struct Cube {
     float side = 0;
 };
 
+// How deep and how far cells are divided, and which of them may answer with a bound.
 struct PruneSettings {
-    bool far_cells = true; // the first result is a distance, and bounds of it may be asked for
+    bool far_cells = true; // the first result is a distance, and bounds of it may be wanted
     int depth = 4;         // levels of cells: 4^depth along an axis
     float enough = 32;     // a tape of so few kernels is short enough
     float far = 1;         // times half a cell's diagonal: from there on one number has to do
 };
 
 struct PruneBlock;
+// A cube of space with its shortened tape, or one number where it is far from all surfaces.
 struct PruneCell {
-    float far = 0; // above 0: the least value in it, and exact ones are asked of the cell above
+    float far = 0; // above 0: the smallest value in it; exact values come from the cell above
     float cost = 0, shapes = 0; // of its tape
     bool splits = false;
     const PruneCell *above =
-        nullptr; // what it is a part of: asked where a Cut leaves points unknown
+        nullptr; // the cell that contains it: evaluated where a Cut leaves points unknown
     Selection tape;
     mutable std::atomic<PruneBlock *> below{nullptr};
     mutable std::atomic<bool> claimed{false};
 };
 
+// The hierarchy of cells of one program; shared by threads.
 struct Pruning {
     Pruning(const Program &program, const Inputs &inputs, const Cube &cube,
             const PruneSettings &settings);
@@ -65,7 +68,7 @@ struct CellEvaluator {
     struct Tally {
         std::uint64_t far = 0, near = 0, outside = 0; // points: outside of the cube
         std::uint64_t groups = 0;
-        std::uint64_t again = 0;        // points that the cell above was asked for
+        std::uint64_t again = 0;        // points that the cell above evaluated
         double kernels = 0, shapes = 0; // of the near ones' tapes, all told
         std::uint64_t cells = 0;        // with tapes, made by this thread
     } tally;
@@ -75,12 +78,12 @@ struct CellEvaluator {
         std::array<std::int32_t, 3> at{};
     } last;
     std::vector<std::uint8_t> bounded; // by point of the last question: it got a bound
-    struct Seen { // which group a cell has: open addressing, of this question where `turn` is its
+    struct Seen { // which group a cell has: open addressing, valid where `query` is the evaluator's
         const PruneCell *cell = nullptr;
-        std::uint32_t turn = 0, group = 0;
+        std::uint32_t query = 0, group = 0;
     };
     std::vector<Seen> seen;
-    std::uint32_t turn = 0;
+    std::uint32_t query = 0; // counts calls
     // points left, their groups, and the groups
     std::vector<std::uint32_t> order, group_of, place;
     std::vector<const PruneCell *> groups;

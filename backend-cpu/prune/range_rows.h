@@ -24,8 +24,8 @@ FATHOM_RANGE(MulF, (R a, R b), return mul(a, b);)
 FATHOM_RANGE(DivF, (R a, R b), return div(a, b);)
 FATHOM_RANGE(ModF, (R a, R b), return mod(a, b);)
 FATHOM_RANGE(PowF, (R a, R b), return pow(a, b);)
-FATHOM_RANGE(MinF, (R a, R b), return least(a, b);)
-FATHOM_RANGE(MaxF, (R a, R b), return greatest(a, b);)
+FATHOM_RANGE(MinF, (R a, R b), return minimum(a, b);)
+FATHOM_RANGE(MaxF, (R a, R b), return maximum(a, b);)
 FATHOM_RANGE(StepF, (R edge, R x),
              return R{x.lo < edge.hi ? 0.0f : 1.0f, x.hi < edge.lo ? 0.0f : 1.0f};)
 FATHOM_RANGE(Atan2F, (R y, R x), return atan2(y, x);)
@@ -56,8 +56,8 @@ FATHOM_RANGE(ModI, (R a, R b), const float n = std::floor(a.lo / b.lo), m = size
              if (b.lo == b.hi && b.lo > 0 && n == std::floor(a.hi / b.lo) &&
                  size(a) <= whole) return integer(a.lo - n * b.lo, a.hi - n * b.lo);
              return integer(b.lo > 0 ? R{0, m} : hull(R{-m, m}, a));)
-FATHOM_RANGE(MinI, (R a, R b), return least(a, b);)
-FATHOM_RANGE(MaxI, (R a, R b), return greatest(a, b);)
+FATHOM_RANGE(MinI, (R a, R b), return minimum(a, b);)
+FATHOM_RANGE(MaxI, (R a, R b), return maximum(a, b);)
 FATHOM_RANGE(AbsI, (R a), return abs(a);)
 FATHOM_RANGE(SignI, (R a), return R{sem::sign(a.lo), sem::sign(a.hi)};)
 FATHOM_RANGE(ClampI, (R a, R b, R c),
@@ -71,8 +71,8 @@ FATHOM_RANGE(LessI, (R a, R b), return less(a, b);)
 FATHOM_RANGE(LessEqualI, (R a, R b), return less_equal(a, b);)
 FATHOM_RANGE(EqualI, (R a, R b), return equal(a, b);)
 FATHOM_RANGE(NotEqualI, (R a, R b), return opposite(equal(a, b));)
-FATHOM_RANGE(And, (R a, R b), return least(a, b);)
-FATHOM_RANGE(Or, (R a, R b), return greatest(a, b);)
+FATHOM_RANGE(And, (R a, R b), return minimum(a, b);)
+FATHOM_RANGE(Or, (R a, R b), return maximum(a, b);)
 FATHOM_RANGE(Not, (R a), return opposite(a);)
 FATHOM_RANGE(SelectF, (R c, R a, R b), return select(c, a, b);)
 FATHOM_RANGE(SelectI, (R c, R a, R b), return select(c, a, b);)
@@ -115,9 +115,9 @@ FATHOM_RANGE(Simplex, (R x, R y, R z), return noise(x, y, z, -1.05f, 1.05f);)
 FATHOM_RANGE(ValueNoise, (R x, R y, R z), return noise(x, y, z, -few, 1 + few);)
 FATHOM_RANGE(Worley, (R x, R y, R z), return noise(x, y, z, 0, 1);)
 FATHOM_RANGE(SpotNoise, (R x, R y, R z, R radius, R density),
-             const float most = static_cast<float>(1.001 * sem::spot_range) * 8;
+             const float maximum = static_cast<float>(1.001 * sem::spot_range) * 8;
              return radius.lo > 1e-3f && size(density) < endless
-                        ? noise(div(x, radius), div(y, radius), div(z, radius), -most, most)
+                        ? noise(div(x, radius), div(y, radius), div(z, radius), -maximum, maximum)
                         : everything();)
 // -- blends
 FATHOM_RANGE(BlendSmooth, (R a, R b, R r), return blend_smooth(a, b, r);)
@@ -128,30 +128,30 @@ FATHOM_RANGE(BlendChamfer, (R a, R b, R r),
              return blended([](float x, float y, float k) { return sem::blend_chamfer(x, y, k); },
                             a, b, r);)
 FATHOM_RANGE(BlendStairs, (R a, R b, R r, [[maybe_unused]] R n), // g <= r/2, whatever n
-             const R m = least(a, b);
+             const R m = minimum(a, b);
              const bool is = apart(a, b, r); const float by = greater(r.hi, 0);
              return is ? m : tidy(m.lo - (0.5f + few) * by - few * sem::abs(m.lo), m.hi);)
 FATHOM_RANGE(BlendColumns,
              (R a, R b, R r, [[maybe_unused]] R n), // a column may stand r before them
-             const R m = least(a, b);
+             const R m = minimum(a, b);
              const float by = (1 + few) * greater(r.hi, 0);
              return tidy(m.lo - by - few * sem::abs(m.lo) - few, m.hi);)
 // -- several operations at once
 FATHOM_RANGE(MulAdd, (R a, R b, R c), return add(mul(a, b), c);)
 FATHOM_RANGE(AbsSub, (R a, R b), return sub(abs(a), b);)
-FATHOM_RANGE(MaxAbs, (R a, R b), return greatest(abs(a), abs(b));)
-FATHOM_RANGE(Slab, (R lo, R x, R hi), return greatest(sub(lo, x), sub(x, hi));)
-FATHOM_RANGE(MinMax, (R a, R b, R c), return least(a, greatest(b, c));)
-FATHOM_RANGE(MaxMin, (R a, R b, R c), return greatest(a, least(b, c));)
-FATHOM_RANGE(MaxNeg, (R a, R b), return greatest(a, neg(b));)
+FATHOM_RANGE(MaxAbs, (R a, R b), return maximum(abs(a), abs(b));)
+FATHOM_RANGE(Slab, (R lo, R x, R hi), return maximum(sub(lo, x), sub(x, hi));)
+FATHOM_RANGE(MinMax, (R a, R b, R c), return minimum(a, maximum(b, c));)
+FATHOM_RANGE(MaxMin, (R a, R b, R c), return maximum(a, minimum(b, c));)
+FATHOM_RANGE(MaxNeg, (R a, R b), return maximum(a, neg(b));)
 FATHOM_RANGE(SubAbs, (R a, R b), return abs(sub(a, b));)
 FATHOM_RANGE(LengthPositive3, (R x, R y, R z),
-             return length(greatest(x, {0, 0}), greatest(y, {0, 0}), greatest(z, {0, 0}));)
+             return length(maximum(x, {0, 0}), maximum(y, {0, 0}), maximum(z, {0, 0}));)
 FATHOM_RANGE(Distance3, (R x, R y, R z, R cx, R cy, R cz),
              return length(sub(x, cx), sub(y, cy), sub(z, cz));)
 FATHOM_RANGE(Ball, (R x, R y, R z, R cx, R cy, R cz, R r), return ball(x, y, z, cx, cy, cz, r);)
 FATHOM_RANGE(MinBall, (R a, R x, R y, R z, R cx, R cy, R cz, R r),
-             return least(a, ball(x, y, z, cx, cy, cz, r));)
+             return minimum(a, ball(x, y, z, cx, cy, cz, r));)
 FATHOM_RANGE(SmoothBall, (R a, R x, R y, R z, R cx, R cy, R cz, R r, R k),
              return blend_smooth(a, ball(x, y, z, cx, cy, cz, r), k);)
 

@@ -24,7 +24,7 @@ class RangeRunner {
 
     void run(const Selection &tape) {
         std::size_t loop = 0;
-        memory_.chosen.clear(), memory_.ends.clear(), memory_.turns.clear();
+        memory_.chosen.clear(), memory_.ends.clear(), memory_.iterations.clear();
         memory_.lows.clear(), memory_.loop_runs.clear(), memory_.cuts.clear();
         memory_.listed.clear();
         for (std::uint32_t id : tape.steps) {
@@ -148,26 +148,26 @@ class RangeRunner {
         return true;
     }
 
-    void turn_to(const Loop &loop, std::uint32_t turn) {
-        cells_.lo[loop.index] = cells_.hi[loop.index] = static_cast<float>(turn);
+    void begin_iteration(const Loop &loop, std::uint32_t iteration) {
+        cells_.lo[loop.index] = cells_.hi[loop.index] = static_cast<float>(iteration);
     }
 
     void loop(const Loop &loop) {
         float count = cells_.hi[loop.count];
         if (!loop.once)
             count = *std::max_element(cells_.hi + loop.count, cells_.hi + loop.count + n_);
-        const auto turns =
+        const auto iterations =
             static_cast<std::uint32_t>(std::clamp(count, 0.0f, static_cast<float>(loop.max_count)));
-        for (std::uint32_t turn = 0; turn < turns; ++turn) {
-            turn_to(loop, turn);
+        for (std::uint32_t iteration = 0; iteration < iterations; ++iteration) {
+            begin_iteration(loop, iteration);
             if (!run_block(loop.block)) break;
         }
     }
 
-    // The turns of a loop of the tape itself, with what each changes.
+    // The iterations of a loop of the tape itself, with what each changes.
     void rows(const Step &step, const Selection &tape, const Selection::Rows &rows) {
         const Loop &loop = program_.loops[step.target];
-        Shortener::LoopRun run{static_cast<std::uint32_t>(memory_.turns.size()),
+        Shortener::LoopRun run{static_cast<std::uint32_t>(memory_.iterations.size()),
                                static_cast<std::uint32_t>(memory_.lows.size()),
                                no_part,
                                no_part,
@@ -184,20 +184,21 @@ class RangeRunner {
         if (balls) ball_rows(loop, known, tape.rows + rows.first, rows.count);
         for (std::uint32_t i = 0; !balls && i < rows.count; ++i) {
             for (auto &decided : decided_) decided.wins[0] = decided.wins[1] = 0;
-            turn_to(loop, tape.rows[rows.first + i]);
+            begin_iteration(loop, tape.rows[rows.first + i]);
             row(loop, known);
-            Shortener::Turn turn{~std::uint64_t{0}, known.renewable ? ~std::uint64_t{0} : 0};
+            Shortener::Iteration iteration{~std::uint64_t{0},
+                                           known.renewable ? ~std::uint64_t{0} : 0};
             for (std::size_t d = 0; d < known.decisions.size(); ++d) {
                 const int kept = known.decisions[d].kept;
-                turn.neutral &= decided_[d].wins[kept];
-                turn.renewed &= decided_[d].wins[1 - kept];
+                iteration.neutral &= decided_[d].wins[kept];
+                iteration.renewed &= decided_[d].wins[1 - kept];
             }
-            memory_.turns.push_back(turn);
+            memory_.iterations.push_back(iteration);
         }
-        if (known.least >= 0) {
-            const Loop::Carried &least = loop.carried[static_cast<std::size_t>(known.least)];
+        if (known.minimum >= 0) {
+            const Loop::Carried &minimum = loop.carried[static_cast<std::size_t>(known.minimum)];
             run.ends = static_cast<std::uint32_t>(memory_.ends.size());
-            copy_ends(cells_.hi, least.var, memory_.ends.emplace_back().hi);
+            copy_ends(cells_.hi, minimum.var, memory_.ends.emplace_back().hi);
             above(run, rows.count);
         }
         if (known.chain) cut(loop, known, rows, run);
@@ -213,9 +214,9 @@ class RangeRunner {
     void ball_rows(const Loop &loop, const RowLoop &known, const std::uint32_t *rows,
                    std::size_t count) {
         const BallRows &balls = program_.ball_loops[static_cast<std::size_t>(loop.balls)];
-        const std::size_t first = memory_.turns.size(), first_low = memory_.lows.size();
-        const bool lows = known.least >= 0 || known.chain;
-        memory_.turns.resize(first + count);
+        const std::size_t first = memory_.iterations.size(), first_low = memory_.lows.size();
+        const bool lows = known.minimum >= 0 || known.chain;
+        memory_.iterations.resize(first + count);
         if (lows) memory_.lows.resize(first_low + count * n_);
         BallRangeRows in{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -228,9 +229,9 @@ class RangeRunner {
         in.smooth = balls.smooth;
         if (balls.smooth) in.k_lo = cells_.lo[balls.k], in.k_hi = cells_.hi[balls.k];
         if (count == 0) return;
-        static_assert(sizeof(Shortener::Turn) % sizeof(std::uint64_t) == 0);
-        loops_.balls(in, {&memory_.turns[first].neutral, &memory_.turns[first].renewed,
-                          sizeof(Shortener::Turn) / sizeof(std::uint64_t),
+        static_assert(sizeof(Shortener::Iteration) % sizeof(std::uint64_t) == 0);
+        loops_.balls(in, {&memory_.iterations[first].neutral, &memory_.iterations[first].renewed,
+                          sizeof(Shortener::Iteration) / sizeof(std::uint64_t),
                           lows ? memory_.lows.data() + first_low : nullptr});
     }
 
@@ -242,10 +243,10 @@ class RangeRunner {
     }
 
     // Where a chain may be cut in each box: all rows that are beyond it in the end, by some radii.
-    // Rounding: a turn's blend is computed to 2u(k + m), u = 2^-24, where it is no operand to the
-    // bit; m, the greatest size of what it gives, is that of the start and of the end's lower end.
-    // The true chain and the one that begins with the bound are that much apart in each turn at
-    // most, since blends bring no two numbers farther from each other.
+    // Rounding: an iteration's blend is computed to 2u(k + m), u = 2^-24, where it is no operand to
+    // the bit; m, the greatest size of what it gives, is that of the start and of the end's lower
+    // end. The true chain and the one that begins with the bound are that much apart in each
+    // iteration at most, since blends bring no two numbers farther from each other.
     void cut(const Loop &loop, const RowLoop &known, const Selection::Rows &rows,
              Shortener::LoopRun &run) {
         const Part &blend = parts_.parts[known.decisions[0].part];
@@ -262,24 +263,24 @@ class RangeRunner {
             if (rows.cut.any()) t = std::min(t, rows.cut.start + k);
             Cut &cut = cuts[box];
             cut.start = t - k - 1e-6f * (std::fabs(t) + k);
-            cut.drop = k + 2.5e-7f * static_cast<float>(known.turns) *
+            cut.drop = k + 2.5e-7f * static_cast<float>(known.iterations) *
                                (std::max(std::fabs(lo), std::fabs(cut.start)) + k);
             beyond[box] = t;
         }
         static constexpr float nothing = 0;
         for (std::uint32_t i = 0; i < rows.count; ++i)
-            if (memory_.turns[run.first_turn + i].neutral != everywhere)
-                memory_.turns[run.first_turn + i].beyond =
+            if (memory_.iterations[run.first_iteration + i].neutral != everywhere)
+                memory_.iterations[run.first_iteration + i].beyond =
                     loops_.below(beyond.data(), false, memory_.lows.data() + run.first_low + i * n_,
                                  false, &nothing, true, n_);
     }
 
-    // By box, the turns that may change something, in their order.
+    // By box, the iterations that may change something, in their order.
     void list(Shortener::LoopRun &run, std::uint32_t rows) {
         std::array<std::uint32_t, max_boxes> next{};
-        const Shortener::Turn *turns = memory_.turns.data() + run.first_turn;
+        const Shortener::Iteration *iterations = memory_.iterations.data() + run.first_iteration;
         for (std::uint32_t i = 0; i < rows; ++i)
-            each_bit(~turns[i].neutral, [&](std::size_t box) { ++next[box]; });
+            each_bit(~iterations[i].neutral, [&](std::size_t box) { ++next[box]; });
         std::uint32_t first = static_cast<std::uint32_t>(memory_.listed.size());
         run.listed[0] = first;
         for (std::size_t box = 0; box < max_boxes; ++box) {
@@ -289,7 +290,8 @@ class RangeRunner {
         }
         memory_.listed.resize(first);
         for (std::uint32_t i = 0; i < rows; ++i)
-            each_bit(~turns[i].neutral, [&](std::size_t box) { memory_.listed[next[box]++] = i; });
+            each_bit(~iterations[i].neutral,
+                     [&](std::size_t box) { memory_.listed[next[box]++] = i; });
     }
     template <class F> void each_bit(std::uint64_t bits, F &&f) const {
         if (n_ < 64) bits &= (std::uint64_t{1} << n_) - 1;
@@ -299,12 +301,12 @@ class RangeRunner {
     // Of a minimum nothing is changed either by a row that is above it in the end.
     void above(const Shortener::LoopRun &run, std::uint32_t rows) {
         static constexpr float nothing = 0;
-        const float *least = memory_.ends[run.ends].hi.data();
+        const float *minimum = memory_.ends[run.ends].hi.data();
         for (std::uint32_t i = 0; i < rows; ++i)
-            if (memory_.turns[run.first_turn + i].neutral != everywhere)
-                memory_.turns[run.first_turn + i].neutral |=
-                    loops_.below(least, false, memory_.lows.data() + run.first_low + i * n_, false,
-                                 &nothing, true, n_);
+            if (memory_.iterations[run.first_iteration + i].neutral != everywhere)
+                memory_.iterations[run.first_iteration + i].neutral |=
+                    loops_.below(minimum, false, memory_.lows.data() + run.first_low + i * n_,
+                                 false, &nothing, true, n_);
     }
 
     void row(const Loop &loop, const RowLoop &known) {
@@ -315,7 +317,7 @@ class RangeRunner {
             if (part.decision >= 0) {
                 const auto d = static_cast<std::size_t>(part.decision);
                 wins(id, part, decided_[d].wins);
-                if (known.least == part.decision || known.chain) {
+                if (known.minimum == part.decision || known.chain) {
                     const std::uint32_t added = part.operand[1 - known.decisions[d].kept];
                     const std::size_t first = memory_.lows.size();
                     memory_.lows.resize(first + n_);

@@ -19,6 +19,7 @@
 
 namespace fathom::cpu::FATHOM_ISA {
 
+// A closed interval of floats, lo <= hi; ends may be infinite.
 struct Range {
     float lo, hi;
 };
@@ -62,8 +63,8 @@ inline Range div(Range a, Range b) {
     const float lo = lesser(lesser(p, q), lesser(r, s)), hi = greater(greater(p, q), greater(r, s));
     return {bad ? -endless : lo, bad ? endless : hi};
 }
-inline Range least(Range a, Range b) { return {lesser(a.lo, b.lo), lesser(a.hi, b.hi)}; }
-inline Range greatest(Range a, Range b) { return {greater(a.lo, b.lo), greater(a.hi, b.hi)}; }
+inline Range minimum(Range a, Range b) { return {lesser(a.lo, b.lo), lesser(a.hi, b.hi)}; }
+inline Range maximum(Range a, Range b) { return {greater(a.lo, b.lo), greater(a.hi, b.hi)}; }
 inline Range abs(Range a) { return {greater(greater(a.lo, -a.hi), 0), size(a)}; }
 inline Range square(Range a) {
     const Range m = abs(a);
@@ -112,7 +113,7 @@ inline Range pow(Range x, Range y) {
 }
 
 // Over a box without the origin the angle is extreme at corners, unless the box crosses the
-// negative x axis, where it jumps.
+// negative x axis, where it is discontinuous.
 inline Range atan2(Range y, Range x) {
     if ((x.lo <= 0 && y.lo <= 0 && y.hi >= 0) || is_everything(x) || is_everything(y))
         return {-3.1416f, 3.1416f};
@@ -217,10 +218,10 @@ inline Range dot(Range ax, Range ay, Range az, Range bx, Range by, Range bz) {
 }
 // A component over a length whose square is `squares`; where squares run under floats lose digits.
 inline Range normalized(Range x, Range squares) {
-    const float most = squares.lo > 1e-30f ? 1 + few : 2.0f;
+    const float limit = squares.lo > 1e-30f ? 1 + few : 2.0f;
     const Range by = {1 / sem::sqrt(squares.hi), 1 / sem::sqrt(squares.lo)};
     const Range one = squares.lo > 1e-30f ? mul(x, by) : everything();
-    return within(widen(one), -most, most);
+    return within(widen(one), -limit, limit);
 }
 
 // -- noise: its certified range, where floats still have fractions
@@ -240,7 +241,7 @@ template <class F> Range blended(F blend, Range a, Range b, Range r) {
     const float lo = blend(a.lo, b.lo, r.hi), hi = blend(a.hi, b.hi, r.lo);
     const float reach = greater(r.hi, 0);
     const Range some = tidy(lo - few * (sem::abs(lo) + reach), hi + few * (sem::abs(hi) + reach)),
-                exact = least(a, b);
+                exact = minimum(a, b);
     const bool is_exact = apart(a, b, r);
     return {is_exact ? exact.lo : some.lo, is_exact ? exact.hi : lesser(some.hi, exact.hi)};
 }

@@ -106,18 +106,18 @@ class Backward {
         const RowLoop &known = parts_.loops[step.target];
         Selection::Rows kept{static_cast<std::uint32_t>(tape.rows.size()), 0, from.all, from.cut};
         if (!from.all) {
-            const bool least = known.least >= 0 && cutoff < memory_.ends[run.ends].hi[box_];
+            const bool minimum = known.minimum >= 0 && cutoff < memory_.ends[run.ends].hi[box_];
             bool renewed = false;
             std::size_t beyond = 0;
             memory_.kept.clear();
             for (std::uint32_t at = run.listed[box_ + 1]; at-- > run.listed[box_] && !renewed;) {
                 const std::uint32_t i = memory_.listed[at];
-                const Shortener::Turn &turn = memory_.turns[run.first_turn + i];
-                if (least && memory_.lows[run.first_low + i * memory_.boxes + box_] > cutoff)
+                const Shortener::Iteration &iteration = memory_.iterations[run.first_iteration + i];
+                if (minimum && memory_.lows[run.first_low + i * memory_.boxes + box_] > cutoff)
                     continue;
                 memory_.kept.push_back(i);
-                beyond += (turn.beyond & bit_) != 0;
-                renewed = (turn.renewed & bit_) != 0;
+                beyond += (iteration.beyond & bit_) != 0;
+                renewed = (iteration.renewed & bit_) != 0;
             }
             if (memory_.kept.empty()) return; // what it carries is what it began with
             if (renewed) kept.cut = {};
@@ -126,7 +126,7 @@ class Backward {
             if (cuts) kept.cut = memory_.cuts[run.cuts][box_], tape.cut = true;
             for (std::size_t k = memory_.kept.size(); k-- > 0;) {
                 const std::uint32_t i = memory_.kept[k];
-                if (cuts && memory_.turns[run.first_turn + i].beyond & bit_) continue;
+                if (cuts && memory_.iterations[run.first_iteration + i].beyond & bit_) continue;
                 tape.rows.push_back(from_.rows[from.first + i]);
             }
             kept.count = static_cast<std::uint32_t>(tape.rows.size()) - kept.first;

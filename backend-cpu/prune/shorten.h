@@ -37,16 +37,17 @@ struct Part {
     std::uint32_t ball = no_part, ball_operands = 0, join = no_part, join_operands = 0;
 };
 
-// A loop whose turns may be left out: all that it carries is chosen between what it was and what
-// the turn adds.
+// A loop whose iterations may be left out: all that it carries is chosen between what it was and
+// what the iteration adds.
 struct RowLoop {
     bool droppable = false;
-    bool renewable = false;  // what a turn adds does not depend on what was before, and where it
-                             // wins over that, it wins over what the loop began with
-    std::int32_t least = -1; // renewable, and the rest goes with the minimum that this decision
-                             // keeps: then order is nothing; -1: not so
-    bool chain = false;      // of blended balls, which a Cut may shorten
-    std::int32_t turns = 0;
+    bool renewable =
+        false; // what an iteration adds does not depend on what was before, and where it
+               // wins over that, it wins over what the loop began with
+    std::int32_t minimum = -1; // renewable, and the rest goes with the minimum that this decision
+                               // keeps: then order is nothing; -1: not so
+    bool chain = false;        // of blended balls, which a Cut may shorten
+    std::int32_t iterations = 0;
     struct Decision {
         std::uint32_t part = 0;
         int kept = 0; // which operand is what it was
@@ -54,6 +55,7 @@ struct RowLoop {
     std::vector<Decision> decisions;
 };
 
+// The steps of a program with what may be left out of each.
 struct Parts {
     const Program *program = nullptr;
     Inputs inputs;
@@ -66,6 +68,7 @@ struct Parts {
     std::vector<std::uint32_t> first_read_range;
     std::vector<std::array<float, 2>> image_ranges; // by Program::images and channel
 };
+// Analyses a program for given inputs.
 Parts parts_of(const Program &program, const Inputs &inputs);
 
 // A Selection with its memory.
@@ -80,6 +83,7 @@ struct ShortTape {
 };
 ShortTape whole_tape(const Parts &parts);
 
+// Up to `max_boxes` axis-parallel boxes, one bit each in the results.
 struct Boxes {
     std::size_t count = 0; // a multiple of 16, at most max_boxes
     std::array<std::array<float, max_boxes>, 3> lo{}, hi{};
@@ -96,22 +100,22 @@ struct Shortener {
     struct Ends {
         std::array<float, max_boxes> lo[2], hi; // its operands' lower ends, its own upper one
     };
-    struct Turn {
+    struct Iteration {
         std::uint64_t neutral = 0, renewed = 0; // nothing changes; nothing of before is left
         std::uint64_t beyond = 0;               // of a chain: may be cut off
     };
     struct LoopRun {
-        std::uint32_t first_turn = 0, first_low = 0, ends = no_part, cuts = no_part;
+        std::uint32_t first_iteration = 0, first_low = 0, ends = no_part, cuts = no_part;
         std::array<std::uint32_t, max_boxes + 1> listed{}; // where each box's begin
     };
     std::vector<Chosen> chosen; // by step of the tape at hand
     std::vector<Ends> ends;
-    std::vector<Turn> turns;
+    std::vector<Iteration> iterations;
     std::vector<std::array<Cut, max_boxes>> cuts; // of chains
-    std::vector<float> lows;                      // least loops and chains: by turn and box
+    std::vector<float> lows;                      // least loops and chains: by iteration and box
     std::vector<LoopRun> loop_runs;
-    std::vector<std::uint32_t> listed; // by box of a loop: turns that may change something
-    std::vector<std::uint32_t> kept;   // turns of the loop at hand, from the last
+    std::vector<std::uint32_t> listed; // by box of a loop: iterations that may change something
+    std::vector<std::uint32_t> kept;   // iterations of the loop at hand, from the last
     std::vector<std::uint32_t> live;   // by slot: the epoch for which it is
     std::vector<float> cutoff;         // by slot: its value matters as far as it is not above this
     std::uint32_t epoch = 0;

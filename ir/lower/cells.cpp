@@ -1,6 +1,6 @@
 // Fields that are steep in places: their bounds cell by cell of a region (semantics.md, 13), as a
 // table with a row a corner. A mean of a cell's corners is no less than the cell's own bound, and
-// nothing jumps; it holds as far as the cell, grown by its margin, reaches.
+// it is continuous; it holds in the cell grown by its margin.
 #include "ir/lower/lowering.h"
 
 #include <algorithm>
@@ -10,9 +10,9 @@ namespace fathom::ir {
 
 // Slope and, where it is known, bend.
 static Table corner_table(const CellBounds &cells) {
-    constexpr double most = 1e30; // of a float, squared in no shader
+    constexpr double maximum = 1e30; // of a float, squared in no shader
     const auto above = [&](double x) {
-        return std::nextafter(static_cast<float>(std::min(x, most)), INFINITY);
+        return std::nextafter(static_cast<float>(std::min(x, maximum)), INFINITY);
     };
     Table table;
     table.rows = static_cast<int>(cells.lipschitz.size());
@@ -81,7 +81,7 @@ NodeId Lowering::divided_by_cells(ShapeId id, NodeId field, NodeId q) {
     return g.make(Op::Clamp, {g.div(field, here.slope), g.neg(reach), reach});
 }
 
-// How far it reaches by curvature: sqrt(2 f/M), as far as the cell's M holds and the field is the
+// Its safe radius by curvature: sqrt(2 f/M), as far as the cell's M holds and the field is the
 // region's. Where the least of the field on a way lies nearer than that, it lies within both, and
 // the slope along the way is 0 there (lipschitz.md, 4).
 NodeId Lowering::bent_by_cells(ShapeId id, Where frame) {

@@ -27,16 +27,16 @@ NodeId Lowering::colored(ShapeId id, Where frame) {
     if (s.kind == ShapeKind::Instances) return many(Reading::Hit, id, frame);
     if (s.kind == ShapeKind::Lerp) { // the operand with the greater weight: t against 1 - t
         const NodeId t = read(s.args[0], frame), half = graph_.number(0.5);
-        return least(Reading::Hit,
-                     std::array{at_distance(Reading::Hit, child(0), graph_.sub(half, t)),
-                                at_distance(Reading::Hit, child(1), graph_.sub(t, half))});
+        return minimum(Reading::Hit,
+                       std::array{at_distance(Reading::Hit, child(0), graph_.sub(half, t)),
+                                  at_distance(Reading::Hit, child(1), graph_.sub(t, half))});
     }
     const bool of_first =
         s.kind == ShapeKind::Seam && static_cast<SeamKind>(s.payload) != SeamKind::Pipe;
     const std::size_t count = of_first ? 1 : s.children.size();
     std::vector<NodeId> hits;
     for (std::size_t i = 0; i < count; ++i) hits.push_back(child(i));
-    return hits.empty() ? far_away(Reading::Hit) : least(Reading::Hit, hits);
+    return hits.empty() ? far_away(Reading::Hit) : minimum(Reading::Hit, hits);
 }
 
 NodeId Lowering::painted(ShapeId id, Where frame) {
@@ -62,9 +62,9 @@ NodeId Lowering::painted(ShapeId id, Where frame) {
 
 // -- the four floats that travel with a hit
 // -------------------------------------------------------------------------- Variables that shapes
-// bind (ids of repetition, rows of instance_tables) are whole numbers. Up to four travel as they are; of
-// more, k share a float, each with 24/k bits: two keep -2048..2047, three -128..127. Beyond, ids
-// wrap and colours repeat.
+// bind (ids of repetition, rows of instance_tables) are whole numbers. Up to four travel as they
+// are; of more, k share a float, each with 24/k bits: two keep -2048..2047, three -128..127.
+// Beyond, ids wrap and colours repeat.
 
 namespace {
 

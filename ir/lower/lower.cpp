@@ -10,7 +10,7 @@
 namespace fathom::ir {
 namespace {
 
-// A shape that is asked in several places becomes a function when it is more than this many
+// A shape that is evaluated in several places becomes a function when it is more than this many
 // operations.
 constexpr double cheap = 8;
 constexpr double plenty = 1e6; // where counts saturate
@@ -260,7 +260,7 @@ void Lowering::find_free_vars() {
     }
 }
 
-// -- asking
+// -- evaluating shapes
 
 // Whether a reading of the shape is made from another function at once, so that one of its own
 // would only call that.

@@ -1,5 +1,5 @@
 // Shapes to functions. The one place that knows what each ShapeKind computes; after it a back end
-// sees only expressions, functions and folds.
+// sees only expressions, functions and loops.
 //
 // Four readings of a shape (semantics.md, 10 and 11). What looks at a picture (normals, occlusion,
 // |f|/|grad f|) uses the marched one, normalised by its gradient.
@@ -11,17 +11,18 @@
 //            by its region, with its child's bound, which has to hold in the region; `guard`ed
 //            shapes by max with their box's distance
 //   hit      marched, carrying which surface decides
-//   reach    marched, and how far that reaches by curvature (shading.h); only where some displacement
-//            has it, and through what reach.cpp names
-// A shape asked at more than one point becomes a function of its own (named after its library call
-// or place); so the lowered scene is linear in the shapes. Complete only after the analysis has
-// filled `facts`.
+//   radius   marched, and the safe radius by curvature (shading.h); only where some displacement
+//            has it, and through the shapes that safe_radius.cpp names
+// A shape evaluated at more than one point becomes a function of its own (named after its library
+// call or place); so the lowered scene is linear in the shapes. Complete only after the analysis
+// has filled `facts`.
 #pragma once
 
 #include "ir/scene.h"
 
 namespace fathom::ir {
 
+// Fills the functions of a scene (raw, marched, hit, safe radius) from its shapes and facts.
 void lower(Scene &scene);
 
 // Lowered so that a hit also tells which part of the scene it is on: the innermost operand of a

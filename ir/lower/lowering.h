@@ -1,7 +1,7 @@
 // The lowering's own parts, shared by the sources of this folder only. Knows shapes, not the
 // language.
 //
-// A shape is asked in one of four readings (lower.h) at a frame: a point, and values for the
+// A shape is evaluated in one of four readings (lower.h) at a frame: a point, and values for the
 // variables that shapes above bind. Every answer is made once; a shape that would be written out in
 // several places becomes a function.
 #pragma once
@@ -17,9 +17,10 @@ namespace fathom::ir {
 
 constexpr double nowhere = 1e9; // the distance to what is not there
 
+// Which of the four functions of a shape is made (lower.h).
 enum class Reading : std::uint8_t { Raw, Marched, Hit, SafeRadius };
 
-// Where a field is asked.
+// Where a field is evaluated.
 struct Where {
     NodeId p;
     std::uint32_t values = 0; // index of Lowering's environments; 0 binds nothing
@@ -31,6 +32,7 @@ struct Packing {
     int numbers = 0; // floats in all vars
 };
 
+// One run of the lowering over a scene.
 class Lowering {
   public:
     explicit Lowering(Scene &scene);
@@ -38,7 +40,7 @@ class Lowering {
     Parts run_with_parts();
 
   private:
-    // -- asking
+    // -- evaluating shapes
     NodeId expression_of(Reading reading, ShapeId id, Where frame);
     NodeId answer(Reading reading, ShapeId id,
                   Where frame); // without a function of its own, unless its children's
@@ -54,7 +56,7 @@ class Lowering {
     NodeId guard(ShapeId id, Where frame);
     NodeId guarded(Reading reading, ShapeId id, Where frame, NodeId value);
 
-    // -- reach (reach.cpp)
+    // -- safe radius (safe_radius.cpp)
     bool passes_safe_radius_on(const Shape &shape) const;
     void find_curved();
     NodeId both(NodeId distance);
@@ -62,7 +64,7 @@ class Lowering {
 
     // -- per kind
     NodeId within(Reading reading, ShapeId id, Where frame);
-    Where inside(ShapeId id, Where frame); // where `within` asks its child
+    Where inside(ShapeId id, Where frame); // where `within` evaluates its child
     Where point_of(Where frame, NodeId p);
     Region region_of(ShapeId id, Where frame);
 
@@ -84,17 +86,17 @@ class Lowering {
     NodeId mixed(ShapeId id, Where frame);
 
     // -- values by reading: floats, or hits
-    NodeId least(Reading reading, std::span<const NodeId> values);
-    NodeId greatest(Reading reading, std::span<const NodeId> values);
+    NodeId minimum(Reading reading, std::span<const NodeId> values);
+    NodeId maximum(Reading reading, std::span<const NodeId> values);
     NodeId negated(Reading reading, NodeId value);
     NodeId distance_of(Reading reading, NodeId value);
     NodeId at_distance(Reading reading, NodeId value, NodeId distance);
     NodeId far_away(Reading reading);
     NodeId unpainted(NodeId distance);
-    // A Loop of `count` turns that begins far away: `each` says what the value so far becomes, with
-    // `index` the turn's number.
+    // A Loop of `count` iterations that begins far away: `each` says what the value so far becomes,
+    // with `index` the iteration's number.
     template <class F>
-    NodeId least_of(Reading reading, NodeId count, int max_count, NodeId index, F each);
+    NodeId minimum_of(Reading reading, NodeId count, int max_count, NodeId index, F each);
 
     // -- frames
     NodeId read(NodeId expression, Where frame);
@@ -145,8 +147,9 @@ class Lowering {
     std::map<ShapeId, TableId> cell_tables_;
     std::vector<double> cost_, uses_; // by shape; saturating
     std::vector<char> paint_, reached_;
-    std::vector<char> curved_;        // by shape: something in it reaches farther than its ball
-    Parts parts_;                     // stride 0: nothing is marked
+    std::vector<char>
+        curved_;  // by shape: something in it has a safe radius larger than its distance
+    Parts parts_; // stride 0: nothing is marked
     std::vector<std::uint32_t> part_; // by shape, 0: none of its own
     std::vector<char> colored_;       // by shape: something in it is painted; with parts only
     std::vector<char> parts_below_;   // by shape: each of its hits is marked further down

@@ -60,10 +60,10 @@ void Lowering::find_parts() {
     parts_below_.assign(shapes_.size(), 0);
     colored_.assign(shapes_.size(), 0);
     if (parts_.stride == 0) return;
-    const std::size_t most =
+    const std::size_t maximum =
         static_cast<std::size_t>(std::numeric_limits<int>::max() / parts_.stride) - 1;
     const auto mark = [&](ShapeId id) {
-        if (part_[id.index] != 0 || parts_.shapes.size() >= most) return;
+        if (part_[id.index] != 0 || parts_.shapes.size() >= maximum) return;
         parts_.shapes.push_back(id);
         part_[id.index] = static_cast<std::uint32_t>(parts_.shapes.size());
     };

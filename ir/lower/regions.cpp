@@ -8,15 +8,15 @@ namespace fathom::ir {
 // exact's sign inside. The same form joins an extrusion's sides and caps, and a region with the
 // solid in it.
 NodeId joined_distance(Graph &graph, std::span<const NodeId> d) {
-    NodeId most = d.front();
+    NodeId maximum = d.front();
     std::vector<NodeId> outside;
     for (std::size_t i = 0; i < d.size(); ++i) {
         outside.push_back(graph.make(Op::Max, {d[i], graph.number(0)}));
-        if (i > 0) most = graph.make(Op::Max, {most, d[i]});
+        if (i > 0) maximum = graph.make(Op::Max, {maximum, d[i]});
     }
     const NodeId out = graph.make(
         Op::Length, {graph.make(Op::Make, vector_type(static_cast<int>(d.size())), outside)});
-    return graph.add(out, graph.make(Op::Min, {most, graph.number(0)}));
+    return graph.add(out, graph.make(Op::Min, {maximum, graph.number(0)}));
 }
 
 namespace {
@@ -154,7 +154,7 @@ std::array<NodeId, 2> region_opposites(Graph &graph, const Region &hole, NodeId 
     return {p, p};
 }
 
-// A ball less a tube through it: what is above the ring where both meet is asked at the ring's
+// A ball less a tube through it: what is above the ring where both meet is evaluated at the ring's
 // height, so that the way out of the tube ends inside the ball.
 NodeId region_between_caps(Graph &graph, const Region &region, NodeId q) {
     if (region.kind != RegionKind::Ball) return q;

@@ -1,6 +1,6 @@
-// Unions of many copies: lattices, rings, and instance_tables whose members differ by a row of numbers.
-// (semantics.md, 14; lipschitz.md, 7: the nearest copy and the next on the side of the fraction.)
-// How many copies are asked is the analysis's.
+// Unions of many copies: lattices, rings, and instance_tables whose members differ by a row of
+// numbers. (semantics.md, 14; lipschitz.md, 7: the nearest copy and the next on the side of the
+// fraction.) The analysis says how many copies to evaluate.
 #include "ir/lower/lowering.h"
 
 #include <algorithm>
@@ -36,11 +36,11 @@ std::array<int, 3> neighbors_of(const Scene &scene, ShapeId id) {
 // Of a ring: how many sectors, at most all.
 int sectors_of(const Scene &scene, ShapeId id, int count) {
     const RepeatPlan &plan = scene.facts[id.index].repeat;
-    const int asked = *std::max_element(plan.neighbors.begin(), plan.neighbors.end());
+    const int evaluated = *std::max_element(plan.neighbors.begin(), plan.neighbors.end());
     if (plan.guard)
         return count; // copies that differ: a wedge bounds nothing that a box knows, so all are
                       // asked
-    return std::min(asked > 0 ? asked : 3, count);
+    return std::min(evaluated > 0 ? evaluated : 3, count);
 }
 
 } // namespace
@@ -58,7 +58,7 @@ int copies_evaluated(const Scene &scene, ShapeId id) {
 }
 
 template <class F>
-NodeId Lowering::least_of(Reading reading, NodeId count, int max_count, NodeId index, F each) {
+NodeId Lowering::minimum_of(Reading reading, NodeId count, int max_count, NodeId index, F each) {
     const NodeId start = far_away(reading);
     const NodeId best = graph_.fresh_var(graph_.type(start));
     Loop loop;
@@ -92,7 +92,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
         NodeId x, cell, shift, base, last; // last: the greatest index, invalid where endless
         int copies = 1;
         bool repeats = false;
-        bool fewer = false; // there may be fewer copies than are asked
+        bool fewer = false; // there may be fewer copies than are evaluated
     };
     std::array<Axis, 3> axes;
     int total = 1;
@@ -114,8 +114,8 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
         if (!endless) {
             a.last = g.sub(count, g.number(1));
             a.fewer = !(g.as_number(count).value_or(0) >= a.copies);
-            const NodeId most = g.make(Op::Max, {g.sub(count, g.number(a.copies)), g.number(0)});
-            a.base = g.make(Op::Clamp, {a.base, g.number(0), most});
+            const NodeId maximum = g.make(Op::Max, {g.sub(count, g.number(a.copies)), g.number(0)});
+            a.base = g.make(Op::Clamp, {a.base, g.number(0), maximum});
         }
     }
 
@@ -127,7 +127,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
             held.lo[i] = -held.hi[i];
         }
 
-    // The copy whose offset from the first asked is k, along each axis.
+    // The copy whose offset from the first evaluated is k, along each axis.
     const auto copy = [&](const std::array<NodeId, 3> &k) {
         std::vector<NodeId> q;
         std::array<NodeId, 3> cell_id{g.number(0), g.number(0), g.number(0)};
@@ -169,10 +169,10 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
             }
             values.push_back(copy(k));
         }
-        result = least(reading, values);
+        result = minimum(reading, values);
     } else {
         const NodeId turn = g.fresh_var(Type::Int);
-        result = least_of(reading, g.integer(total), total, turn, [&](NodeId best) {
+        result = minimum_of(reading, g.integer(total), total, turn, [&](NodeId best) {
             std::array<NodeId, 3> k;
             NodeId rest = turn;
             for (std::size_t i = 0; i < 3; ++i) {
@@ -180,14 +180,14 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
                 k[i] = g.make(Op::ToFloat, Type::Float, {g.make(Op::Mod, {rest, n})});
                 rest = g.make(Op::Div, {rest, n});
             }
-            return least(reading, std::array{best, copy(k)});
+            return minimum(reading, std::array{best, copy(k)});
         });
     }
     if (!known.repeat.guard) return result;
 
-    // The copies that were not asked lie, along some axis, beyond the first or the last asked. Each
-    // side's are held by a box that is bounded there by the nearest of them, and elsewhere by what
-    // all copies together extend to.
+    // The copies that were not evaluated lie, along some axis, beyond the first or the last
+    // evaluated. Each side's are held by a box that is bounded there by the nearest of them, and
+    // elsewhere by what all copies together extend to.
     const auto outside =
         [&](int i) -> NodeId { // how far p is beyond all copies along axis i; invalid: never
         const Axis &a = axes[static_cast<std::size_t>(i)];
@@ -255,11 +255,12 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Where frame) {
         if (count <= max_unrolled) {
             std::vector<NodeId> values;
             for (int k = 0; k < count; ++k) values.push_back(copy(g.number(k)));
-            return least(reading, values);
+            return minimum(reading, values);
         }
         const NodeId turn = g.fresh_var(Type::Int);
-        return least_of(reading, g.integer(count), count, turn, [&](NodeId best) {
-            return least(reading, std::array{best, copy(g.make(Op::ToFloat, Type::Float, {turn}))});
+        return minimum_of(reading, g.integer(count), count, turn, [&](NodeId best) {
+            return minimum(reading,
+                           std::array{best, copy(g.make(Op::ToFloat, Type::Float, {turn}))});
         });
     }
     const NodeId t = g.mul(g.make(Op::Atan2, {y, x}), g.number(1 / step)); // -n/2 .. n/2
@@ -274,12 +275,12 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Where frame) {
     if (sectors <= max_unrolled) {
         std::vector<NodeId> values;
         for (int k = 0; k < sectors; ++k) values.push_back(copy(sector(g.number(k))));
-        return least(reading, values);
+        return minimum(reading, values);
     }
     const NodeId turn = g.fresh_var(Type::Int);
-    return least_of(reading, g.integer(sectors), sectors, turn, [&](NodeId best) {
-        return least(reading,
-                     std::array{best, copy(sector(g.make(Op::ToFloat, Type::Float, {turn})))});
+    return minimum_of(reading, g.integer(sectors), sectors, turn, [&](NodeId best) {
+        return minimum(reading,
+                       std::array{best, copy(sector(g.make(Op::ToFloat, Type::Float, {turn})))});
     });
 }
 
@@ -294,9 +295,9 @@ NodeId Lowering::many(Reading reading, ShapeId id, Where frame) {
     const NodeId k = smooth ? read(s.args[0], frame) : NodeId{};
     const NodeId row = g.fresh_var(Type::Int); // each loop counts for itself
     const Where inside = bind(frame, instance_table.index, row);
-    return least_of(reading, count, instance_table.count, row, [&](NodeId best) {
+    return minimum_of(reading, count, instance_table.count, row, [&](NodeId best) {
         const NodeId value = expression_of(reading, s.children.front(), inside);
-        if (!smooth) return least(reading, std::array{best, value});
+        if (!smooth) return minimum(reading, std::array{best, value});
         return g.make(Op::Blend, Type::Float, {k, g.number(1), best, value},
                       static_cast<std::uint32_t>(Profile::Smooth));
     });

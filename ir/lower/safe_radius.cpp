@@ -1,15 +1,15 @@
-// The fourth reading: beside the marched distance how far it reaches by curvature (shading.h, MARCH),
-// as one vec2, so that the octaves of a displacement are still asked only where they matter. Where
-// nothing is known but the ball, both are the same number. A union is nearest and reaches least far
-// by each component; lengths keep their size in isometries; a guard's distance is one that every
-// point of the solid keeps, hence the least of both numbers.
+// The fourth reading: beside the marched distance the safe radius by curvature (shading.h, MARCH),
+// as one vec2, so that the octaves of a displacement are still evaluated only where they matter.
+// Where nothing is known but the ball, both are the same number. A union is nearest and has the
+// smallest safe radius by each component; lengths keep their size in isometries; a guard's distance
+// is one that every point of the solid keeps, hence the least of both numbers.
 #include "ir/lower/lowering.h"
 #include "ir/maps.h"
 
 namespace fathom::ir {
 
-// Whether the shape's own combination hands its children's reach on. Folds do not: a mirror may
-// bend a field upward sharply. Intersections would need more than the lesser reach.
+// Whether the shape's own combination hands its children's safe radius on. Folds do not: a mirror
+// may bend a field upward sharply. Intersections would need more than the smaller radius.
 bool Lowering::passes_safe_radius_on(const Shape &s) const {
     switch (s.kind) {
     case ShapeKind::Union:

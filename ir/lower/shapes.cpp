@@ -9,11 +9,11 @@ namespace fathom::ir {
 
 // -- values by reading
 
-NodeId Lowering::least(Reading reading, std::span<const NodeId> values) {
+NodeId Lowering::minimum(Reading reading, std::span<const NodeId> values) {
     return reading == Reading::Hit ? graph_.make(Op::NearestHit, Type::Hit, values)
                                    : graph_.make(Op::Union, Type::Float, values);
 }
-NodeId Lowering::greatest(Reading reading, std::span<const NodeId> values) {
+NodeId Lowering::maximum(Reading reading, std::span<const NodeId> values) {
     if (reading == Reading::Hit && parts_.stride > 0)
         return farthest_part(graph_.make(Op::FarthestHit, Type::Hit, values), values.front());
     return reading == Reading::Hit ? graph_.make(Op::FarthestHit, Type::Hit, values)
@@ -124,8 +124,8 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Where frame) {
 // out the smooth field, less A, is the better bound, with its own slope. Inside, where f - a < 0,
 // f - A is lower still: so signs agree. The same with the first terms of a sum, and the most that
 // the others can add. The greatest of all of these is the marched field; what is left of a dear sum
-// is asked only where it can be greater than what is known already. The reach is more than that
-// where all of the field is asked: sqrt(2 f/M), with no rounding of f worth counting
+// is evaluated only where it can be greater than what is known already. The safe radius is more
+// where all of the field is evaluated: sqrt(2 f/M), with no rounding of f worth counting
 // (lipschitz.md, 4).
 NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     const ShapeFact &known = fact(id);
@@ -135,10 +135,10 @@ NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     const ShapeId child = shape(id).children.front();
     const NodeId base = expression_of(Reading::Raw, child, frame), amount = shape(id).args.front();
     struct Known {
-        NodeId best;  // a lower bound of the distance
-        NodeId field; // the base less the terms so far
-        double least; // of the other terms
-        double cost;  // of the terms so far
+        NodeId best;    // a lower bound of the distance
+        NodeId field;   // the base less the terms so far
+        double minimum; // of the other terms
+        double cost;    // of the terms so far
     };
     std::vector<Known> steps{
         {divided(child, graph_.sub(base, graph_.number(known.outward))), base, -known.inward, 0}};
@@ -151,9 +151,9 @@ NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     for (std::size_t i = 0; i < nested; ++i) {
         const PartialSum &partial = known.partial[i];
         const NodeId field = graph_.sub(base, read(partial.terms, frame));
-        const NodeId bound =
-            graph_.div(graph_.sub(field, graph_.number(partial.most)), slope_with(partial.slope));
-        steps.push_back({graph_.make(Op::Max, {steps.back().best, bound}), field, partial.least,
+        const NodeId bound = graph_.div(graph_.sub(field, graph_.number(partial.maximum)),
+                                        slope_with(partial.slope));
+        steps.push_back({graph_.make(Op::Max, {steps.back().best, bound}), field, partial.minimum,
                          cost_of(graph_, partial.terms)});
     }
     NodeId result = graph_.make(Op::Max, {whole, steps.back().best});
@@ -165,11 +165,11 @@ NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     // The field is at most f - least, which is divided by the next bound at least.
     for (std::size_t i = steps.size(); i-- > 0;) {
         const Known &step = steps[i];
-        if (!std::isfinite(step.least) || cost_of(graph_, amount) - step.cost < guard_cost)
+        if (!std::isfinite(step.minimum) || cost_of(graph_, amount) - step.cost < guard_cost)
             continue;
-        const NodeId most = graph_.sub(step.field, graph_.number(step.least));
-        const NodeId reach =
-            i < nested ? graph_.div(most, slope_with(known.partial[i].slope)) : divided(id, most);
+        const NodeId highest = graph_.sub(step.field, graph_.number(step.minimum));
+        const NodeId reach = i < nested ? graph_.div(highest, slope_with(known.partial[i].slope))
+                                        : divided(id, highest);
         result = graph_.make(Op::Select, {graph_.make(Op::LessEqual, {reach, step.best}),
                                           reaches ? both(step.best) : step.best, result});
     }
@@ -212,9 +212,9 @@ NodeId Lowering::structural(Reading reading, ShapeId id, Where frame) {
     switch (s.kind) {
     case ShapeKind::Empty: return far_away(reading);
     case ShapeKind::Union:
-        return s.children.empty() ? far_away(reading) : least(reading, children());
+        return s.children.empty() ? far_away(reading) : minimum(reading, children());
     case ShapeKind::Intersection:
-        return s.children.empty() ? far_away(reading) : greatest(reading, children());
+        return s.children.empty() ? far_away(reading) : maximum(reading, children());
     case ShapeKind::Complement: {
         // -blend(-f, -g) is an intersection: so its surface is the farthest operand's
         // (semantics.md, 22).
@@ -223,7 +223,7 @@ NodeId Lowering::structural(Reading reading, ShapeId id, Where frame) {
             std::vector<NodeId> hits;
             for (ShapeId operand : shape(inner).children)
                 hits.push_back(negated(reading, expression_of(reading, operand, frame)));
-            return at_distance(reading, greatest(reading, hits),
+            return at_distance(reading, maximum(reading, hits),
                                graph_.neg(expression_of(Reading::Marched, inner, frame)));
         }
         return negated(reading, child(0));
@@ -232,8 +232,8 @@ NodeId Lowering::structural(Reading reading, ShapeId id, Where frame) {
         NodeId result = child(0);
         for (std::size_t i = 1; i < s.children.size(); ++i) {
             const std::array both{result, child(i)};
-            result = greatest(reading, std::array{least(reading, both),
-                                                  negated(reading, greatest(reading, both))});
+            result = maximum(reading, std::array{minimum(reading, both),
+                                                 negated(reading, maximum(reading, both))});
         }
         return result;
     }
@@ -331,10 +331,10 @@ NodeId Lowering::pseudonorm(const Shape &s, Where frame) {
                  b = expression_of(Reading::Raw, s.children[1], frame);
     const NodeId u = g.make(Op::Max, {g.sub(one, a), zero}),
                  v = g.make(Op::Max, {g.sub(one, b), zero});
-    const NodeId most = g.make(Op::Max, {u, v});
-    const NodeId ratio = g.div(g.make(Op::Min, {u, v}), g.make(Op::Max, {most, g.number(1e-9)}));
+    const NodeId larger = g.make(Op::Max, {u, v});
+    const NodeId ratio = g.div(g.make(Op::Min, {u, v}), g.make(Op::Max, {larger, g.number(1e-9)}));
     const NodeId norm =
-        g.mul(most, g.make(Op::Pow, {g.add(one, g.make(Op::Pow, {ratio, p})), g.div(one, p)}));
+        g.mul(larger, g.make(Op::Pow, {g.add(one, g.make(Op::Pow, {ratio, p})), g.div(one, p)}));
     return g.sub(g.make(Op::Max, {one, g.make(Op::Union, {a, b})}), norm);
 }
 
@@ -365,10 +365,10 @@ Where Lowering::point_of(Where frame, NodeId p) {
     return at(frame, graph_.type(frame.p) == Type::Vec2 ? graph_.swizzle(p, std::array{0, 1}) : p);
 }
 
-// The field is asked where its bound L holds: at q, the point of the region R nearest to p; inside
-// of what R leaves out, at the way out of it. With g the value there: in R max(g, sd_R); outside
-// sqrt(|p-q|^2 + max(g, 0)^2). Both are |(max(sd_R,0), max(g,0))| + min(max(sd_R, g), 0). What is
-// left out cuts with -sd.
+// The field is evaluated where its bound L holds: at q, the point of the region R nearest to p;
+// inside of what R leaves out, at the way out of it. With g the value there: in R max(g, sd_R);
+// outside sqrt(|p-q|^2 + max(g, 0)^2). Both are |(max(sd_R,0), max(g,0))| + min(max(sd_R, g), 0).
+// What is left out cuts with -sd.
 NodeId Lowering::within(Reading reading, ShapeId id, Where frame) {
     Graph &g = graph_;
     const Region region = region_of(id, frame);

@@ -42,9 +42,9 @@ double cost_of(const Graph &graph, NodeId root) {
             cost += cost_of(graph, graph.function(graph.cache(CacheId{node.payload}).field).result);
         if (node.op == Op::Loop) {
             const Loop &loop = graph.loop(LoopId{node.payload});
-            double turn = loop.condition ? cost_of(graph, loop.condition) : 0;
-            for (NodeId next : loop.next) turn += cost_of(graph, next);
-            cost += loop.max_count * turn;
+            double iteration = loop.condition ? cost_of(graph, loop.condition) : 0;
+            for (NodeId next : loop.next) iteration += cost_of(graph, next);
+            cost += loop.max_count * iteration;
         }
         for (NodeId arg : graph.args(id)) todo.push_back(arg);
     }

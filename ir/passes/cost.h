@@ -1,5 +1,5 @@
 // What an expression costs to compute, for the choices that depend on it: whether a field is worth
-// storing in the noise cache (docs/noise-cache.md), whether it is worth asking first if it is
+// storing in the noise cache (docs/noise-cache.md), whether it is worth testing first if it is
 // needed at all. In comes an expression, out go nanoseconds a point as Mesa's llvmpipe takes on the
 // machine of docs/noise-cache.md: only ratios matter. It changes nothing, and never says what may
 // be left out for being dear. (operations.h counts; this weighs.)
@@ -21,7 +21,7 @@ constexpr double look_up_cost = 11;
 // field that reads it saves so much of its cost. Alone, cached all the same, it took 0.59 of the
 // exact rate.
 constexpr double ridged_share = 0.5;
-constexpr double guard_cost = 5; // a field this dear is asked only where it can matter
+constexpr double guard_cost = 5; // a field of this cost is evaluated only where it can matter
 
 // Why the values of a cached field are always computed.
 enum class Cacheable { Yes, Cheap, Ridged, Moving, Steep };

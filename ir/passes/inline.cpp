@@ -65,8 +65,8 @@ std::vector<NodeId> after_iteration(Graph &graph, const Loop &loop, int iteratio
     return after;
 }
 
-WithoutCalls without_calls(Graph &graph, NodeId root, std::size_t most) {
-    Writer writer{graph, most};
+WithoutCalls without_calls(Graph &graph, NodeId root, std::size_t max_nodes) {
+    Writer writer{graph, max_nodes};
     const NodeId out = writer.of(root);
     return {out, writer.all};
 }

@@ -1,7 +1,7 @@
-// Inlining: calls and iterations of loops written out where they stand. In come a graph and a call, a loop or an
-// expression; out go nodes of the same graph with the same values. Names that a function or a loop
-// binds are replaced by what is given for them. It never enters the body of a loop that it is not
-// asked for, and removes nothing.
+// Inlining: calls and iterations of loops written out where they stand. In come a graph and a call,
+// a loop or an expression; out go nodes of the same graph with the same values. Names that a
+// function or a loop binds are replaced by what is given for them. It never enters the body of a
+// loop that it is not asked for, and removes nothing.
 #pragma once
 
 #include "ir/passes/walk.h"
@@ -17,7 +17,7 @@ NodeId called(Graph &graph, FunctionId function, std::span<const NodeId> args,
 NodeId called(Graph &graph, NodeId call); // of a Call node
 
 // An expression of a loop's body in one iteration, by the values that the loop carries into it; and
-// these values after it. Its condition is not asked.
+// these values after it. Its condition is not evaluated.
 NodeId in_iteration(Graph &graph, const Loop &loop, int iteration, std::span<const NodeId> values,
                     NodeId expression);
 std::vector<NodeId> after_iteration(Graph &graph, const Loop &loop, int iteration,
@@ -29,6 +29,6 @@ struct WithoutCalls {
     NodeId root;
     bool all = true;
 };
-WithoutCalls without_calls(Graph &graph, NodeId root, std::size_t most);
+WithoutCalls without_calls(Graph &graph, NodeId root, std::size_t max_nodes);
 
 } // namespace fathom::ir

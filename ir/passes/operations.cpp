@@ -1,5 +1,6 @@
-// What an expression costs to evaluate once, counted in operations: loops by their turns, calls by
-// what they call. So that what could not be answered in any time is refused before it is asked.
+// What an expression costs to evaluate once, counted in operations: loops by their iterations,
+// calls by what they call. So that a scene that no machine could evaluate is refused before it is
+// drawn.
 #include "ir/passes/operations.h"
 
 #include <unordered_set>
@@ -11,7 +12,7 @@ class Counter {
   public:
     explicit Counter(const Graph &graph) : graph_(graph) {}
 
-    // A node that several share counts once; a loop's body once a turn.
+    // A node that several share counts once; a loop's body once an iteration.
     double operator()(std::vector<NodeId> todo) {
         double operations = 0;
         std::unordered_set<NodeId> seen;

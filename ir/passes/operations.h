@@ -7,7 +7,7 @@
 
 namespace fathom::ir {
 
-// How many operations, loops by their largest number of turns and calls by what they call.
+// How many operations, loops by their largest number of iterations and calls by what they call.
 double operations(const Graph &graph, NodeId root);
 constexpr double max_operations = 1e7; // of one point: beyond it no picture ever ends
 

@@ -4,12 +4,12 @@
 
 namespace fathom::ir {
 
-bool take_apart(const Graph &graph, NodeId id, std::size_t most, Skeleton &out) {
+bool take_apart(const Graph &graph, NodeId id, std::size_t maximum, Skeleton &out) {
     if (!id) {
         out.words.push_back(~0ull);
         return true;
     }
-    if (out.words.size() > most) return false;
+    if (out.words.size() > maximum) return false;
     const Node &node = graph[id];
     out.words.push_back(
         static_cast<std::uint64_t>(node.op) << 56 | static_cast<std::uint64_t>(node.type) << 48 |
@@ -19,7 +19,7 @@ bool take_apart(const Graph &graph, NodeId id, std::size_t most, Skeleton &out) 
         return true;
     }
     return std::ranges::all_of(graph.args(id),
-                               [&](NodeId arg) { return take_apart(graph, arg, most, out); });
+                               [&](NodeId arg) { return take_apart(graph, arg, maximum, out); });
 }
 
 NodeId put_together(Graph &graph, NodeId id, const OtherConstant &other, std::size_t &next) {

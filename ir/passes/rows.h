@@ -19,13 +19,14 @@ struct Skeleton {
 };
 // Appends an expression; false, and not all of it, where `words` outgrows `most`. An invalid id is
 // a word of its own.
-bool take_apart(const Graph &graph, NodeId id, std::size_t most, Skeleton &out);
+bool take_apart(const Graph &graph, NodeId id, std::size_t maximum, Skeleton &out);
 
 // The tree again, with what `other` gives for the number and the node of each constant in the order
 // of the same walk. `next`, the number of the first, moves on.
 using OtherConstant = std::function<NodeId(std::size_t, NodeId)>;
 NodeId put_together(Graph &graph, NodeId id, const OtherConstant &other, std::size_t &next);
 
+// Equal types and equal bits.
 bool same(const Constant &a, const Constant &b);
 
 // Where each constant of some rows of equal length stands in a table: its first column, or -1 where

@@ -94,9 +94,10 @@ NodeId simple_make(Graph &graph, Type type, std::span<const NodeId> args) {
 // precision.
 NodeId sine_ratio(Graph &graph, NodeId u) {
     const Type type = graph[u].type;
-    const NodeId least = graph.splat(graph.number(1e-3), type);
-    if (graph[u].op == Op::Max && (graph.arg(u, 0) == least || graph.arg(u, 1) == least)) return {};
-    const NodeId off = graph.make(Op::Max, type, {graph.make(Op::Abs, type, {u}), least});
+    const NodeId minimum = graph.splat(graph.number(1e-3), type);
+    if (graph[u].op == Op::Max && (graph.arg(u, 0) == minimum || graph.arg(u, 1) == minimum))
+        return {};
+    const NodeId off = graph.make(Op::Max, type, {graph.make(Op::Abs, type, {u}), minimum});
     return graph.make(Op::Div, type, {graph.make(Op::Sin, type, {off}), off});
 }
 

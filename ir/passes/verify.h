@@ -1,6 +1,6 @@
 // The rules that a lowered scene obeys on its way to a back end: argument order, types, payloads in
 // range, no free variables, no Point in functions, … In comes a lowered scene, out go words. It
-// never mends, and sees no shapes.
+// never repairs, and sees no shapes.
 #pragma once
 
 #include "ir/scene.h"

@@ -10,15 +10,17 @@
 namespace fathom::save {
 
 double channel_of(double linear); // 0..255 by sRGB's curve; whole where it is one up to rounding
+// A colour as the save format writes it, sRGB 0..255.
 Value color_value(const std::array<double, 3> &channels, double alpha);
 
+// The textures and materials of one export.
 class Appearances {
   public:
     Appearances(const ir::Scene &scene, Numbers &numbers, std::vector<Value> textures,
                 std::vector<Value> materials);
 
-    // A material's name, by its index into Shapes::materials; empty where its appearances depend on the
-    // point.
+    // A material's name, by its index into Shapes::materials; empty where its appearances depend on
+    // the point.
     std::string material(std::uint32_t index);
     std::string texture(std::int32_t image); // the name of an image's file
     // Whether a material of the file displaces what it is on by this map.

@@ -1,4 +1,4 @@
-// Functions of the point, as nodes: a field of one's own, with its region and what is assumed of
+// Functions of the point, as nodes: a user-defined field, with its region and what is assumed of
 // it; and any shape that nodes have no words for, as the raw field that it is.
 #include "ir/lower/lower.h"
 #include "ir/passes/walk.h"
@@ -73,7 +73,7 @@ std::optional<TreeNode> TreeWriter::field(ShapeId id, const ir::Region *within,
 }
 
 // The shape's raw field as an expression in Point. The lowering knows what each kind computes: it
-// is asked for one more shape, which consumes the raw field and changes nothing (an offset by 0),
+// gets one more shape, which consumes the raw field and changes nothing (an offset by 0),
 // with every bound set to 1, so that nothing is divided. Made once for each shape.
 NodeId TreeWriter::raw_field(ShapeId id) {
     if (const auto found = raw_.find(id); found != raw_.end()) return found->second;

@@ -18,11 +18,13 @@ using ir::Shape;
 using ir::ShapeId;
 using ir::ShapeKind;
 
+// The material that paints a subtree.
 struct Paint {
     std::string fill;    // of what is unpainted
     bool forced = false; // by a repaint: inner paints do not count
 };
 
+// Writes the tree of one scene.
 class TreeWriter {
   public:
     TreeWriter(const ir::Scene &scene, Numbers &numbers, Appearances &appearances,
@@ -89,7 +91,7 @@ class TreeWriter {
     std::unordered_map<ShapeId, std::size_t> maps_; // displacement maps, by the whole they lie on
     std::unordered_set<std::size_t> open_maps_;     // whose nodes are being written
     Diagnostics &diagnostics_;
-    std::optional<ir::Scene> lowered_; // made when a function is first asked for
+    std::optional<ir::Scene> lowered_; // made when a function is first written
     std::unordered_map<ShapeId, NodeId> raw_;
     bool boxed_ = false; // functions are written with the boxes that hold them
     int functions_ = 0;  // shapes that went out as functions, so that no one knows where they end
@@ -97,8 +99,10 @@ class TreeWriter {
 
 inline const std::string no_words = "it reads an image, or loops too often";
 
+// A node without properties.
 TreeNode made(NodeType type);
 double shortest_near(double value); // the shortest decimal within a few units in the last place
+// Sets a property.
 void add(TreeNode &node, const char *name, Value value);
 
 } // namespace fathom::save

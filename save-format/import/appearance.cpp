@@ -69,14 +69,14 @@ std::string color_text(const Channels &color) {
     return sdf_color(color.red, color.green, color.blue);
 }
 
-double number_or(Importer &in, const Value *value, const char *what, double fallback, double least,
-                 double most) {
+double number_or(Importer &in, const Value *value, const char *what, double fallback,
+                 double minimum, double maximum) {
     if (!value) return fallback;
     const auto number = number_of(*value);
-    if (number && *number >= least && *number <= most) return *number;
+    if (number && *number >= minimum && *number <= maximum) return *number;
     in.report
         .content(value->span, std::string("`") + what + "` has to be a number from " +
-                                  sdf_number(least) + " to " + sdf_number(most))
+                                  sdf_number(minimum) + " to " + sdf_number(maximum))
         .note("its default stands in, and the value is kept for an export");
     return fallback;
 }

@@ -36,6 +36,7 @@ struct Property {
     Value tree;
 };
 
+// The properties of one node, with what was unknown.
 struct Properties {
     std::vector<Property> values; // as in the node type's row
     Value varying;                // programs by property: what numbers follow
@@ -43,6 +44,7 @@ struct Properties {
     void keep(std::string_view key, std::string_view flow);
 };
 
+// A material of the file and its name in the text.
 struct MaterialInfo {
     std::string identifier;
     bool twin =
@@ -50,6 +52,7 @@ struct MaterialInfo {
     std::string displacement; // a call `displace_map(…)`, empty for none
 };
 
+// The state of one import.
 struct Importer {
     Importer(const Sources &sources, SourceId source, Diagnostics &diagnostics,
              const ImportOptions &options);

@@ -12,16 +12,16 @@ namespace fathom::save {
 namespace {
 
 std::string limits(const PropertyType &type) {
-    const bool low = std::isfinite(type.least) && type.least > -1e9;
-    const bool high = std::isfinite(type.most) && type.most < 1e9;
-    if (low && high) return "from " + sdf_number(type.least) + " to " + sdf_number(type.most);
-    if (low) return (type.open ? "above " : "at least ") + sdf_number(type.least);
+    const bool low = std::isfinite(type.minimum) && type.minimum > -1e9;
+    const bool high = std::isfinite(type.maximum) && type.maximum < 1e9;
+    if (low && high) return "from " + sdf_number(type.minimum) + " to " + sdf_number(type.maximum);
+    if (low) return (type.open ? "above " : "at least ") + sdf_number(type.minimum);
     return "a number that is not too large";
 }
 
 bool within(const PropertyType &type, double value) {
     if (std::isnan(value)) return false;
-    return (type.open ? value > type.least : value >= type.least) && value <= type.most;
+    return (type.open ? value > type.minimum : value >= type.minimum) && value <= type.maximum;
 }
 
 // Reads `value` as the row wants it; false, with what was wanted, where it is something else.
@@ -37,7 +37,7 @@ bool convert(const PropertyType &type, const Value &value, Property &property,
         wanted += ", " + limits(type);
         property.number[0] = *number;
         if (type.kind == PropertyKind::Whole && !within(type, *number)) { // the nearest count
-            property.number[0] = std::clamp(*number, type.least, type.most);
+            property.number[0] = std::clamp(*number, type.minimum, type.maximum);
             property.given = true;
         }
         return within(type, *number);

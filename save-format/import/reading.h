@@ -7,6 +7,7 @@
 
 namespace fathom::save {
 
+// One node's properties, read and checked.
 class Reading {
   public:
     Reading(Importer &in, const NodeTypeRow &row, const Properties &properties, Span at)

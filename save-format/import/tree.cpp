@@ -349,7 +349,7 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     } else if (row->children == Arity::One) {
         const std::string call = transform_call(in_, *row, properties, type_span);
         if (kids.differ && kids.pieces > 0 && call.ends_with(")")) {
-            // `s.repeat(…, copies: …)` asks nothing of s but that it is a shape
+            // `s.repeat(…, copies: …)` needs of s only that it is a shape
             target[begin] = {Piece::Kind::Open,
                              marked(part, "sphere(1)") + call.substr(0, call.size() - 1) +
                                  ", copies: (_, " + copy_name(in_.words.copies) + ") => union {",

@@ -15,6 +15,7 @@ enum class Place : std::uint8_t {
     Alone        // an operand by itself
 };
 
+// What the importer made of a node.
 struct Result {
     bool contributed = false;
     std::size_t base = 0; // nodes that an export has at this place before the records are applied
@@ -38,6 +39,7 @@ struct Children {
     bool differ = false; // they are read as those of one copy, which knows its number
 };
 
+// Reads the scene tree of one file.
 class TreeReader {
   public:
     explicit TreeReader(Importer &importer) : in_(importer) {}

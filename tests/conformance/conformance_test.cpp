@@ -101,7 +101,7 @@ TEST_CASE("gradients are what differences say, where there is one") {
         if (question.c.op == Op::Hash) continue; // has none
         INFO(question.name());
         Random random{7};
-        for (int turn = 0; turn < 25; ++turn) {
+        for (int iteration = 0; iteration < 25; ++iteration) {
             ir::Scene scene;
             ir::Graph &g = scene.graph;
             const NodeId p = g.fresh_var(Type::Vec3);
@@ -174,7 +174,7 @@ TEST_CASE("gradients are what differences say, where there is one") {
                 if (!(std::abs(left - right) <= 1e-3 * (1 + std::abs(left))))
                     continue; // a kink or a jump
                 ++compared;
-                CAPTURE(axis, turn);
+                CAPTURE(axis, iteration);
                 const double middle = (left + right) / 2;
                 REQUIRE(std::abs(out[1 + axis] - middle) <= 2e-3 * (1 + std::abs(middle)));
             }

@@ -56,14 +56,14 @@ class Walker {
         for (NodeId arg : g_.args(id)) now.push_back(value(arg));
         const double count = std::min<double>(value(loop.count).value[0], loop.max_count);
         for (double i = 0; i < count; ++i) {
-            Walker turn(g_);
+            Walker iteration(g_);
             for (const auto &[var, constant] : known)
-                if (g_[var].op == Op::Var) turn.known[var] = constant;
-            turn.known[loop.index] = {Type::Int, {i}};
-            for (std::size_t k = 0; k < now.size(); ++k) turn.known[loop.vars[k]] = now[k];
-            if (loop.condition && turn.value(loop.condition).value[0] == 0) break;
+                if (g_[var].op == Op::Var) iteration.known[var] = constant;
+            iteration.known[loop.index] = {Type::Int, {i}};
+            for (std::size_t k = 0; k < now.size(); ++k) iteration.known[loop.vars[k]] = now[k];
+            if (loop.condition && iteration.value(loop.condition).value[0] == 0) break;
             std::vector<Constant> next;
-            for (NodeId n : loop.next) next.push_back(turn.value(n));
+            for (NodeId n : loop.next) next.push_back(iteration.value(n));
             now = std::move(next);
         }
         return now;
@@ -138,7 +138,7 @@ class Grower {
     void loop(int depth) {
         ir::Loop record;
         record.max_count = static_cast<int>(random_.below(4)) + 1;
-        // The same number of turns for all, or each its own.
+        // The same number of iterations for all, or each its own.
         record.count = random_.below(2)
                            ? g_.integer(record.max_count)
                            : g_.make(Op::ToInt, Type::Int,

@@ -155,9 +155,9 @@ std::string section_text(const Section &section, const driver::Compilation &comp
     return fmt::format("(there is no stage `{}`)\n", section.stage);
 }
 
-std::string fixed_text(const Mended &mended) {
-    return mended.program + mended.left +
-           (mended.stuck.empty() ? "" : "no fix: " + mended.stuck + "\n");
+std::string fixed_text(const Fixed &result) {
+    return result.program + result.left +
+           (result.stuck.empty() ? "" : "no fix: " + result.stuck + "\n");
 }
 
 } // namespace
@@ -203,15 +203,15 @@ Outcome run_case(const Case &golden) {
         outcome.codes.emplace_back(code_name(diagnostic.code));
     for (const Section &section : golden.sections)
         outcome.actual.push_back({section.stage, section.arguments,
-                                  section.stage == "fixed" ? fixed_text(mend(golden))
+                                  section.stage == "fixed" ? fixed_text(apply_fixes(golden))
                                                            : section_text(section, compilation)});
     return outcome;
 }
 
-Mended mend(const Case &golden) {
-    constexpr int most_fixes = 60;
-    Mended result{golden.program, "", ""};
-    for (int i = 0; i < most_fixes; ++i) {
+Fixed apply_fixes(const Case &golden) {
+    constexpr int max_fixes = 60;
+    Fixed result{golden.program, "", ""};
+    for (int i = 0; i < max_fixes; ++i) {
         const driver::Compilation compilation =
             driver::compile_text(golden.file, result.program, golden.folder, {});
         const std::vector<Diagnostic> found = compilation.diagnostics.sorted();
@@ -224,19 +224,19 @@ Mended mend(const Case &golden) {
                     result.left += fmt::format("left: {}: {}\n", code_name(d.code), d.message);
             return result;
         }
-        const std::string mended = with_edits(result.program, fixable->fix->edits);
-        // The same thing said at the same place: the fix has mended nothing.
+        const std::string edited = with_edits(result.program, fixable->fix->edits);
+        // The same thing said at the same place: the fix has changed nothing.
         const auto says_it = [&](const Diagnostic &d) {
             return d.code == fixable->code && d.message == fixable->message &&
                    d.primary.span.begin == fixable->primary.span.begin;
         };
         const driver::Compilation after =
-            driver::compile_text(golden.file, mended, golden.folder, {});
+            driver::compile_text(golden.file, edited, golden.folder, {});
         const auto &items = after.diagnostics.items();
         if (std::any_of(items.begin(), items.end(), says_it))
             result.stuck = fmt::format("{}: {}", code_name(fixable->code), fixable->message);
         if (!result.stuck.empty()) return result;
-        result.program = mended;
+        result.program = edited;
     }
     result.stuck = "there is no end of fixes";
     return result;

@@ -34,11 +34,11 @@ Outcome run_case(const Case &golden);
 std::string write_case(const Case &golden, const std::vector<Section> &sections); // the file's text
 
 // The program after all fixes that its diagnostics propose, made one after the other as a person
-// would; and what is left to say. `stuck` tells of a fix that mends nothing.
-struct Mended {
+// would; and the diagnostics that remain. `stuck` names a fix that changes nothing.
+struct Fixed {
     std::string program, left, stuck;
 };
-Mended mend(const Case &golden);
+Fixed apply_fixes(const Case &golden);
 
 // The first difference, in a few lines.
 std::string difference(std::string_view expected, std::string_view actual);

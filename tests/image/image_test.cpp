@@ -83,9 +83,9 @@ TEST_CASE("GL and the CPU draw the same picture of each example") {
     }
 }
 
-// llvmpipe ends a shader after 65,536 turns of all its loops: with a loop for each spot, and with
-// one whose count nothing divides, the march came to more, and the solid was full of holes. Steps
-// run out in places of the spots, by either.
+// llvmpipe ends a shader after 65,536 iterations of all its loops: with a loop for each spot, and
+// with one whose count nothing divides, the march came to more, and the solid was full of holes.
+// Steps run out in places of the spots, by either.
 TEST_CASE("long loops leave no holes by GL") {
     auto context = gl::Context::make();
     REQUIRE(std::holds_alternative<gl::Context>(context));

@@ -70,8 +70,8 @@ TEST_CASE("every entry of the library is marched safely, and its bound is not fa
         INFO("steepest at " << place(slopes.where));
         CHECK(slopes.unsafe == 0);
         CHECK(slopes.steepest <= 1 + 1e-3);
-        const auto least = loose.find(entry.name);
-        CHECK(slopes.steepest >= (least == loose.end() ? 0.5 : least->second));
+        const auto minimum = loose.find(entry.name);
+        CHECK(slopes.steepest >= (minimum == loose.end() ? 0.5 : minimum->second));
     }
     std::printf("%d of %d entries with a shape are safe\n", safe, shapes);
     CHECK(shapes > 90);

@@ -366,8 +366,9 @@ TEST_CASE("between two samples that reach each other nothing lies, and half a be
     }
 }
 
-// What mirrors, cuts or repeats a field may bend it upward without limit: no reach beyond the ball.
-TEST_CASE("nothing reaches by curvature through folds and cuts") {
+// What mirrors, cuts or repeats a field may bend it upward without limit: no safe radius beyond the
+// distance.
+TEST_CASE("no safe radius by curvature goes through folds and cuts") {
     const auto rough = [](Scenery &s) {
         return s.add(ShapeKind::Displace, {s.sphere(1)},
                      {s.g.mul(s.n(0.1), s.sin(s.g.mul(s.n(9), s.x)))});

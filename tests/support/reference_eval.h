@@ -219,14 +219,14 @@ class Reference {
         if (node.op == Op::HitPoint) return of(node.type, {v.value[2], v.value[3], v.value[4]});
         if (node.op == Op::HitExtra)
             return of(node.type, {v.value[5], v.value[6], v.value[7], v.value[8]});
-        const auto dress = [&](std::size_t first) {
+        const auto with_paint = [&](std::size_t first) {
             v.value[1] = a[first].value[0];
             for (std::size_t i = 0; i < 3; ++i) v.value[2 + i] = a[first + 1].value[i];
             for (std::size_t i = 0; i < 4; ++i) v.value[5 + i] = a[first + 2].value[i];
         };
         v.type = ir::Type::Hit;
-        if (node.op == Op::MakeHit) dress(1);
-        if (node.op == Op::FillPaint && v.value[1] < 0) dress(1);
+        if (node.op == Op::MakeHit) with_paint(1);
+        if (node.op == Op::FillPaint && v.value[1] < 0) with_paint(1);
         if (node.op == Op::HitWith) v.value[0] = a[1].value[0];
         if (node.op == Op::NearestHit)
             for (const Value &other : a)

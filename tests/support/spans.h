@@ -1,6 +1,7 @@
-// The rule of curvature, measured: between two samples outside, no farther apart than their reaches
-// together, nothing of the solid lies (shading.h, MARCH). Random segments that the balls of their ends
-// do not cover, and points all along them; the same every time. On the processor, in float32.
+// The rule of curvature, measured: between two samples outside, no farther apart than their safe
+// radii together, nothing of the solid lies (shading.h, MARCH). Random segments that the balls of
+// their ends do not cover, and points all along them; the same every time. On the processor, in
+// float32.
 #pragma once
 
 #include "tests/support/slopes.h"
@@ -8,16 +9,17 @@
 namespace fathom::test {
 
 struct Spans {
-    int tried = 0;   // segments that are free by their reaches, and not by their balls
-    int cut = 0;     // … and in which the field is below 0
-    int shorter = 0; // samples whose reach is less than their distance, or whose distance differs
+    int tried = 0; // segments that are free by safe radii, and not by distances
+    int cut = 0;   // … and in which the field is below 0
+    int shorter =
+        0; // samples whose safe radius is less than their distance, or whose distance differs
 };
 
 inline Spans measure_spans(const ir::Scene &scene, Point3 lo, Point3 hi, int count) {
     const cpu::Program reach = cpu::compile(scene, scene.safe_radius);
     cpu::Scratch scratch = cpu::make_scratch(reach, cpu::inputs_of(scene, 0));
     Sampler sampler(scene);
-    using Values = std::array<std::vector<float>, 2>; // the distance, and how far it reaches
+    using Values = std::array<std::vector<float>, 2>; // the distance, and the safe radius
     const auto ask = [&](const std::vector<Point3> &points) {
         std::array<std::vector<float>, 3> in;
         for (const Point3 &p : points)

@@ -290,6 +290,6 @@ TEST_CASE("frame times: the median, and what all but one in a hundred stay below
     CHECK(times.at_share(0.5) == 100);
     CHECK(times.at_share(0.99) == 198);
     for (int i = 0; i < 500; ++i) times.add(7);
-    CHECK(times.milliseconds.size() == viewer::FrameTimes::most);
+    CHECK(times.milliseconds.size() == viewer::FrameTimes::maximum);
     CHECK(times.at_share(0.99) == 7);
 }

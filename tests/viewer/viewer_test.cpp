@@ -52,7 +52,7 @@ TEST_CASE(
     CHECK(difference(second, third, 0.6) == 0);
     CHECK(blue(pixel(third, 240, 220)));
 
-    // The mended file, by an editor's atomic rename: the very picture of before.
+    // The fixed file, by an editor's atomic rename: the very picture of before.
     // What is moved into place may have been written long ago.
     const fs::path moved =
         window.folder.write("scene.tmp", "import \"parts/a.sdf\"\nball()\n" + camera);

@@ -229,7 +229,7 @@ inline std::array<float, 3> pixel(const Picture &picture, int x, int y) {
 
 // The share of pixels that differ, in a window less its status line; `least`: by how much, in
 // linear light.
-inline double difference(const Picture &a, const Picture &b, double from = 0, float least = 0) {
+inline double difference(const Picture &a, const Picture &b, double from = 0, float minimum = 0) {
     REQUIRE(a.width == b.width);
     REQUIRE(a.height == b.height);
     int differing = 0, all = 0;
@@ -237,7 +237,7 @@ inline double difference(const Picture &a, const Picture &b, double from = 0, fl
         for (int x = 0; x < a.width; ++x, ++all) {
             const auto p = pixel(a, x, y), q = pixel(b, x, y);
             bool differs = false;
-            for (std::size_t c = 0; c < 3; ++c) differs |= std::abs(p[c] - q[c]) > least;
+            for (std::size_t c = 0; c < 3; ++c) differs |= std::abs(p[c] - q[c]) > minimum;
             differing += differs;
         }
     return static_cast<double>(differing) / all;

@@ -244,7 +244,6 @@ static Value shuffle_call(Interpreter &ev, const CallSite &site, std::vector<Val
 }
 
 // -- looking in, and refusing
-// ----------------------------------------------------------------------
 
 static Value print_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     if (is_poison(args[0])) return poison();

@@ -58,7 +58,7 @@ static Value function_call(Interpreter &ev, const CallSite &site, std::vector<Va
 }
 
 template <Op op>
-static Value most(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
+static Value extremum(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     std::vector<Value> items{args[0]};
     if (!is(args[1], ValueKind::None)) {
         auto rest = want_list(ev, args[1], site.arg(1), quoted(site.name));
@@ -144,7 +144,7 @@ static Value product(Interpreter &ev, const CallSite &site, std::vector<Value> &
     return from_node(ev, ev.scene.graph.make(op, {to_node(ev, *a), to_node(ev, *b)}));
 }
 
-// mix(a, b, t) where t may also be a bool: a choice without a jump in type.
+// mix(a, b, t) where t may also be a bool: then it chooses b or a.
 static Value mix_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     if (is_numeric(args[2]) && numeric_type(ev, args[2]) == Type::Bool) {
         if (auto v = select_value(ev, args[2], args[1], args[0])) return *v;
@@ -259,17 +259,17 @@ static Value div_call(Interpreter &ev, const CallSite &site, std::vector<Value> 
 // `rgb(255, 128, 0)`: whole numbers up to 255, of which one is too large for any light.
 static void warn_of_bytes(Interpreter &ev, const CallSite &site, const std::vector<Value> &args) {
     constexpr double brightest = 16;
-    double most = 0;
+    double maximum = 0;
     for (const Value &v : args) {
         if (v.kind != ValueKind::Int || v.num[0] < 0 || v.num[0] > 255) return;
-        most = std::max(most, v.num[0]);
+        maximum = std::max(maximum, v.num[0]);
     }
-    if (most <= brightest) return;
+    if (maximum <= brightest) return;
     const std::string hex =
         fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(args[0].num[0]),
                     static_cast<int>(args[1].num[0]), static_cast<int>(args[2].num[0]));
     report(ev, Code::Units, site.call,
-           fmt::format("the parts of a colour go from 0 to 1, and one of these is {}", most))
+           fmt::format("the parts of a colour go from 0 to 1, and one of these is {}", maximum))
         .help(fmt::format("write `{}` if parts of 255 are meant", hex), {{site.call, hex}});
 }
 
@@ -330,7 +330,6 @@ static Value hash_call(Interpreter &ev, const CallSite &site, std::vector<Value>
 }
 
 // -- matrices of rotations (library only)
-// ----------------------------------------------------------
 
 static Value rotation_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto angle = want_scalar_node(ev, args[0], site.arg(0), "`angle`");
@@ -385,9 +384,10 @@ void add_numeric_builtins(std::vector<Builtin> &table) {
     add("trunc", {{"x"}}, componentwise<Op::Trunc>, "without its fraction");
     add("fract", {{"x"}}, componentwise<Op::Fract>, "x - floor(x)");
     add("mod", {{"x"}, {"y"}}, componentwise<Op::Mod>, "x - y * floor(x / y), as `%`");
-    add("min", {{"a"}, {"b", true}}, most<Op::Min>,
+    add("min", {{"a"}, {"b", true}}, extremum<Op::Min>,
         "the smallest of two, of several, or of a list");
-    add("max", {{"a"}, {"b", true}}, most<Op::Max>, "the largest of two, of several, or of a list");
+    add("max", {{"a"}, {"b", true}}, extremum<Op::Max>,
+        "the largest of two, of several, or of a list");
     table[table.size() - 1].variadic = table[table.size() - 2].variadic = true;
     add("clamp", {{"x"}, {"lo"}, {"hi"}}, componentwise<Op::Clamp>, "x, kept between lo and hi");
     add("mix", {{"a"}, {"b"}, {"t"}}, mix_call, "a * (1 - t) + b * t; t may be a bool");

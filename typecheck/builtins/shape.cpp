@@ -42,7 +42,8 @@ std::optional<ir::ShapeId> first_shape(Interpreter &ev, const CallSite &site,
 
 // -- leaves --------------------------------------------------------------------------------------
 
-// A polygon's corners are kept for those who turn it about an axis; what is not known now is left.
+// A polygon's corners are stored for those who revolve it about an axis; what is not known now is
+// left.
 static void note_corners(Interpreter &ev, ir::ShapeId leaf, const Value &list) {
     if (list.kind != ValueKind::List) return;
     std::vector<std::array<double, 2>> corners;
@@ -53,8 +54,8 @@ static void note_corners(Interpreter &ev, ir::ShapeId leaf, const Value &list) {
     ev.corners[leaf] = std::move(corners);
 }
 
-// _solid(f, exact, lipschitz, lo, hi, symmetric, moment_arm, growth_rate) and _flat(…, corners): a field with
-// the library's claims.
+// _solid(f, exact, lipschitz, lo, hi, symmetric, moment_arm, growth_rate) and _flat(…, corners): a
+// field with the library's claims.
 template <int dims>
 static Value leaf_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     ir::Graph &g = ev.scene.graph;
@@ -177,7 +178,7 @@ static Value cached_call(Interpreter &ev, const CallSite &site, std::vector<Valu
         is_numeric(v) && (numeric_type(ev, v) == Type::Vec3 || numeric_type(ev, v) == Type::Vec4);
     if (!vector && !is_scalar(ev, v)) {
         report(ev, Code::TypeMismatch, site.arg(0),
-               fmt::format("`cached` keeps numbers, vec3 and colours, this function gives {}",
+               fmt::format("`cached` stores numbers, vec3 and colours, this function gives {}",
                            describe(ev, v)));
         return poison();
     }

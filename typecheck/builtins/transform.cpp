@@ -251,7 +251,7 @@ static Value displace_call(Interpreter &ev, const CallSite &site, std::vector<Va
 
 // -- repetition ----------------------------------------------------------------------------------
 
-// The copies may differ: `copies(s, id)` is asked once, with a variable for the cell's id.
+// The copies may differ: `copies(s, id)` is called once, with a variable for the cell's id.
 static std::optional<ir::ShapeId> one_copy(Interpreter &ev, const CallSite &site,
                                            const std::vector<Value> &args, std::size_t at,
                                            ir::NodeId &id) {

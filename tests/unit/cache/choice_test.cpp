@@ -9,9 +9,9 @@
 namespace fathom {
 namespace {
 
-// The time of all frames, over that of exact ones alone. `cached_ms` of how many cached frames there
-// were since the cache knew nothing, which it does at first and after 30 exact frames; those take
-// 10.
+// The time of all frames, over that of exact ones alone. `cached_ms` of how many cached frames
+// there were since the cache knew nothing, which it does at first and after 30 exact frames; those
+// take 10.
 struct Run {
     double share = 0;
     int cached = 0; // of the last hundred
@@ -22,7 +22,7 @@ Run run(int frames, const std::function<double(int frame, int known)> &cached_ms
     int known = 0, exact = 0;
     Run result;
     for (int frame = 0; frame < frames; ++frame) {
-        const bool cached = gl::keeps_next(choice);
+        const bool cached = gl::uses_cache_next(choice);
         const double ms = cached ? cached_ms(frame, known) : 10;
         exact = cached ? 0 : exact + 1;
         known = cached ? known + 1 : exact > 30 ? 0 : known;
@@ -60,12 +60,12 @@ TEST_CASE("a cache that ceases to gain is left, and taken up again when it gains
     CHECK(run(900, time).share < 0.9); // 300 frames at half the time, 600 at little more than all
 }
 
-TEST_CASE("frames of both kinds in turn do not follow from small differences") {
+TEST_CASE("alternating frames do not follow from small differences") {
     int changes = 0;
     gl::CacheChoice choice;
     bool before = true;
     for (int frame = 0; frame < 3000; ++frame) {
-        const bool cached = gl::keeps_next(choice);
+        const bool cached = gl::uses_cache_next(choice);
         changes += cached != before;
         before = cached;
         gl::took(choice, cached, 10 + 0.5 * std::sin(frame * 1.7) - (cached ? 0.1 : 0.0));

@@ -9,8 +9,8 @@ namespace fathom {
 namespace {
 
 struct Error {
-    double most = 0, mean = 0;  // of |f| at the hits, f the exact field before its division
-    int hits = 0, only_one = 0; // pixels that only one of the two pictures hits
+    double maximum = 0, mean = 0; // of |f| at the hits, f the exact field before its division
+    int hits = 0, only_one = 0;   // pixels that only one of the two pictures hits
 };
 
 // Where the picture's rays stopped, the exact field is 0, but for what interpolation and the
@@ -39,7 +39,7 @@ Error error_of(const gl::CachedView &view, const ir::Scene &scene, const gl::Fra
                        static_cast<double>(got.rgba[i + 1]) * d[a] / std::sqrt(size);
             const double f = std::hypot(p[0], p[1], p[2]) - 1 -
                              reference.call(cache.field, {test::Reference::vec3(p)}).value[0];
-            error.most = std::max(error.most, std::abs(f));
+            error.maximum = std::max(error.maximum, std::abs(f));
             error.mean += std::abs(f);
             ++error.hits;
         }
@@ -67,7 +67,7 @@ TEST_CASE(
         const Error error = error_of(view, c.scene, inputs, wanted);
         INFO("frame " << frame);
         CHECK(error.hits > 300);
-        CHECK(error.most <= bound + tolerance);
+        CHECK(error.maximum <= bound + tolerance);
         CHECK(error.only_one <= 6); // at the outline, of about 400
         if (frame == 0) CHECK(error.only_one == 0);
     }

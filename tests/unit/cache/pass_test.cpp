@@ -1,5 +1,5 @@
-// The cache's passes on the context at hand: what is cached, found, moved and given up, and the rules
-// that hold after every frame. The rules are the store's own reading of what lies on the card
+// The cache's passes on the context at hand: what is cached, found, moved and given up, and the
+// rules that hold after every frame. The rules are the store's own reading of what lies on the card
 // (gl::check_cache): the CPU's hash against the GPU's, each place owned once.
 #include "ir/passes/cost.h"
 #include "tests/support/reference_eval.h"
@@ -13,7 +13,7 @@ namespace {
 
 // Every cached cell's corners hold the field's own values there: `field` is Graph::caches' i-th.
 void check_values(const gl::CachedView &view, const ir::Scene &scene, std::uint32_t field,
-                  std::size_t most = 40) {
+                  std::size_t maximum = 40) {
     const gl::CacheStore::Dump dump = view.store().dump(true);
     test::Reference reference(scene);
     const ir::Cache &cache = scene.graph.cache(ir::CacheId{field});
@@ -22,7 +22,7 @@ void check_values(const gl::CachedView &view, const ir::Scene &scene, std::uint3
     std::size_t checked = 0;
     for (std::uint32_t entry : dump.hash) {
         const std::uint32_t place = entry & ((1u << glsl::cache_place_bits) - 1);
-        if (entry == glsl::cache_empty || dump.keys[place][3] != number || checked >= most)
+        if (entry == glsl::cache_empty || dump.keys[place][3] != number || checked >= maximum)
             continue;
         ++checked;
         const int p = static_cast<int>(place);
@@ -292,11 +292,11 @@ double steepest(const gl::CacheStore::Dump &dump, std::uint32_t place, double ce
         value[static_cast<std::size_t>(i)] =
             static_cast<double>(dump.pool[static_cast<std::size_t>(x + side * (y + side * z))]);
     }
-    double most = 0;
+    double maximum = 0;
     for (std::size_t i = 0; i < 8; ++i)
-        most = std::max(most, std::hypot(value[i] - value[i ^ 1], value[i] - value[i ^ 2],
-                                         value[i] - value[i ^ 4]));
-    return most / cell;
+        maximum = std::max(maximum, std::hypot(value[i] - value[i ^ 1], value[i] - value[i ^ 2],
+                                               value[i] - value[i ^ 4]));
+    return maximum / cell;
 }
 
 TEST_CASE("cells that are steeper than proved are not read") {

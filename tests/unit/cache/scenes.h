@@ -50,12 +50,12 @@ inline void use(gl::CachedView &view, const ir::Scene &scene, const gl::CacheSiz
 
 // Frames of the same view until nothing is missed, at most so many. How many it took.
 inline int warm(gl::CachedView &view, const gl::FrameInputs &inputs, const ir::Scene &scene,
-                int most = 60, const gl::CacheSettings &settings = all_cells) {
-    for (int frame = 0; frame < most; ++frame) {
+                int maximum = 60, const gl::CacheSettings &settings = all_cells) {
+    for (int frame = 0; frame < maximum; ++frame) {
         if (!view.draw(inputs, scene.params, settings)) FAIL("no memory");
         if (view.read_tally().misses == 0) return frame;
     }
-    return most;
+    return maximum;
 }
 
 inline gl::Pixels exact(const ir::Scene &scene, int side, gl::Mode mode) {

@@ -61,7 +61,7 @@ int checked_formulas(const ir::Scene &scene) {
     return count;
 }
 
-// Whether the text for a thousand turns is longer than that for three hundred.
+// Whether the text for a thousand iterations is longer than that for three hundred.
 bool grows(const std::string &text) {
     return length_of(good(with(text, 1000)), glsl::Target::Es300) >
            length_of(good(with(text, 300)), glsl::Target::Es300) + 1000;
@@ -84,7 +84,7 @@ TEST_CASE("the text of a loop over ten thousand spheres does not grow with their
     }
 }
 
-TEST_CASE("what a body may compute from its turn") {
+TEST_CASE("what a body may compute from its iteration") {
     CHECK(!grows("for i in 0..# { box([1, 1 + i % 7, 1]).rotate(i * 137.5deg).translate(x: i) }"));
     CHECK(
         !grows("for i in 0..# { for j in 0..10 { sphere(0.3).translate([i, 0.1 * i * j, j]) } }"));

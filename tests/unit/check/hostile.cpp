@@ -90,7 +90,7 @@ TEST_CASE("a loop over shapes of many parts") {
                  "for i in 0..100 { t(9).rotate(i * turn / 100) }") == "");
 }
 
-TEST_CASE("an error in each turn of a long loop is said once") {
+TEST_CASE("an error in each iteration of a long loop is said once") {
     CHECK(answer("for i in 0..100000 { sphere(sqrt(-1 - i)) }") == "number-range");
 }
 

@@ -1,4 +1,4 @@
-// Loops of field time whose turns can be counted when the scene is read.
+// Loops of field time whose iterations can be counted when the scene is read.
 #include "compiled.h"
 
 #include <catch2/catch.hpp>
@@ -16,8 +16,8 @@ std::string folding(const std::string &head, const std::string &tail) {
 
 } // namespace
 
-TEST_CASE("a while loop that a counter ends is a loop of that many turns") {
-    // so its end is no choice that hangs on the point, and the field is proved continuous
+TEST_CASE("a while loop that a counter ends is a loop of that many iterations") {
+    // so its end is no choice that depends on the point, and the field is proved continuous
     CHECK(compiled(folding("while k < 4 limit 9", "    k += 1\n")).good());
     CHECK(compiled(folding("while k < 4", "    k += 1\n")).good());
     CHECK(compiled(folding("while k * k < 50", "    k = 2 * k + 1\n")).good());

@@ -21,8 +21,8 @@ param angle = 0.3 in 0..6
 )";
 
 struct Case {
-    std::string body;   // of a function of p
-    double least, most; // of the bound
+    std::string body;        // of a function of p
+    double minimum, maximum; // of the bound
     std::string region = "ball(3)";
 };
 
@@ -48,8 +48,8 @@ void hold(const std::vector<Case> &cases) {
         driver::Compilation c = field(test);
         INFO(errors(c));
         REQUIRE(!c.diagnostics.has_errors());
-        CHECK(lipschitz(c) >= test.least * (1 - 1e-6));
-        CHECK(lipschitz(c) <= test.most * (1 + 1e-6));
+        CHECK(lipschitz(c) >= test.minimum * (1 - 1e-6));
+        CHECK(lipschitz(c) <= test.maximum * (1 + 1e-6));
         const Slopes seen = measure(c.scene, {-3, -3, -3}, {3, 3, 3}, 20'000);
         CHECK(seen.balls > 0);
         CHECK(seen.unsafe == 0); // no step passes a surface
@@ -120,19 +120,19 @@ TEST_CASE("smooth minima by hand are as steep as the steeper") {
     const std::string a = "length(p) - 0.8", b = "abs(p.y) - 0.2";
     const std::string mixed = "let x = " + a + "; let y = " + b + "; let k = 0.3\n" +
                               "let h = clamp(0.5 + 0.5 * (y - x) / k, 0, 1)\n";
-    const std::string least =
+    const std::string minimum =
         "let x = " + a + "; let y = " + b + "; let k = 0.3\n" + "let h = max(k - abs(x - y), 0)";
     hold({
         {mixed + "mix(y, x, h) - k * h * (1 - h)", 1, 1},
-        {least + "\nmin(x, y) - h * h / (4 * k)", 1, 1},
-        {least + " / k\nmin(x, y) - h * h * k * (1 / 4)", 1, 1},
-        {least + "\nmax(x, y) + h * h * 0.25 / k", 1, 1},
+        {minimum + "\nmin(x, y) - h * h / (4 * k)", 1, 1},
+        {minimum + " / k\nmin(x, y) - h * h * k * (1 / 4)", 1, 1},
+        {minimum + "\nmax(x, y) + h * h * 0.25 / k", 1, 1},
         {"smin(" + a + ", " + b + ", 0.3)", 1, 1},
         {"smax(2 * (" + a + "), " + b + ", 0.3)", 1.99, 2},
         {"-log(exp(-8 * (" + a + ")) + exp(-8 * (" + b + "))) / 8", 1, 1},
         // another bulge is none
         {mixed + "mix(y, x, h) - 4 * k * h * (1 - h)", 1, 12},
-        {least + "\nmin(x, y) - h * h / k", 1, 4},
+        {minimum + "\nmin(x, y) - h * h / k", 1, 4},
         {mixed + "mix(x, y, h) - k * h * (1 - h)", 1, 40},
     });
     CHECK(!compiled(

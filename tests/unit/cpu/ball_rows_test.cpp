@@ -51,11 +51,11 @@ TEST_CASE("rows of balls in packs are the kernels' rows to the bit") {
                     if (smooth)
                         packs[set].smooth(place, rows.data(), count, k);
                     else
-                        packs[set].least(place, rows.data(), count);
+                        packs[set].minimum(place, rows.data(), count);
                     CHECK(std::equal(cells.begin() + 64, cells.end(), packed.begin() + 64));
                     if (!smooth) continue;
                     // and by how much a row was less than what was there
-                    std::vector<float> drop(n, -1e9f), most = drop;
+                    std::vector<float> drop(n, -1e9f), maximum = drop;
                     std::copy(start.begin(), start.end(), packed.begin());
                     packs[set].smooth_dropping(place, rows.data(), count, k, drop.data());
                     CHECK(std::equal(cells.begin() + 64, cells.end(), packed.begin() + 64));
@@ -66,15 +66,16 @@ TEST_CASE("rows of balls in packs are the kernels' rows to the bit") {
                             const float x = points.x[i] - r[0], y = points.y[i] - r[1],
                                         z = points.z[i] - r[2];
                             const float b = std::sqrt(x * x + y * y + z * z) - r[3];
-                            most[i] = std::max(most[i], std::bit_cast<float>(packed[64 + i]) - b);
+                            maximum[i] =
+                                std::max(maximum[i], std::bit_cast<float>(packed[64 + i]) - b);
                         }
                         packs[set].smooth(place, r, 1, k);
                     }
-                    CHECK(drop == most);
+                    CHECK(drop == maximum);
                 }
 }
 
-TEST_CASE("only loops whose turns are a ball's joining are run in packs") {
+TEST_CASE("only loops whose iterations are a ball's joining are run in packs") {
     for (int how = 0; how < 4; ++how) {
         Fields f;
         fathom::ir::Table rows{5, 4, {}};

@@ -216,7 +216,7 @@ TEST_CASE("the nearest hit of a table's rows, with its paint, keeps the rows tha
     CHECK(answers.kernels < 300); // of 300 * 14
 }
 
-TEST_CASE("what a turn makes of all before it is no row of a table") {
+TEST_CASE("what an iteration makes of all before it is no row of a table") {
     Shell f;
     const TableId rows = f.table(50);
     // Each ball is grown by what was found so far: order is all.
@@ -226,10 +226,10 @@ TEST_CASE("what a turn makes of all before it is no row of a table") {
     });
     check(compile(f.scene, f.function(d), Choices::Apart));
     // A maximum that begins high, a minimum that begins low.
-    const NodeId most = f.loop(50, f.g.number(1), [&](NodeId best, NodeId i) {
+    const NodeId maximum = f.loop(50, f.g.number(1), [&](NodeId best, NodeId i) {
         return f.g.make(Op::Max, {best, f.row_ball(rows, i)});
     });
-    check(compile(f.scene, f.function(most), Choices::Apart));
+    check(compile(f.scene, f.function(maximum), Choices::Apart));
     // A choice that nobody ordered: the last row that is near.
     const NodeId last = f.loop(50, f.g.number(0.5), [&](NodeId best, NodeId i) {
         const NodeId ball = f.row_ball(rows, i);

@@ -32,15 +32,15 @@ TEST_CASE("a union holds one running value, however many its operands") {
     Points points = spread(500);
     std::vector<float> out = values(program, points);
     for (std::size_t i = 0; i < out.size(); ++i) {
-        float least = 1e9f;
+        float minimum = 1e9f;
         for (int b = 0; b < 100; ++b)
-            least = std::min(
-                least,
+            minimum = std::min(
+                minimum,
                 std::sqrt((points.x[i] - float(b % 10 - 5)) * (points.x[i] - float(b % 10 - 5)) +
                           (points.y[i] - float(b / 10 - 5)) * (points.y[i] - float(b / 10 - 5)) +
                           points.z[i] * points.z[i]) -
                     0.3f);
-        REQUIRE(out[i] == least);
+        REQUIRE(out[i] == minimum);
     }
 }
 
@@ -94,14 +94,14 @@ static FunctionId table_loop(Fields &f, NodeId count, NodeId condition_on = {}) 
     return f.function(loop);
 }
 
-static float least_of(int count, float x, float y, float z) {
-    float least = 1e9f;
+static float minimum_of(int count, float x, float y, float z) {
+    float minimum = 1e9f;
     for (int b = 0; b < count; ++b) {
         float dx = x - (float(b % 10) - 5), dy = y - (float(b / 10) - 5),
               dz = z - 0.25f * float(b % 3);
-        least = std::min(least, std::sqrt(dx * dx + dy * dy + dz * dz) - 0.3f);
+        minimum = std::min(minimum, std::sqrt(dx * dx + dy * dy + dz * dz) - 0.3f);
     }
-    return least;
+    return minimum;
 }
 
 TEST_CASE("a loop over a table stays a loop, its rows shared by all points") {
@@ -113,10 +113,10 @@ TEST_CASE("a loop over a table stays a loop, its rows shared by all points") {
     Points points = spread(700);
     std::vector<float> out = values(program, points);
     for (std::size_t i = 0; i < out.size(); ++i)
-        REQUIRE(out[i] == least_of(100, points.x[i], points.y[i], points.z[i]));
+        REQUIRE(out[i] == minimum_of(100, points.x[i], points.y[i], points.z[i]));
 }
 
-TEST_CASE("each point turns as often as it is told") {
+TEST_CASE("each point iterates as often as it is told") {
     Fields f;
     NodeId count =
         f.g.make(Op::ToInt, Type::Int, {f.g.mul(f.g.add(f.x(), f.g.number(2)), f.g.number(25))});
@@ -125,7 +125,7 @@ TEST_CASE("each point turns as often as it is told") {
     std::vector<float> out = values(program, points);
     for (std::size_t i = 0; i < out.size(); ++i)
         REQUIRE(out[i] ==
-                least_of(int((points.x[i] + 2) * 25), points.x[i], points.y[i], points.z[i]));
+                minimum_of(int((points.x[i] + 2) * 25), points.x[i], points.y[i], points.z[i]));
 }
 
 TEST_CASE("a point that is done keeps its value while others go on") {
@@ -134,10 +134,10 @@ TEST_CASE("a point that is done keeps its value while others go on") {
     Points points = spread(333);
     std::vector<float> out = values(program, points);
     for (std::size_t i = 0; i < out.size(); ++i) {
-        float least = 1e9f;
-        for (int b = 0; b < 100 && least > 3.5f; ++b)
-            least = least_of(b + 1, points.x[i], points.y[i], points.z[i]);
-        REQUIRE(out[i] == least);
+        float minimum = 1e9f;
+        for (int b = 0; b < 100 && minimum > 3.5f; ++b)
+            minimum = minimum_of(b + 1, points.x[i], points.y[i], points.z[i]);
+        REQUIRE(out[i] == minimum);
     }
 }
 
@@ -185,11 +185,11 @@ TEST_CASE("loops in loops, and what does not change in one is computed before it
     inner.index = g.fresh_var(Type::Int);
     NodeId part = g.fresh_var(Type::Float);
     NodeId fixed = g.make(Op::Sin, {f.x()}); // outside both
-    NodeId turn = g.make(
+    NodeId iteration = g.make(
         Op::Cos, {g.add(f.y(), g.make(Op::ToFloat, Type::Float, {outer.index}))}); // in the outer
     inner.vars = {part};
-    inner.next = {
-        g.add(part, g.mul(g.add(fixed, turn), g.make(Op::ToFloat, Type::Float, {inner.index})))};
+    inner.next = {g.add(
+        part, g.mul(g.add(fixed, iteration), g.make(Op::ToFloat, Type::Float, {inner.index})))};
     NodeId inner_loop = g.make(Op::Loop, Type::Float, {sum}, g.add_loop(inner).index);
     outer.vars = {sum};
     outer.next = {inner_loop};

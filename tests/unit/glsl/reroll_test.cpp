@@ -13,7 +13,7 @@ using namespace fathom::scenes;
 
 namespace {
 
-// Operand i: by turns a sphere, a slab, and a sphere by way of a function that holds its number.
+// Operand i: alternately a sphere, a slab, and a sphere by way of a function that holds its number.
 // Numbers are such that floats hold them.
 NodeId operand(Graph &g, NodeId p, int i) {
     const double x = 0.125 * (i % 16) - 1, r = 0.0625 + 0.03125 * (i % 7);

@@ -29,7 +29,7 @@ inline Surface plain_surface(Graph &g, double r, double green, double b) {
 
 // Everything but the field: lights, a surface for each paint and the last for the unpainted, a dark
 // background.
-inline void dress(Scene &scene, int paints, Box bounds) {
+inline void add_appearance(Scene &scene, int paints, Box bounds) {
     Graph &g = scene.graph;
     for (int i = 0; i <= paints; ++i)
         scene.surfaces.push_back(
@@ -64,7 +64,7 @@ inline Scene of_field(const std::function<NodeId(Graph &, NodeId p)> &field, Box
     const NodeId extra = g.vec(std::array{0.0, 0.0, 0.0, 0.0});
     const NodeId hit = g.make(Op::MakeHit, Type::Hit, {distance, g.integer(-1), q, extra});
     scene.hit = g.add_function({"scene_hit", {}, {q}, hit});
-    dress(scene, 0, bounds);
+    add_appearance(scene, 0, bounds);
     return scene;
 }
 
@@ -98,12 +98,12 @@ inline Scene table_of_spheres(int count, bool smooth = false) {
     };
     {
         const NodeId p = g.fresh_var(Type::Vec3), index = g.fresh_var(Type::Int),
-                     least = g.fresh_var(Type::Float);
+                     minimum = g.fresh_var(Type::Float);
         const NodeId d = sphere_at(p, index);
         const NodeId next =
-            smooth ? g.make(Op::Blend, Type::Float, {g.number(0.1), g.number(0), least, d})
-                   : g.make(Op::Union, Type::Float, {least, d});
-        Loop record{g.integer(count), index, {least}, {next}, {}, count};
+            smooth ? g.make(Op::Blend, Type::Float, {g.number(0.1), g.number(0), minimum, d})
+                   : g.make(Op::Union, Type::Float, {minimum, d});
+        Loop record{g.integer(count), index, {minimum}, {next}, {}, count};
         const LoopId id = g.add_loop(record);
         const NodeId loop = g.make(Op::Loop, Type::Float, {g.number(1e9)}, id.index);
         scene.distance =
@@ -127,7 +127,7 @@ inline Scene table_of_spheres(int count, bool smooth = false) {
         scene.hit =
             g.add_function({"spheres_hit", {}, {p}, g.make(Op::LoopResult, Type::Hit, {loop}, 0)});
     }
-    dress(scene, 1, cube(2.25));
+    add_appearance(scene, 1, cube(2.25));
     Surface &painted = scene.surfaces[0];
     painted.diffuse = g.swizzle(painted.extra, std::array{0, 1, 2});
     return scene;

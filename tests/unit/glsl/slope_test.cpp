@@ -24,9 +24,9 @@ NodeId zero3(Graph &g) { return g.vec3(0, 0, 0); }
 NodeId box(Graph &g, NodeId p) {
     const NodeId q = g.sub(g.make(Op::Abs, {p}), g.vec3(1, 0.5, 0.25));
     const NodeId outside = g.make(Op::Length, {g.make(Op::Max, {q, zero3(g)})});
-    const NodeId most = g.make(
+    const NodeId maximum = g.make(
         Op::Max, {g.component(q, 0), g.make(Op::Max, {g.component(q, 1), g.component(q, 2)})});
-    return g.add(outside, g.make(Op::Min, {most, g.number(0)}));
+    return g.add(outside, g.make(Op::Min, {maximum, g.number(0)}));
 }
 
 NodeId ring(Graph &g, NodeId p) {

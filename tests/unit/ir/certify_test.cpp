@@ -36,10 +36,10 @@ std::array<V, 4> simplex_corners() {
 
 // Whether bound(centre, radius) <= limit everywhere in the tetrahedron, halving the longest edge
 // where it is not yet. Counted.
-template <class F> bool holds_in_simplex(double limit, long most, F bound) {
+template <class F> bool holds_in_simplex(double limit, long maximum, F bound) {
     std::vector<std::array<V, 4>> rest{simplex_corners()};
     for (long cells = 0; !rest.empty(); ++cells) {
-        if (cells == most) return false;
+        if (cells == maximum) return false;
         std::array<V, 4> t = rest.back();
         rest.pop_back();
         const V centre = times(0.25, sum(sum(t[0], t[1]), sum(t[2], t[3])));
@@ -101,7 +101,7 @@ TEST_CASE("simplex noise's range") {
 // distance to the cell. A spot's slope 6t(1-t^2)^2 is greatest at t^2 = 1/5 and itself changes by
 // at most 6 where it grows, 4.8 where it falls; by symmetry an eighth of the cell does.
 TEST_CASE("spot noise's slope and range") {
-    const double peak = 1 / std::sqrt(5.0), most = 96 / (25 * std::sqrt(5.0));
+    const double peak = 1 / std::sqrt(5.0), maximum = 96 / (25 * std::sqrt(5.0));
     const auto slope = [](double t) { return 6 * t * (1 - t * t) * (1 - t * t); };
     struct Cell {
         V p;
@@ -119,15 +119,15 @@ TEST_CASE("spot noise's slope and range") {
             double near = 0, far = 0;
             for (std::size_t i = 0; i < 3; ++i) {
                 const double lo = at[i] - cell.p[i], hi = lo + 1;
-                const double least = std::max({lo, -hi, 0.0}),
-                             greatest = std::max(std::abs(lo), std::abs(hi));
-                near += least * least;
-                far += greatest * greatest;
+                const double minimum = std::max({lo, -hi, 0.0}),
+                             maximum = std::max(std::abs(lo), std::abs(hi));
+                near += minimum * minimum;
+                far += maximum * maximum;
             }
             // The distances of all p in the piece.
             near = std::max(std::sqrt(near) - radius, 0.0), far = std::sqrt(far) + radius;
             if (near >= 1) continue;
-            steep += near > peak ? slope(near) : far < peak ? slope(far) : most;
+            steep += near > peak ? slope(near) : far < peak ? slope(far) : maximum;
             high += std::pow(1 - near * near, 3);
         }
         if (steep <= sem::spot_slope && high <= sem::spot_range) continue;
@@ -211,7 +211,7 @@ double bend_along(V u, V c, double half, bool gradients) {
 // which |u.Hu| is greatest, |u.Hu| >= cos(2a) times that. So directions that lie everywhere within
 // a of one another, and each below limit*cos(2a), prove the limit. By mirrors a corner's eighth of
 // the cell and half of the directions do; by permutations those with |ux| >= |uy| >= |uz|.
-bool bends_less(double limit, int grid, long most, bool gradients) {
+bool bends_less(double limit, int grid, long maximum, bool gradients) {
     for (int j = 0; j < grid; ++j)
         for (int k = -j - 1; k <= j; ++k)
             for (double sign : {1.0, -1.0}) {
@@ -228,7 +228,7 @@ bool bends_less(double limit, int grid, long most, bool gradients) {
                 while (!rest.empty()) {
                     const auto [p, half] = rest.back();
                     rest.pop_back();
-                    if (--most < 0) return false;
+                    if (--maximum < 0) return false;
                     if (bend_along(u, p, half, gradients) <= along) continue;
                     for (int c = 0; c < 8; ++c) {
                         const double h = half / 2;

@@ -185,7 +185,7 @@ TEST_CASE("folds carry values, stop at their condition, and bind their variables
     const NodeId x = g.component(g.point(), 0), y = g.component(g.point(), 1),
                  free = g.fresh_var(Type::Float);
     const NodeId sum = loop(g, g.integer(4), x, y);
-    const NodeId turns = g.make(Op::LoopResult, Type::Float, {sum}, 1);
+    const NodeId iterations = g.make(Op::LoopResult, Type::Float, {sum}, 1);
     CHECK(g.make(Op::LoopResult, Type::Float, {sum}, 0) == sum);
     CHECK(!g.reads(sum).free_vars);
     CHECK(g.reads(loop(g, g.integer(4), x, free)).free_vars);
@@ -194,9 +194,9 @@ TEST_CASE("folds carry values, stop at their condition, and bind their variables
     test::Reference eval(g);
     eval.point = {1, 2, 0};
     CHECK(eval.number(sum) == 1 + 2 * (0 + 1 + 2 + 3));
-    CHECK(eval.number(turns) == 4);
+    CHECK(eval.number(iterations) == 4);
     eval.point = {1, 60, 0}; // 1, 1, 61, 181: the condition ends it
-    CHECK(eval.number(turns) == 3);
+    CHECK(eval.number(iterations) == 3);
 }
 
 TEST_CASE("substitution enters folds, and gives the copy variables of its own") {

@@ -359,7 +359,7 @@ TEST_CASE("raw fields do not depend on proofs") {
     }
 }
 
-TEST_CASE("a displaced shape is left to its smooth field outside the displacement's reach") {
+TEST_CASE("a displaced shape is left to its smooth field outside the displacement's range") {
     Builder t;
     const NodeId wave =
         t.g.mul(t.n(0.1), t.g.make(Op::Sin, {t.g.mul(t.n(40), t.g.component(t.g.point(), 1))}));

@@ -14,7 +14,7 @@ using Copy = std::function<double(P, P)>; // (point in the cell's space, id) -> 
 // The union of the copies, written out.
 double brute_lattice(P p, P cell, std::array<int, 3> lo, std::array<int, 3> hi, P shift,
                      bool mirrored, const Copy &f) {
-    double least = 1e9;
+    double minimum = 1e9;
     for (int i = lo[0]; i <= hi[0]; ++i)
         for (int j = lo[1]; j <= hi[1]; ++j)
             for (int k = lo[2]; k <= hi[2]; ++k) {
@@ -24,9 +24,9 @@ double brute_lattice(P p, P cell, std::array<int, 3> lo, std::array<int, 3> hi, 
                     q[a] -= (id[a] - shift[a]) * cell[a];
                     if (mirrored && cell[a] > 0 && id[a] % 2 != 0) q[a] = -q[a];
                 }
-                least = std::min(least, f(q, {double(i), double(j), double(k)}));
+                minimum = std::min(minimum, f(q, {double(i), double(j), double(k)}));
             }
-    return least;
+    return minimum;
 }
 
 void plan(Builder &t, ShapeId repeat, std::array<int, 3> neighbors) {
@@ -146,15 +146,15 @@ TEST_CASE("rings of copies") {
             const ShapeId all = t.ring(piece, count, 1, id);
             plan(t, all, {sectors, 0, 0});
             equals(t.lowered(all), 3, [&](P p) {
-                double least = 1e9;
+                double minimum = 1e9;
                 for (int k = 0; k < count; ++k) {
                     // the copy turned by a counter-clockwise seen from +y: x to -z
                     const double a = k * 8 * std::atan(1.0) / count;
                     const P c{1.5 * std::cos(a) - 0.15 * std::sin(a), 0.1,
                               -1.5 * std::sin(a) - 0.15 * std::cos(a)};
-                    least = std::min(least, length(minus(p, c)) - 0.2);
+                    minimum = std::min(minimum, length(minus(p, c)) - 0.2);
                 }
-                return least;
+                return minimum;
             });
         }
 }

@@ -51,9 +51,9 @@ struct Builder {
     ShapeId box(double x, double y, double z) {
         const NodeId d = g.sub(g.make(Op::Abs, {g.point()}), v(x / 2, y / 2, z / 2));
         const NodeId out = g.make(Op::Length, {g.make(Op::Max, {d, v(0, 0, 0)})});
-        const NodeId most = g.make(
+        const NodeId maximum = g.make(
             Op::Max, {g.make(Op::Max, {g.component(d, 0), g.component(d, 1)}), g.component(d, 2)});
-        return leaf(g.add(out, g.make(Op::Min, {most, n(0)})));
+        return leaf(g.add(out, g.make(Op::Min, {maximum, n(0)})));
     }
     ShapeId moved(ShapeId child, double x, double y, double z) {
         return add(translated(g, child, v(x, y, z)));
@@ -105,13 +105,13 @@ struct Builder {
 inline double length(P p) { return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]); }
 inline P minus(P a, P b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline double box_distance(P p, P size) {
-    double out = 0, most = -1e30;
+    double out = 0, maximum = -1e30;
     for (std::size_t i = 0; i < 3; ++i) {
         const double d = std::abs(p[i]) - size[i] / 2;
         out += d > 0 ? d * d : 0;
-        most = std::max(most, d);
+        maximum = std::max(maximum, d);
     }
-    return std::sqrt(out) + std::min(most, 0.0);
+    return std::sqrt(out) + std::min(maximum, 0.0);
 }
 
 } // namespace fathom::test

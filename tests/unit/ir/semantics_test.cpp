@@ -26,16 +26,16 @@ template <class F> double slope(F f, P p) {
 // Continuous, within its range, and no steeper than certified; `steepest` of the bound is reached.
 template <class F> void keeps(F f, double lo, double hi, double bound, double steepest) {
     Random random;
-    double most = 0;
+    double maximum = 0;
     for (int i = 0; i < 60000; ++i) {
         const P p = random.point(50);
         const double v = f(p[0], p[1], p[2]);
         if (v < lo || v > hi) FAIL("out of range: " << v);
         const double s = slope(f, p);
         if (s > bound * (1 + 1e-6)) FAIL("too steep: " << s);
-        most = std::max(most, s);
+        maximum = std::max(maximum, s);
     }
-    CHECK(most >= steepest * bound);
+    CHECK(maximum >= steepest * bound);
 }
 
 } // namespace
@@ -77,12 +77,12 @@ TEST_CASE("noise: range, slope, and how near the bound is") {
 
 TEST_CASE("Perlin's slope of 3.75 is reached at a cell's centre") {
     // For some cell among many: all eight gradients point along one diagonal pair.
-    double most = 0;
+    double maximum = 0;
     for (int i = 0; i < 100000; ++i)
-        most = std::max(most, slope(sem::perlin<double>,
-                                    {i % 100 + 0.5, i / 100 % 100 + 0.5, i / 10000 + 0.5}));
-    CHECK(most > 0.85 * 3.75);
-    CHECK(most <= 3.75 + 1e-6);
+        maximum = std::max(maximum, slope(sem::perlin<double>,
+                                          {i % 100 + 0.5, i / 100 % 100 + 0.5, i / 10000 + 0.5}));
+    CHECK(maximum > 0.85 * 3.75);
+    CHECK(maximum <= 3.75 + 1e-6);
 }
 
 TEST_CASE("noise is the same in float and double, seamless at cell walls, and defined far out") {
@@ -104,7 +104,7 @@ TEST_CASE("worley is min(1, distance to the nearest point), by search twice as w
     int cut = 0;
     for (int i = 0; i < 20000; ++i) {
         const P p = random.point(30);
-        double least = 1;
+        double minimum = 1;
         const std::array<int, 3> cell{int(std::floor(p[0])), int(std::floor(p[1])),
                                       int(std::floor(p[2]))};
         for (int a = -2; a <= 2; ++a)
@@ -113,11 +113,12 @@ TEST_CASE("worley is min(1, distance to the nearest point), by search twice as w
                     const auto at = sem::worley_point<double>(
                         sem::hash_lattice(std::uint32_t(cell[0] + a), std::uint32_t(cell[1] + b),
                                           std::uint32_t(cell[2] + c), 0x1b56c4e9u));
-                    least = std::min(least, length(minus(p, {cell[0] + a + at.x, cell[1] + b + at.y,
-                                                             cell[2] + c + at.z})));
+                    minimum =
+                        std::min(minimum, length(minus(p, {cell[0] + a + at.x, cell[1] + b + at.y,
+                                                           cell[2] + c + at.z})));
                 }
-        CHECK(sem::worley(p[0], p[1], p[2]) == Approx(least));
-        cut += least >= 1;
+        CHECK(sem::worley(p[0], p[1], p[2]) == Approx(minimum));
+        cut += minimum >= 1;
     }
     CHECK(cut < 60); // of 20,000
 }

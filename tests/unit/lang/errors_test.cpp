@@ -1,4 +1,4 @@
-// What is said about wrong texts: one report a cause, at its place, with edits that mend it.
+// What is said about wrong texts: one report a cause, at its place, with edits that fix it.
 #include "support.h"
 
 #include <catch2/catch.hpp>
@@ -9,7 +9,7 @@ using lang_test::Parsed;
 namespace {
 
 struct Case {
-    std::string wrong, code, mended; // `mended` is empty where the help has no edit
+    std::string wrong, code, fixed; // `fixed` is empty where the help has no edit
 };
 
 void check(const Case &c) {
@@ -19,13 +19,13 @@ void check(const Case &c) {
     CHECK(lang_test::defect(parsed).empty());
     REQUIRE(parsed.codes() == std::vector<std::string>{c.code});
     const fathom::Diagnostic &d = parsed.diagnostics.items()[0];
-    if (c.mended.empty()) {
+    if (c.fixed.empty()) {
         CHECK((!d.fix || d.fix->edits.empty()));
         return;
     }
     REQUIRE(d.fix);
-    CHECK(apply_fix(c.wrong, d) == c.mended);
-    CHECK(Parsed(c.mended).report().empty());
+    CHECK(apply_fix(c.wrong, d) == c.fixed);
+    CHECK(Parsed(c.fixed).report().empty());
 }
 
 } // namespace

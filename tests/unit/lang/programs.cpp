@@ -106,10 +106,10 @@ class Writer {
         --depth_;
     }
 
-    void inside(const char *open, const char *close, int most) {
+    void inside(const char *open, const char *close, int maximum) {
         put(open);
         ++loose_;
-        const int items = pick(most + 1);
+        const int items = pick(maximum + 1);
         for (int i = items; i > 0; --i) {
             gap();
             if (*open == '(' && pick(3) == 0) put("named"), gap(), put(":"), room();

@@ -75,10 +75,10 @@ Apart apart(const gl::Program &a, const gl::Program &b, const Scene &scene, doub
         const float t = ends_a[i + 1], u = ends_b[i + 1];
         result.hits += t >= 0;
         result.ends += (t < 0) != (u < 0) || std::abs(t - u) > 0.01f * std::max(t, 0.1f);
-        float most = 0;
+        float maximum = 0;
         for (std::size_t k = 0; k < 3; ++k)
-            most = std::max(most, std::abs(colors_a[i + k] - colors_b[i + k]));
-        result.colors.push_back(most);
+            maximum = std::max(maximum, std::abs(colors_a[i + k] - colors_b[i + k]));
+        result.colors.push_back(maximum);
     }
     std::ranges::sort(result.colors, std::greater<>());
     return result;
@@ -99,7 +99,8 @@ TEST_CASE("what is drawn by lists of rows is the same to the bit") {
             const Scene scene = table_of_spheres(count, smooth);
             const glsl::Output output = emitted(scene, true);
             REQUIRE(output.pruning.kernels.size() == (smooth ? 2 : 1));
-            // In groups that drivers write out: llvmpipe ends a shader after 65,536 turns in all.
+            // In groups that drivers write out: llvmpipe ends a shader after 65,536 iterations in
+            // all.
             CHECK(output.text.find(" += 4u) for (uint ") != std::string::npos);
             const gl::Program pruned = built(output, scene),
                               plain = built(emitted(scene, false), scene);
@@ -258,15 +259,16 @@ TEST_CASE("rows that move have the lists of their time") {
             Table table{200, 1, {}};
             for (int i = 0; i < 200; ++i) table.data.push_back(static_cast<float>(0.01 * i - 1));
             const TableId rows = graph.add_table(table);
-            const NodeId index = graph.fresh_var(Type::Int), least = graph.fresh_var(Type::Float);
+            const NodeId index = graph.fresh_var(Type::Int), minimum = graph.fresh_var(Type::Float);
             const NodeId x = graph.make(Op::TableRead, Type::Float, {index}, table_slot(rows, 0)),
                          phase = graph.add(graph.time(), graph.mul(x, graph.number(20))),
                          y = graph.mul(graph.number(0.8), graph.make(Op::Sin, {phase}));
             NodeId d = graph.make(Op::Length, {graph.sub(p, graph.make(Op::Make, Type::Vec3,
                                                                        {x, y, graph.number(0)}))});
             if (steep) d = graph.mul(d, d);
-            const NodeId next = graph.make(Op::Union, {least, graph.sub(d, graph.number(0.02))});
-            const LoopId id = graph.add_loop({graph.integer(200), index, {least}, {next}, {}, 200});
+            const NodeId next = graph.make(Op::Union, {minimum, graph.sub(d, graph.number(0.02))});
+            const LoopId id =
+                graph.add_loop({graph.integer(200), index, {minimum}, {next}, {}, 200});
             return graph.make(Op::Loop, Type::Float, {graph.number(1e9)}, id.index);
         });
     };

@@ -20,7 +20,7 @@ std::vector<float> values(const Scene &scene, int count, bool buffers = false, i
 
 } // namespace
 
-TEST_CASE("a loop's values are all of the turn before") {
+TEST_CASE("a loop's values are all of the iteration before") {
     require_context();
     // Fibonacci: (a, b) = (b, a + b), as often as p.x says.
     const auto found =
@@ -37,7 +37,7 @@ TEST_CASE("a loop's values are all of the turn before") {
     CHECK(found == std::vector<float>{0, 1, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89});
 }
 
-TEST_CASE("a loop ends before the turn whose condition fails") {
+TEST_CASE("a loop ends before the iteration whose condition fails") {
     require_context();
     // Powers of two until one exceeds p.x.
     const auto found =

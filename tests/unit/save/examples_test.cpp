@@ -19,7 +19,7 @@ namespace {
 
 // 1e-6, and what the compiler widens a guard's box by: a file has a shape's paint below its
 // transforms, and so the guard of what is painted within a region (minimal_surfaces: 1.3e-6).
-constexpr double most_field = 1.5e-6;
+constexpr double max_field = 1.5e-6;
 constexpr int picture_width = 80, picture_height = 60, asked_points = 1000;
 
 using Coordinates = std::array<std::vector<float>, 3>;
@@ -71,9 +71,9 @@ double picture_difference(const ir::Scene &a, const ir::Scene &b, double time) {
     const std::vector<std::uint8_t> x = picture(a, time), y = picture(b, time);
     int differ = 0;
     for (std::size_t i = 0; i < x.size(); i += 4) {
-        int most = 0;
-        for (std::size_t c = i; c < i + 3; ++c) most = std::max(most, std::abs(x[c] - y[c]));
-        differ += most > 1;
+        int maximum = 0;
+        for (std::size_t c = i; c < i + 3; ++c) maximum = std::max(maximum, std::abs(x[c] - y[c]));
+        differ += maximum > 1;
     }
     return 100.0 * differ / (picture_width * picture_height);
 }
@@ -140,7 +140,7 @@ TEST_CASE("every example comes back from a save file with its field and its pict
         CHECK(trip.imported == "");
         CHECK(trip.errors == "");
         if (!trip.back.good()) continue;
-        CHECK(field_difference(first.scene, trip.back.scene, 0) <= most_field);
+        CHECK(field_difference(first.scene, trip.back.scene, 0) <= max_field);
         CHECK(picture_difference(first.scene, trip.back.scene, 0) <= 0.5);
 
         const ir::Scene &a = first.scene, &b = trip.back.scene;
@@ -160,7 +160,7 @@ TEST_CASE("every example comes back from a save file with its field and its pict
         CHECK(a.graph.cache_count() == b.graph.cache_count());
         if (trip.labelled.find("motion") != std::string::npos) {
             ++moving;
-            CHECK(field_difference(a, b, 1.3) <= most_field);
+            CHECK(field_difference(a, b, 1.3) <= max_field);
         }
         driver::CompileOptions options;
         options.overrides = moved_params(a);
@@ -171,7 +171,7 @@ TEST_CASE("every example comes back from a save file with its field and its pict
                                       "back.sdf", trip.sdf, FATHOM_SOURCE_DIR "/examples", options);
         REQUIRE(there.good());
         REQUIRE(back.good());
-        CHECK(field_difference(there.scene, back.scene, 0.7) <= most_field);
+        CHECK(field_difference(there.scene, back.scene, 0.7) <= max_field);
     }
     CHECK(moving >= 4);
     CHECK(following >= 8);
@@ -265,8 +265,8 @@ TEST_CASE("numbers that follow something come back following it", "[save][exampl
         CHECK(trip.imported == "");
         CHECK(trip.errors == "");
         if (!trip.back.good()) continue;
-        CHECK(field_difference(first.scene, trip.back.scene, 0) <= most_field);
-        CHECK(field_difference(first.scene, trip.back.scene, 0.9) <= most_field);
+        CHECK(field_difference(first.scene, trip.back.scene, 0) <= max_field);
+        CHECK(field_difference(first.scene, trip.back.scene, 0.9) <= max_field);
         CHECK(picture_difference(first.scene, trip.back.scene, 0.9) <= 0.5);
         driver::CompileOptions options;
         options.overrides = {{"a", "0.9"}, {"v", "[0.2, 0.9, 1.5]"}, {"tint", "#aa2200"}};
@@ -275,7 +275,7 @@ TEST_CASE("numbers that follow something come back following it", "[save][exampl
         for (const std::string &error : back.usage_errors) UNSCOPED_INFO(error);
         REQUIRE(there.good());
         REQUIRE(back.good());
-        CHECK(field_difference(there.scene, back.scene, 0.4) <= most_field);
+        CHECK(field_difference(there.scene, back.scene, 0.4) <= max_field);
         CHECK(picture_difference(there.scene, back.scene, 0.4) <= 0.5);
     }
 }

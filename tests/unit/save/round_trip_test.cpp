@@ -180,8 +180,8 @@ TEST_CASE("generated trees come back whole", "[save]") {
         const std::string name = pick(2) == 0 ? "node " + std::to_string(++names)
                                               : "Sphere " + std::to_string(1 + pick(4));
         std::string children;
-        const auto kids = [&](int least, int most) {
-            const int count = least + pick(most - least + 1);
+        const auto kids = [&](int minimum, int maximum) {
+            const int count = minimum + pick(maximum - minimum + 1);
             for (int i = 0; i < count; ++i) children += (i ? ", " : "") + node(depth - 1);
             return "Children: [" + children + "]}]";
         };

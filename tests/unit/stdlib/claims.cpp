@@ -141,16 +141,17 @@ void check_claims(const Solid &solid, const Field &field) {
         std::vector<Point> mirrored = points;
         for (Point &p : mirrored) p[axis] = -p[axis];
         std::vector<double> m = field.at(mirrored);
-        double most = 0;
-        for (std::size_t i = 0; i < d.size(); ++i) most = std::max(most, std::abs(d[i] - m[i]));
+        double maximum = 0;
+        for (std::size_t i = 0; i < d.size(); ++i)
+            maximum = std::max(maximum, std::abs(d[i] - m[i]));
         INFO("mirrored across axis " << axis);
-        CHECK(most < 1e-5);
+        CHECK(maximum < 1e-5);
     }
     const double h = 1e-2;
     for (int axis = 0; axis < 3; ++axis) {
         ir::NodeId moment_arm = claims.moment_arm[static_cast<std::size_t>(axis)];
         if (!moment_arm) continue;
-        double bound = component(field.scene(), moment_arm, 0), most = 0;
+        double bound = component(field.scene(), moment_arm, 0), maximum = 0;
         // turned a little about the axis, the field changes by at most the moment arm times the
         // angle
         std::vector<Point> turned = points;
@@ -162,9 +163,10 @@ void check_claims(const Solid &solid, const Field &field) {
             p[k] = std::sin(h) * x + std::cos(h) * y;
         }
         std::vector<double> t = field.at(turned);
-        for (std::size_t i = 0; i < d.size(); ++i) most = std::max(most, std::abs(d[i] - t[i]) / h);
+        for (std::size_t i = 0; i < d.size(); ++i)
+            maximum = std::max(maximum, std::abs(d[i] - t[i]) / h);
         INFO("turned about axis " << axis);
-        CHECK(most <= bound + 1e-3);
+        CHECK(maximum <= bound + 1e-3);
     }
 }
 
@@ -203,17 +205,17 @@ TEST_CASE("the mandelbulb holds what stays bounded", "[stdlib]") {
     int bounded = 0, wrong = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         Point z = points[i];
-        int turns = 0;
-        while (turns < 60 && norm(z) < 2) {
+        int iterations = 0;
+        while (iterations < 60 && norm(z) < 2) {
             const double r = norm(z), latitude = 8 * std::asin(z[1] / std::max(r, 1e-12)),
                          longitude = 8 * std::atan2(z[2], z[0]);
             z = points[i] + std::pow(r, 8) * Point{std::cos(latitude) * std::cos(longitude),
                                                    std::sin(latitude),
                                                    std::cos(latitude) * std::sin(longitude)};
-            ++turns;
+            ++iterations;
         }
-        bounded += turns == 60;
-        wrong += (turns == 60 && d[i] > 1e-3) || (turns < 5 && d[i] < 0);
+        bounded += iterations == 60;
+        wrong += (iterations == 60 && d[i] > 1e-3) || (iterations < 5 && d[i] < 0);
     }
     CHECK(bounded > 1000);
     CHECK(wrong == 0);

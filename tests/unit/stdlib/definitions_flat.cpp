@@ -26,16 +26,16 @@ Corners star_corners(int tips, double outer, double inner) {
 }
 
 bool near_bezier(double x, double y, const Corners &c, double r) {
-    double least = 1e9;
+    double minimum = 1e9;
     Point before{};
     for (int i = 0; i <= 400; ++i) {
         double t = i / 400.0, a = (1 - t) * (1 - t), b = 2 * t * (1 - t), d = t * t;
         Point at{a * c[0][0] + b * c[1][0] + d * c[2][0], a * c[0][1] + b * c[1][1] + d * c[2][1],
                  0};
-        if (i > 0) least = std::min(least, to_segment({x, y, 0}, before, at));
+        if (i > 0) minimum = std::min(minimum, to_segment({x, y, 0}, before, at));
         before = at;
     }
-    return least < r;
+    return minimum < r;
 }
 
 } // namespace

@@ -82,13 +82,13 @@ Solid polyhedron(const std::string &text, const std::vector<Point> &corners,
 }
 
 double gdf(Point p, const std::vector<Point> &normals, double exponent) {
-    double sum = 0, most = 0;
+    double sum = 0, maximum = 0;
     for (const Point &n : normals) {
         double a = std::abs(dot(p, n)) / norm(n);
-        most = std::max(most, a);
+        maximum = std::max(maximum, a);
         sum += std::pow(a, exponent);
     }
-    return std::isinf(exponent) ? most : std::pow(sum, 1 / exponent);
+    return std::isinf(exponent) ? maximum : std::pow(sum, 1 / exponent);
 }
 // Of directions with all signs, one of each pair.
 std::vector<Point> axes(const std::vector<Point> &all) {
@@ -155,15 +155,15 @@ std::vector<Solid> round_solids() {
         {"link(2.4, 0.5, 0.15)",
          [](Point p) {
              double straight = 1.2 - 0.65;
-             double least = std::min(to_segment(p, {-straight, 0, 0.5}, {straight, 0, 0.5}),
-                                     to_segment(p, {-straight, 0, -0.5}, {straight, 0, -0.5}));
+             double minimum = std::min(to_segment(p, {-straight, 0, 0.5}, {straight, 0, 0.5}),
+                                       to_segment(p, {-straight, 0, -0.5}, {straight, 0, -0.5}));
              for (double side : {-1.0, 1.0})
                  for (int i = 0; i <= 100; ++i) {
                      double a = -pi / 2 + pi * i / 100;
                      Point q{side * (straight + 0.5 * std::cos(a)), 0, 0.5 * std::sin(a)};
-                     least = std::min(least, norm(p - q));
+                     minimum = std::min(minimum, norm(p - q));
                  }
-             return least < 0.15;
+             return minimum < 0.15;
          },
          1.4, true},
         {"cylinder(0.5, 2)", [](Point p) { return around_y(p) < 0.5 && std::abs(p[1]) < 1; }, 1.3,

@@ -1,5 +1,5 @@
 // What every entry of the library owes its reader: a doc comment with an example that runs, and an
-// error of one's own where an argument makes no shape.
+// error of its own where an argument makes no shape.
 #include "field.h"
 
 #include <catch2/catch.hpp>

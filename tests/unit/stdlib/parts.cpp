@@ -19,9 +19,9 @@ double to_segment(Point p, Point a, Point b) {
 
 bool in_convex(Point p, const std::vector<Point> &corners, const std::vector<Point> &normals) {
     return std::all_of(normals.begin(), normals.end(), [&](const Point &n) {
-        double most = -1e300;
-        for (const Point &c : corners) most = std::max(most, dot(c, n));
-        return dot(p, n) < most;
+        double maximum = -1e300;
+        for (const Point &c : corners) maximum = std::max(maximum, dot(c, n));
+        return dot(p, n) < maximum;
     });
 }
 

@@ -1,6 +1,6 @@
 // The rule of curvature in whole scenes (lipschitz.md, 4): random shapes displaced by noise
 // and waves, alone, moved, and in unions. Segments that it says are free are free, rays land where
-// a march at a tenth of the ball's step lands, and the shader's reach is the processor's.
+// a march at a tenth of the ball's step lands, and the shader's safe radius is the processor's.
 #include "backend-cpu/trace/march.h"
 #include "driver/compile.h"
 #include "random_scenes.h"
@@ -56,7 +56,7 @@ ir::Scene by_reach(ir::Scene scene) {
 
 } // namespace
 
-TEST_CASE("what reaches is free, and no ray passes a surface") {
+TEST_CASE("the ball of the safe radius is free, and no ray passes a surface") {
     test::Dice dice{41};
     int curved = 0, segments = 0, cast = 0, steps = 0, plain_steps = 0;
     for (int i = 0; i < 60; ++i) {
@@ -114,7 +114,7 @@ TEST_CASE("what reaches is free, and no ray passes a surface") {
 // Algebraic surfaces, by bounds in cells: a heart, on which the field has a threefold root along a
 // curve, a quartic, a sextic, and one with a parameter. What lies inside is found by looking at
 // each ray in a thousand places.
-TEST_CASE("rays find surfaces on which a field of one's own is flat") {
+TEST_CASE("rays find surfaces on which a user-defined field is flat") {
     const char *texts[] = {
         R"(let a = p => p.x * p.x + 2.25 * p.z * p.z + p.y * p.y - 1
 implicit(p => a(p) * a(p) * a(p) - (p.x * p.x + 0.1125 * p.z * p.z) * p.y * p.y * p.y,
@@ -166,7 +166,7 @@ implicit(p => pow(p.x * p.x + p.y * p.y - w, 3) + 4 * p.z * p.z * p.z * p.z, wit
     }
 }
 
-TEST_CASE("the shader reaches as far as the processor") {
+TEST_CASE("the shader has the safe radius of the processor") {
     require_context();
     test::Dice dice{43};
     for (int i = 0; i < 8; ++i) {
@@ -185,8 +185,8 @@ TEST_CASE("the shader reaches as far as the processor") {
         int off = 0;
         for (std::size_t k = 0; k < points.size(); ++k) {
             // A root near 0 is as far off as the root of what its square is off.
-            const double least = std::min(double(known[k]), double(found[k]));
-            off += std::fabs(known[k] - found[k]) > 1e-4 + 3e-6 / std::max(least, 3e-3);
+            const double minimum = std::min(double(known[k]), double(found[k]));
+            off += std::fabs(known[k] - found[k]) > 1e-4 + 3e-6 / std::max(minimum, 3e-3);
         }
         // Where an octave's turn comes at all, a last digit may decide.
         CHECK(off <= 4);
