@@ -30,6 +30,7 @@ struct SceneArguments {
     std::string file;                                   // `-` is standard input
     std::vector<typecheck::Override> overrides;         // -D
     std::vector<std::filesystem::path> include_folders; // -I
+    bool strict_proof = false;                          // of check, compile and render
 };
 
 // `fathom check`.

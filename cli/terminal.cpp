@@ -118,6 +118,7 @@ driver::CompileOptions compile_options(const SceneArguments &scene) {
     driver::CompileOptions options;
     options.include_folders = scene.include_folders;
     options.overrides = scene.overrides;
+    options.strict_proof = scene.strict_proof;
     return options;
 }
 

@@ -25,6 +25,7 @@ struct CompileOptions {
     std::vector<std::filesystem::path> include_folders; // -I
     std::vector<Override> overrides;                    // -D
     std::function<void(Phase)> entered;                 // may be empty
+    bool strict_proof = false; // an error at all that is not proved but by the library's claims
     bool parts =
         false; // lower so that hits tell their parts (ir::lower_with_parts): for the viewer alone
 };

@@ -49,10 +49,29 @@ std::string json_point(const std::array<double, 3> &point) {
                        json_number(point[2]));
 }
 
+std::string_view axiom_kind(ir::Axiom::Kind kind) {
+    switch (kind) {
+    case ir::Axiom::Kind::Library: return "library";
+    case ir::Axiom::Kind::Assumed: return "assumed";
+    case ir::Axiom::Kind::Estimated: return "estimated";
+    case ir::Axiom::Kind::Rounding: return "rounding";
+    }
+    return "";
+}
+
+std::string json_axioms(const Compilation &compilation) {
+    std::string out;
+    for (const ir::Axiom &axiom : compilation.scene.axioms)
+        out += fmt::format(R"({}{{"kind": "{}", "says": {}, "span": {}}})", out.empty() ? "" : ", ",
+                           axiom_kind(axiom.kind), for_json(axiom.says),
+                           axiom.at.source ? json_span(axiom.at, compilation.sources) : "null");
+    return out;
+}
+
 } // namespace
 
 std::string verdict_json(const Compilation &compilation) {
-    std::string shapes, diagnostics, bounds = "null";
+    std::string shapes, diagnostics, axioms, bounds = "null";
     Verdict verdict;
     if (compilation.good()) {
         const ir::Scene &scene = compilation.scene;
@@ -60,6 +79,7 @@ std::string verdict_json(const Compilation &compilation) {
         if (scene.bounds.finite())
             bounds =
                 fmt::format("[{}, {}]", json_point(scene.bounds.lo), json_point(scene.bounds.hi));
+        axioms = json_axioms(compilation);
         for (const ir::TopLevel &top : scene.top_level) {
             const ir::ShapeFact &fact = scene.facts[top.shape.index];
             shapes +=
@@ -75,10 +95,10 @@ std::string verdict_json(const Compilation &compilation) {
     for (const Diagnostic &diagnostic : compilation.diagnostics.sorted())
         diagnostics += (diagnostics.empty() ? "" : ", ") + to_json(diagnostic, compilation.sources);
     return fmt::format(
-        R"({{"ok": {}, "lipschitz": {}, "status": "{}", "exact": {}, "bounds": {}, "shapes": [{}], "diagnostics": [{}]}})"
+        R"({{"ok": {}, "lipschitz": {}, "status": "{}", "exact": {}, "bounds": {}, "shapes": [{}], "axioms": [{}], "diagnostics": [{}]}})"
         "\n",
         compilation.good(), json_number(verdict.lipschitz), status_name(verdict.status),
-        verdict.exact, bounds, shapes, diagnostics);
+        verdict.exact, bounds, shapes, axioms, diagnostics);
 }
 
 } // namespace fathom::driver

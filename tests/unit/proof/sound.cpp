@@ -76,6 +76,31 @@ TEST_CASE("steps that turn at one border are taken together") {
     }
 }
 
+TEST_CASE("steps turn together where they round one number, or twice it") {
+    Scenery s;
+    const auto joined = [&](NodeId a, NodeId b, NodeId part) { // b is a + 1 but for rounding
+        return s.g.make(Op::Mix, {hash(s, s.call(Op::Floor, a)), hash(s, s.call(Op::Floor, b)),
+                                  fract(s, part)});
+    };
+    const NodeId one = s.n(1), sum = s.g.add(s.x, s.y);
+    CHECK(bounded(s, joined(s.x, s.g.add(s.x, one), s.x)));
+    CHECK(bounded(s, joined(s.x, s.g.add(s.x, one), s.g.sub(s.x, s.n(5)))));
+    CHECK(bounded(s, joined(sum, s.g.add(sum, one), sum)));
+    const NodeId other = s.g.add(s.g.add(s.x, one), s.y); // rounds x + 1 first
+    CHECK(!bounded(s, joined(sum, other, sum)));
+    CHECK(!bounded(s, joined(sum, s.g.add(sum, one), other)));
+    const NodeId k = s.parameter(1, 2), times = s.g.mul(k, s.x);
+    const NodeId again = s.g.div(s.x, s.g.div(one, k));
+    CHECK(bounded(s, joined(times, s.g.add(times, one), times)));
+    CHECK(!bounded(s, joined(times, s.g.add(times, one), again)));
+    // the same node in the end
+    CHECK(fract(s, s.g.add(s.x, s.n(3))) == fract(s, s.x));
+    CHECK(fract(s, s.g.sub(s.x, s.n(0.5))) == fract(s, s.g.add(s.x, s.n(0.5))));
+    CHECK(s.call(Op::Floor, s.g.sub(s.x, s.n(2))) ==
+          s.g.add(s.call(Op::Floor, s.x), s.n(-2)));
+    CHECK(s.call(Op::Floor, s.g.add(s.x, s.n(0.1))) != s.call(Op::Floor, s.x));
+}
+
 TEST_CASE("a border has a value of its own") {
     Scenery s;
     const NodeId floor = s.call(Op::Floor, s.x), ceil = s.call(Op::Ceil, s.x);
