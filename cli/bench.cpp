@@ -138,8 +138,10 @@ Exit run(const BenchCommand &command, Terminal &terminal) {
         terminal.say("fathom: bench reads its file many times; standard input can be read once");
         return usage_error;
     }
-    driver::Compilation compilation =
-        driver::compile_file(command.scene.file, compile_options(command.scene));
+    // What moves params is proved for their whole ranges.
+    driver::Compilation compilation = driver::compile_file(
+        command.scene.file, command.noise_cache ? compile_options(command.scene)
+                                                : compile_options(command.scene, 0, 0));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     terminal.put(fmt::format("{} at {}x{}\n", command.scene.file, command.width, command.height));

@@ -108,8 +108,8 @@ Exit answer_standard_input(Evaluator &evaluator, Terminal &terminal) {
 } // namespace
 
 Exit run(const EvalCommand &command, Terminal &terminal) {
-    driver::Compilation compilation =
-        driver::compile_file(command.scene.file, compile_options(command.scene));
+    driver::Compilation compilation = driver::compile_file(
+        command.scene.file, compile_options(command.scene, command.time, command.time));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     if (!in_proved_time(compilation.scene, command.time, command.time, terminal))

@@ -233,15 +233,15 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
         return usage_error;
     for (int frame = first; frame < last; ++frame)
         if (unwritable(out_of(frame), terminal)) return device_error;
-    driver::Compilation compilation =
-        driver::compile_file(command.scene.file, compile_options(command.scene));
+    const auto time_of = [&](int frame) {
+        return command.time + (command.frames ? frame / command.frame_rate : 0);
+    };
+    driver::Compilation compilation = driver::compile_file(
+        command.scene.file, compile_options(command.scene, time_of(first), time_of(last - 1)));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     for (int frame = first; frame < last; ++frame)
         if (overwrites(compilation, out_of(frame), terminal)) return usage_error;
-    const auto time_of = [&](int frame) {
-        return command.time + (command.frames ? frame / command.frame_rate : 0);
-    };
     if (!in_proved_time(compilation.scene, time_of(first), time_of(last - 1), terminal))
         return usage_error;
     Painter painter;

@@ -122,6 +122,12 @@ driver::CompileOptions compile_options(const SceneArguments &scene) {
     return options;
 }
 
+driver::CompileOptions compile_options(const SceneArguments &scene, double first, double last) {
+    driver::CompileOptions options = compile_options(scene);
+    options.times = {first, last};
+    return options;
+}
+
 void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, Terminal &terminal) {
     for (const Diagnostic &diagnostic : diagnostics.sorted())
         terminal.say_text(to_text(diagnostic, sources, terminal.color()));

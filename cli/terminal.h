@@ -45,6 +45,8 @@ class Terminal {
 };
 
 driver::CompileOptions compile_options(const SceneArguments &scene);
+// Proved for what is drawn: the params' values as given, and these times, in seconds.
+driver::CompileOptions compile_options(const SceneArguments &scene, double first, double last);
 
 // Prints all diagnostics, and what else keeps a compilation from being good, and says how the
 // command ends.

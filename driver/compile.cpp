@@ -107,14 +107,16 @@ void run_phases(Compilation &out, SceneFiles &files, const std::string &identity
     out.evaluations = checked.evaluations;
     // What checked is proved also where other statements did not: all errors in one run.
     enter(options, Phase::Prove);
-    proof::prove(out.scene, out.diagnostics);
+    proof::Options proof;
+    if (options.times) proof.times = ir::Interval(options.times->first, options.times->second);
+    proof::prove(out.scene, out.diagnostics, proof);
     if (out.good()) {
         enter(options, Phase::Lower);
         if (options.parts)
             out.parts = ir::lower_with_parts(out.scene);
         else
             ir::lower(out.scene);
-        proof::bound_rounding(out.scene, out.diagnostics);
+        proof::bound_rounding(out.scene, out.diagnostics, proof.times);
         if (options.strict_proof) refuse_unproved(out);
         assert(ir::verify(out.scene).empty());
         const ir::Graph &graph = out.scene.graph;

@@ -10,7 +10,9 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fathom::driver {
@@ -26,6 +28,9 @@ struct CompileOptions {
     std::vector<Override> overrides;                    // -D
     std::function<void(Phase)> entered;                 // may be empty
     bool strict_proof = false; // an error at all that is not proved but by the library's claims
+    // Proved for the params' present values and from the first to the last of these times alone, in
+    // seconds: for what is drawn once. None: for all that the scene allows.
+    std::optional<std::pair<double, double>> times;
     bool parts =
         false; // lower so that hits tell their parts (ir::lower_with_parts): for the viewer alone
 };

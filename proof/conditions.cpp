@@ -34,7 +34,7 @@ struct Closed {
     bool endless = false; // a param has no range; that is said elsewhere
 };
 
-Closed closed(const ir::Scene &scene, ir::Graph &graph, Interval time, NodeId condition) {
+Closed closed(ir::Graph &graph, const Ranges &ranges, NodeId condition) {
     Closed out;
     ir::Substitution map;
     std::vector<NodeId> todo{condition};
@@ -47,20 +47,17 @@ Closed closed(const ir::Scene &scene, ir::Graph &graph, Interval time, NodeId co
         for (NodeId arg : graph.args(id)) todo.push_back(arg);
         if (node.op == Op::Time) {
             map[id] = graph.component(graph.point(), 0);
-            out.unknowns.push_back({true, 0, 0, false, time});
+            out.unknowns.push_back({true, 0, 0, false, ranges.time});
         }
         if (node.op != Op::Param) continue;
         const NodeId variable = graph.fresh_var(node.type);
         map[id] = variable;
         for (int i = 0; i < ir::components(node.type); ++i) {
             const auto k = static_cast<std::size_t>(i);
-            const ir::Param &param = scene.params[node.payload];
-            const bool unit = param.is_color || node.type == ir::Type::Bool,
-                       whole = node.type == ir::Type::Int || node.type == ir::Type::Bool;
-            out.endless = out.endless || (!param.has_range && !unit);
-            out.unknowns.push_back(
-                {false, graph[variable].payload, k, whole,
-                 param.has_range ? Interval(param.lo[k], param.hi[k]) : Interval(0, 1)});
+            const Interval range = ranges.params[node.payload][k];
+            const bool whole = node.type == ir::Type::Int || node.type == ir::Type::Bool;
+            out.endless = out.endless || !range.finite();
+            out.unknowns.push_back({false, graph[variable].payload, k, whole, range});
         }
     }
     out.holds = ir::substitute(graph, condition, map);
@@ -147,7 +144,7 @@ void Prover::test_conditions() {
         bool bound = true; // a loop's own variable is followed turn by turn
         for (NodeId var : graph.free_vars(condition.holds))
             bound = bound && ranges.vars.contains(graph[var].payload);
-        const Closed over = closed(scene, graph, ranges.time, condition.holds);
+        const Closed over = closed(graph, ranges, condition.holds);
         if (!bound || over.endless) continue;
         const auto holds = [&](NodeId node) {
             return always(flattening, ranges, node, over.unknowns) ||

@@ -64,10 +64,24 @@ Ranges::Sampled sampled_grid(const ir::GridData &grid) {
 
 } // namespace
 
-Ranges ranges_of(const ir::Scene &scene) {
+namespace {
+// A known number, and what evaluators in single precision make of it.
+Interval single(double x) { return hull(Interval(x), Interval(static_cast<float>(x))); }
+} // namespace
+
+Ranges ranges_of(const ir::Scene &scene, const std::optional<Interval> &times) {
     Ranges ranges;
     ranges.scene = &scene;
-    ranges.time = {0, scene.render.time_end};
+    ranges.time =
+        times ? hull(single(times->lo), single(times->hi)) : Interval(0, scene.render.time_end);
+    for (const ir::Param &param : scene.params) {
+        std::array<Interval, 4> &of = ranges.params.emplace_back();
+        for (std::size_t i = 0; i < of.size(); ++i)
+            of[i] = times             ? single(param.value[i])
+                    : param.has_range ? Interval(param.lo[i], param.hi[i])
+                    : param.is_color || param.type == ir::Type::Bool ? Interval(0, 1)
+                                                                     : Interval::everything();
+    }
     for (const ir::ImageData &image : scene.images) ranges.images.push_back(sampled_image(image));
     for (const ir::GridData &grid : scene.grids) ranges.grids.push_back(sampled_grid(grid));
     return ranges;

@@ -10,6 +10,7 @@
 #include "proof/tape.h"
 
 #include <array>
+#include <optional>
 
 namespace fathom::proof {
 
@@ -17,6 +18,8 @@ namespace fathom::proof {
 struct Ranges {
     const ir::Scene *scene = nullptr;
     Interval time;
+    std::vector<std::array<Interval, 4>> params; // by param: each component; everything where none
+                                                 // is known
     std::unordered_map<std::uint32_t, std::array<Interval, 4>>
         vars; // by Var payload: ids of cells, rows of instance_tables
     // By image and grid: least and greatest value, and a bound on the slope in the unit square or
@@ -35,7 +38,8 @@ struct Ranges {
     };
     std::vector<Cached> caches;
 };
-Ranges ranges_of(const ir::Scene &scene);
+// Of params and time all that the scene allows, or the present values at these times (prove.h).
+Ranges ranges_of(const ir::Scene &scene, const std::optional<Interval> &times = {});
 
 enum class Trouble : std::uint8_t { None, Jump, Singular, Overflow };
 

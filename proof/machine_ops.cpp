@@ -146,18 +146,10 @@ void Step::run() {
         for (int c = 0; c < n; ++c) set(c, {-1, 1}, none);
         return finish(0, false);
     case Op::Time: set(0, machine.ranges_.time, none); return finish(0, false);
-    case Op::Param: {
-        const ir::Param &param = machine.ranges_.scene->params[in.payload];
-        for (int c = 0; c < n; ++c) {
-            auto i = static_cast<std::size_t>(c);
-            Interval v = param.has_range             ? Interval(param.lo[i], param.hi[i])
-                         : in.type == ir::Type::Bool ? Interval(0, 1)
-                         : param.is_color            ? Interval(0, 1)
-                                                     : Interval::everything();
-            set(c, v, none);
-        }
+    case Op::Param:
+        for (int c = 0; c < n; ++c)
+            set(c, machine.ranges_.params[in.payload][static_cast<std::size_t>(c)], none);
         return finish(0, false);
-    }
     case Op::Var: {
         auto found = machine.ranges_.vars.find(in.payload);
         for (int c = 0; c < n; ++c)

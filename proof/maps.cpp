@@ -284,6 +284,10 @@ Derived Prover::know_deformed(ShapeId id) {
     Derived k = inner;
     k.fact.repeat = {};
     k.fact.guard = false;
+    const bool turns = shape.map == MapKind::Twist || shape.map == MapKind::Bend;
+    if ((turns && number(shape.args[2]) == Interval(0.0)) ||
+        (shape.map == MapKind::Taper && number(shape.args[2]) == Interval(1.0)))
+        return k; // at these values it is its child
     k.fact.kind = k.fact.kind == FieldKind::Estimate ? FieldKind::Estimate : FieldKind::Bound;
     k.exact_outside = k.parts_exact = false;
     k.outer = Box::everything(), k.outer_growth_rate = 0;
@@ -319,22 +323,21 @@ Derived Prover::know_deformed(ShapeId id) {
         k.growth_rate *= std::sqrt(2.0);
         forget_moment_arms(k);
         k.fact.moment_arm[a] = moment_arm; // turning about the axis commutes with the twist
-        bool still = rate == Interval(0.0);
-        if (!still) k.fact.symmetric = {false, false, false};
-        if (!std::isfinite(arm) && !still && own_box()) {
+        k.fact.symmetric = {false, false, false};
+        if (!std::isfinite(arm) && own_box()) {
             arm = radius_about(padded(k.fact.bounds), axis);
             alone = true;
         }
-        if (!std::isfinite(arm) && !still) {
+        if (!std::isfinite(arm)) {
             needs_region("a twist of " + child_name +
                          ", whose surface is not all near the axis, has no bound");
             break;
         }
         arm *= options.rules[Rule::Twist];
-        double sup = up(l * sigma(rate.magnitude() * (still ? 0 : arm)));
+        double sup = up(l * sigma(rate.magnitude() * arm));
         // sigma(s) = (s + sqrt(s^2 + 4))/2, s = |rate| * arm: grows with |rate|, so a slider at 0
         // pays nothing.
-        NodeId s = graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(still ? 0 : arm));
+        NodeId s = graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(arm));
         NodeId root = graph.make(Op::Sqrt, {graph.add(graph.mul(s, s), graph.number(4))});
         NodeId formula = graph.mul(graph.mul(graph.add(s, root), graph.number(0.5 * (1 + slack))),
                                    inner.fact.lipschitz);
@@ -357,22 +360,21 @@ Derived Prover::know_deformed(ShapeId id) {
         round = radius_about(padded(inner.fact.bounds), third) * options.rules[Rule::Round];
         k.growth_rate *= std::sqrt(2.0);
         forget_moment_arms(k);
-        bool still = rate == Interval(0.0);
         for (std::size_t i = 0; i < 3; ++i)
-            if (i != t && !still) k.fact.symmetric[i] = false;
-        if (!std::isfinite(arm) && !still && own_box()) {
+            if (i != t) k.fact.symmetric[i] = false;
+        if (!std::isfinite(arm) && own_box()) {
             arm = radius_about(padded(k.fact.bounds), third);
             alone = true;
         }
-        if (!std::isfinite(arm) && !still) {
+        if (!std::isfinite(arm)) {
             needs_region("a bend of " + child_name +
                          ", whose surface is not all near the axis, has no bound");
             break;
         }
         arm *= options.rules[Rule::Bend];
-        double add = still ? 0 : up(rate.magnitude() * arm);
-        NodeId excess = graph.mul(graph.make(Op::Abs, {shape.args[2]}),
-                                  graph.number(still ? 0 : arm * (1 + slack)));
+        double add = up(rate.magnitude() * arm);
+        NodeId excess =
+            graph.mul(graph.make(Op::Abs, {shape.args[2]}), graph.number(arm * (1 + slack)));
         NodeId formula = graph.mul(graph.add(graph.number(1), excess), inner.fact.lipschitz);
         if (alone && !k.failed)
             keep_local(k, up(l * up(1 + add)), formula);
@@ -389,8 +391,6 @@ Derived Prover::know_deformed(ShapeId id) {
             length > 0 ? up(std::max(std::fabs(ratio.lo - 1), std::fabs(ratio.hi - 1)) / length)
                        : infinity;
         double most = std::max(1.0, ratio.hi);
-        bool still = ratio == Interval(1.0);
-        if (still) steepness = 0;
         // What was turned about the same axis before is seen through: its points and surface points
         // turn alike, and the turn adds k m to the slope along the axis, |m| at most the moment arm.
         const Shape below = scene.shapes[shape.children[0]];
@@ -410,15 +410,11 @@ Derived Prover::know_deformed(ShapeId id) {
                         Interval(k.fact.bounds.lo[i], k.fact.bounds.hi[i]) * sections;
                     k.fact.bounds.lo[i] = side.lo, k.fact.bounds.hi[i] = side.hi;
                 }
-        k.fact.symmetric[a] = k.fact.symmetric[a] && still;
+        k.fact.symmetric[a] = false;
         // {c f(x/c) < t} needs f < t/c.
         k.growth_rate =
             ratio.lo > 0 ? up(k.growth_rate * most / std::min(1.0, ratio.lo)) : infinity;
         forget_moment_arms(k);
-        if (still) {
-            if (!k.failed) set_lipschitz(k, inner.fact.lipschitz, l);
-            break;
-        }
         if (!std::isfinite(steepness)) {
             needs_region("a taper whose two ends are at the same height");
             break;

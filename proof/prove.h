@@ -1,18 +1,23 @@
 // The Lipschitz analysis: proves, for every shape of a scene, how steep its raw field can be over
-// all points, params and times, and what else the lowering may rely on (ir::ShapeFact). Rules and
+// all points and the values of params and times that it is asked for, and what else the lowering may rely on (ir::ShapeFact). Rules and
 // proofs: docs/lipschitz.md. Knows nothing of syntax; places come from Shape::origin.
 #pragma once
 
 #include "base/diagnostic.h"
+#include "ir/interval.h"
 #include "ir/scene.h"
 #include "proof/rules.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace fathom::proof {
 
 struct Options {
+    // None: the proof holds for all values that the params' ranges and the scene's times allow.
+    // Else for the params' present values (ir::Param::value) and these times, in seconds, alone.
+    std::optional<ir::Interval> times;
     Rules rules;                              // tests weaken one to see it caught
     std::size_t field_instructions = 250'000; // work per field: interval instructions, never time
     bool tighten = true; // deformed shapes by their own expressions, too; tests ask for rules alone

@@ -41,7 +41,7 @@ struct Prover {
 
     Prover(ir::Scene &s, Diagnostics &d, const Options &o)
         : scene(s), diagnostics(d), options(o), graph(s.graph), flattening{s.graph, {}},
-          ranges(ranges_of(s)) {}
+          ranges(ranges_of(s, o.times)) {}
 
     void run();
 

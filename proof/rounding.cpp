@@ -63,14 +63,15 @@ struct Inputs {
     Interval time;
     std::vector<std::array<Interval, 4>> params;
 };
-Inputs all_inputs(const ir::Scene &scene) {
-    Inputs out{{0, scene.render.time_end}, {}};
+Inputs all_inputs(const ir::Scene &scene, const std::optional<Interval> &times) {
+    Inputs out{times.value_or(Interval(0, scene.render.time_end)), {}};
     for (const ir::Param &param : scene.params) {
         std::array<Interval, 4> all;
         for (std::size_t i = 0; i < 4; ++i)
-            all[i] = param.has_range                ? Interval(param.lo[i], param.hi[i])
-                     : param.type == ir::Type::Bool ? Interval(0, 1)
-                                                    : Interval(param.value[i]);
+            all[i] = times || (!param.has_range && param.type != ir::Type::Bool)
+                         ? Interval(double(float(param.value[i])))
+                     : param.has_range ? Interval(param.lo[i], param.hi[i])
+                                       : Interval(0, 1);
         out.params.push_back(all);
     }
     return out;
@@ -187,9 +188,10 @@ void lower_distances(ir::Scene &scene, double by) {
 
 } // namespace
 
-void bound_rounding(ir::Scene &scene, Diagnostics &diagnostics) {
+void bound_rounding(ir::Scene &scene, Diagnostics &diagnostics,
+                    const std::optional<Interval> &times) {
     scene.rounding = {};
-    const Inputs inputs = all_inputs(scene);
+    const Inputs inputs = all_inputs(scene, times);
     RoundingMachine machine(scene, scene.distance);
     double bound = 0, seen = 0;
     const std::vector<Asked> regions = regions_of(scene);

@@ -72,7 +72,8 @@ class RoundingMachine {
 
 // Bounds the error of a lowered scene's distance. Where it is larger than the tolerance with which
 // rays arrive, the marched distance is lowered by it, and its place is warned of; where it is larger
-// than the scene, the scene is refused. Fills Scene::rounding.
-void bound_rounding(ir::Scene &scene, Diagnostics &diagnostics);
+// than the scene, the scene is refused. Fills Scene::rounding. `times` as in Options (prove.h).
+void bound_rounding(ir::Scene &scene, Diagnostics &diagnostics,
+                    const std::optional<Interval> &times = {});
 
 } // namespace fathom::proof

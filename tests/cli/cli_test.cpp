@@ -106,6 +106,33 @@ TEST_CASE("without images on the card the noise cache's commands draw exactly an
     CHECK(contains(bench.err, "drawn exactly: the noise cache needs OpenGL 4.2"));
 }
 
+TEST_CASE("what is drawn or evaluated is proved at the values given, what is checked for ranges") {
+    const ScratchFolder folder;
+    folder.write("waves.sdf", "param a = 0.0 in 0.0..20.0\n"
+                              "sphere(6).displace(p => a * sin(p.x) * sin(p.y) * sin(p.z))\n");
+    folder.write("moving.sdf", "sphere(1).displace(p => 0.5 * sin(time) * sin(4 * p.x))\n");
+    const auto eval = [&](const std::string &words) {
+        return std::stod(shell(folder, "fathom eval " + words).out);
+    };
+    CHECK(eval("waves.sdf --at 10,0,0") == 4);
+    CHECK(eval("waves.sdf --at 10,0,0 -D a=2") < 3);
+    CHECK(eval("waves.sdf --at 10,0,0 -D a=20") < 1);
+    CHECK(eval("moving.sdf --at 3,0,0") == 2);
+    CHECK(eval("moving.sdf --at 3,0,0 --time 1.5") < 1.6);
+    CHECK(contains(shell(folder, "fathom check waves.sdf").err, "lipschitz 21.1"));
+    CHECK(contains(shell(folder, "fathom check waves.sdf").err, "note[costly]"));
+    const std::string size = "--size 32x32 --backend cpu ";
+    const Result drawn = shell(folder, "fathom render waves.sdf -o a.png " + size);
+    CHECK(drawn.exit == 0);
+    CHECK(drawn.err.empty()); // at 0 nothing is costly
+    CHECK(contains(shell(folder, "fathom render waves.sdf -D a=20 -o b.png " + size).err,
+                   "note[costly]"));
+    // A sequence is proved from its first frame to its last.
+    CHECK(shell(folder, "fathom render moving.sdf -o m.png --frames 0..3 --fps 2 " + size).exit ==
+          0);
+    CHECK(fs::exists(folder / "m_0002.png"));
+}
+
 TEST_CASE("the exit status tells what went wrong") {
     Scenes folder;
     CHECK(shell(folder, "fathom check good.sdf").exit == 0);

@@ -1,0 +1,141 @@
+// What is drawn once is proved for the params' present values and its time: a range costs nothing
+// where it is harmless, and what is proved there holds there.
+#include "compiled.h"
+
+#include "backend-cpu/tape.h"
+#include "backend-cpu/trace/march.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <random>
+
+using namespace fathom;
+
+namespace {
+
+driver::Compilation at(const std::string &text, std::vector<driver::Override> values, double time) {
+    driver::CompileOptions options;
+    options.overrides = std::move(values);
+    options.times = {time, time};
+    return driver::compile_text("scene.sdf", text, ".", options);
+}
+
+cpu::Picture drawn(const driver::Compilation &made, cpu::PictureMode mode) {
+    const ir::View view = ir::look_at({3, 2, 5}, {0, 0, 0}, 0.4, false);
+    const cpu::Stage stage = cpu::prepare(made.scene, view, 64, 64, 0);
+    cpu::PictureOptions options;
+    options.mode = mode;
+    return cpu::render(stage, options);
+}
+
+// The steepest marched slope between random points that are near each other.
+double steepest(const ir::Scene &scene, double time) {
+    const cpu::Program program = cpu::compile(scene, scene.distance);
+    cpu::Scratch scratch = cpu::make_scratch(program, cpu::inputs_of(scene, time));
+    constexpr std::size_t count = 4096;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> place(-2, 2), way(-0.02f, 0.02f);
+    std::array<std::vector<float>, 3> a, b;
+    std::vector<float> from(count), to(count);
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < count; ++k) {
+            a[i].push_back(place(random));
+            b[i].push_back(a[i].back() + way(random));
+        }
+    const auto evaluate = [&](const std::array<std::vector<float>, 3> &p, std::vector<float> &d) {
+        const float *in[] = {p[0].data(), p[1].data(), p[2].data()};
+        float *out[] = {d.data()};
+        cpu::evaluate(program, scratch, in, out, count);
+    };
+    evaluate(a, from);
+    evaluate(b, to);
+    double most = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double apart = std::hypot(a[0][k] - b[0][k], a[1][k] - b[1][k], a[2][k] - b[2][k]);
+        if (apart > 2e-3) most = std::max(most, std::abs(from[k] - to[k]) / apart);
+    }
+    return most;
+}
+
+struct Harmless {
+    std::string with, plain; // with: params and time in it stand where they change nothing
+};
+const std::vector<Harmless> harmless{
+    {"param a = 0.0 in 0.0..20.0\n"
+     "sphere(1).displace(p => a * sin(p.x) * sin(p.y) * sin(p.z))",
+     "sphere(1)"},
+    {"param a = 0.0 in 0.0..4.0\nbox([1, 3, 1]).twist(a)", "box([1, 3, 1])"},
+    {"param a = 0.0 in 0.0..0.3\nbox([0.5, 2, 0.5]).bend(a)", "box([0.5, 2, 0.5])"},
+    {"param a = 1.0 in 0.05..1.0\ncylinder(0.6, 2).taper(a)", "cylinder(0.6, 2)"},
+    {"sphere(1).displace(p => sin(time) * sin(4 * p.x))", "sphere(1)"},
+    {"param a = 1.0 in 1.0..9.0\nimplicit(p => a * (length(p) - 1), within: ball(2))",
+     "implicit(p => length(p) - 1, within: ball(2))"},
+    {"param a = [0, 0, 0] in [-9, -9, -9]..[9, 9, 9]\nsphere(1).displace(p => sin(dot(a, p)))",
+     "sphere(1)"},
+};
+
+} // namespace
+
+TEST_CASE("a range costs no step where the present value is harmless") {
+    for (const Harmless &scene : harmless) {
+        INFO(scene.with);
+        const driver::Compilation present = at(scene.with, {}, 0), plain = at(scene.plain, {}, 0);
+        const driver::Compilation whole = test::compiled(scene.with);
+        REQUIRE(present.good());
+        REQUIRE(plain.good());
+        REQUIRE(whole.good());
+        const auto steps = [](const driver::Compilation &made) {
+            return static_cast<double>(drawn(made, cpu::PictureMode::Steps).work.steps);
+        };
+        CHECK(steps(present) <= 1.05 * steps(plain));
+        CHECK(steps(whole) >= 1.05 * steps(present)); // so the scene is one of this test's kind
+        const cpu::Picture one = drawn(present, cpu::PictureMode::Color),
+                           other = drawn(plain, cpu::PictureMode::Color);
+        std::size_t differ = 0;
+        for (std::size_t i = 0; i < one.rgba.size(); ++i)
+            differ += std::abs(int(one.rgba[i]) - int(other.rgba[i])) > 2;
+        CHECK(differ <= one.rgba.size() / 200);
+    }
+}
+
+TEST_CASE("what is proved at present values holds there") {
+    for (const Harmless &scene : harmless)
+        for (const double time : {0.0, 0.7, 1.5707963, 100.1}) {
+            INFO(scene.with << " at " << time);
+            const driver::Compilation made = at(scene.with, {}, time);
+            REQUIRE(made.good());
+            CHECK(steepest(made.scene, time) <= 1 + 1e-3);
+        }
+    for (const char *value : {"0.1", "3", "20"}) {
+        const driver::Compilation made = at(harmless[0].with, {{"a", value}}, 0);
+        REQUIRE(made.good());
+        INFO("a = " << value);
+        CHECK(steepest(made.scene, 0) <= 1 + 1e-3);
+    }
+}
+
+TEST_CASE("a range that fails somewhere is no fault of the value that is drawn") {
+    const std::string text = "param r = 1.0 in -1.0..2.0\nsphere(r)\n";
+    CHECK(test::compiled(text).diagnostics.has_errors());
+    CHECK(at(text, {}, 0).good());
+    CHECK(at(text, {{"r", "-0.5"}}, 0).diagnostics.has_errors());
+    // A time that stands where a size is none is a failure there alone.
+    const std::string moving = "sphere(1 - 0.5 * time)\n";
+    CHECK(test::compiled(moving).diagnostics.has_errors());
+    CHECK(at(moving, {}, 1).good());
+    CHECK(at(moving, {}, 3).diagnostics.has_errors());
+}
+
+TEST_CASE("the solid does not depend on what the proof is for") {
+    // The ends of this taper are the proved extent: of the range, whatever is drawn.
+    const std::string text = "param a = 1.0 in 1.0..3.0\nbox([1, a, 1]).taper(0.3)\n";
+    const driver::Compilation present = at(text, {}, 0), whole = test::compiled(text);
+    REQUIRE(present.good());
+    REQUIRE(whole.good());
+    const cpu::Picture one = drawn(present, cpu::PictureMode::Color),
+                       other = drawn(whole, cpu::PictureMode::Color);
+    std::size_t differ = 0;
+    for (std::size_t i = 3; i < one.rgba.size(); i += 4) differ += one.rgba[i] != other.rgba[i];
+    CHECK(differ <= 4);
+}
