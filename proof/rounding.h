@@ -19,6 +19,8 @@ struct Rounded {
     // Where it is linear in the point, its gradient; of what does not vary 0.
     bool linear = true;
     std::array<double, 3> gradient{};
+    // Where the error is unknown: both numbers are at least this, as 1/|q| near q = 0 is large.
+    double above = -ir::rounding::infinity;
 };
 
 // A function of the lowered scene, (vec3) -> float or Hit, evaluated with errors.

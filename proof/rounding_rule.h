@@ -24,6 +24,7 @@ inline double rounded_by(Interval value, double error) {
 inline double total(const Rounded &x) { return x.error + times(x.relative, x.value.magnitude()); }
 inline Interval widened(const Rounded &x) {
     const double e = total(x);
+    if (std::isinf(e)) return {x.above, infinity};
     return e == 0 ? x.value : Interval(x.value.lo - e, x.value.hi + e);
 }
 inline bool still(const Rounded &x) { return x.linear && x.gradient == std::array<double, 3>{}; }

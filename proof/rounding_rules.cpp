@@ -24,7 +24,15 @@ Rounded RoundingRule::component(int c) {
     case Op::Sub: return sum(of(0), of(1), node.op == Op::Add ? 1 : -1, whole());
     case Op::Mul: return product(of(0), of(1), whole());
     case Op::Div:
-        if (!whole()) return quotient(of(0), of(1));
+        if (!whole()) {
+            constexpr ir::OpSet sizes_of{Op::Length, Op::Sqrt, Op::Abs}; // never below 0
+            Rounded r = quotient(of(0), of(1));
+            NodeId divisor = graph.arg(id, 1);
+            if (graph[divisor].op == Op::Splat) divisor = graph.arg(divisor, 0);
+            if (std::isinf(r.error) && sizes_of[graph[divisor].op])
+                r.above = std::max(0.0, widened(of(0)).lo) / widened(of(1)).hi * (1 - 1e-6);
+            return r;
+        }
         return made(of(1).value.contains(0) ? hull(0.0, hull(of(0).value, -of(0).value))
                                             : trunc(of(0).value / of(1).value),
                     0);
@@ -64,7 +72,7 @@ Rounded RoundingRule::component(int c) {
         }
         out_value.value.lo -= r * steps;
         out_value.error += total(arg(0)) + (32 * unit_roundoff * steps + out_value.relative) * r;
-        out_value.relative += 32 * unit_roundoff * steps;
+        out_value.relative += 2 * unit_roundoff * steps;
         return out_value;
     }
     case Op::Step: {
@@ -254,10 +262,12 @@ void RoundingMachine::run_step(Plan &plan, const Step &step) {
     rule.run();
     // A number that is the same for all points is what evaluators make of it: the field is proved
     // for all of them.
-    for (int c = 0; c < step.n; ++c)
-        if (Rounded &x = plan.frame[step.out + static_cast<std::uint32_t>(c)];
-            still(x) && std::isfinite(total(x)))
-            x.error = x.relative = 0;
+    for (int c = 0; c < step.n; ++c) {
+        Rounded &x = plan.frame[step.out + static_cast<std::uint32_t>(c)];
+        if (!still(x) || !std::isfinite(total(x))) continue;
+        x.error = x.relative = 0;
+        if (x.value.is_point()) x.value = double(float(x.value.lo));
+    }
 }
 
 } // namespace fathom::proof
