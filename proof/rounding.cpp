@@ -1,6 +1,7 @@
 // Errors of a whole scene: where rays go, and what follows where they are large.
 #include "proof/rounding.h"
 
+#include "base/single.h"
 #include "ir/lower/lower.h"
 #include "ir/view.h"
 #include "proof/prover.h"
@@ -69,7 +70,7 @@ Inputs all_inputs(const ir::Scene &scene, const std::optional<Interval> &times) 
         std::array<Interval, 4> all;
         for (std::size_t i = 0; i < 4; ++i)
             all[i] = times || (!param.has_range && param.type != ir::Type::Bool)
-                         ? Interval(double(float(param.value[i])))
+                         ? Interval(to_single(param.value[i]))
                      : param.has_range ? Interval(param.lo[i], param.hi[i])
                                        : Interval(0, 1);
         out.params.push_back(all);
@@ -122,7 +123,7 @@ std::vector<double> errors_at_points(RoundingMachine &machine, const Cell &box,
     for (int k = 0; k < (machine.work() < all_work ? samples : few_samples); ++k) {
         Cell at;
         for (std::size_t i = 0; i < 3; ++i)
-            at.p[i] = double(float(box.p[i].lo + box.p[i].width() * dice.next()));
+            at.p[i] = to_single(box.p[i].lo + box.p[i].width() * dice.next());
         const Inputs one = some_inputs(inputs, dice);
         out.push_back(machine.error(at, one.time, one.params));
     }

@@ -131,10 +131,16 @@ void RoundingMachine::run(Plan &plan) {
 
 void RoundingMachine::run_call(Plan &plan, const Step &step, ir::FunctionId id) {
     const ir::Function &function = scene_.graph.function(id);
-    for (std::size_t i = 0; i < function.params.size(); ++i)
+    // Functions may share their parameters' variables: those of the caller come back.
+    std::vector<std::vector<Rounded>> before;
+    for (std::size_t i = 0; i < function.params.size(); ++i) {
+        before.push_back(vars_[scene_.graph[function.params[i]].payload]);
         set_var(function.params[i], &plan.frame[step.args[i]]);
+    }
     Plan &body = plan_of({function.result});
     run(body);
+    for (std::size_t i = 0; i < function.params.size(); ++i)
+        vars_[scene_.graph[function.params[i]].payload] = std::move(before[i]);
     std::copy_n(&body.frame[body.results[0]], step.n, &plan.frame[step.out]);
 }
 

@@ -120,7 +120,7 @@ struct RoundingRule {
             lo - x.lo == y.lo && lo - y.lo == x.lo && hi - x.hi == y.hi && hi - y.hi == x.hi;
         return exact ? Interval(lo, hi) : x + y;
     }
-    static bool is_single(Interval x) { return x.is_point() && double(float(x.lo)) == x.lo; }
+    static bool is_single(Interval x) { return x.is_point() && to_single(x.lo) == x.lo; }
     // |x| <= |x + y| + |y|, so that the larger one's relative error is one of the sum.
     static Rounded sum(const Rounded &x, const Rounded &y, double sign, bool exact) {
         Rounded r;

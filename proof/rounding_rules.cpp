@@ -8,7 +8,7 @@ Rounded RoundingRule::component(int c) {
     switch (node.op) {
     case Op::Const: {
         const double x = graph.constant_of(id).value[static_cast<std::size_t>(c)];
-        return {x, 0, std::isinf(x) || double(float(x)) == x ? 0 : unit_roundoff, true, {}};
+        return {x, 0, std::isinf(x) || to_single(x) == x ? 0 : unit_roundoff, true, {}};
     }
     case Op::Time: return {machine.time_, 0, 0, true, {}};
     case Op::Param:
@@ -266,7 +266,7 @@ void RoundingMachine::run_step(Plan &plan, const Step &step) {
         Rounded &x = plan.frame[step.out + static_cast<std::uint32_t>(c)];
         if (!still(x) || !std::isfinite(total(x))) continue;
         x.error = x.relative = 0;
-        if (x.value.is_point()) x.value = double(float(x.value.lo));
+        if (x.value.is_point()) x.value = to_single(x.value.lo);
     }
 }
 
