@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 
 namespace fathom::cpu {
 
@@ -321,7 +322,7 @@ void evaluate_gradient(const Program &program, GradientScratch &scratch, const f
 std::string dump(const Program &program) {
     std::string text;
     for (std::size_t b = 0; b < program.blocks.size(); ++b) {
-        text += "block " + std::to_string(b) + "\n";
+        text += fmt::format("block {}\n", b);
         for (std::uint32_t i = program.blocks[b].first; i < program.blocks[b].last; ++i) {
             const Step &step = program.steps[i];
             std::size_t operands = 0;
@@ -344,9 +345,9 @@ std::string dump(const Program &program) {
                 text += "  grid";
                 operands = 4;
                 break;
-            case StepKind::Call: text += "  call " + std::to_string(step.target); break;
+            case StepKind::Call: text += fmt::format("  call {}", step.target); break;
             case StepKind::Loop:
-                text += "  loop " + std::to_string(program.loops[step.target].block);
+                text += fmt::format("  loop {}", program.loops[step.target].block);
                 break;
             case StepKind::BreakUnless:
                 text += "  break unless";
@@ -355,7 +356,7 @@ std::string dump(const Program &program) {
             }
             if (step.once) text += " once";
             for (std::size_t o = 0; o < operands; ++o)
-                text += " " + std::to_string(program.operands[step.operands + o]);
+                text += fmt::format(" {}", program.operands[step.operands + o]);
             text += "\n";
         }
     }

@@ -5,6 +5,7 @@
 #include "ir/shading.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace fathom::glsl {
 
@@ -115,8 +116,7 @@ class Assembler {
         std::vector<Bound> bound;
         const char *const names[] = {"p", "q", "a", "b", "c"};
         for (std::size_t i = 0; i < f.params.size(); ++i)
-            bound.push_back(
-                {f.params[i], i < std::size(names) ? names[i] : "x" + std::to_string(i)});
+            bound.push_back({f.params[i], i < std::size(names) ? names[i] : fmt::format("x{}", i)});
         const NodeId root = module_.result_of(id);
         Body text = body(module_, bound, {&root, 1});
         std::string head =
@@ -162,13 +162,13 @@ class Assembler {
             if (as_table && is_plain(s)) continue;
             const bool last = i + 1 == surfaces.size() && !as_table;
             const std::string when =
-                last ? "    return " : "    if (paint == " + std::to_string(i) + ") return ";
+                last ? "    return " : fmt::format("    if (paint == {}) return ", i);
             if (is_plain(s)) {
                 std::vector<Bound> none;
                 choices += when + constructor(body(module_, none, roots_of(s)).values) + ";\n";
                 continue;
             }
-            const std::string name = "fathom_material_" + std::to_string(i);
+            const std::string name = fmt::format("fathom_material_{}", i);
             std::vector<Bound> bound;
             if (s.point) bound.push_back({s.point, "point"});
             if (s.normal) bound.push_back({s.normal, "normal"});
@@ -183,8 +183,8 @@ class Assembler {
         const std::size_t count = surfaces.size();
         return expand("materials", {{"VARYING", functions},
                                     {"PAINTED", count ? "1" : ""},
-                                    {"COUNT", std::to_string(count)},
-                                    {"LAST", std::to_string(count - 1)},
+                                    {"COUNT", fmt::to_string(count)},
+                                    {"LAST", fmt::to_string(count - 1)},
                                     {"CHOICES", choices}});
     }
 
@@ -250,7 +250,7 @@ class Assembler {
                 (light.directional ? "normalize(" + values.values[0] + ")" : values.values[0]) +
                 ", " + values.values[1] + ")";
             const bool last = i + 1 == count;
-            if (!last) text += "    if (i == " + std::to_string(i) + ") {\n";
+            if (!last) text += fmt::format("    if (i == {}) {{\n", i);
             text += values.statements + std::string(last ? "    " : "        ") + "return " +
                     value + ";\n";
             if (!last) text += "    }\n";
@@ -264,8 +264,7 @@ class Assembler {
     static std::string table(const TableUse &use) {
         if (use.buffer) return "";
         const std::size_t size = use.data.size() / 4;
-        std::string text =
-            "\nconst vec4 " + use.name + "[" + std::to_string(size) + "] = vec4[](\n";
+        std::string text = fmt::format("\nconst vec4 {}[{}] = vec4[](\n", use.name, size);
         for (std::size_t i = 0; i < size; ++i) {
             text += "    vec4(";
             for (std::size_t k = 0; k < 4; ++k)

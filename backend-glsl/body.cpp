@@ -1,6 +1,7 @@
 // Spells a scheduled body (schedule.h) as GLSL statements and expressions. Knows the op table's
 // spelling column and what the ops without one look like; helper functions are only named here
 // (helpers.cpp holds them).
+// Long: one class that writes an expression; its members share its state.
 #include "backend-glsl/certain.h"
 #include "backend-glsl/clone_loops.h"
 #include "backend-glsl/module.h"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <fmt/format.h>
 #include <optional>
 
 namespace fathom::glsl {
@@ -193,10 +195,11 @@ class Writer {
             turn_end = filled_loop(loop, i, indent);
         } else if (stride > 1) {
             const std::string group = names_.numbered('i'), turn = names_.numbered('i');
-            line(indent, "for (int " + group + " = 0; " + group + " < " +
-                             expression(loop.count).text + "; " + group +
-                             " += " + std::to_string(stride) + ") for (int " + turn + " = 0; " +
-                             turn + " < " + std::to_string(stride) + "; ++" + turn + ") {");
+            line(indent,
+                 fmt::format(
+                     "for (int {} = 0; {} < {}; {} += {}) for (int {} = 0; {} < {}; ++{}) {{",
+                     group, group, expression(loop.count).text, group, stride, turn, turn, stride,
+                     turn));
             line(indent + 1, "int " + i + " = " + group + " + " + turn + ";");
         } else {
             line(indent, "for (int " + i + " = 0; " + i + " < " +
@@ -248,9 +251,9 @@ class Writer {
                           count = at_least(expression(loop.count), Primary);
         const Type type = graph_[loop.vars[0]].type;
         const std::string before = names_.numbered(prefix_of(type));
-        line(indent, "for (int " + group + " = 0; " + group + " < " + count + "; " + group +
-                         " += " + std::to_string(max_together) + ") for (int " + turn + " = 0; " +
-                         turn + " < " + std::to_string(max_together) + "; ++" + turn + ") {");
+        line(indent,
+             fmt::format("for (int {} = 0; {} < {}; {} += {}) for (int {} = 0; {} < {}; ++{}) {{",
+                         group, group, count, group, max_together, turn, turn, max_together, turn));
         line(indent + 1, "int " + i + " = min(" + group + " + " + turn + ", " + count + " - 1);");
         line(indent + 1, std::string(glsl_type(type)) + " " + before + " = " + carried + ";");
         return "if (" + group + " + " + turn + " >= " + count + ") " + carried + " = " + before +
@@ -264,8 +267,8 @@ class Writer {
                           turn = names_.numbered('i'), &carried = name_[loop.vars[0]];
         const Type type = graph_[loop.vars[0]].type;
         const std::string before = names_.numbered(prefix_of(type));
-        line(indent, "uvec2 " + list + " = fathom_list(" + value(use.point) + ", " +
-                         std::to_string(use.grid) + ", " + std::to_string(use.rows) + "u);");
+        line(indent, fmt::format("uvec2 {} = fathom_list({}, {}, {}u);", list, value(use.point),
+                                 use.grid, use.rows));
         line(indent, "for (uint " + group + " = " + list + ".x; " + group + " < " + list + ".y; " +
                          group + " += 4u) for (uint " + turn + " = 0u; " + turn + " < 4u; ++" +
                          turn + ") {");
@@ -335,6 +338,7 @@ class Writer {
         return text;
     }
 
+    // Long: a case for each op.
     Text spell(NodeId id) {
         const ir::Node &node = graph_[id];
         auto arg = [&](int i) { return graph_.arg(id, i); };
@@ -392,7 +396,7 @@ class Writer {
                 text += "xyzw"[ir::swizzle_component(node.payload, i)];
             return {text, Primary};
         }
-        case Op::Column: return part(id, "[" + std::to_string(node.payload) + "]");
+        case Op::Column: return part(id, fmt::format("[{}]", node.payload));
         case Op::TableRead: return table_read(id);
         case Op::Hash:
             return {helper("fathom_hash", glsl_type(graph_[arg(0)].type)) + "(" + list(id) + ")",
@@ -494,7 +498,7 @@ class Writer {
         std::string text = std::string(glsl_type(type)) + "(";
         for (int i = 0; i < ir::side(type); ++i)
             text += (i ? ", " : "") +
-                    filled(id, name + "({0}, {1}, {2})", column, "[" + std::to_string(i) + "]");
+                    filled(id, name + "({0}, {1}, {2})", column, fmt::format("[{}]", i));
         return text + ")";
     }
 
@@ -564,7 +568,7 @@ class Writer {
             const Type column = ir::vector_type(ir::side(type));
             std::string text = std::string(glsl_type(type)) + "(";
             for (int i = 0; i < ir::side(type); ++i)
-                text += (i ? ", " : "") + filled(id, form, column, "[" + std::to_string(i) + "]");
+                text += (i ? ", " : "") + filled(id, form, column, fmt::format("[{}]", i));
             return {text + ")", Primary};
         }
         if (node.op == Op::Length || node.op == Op::Dot) type = graph_[graph_.arg(id, 0)].type;
@@ -605,17 +609,16 @@ class Writer {
         const TableUse &use = module_.tables.at(ir::table_of(node.payload).index);
         const auto counted = plan_.rows.find(row);
         const bool inside = counted != plan_.rows.end() && counted->second <= use.rows;
-        std::string at = inside
-                             ? at_least(expression(row), Product)
-                             : "clamp(" + value(row) + ", 0, " + std::to_string(use.rows - 1) + ")";
-        if (use.texels > 1) at += " * " + std::to_string(use.texels);
+        std::string at = inside ? at_least(expression(row), Product)
+                                : fmt::format("clamp({}, 0, {})", value(row), use.rows - 1);
+        if (use.texels > 1) at += fmt::format(" * {}", use.texels);
         const int size = ir::components(node.type);
         int column = ir::column_of(node.payload), left = size;
         std::string parts;
         for (int piece = 0; left > 0; ++piece) {
             const int first = column / 4, from = column % 4, count = std::min(left, 4 - from);
             parts +=
-                (piece ? ", " : "") + texel(use, at + (first ? " + " + std::to_string(first) : ""));
+                (piece ? ", " : "") + texel(use, at + (first ? fmt::format(" + {}", first) : ""));
             if (count < 4)
                 parts += "." + std::string("xyzw").substr(static_cast<std::size_t>(from),
                                                           static_cast<std::size_t>(count));

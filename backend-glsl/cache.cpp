@@ -3,6 +3,8 @@
 #include "backend-glsl/module.h"
 #include "backend-glsl/template.h"
 
+#include <fmt/format.h>
+
 namespace fathom::glsl {
 
 namespace {
@@ -16,7 +18,7 @@ const char *components_of(ir::Type type) {
 
 std::string cache_look_up(std::span<const CachedText> fields) {
     Values values = cache_numbers();
-    values["COUNT"] = std::to_string(fields.size());
+    values["COUNT"] = fmt::to_string(fields.size());
     return expand("cache_look_up", values);
 }
 
@@ -25,7 +27,7 @@ std::string cache_reader(const CachedText &field, std::size_t number) {
                                    {"READER", field.function + "_cached"},
                                    {"FUNCTION", field.function},
                                    {"CELL", float_literal(field.cell)},
-                                   {"NUMBER", std::to_string(number)},
+                                   {"NUMBER", fmt::to_string(number)},
                                    {"POOL", field.type == ir::Type::Float ? "fathom_cache_pool"
                                                                           : "fathom_cache_wide"},
                                    {"PART", components_of(field.type)}});

@@ -11,25 +11,27 @@
 #include "backend-glsl/module.h"
 #include "backend-glsl/template.h"
 
+#include <fmt/format.h>
+
 namespace fathom::glsl {
 
 std::string cache_fill(std::span<const CachedText> fields) {
     Values values = cache_numbers();
-    values["COUNT"] = std::to_string(fields.size());
+    values["COUNT"] = fmt::to_string(fields.size());
     std::string cases, cells, slopes, wide;
     for (std::size_t i = 0; i < fields.size(); ++i) {
         const CachedText &field = fields[i];
         const char *rest = field.type == ir::Type::Float  ? ", 0.0, 0.0, 0.0"
                            : field.type == ir::Type::Vec3 ? ", 0.0"
                                                           : "";
-        cases += "    if (which == " + std::to_string(i) + ") return vec4(" + field.function +
-                 "(p)" + rest + ");\n";
+        cases +=
+            fmt::format("    if (which == {}) return vec4({}(p){});\n", i, field.function, rest);
         const std::string comma = i ? ", " : "";
         cells += comma + float_literal(static_cast<float>(field.cell));
         slopes += comma + float_literal(static_cast<float>(field.slope));
         wide += comma + (field.type == ir::Type::Float ? "false" : "true");
     }
-    const std::string size = "[" + std::to_string(fields.size()) + "](";
+    const std::string size = fmt::format("[{}](", fields.size());
     values["VALUES"] = cases;
     values["CELLS"] = "float" + size + cells + ")";
     values["SLOPES"] = "float" + size + slopes + ")";

@@ -3,34 +3,35 @@
 
 #include "backend-glsl/template.h"
 
+#include <fmt/format.h>
+
 namespace fathom::glsl {
 
 namespace {
 
 std::string whole(const std::array<int, 3> &v) {
-    return "ivec3(" + std::to_string(v[0]) + ", " + std::to_string(v[1]) + ", " +
-           std::to_string(v[2]) + ")";
+    return fmt::format("ivec3({}, {}, {})", v[0], v[1], v[2]);
 }
 
-std::string word(std::uint32_t value) { return std::to_string(value) + "u"; }
+std::string word(std::uint32_t value) { return fmt::format("{}u", value); }
 
 } // namespace
 
 Values cache_numbers() {
     std::string shifts;
     for (const auto &shift : cache_shifts) shifts += (shifts.empty() ? "" : ", ") + whole(shift);
-    const auto at = [](Count count) { return std::to_string(static_cast<int>(count)); };
-    return {{"AGES", std::to_string(cache_ages)},
+    const auto at = [](Count count) { return fmt::to_string(static_cast<int>(count)); };
+    return {{"AGES", fmt::to_string(cache_ages)},
             {"SHIFTS", shifts},
             {"FIELD_SHIFT", whole(cache_field_shift)},
             {"PLACES", word((1u << cache_place_bits) - 1)},
             {"PLACE_BITS", word(cache_place_bits)},
             {"EMPTY", word(cache_empty)},
             {"NOWHERE", word(cache_nowhere)},
-            {"REFUSED", std::to_string(cache_refused)},
-            {"HIGH_BITS", std::to_string(cache_high_bits)},
-            {"HIGH_MASK", std::to_string((1 << cache_high_bits) - 1)},
-            {"HIGHEST", std::to_string(1 << (cache_high_bits - 1))},
+            {"REFUSED", fmt::to_string(cache_refused)},
+            {"HIGH_BITS", fmt::to_string(cache_high_bits)},
+            {"HIGH_MASK", fmt::to_string((1 << cache_high_bits) - 1)},
+            {"HIGHEST", fmt::to_string(1 << (cache_high_bits - 1))},
             {"HEAD", at(Count::Head)},
             {"TAIL", at(Count::Tail)},
             {"LIMIT", at(Count::Limit)},
@@ -45,9 +46,9 @@ Values cache_numbers() {
             {"WASTED", at(Count::Wasted)},
             {"LEFT", at(Count::Left)},
             {"STEPS", at(Count::Steps)},
-            {"SAMPLED", std::to_string(cache_sampled)},
-            {"WISHES", std::to_string(cache_wishes)},
-            {"MANY", std::to_string(cache_many)}};
+            {"SAMPLED", fmt::to_string(cache_sampled)},
+            {"WISHES", fmt::to_string(cache_wishes)},
+            {"MANY", fmt::to_string(cache_many)}};
 }
 
 } // namespace fathom::glsl

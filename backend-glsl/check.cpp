@@ -3,6 +3,7 @@
 #include "backend-glsl/template.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace fathom::glsl {
 
@@ -38,7 +39,7 @@ bool good_text(const std::string &text, Stage stage, const Options &options,
                                         "` text is not valid: " + complaint->message);
     const auto before = whole.begin() + static_cast<std::ptrdiff_t>(whole.find(text));
     const int line = complaint->line - static_cast<int>(std::count(whole.begin(), before, '\n'));
-    if (line > 0) d.note("line " + std::to_string(line) + " of the text: " + nth_line(text, line));
+    if (line > 0) d.note(fmt::format("line {} of the text: {}", line, nth_line(text, line)));
     d.note("this is a fault of the compiler, not of the scene");
     return false;
 }

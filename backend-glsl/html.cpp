@@ -50,21 +50,17 @@ std::string fixed_params(const ir::Scene &scene) {
 std::string html_page(const ir::Scene &scene, const Options &options,
                       const std::vector<Uniform> &uniforms, const std::string &fragment) {
     const ir::View view = ir::view_of(scene, options.time, 16.0 / 9.0);
-    const ir::Triple sun = ir::lights_of(scene, options.time, view)[0].position;
-    ir::Triple target, back;
-    for (std::size_t i = 0; i < 3; ++i) {
-        target[i] = view.origin[i] + view.focus * view.forward[i];
-        back[i] = -view.forward[i];
-    }
+    const glm::dvec3 sun = ir::lights_of(scene, options.time, view)[0].position;
+    const glm::dvec3 target = view.origin + view.focus * view.forward, back = -view.forward;
     return expand("page", {{"TITLE", for_html(options.title)},
                            {"FIXED", fixed_params(scene)},
                            {"PARAMS", controls(scene, uniforms)},
-                           {"TARGET", array(target.data(), 3)},
-                           {"BACK", array(back.data(), 3)},
+                           {"TARGET", array(&target.x, 3)},
+                           {"BACK", array(&back.x, 3)},
                            {"FOCUS", format_shortest(view.focus)},
                            {"EXTENT", format_shortest(view.extent)},
                            {"ORTHOGRAPHIC", view.orthographic ? "true" : "false"},
-                           {"SUN", array(sun.data(), 3)},
+                           {"SUN", array(&sun.x, 3)},
                            {"ANIMATED", fragment.find("fathom_time", fragment.find("fathom_time;") +
                                                                          1) != std::string::npos
                                             ? "true"

@@ -2,6 +2,8 @@
 
 #include "backend-glsl/template.h"
 
+#include <fmt/format.h>
+
 namespace fathom::glsl {
 
 namespace {
@@ -35,15 +37,14 @@ std::string Inputs::uniform(const std::string &type, const std::string &name,
                             const std::string &value, const std::string &range) {
     declared_.push_back({type, name, value, range});
     if (target_.locations)
-        return "layout(location = " + std::to_string(location_++) + ") uniform " + type + " " +
-               name + ";\n";
+        return fmt::format("layout(location = {}) uniform {} {};\n", location_++, type, name);
     const bool bare = target_.es || options_.instruments != Instruments::None || value.empty();
     return "uniform " + type + " " + name + (bare ? "" : " = " + value) + ";\n";
 }
 
 std::string Inputs::sampler(const std::string &type, const std::string &name) {
     const std::string place =
-        target_.locations ? "layout(binding = " + std::to_string(binding_++) + ") " : "";
+        target_.locations ? fmt::format("layout(binding = {}) ", binding_++) : "";
     return place + "uniform " + type + " " + name + ";\n";
 }
 
@@ -83,9 +84,9 @@ std::string Inputs::of_scene() {
 std::string Inputs::of_field() { return own_inputs(false) + of_scene(); }
 
 std::string Inputs::of_picture(const ir::View &view) {
-    const ir::Triple sun = scene_.lights.empty()
+    const glm::dvec3 sun = scene_.lights.empty()
                                ? ir::lights_of(scene_, options_.time, view)[0].position
-                               : ir::Triple{0, 1, 0};
+                               : glm::dvec3{0, 1, 0};
     const FrameInput all[] = {
         {"vec2", "fathom_resolution", "vec2(1280.0, 720.0)", Held::Global},
         {"vec2", "fathom_offset", "vec2(0.5)", Held::Nowhere},

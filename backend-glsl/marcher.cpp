@@ -6,6 +6,7 @@
 #include "ir/shading.h"
 
 #include <cmath>
+#include <fmt/format.h>
 
 namespace fathom::glsl {
 
@@ -35,14 +36,14 @@ Values values_of(const MarcherOptions &options) {
         {"NEAR", options.steep ? "near" : "d"},
         {"AND_PRESENT", options.cached ? " && !fathom_absent" : ""},
         {"UNLIT", options.lights == 1 ? "return color" : "continue"},
-        {"LIGHTS", std::to_string(options.lights)},
+        {"LIGHTS", fmt::to_string(options.lights)},
         {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
         {"FAR", options.far > 0 ? float_literal(options.far) : far},
         {"RADIUS", float_literal(options.radius)},
         {"LO", options.lo},
         {"HI", options.hi},
         {"EPSILON", float_literal(options.epsilon)},
-        {"MAX_STEPS", std::to_string(options.max_steps)},
+        {"MAX_STEPS", fmt::to_string(options.max_steps)},
         {"ZERO", options.zero},
         {"FLOAT_SLACK", float_literal(shading::float_slack)},
         {"NORMAL_SLACK", float_literal(shading::normal_slack)},
@@ -51,14 +52,14 @@ Values values_of(const MarcherOptions &options) {
         {"FLATTEST", float_literal(shading::flattest)},
         {"NEARER_PART", float_literal(shading::nearer)},
         {"BENT_RELAXATION", float_literal(shading::bent_relaxation)},
-        {"ALL_TAPS", std::to_string(4 + shading::occlusion_samples)},
+        {"ALL_TAPS", fmt::to_string(4 + shading::occlusion_samples)},
         {"OCCLUSION_TOTAL", float_literal(1 - std::ldexp(1.0, -shading::occlusion_samples))},
         {"OCCLUSION_REACH",
          float_literal(shading::occlusion_reach * options.radius / shading::occlusion_samples)},
-        {"SHADOW_STEPS", std::to_string(shading::shadow_steps)},
+        {"SHADOW_STEPS", fmt::to_string(shading::shadow_steps)},
         {"SHADOW_BIAS", float_literal(shading::shadow_bias)},
         {"MIN_ANGLE", float_literal(shading::min_angle)},
-        {"CHECK_STEPS", std::to_string(check_steps_a_step * options.max_steps)},
+        {"CHECK_STEPS", fmt::to_string(check_steps_a_step * options.max_steps)},
     };
 }
 

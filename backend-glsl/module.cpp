@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <unordered_set>
 
 namespace fathom::glsl {
@@ -41,7 +42,7 @@ std::string float_literal(float value) {
     return text;
 }
 
-std::string vec3_literal(const std::array<double, 3> &v) {
+std::string vec3_literal(const glm::dvec3 &v) {
     return "vec3(" + float_literal(v[0]) + ", " + float_literal(v[1]) + ", " + float_literal(v[2]) +
            ")";
 }
@@ -56,7 +57,7 @@ std::string literal(const ir::Constant &constant) {
     case Type::Bool: return constant.value[0] != 0 ? "true" : "false";
     case Type::Int: {
         const auto value = static_cast<std::int64_t>(constant.value[0]);
-        return value <= -2147483648 ? "(-2147483647 - 1)" : std::to_string(value);
+        return value <= -2147483648 ? "(-2147483647 - 1)" : fmt::to_string(value);
     }
     case Type::Float: return number(0);
     case Type::Vec2:
@@ -121,9 +122,9 @@ class Gatherer {
             module_.params[index] =
                 module_.names.unique("param_" + module_.scene.params[index].name);
         for (std::uint32_t index : images_)
-            module_.images[index] = module_.names.unique("image_" + std::to_string(index));
+            module_.images[index] = module_.names.unique(fmt::format("image_{}", index));
         for (std::uint32_t index : grids_)
-            module_.grids[index] = module_.names.unique("grid_" + std::to_string(index));
+            module_.grids[index] = module_.names.unique(fmt::format("grid_{}", index));
         for (std::uint32_t index : tables_) table(index);
         if (module_.options.noise_cache)
             for (std::uint32_t index : caches_) keep(ir::CacheId{index});
@@ -160,7 +161,7 @@ class Gatherer {
     void table(std::uint32_t index) {
         const ir::Table &data = graph_.table(ir::TableId{index});
         module_.tables[index] =
-            add_table(module_, "table_" + std::to_string(index), data.rows, data.stride, data.data);
+            add_table(module_, fmt::format("table_{}", index), data.rows, data.stride, data.data);
     }
 
     Module &module_;
@@ -193,7 +194,7 @@ TableUse add_table(Module &module, const std::string &name, int rows, int stride
 std::string texel(const TableUse &use, const std::string &place) {
     if (!use.buffer) return use.name + "[" + place + "]";
     return "texelFetch(fathom_tables, " + place +
-           (use.start ? " + " + std::to_string(use.start) : "") + ")";
+           (use.start ? fmt::format(" + {}", use.start) : "") + ")";
 }
 
 void gather(Module &module, std::span<const NodeId> roots) {

@@ -7,6 +7,7 @@
 #include "backend-glsl/names.h"
 #include "backend-glsl/prune.h"
 
+#include <glm/vec3.hpp>
 #include <map>
 #include <set>
 #include <string>
@@ -57,7 +58,7 @@ std::string comment(std::string_view text); // a line of its own: what comes fro
 std::string literal(const ir::Constant &constant); // "1.0", "vec3(0.0, 1.0, 0.0)"
 std::string float_literal(float value);
 inline std::string float_literal(double value) { return float_literal(static_cast<float>(value)); }
-std::string vec3_literal(const std::array<double, 3> &value);
+std::string vec3_literal(const glm::dvec3 &value);
 
 // Every function, table, image and grid that the roots need gets its name here; functions by
 // ascending id.

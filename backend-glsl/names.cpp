@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 
 namespace fathom::glsl {
 
@@ -95,14 +96,14 @@ std::string Names::unique(std::string_view wanted) {
     std::string name = base;
     const char *joint = base.back() == '_' ? "" : "_";
     for (int i = 2; is_reserved(name) || taken_.contains(name); ++i)
-        name = base + joint + std::to_string(i);
+        name = fmt::format("{}{}{}", base, joint, i);
     taken_.insert(name);
     return name;
 }
 
 std::string Names::numbered(char prefix) {
     std::string name;
-    do name = prefix + std::to_string(next_++);
+    do name = fmt::format("{}{}", prefix, next_++);
     while (taken_.contains(name));
     taken_.insert(name);
     return name;

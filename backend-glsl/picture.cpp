@@ -9,6 +9,7 @@
 #include "ir/view.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace fathom::glsl {
 
@@ -21,9 +22,9 @@ std::string shown(bool on) { return on ? "1" : ""; }
 // What the text's version has to be, by what it uses; empty where its host says it.
 std::string version_of(const Module &module, const TargetTraits &target) {
     if (target.version == 0) return "";
-    if (target.es) return std::to_string(target.version) + " es";
+    if (target.es) return fmt::format("{} es", target.version);
     const int used = !module.pruned.empty() ? 430 : !module.cached.empty() ? 420 : 0;
-    return std::to_string(std::max(target.version, used)) + " core";
+    return fmt::format("{} core", std::max(target.version, used));
 }
 
 // What was proved of the scene, and on what that rests (docs/trusted.md).
@@ -62,7 +63,7 @@ std::string hit_function(const Module &module) {
     const ir::Scene &scene = module.scene;
     const int stride = module.options.part_stride;
     return expand("hit", {{"MARKED", shown(scene.hit && stride > 0)},
-                          {"STRIDE", std::to_string(stride)},
+                          {"STRIDE", fmt::to_string(stride)},
                           {"PICK", shown(module.options.instruments == Instruments::Pick)},
                           {"UNPAINTED", shown(!scene.hit)}});
 }
@@ -97,9 +98,7 @@ MarcherOptions marcher_options(const Module &module, const SceneText &text, cons
 // The entry point, by the target's template.
 std::string entry(const Module &module, const ir::View &view) {
     const TargetTraits &target = traits_of(module.options.target);
-    ir::Triple looked_at;
-    for (std::size_t i = 0; i < 3; ++i)
-        looked_at[i] = view.origin[i] + view.focus * view.forward[i];
+    const glm::dvec3 looked_at = view.origin + view.focus * view.forward;
     const bool cached = !module.cached.empty();
     const bool several = cached || module.options.instruments == Instruments::Pick;
     Values values = cache_numbers();

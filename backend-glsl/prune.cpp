@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
+#include <glm/gtc/type_ptr.hpp>
 #include <tuple>
 #include <unordered_set>
 
@@ -166,7 +168,8 @@ std::optional<PrunePlan> plan_pruning(const ir::Scene &scene,
 }
 
 std::string prune_look_up(const ir::Box &bounds) {
-    return expand("prune_rows", {{"LO", vec3_literal(bounds.lo)}, {"HI", vec3_literal(bounds.hi)}});
+    return expand("prune_rows", {{"LO", vec3_literal(glm::make_vec3(bounds.lo.data()))},
+                                 {"HI", vec3_literal(glm::make_vec3(bounds.hi.data()))}});
 }
 
 std::string far_look_up(const std::string &outside) {
@@ -182,7 +185,7 @@ std::string far_kernel(const std::string &sdf) {
 std::string prune_kernel(const PrunedLoop &loop, const PruneNames &names) {
     const Values values{
         {"BLENDED", loop.blended ? "1" : ""},
-        {"ROWS", std::to_string(loop.rows)},
+        {"ROWS", fmt::to_string(loop.rows)},
         {"SLOPE", float_literal(static_cast<float>((loop.slope + loop.acc_slope) * 1.000001))},
         {"VALUE", names.value},
         {"START", names.start},

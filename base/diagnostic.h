@@ -4,6 +4,8 @@
 
 #include "base/source.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <optional>
 #include <string>
 #include <string_view>
@@ -96,6 +98,10 @@ std::string to_text(const Diagnostic &diagnostic, const Sources &sources, bool c
 // One JSON object, as `check --json` prints it, without a trailing line end: "code severity message
 // file line column end_line end_column label labels notes fix". Ends are one past the last code
 // point. Without a place, file and numbers are null.
-std::string to_json(const Diagnostic &diagnostic, const Sources &sources);
+nlohmann::ordered_json to_json(const Diagnostic &diagnostic, const Sources &sources);
+// The source, line and columns of a span, as every place in JSON names them; all null without one.
+nlohmann::ordered_json place_json(const Sources &sources, Span span);
+// A document as text on one line: pure ASCII, so that no name in it can steer a terminal.
+std::string json_text(const nlohmann::ordered_json &document);
 
 } // namespace fathom

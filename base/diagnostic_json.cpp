@@ -1,10 +1,14 @@
 // Diagnostics as JSON, for editors and scripts; the form is fixed in diagnostic.h.
 #include "base/diagnostic.h"
-#include "base/encode.h"
+#include "base/text.h"
+
+#include <nlohmann/json.hpp>
 
 namespace fathom {
 
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 std::string_view severity_name(Severity severity) {
     switch (severity) {
@@ -15,69 +19,57 @@ std::string_view severity_name(Severity severity) {
     return "";
 }
 
-void add_field(std::string &out, std::string_view name, std::string_view json) {
-    if (out.back() != '{') out += ", ";
-    out += for_json(name);
-    out += ": ";
-    out += json;
-}
-
-void add_place(std::string &out, const Sources &sources, Span span) {
-    if (!span.source) {
-        for (const char *name : {"file", "line", "column", "end_line", "end_column"})
-            add_field(out, name, "null");
-        return;
-    }
-    const Source &source = sources[span.source];
-    const Position begin = position(source, span.begin), end = position(source, span.end);
-    add_field(out, "file", for_json(source.name));
-    add_field(out, "line", std::to_string(begin.line));
-    add_field(out, "column", std::to_string(begin.column));
-    add_field(out, "end_line", std::to_string(end.line));
-    add_field(out, "end_column", std::to_string(end.column));
-}
-
-template <class T, class Write> std::string array_of(const std::vector<T> &items, Write write) {
-    std::string out = "[";
-    for (const T &item : items) {
-        if (out.size() > 1) out += ", ";
-        out += write(item);
-    }
-    return out + "]";
+template <class T, class Write> Json array_of(const std::vector<T> &items, Write write) {
+    Json out = Json::array();
+    for (const T &item : items) out.push_back(write(item));
+    return out;
 }
 
 } // namespace
 
-std::string to_json(const Diagnostic &diagnostic, const Sources &sources) {
+Json place_json(const Sources &sources, Span span) {
+    if (!span.source)
+        return {{"file", nullptr},
+                {"line", nullptr},
+                {"column", nullptr},
+                {"end_line", nullptr},
+                {"end_column", nullptr}};
+    const Source &source = sources[span.source];
+    const Position begin = position(source, span.begin), end = position(source, span.end);
+    return {{"file", source.name},
+            {"line", begin.line},
+            {"column", begin.column},
+            {"end_line", end.line},
+            {"end_column", end.column}};
+}
+
+Json to_json(const Diagnostic &diagnostic, const Sources &sources) {
     const auto label = [&](const Label &l) {
-        std::string out = "{";
-        add_place(out, sources, l.span);
-        add_field(out, "message", for_json(l.message));
-        return out + "}";
+        Json out = place_json(sources, l.span);
+        out["message"] = l.message;
+        return out;
     };
     const auto edit = [&](const Edit &e) {
-        std::string out = "{";
-        add_place(out, sources, e.span);
-        add_field(out, "replacement", for_json(e.replacement));
-        return out + "}";
+        Json out = place_json(sources, e.span);
+        out["replacement"] = e.replacement;
+        return out;
     };
-    const auto fix = [&](const Fix &f) {
-        std::string out = "{";
-        add_field(out, "message", for_json(f.message));
-        add_field(out, "edits", array_of(f.edits, edit));
-        return out + "}";
-    };
+    Json out{{"code", code_name(diagnostic.code)},
+             {"severity", severity_name(diagnostic.severity)},
+             {"message", diagnostic.message}};
+    out.update(place_json(sources, diagnostic.primary.span));
+    out["label"] = diagnostic.primary.message;
+    out["labels"] = array_of(diagnostic.related, label);
+    out["notes"] = diagnostic.notes;
+    out["fix"] = nullptr;
+    if (diagnostic.fix)
+        out["fix"] = {{"message", diagnostic.fix->message},
+                      {"edits", array_of(diagnostic.fix->edits, edit)}};
+    return out;
+}
 
-    std::string out = "{";
-    add_field(out, "code", for_json(code_name(diagnostic.code)));
-    add_field(out, "severity", for_json(severity_name(diagnostic.severity)));
-    add_field(out, "message", for_json(diagnostic.message));
-    add_place(out, sources, diagnostic.primary.span);
-    add_field(out, "label", for_json(diagnostic.primary.message));
-    add_field(out, "labels", array_of(diagnostic.related, label));
-    add_field(out, "notes", array_of(diagnostic.notes, for_json));
-    add_field(out, "fix", diagnostic.fix ? fix(*diagnostic.fix) : "null");
-    return out + "}";
+std::string json_text(const Json &document) {
+    return document.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
 } // namespace fathom

@@ -6,6 +6,7 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <map>
 
 namespace fathom {
@@ -266,7 +267,7 @@ void Printer::marked_line(const Source &source, std::uint32_t line, std::vector<
                           for_terminal(mark.message)});
     }
 
-    row(std::to_string(line), shown.text);
+    row(fmt::to_string(line), shown.text);
     std::string first_row = underline(placed);
     const bool inline_message = !placed.back().message.empty();
     if (inline_message) {
@@ -352,7 +353,7 @@ void Printer::edited_lines(const Fix &fix, const Sources &sources) {
             under.append(begin - under.size(), ' ');
             under.append(end - begin, signs[i]);
         }
-        row(std::to_string(place.second), shown.text);
+        row(fmt::to_string(place.second), shown.text);
         if (under.empty()) continue;
         const std::size_t indent = under.find_first_not_of(' ');
         row("", std::string(indent, ' ') + std::string(style_.help) + under.substr(indent) +
@@ -372,13 +373,12 @@ std::size_t gutter_width(const Diagnostic &diagnostic, const Sources &sources) {
     for (const Label &label : diagnostic.related) see(label.span);
     if (diagnostic.fix)
         for (const Edit &edit : diagnostic.fix->edits) see(edit.span);
-    return std::to_string(largest).size();
+    return fmt::to_string(largest).size();
 }
 
 std::string place_text(const Source &source, std::uint32_t offset) {
     const Position at = position(source, offset);
-    return for_terminal(source.name) + ":" + std::to_string(at.line) + ":" +
-           std::to_string(at.column);
+    return fmt::format("{}:{}:{}", for_terminal(source.name), at.line, at.column);
 }
 
 } // namespace
@@ -418,7 +418,7 @@ std::string to_text(const Diagnostic &diagnostic, const Sources &sources, bool c
         std::uint32_t previous = 0;
         for (const auto &[line, marks] : file.lines) {
             if (previous && line == previous + 2) {
-                printer.row(std::to_string(line - 1),
+                printer.row(fmt::to_string(line - 1),
                             show_line(line_text(source, line - 1), 0).text);
             } else if (previous && line > previous + 2) {
                 out += style.gutter;

@@ -1,4 +1,5 @@
 #include "base/picture.h"
+#include "base/srgb.h"
 
 #include <png.h>
 
@@ -9,9 +10,7 @@ namespace fathom {
 std::uint8_t srgb_byte(float linear) {
     if (!(linear > 0)) return 0;
     if (linear >= 1) return 255;
-    const float encoded =
-        linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-    return static_cast<std::uint8_t>(encoded * 255 + 0.5f);
+    return static_cast<std::uint8_t>(srgb_of_linear(linear) * 255 + 0.5f);
 }
 
 Picture picture_of_linear(int width, int height, std::span<const float> rgba) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <sstream>
 
@@ -26,10 +27,10 @@ std::string long_text(const std::string &block, std::size_t lines) {
     const auto block_lines = static_cast<std::size_t>(std::count(block.begin(), block.end(), '\n'));
     std::string text;
     for (std::size_t copy = 0; copy * block_lines < lines; ++copy) {
-        const std::string suffix = '_' + std::to_string(copy), start = "let at_0 = 0";
+        const std::string suffix = fmt::format("_{}", copy), start = "let at_0 = 0";
         for (std::size_t at = 0; at < block.size();) {
             if (block.compare(at, start.size(), start) == 0) {
-                text += "let at" + suffix + " = " + std::to_string(copy);
+                text += fmt::format("let at{} = {}", suffix, copy);
                 at += start.size();
             } else if (block.compare(at, 2, "_0") == 0) {
                 text += suffix;
@@ -81,7 +82,7 @@ void measure_front_end(Table &table) {
     const std::string block = text_of(scene_path("typical.sdf"));
     for (const int lines : {1'000, 10'000, 100'000}) {
         const std::string text = long_text(block, static_cast<std::size_t>(lines));
-        const std::string what = "front end, " + std::to_string(lines) + " lines";
+        const std::string what = fmt::format("front end, {} lines", lines);
         const int runs = lines > 10'000 ? 1 : lines > 1'000 ? 3 : 11;
         std::string wrong;
         const PhaseTimes times = median_times(runs, [&] {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <fstream>
 #include <sstream>
 
@@ -58,7 +59,7 @@ void compare(Table &table, const gl::Context &context, const std::string &what,
     auto ours = gl::Program::build(output, scene), theirs = by_hand(name, scene);
     for (const auto *program : {&ours, &theirs})
         if (const auto *error = std::get_if<gl::ProgramError>(program))
-            return lacks("line " + std::to_string(error->line) + ": " + error->message);
+            return lacks(fmt::format("line {}: {}", error->line, error->message));
 
     gl::Request request;
     request.width = 320;
@@ -69,7 +70,7 @@ void compare(Table &table, const gl::Context &context, const std::string &what,
     const auto first = drawn(ours), second = drawn(theirs);
     if (!first || !second) return lacks("it cannot be drawn");
     if (const double share = differing(*first, *second); share > 5)
-        return lacks("the pictures differ in " + std::to_string(share) + " of 1000 pixels");
+        return lacks(fmt::format("the pictures differ in {} of 1000 pixels", share));
     // A software driver's work is the process's own, whoever else has the machine meanwhile.
     const bool software = context.describe().find("llvmpipe") != std::string::npos;
     const auto taken = [&](const auto &program) {

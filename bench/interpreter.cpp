@@ -7,6 +7,7 @@
 #include "ir/noise.h"
 
 #include <cmath>
+#include <fmt/format.h>
 
 namespace fathom::bench {
 
@@ -173,7 +174,7 @@ void measure_interpreter(Table &table) {
         };
         const Rates both = rates(
             points * million, [&] { run(cloud); }, points * million, scalar);
-        table.push_back({"Perlin noise, octaves: " + std::to_string(octaves), both.first,
+        table.push_back({fmt::format("Perlin noise, octaves: {}", octaves), both.first,
                          "M points/s", "point by point", both.second, 0});
     }
 }

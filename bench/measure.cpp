@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <fmt/format.h>
 #include <fstream>
 #include <thread>
 
@@ -66,8 +67,8 @@ std::string machine() {
             name = line.substr(line.find(':') + 2);
             break;
         }
-    return name + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads, " +
-           __VERSION__;
+    return fmt::format("{}, {} threads, {}", name, std::thread::hardware_concurrency(),
+                       __VERSION__);
 }
 
 void print(const Table &table) {

@@ -65,4 +65,14 @@ void measure_hand_written(Table &table); // hand_written.cpp
 void measure_steps(Table &table);        // steps.cpp
 void measure_noise_cache(Table &table);  // noise_cache.cpp
 
+// `fathom-bench figures`: the thesis's measures of the noise cache, of one scene.
+struct FigureOptions {
+    std::string scene;
+    int width = 400, height = 400;
+    std::string figure; // "8.2" to "8.6", which is measured alone; empty: all
+    int frames = 0;     // of each measure; 0: as many as take about three minutes in all
+    int cache_bits = 0; // 2^bits cells an axis; 0: 64, and 128 where a view needs more
+};
+int measure_figures(const FigureOptions &options); // prints; returns the exit status
+
 } // namespace fathom::bench

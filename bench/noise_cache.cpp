@@ -11,6 +11,7 @@
 #include <epoxy/gl.h>
 
 #include <cmath>
+#include <fmt/format.h>
 
 namespace fathom::bench {
 namespace {
@@ -19,10 +20,11 @@ constexpr int side = 48, iterations = 32; // pixels; evaluations a pixel
 constexpr double whole = 800;             // what is drawn is the middle of a picture of that size
 
 driver::Compilation scene_of(const std::string &field, double cell) {
-    return compiled_text("cached.sdf",
-                         "let f = cached(p => " + field + ", cell: " + std::to_string(cell) +
-                             ")\ngdf_icosahedron(1).displace(f)\n"
-                             "camera(at: [0, 0.6, 2.6], look_at: [0, 0, 0], fov: 30deg)\n");
+    return compiled_text(
+        "cached.sdf",
+        fmt::format("let f = cached(p => {}, cell: {})\ngdf_icosahedron(1).displace(f)\ncamera(at: "
+                    "[0, 0.6, 2.6], look_at: [0, 0, 0], fov: 30deg)\n",
+                    field, cell));
 }
 
 void measure_scene(Table &table, const std::string &what, const driver::Compilation &c,
@@ -51,12 +53,12 @@ void measure_scene(Table &table, const std::string &what, const driver::Compilat
 double nanoseconds(const std::string &functions, const std::string &statement,
                    const glsl::Output &output, const ir::Scene &scene, int ages = 1) {
     glsl::Output measured = output;
-    measured.text = functions +
-                    "layout(location = 0) out vec4 measured;\nvoid main() {\n"
-                    "    vec3 p = vec3(gl_FragCoord.xy * 0.013, 0.3);\n"
-                    "    vec4 sum = vec4(0.0);\n    for (int iteration = 0; iteration < " +
-                    std::to_string(iterations) + "; ++iteration) {\n        " + statement +
-                    "\n        p += vec3(0.0137, 0.0071, 0.0193);\n    }\n    measured = sum;\n}\n";
+    measured.text =
+        fmt::format("{}layout(location = 0) out vec4 measured;\nvoid main() {{\n    vec3 p = "
+                    "vec3(gl_FragCoord.xy * 0.013, 0.3);\n    vec4 sum = vec4(0.0);\n    for (int "
+                    "iteration = 0; iteration < {}; ++iteration) {{\n        {}\n        p += "
+                    "vec3(0.0137, 0.0071, 0.0193);\n    }}\n    measured = sum;\n}}\n",
+                    functions, iterations, statement);
     auto built = gl::Program::build(measured, scene);
     const auto *program = std::get_if<gl::Program>(&built);
     if (!program) return NAN;
@@ -164,8 +166,7 @@ driver::Compilation spot_noise() {
 gl::FrameInputs middle_of(const ir::Scene &scene, double times_as_far) {
     gl::FrameInputs inputs;
     inputs.view = ir::view_of(scene, 0, 1);
-    for (std::size_t i = 0; i < 3; ++i)
-        inputs.view.origin[i] += (1 - times_as_far) * inputs.view.focus * inputs.view.forward[i];
+    inputs.view.origin += (1 - times_as_far) * inputs.view.focus * inputs.view.forward;
     inputs.view.focus *= times_as_far;
     inputs.view.extent *= side / whole;
     inputs.sun = ir::lights_of(scene, 0, inputs.view)[0].position;

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -60,7 +61,7 @@ void measure_events(Table &table) {
         double wrote = 0, told = 0;
         std::thread writer([&] {
             std::this_thread::sleep_for(milliseconds(5)); // the other one waits by then
-            folder.write("sphere(1." + std::to_string(i) + ")\n");
+            folder.write(fmt::format("sphere(1.{})\n", i));
             wrote = seconds_now();
         });
         const bool seen = watcher.wait(milliseconds(2000));
@@ -70,7 +71,7 @@ void measure_events(Table &table) {
     }
     if (taken.size() < 200) {
         table.push_back({.what = "save to event, p99",
-                         .missing = std::to_string(200 - taken.size()) + " of 200 saves missed"});
+                         .missing = fmt::format("{} of 200 saves missed", 200 - taken.size())});
         return;
     }
     table.push_back(
@@ -142,8 +143,8 @@ void measure_window(Table &table) {
     ::setenv("DISPLAY", display.c_str(), 1);
     const Folder folder;
     const auto text = [](int i) {
-        return "sphere(" + std::to_string(1 + i * 0.001) +
-               ").paint(orange)\nbox(1).translate([1.5, 0, 0])\n";
+        return fmt::format("sphere({}).paint(orange)\nbox(1).translate([1.5, 0, 0])\n",
+                           1 + i * 0.001);
     };
     folder.write(text(0));
     std::error_code failed;

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <glm/geometric.hpp>
 #include <limits>
 
 namespace fathom::bench {
@@ -21,8 +22,6 @@ namespace fathom::bench {
 namespace {
 
 constexpr int side = 256;
-
-double length(const ir::Triple &v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 // The largest singular value of the shear that a twist by `rate` is at `radius` from its axis: of
 // [[1, s], [0, 1]].
@@ -83,10 +82,8 @@ Way inside(const ir::Frame &frame, const cpu::Ray &ray, Way way) {
 
 Count trace_plainly(const ir::Scene &scene, const cpu::Stage &from, bool boxed) {
     const ir::Frame &frame = from.frame;
-    const ir::Triple away{frame.center[0] - from.view.origin[0],
-                          frame.center[1] - from.view.origin[1],
-                          frame.center[2] - from.view.origin[2]};
-    const auto far = static_cast<float>(length(away) + frame.radius);
+    const auto far =
+        static_cast<float>(glm::distance(frame.center, from.view.origin) + frame.radius);
     const cpu::Program distance = cpu::compile(scene, scene.distance);
     cpu::Scratch scratch = cpu::make_scratch(distance, from.inputs);
     std::vector<cpu::Ray> rays;
@@ -142,7 +139,7 @@ void compare(Table &table, const std::string &what, const std::string &file, dou
     options.mode = cpu::PictureMode::Steps; // rays from the eye alone, without shading
     const cpu::Work work = cpu::render(stage, options).work;
 
-    const double bound = global_bound(scene, length(stage.view.origin));
+    const double bound = global_bound(scene, glm::length(stage.view.origin));
     const ir::Scene divided = plainly_lowered(scene, bound);
     const Count plain = trace_plainly(divided, stage, false),
                 boxed = trace_plainly(divided, stage, true);

@@ -33,16 +33,6 @@ std::string read_pair(const std::string &word, int &first, int &second) {
     return "";
 }
 
-std::string read_cells(const std::string &word, int &bits) {
-    const std::optional<double> cells = parse_number(word);
-    for (int b = 2; b <= 7; ++b)
-        if (cells && *cells == 1 << b) {
-            bits = b;
-            return "";
-        }
-    return fmt::format("the cache has 4, 8, 16, 32, 64 or 128 cells an axis, not `{}`", word);
-}
-
 std::string read_point(const std::string &word, std::array<double, 3> &point) {
     std::string_view rest = word;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -235,6 +225,22 @@ struct Reader {
             "an error,\n"
             "2 the command line is wrong, 3 a file named on it or the device cannot be used.");
 
+        add_view();
+        add_check();
+        add_compile();
+        add_render();
+        add_eval();
+        add_import();
+        add_export();
+        add_fmt();
+        add_doc();
+        add_explain();
+        add_bench();
+        help = app.add_subcommand("help", "show this, or a command's options");
+        help->add_option("COMMAND", help_about, "left out: list the commands")->type_name("");
+    }
+
+    void add_view() {
         CLI::App *sub = command("view", "open a window that follows the file", view);
         add_scene(sub, view.scene, Read::Again);
         add_size(sub, view.width, view.height);
@@ -249,15 +255,19 @@ struct Reader {
         sub->add_flag("--one-context", view.one_context,
                       "let the graphics driver compile on the window's thread: for drivers that "
                       "cannot share");
+    }
 
-        sub = command("check", "parse, type and prove a scene", check);
+    void add_check() {
+        CLI::App *sub = command("check", "parse, type and prove a scene", check);
         add_scene(sub, check.scene);
         add_strict_proof(sub, check.scene);
         sub->add_flag("--json", check.json, "one JSON document on standard output");
         sub->add_flag("--explain", check.explain, "show where the bound comes from, as a tree");
         sub->add_flag("--watch", check.watch, "check again after every save");
+    }
 
-        sub = command("compile", "write the scene's shader, validated", compile);
+    void add_compile() {
+        CLI::App *sub = command("compile", "write the scene's shader, validated", compile);
         add_scene(sub, compile.scene);
         add_strict_proof(sub, compile.scene);
         add_out(
@@ -272,8 +282,10 @@ struct Reader {
             "--noise-cache", compile.noise_cache,
             "read cached fields through the noise cache; its passes are written beside OUT");
         sub->add_flag("--watch", compile.watch, "compile again after every save");
+    }
 
-        sub = command("render", "make a picture, without a window", render);
+    void add_render() {
+        CLI::App *sub = command("render", "make a picture, without a window", render);
         add_scene(sub, render.scene);
         add_strict_proof(sub, render.scene);
         add_out(sub, render.out,
@@ -309,8 +321,10 @@ struct Reader {
             ->type_name("N");
         sub->add_flag("--cache", render.cache,
                       "read cached fields through the noise cache, as a moving view does");
+    }
 
-        sub = command("eval", "print the field at points: distance gx gy gz", eval);
+    void add_eval() {
+        CLI::App *sub = command("eval", "print the field at points: distance gx gy gz", eval);
         add_scene(sub, eval.scene);
         option(
             sub, "--at",
@@ -329,8 +343,10 @@ struct Reader {
             "`-`: one `X Y Z` a line on standard input")
             ->type_name("-");
         add_time(sub, eval.time, "seconds");
+    }
 
-        sub = command("import", "turn a YAML save file into the language", import);
+    void add_import() {
+        CLI::App *sub = command("import", "turn a YAML save file into the language", import);
         sub->add_option("IN.yaml", import.file, "the save file, `-` for standard input")
             ->type_name("")
             ->required();
@@ -338,48 +354,37 @@ struct Reader {
         sub->add_flag("--strict", import.strict, "take nothing that is not understood");
         sub->add_flag("--partial", import.partial,
                       "write what was read of a file whose structure is broken");
+    }
 
-        sub = command("export", "turn a scene into a YAML save file", export_);
+    void add_export() {
+        CLI::App *sub = command("export", "turn a scene into a YAML save file", export_);
         add_scene(sub, export_.scene);
         add_out(sub, export_.out, "write here, not to standard output")->type_name("OUT.yaml");
+    }
 
-        sub = command("fmt", "format scenes, in place", fmt);
+    void add_fmt() {
+        CLI::App *sub = command("fmt", "format scenes, in place", fmt);
         sub->add_option("FILE", fmt.files, "the scenes; `-`: standard input to standard output")
             ->type_name("")
             ->required();
         sub->add_flag("--check", fmt.check,
                       "change nothing; name the files that are not formatted, and exit with 1");
+    }
 
-        sub = command("doc", "print the library's entry of a name", doc);
+    void add_doc() {
+        CLI::App *sub = command("doc", "print the library's entry of a name", doc);
         sub->add_option("NAME", doc.name, "left out: list all names")->type_name("");
+    }
 
-        sub = command("explain", "print a diagnostic's page", explain);
+    void add_explain() {
+        CLI::App *sub = command("explain", "print a diagnostic's page", explain);
         sub->add_option("CODE", explain.code, "left out: list all codes")->type_name("");
+    }
 
-        sub = command("bench", "measure the phases and a frame of a scene", bench);
+    void add_bench() {
+        CLI::App *sub = command("bench", "measure the phases and a frame of a scene", bench);
         add_scene(sub, bench.scene, Read::Again);
         add_size(sub, bench.width, bench.height);
-        sub->add_flag("--noise-cache", bench.noise_cache,
-                      "measure the noise cache against exact frames");
-        option(
-            sub, "--cells",
-            [this](const std::string &word) { return read_cells(word, bench.cache_bits); },
-            "cells of the noise cache along an axis: 4, 8, … 128; 64 unless said, and 128 where "
-            "a view needs more")
-            ->type_name("N");
-        sub->add_option("--figure", bench.figure,
-                        "of the noise cache's measures one alone, by the thesis's number: 8.2 ages "
-                        "and 8.3, 8.4 difference, 8.5 edits, 8.6 turning")
-            ->check(quiet(CLI::IsMember({"8.2", "8.3", "8.4", "8.5", "8.6"})))
-            ->type_name("N");
-        sub->add_option(
-               "--frames", bench.frames,
-               "frames of each measure of the noise cache; else all take about three minutes")
-            ->check(quiet(CLI::Range(1, 1000)))
-            ->type_name("N");
-
-        help = app.add_subcommand("help", "show this, or a command's options");
-        help->add_option("COMMAND", help_about, "left out: list the commands")->type_name("");
     }
 };
 
@@ -440,10 +445,6 @@ std::string contradiction(const Reader &reader) {
         return "--quality is of a JPEG: -o OUT.jpg writes one";
     if (is("render") && given("--fps") && !reader.render.frames)
         return "--fps is for --frames: one picture has no rate";
-    if (is("bench") && !reader.bench.noise_cache)
-        for (const char *option : {"--figure", "--cells", "--frames"})
-            if (given(option))
-                return fmt::format("{} is for the measures of `bench --noise-cache`", option);
     if (is("eval") && reader.eval.at.empty() && !reader.eval.points)
         return "eval wants points: --at X,Y,Z or --points -";
     if (is("eval") && reader.eval.points && reader.eval.scene.file == "-")

@@ -1,6 +1,5 @@
 // fathom bench: what a scene costs, phase by phase: medians of several runs on this machine, and
 // counts that do not depend on it.
-#include "cli/bench.h"
 #include "backend-cpu/trace/march.h"
 #include "backend-glsl/emit.h"
 #include "cli/terminal.h"
@@ -14,13 +13,14 @@
 #include <map>
 
 namespace fathom::cli {
+
+namespace {
+
 double median(std::vector<double> values) {
     std::nth_element(values.begin(),
                      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
     return values.empty() ? 0 : values[values.size() / 2];
 }
-
-namespace {
 
 using Clock = std::chrono::steady_clock;
 
@@ -138,14 +138,11 @@ Exit run(const BenchCommand &command, Terminal &terminal) {
         terminal.say("fathom: bench reads its file many times; standard input can be read once");
         return usage_error;
     }
-    // What moves params is proved for their whole ranges.
-    driver::Compilation compilation = driver::compile_file(
-        command.scene.file, command.noise_cache ? compile_options(command.scene)
-                                                : compile_options(command.scene, 0, 0));
+    driver::Compilation compilation =
+        driver::compile_file(command.scene.file, compile_options(command.scene, 0, 0));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     terminal.put(fmt::format("{} at {}x{}\n", command.scene.file, command.width, command.height));
-    if (command.noise_cache) return bench_noise_cache(command, compilation.scene, terminal);
     bench_front_end(command, terminal);
     bench_gl(command, compilation.scene, terminal);
     bench_cpu(command, compilation.scene, terminal);

@@ -102,10 +102,6 @@ struct ExplainCommand {
 struct BenchCommand {
     SceneArguments scene;
     int width = 400, height = 400;
-    bool noise_cache = false;
-    std::string figure; // of the thesis, "8.2" to "8.6", that is measured alone; empty: all
-    int frames = 0;     // of each of its measures; 0: as many as take about three minutes in all
-    int cache_bits = 0; // 2^bits cells an axis; 0: 64, and 128 where a view needs more
 };
 
 using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, EvalCommand, ViewCommand,

@@ -4,6 +4,7 @@
 #include "save-format/save_format.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace fathom::driver {
 namespace {
@@ -116,7 +117,7 @@ std::string with_views(const std::string &text, const std::vector<std::string> &
     });
     if (!cameras.empty()) result = ended(std::move(result));
     for (std::size_t i = 0; i < cameras.size(); ++i)
-        result += std::string(view_mark) + std::to_string(i + 2) + ": " + cameras[i] + "\n";
+        result += fmt::format("{}{}: {}\n", view_mark, i + 2, cameras[i]);
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <mutex>
 #include <set>
 #include <sys/file.h>
@@ -67,7 +68,7 @@ std::optional<std::string> read_descriptor(int fd, std::size_t expected, std::si
         if (count == 0) break;
         used += static_cast<std::size_t>(count);
         if (used > limit) {
-            error = "larger than " + std::to_string(limit >> 20) + " MiB";
+            error = fmt::format("larger than {} MiB", limit >> 20);
             return std::nullopt;
         }
     }

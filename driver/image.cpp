@@ -1,4 +1,5 @@
 #include "driver/image.h"
+#include "base/srgb.h"
 
 #include <array>
 #include <cmath>
@@ -14,14 +15,12 @@ namespace {
 
 constexpr std::size_t max_pixels = std::size_t{1} << 24;
 
-// sRGB (IEC 61966-2-1) to linear, for a byte.
+// The linear value of each byte of sRGB.
 const std::array<float, 256> &linear_table() {
     static const std::array<float, 256> table = [] {
         std::array<float, 256> values{};
         for (std::size_t i = 0; i < values.size(); ++i) {
-            double c = static_cast<double>(i) / 255;
-            values[i] =
-                static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+            values[i] = static_cast<float>(linear_of_srgb(static_cast<double>(i) / 255));
         }
         return values;
     }();

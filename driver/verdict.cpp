@@ -1,11 +1,8 @@
 #include "driver/verdict.h"
 
-#include "base/encode.h"
-#include "base/text.h"
-
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace fathom::driver {
 
@@ -32,21 +29,11 @@ Verdict judge(const ir::Scene &scene) {
 
 namespace {
 
-std::string json_number(std::optional<double> number) {
-    return number && std::isfinite(*number) ? format_shortest(*number) : "null";
-}
+using Json = nlohmann::ordered_json;
 
-std::string json_span(Span span, const Sources &sources) {
-    const Source &source = sources[span.source];
-    Position begin = position(source, span.begin), end = position(source, span.end);
-    return fmt::format(
-        R"({{"file": {}, "line": {}, "column": {}, "end_line": {}, "end_column": {}}})",
-        for_json(source.name), begin.line, begin.column, end.line, end.column);
-}
-
-std::string json_point(const std::array<double, 3> &point) {
-    return fmt::format("[{}, {}, {}]", json_number(point[0]), json_number(point[1]),
-                       json_number(point[2]));
+// JSON knows no infinity.
+Json json_number(std::optional<double> number) {
+    return number && std::isfinite(*number) ? Json(*number) : Json();
 }
 
 std::string_view axiom_kind(ir::Axiom::Kind kind) {
@@ -59,46 +46,42 @@ std::string_view axiom_kind(ir::Axiom::Kind kind) {
     return "";
 }
 
-std::string json_axioms(const Compilation &compilation) {
-    std::string out;
-    for (const ir::Axiom &axiom : compilation.scene.axioms)
-        out += fmt::format(R"({}{{"kind": "{}", "says": {}, "span": {}}})", out.empty() ? "" : ", ",
-                           axiom_kind(axiom.kind), for_json(axiom.says),
-                           axiom.at.source ? json_span(axiom.at, compilation.sources) : "null");
-    return out;
-}
-
 } // namespace
 
 std::string verdict_json(const Compilation &compilation) {
-    std::string shapes, diagnostics, axioms, bounds = "null";
+    Json shapes = Json::array(), axioms = Json::array(), diagnostics = Json::array(), bounds;
     Verdict verdict;
     if (compilation.good()) {
         const ir::Scene &scene = compilation.scene;
         verdict = judge(scene);
-        if (scene.bounds.finite())
-            bounds =
-                fmt::format("[{}, {}]", json_point(scene.bounds.lo), json_point(scene.bounds.hi));
-        axioms = json_axioms(compilation);
+        if (scene.bounds.finite()) bounds = {scene.bounds.lo, scene.bounds.hi};
         for (const ir::TopLevel &top : scene.top_level) {
             const ir::ShapeFact &fact = scene.facts[top.shape.index];
-            shapes +=
-                fmt::format(R"({}{{"span": {}, "lipschitz": {}, "status": "{}", "exact": {}}})",
-                            shapes.empty() ? "" : ", ", json_span(top.span, compilation.sources),
-                            json_number(fact.lipschitz_sup), status_name(fact.status),
-                            fact.kind == ir::FieldKind::Exact);
+            shapes.push_back({{"span", place_json(compilation.sources, top.span)},
+                              {"lipschitz", json_number(fact.lipschitz_sup)},
+                              {"status", status_name(fact.status)},
+                              {"exact", fact.kind == ir::FieldKind::Exact}});
         }
+        for (const ir::Axiom &axiom : scene.axioms)
+            axioms.push_back(
+                {{"kind", axiom_kind(axiom.kind)},
+                 {"says", axiom.says},
+                 {"span", axiom.at.source ? place_json(compilation.sources, axiom.at) : Json()}});
     } else {
         verdict.exact = false;
         verdict.status = ir::ProofStatus::Estimated;
     }
     for (const Diagnostic &diagnostic : compilation.diagnostics.sorted())
-        diagnostics += (diagnostics.empty() ? "" : ", ") + to_json(diagnostic, compilation.sources);
-    return fmt::format(
-        R"({{"ok": {}, "lipschitz": {}, "status": "{}", "exact": {}, "bounds": {}, "shapes": [{}], "axioms": [{}], "diagnostics": [{}]}})"
-        "\n",
-        compilation.good(), json_number(verdict.lipschitz), status_name(verdict.status),
-        verdict.exact, bounds, shapes, axioms, diagnostics);
+        diagnostics.push_back(to_json(diagnostic, compilation.sources));
+    return json_text({{"ok", compilation.good()},
+                      {"lipschitz", json_number(verdict.lipschitz)},
+                      {"status", status_name(verdict.status)},
+                      {"exact", verdict.exact},
+                      {"bounds", bounds},
+                      {"shapes", shapes},
+                      {"axioms", axioms},
+                      {"diagnostics", diagnostics}}) +
+           "\n";
 }
 
 } // namespace fathom::driver

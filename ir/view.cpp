@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <numbers>
 #include <optional>
 #include <unordered_map>
@@ -67,15 +68,15 @@ class Evaluator {
         for (NodeId arg : graph_.args(id)) now.push_back(value(arg));
         const int count = static_cast<int>(value(loop.count).value[0]);
         for (int i = 0; i < count; ++i) {
-            Evaluator turn(scene_, time_);
+            Evaluator iteration(scene_, time_);
             for (NodeId var : graph_.free_vars(id))
                 if (auto known = values_.find(var); known != values_.end())
-                    turn.values_[var] = known->second;
-            turn.values_[loop.index] = {Type::Int, {static_cast<double>(i)}};
-            for (std::size_t k = 0; k < now.size(); ++k) turn.values_[loop.vars[k]] = now[k];
-            if (loop.condition && turn.value(loop.condition).value[0] == 0) break;
+                    iteration.values_[var] = known->second;
+            iteration.values_[loop.index] = {Type::Int, {static_cast<double>(i)}};
+            for (std::size_t k = 0; k < now.size(); ++k) iteration.values_[loop.vars[k]] = now[k];
+            if (loop.condition && iteration.value(loop.condition).value[0] == 0) break;
             std::vector<Constant> next;
-            for (NodeId n : loop.next) next.push_back(turn.value(n));
+            for (NodeId n : loop.next) next.push_back(iteration.value(n));
             now = std::move(next);
         }
         return now;
@@ -99,20 +100,14 @@ class Evaluator {
     std::unordered_map<NodeId, Constant> values_;
 };
 
-double dot(Triple a, Triple b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Triple cross(Triple a, Triple b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Triple scaled(Triple a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-Triple plus(Triple a, Triple b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Triple minus(Triple a, Triple b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double length(Triple a) { return std::sqrt(dot(a, a)); }
-Triple normalized(Triple a, Triple otherwise) {
-    const double size = length(a);
-    return size > 0 ? scaled(a, 1 / size) : otherwise;
+glm::dvec3 vec_of(const std::array<double, 3> &a) { return {a[0], a[1], a[2]}; }
+// Not glm::normalize, whose last bit differs, and which has no answer for 0.
+glm::dvec3 normalized(glm::dvec3 a, glm::dvec3 otherwise) {
+    const double size = glm::length(a);
+    return size > 0 ? a * (1 / size) : otherwise;
 }
 
-Triple triple_of(const Scene &scene, NodeId id, double time) {
+glm::dvec3 triple_of(const Scene &scene, NodeId id, double time) {
     const std::array<double, 16> v = value_of(scene, id, time);
     return {v[0], v[1], v[2]};
 }
@@ -120,10 +115,10 @@ Triple triple_of(const Scene &scene, NodeId id, double time) {
 constexpr double default_fov = std::numbers::pi / 4;
 
 // The bounding sphere of the finite parts' box; radius 1 about the origin where nothing is finite.
-std::pair<Triple, double> sphere_of(const Box &box) {
+std::pair<glm::dvec3, double> sphere_of(const Box &box) {
     if (!box.finite()) return {{0, 0, 0}, 1};
-    const Triple middle = scaled(plus(box.lo, box.hi), 0.5);
-    const double radius = 0.5 * length(minus(box.hi, box.lo));
+    const glm::dvec3 lo = vec_of(box.lo), hi = vec_of(box.hi), middle = (lo + hi) * 0.5;
+    const double radius = 0.5 * glm::length(hi - lo);
     return {middle, radius > 0 ? radius : 1};
 }
 
@@ -134,22 +129,23 @@ std::array<double, 16> value_of(const Scene &scene, NodeId id, double time) {
     return Evaluator(scene, time).value(id).value;
 }
 
-View look_at(Triple position, Triple target, double extent, bool orthographic) {
+View look_at(glm::dvec3 position, glm::dvec3 target, double extent, bool orthographic) {
     View view;
     view.origin = position;
     view.extent = extent;
     view.orthographic = orthographic;
-    const Triple way = minus(target, position);
-    view.focus = length(way) > 0 ? length(way) : 1;
+    const glm::dvec3 way = target - position;
+    view.focus = glm::length(way) > 0 ? glm::length(way) : 1;
     view.forward = normalized(way, {0, 0, -1});
     const bool vertical = std::abs(view.forward[1]) > 1 - 1e-9;
-    const Triple up = vertical ? Triple{0, 0, view.forward[1] > 0 ? 1.0 : -1.0} : Triple{0, 1, 0};
-    view.right = normalized(cross(view.forward, up), {1, 0, 0});
-    view.up = cross(view.right, view.forward);
+    const glm::dvec3 up =
+        vertical ? glm::dvec3{0, 0, view.forward[1] > 0 ? 1.0 : -1.0} : glm::dvec3{0, 1, 0};
+    view.right = normalized(glm::cross(view.forward, up), {1, 0, 0});
+    view.up = glm::cross(view.right, view.forward);
     return view;
 }
 
-View frame_sphere(View view, Triple center, double radius, double aspect) {
+View frame_sphere(View view, glm::dvec3 center, double radius, double aspect) {
     const double narrow = std::min(aspect, 1.0);
     if (view.orthographic) {
         view.extent = radius / narrow;
@@ -157,7 +153,7 @@ View frame_sphere(View view, Triple center, double radius, double aspect) {
     } else {
         view.focus = radius / std::sin(std::atan(view.extent * narrow));
     }
-    view.origin = minus(center, scaled(view.forward, view.focus));
+    view.origin = center - view.forward * view.focus;
     return view;
 }
 
@@ -165,12 +161,12 @@ View view_of(const Scene &scene, double time, double aspect) {
     const Camera &camera = scene.camera;
     if (!camera.given) {
         const auto [center, radius] = sphere_of(scene.bounds);
-        const View from = look_at(plus(center, {3, 2, 5}), center, std::tan(default_fov / 2),
+        const View from = look_at(center + glm::dvec3(3, 2, 5), center, std::tan(default_fov / 2),
                                   camera.orthographic);
         return frame_sphere(from, center, radius, aspect);
     }
-    const Triple at = triple_of(scene, camera.at, time),
-                 target = triple_of(scene, camera.look_at, time);
+    const glm::dvec3 at = triple_of(scene, camera.at, time),
+                     target = triple_of(scene, camera.look_at, time);
     const double fov = camera.fov ? value_of(scene, camera.fov, time)[0] : default_fov;
     const double extent = std::tan(std::clamp(fov, 1e-4, std::numbers::pi - 1e-4) / 2);
     View view = look_at(at, target, extent, camera.orthographic);
@@ -191,14 +187,14 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
     const auto [center, radius] = sphere_of(scene.bounds);
     frame.center = center;
     frame.radius = radius;
-    frame.slack = shading::float_slack * (length(view.origin) + radius);
+    frame.slack = shading::float_slack * (glm::length(view.origin) + radius);
     frame.pixel = 2 * view.extent / height;
     const double sharp =
         std::min(scene.render.epsilon * (view.orthographic ? view.focus : 1), frame.pixel / 2);
     frame.tolerance_slope = view.orthographic ? 0 : sharp;
     frame.tolerance_base = (view.orthographic ? sharp : 0) + frame.slack;
     frame.far = scene.render.far > 0 ? scene.render.far
-                                     : 100 * std::max(radius, length(minus(view.origin, center)));
+                                     : 100 * std::max(radius, glm::length(view.origin - center));
     const Box all = scene.root && scene.root.index < scene.facts.size()
                         ? scene.facts[scene.root.index].bounds
                         : Box::everything();
@@ -206,8 +202,8 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
     if (frame.boxed) {
         // Not flush with flat faces, on which a ray would graze its own entry.
         const double margin = 1e-3 * radius;
-        frame.lo = minus(all.lo, {margin, margin, margin});
-        frame.hi = plus(all.hi, {margin, margin, margin});
+        frame.lo = vec_of(all.lo) - margin;
+        frame.hi = vec_of(all.hi) + margin;
     }
     frame.steep = steep(scene);
     return frame;
@@ -221,13 +217,12 @@ bool steep(const Scene &scene) {
 std::vector<LightValue> lights_of(const Scene &scene, double time, const View &view) {
     std::vector<LightValue> lights;
     for (const Light &light : scene.lights) {
-        Triple position = triple_of(scene, light.position, time);
+        glm::dvec3 position = triple_of(scene, light.position, time);
         if (light.directional) position = normalized(position, {0, 1, 0});
         lights.push_back({light.directional, position, triple_of(scene, light.color, time)});
     }
     if (lights.empty()) {
-        const Triple towards =
-            plus(plus(scaled(view.right, -0.5), scaled(view.up, 0.8)), scaled(view.forward, -0.6));
+        const glm::dvec3 towards = view.right * -0.5 + view.up * 0.8 + view.forward * -0.6;
         lights.push_back({true, normalized(towards, {0, 1, 0}), {1, 1, 1}});
     }
     return lights;

@@ -5,13 +5,14 @@
 
 #include "ir/scene.h"
 
-namespace fathom::ir {
+#include <array>
+#include <glm/vec3.hpp>
 
-using Triple = std::array<double, 3>;
+namespace fathom::ir {
 
 // Right-handed: right x up = -forward. All three unit.
 struct View {
-    Triple origin{}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
+    glm::dvec3 origin{}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
     double extent = 1; // perspective: tan(fov/2); orthographic: half the height of what is seen
     double focus = 1;  // how far away is what is looked at
     bool orthographic = false;
@@ -22,14 +23,14 @@ struct View {
 std::array<double, 16> value_of(const Scene &scene, NodeId id, double time);
 
 // From `position` towards `target`; up is y, or, looking along it, minus z (z when looking up).
-View look_at(Triple position, Triple target, double extent, bool orthographic);
+View look_at(glm::dvec3 position, glm::dvec3 target, double extent, bool orthographic);
 
 // The scene's camera, or the rule of semantics.md, 23: from [3, 2, 5]'s direction, framing the
 // finite parts' bounding sphere, 45 degrees. `aspect`: width / height.
 View view_of(const Scene &scene, double time, double aspect);
 
 // Frames a sphere from the direction in which a view already looks.
-View frame_sphere(View view, Triple center, double radius, double aspect);
+View frame_sphere(View view, glm::dvec3 center, double radius, double aspect);
 
 // The ray of a place in the picture, x and y in pixels from the top left (a pixel's middle is at
 // +0.5):
@@ -47,10 +48,10 @@ struct Frame {
     double tolerance_base = 0, tolerance_slope = 0; // tolerance(t) = base + slope*t
     double far = 0;    // render.far, or 100 * max(radius, distance from origin to centre)
     double radius = 1; // of the finite parts' bounding sphere; 1 when there are none
-    Triple center{};
+    glm::dvec3 center{};
     bool boxed = false; // every part is finite: rays live between `lo` and `hi` alone (a little
                         // larger than the bounds)
-    Triple lo{}, hi{};
+    glm::dvec3 lo{}, hi{};
     bool steep = false;
 };
 Frame frame_of(const Scene &scene, const View &view, int height);
@@ -62,7 +63,7 @@ bool steep(const Scene &scene);
 // Scene::lights at a time; where there are none, white sun from the upper left behind `view`.
 struct LightValue {
     bool directional = true;
-    Triple position{}, color{}; // directional: the unit vector towards the light
+    glm::dvec3 position{}, color{}; // directional: the unit vector towards the light
 };
 std::vector<LightValue> lights_of(const Scene &scene, double time, const View &view);
 

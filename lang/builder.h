@@ -18,6 +18,7 @@
 namespace fathom::lang {
 
 // Names that other languages have for what is spelled otherwise here: `True`, `None`; `math`.
+bool is_type_word(std::string_view word); // of any language
 bool is_foreign_value(std::string_view name);
 bool is_foreign_module(std::string_view name);
 bool is_foreign_transform(std::string_view name); // what OpenSCAD writes before a shape
@@ -244,7 +245,15 @@ class Builder {
     void replace_bad_statement(Index first);
 
     // Answers made for the forms of other languages (foreign.cpp); true where they reported.
-    bool foreign_failure(Wanted wanted, Index at);
+    bool foreign_failure(Wanted wanted, Index at); // by rule (foreign_failures.cpp)
+    bool foreign_operand(Wanted wanted, Index at);
+    bool foreign_list(Index at);
+    bool foreign_group(Index at, bool list);
+    bool foreign_binding(Index at);
+    bool foreign_name(Index at);
+    bool foreign_in(Index at);
+    bool foreign_function_body(Index at);
+    bool foreign_instead(Index at, std::string message, const std::string &replacement);
     bool foreign_loop(Index at);
     bool foreign_head(Index first);
     bool foreign_body(Index at);

@@ -110,6 +110,7 @@ void Dump::call(const Call &call) {
     });
 }
 
+// Long: an arm for each kind of expression.
 void Dump::expr(ExprId id) {
     const Expr &e = ast_.exprs[id];
     std::visit(overloaded{

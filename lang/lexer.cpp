@@ -9,6 +9,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <fmt/format.h>
 #include <numbers>
 
 namespace fathom::lang {
@@ -77,7 +78,7 @@ BadNumber explain_bad_number(std::string_view word) {
         std::all_of(rest.begin() + 1, rest.end(), is_hex) && rest.size() < 9) {
         std::uint64_t value = 0;
         for (const char c : rest.substr(1)) value = value << 4 | hex_value(c);
-        return {"numbers are written in decimal", "write the value", std::to_string(value)};
+        return {"numbers are written in decimal", "write the value", fmt::to_string(value)};
     }
     if (rest[0] == '_' &&
         std::all_of(rest.begin(), rest.end(), [](char c) { return is_digit(c) || c == '_'; })) {
@@ -299,7 +300,7 @@ std::uint32_t Lexer::hash(std::uint32_t begin, std::uint32_t end) {
     Diagnostic &d =
         report(Code::BadColor, begin, end, "a colour takes 3, 6 or 8 hex digits after the `#`");
     if (all_hex)
-        d.note("here are " + std::to_string(digits.size()));
+        d.note(fmt::format("here are {}", digits.size()));
     else
         d.note("hex digits are 0 to 9 and a to f");
     return end;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 #include <utility>
 
 namespace fathom::gl {
@@ -56,8 +57,8 @@ CachePrices prices_of(const ir::Scene &scene, const std::vector<glsl::CachedFiel
 std::string cache_unavailable() {
     const int version = epoxy_gl_version();
     if (version < 42)
-        return "the noise cache needs OpenGL 4.2, this driver has " + std::to_string(version / 10) +
-               "." + std::to_string(version % 10);
+        return fmt::format("the noise cache needs OpenGL 4.2, this driver has {}.{}", version / 10,
+                           version % 10);
     GLint images = 0;
     glGetIntegerv(GL_MAX_FRAGMENT_IMAGE_UNIFORMS, &images);
     if (images < 4)

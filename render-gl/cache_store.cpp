@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <map>
 #include <numeric>
 
@@ -225,20 +226,18 @@ std::string check_cache(const CacheStore::Dump &dump) {
     const int last = (1 << dump.bits) - 1;
     std::vector<int> owners(cells, 0);
     const auto text = [](const std::array<std::int32_t, 4> &key) {
-        return std::to_string(key[0]) + " " + std::to_string(key[1]) + " " +
-               std::to_string(key[2]) + " of field " + std::to_string(key[3]);
+        return fmt::format("{} {} {} of field {}", key[0], key[1], key[2], key[3]);
     };
     const auto word = [&](glsl::Count count) {
         return dump.counts[static_cast<std::size_t>(count)];
     };
     const std::uint32_t head = word(glsl::Count::Head), tail = word(glsl::Count::Tail);
     if (tail - head > cells)
-        return "the ring holds " + std::to_string(tail - head) + " places of " +
-               std::to_string(cells);
+        return fmt::format("the ring holds {} places of {}", tail - head, cells);
     for (std::uint32_t at = head; at != tail; ++at) {
         const std::uint32_t place = dump.free[at & static_cast<std::uint32_t>(cells - 1)];
-        if (place >= cells) return "the ring names place " + std::to_string(place);
-        if (++owners[place] > 1) return "place " + std::to_string(place) + " is free twice";
+        if (place >= cells) return fmt::format("the ring names place {}", place);
+        if (++owners[place] > 1) return fmt::format("place {} is free twice", place);
     }
     std::map<std::array<std::int32_t, 4>, std::size_t> seen;
     for (std::size_t slot = 0; slot < cells; ++slot) {
@@ -249,8 +248,8 @@ std::string check_cache(const CacheStore::Dump &dump) {
             continue;
         }
         const std::uint32_t place = place_of(entry);
-        if (place >= cells) return "an entry names place " + std::to_string(place);
-        if (++owners[place] > 1) return "place " + std::to_string(place) + " has two owners";
+        if (place >= cells) return fmt::format("an entry names place {}", place);
+        if (++owners[place] > 1) return fmt::format("place {} has two owners", place);
         std::array<std::int32_t, 4> key = dump.keys[place];
         key[3] &= 255;
         const std::array<int, 3> here{static_cast<int>(slot) & last,
@@ -271,7 +270,7 @@ std::string check_cache(const CacheStore::Dump &dump) {
         if (!seen.emplace(key, slot).second) return "the key " + text(key) + " is there twice";
     }
     for (std::size_t place = 0; place < cells; ++place)
-        if (owners[place] == 0) return "place " + std::to_string(place) + " is lost";
+        if (owners[place] == 0) return fmt::format("place {} is lost", place);
     return "";
 }
 

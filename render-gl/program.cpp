@@ -69,7 +69,7 @@ int Program::location(const char *name) const { return glGetUniformLocation(prog
 void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) const {
     if (pruning_) pruning_->prepare(params, in.time);
     glUseProgram(program_);
-    const auto vector = [&](const char *name, const ir::Triple &v) {
+    const auto vector = [&](const char *name, const glm::dvec3 &v) {
         glUniform3f(location(name), static_cast<float>(v[0]), static_cast<float>(v[1]),
                     static_cast<float>(v[2]));
     };

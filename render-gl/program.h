@@ -22,7 +22,7 @@ enum class Mode { Picture = 0, Heat = 1, Numbers = 2, Linear = 3, Slice = 4, Che
 // What changes from frame to frame: view, time, params, mode.
 struct FrameInputs {
     ir::View view;
-    ir::Triple sun{0, 1, 0}; // ir::lights_of's, where the scene has none
+    glm::dvec3 sun{0, 1, 0}; // ir::lights_of's, where the scene has none
     int width = 0, height = 0;
     std::array<double, 2> offset{0.5, 0.5};
     double time = 0;

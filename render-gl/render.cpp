@@ -5,6 +5,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace fathom::gl {
 
@@ -129,7 +130,7 @@ std::optional<Picture> render(const ir::Scene &scene, const Request &request,
         Diagnostic &d = diagnostics.add(
             Code::ShaderInvalid, {}, "the graphics driver refuses the shader: " + error->message);
         if (error->line > 0)
-            d.note("line " + std::to_string(error->line) + " of the shader: " + error->source_line);
+            d.note(fmt::format("line {} of the shader: {}", error->line, error->source_line));
         return std::nullopt;
     }
     const auto pixels = draw(std::get<Program>(built), scene, request, Mode::Linear);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 
 namespace fathom::gl {
 
@@ -112,8 +113,8 @@ std::optional<ProgramError> TableData::fill(const std::vector<float> &texels) {
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &maximum);
     if (texels.size() / 4 > static_cast<std::size_t>(maximum))
         return ProgramError{0,
-                            "the scene's tables have " + std::to_string(texels.size() / 4) +
-                                " entries, and this GL holds " + std::to_string(maximum),
+                            fmt::format("the scene's tables have {} entries, and this GL holds {}",
+                                        texels.size() / 4, maximum),
                             ""};
     glGenBuffers(1, &buffer_);
     glBindBuffer(GL_TEXTURE_BUFFER, buffer_);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace fathom::save {
 namespace {
@@ -60,8 +61,8 @@ class Program {
             std::string expression = step(i);
             if (expression.empty()) {
                 if (why_.empty())
-                    why_ = "step " + std::to_string(i) +
-                           " is not an operation with earlier steps as its arguments";
+                    why_ = fmt::format(
+                        "step {} is not an operation with earlier steps as its arguments", i);
                 return {};
             }
             const bool last = i + 1 == steps_.items.size();
@@ -73,8 +74,8 @@ class Program {
             }
             if (!last && given_ != Given::Nothing && (uses_[i] > 1 || expression.size() > 60) &&
                 expression.size() > 3) {
-                lets_ += "let t" + std::to_string(i) + " = " + expression + "; ";
-                expression = "t" + std::to_string(i);
+                lets_ += fmt::format("let t{} = {}; ", i, expression);
+                expression = fmt::format("t{}", i);
             }
             texts_.push_back(std::move(expression));
         }
@@ -231,7 +232,7 @@ std::string yaml_number(double value) {
 
 std::string vector_text(const Value &vector) { return vector_of(&vector); }
 
-std::string copy_name(int level) { return "id_" + std::to_string(level + 1); }
+std::string copy_name(int level) { return fmt::format("id_{}", level + 1); }
 
 std::string program_text(const Value &steps, const Words &words, std::string &why, Given given) {
     return Program(steps, words, given, why).text();

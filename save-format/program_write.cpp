@@ -7,6 +7,7 @@
 #include "save-format/yaml_writer.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <string_view>
 #include <unordered_map>
 
@@ -53,11 +54,11 @@ class StepWriter {
             for (int i = first; i < first + rows; ++i) {
                 const int part = number(value.value[static_cast<std::size_t>(i)]);
                 if (part < 0) return -1;
-                column += ", " + std::to_string(part);
+                column += fmt::format(", {}", part);
             }
             const int made = push(column);
             if (!matrix || made < 0) return made;
-            all += ", " + std::to_string(made);
+            all += fmt::format(", {}", made);
         }
         return push(all);
     }
@@ -91,7 +92,7 @@ class StepWriter {
             ++index;
         if (index == words_.caches.size()) words_.caches.push_back({flow, cache.cell});
         const int at = step(args[0], depth + 1);
-        return at < 0 ? -1 : push("Cached, " + std::to_string(index) + ", " + std::to_string(at));
+        return at < 0 ? -1 : push(fmt::format("Cached, {}, {}", index, at));
     }
 
     // What a loop's variables are after its last iteration; none where there are too many. After
@@ -153,7 +154,7 @@ class StepWriter {
             const auto found = std::ranges::find(words_.ids, id);
             return found == words_.ids.end()
                        ? -1
-                       : push("Id, " + std::to_string(found - words_.ids.begin()));
+                       : push(fmt::format("Id, {}", found - words_.ids.begin()));
         }
         if (node.op == Op::Loop) return result(id, 0, depth);
         if (node.op == Op::LoopResult) return result(args[0], node.payload, depth);
@@ -168,7 +169,7 @@ class StepWriter {
         std::string text = whole ? "WholeDiv" : ir::info(node.op).name;
         if (node.op == Op::Splat || node.op == Op::Make)
             text += std::string(", ") + ir::type_name(node.type);
-        if (node.op == Op::Column) text += ", " + std::to_string(node.payload);
+        if (node.op == Op::Column) text += fmt::format(", {}", node.payload);
         if (node.op == Op::Swizzle) {
             text += ", ";
             for (int i = 0; i < ir::swizzle_size(node.payload); ++i)
@@ -176,9 +177,9 @@ class StepWriter {
         }
         for (const NodeId argument : args) {
             int made = step(argument, depth + 1);
-            if (made >= 0 && hashed) made = push("ToFloat, " + std::to_string(made));
+            if (made >= 0 && hashed) made = push(fmt::format("ToFloat, {}", made));
             if (made < 0) return -1;
-            text += ", " + std::to_string(made);
+            text += fmt::format(", {}", made);
         }
         return push(text);
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <unordered_set>
 
 namespace fathom::save {
@@ -161,13 +162,13 @@ std::string Names::unique(std::string_view wanted, std::string_view suffix) {
     }
     if (taken_.try_emplace(name, 1).second) return name;
     for (;;) {
-        std::string numbered = name + "_" + std::to_string(++taken_[name]);
+        std::string numbered = fmt::format("{}_{}", name, ++taken_[name]);
         if (taken_.try_emplace(numbered, 1).second) return numbered;
     }
 }
 
 std::string marked(std::uint32_t place, std::string text) {
-    return part_mark + std::to_string(place) + part_end + std::move(text);
+    return fmt::format("{}{}{}{}", part_mark, place, part_end, std::move(text));
 }
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> take_marks(std::string &text) {

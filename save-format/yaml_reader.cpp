@@ -7,6 +7,7 @@
 #include <yaml.h>
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace fathom::save {
 
@@ -121,8 +122,8 @@ Event YamlReader::next() {
         auto deeper = [&](Span span) {
             ++depth_;
             return depth_ > max_depth_
-                       ? std::optional(fail(span, "this nests deeper than " +
-                                                      std::to_string(max_depth_) + " levels"))
+                       ? std::optional(fail(
+                             span, fmt::format("this nests deeper than {} levels", max_depth_)))
                        : std::nullopt;
         };
         switch (event.type) {

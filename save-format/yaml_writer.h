@@ -1,5 +1,7 @@
-// Save files as text: values in block form, the way the thesis prints them. Needs no libyaml; what
-// it writes, yaml_reader reads back as the same.
+// Save files as text: values in block form, the way the thesis prints them. What it writes,
+// yaml_reader reads back as the same. It does not use libyaml's emitter, which keeps neither the
+// indentation of sequences below their key nor keys of more than 128 characters
+// (docs/decisions/0006-our-own-yaml-writer.md).
 #pragma once
 
 #include "save-format/yaml_reader.h"

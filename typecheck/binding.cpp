@@ -35,6 +35,37 @@ static void report_unknown_arguments(Interpreter &ev, std::string_view name,
     d.note(fmt::format("it is `{}`", signature_text(name, formals)));
 }
 
+static void report_too_many(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
+                            std::span<const Argument> args, const Argument &first) {
+    std::size_t given = 0;
+    for (const Argument &b : args) given += b.trailing ? 0 : 1;
+    Diagnostic &d = report(ev, Code::TooManyArguments, first.span,
+                           fmt::format("`{}` takes {} argument{}, not {}", name, formals.size(),
+                                       formals.size() == 1 ? "" : "s", given))
+                        .note(fmt::format("it is `{}`", signature_text(name, formals)));
+    if (args[0].value.kind == ValueKind::Shape)
+        help_with_shape(d, name);
+    else if (!formals.empty() && formals[0].vector_size > 0 &&
+             std::ranges::all_of(
+                 args, [&](const Argument &b) { return !b.name && is_scalar(ev, b.value); })) {
+        const Fix fix = remedy_of_row(args, formals[0].vector_size);
+        d.help(fix.message, fix.edits);
+    } else if (name == "cylinder")
+        d.help("a cone without its tip is `capped_cone(bottom, top, height)`");
+}
+
+static void report_missing(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
+                           std::span<const Argument> args, const Formal &missing, Span call) {
+    Diagnostic &d = report(ev, Code::MissingArgument, call,
+                           fmt::format("`{}` wants an argument `{}`", name, missing.name));
+    d.note(fmt::format("it is `{}`", signature_text(name, formals)));
+    if (name == "range" && args.size() == 1) { // Python's
+        const Span before{args[0].span.source, args[0].span.begin, args[0].span.begin};
+        d.help("a range begins somewhere: `range(0, n)`, or `0..n`", {{before, "0, "}});
+    }
+    if (!is_library_place(ev, missing.declared)) d.label(missing.declared, "declared here");
+}
+
 std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_view name,
                                                  std::span<const Formal> formals,
                                                  std::span<const Argument> args, Span call,
@@ -109,23 +140,7 @@ std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_vi
         }
         while (next < formals.size() && bound[next].given) ++next;
         if (next >= formals.size()) {
-            std::size_t given = 0;
-            for (const Argument &b : args) given += b.trailing ? 0 : 1;
-            Diagnostic &d =
-                report(ev, Code::TooManyArguments, a.span,
-                       fmt::format("`{}` takes {} argument{}, not {}", name, formals.size(),
-                                   formals.size() == 1 ? "" : "s", given))
-                    .note(fmt::format("it is `{}`", signature_text(name, formals)));
-            if (args[0].value.kind == ValueKind::Shape)
-                help_with_shape(d, name);
-            else if (!formals.empty() && formals[0].vector_size > 0 &&
-                     std::ranges::all_of(args, [&](const Argument &b) {
-                         return !b.name && is_scalar(ev, b.value);
-                     })) {
-                const Fix fix = remedy_of_row(args, formals[0].vector_size);
-                d.help(fix.message, fix.edits);
-            } else if (name == "cylinder")
-                d.help("a cone without its tip is `capped_cone(bottom, top, height)`");
+            report_too_many(ev, name, formals, args, a);
             return std::nullopt;
         }
         give(next++, a);
@@ -158,15 +173,7 @@ std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_vi
     for (std::size_t i = 0; i < formals.size(); ++i) {
         if (bound[i].given || formals[i].optional) continue;
         if (!ok) return std::nullopt;
-        Diagnostic &d = report(ev, Code::MissingArgument, call,
-                               fmt::format("`{}` wants an argument `{}`", name, formals[i].name));
-        d.note(fmt::format("it is `{}`", signature_text(name, formals)));
-        if (name == "range" && args.size() == 1) { // Python's
-            const Span before{args[0].span.source, args[0].span.begin, args[0].span.begin};
-            d.help("a range begins somewhere: `range(0, n)`, or `0..n`", {{before, "0, "}});
-        }
-        if (!is_library_place(ev, formals[i].declared))
-            d.label(formals[i].declared, "declared here");
+        report_missing(ev, name, formals, args, formals[i], call);
         return std::nullopt;
     }
     if (!ok) return std::nullopt;

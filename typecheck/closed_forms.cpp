@@ -4,7 +4,7 @@
 // text may hold it in its place. It is taken only if float32 arithmetic, each inexact result pushed
 // by a unit in its last place, gives every row to within `close_enough`: so no floor or comparison
 // stands at an edge, and a shader shows what was proved of the data.
-#include "typecheck/interpreter.h"
+#include "typecheck/closed_forms.h"
 
 #include "ir/passes/fold.h"
 #include "ir/passes/inline.h"

@@ -1,4 +1,5 @@
 // Expressions to values.
+#include "base/srgb.h"
 #include "typecheck/interpreter.h"
 
 #include "ir/maps.h"
@@ -10,10 +11,6 @@
 namespace fathom::typecheck {
 
 using ir::Type;
-
-static double linear_of_srgb(double c) {
-    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
 
 static Value eval_name(Interpreter &ev, const File &ast, const lang::Name &name, Span place,
                        std::uint32_t frame) {

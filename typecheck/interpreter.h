@@ -8,6 +8,7 @@
 
 #include "typecheck/check.h"
 #include "typecheck/value.h"
+#include "typecheck/what.h"
 
 #include <fmt/format.h>
 
@@ -28,16 +29,6 @@ struct Interpreter;
 
 // A name, as a number: the builtins' first, in the order of their table.
 using Symbol = std::uint32_t;
-
-// What an error calls a value: `text`, or "`name`", or "`name` of `of`". Put into words only when
-// one is reported; views what the caller holds.
-struct What {
-    std::string_view text, name, of;
-    What(const char *words) : text(words) {}
-    What(const std::string &words) : text(words) {}
-    What(std::string_view name, std::string_view of) : name(name), of(of) {}
-};
-inline What quoted(std::string_view name, std::string_view of = {}) { return {name, of}; }
 
 // What a call needs to know of a parameter, of a closure's and of a builtin's alike.
 struct Formal {
@@ -478,19 +469,6 @@ void note_iterations(
     const std::vector<Contribution> &made,
     const std::function<void(const Value &item, std::vector<Contribution> &out)> &iteration);
 
-// -- closed_forms.cpp
-// What differs between shapes that one loop's body made.
-struct IterationTable {
-    ir::ShapeId symbolic;                        // the shape with the loops' numbers left open
-    std::vector<ir::NodeId> places;              // the expressions in it that depend on them alone
-    std::vector<std::vector<ir::Constant>> rows; // their values, by member
-    std::vector<ir::NodeId> formulas;            // in `row`; invalid where float32 would miss a row
-    ir::NodeId row;
-};
-// Nothing where these are no iterations of one loop, or not all in equal steps.
-std::optional<IterationTable> table_of_iterations(Interpreter &ev,
-                                                  const std::vector<ir::ShapeId> &members);
-
 // -- instances.cpp
 void shape_nodes(const ir::Scene &scene, ir::ShapeId id, std::vector<ir::NodeId> &out);
 std::vector<ir::ShapeId> gather_instances(Interpreter &ev, std::vector<ir::ShapeId> shapes,
@@ -503,6 +481,7 @@ ir::ShapeId unite(Interpreter &ev, std::vector<ir::ShapeId> shapes, int dims, Sp
 Value import_module(Interpreter &ev, const lang::Import &import, Span place,
                     std::uint32_t importer);
 void load_prelude(Interpreter &ev);
+void declare_colors(Interpreter &ev); // css_colors.cpp: the named ones, in the prelude
 void read_prelude_items(Interpreter &ev, Symbol name); // declares what the library has of this name
 void make_module_frame(Interpreter &ev, std::uint32_t frame);
 const File &parse_file(Interpreter &ev, SourceId source, Diagnostics &diagnostics);
@@ -511,12 +490,3 @@ void declare_param(Interpreter &ev, const File &ast, const lang::Param &param, s
 void run_module(Interpreter &ev, std::uint32_t module, std::vector<Contribution> &out);
 
 } // namespace fathom::typecheck
-
-template <> struct fmt::formatter<fathom::typecheck::What> : fmt::formatter<std::string_view> {
-    template <typename Context>
-    auto format(const fathom::typecheck::What &what, Context &context) const {
-        if (!what.text.empty()) return fmt::format_to(context.out(), "{}", what.text);
-        if (what.of.empty()) return fmt::format_to(context.out(), "`{}`", what.name);
-        return fmt::format_to(context.out(), "`{}` of `{}`", what.name, what.of);
-    }
-};

@@ -2,9 +2,11 @@
 // (semantics.md, 12), regions, materials.
 #include "typecheck/interpreter.h"
 
+#include <fmt/format.h>
+
 namespace fathom::typecheck {
 
-static std::string number_key(std::uint32_t i) { return std::to_string(i) + ","; }
+static std::string number_key(std::uint32_t i) { return fmt::format("{},", i); }
 
 Value library_shape(Interpreter &ev, ir::Library library, const Value &body, Span origin) {
     ir::ShapeId child = shape_of(body);

@@ -128,9 +128,35 @@ std::optional<int> known_iterations(ir::Graph &g, ir::NodeId condition,
     return std::nullopt;
 }
 
+// What an iteration makes of a carried value, as a number of the variable's type; an int that
+// becomes a float makes the variable one, `again`. Nothing where the types do not fit.
+std::optional<Value> as_carried(Interpreter &ev, Carried &k, const Value &v, bool &again,
+                                Span place) {
+    const Type want = numeric_type(ev, k.initial), have = numeric_type(ev, v);
+    if (want == Type::Int && have == Type::Float)
+        k.initial = to_float(ev, k.initial), again = true;
+    else if (want == Type::Float && have == Type::Int)
+        return to_float(ev, v);
+    else if (ir::is_vector(want) && ir::components(have) == 1)
+        return make_vector(ev, {to_float(ev, v)}, ir::components(want), place);
+    else if (want != have)
+        return std::nullopt;
+    return v;
+}
+
+bool takes_too_long(Interpreter &ev, ir::NodeId loop, Span place) {
+    const double cost = ir::operations(ev.scene.graph, loop);
+    if (cost <= ir::max_operations) return false;
+    report(ev, Code::LoopLimit, place,
+           fmt::format("this loop would take {:.0e} operations a point", cost))
+        .note(fmt::format("at most {:.0e} are allowed, so that every picture ends",
+                          ir::max_operations));
+    return true;
+}
+
 // Tries the Loop, quietly. On success the assigned variables hold its results and the exit says how
 // it was left.
-std::optional<Exit> try_fold(Interpreter &ev, const LoopInput &input,
+std::optional<Exit> try_loop(Interpreter &ev, const LoopInput &input,
                              const std::vector<Change> &first_changes, Span place) {
     ir::Graph &g = ev.scene.graph;
     std::vector<Carried> carried;
@@ -178,16 +204,9 @@ std::optional<Exit> try_fold(Interpreter &ev, const LoopInput &input,
                 if (c.frame == k.frame && c.slot == k.slot) v = c.after, changed = true;
             if (!changed && !again) v = k.variable;
             if (is_poison(v) || !is_numeric(v)) return std::nullopt;
-            Type want = numeric_type(ev, k.initial), have = numeric_type(ev, v);
-            if (want == Type::Int && have == Type::Float)
-                k.initial = to_float(ev, k.initial), again = true;
-            else if (want == Type::Float && have == Type::Int)
-                v = to_float(ev, v);
-            else if (ir::is_vector(want) && ir::components(have) == 1)
-                v = make_vector(ev, {to_float(ev, v)}, ir::components(want), place);
-            else if (want != have)
-                return std::nullopt;
-            after.push_back(v);
+            const std::optional<Value> converted = as_carried(ev, k, v, again, place);
+            if (!converted) return std::nullopt;
+            after.push_back(*converted);
         }
         if (again) continue;
 
@@ -234,16 +253,8 @@ std::optional<Exit> try_fold(Interpreter &ev, const LoopInput &input,
         if (left_at) go = logical_and(ev, go, logical_not(ev, from_node(ev, vars[*left_at])));
         if (!always(go)) loop.condition = to_node(ev, go);
         ir::LoopId id = g.add_loop(std::move(loop));
-        if (const double cost =
-                ir::operations(g, g.make(Op::Loop, g[vars[0]].type, initial, id.index));
-            cost > ir::max_operations) {
-            report(ev, Code::LoopLimit, place,
-                   fmt::format("this loop would take {:.0e} operations a point", cost))
-                .note(fmt::format("at most {:.0e} are allowed, so that every picture ends",
-                                  ir::max_operations));
-            return Exit{};
-        }
         ir::NodeId node = g.make(Op::Loop, g[vars[0]].type, initial, id.index);
+        if (takes_too_long(ev, node, place)) return Exit{};
         auto result = [&](std::size_t k) {
             return k == 0 ? node
                           : g.make(Op::LoopResult, g[vars[k]].type, {node},
@@ -304,7 +315,7 @@ Outcome run_for(Interpreter &ev, const File &ast, const lang::For &node, std::ui
             input.index = ev.scene.graph.fresh_var(Type::Int);
             if (auto item = symbolic_item(ev, iterations, input.index)) {
                 input.body = [&] { return iteration(*item); };
-                if (auto folded = try_fold(ev, input, changes, place)) {
+                if (auto folded = try_loop(ev, input, changes, place)) {
                     out.exit = *folded;
                     return out;
                 }
@@ -392,7 +403,7 @@ Outcome run_while(Interpreter &ev, const File &ast, const lang::While &node, std
             input.index = ev.scene.graph.fresh_var(Type::Int);
             input.condition = condition;
             input.body = iteration;
-            if (auto folded = try_fold(ev, input, changes, place)) {
+            if (auto folded = try_loop(ev, input, changes, place)) {
                 out.exit = *folded;
                 return out;
             }

@@ -2,6 +2,7 @@
 // the natural parametrisation of each base shape (thesis, 4.6), and grids of distances. Files are
 // read by the loader alone.
 #include "typecheck/textures.h"
+#include "base/srgb.h"
 #include "typecheck/builtins/builtins.h"
 #include "typecheck/rewrite_leaves.h"
 
@@ -231,10 +232,8 @@ static std::uint32_t heights_of(Interpreter &ev, std::uint32_t image) {
     for (std::size_t i = 0; i + 3 < heights.rgba.size(); i += 4) {
         const double linear = 0.2126 * heights.rgba[i] + 0.7152 * heights.rgba[i + 1] +
                               0.0722 * heights.rgba[i + 2]; // Rec. 709's weights
-        const double stored =
-            linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
         std::fill_n(heights.rgba.begin() + static_cast<std::ptrdiff_t>(i), 3,
-                    static_cast<float>(stored));
+                    static_cast<float>(srgb_of_linear(linear)));
         heights.rgba[i + 3] = 1;
     }
     it->second = static_cast<std::uint32_t>(ev.scene.images.size());

@@ -48,7 +48,7 @@ void show_ramp(const std::vector<std::string> &marks) {
 void show_look(Controls &controls, const Shown &shown, Asked &asked) {
     switch (controls.look) {
     case gl::Look::Picture: break;
-    case gl::Look::Heat: show_ramp({"0 steps", std::to_string(shown.max_steps)}); break;
+    case gl::Look::Heat: show_ramp({"0 steps", fmt::to_string(shown.max_steps)}); break;
     case gl::Look::Bound:
         ImGui::TextUnformatted("steps that the bound costs, times as many:");
         show_ramp({"1", "32"});

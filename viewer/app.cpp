@@ -29,14 +29,14 @@ double milliseconds_since(Clock::time_point start) {
 
 void App::note(std::string words) {
     status.note = std::move(words);
-    noted = Clock::now();
-    frames_due = std::max(frames_due, 2);
+    clock.noted = Clock::now();
+    clock.frames_due = std::max(clock.frames_due, 2);
 }
 
 // What was done is news for some seconds, and then it is not.
 double App::note_seconds_left() const {
     constexpr double news_ms = 6000;
-    return std::max(news_ms - milliseconds_since(noted), 1.0) / 1000;
+    return std::max(news_ms - milliseconds_since(clock.noted), 1.0) / 1000;
 }
 
 void App::drop_old_note() {
@@ -64,7 +64,7 @@ bool App::adopt(Build &build) {
         mine->set_edited(link.edited);
     };
     status.linked_anew = build.picture_link.program.has_value();
-    if (status.linked_anew) measured = false;
+    if (status.linked_anew) progress.measured = false;
     if (status.linked_anew) status.driver_ms = build.picture_link.driver_ms;
     use(program, build.picture_link, build.picture);
     status.lists.clear();
@@ -79,38 +79,38 @@ bool App::adopt(Build &build) {
 }
 
 void App::rebuild(std::vector<driver::Override> values) {
-    structural = values;
+    newest.structural = values;
     worker->rebuild(std::move(values));
 }
 
 void App::take(std::unique_ptr<Build> build) {
-    frames_due = 3;
+    clock.frames_due = 3;
     // A slider's value that the changed text has no place for any more: the text's own counts.
-    if (!build->compilation.usage_errors.empty() && !structural.empty()) return rebuild({});
-    record_next = true;
-    told = false;
-    saved = driver::last_saved(read_files, build->compilation.files);
-    read_files = build->compilation.files;
+    if (!build->compilation.usage_errors.empty() && !newest.structural.empty()) return rebuild({});
+    recording.next = true;
+    newest.told = false;
+    newest.saved = driver::last_saved(newest.files, build->compilation.files);
+    newest.files = build->compilation.files;
     const bool good = build->good() && adopt(*build);
-    errors = build->errors;
-    remarks = build->remarks;
+    newest.errors = build->errors;
+    newest.remarks = build->remarks;
     status.front_end_ms = build->front_end_ms;
     status.trouble = worker->complaint();
     if (!good) return; // the last good picture stays
-    on_screen = false;
-    picks.clear(); // by the numbers of the scene before
+    progress.on_screen = false;
+    picks.values.clear(); // by the numbers of the scene before
     // What was said a while ago is of the text before; just now, of this one: "wrote it".
-    if (milliseconds_since(noted) > 3000) note("");
+    if (milliseconds_since(clock.noted) > 3000) note("");
 
     std::vector<ir::Param> before = std::move(params);
     params = build->compilation.scene.params;
     carry_over(before, params);
-    if (drop_outdated(before, params, structural)) rebuild(structural);
+    if (drop_outdated(before, params, newest.structural)) rebuild(newest.structural);
     const std::vector<std::string> old_views = scene ? scene->views : std::vector<std::string>{};
     if (scene) selected = found_again(scene->compilation, selected, build->compilation);
     scene = std::move(build);
     cached.scene_changed();
-    stale = true;
+    progress.stale = true;
     const ir::Scene &s = scene->compilation.scene;
     status.shader_bytes = scene->picture.text.size();
 
@@ -135,11 +135,11 @@ void App::take(std::unique_ptr<Build> build) {
 }
 
 void App::param_changed(const ir::Param &param) {
-    stale = true;
+    progress.stale = true;
     note("");              // it may have told the value before
     cached.view_changed(); // fields that read it are given up by the cache itself
-    touched = Clock::now();
-    frames_due = 3;
+    clock.touched = Clock::now();
+    clock.frames_due = 3;
     if (param.structural) rebuild(structural_values(params));
 }
 

@@ -32,6 +32,80 @@ struct Shot {
     friend bool operator==(const Shot &, const Shot &) = default;
 };
 
+// What the canvas holds.
+struct DrawnPicture {
+    std::optional<Shot> shot;
+    int width = 0, height = 0; // in pixels
+    double scale = 0;          // of these to the window's
+    bool cached = false;       // it came through the noise cache
+};
+
+// How far the picture in hand is.
+struct Progress {
+    static constexpr int samples_at_rest = 4;
+    bool stale = true;      // the program or a value changed since the canvas was drawn
+    bool measured = false;  // it is known what a picture by this program takes
+    bool resting = false;   // the picture that is drawn is not moved
+    int coarse = 1;         // then: it is drawn in every so-manieth pixel first, 1 is in full
+    bool drew_now = false;  // in this iteration of the loop
+    bool probed = false;    // the probe shows what is drawn
+    bool finished = false;  // what is shown is what was drawn
+    bool on_screen = false; // something of the newest good build was shown
+    bool drawing = false;   // a sample is drawn in part: so many rows, which took so long
+    int next_sample = 0, next_row = 0;
+    double sample_ms = 0, gpu_ms = 0;
+    std::vector<bool>
+        bands_requested; // of the timer's answers to come: whether it is a sample's last
+    int samples_drawn = 0, frames_drawn = 0;
+};
+
+// The pictures through the noise cache while the view is moved.
+struct MovingCached {
+    std::optional<Shot> shot;
+    int frames = 0;                 // since it was at rest
+    Clock::time_point fade_begin{}; // from the last such picture to the exact one
+};
+
+// What each pixel shows of what is shown at rest, while the next picture is drawn over it.
+struct Picks {
+    std::vector<float> values;
+    int width = 0, height = 0;
+};
+
+// The newest build, good or not.
+struct NewestBuild {
+    std::vector<std::string> errors, remarks;
+    std::vector<driver::Override> structural; // what the worker builds with
+    driver::Stamps files;                     // that it read
+    std::filesystem::path saved;              // the file whose save brought it; empty: none did
+    bool told = true;
+};
+
+// The scene's time, and when something happened.
+struct SceneClock {
+    bool running = true; // time passes, where the scene reads it
+    double time = 0;
+    double held_back = 0;        // seconds that pass when the present picture is whole
+    Clock::time_point noted{};   // when the note was written
+    Clock::time_point touched{}; // the last time the picture was moved by hand
+    Clock::time_point last_draw{};
+    int frames_due = 3; // the panels settle within a few frames after an event
+};
+
+// Pictures of the window that are saved.
+struct Recording {
+    int pictures = 0, sequence = 0; // so far; of a sequence, 0 where none is taken
+    std::filesystem::path folder;   // of the sequence
+    bool next = false, requested = false;
+};
+
+// The mouse, in pixels of the window.
+struct Pointer {
+    double x = 0, y = 0, pressed_x = 0, pressed_y = 0;
+    bool clicked = false;
+    int dragged = -1; // the view in which the button went down
+};
+
 // The state of the window.
 struct App {
     explicit App(const Settings &s) : settings(s) {}
@@ -48,33 +122,13 @@ struct App {
     gl::Canvas canvas;
     gl::Timer timer;
     Cached cached;
-    std::optional<Shot> cached_shot;
-    bool drawn_cached = false;      // what is drawn came through the noise cache
-    int cached_frames = 0;          // since it was at rest
-    Clock::time_point fade_begin{}; // from the last such picture to the exact one
-    std::optional<Shot> drawn;
-    int drawn_width = 0, drawn_height = 0; // of it, in pixels
-    double drawn_scale = 0;                // to those of the window
-    bool stale = true;                     // the program or a value changed since `drawn`
-    bool measured = false;                 // it is known what a picture by this program takes
-    bool resting = false;                  // the picture that is drawn is not moved
-    int coarse = 1;         // then: it is drawn in every so-manieth pixel first, 1 is in full
-    bool drew_now = false;  // in this iteration of the loop
-    bool probed = false;    // the probe shows what is drawn
-    bool finished = false;  // what is shown is what was drawn
-    bool on_screen = false; // something of the newest good build was shown
-    bool drawing = false;   // a sample is drawn in part: so many rows, which took so long
-    int next_sample = 0, next_row = 0;
-    double sample_ms = 0, gpu_ms = 0;
-    std::vector<bool>
-        bands_requested; // of the timer's answers to come: whether it is a sample's last
-    static constexpr int samples_at_rest = 4;
-    int samples_drawn = 0, frames_drawn = 0;
-    std::vector<float> picks; // of what is shown at rest, while the next picture is drawn over it
-    int picks_width = 0, picks_height = 0;
+    DrawnPicture drawn;
+    Progress progress;
+    MovingCached moving_cached;
+    Picks picks;
 
-    std::vector<std::string> errors, remarks; // of the newest build, good or not
-    std::vector<driver::Override> structural; // what the worker builds with
+    // What is beside it.
+    NewestBuild newest;
     Views views;
     Camera scene_camera;
     bool has_camera = false;
@@ -84,31 +138,18 @@ struct App {
     std::vector<IsolineLabel> labels;
     std::array<std::size_t, 4> verdicts{}; // pixels, by the check's verdict
     Part selected, hovered;
-
-    bool running = true; // time passes, where the scene reads it
-    double time = 0;
-    double held_back = 0;        // seconds that pass when the present picture is whole
-    bool linking = false;        // on this thread
-    Clock::time_point noted{};   // when the note was written
-    Clock::time_point touched{}; // the last time the picture was moved by hand
-    Clock::time_point last_draw{};
-    int frames_due = 3;             // the panels settle within a few frames after an event
-    int recorded = 0, sequence = 0; // pictures so far; of a sequence, 0 where none is taken
-    std::filesystem::path sequence_folder;
-    driver::Stamps read_files;   // by the newest build
-    std::filesystem::path saved; // the file whose save brought that build; empty: none did
-    bool record_next = false, picture_requested = false, told = true;
-    double cursor_x = 0, cursor_y = 0, pressed_x = 0, pressed_y = 0;
-    bool click_requested = false;
-    bool flies = true; // the keys that are held move the camera
-    int dragged = -1;  // the view in which the button went down
+    SceneClock clock;
+    Recording recording;
+    Pointer pointer;
+    bool linking = false; // on this thread
+    bool flies = true;    // the keys that are held move the camera
     float font_scale = 1;
 
     // app.cpp
     void take(std::unique_ptr<Build> build);
     bool adopt(Build &build);
     void rebuild(std::vector<driver::Override> values);
-    bool animated() const { return scene && running && scene->picture.reads_time; }
+    bool animated() const { return scene && clock.running && scene->picture.reads_time; }
     void param_changed(const ir::Param &param);
     void write_param(const ir::Param &param);
     bool write_view(); // false where it could not be; the note says why

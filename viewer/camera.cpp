@@ -8,17 +8,12 @@
 namespace fathom::viewer {
 namespace {
 
-using ir::Triple;
 constexpr double pi = std::numbers::pi;
 constexpr double steepest = pi / 2 - 1e-3; // straight up, right and left would have no meaning
 
-Triple from_target(const Camera &camera) {
+glm::dvec3 from_target(const Camera &camera) {
     return {std::sin(camera.yaw) * std::cos(camera.pitch), std::sin(camera.pitch),
             std::cos(camera.yaw) * std::cos(camera.pitch)};
-}
-
-void move(Triple &point, const Triple &along, double by) {
-    for (std::size_t i = 0; i < 3; ++i) point[i] += along[i] * by;
 }
 
 } // namespace
@@ -27,22 +22,21 @@ Camera camera_of(const ir::View &view) {
     Camera camera;
     camera.orthographic = view.orthographic;
     camera.distance = std::max(view.focus, 1e-6);
-    camera.target = view.origin;
-    move(camera.target, view.forward, camera.distance);
+    camera.target = view.origin + view.forward * camera.distance;
     // Looking along y there is no yaw in the direction; the picture's up still has one.
-    Triple level = std::abs(view.forward[1]) < 1 - 1e-9
-                       ? Triple{-view.forward[0], 0, -view.forward[2]}
-                       : Triple{-view.up[0] * -view.forward[1], 0, -view.up[2] * -view.forward[1]};
-    camera.yaw = std::atan2(level[0], level[2]);
+    glm::dvec3 level =
+        std::abs(view.forward.y) < 1 - 1e-9
+            ? glm::dvec3{-view.forward.x, 0, -view.forward.z}
+            : glm::dvec3{-view.up.x * -view.forward.y, 0, -view.up.z * -view.forward.y};
+    camera.yaw = std::atan2(level.x, level.z);
     camera.pitch =
-        std::clamp(std::asin(std::clamp(-view.forward[1], -1.0, 1.0)), -steepest, steepest);
+        std::clamp(std::asin(std::clamp(-view.forward.y, -1.0, 1.0)), -steepest, steepest);
     camera.slope = view.orthographic ? view.extent / camera.distance : view.extent;
     return camera;
 }
 
 ir::View view_of(const Camera &camera) {
-    Triple eye = camera.target;
-    move(eye, from_target(camera), camera.distance);
+    const glm::dvec3 eye = camera.target + from_target(camera) * camera.distance;
     return ir::look_at(eye, camera.target,
                        camera.orthographic ? camera.slope * camera.distance : camera.slope,
                        camera.orthographic);
@@ -56,19 +50,16 @@ void orbit(Camera &camera, double dx, double dy) {
 void pan(Camera &camera, double dx, double dy) {
     ir::View view = view_of(camera);
     double height = 2 * camera.slope * camera.distance; // of the window, at the target
-    move(camera.target, view.right, -dx * height);
-    move(camera.target, view.up, dy * height);
+    camera.target += view.right * (-dx * height) + view.up * (dy * height);
 }
 
 void dolly(Camera &camera, double steps) {
     camera.distance = std::clamp(camera.distance * std::pow(0.9, steps), 1e-4, 1e6);
 }
 
-void fly(Camera &camera, const Triple &by) {
+void fly(Camera &camera, const glm::dvec3 &by) {
     ir::View view = view_of(camera);
-    move(camera.target, view.right, by[0] * camera.distance);
-    move(camera.target, view.up, by[1] * camera.distance);
-    move(camera.target, view.forward, by[2] * camera.distance);
+    camera.target += (view.right * by.x + view.up * by.y + view.forward * by.z) * camera.distance;
 }
 
 void look_from(Camera &camera, Side side) {
@@ -79,7 +70,7 @@ void look_from(Camera &camera, Side side) {
     }
 }
 
-void frame(Camera &camera, const Triple &center, double radius, double aspect) {
+void frame(Camera &camera, const glm::dvec3 &center, double radius, double aspect) {
     camera.target = center;
     // The narrower way across has to hold the sphere: sin of half the angle is radius over
     // distance.
@@ -89,14 +80,13 @@ void frame(Camera &camera, const Triple &center, double radius, double aspect) {
 }
 
 std::string camera_line(const Camera &camera) {
-    Triple eye = camera.target;
-    move(eye, from_target(camera), camera.distance);
+    const glm::dvec3 eye = camera.target + from_target(camera) * camera.distance;
     // To a thousandth of the distance: finer than the eye tells, and no digits that only rounding
     // made.
     double unit = std::pow(10, std::floor(std::log10(camera.distance)) - 3);
     auto number = [&](double x) { return std::round(x / unit) * unit + 0.0; };
-    auto triple = [&](const Triple &t) {
-        return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", number(t[0]), number(t[1]), number(t[2]));
+    auto triple = [&](const glm::dvec3 &t) {
+        return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", number(t.x), number(t.y), number(t.z));
     };
     return fmt::format("camera(at: {}, look_at: {}, fov: {:.4g}deg{})", triple(eye),
                        triple(camera.target), 2 * std::atan(camera.slope) * 180 / pi,

@@ -9,7 +9,7 @@ namespace fathom::viewer {
 
 // A point of view on a sphere round the target; angles in radians.
 struct Camera {
-    ir::Triple target{};
+    glm::dvec3 target{};
     double yaw = 0, pitch = 0; // of the eye as seen from the target: yaw 0 on +z, pitch up; radians
     double distance = 5;
     double slope = 0.4142135623730951; // tan(fov/2)
@@ -29,9 +29,9 @@ void orbit(Camera &camera, double dx, double dy);
 void pan(Camera &camera, double dx, double dy);
 void dolly(Camera &camera, double steps); // > 0 nearer
 void fly(Camera &camera,
-         const ir::Triple &by); // right, up, forward, in units of the distance to the target
+         const glm::dvec3 &by); // right, up, forward, in units of the distance to the target
 void look_from(Camera &camera, Side side);
-void frame(Camera &camera, const ir::Triple &center, double radius, double aspect);
+void frame(Camera &camera, const glm::dvec3 &center, double radius, double aspect);
 
 // `camera(at: […], look_at: […], fov: …deg)`: a line to paste into the scene.
 std::string camera_line(const Camera &camera);

@@ -85,8 +85,9 @@ std::vector<gl::TileView> App::tile_views(int width, int height) const {
         gl::TileView view{tiles[i], {}};
         const double shape = static_cast<double>(tiles[0].width) / std::max(tiles[0].height, 1);
         view.inputs.view = view_of(views.cameras[i]);
-        view.inputs.sun = ir::lights_of(s, time, ir::view_of(s, time, shape))[0].position;
-        view.inputs.time = time;
+        view.inputs.sun =
+            ir::lights_of(s, clock.time, ir::view_of(s, clock.time, shape))[0].position;
+        view.inputs.time = clock.time;
         view.inputs.mode = controls.look == gl::Look::Check ? gl::Mode::Check : gl::Mode::Slice;
         view.inputs.plane = {0, 0, 0, controls.slice_offset};
         view.inputs.plane[static_cast<std::size_t>(controls.slice_axis)] = 1;
@@ -98,36 +99,38 @@ std::vector<gl::TileView> App::tile_views(int width, int height) const {
 std::string App::doing() const {
     std::string words;
     const auto say = [&](const std::string &more) { words += (words.empty() ? "" : " | ") + more; };
-    if (sequence > 0)
-        say(fmt::format("every frame goes to {}; M ends it", sequence_folder.string()));
+    if (recording.sequence > 0)
+        say(fmt::format("every frame goes to {}; M ends it", recording.folder.string()));
     if (controls.cache && cached.ready()) say(cached.words());
     const Work work = worker->work();
     if (linking)
         say(stage_words(Stage::Linking));
     else if (work.stage != Stage::Rest && (work.seconds * 1000 > slow_ms || !program))
         say(fmt::format("{}, {:.1f} s", stage_words(work.stage), work.seconds));
-    if (!drawing || controls.cache || status.frame_ms < slow_ms) return words;
-    const int percent = 100 * next_row / std::max(drawn_height, 1);
-    if (next_sample > 0)
-        say(fmt::format("smoothing, sample {} of {}: {} %", next_sample + 1, App::samples_at_rest,
-                        percent));
-    else if (resting && coarse > 1)
-        say(fmt::format("drawing at 1/{}: {} %", coarse, percent));
-    else if (resting)
+    if (!progress.drawing || controls.cache || status.frame_ms < slow_ms) return words;
+    const int percent = 100 * progress.next_row / std::max(drawn.height, 1);
+    if (progress.next_sample > 0)
+        say(fmt::format("smoothing, sample {} of {}: {} %", progress.next_sample + 1,
+                        Progress::samples_at_rest, percent));
+    else if (progress.resting && progress.coarse > 1)
+        say(fmt::format("drawing at 1/{}: {} %", progress.coarse, percent));
+    else if (progress.resting)
         say(fmt::format("drawing: {} %", percent));
     return words;
 }
 
 double App::fading() const {
-    if (fade_begin == Clock::time_point{} || fade_begin == Clock::time_point::max()) return 0;
-    return std::max(0.0, 1 - milliseconds_since(fade_begin) / fade_ms);
+    if (moving_cached.fade_begin == Clock::time_point{} ||
+        moving_cached.fade_begin == Clock::time_point::max())
+        return 0;
+    return std::max(0.0, 1 - milliseconds_since(moving_cached.fade_begin) / fade_ms);
 }
 
 bool App::draw_cached(int width, int height) {
     if (!scene) return false;
-    const Shot shot{views, time, width, height};
-    if (cached_shot != shot) cached.view_changed();
-    cached_shot = shot;
+    const Shot shot{views, clock.time, width, height};
+    if (moving_cached.shot != shot) cached.view_changed();
+    moving_cached.shot = shot;
     if (!cached.requested() && !worker->lent())
         cached.build(scene->compilation.scene, scene->compilation.parts.stride);
     if (!cached.requested()) return false; // the worker is at it
@@ -149,17 +152,17 @@ bool App::draw_cached(int width, int height) {
         cached.count();
     }
     gl::show_in_window(cached.framebuffer(), width, height);
-    on_screen = true;
+    progress.on_screen = true;
     return true;
 }
 
 void App::draw_probe() {
     const bool slice = controls.look == gl::Look::Slice, check = controls.look == gl::Look::Check;
-    if (probed || !(slice || check)) return;
+    if (progress.probed || !(slice || check)) return;
     labels.clear();
     if (!probe) return worker->want_probe();
     if (!canvas.probe(*probe, tile_views(canvas.width(), canvas.height()), params)) return;
-    probed = true;
+    progress.probed = true;
     const std::vector<float> values = canvas.read_probe();
     if (check) {
         verdicts = {};
@@ -182,26 +185,27 @@ bool App::save_window(const std::filesystem::path &file, int width, int height) 
 
 // The panels have settled and the picture is the full one: that is what a record shows.
 void App::save_pictures(int width, int height, bool moving) {
-    if (picture_requested &&
+    if (recording.requested &&
         (animated() || (!moving && !pending() && fading() == 0))) { // the full picture
-        picture_requested = false;
+        recording.requested = false;
         const std::filesystem::path name = free_name(settings.file, "{}-{}.png");
         if (save_window(name, width, height)) note("saved " + name.string());
     }
-    if (sequence > 0 && finished && !drawing) {
-        const std::string name = fmt::format("{:05}.png", sequence++);
+    if (recording.sequence > 0 && progress.finished && !progress.drawing) {
+        const std::string name = fmt::format("{:05}.png", recording.sequence++);
         const std::string error =
-            driver::write_file(sequence_folder / name, encode_png(canvas.read_picture()));
+            driver::write_file(recording.folder / name, encode_png(canvas.read_picture()));
         if (!error.empty()) {
-            sequence = 0;
-            note(fmt::format("cannot write {}: {}", (sequence_folder / name).string(), error));
+            recording.sequence = 0;
+            note(fmt::format("cannot write {}: {}", (recording.folder / name).string(), error));
         }
     }
     if (fading() > 0) return;
-    if (record_next && frames_due <= 1 && (!moving || animated()) && !pending() &&
+    if (recording.next && clock.frames_due <= 1 && (!moving || animated()) && !pending() &&
         !settings.record.empty()) {
-        save_window(settings.record / fmt::format("{:04}.png", ++recorded), width, height);
-        record_next = false;
+        save_window(settings.record / fmt::format("{:04}.png", ++recording.pictures), width,
+                    height);
+        recording.next = false;
     }
 }
 
@@ -214,8 +218,8 @@ void App::draw_panels(int width, int height) {
     status.height = height;
     Shown shown{.status = status,
                 .file = settings.file.string(),
-                .errors = errors,
-                .remarks = remarks,
+                .errors = newest.errors,
+                .remarks = newest.remarks,
                 .doing = doing(),
                 .picture = !canvas.empty() || controls.cache,
                 .selected = {},
@@ -257,8 +261,8 @@ void App::draw_panels(int width, int height) {
         note("copied " + text_of(params[i]));
     }
     if (asked.look) {
-        finished = probed = false;
-        frames_due = 3;
+        progress.finished = progress.probed = false;
+        clock.frames_due = 3;
         glfwSwapInterval(controls.always ? 0 : 1);
     }
     if (asked.size[0] > 0) glfwSetWindowSize(window, asked.size[0], asked.size[1]);
@@ -269,22 +273,23 @@ void App::draw(double seconds) {
     glfwGetFramebufferSize(window, &width, &height);
     if (width == 0 || height == 0) return; // minimised
     // What is drawn in full is not moved on before it is whole.
-    const bool in_full = controls.always || controls.rotate || sequence > 0;
-    held_back += seconds;
-    if (!in_full || !drawing) {
-        const double passed = sequence > 0 ? 1.0 / 30 : held_back; // its frames are that far apart
-        held_back = 0;
+    const bool in_full = controls.always || controls.rotate || recording.sequence > 0;
+    clock.held_back += seconds;
+    if (!in_full || !progress.drawing) {
+        const double passed =
+            recording.sequence > 0 ? 1.0 / 30 : clock.held_back; // its frames are that far apart
+        clock.held_back = 0;
         if (animated()) { // beyond the span of the proof the time begins anew
             const double end = scene->compilation.scene.render.time_end;
-            time = std::fmod(time + passed, end);
+            clock.time = std::fmod(clock.time + passed, end);
         }
         if (controls.rotate) orbit(views.camera(), -2 * turns_a_second * passed, 0);
     }
     fly_by_keys(seconds);
-    const bool by_hand = milliseconds_since(touched) < 150;
+    const bool by_hand = milliseconds_since(clock.touched) < 150;
     const bool moving =
-        (animated() || by_hand) && !controls.always && !controls.rotate && sequence == 0;
-    const bool drew_before = std::exchange(drew_now, false);
+        (animated() || by_hand) && !controls.always && !controls.rotate && recording.sequence == 0;
+    const bool drew_before = std::exchange(progress.drew_now, false);
     if (program && !controls.cache) draw_scene(width, height, moving, drew_before);
     if (controls.cache && draw_cached(width, height)) {
         // in place of the picture
@@ -296,7 +301,7 @@ void App::draw(double seconds) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
-    if (std::exchange(click_requested, false) && !ImGui::GetIO().WantCaptureMouse) select(true);
+    if (std::exchange(pointer.clicked, false) && !ImGui::GetIO().WantCaptureMouse) select(true);
     draw_panels(width, height);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
@@ -308,15 +313,15 @@ gl::Pick App::pick_at_cursor() const {
     int width = 0, height = 0;
     glfwGetWindowSize(window, &width, &height);
     if (width <= 0 || height <= 0 || canvas.empty()) return {};
-    if (drawing && !picks.empty()) {
-        const int x = static_cast<int>(cursor_x * picks_width / width),
-                  y = static_cast<int>(cursor_y * picks_height / height);
-        if (x < 0 || y < 0 || x >= picks_width || y >= picks_height) return {};
-        const float *at = &picks[4 * static_cast<std::size_t>(y * picks_width + x)];
+    if (progress.drawing && !picks.values.empty()) {
+        const int x = static_cast<int>(pointer.x * picks.width / width),
+                  y = static_cast<int>(pointer.y * picks.height / height);
+        if (x < 0 || y < 0 || x >= picks.width || y >= picks.height) return {};
+        const float *at = &picks.values[4 * static_cast<std::size_t>(y * picks.width + x)];
         return {static_cast<int>(at[0]), at[1], at[2], at[3]};
     }
-    return canvas.pick(static_cast<int>(cursor_x * canvas.width() / width),
-                       static_cast<int>(cursor_y * canvas.height() / height));
+    return canvas.pick(static_cast<int>(pointer.x * canvas.width() / width),
+                       static_cast<int>(pointer.y * canvas.height() / height));
 }
 
 } // namespace fathom::viewer

@@ -24,10 +24,13 @@ int finest_quick(double frame_ms, int maximum) {
 
 bool App::pending() const {
     if (!program || controls.cache) return false;
-    if (drawn_cached) return true; // the exact picture comes when nothing moves any more
-    if (stale || !drawn || drawing || !finished || (resting && coarse > 1)) return true;
+    if (drawn.cached) return true; // the exact picture comes when nothing moves any more
+    if (progress.stale || !drawn.shot || progress.drawing || !progress.finished ||
+        (progress.resting && progress.coarse > 1))
+        return true;
     return controls.accumulate && controls.look == gl::Look::Picture && !animated() &&
-           !controls.always && !controls.rotate && samples_drawn < samples_at_rest;
+           !controls.always && !controls.rotate &&
+           progress.samples_drawn < Progress::samples_at_rest;
 }
 
 // What a picture takes is known from one of a few pixels: the second, since drivers put work off to
@@ -42,16 +45,16 @@ void App::measure(int width, int height) {
         status.frame_ms = milliseconds_since(start) * (static_cast<double>(width) / few_wide) *
                           (static_cast<double>(height) / few_high);
     }
-    measured = true;
-    drawing = false;
-    picks.clear();
+    progress.measured = true;
+    progress.drawing = false;
+    picks.values.clear();
 }
 
 // At rest a slow picture is drawn coarse to fine, but never more coarsely than it is shown already.
 int App::first_coarseness(bool same_view) const {
-    if (drawn_cached || controls.always || controls.rotate || sequence > 0) return 1;
+    if (drawn.cached || controls.always || controls.rotate || recording.sequence > 0) return 1;
     int first = finest_quick(status.frame_ms, coarsest);
-    while (same_view && first > 1 && 1.0 / first <= drawn_scale) first /= 2;
+    while (same_view && first > 1 && 1.0 / first <= drawn.scale) first /= 2;
     return first;
 }
 
@@ -61,135 +64,141 @@ int App::first_coarseness(bool same_view) const {
 bool App::draw_rows(bool whole) {
     constexpr double turn_ms = 30, band_ms = 10;
     const Clock::time_point start = Clock::now();
-    const std::vector<gl::TileView> tiles = tile_views(drawn_width, drawn_height);
-    const double expected = std::max(status.frame_ms * drawn_scale * drawn_scale, band_ms);
+    const std::vector<gl::TileView> tiles = tile_views(drawn.width, drawn.height);
+    const double expected = std::max(status.frame_ms * drawn.scale * drawn.scale, band_ms);
     const int band =
-        whole ? drawn_height
-              : std::clamp(static_cast<int>(drawn_height * band_ms / expected), 1, drawn_height);
-    while (next_row < drawn_height) {
+        whole ? drawn.height
+              : std::clamp(static_cast<int>(drawn.height * band_ms / expected), 1, drawn.height);
+    while (progress.next_row < drawn.height) {
         const bool timed = timer.begin();
-        const bool good = canvas.draw(*program, drawn_width, drawn_height, tiles, params,
-                                      next_sample, next_row, band);
+        const bool good = canvas.draw(*program, drawn.width, drawn.height, tiles, params,
+                                      progress.next_sample, progress.next_row, band);
         timer.end();
         if (!good) {
-            drawing = false;
+            progress.drawing = false;
             note("the graphics card has no memory for this size");
             return false;
         }
-        next_row += band;
-        if (timed) bands_requested.push_back(next_row >= drawn_height);
+        progress.next_row += band;
+        if (timed) progress.bands_requested.push_back(progress.next_row >= drawn.height);
         while (const auto milliseconds = timer.poll()) {
-            gpu_ms += *milliseconds;
-            const bool last = bands_requested.front();
-            bands_requested.erase(bands_requested.begin());
-            if (last) gpu_times.add(std::exchange(gpu_ms, 0));
+            progress.gpu_ms += *milliseconds;
+            const bool last = progress.bands_requested.front();
+            progress.bands_requested.erase(progress.bands_requested.begin());
+            if (last) gpu_times.add(std::exchange(progress.gpu_ms, 0));
         }
         if (milliseconds_since(start) > turn_ms) break;
     }
-    sample_ms += milliseconds_since(start);
-    return next_row >= drawn_height;
+    progress.sample_ms += milliseconds_since(start);
+    return progress.next_row >= drawn.height;
 }
 
 // While it is moved by hand, the picture is drawn as coarsely as it takes to keep up; at rest
 // coarse to fine, then smoothed by more samples.
 void App::draw_scene(int width, int height, bool moving, bool drew_before) {
     constexpr double wanted_ms = 30, min_scale = 1.0 / 32;
-    if (!measured) measure(width, height);
+    if (!progress.measured) measure(width, height);
     if (moving && controls.use_cache && !cached.requested() && !worker->lent() &&
         scene->compilation.scene.graph.cache_count() > 0)
         cached.build(scene->compilation.scene, scene->compilation.parts.stride);
-    const double expected_ms = drawn_cached && cached.choice.state == gl::CacheChoice::State::Cached
+    const double expected_ms = drawn.cached && cached.choice.state == gl::CacheChoice::State::Cached
                                    ? cached.choice.cached_ms
                                    : status.frame_ms;
-    const Shot shot{views, time, width, height};
-    const bool same_view = !stale && drawn == shot;
+    const Shot shot{views, clock.time, width, height};
+    const bool same_view = !progress.stale && drawn.shot == shot;
     double scale = 1;
     if (moving && expected_ms > wanted_ms)
         scale = std::clamp(std::sqrt(wanted_ms / expected_ms), min_scale, 1.0);
     if (!moving) {
-        if (!same_view || !resting) coarse = first_coarseness(same_view);
-        scale = 1.0 / coarse;
+        if (!same_view || !progress.resting) progress.coarse = first_coarseness(same_view);
+        scale = 1.0 / progress.coarse;
     }
-    resting = !moving;
+    progress.resting = !moving;
     const bool through_cache = uses_cache(moving);
-    const bool anew = !same_view || drawn_scale != scale || (controls.always && !drawing) ||
-                      (drawn_cached && !through_cache);
+    const bool anew = !same_view || drawn.scale != scale ||
+                      (controls.always && !progress.drawing) || (drawn.cached && !through_cache);
     if (anew) {
         // Until the next picture is whole, what is under the mouse is told by the one that is
         // shown.
-        if (same_view && !moving && !drawing && picks.empty() && canvas.samples() > 0) keep_picks();
-        if (moving) picks.clear();
-        drawn = shot;
-        drawn_scale = scale;
-        drawn_width = std::max(1, static_cast<int>(width * scale));
-        drawn_height = std::max(1, static_cast<int>(height * scale));
-        stale = probed = false;
-        const bool before = std::exchange(drawn_cached, false);
+        if (same_view && !moving && !progress.drawing && picks.values.empty() &&
+            canvas.samples() > 0)
+            keep_picks();
+        if (moving) picks.values.clear();
+        drawn.shot = shot;
+        drawn.scale = scale;
+        drawn.width = std::max(1, static_cast<int>(width * scale));
+        drawn.height = std::max(1, static_cast<int>(height * scale));
+        progress.stale = progress.probed = false;
+        const bool before = std::exchange(drawn.cached, false);
         if (through_cache && gl::uses_cache_next(cached.choice) && draw_cached_frame(scale)) {
-            drawn_cached = true;
-            ++cached_frames;
-            drawing = false;
-            fade_begin = {};
-            if (drew_before) frame_times.add(milliseconds_since(last_draw));
-            last_draw = Clock::now();
-            drew_now = true;
+            drawn.cached = true;
+            ++moving_cached.frames;
+            progress.drawing = false;
+            moving_cached.fade_begin = {};
+            if (drew_before) frame_times.add(milliseconds_since(clock.last_draw));
+            clock.last_draw = Clock::now();
+            progress.drew_now = true;
             return;
         }
-        if (cached_frames > 0 && !through_cache && settings.tell)
+        if (moving_cached.frames > 0 && !through_cache && settings.tell)
             settings.tell(
                 fmt::format("moved: {} frames through the noise cache, the last {:.1f} ms, "
                             "exact {:.1f} ms",
-                            cached_frames, cached.choice.cached_ms, cached.choice.exact_ms));
-        if (!through_cache) cached_frames = 0;
+                            moving_cached.frames, cached.choice.cached_ms, cached.choice.exact_ms));
+        if (!through_cache) moving_cached.frames = 0;
         if (before && !through_cache) {
             canvas.keep_before();
-            fade_begin = Clock::time_point::max(); // begins when the exact picture is there
+            moving_cached.fade_begin =
+                Clock::time_point::max(); // begins when the exact picture is there
         }
     }
-    const bool more = !anew && !drawing && finished && pending() && !moving;
+    const bool more = !anew && !progress.drawing && progress.finished && pending() && !moving;
     if (anew || more) {
-        drawing = true;
-        next_sample = anew ? 0 : samples_drawn;
-        next_row = 0;
-        sample_ms = 0;
+        progress.drawing = true;
+        progress.next_sample = anew ? 0 : progress.samples_drawn;
+        progress.next_row = 0;
+        progress.sample_ms = 0;
     }
-    if (!drawing && finished) return;
-    const bool drew = drawing;
-    if (drawing) {
-        drew_now = true;
+    if (!progress.drawing && progress.finished) return;
+    const bool drew = progress.drawing;
+    if (progress.drawing) {
+        progress.drew_now = true;
         if (!draw_rows(moving)) return;
     }
     if (drew) picture_is_whole(scale, moving, drew_before);
     draw_probe();
     finish_picture(scale);
-    if (fade_begin == Clock::time_point::max()) fade_begin = Clock::now();
-    if (drew && !moving && coarse > 1) coarse = finest_quick(status.frame_ms, coarse / 2);
+    if (moving_cached.fade_begin == Clock::time_point::max())
+        moving_cached.fade_begin = Clock::now();
+    if (drew && !moving && progress.coarse > 1)
+        progress.coarse = finest_quick(status.frame_ms, progress.coarse / 2);
 }
 
 // A sample of it is: what it took decides how coarse the next one may be.
 void App::picture_is_whole(double scale, bool moving, bool drew_before) {
-    const bool first = next_sample == 0;
-    drawing = false;
-    samples_drawn = next_sample + 1;
-    status.frame_ms = sample_ms / (scale * scale); // in full
-    if (moving || coarse == 1) {
+    const bool first = progress.next_sample == 0;
+    progress.drawing = false;
+    progress.samples_drawn = progress.next_sample + 1;
+    status.frame_ms = progress.sample_ms / (scale * scale); // in full
+    if (moving || progress.coarse == 1) {
         if (first) gl::took(cached.choice, false, status.frame_ms);
         // Frames that follow one another; what came after a rest says nothing of speed.
-        if (drew_before) frame_times.add(milliseconds_since(last_draw));
+        if (drew_before) frame_times.add(milliseconds_since(clock.last_draw));
     }
-    last_draw = Clock::now();
-    if (!first || (moving && frames_drawn++ % 32 != 0)) return;
+    clock.last_draw = Clock::now();
+    if (!first || (moving && progress.frames_drawn++ % 32 != 0)) return;
     keep_picks();
     double sum = 0;
-    for (std::size_t i = 2; i < picks.size(); i += 4) sum += picks[i];
-    status.mean_steps = picks.empty() ? 0 : sum / (static_cast<double>(picks.size()) / 4);
-    if (moving) picks.clear();
+    for (std::size_t i = 2; i < picks.values.size(); i += 4) sum += picks.values[i];
+    status.mean_steps =
+        picks.values.empty() ? 0 : sum / (static_cast<double>(picks.values.size()) / 4);
+    if (moving) picks.values.clear();
 }
 
 void App::keep_picks() {
-    picks = canvas.read_picks();
-    picks_width = canvas.width();
-    picks_height = canvas.height();
+    picks.values = canvas.read_picks();
+    picks.width = canvas.width();
+    picks.height = canvas.height();
 }
 
 void App::finish_picture(double scale) {
@@ -202,7 +211,7 @@ void App::finish_picture(double scale) {
     post.thickness = std::max(1, static_cast<int>(std::lround(2 * font_scale * scale)));
     post.isolines = isoline_step(views.cameras[0]);
     canvas.finish(post);
-    finished = on_screen = true;
+    progress.finished = progress.on_screen = true;
 }
 
 // A picture that is recorded, looked at in other colours or drawn for its time is exact; so are
@@ -210,13 +219,13 @@ void App::finish_picture(double scale) {
 bool App::uses_cache(bool moving) const {
     return (moving || controls.rotate) && controls.use_cache && cached.ready() &&
            views.count == 1 && controls.look == gl::Look::Picture && !controls.always &&
-           sequence == 0;
+           recording.sequence == 0;
 }
 
 bool App::draw_cached_frame(double scale) {
-    gl::FrameInputs inputs = tile_views(drawn_width, drawn_height)[0].inputs;
-    inputs.width = drawn_width;
-    inputs.height = drawn_height;
+    gl::FrameInputs inputs = tile_views(drawn.width, drawn.height)[0].inputs;
+    inputs.width = drawn.width;
+    inputs.height = drawn.height;
     inputs.mode = gl::Mode::Linear;
     gl::finish();
     const Clock::time_point start = Clock::now();
@@ -224,8 +233,8 @@ bool App::draw_cached_frame(double scale) {
     gl::finish();
     gl::took(cached.choice, cached.looked_up(), milliseconds_since(start) / (scale * scale));
     if (controls.analysis) cached.count();
-    if (!canvas.take(cached.framebuffer(), drawn_width, drawn_height)) return false;
-    samples_drawn = 1;
+    if (!canvas.take(cached.framebuffer(), drawn.width, drawn.height)) return false;
+    progress.samples_drawn = 1;
     finish_picture(scale);
     return true;
 }

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <utility>
 
 namespace fathom::viewer {
@@ -25,17 +27,13 @@ constexpr double fine_step = 0.01, coarse_step = 0.1; // of a param's range
 
 void App::toggle_look(gl::Look look) {
     controls.look = controls.look == look ? gl::Look::Picture : look;
-    finished = probed = false;
+    progress.finished = progress.probed = false;
 }
 
 void App::frame_box(const ir::Box &box) {
-    ir::Triple center{};
-    double squares = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        center[i] = (box.lo[i] + box.hi[i]) / 2;
-        squares += std::pow((box.hi[i] - box.lo[i]) / 2, 2);
-    }
-    const double radius = std::max(std::sqrt(squares), 1e-4);
+    const glm::dvec3 lo = glm::make_vec3(box.lo.data()), hi = glm::make_vec3(box.hi.data());
+    const glm::dvec3 center = (lo + hi) / 2.0;
+    const double radius = std::max(glm::distance(lo, hi) / 2, 1e-4);
     for (int i = 0; i < views.count; ++i)
         if (views.count > 1 || i == views.active)
             frame(views.cameras[static_cast<std::size_t>(i)], center, radius, aspect());
@@ -82,13 +80,14 @@ void App::escape() {
         controls.keys = false;
     } else {
         selected = {};
-        finished = false;
+        progress.finished = false;
         note("");
     }
 }
 
+// Long: a case for each key.
 void App::key(int key, int mods) {
-    frames_due = 3;
+    clock.frames_due = 3;
     const bool shift = (mods & GLFW_MOD_SHIFT) != 0;
     if ((mods & GLFW_MOD_CONTROL) != 0) {
         flies = false; // not even when Control is let go first
@@ -115,7 +114,7 @@ void App::key(int key, int mods) {
                        world_box(scene->compilation.scene,
                                  scene->compilation.parts
                                      .shapes[static_cast<std::size_t>(selected.number) - 1],
-                                 time);
+                                 clock.time);
                    box.empty()) {
             note("the selected shape has no end to frame");
         } else {
@@ -136,8 +135,8 @@ void App::key(int key, int mods) {
     case GLFW_KEY_BACKSPACE:
         for (ir::Param &param : params) param.value = param.initial;
         note("all params stand on the text's values");
-        stale = true;
-        if (!structural.empty()) rebuild({});
+        progress.stale = true;
+        if (!newest.structural.empty()) rebuild({});
         break;
     case GLFW_KEY_LEFT_BRACKET: choose(params.size() - 1); break;
     case GLFW_KEY_RIGHT_BRACKET: choose(1); break;
@@ -173,12 +172,12 @@ void App::key(int key, int mods) {
         break;
     case GLFW_KEY_X:
         controls.fxaa = !controls.fxaa;
-        finished = false;
+        progress.finished = false;
         note(controls.fxaa ? "FXAA on" : "FXAA off");
         break;
     case GLFW_KEY_J:
         controls.accumulate = !controls.accumulate;
-        stale = true;
+        progress.stale = true;
         note(controls.accumulate ? "4 samples at rest" : "1 sample at rest");
         break;
     case GLFW_KEY_T: controls.rotate = !controls.rotate; break;
@@ -193,23 +192,23 @@ void App::key(int key, int mods) {
         else
             note("nothing is selected: click a shape first");
         break;
-    case GLFW_KEY_SPACE: running = !running; break;
-    case GLFW_KEY_0: time = 0; break;
+    case GLFW_KEY_SPACE: clock.running = !clock.running; break;
+    case GLFW_KEY_0: clock.time = 0; break;
     case GLFW_KEY_N: controls.remarks = !controls.remarks; break;
-    case GLFW_KEY_P: picture_requested = true; break;
+    case GLFW_KEY_P: recording.requested = true; break;
     case GLFW_KEY_M:
-        if (sequence > 0) {
-            note(fmt::format("{} frames in {}", sequence - 1, sequence_folder.string()));
-            sequence = 0;
+        if (recording.sequence > 0) {
+            note(fmt::format("{} frames in {}", recording.sequence - 1, recording.folder.string()));
+            recording.sequence = 0;
         } else {
-            sequence_folder = settings.file.stem().string() + "-frames";
+            recording.folder = settings.file.stem().string() + "-frames";
             std::error_code error;
-            std::filesystem::create_directories(sequence_folder, error);
+            std::filesystem::create_directories(recording.folder, error);
             if (error) {
-                note(fmt::format("cannot make the folder {}: {}", sequence_folder.string(),
+                note(fmt::format("cannot make the folder {}: {}", recording.folder.string(),
                                  error.message()));
             } else {
-                sequence = 1;
+                recording.sequence = 1;
             }
         }
         break;
@@ -221,12 +220,12 @@ void App::key(int key, int mods) {
     case GLFW_KEY_KP_SUBTRACT: dolly(views.camera(), -1); break;
     default: break;
     }
-    if (views != before) touched = Clock::now();
+    if (views != before) clock.touched = Clock::now();
 }
 
 void App::character(unsigned code) {
     if (code == '?') controls.keys = !controls.keys;
-    frames_due = 3;
+    clock.frames_due = 3;
 }
 
 void App::fly_by_keys(double seconds) {
@@ -234,14 +233,13 @@ void App::fly_by_keys(double seconds) {
         glfwGetKey(window, GLFW_KEY_LEFT_CONTROL) == GLFW_PRESS)
         return;
     auto held = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS ? 1.0 : 0.0; };
-    ir::Triple by{held(GLFW_KEY_D) - held(GLFW_KEY_A), held(GLFW_KEY_E) - held(GLFW_KEY_Q),
+    glm::dvec3 by{held(GLFW_KEY_D) - held(GLFW_KEY_A), held(GLFW_KEY_E) - held(GLFW_KEY_Q),
                   held(GLFW_KEY_W) - held(GLFW_KEY_S)};
-    if (by == ir::Triple{}) flies = true;
-    if (by == ir::Triple{} || !flies) return;
-    for (double &part : by) part *= 0.8 * std::min(seconds, 0.1);
-    fly(views.camera(), by);
-    touched = Clock::now();
-    frames_due = 3; // goes on for as long as the key is held
+    if (by == glm::dvec3{}) flies = true;
+    if (by == glm::dvec3{} || !flies) return;
+    fly(views.camera(), by * (0.8 * std::min(seconds, 0.1)));
+    clock.touched = Clock::now();
+    clock.frames_due = 3; // goes on for as long as the key is held
 }
 
 // -- the mouse
@@ -249,10 +247,10 @@ void App::fly_by_keys(double seconds) {
 void App::move_cursor(double x, double y) {
     int width = 1, height = 1;
     glfwGetWindowSize(window, &width, &height);
-    const double dx = x - cursor_x, dy = y - cursor_y;
-    cursor_x = x;
-    cursor_y = y;
-    frames_due = std::max(frames_due, 2);
+    const double dx = x - pointer.x, dy = y - pointer.y;
+    pointer.x = x;
+    pointer.y = y;
+    clock.frames_due = std::max(clock.frames_due, 2);
     const bool over_panel = ImGui::GetIO().WantCaptureMouse;
     const bool left = glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
     const bool other = glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS ||
@@ -261,18 +259,18 @@ void App::move_cursor(double x, double y) {
         const int part = over_panel || !scene ? 0 : pick_at_cursor().part;
         if (part != hovered.number) {
             hovered = scene ? part_of(scene->compilation, part) : Part{};
-            finished = false;
+            progress.finished = false;
         }
         return;
     }
-    if (over_panel || dragged < 0) return;
-    if (std::hypot(x - pressed_x, y - pressed_y) < click_radius) return;
+    if (over_panel || pointer.dragged < 0) return;
+    if (std::hypot(x - pointer.pressed_x, y - pointer.pressed_y) < click_radius) return;
     const bool shift = glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
                        glfwGetKey(window, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
-    touched = Clock::now();
-    Camera &camera = views.cameras[static_cast<std::size_t>(dragged)];
-    const double tile =
-        std::max(tiles_of(views, width, height)[static_cast<std::size_t>(dragged)].height, 1);
+    clock.touched = Clock::now();
+    Camera &camera = views.cameras[static_cast<std::size_t>(pointer.dragged)];
+    const double tile = std::max(
+        tiles_of(views, width, height)[static_cast<std::size_t>(pointer.dragged)].height, 1);
     if (other || shift)
         pan(camera, dx / tile, dy / tile);
     else
@@ -280,23 +278,24 @@ void App::move_cursor(double x, double y) {
 }
 
 void App::button(int button, bool down) {
-    frames_due = 3;
-    glfwGetCursorPos(window, &cursor_x, &cursor_y);
+    clock.frames_due = 3;
+    glfwGetCursorPos(window, &pointer.x, &pointer.y);
     if (down) {
         int width = 1, height = 1;
         glfwGetWindowSize(window, &width, &height);
-        pressed_x = cursor_x;
-        pressed_y = cursor_y;
-        dragged = ImGui::GetIO().WantCaptureMouse
-                      ? -1
-                      : tile_at(tiles_of(views, width, height), cursor_x, cursor_y);
-        if (dragged >= 0) views.active = dragged;
+        pointer.pressed_x = pointer.x;
+        pointer.pressed_y = pointer.y;
+        pointer.dragged = ImGui::GetIO().WantCaptureMouse
+                              ? -1
+                              : tile_at(tiles_of(views, width, height), pointer.x, pointer.y);
+        if (pointer.dragged >= 0) views.active = pointer.dragged;
         return;
     }
-    const bool click = button == GLFW_MOUSE_BUTTON_LEFT && dragged >= 0 &&
-                       std::hypot(cursor_x - pressed_x, cursor_y - pressed_y) < click_radius;
-    dragged = -1;
-    click_requested |= click; // panels know only with the next frame whether it was theirs
+    const bool click =
+        button == GLFW_MOUSE_BUTTON_LEFT && pointer.dragged >= 0 &&
+        std::hypot(pointer.x - pointer.pressed_x, pointer.y - pointer.pressed_y) < click_radius;
+    pointer.dragged = -1;
+    pointer.clicked |= click; // panels know only with the next frame whether it was theirs
 }
 
 void App::open_selected() {
@@ -310,7 +309,7 @@ void App::select(bool open) {
     if (!scene) return;
     const gl::Pick pick = pick_at_cursor();
     selected = part_of(scene->compilation, pick.part);
-    finished = false;
+    progress.finished = false;
     if (!selected.number) return note("");
     const std::string editor = users_editor();
     if (open && !editor.empty() && !needs_terminal(editor))
@@ -320,13 +319,13 @@ void App::select(bool open) {
 }
 
 void App::scroll(double steps) {
-    frames_due = 3;
+    clock.frames_due = 3;
     if (ImGui::GetIO().WantCaptureMouse) return;
     int width = 1, height = 1;
     glfwGetWindowSize(window, &width, &height);
-    const int at = tile_at(tiles_of(views, width, height), cursor_x, cursor_y);
+    const int at = tile_at(tiles_of(views, width, height), pointer.x, pointer.y);
     if (at < 0) return;
-    touched = Clock::now();
+    clock.touched = Clock::now();
     dolly(views.cameras[static_cast<std::size_t>(at)], steps);
 }
 

@@ -1,4 +1,5 @@
 #include "viewer/panels.h"
+#include "base/srgb.h"
 
 #include "viewer/params.h"
 

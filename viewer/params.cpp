@@ -1,4 +1,5 @@
 #include "viewer/params.h"
+#include "base/srgb.h"
 
 #include "base/text.h"
 
@@ -93,14 +94,6 @@ std::string value_text(const ir::Param &param, const driver::Notation &notation)
     std::string text = param.is_color ? "rgb(" : "[";
     for (std::size_t i = 0; i < count_of(param); ++i) text += (i ? ", " : "") + number(i);
     return text + (param.is_color ? ")" : "]");
-}
-
-// IEC 61966-2-1.
-double srgb_of_linear(double value) {
-    return value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
-}
-double linear_of_srgb(double value) {
-    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
 } // namespace fathom::viewer

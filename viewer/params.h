@@ -28,7 +28,4 @@ bool changed(const ir::Param &param); // stands on another value than the text's
 // `30deg`.
 std::string value_text(const ir::Param &param, const driver::Notation &notation = {});
 
-double srgb_of_linear(double value);
-double linear_of_srgb(double value);
-
 } // namespace fathom::viewer

@@ -3,6 +3,7 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <string_view>
 
 namespace fathom::viewer {
@@ -115,7 +116,7 @@ std::string text_with_slots(const Slots &slots) {
     };
     const std::size_t second_line = text.find('\n') + 1; // after #version
     copy(second_line);
-    result += "uniform float fathom_edited[" + std::to_string(slots.edited.size()) + "];\n";
+    result += fmt::format("uniform float fathom_edited[{}];\n", slots.edited.size());
     for (std::size_t k = 0; k < slots.edited.size(); ++k) {
         const Range literal = literals[slots.edited[k]];
         copy(literal.begin);
@@ -124,7 +125,7 @@ std::string text_with_slots(const Slots &slots) {
         const std::size_t word = result.find(constant, from);
         if (word != result.npos && (word == 0 || !part_of_name(result[word - 1])))
             result.erase(word, constant.size());
-        result += "fathom_edited[" + std::to_string(k) + "]";
+        result += fmt::format("fathom_edited[{}]", k);
         copied = literal.end;
     }
     copy(text.size());

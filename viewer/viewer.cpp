@@ -39,7 +39,7 @@ App &app_of(GLFWwindow *window) { return *static_cast<App *>(glfwGetWindowUserPo
 void install_callbacks(GLFWwindow *window) {
     glfwSetKeyCallback(window, [](GLFWwindow *w, int key, int, int action, int mods) {
         App &app = app_of(w);
-        app.frames_due = 3;
+        app.clock.frames_due = 3;
         if (action != GLFW_RELEASE && !ImGui::GetIO().WantTextInput) app.key(key, mods);
     });
     glfwSetCharCallback(window, [](GLFWwindow *w, unsigned code) {
@@ -53,13 +53,13 @@ void install_callbacks(GLFWwindow *window) {
     glfwSetScrollCallback(window,
                           [](GLFWwindow *w, double, double steps) { app_of(w).scroll(steps); });
     glfwSetFramebufferSizeCallback(window,
-                                   [](GLFWwindow *w, int, int) { app_of(w).frames_due = 3; });
-    glfwSetWindowRefreshCallback(window, [](GLFWwindow *w) { app_of(w).frames_due = 3; });
+                                   [](GLFWwindow *w, int, int) { app_of(w).clock.frames_due = 3; });
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow *w) { app_of(w).clock.frames_due = 3; });
     glfwSetWindowContentScaleCallback(window, [](GLFWwindow *w, float scale, float) {
         App &app = app_of(w);
         ImGui::GetStyle().ScaleAllSizes(scale / app.font_scale);
         ImGui::GetIO().FontGlobalScale = app.font_scale = scale;
-        app.frames_due = 3;
+        app.clock.frames_due = 3;
     });
 }
 
@@ -67,21 +67,22 @@ void install_callbacks(GLFWwindow *window) {
 // that brought it was saved, of all that the scene reads. A file's change of state counts, since a
 // file that is moved into place keeps the time at which it was written.
 void tell_reload(App &app) {
-    if (app.errors.empty() && !app.on_screen) return;
-    if (std::exchange(app.told, true) || !app.settings.tell) return;
+    if (app.newest.errors.empty() && !app.progress.on_screen) return;
+    if (std::exchange(app.newest.told, true) || !app.settings.tell) return;
     std::string since;
     struct stat file {};
-    if (!app.saved.empty() && ::stat(app.saved.c_str(), &file) == 0) {
+    if (!app.newest.saved.empty() && ::stat(app.newest.saved.c_str(), &file) == 0) {
         std::timespec now{};
         std::timespec_get(&now, TIME_UTC);
         const double milliseconds = static_cast<double>(now.tv_sec - file.st_ctim.tv_sec) * 1e3 +
                                     static_cast<double>(now.tv_nsec - file.st_ctim.tv_nsec) * 1e-6;
         since = fmt::format(" {:.2f} ms after the save of {}", milliseconds,
-                            app.saved.filename().string());
+                            app.newest.saved.filename().string());
     }
     app.settings.tell(fmt::format("reload: {}, front end {:.2f} ms, {}, on the screen{}",
-                                  app.errors.empty() ? "good" : "error", app.status.front_end_ms,
-                                  app.errors.empty() && app.status.linked_anew
+                                  app.newest.errors.empty() ? "good" : "error",
+                                  app.status.front_end_ms,
+                                  app.newest.errors.empty() && app.status.linked_anew
                                       ? fmt::format("driver {:.2f} ms", app.status.driver_ms)
                                       : std::string("driver untouched"),
                                   since));
@@ -93,9 +94,9 @@ std::string loop(App &app) {
     while (!glfwWindowShouldClose(app.window)) {
         const bool hidden = glfwGetWindowAttrib(app.window, GLFW_ICONIFIED) != 0;
         const bool settling =
-            milliseconds_since(app.touched) < 200; // until the full picture is there again
+            milliseconds_since(app.clock.touched) < 200; // until the full picture is there again
         const bool busy = app.animated() || app.controls.always || app.controls.rotate ||
-                          app.sequence > 0 || app.frames_due > 0 || app.pending() ||
+                          app.recording.sequence > 0 || app.clock.frames_due > 0 || app.pending() ||
                           app.fading() > 0 ||
                           (app.controls.cache && app.cached.ready() && !app.cached.settled());
         const bool working = app.worker->work().stage != Stage::Rest;
@@ -111,7 +112,7 @@ std::string loop(App &app) {
             glfwWaitEvents(); // a still scene costs nothing
         const double seconds = milliseconds_since(before) / 1000;
         before = Clock::now();
-        if (working) app.frames_due = std::max(app.frames_due, 1);
+        if (working) app.clock.frames_due = std::max(app.clock.frames_due, 1);
         app.drop_old_note();
         if (std::unique_ptr<Build> build = app.worker->take()) {
             if (build->good() && !build->linked) { // by this thread: it says so before
@@ -124,9 +125,9 @@ std::string loop(App &app) {
         if (app.scene && !app.cached.requested())
             if (auto kept = app.worker->take_cached(app.scene->number)) {
                 app.cached.take(std::move(*kept));
-                app.frames_due = 3;
+                app.clock.frames_due = 3;
             }
-        if (app.frames_due > 0) --app.frames_due;
+        if (app.clock.frames_due > 0) --app.clock.frames_due;
         if (!hidden)
             app.draw(std::min(seconds, 0.25)); // after a sleep time goes on, it does not jump
         tell_reload(app);
@@ -219,7 +220,7 @@ std::string run(const Settings &settings) {
     {
         App app(settings); // its programs and canvas end before their context
         app.window = opened.window;
-        app.running = !settings.still;
+        app.clock.running = !settings.still;
         glfwSetWindowUserPointer(opened.window, &app);
         install_callbacks(opened.window);
         start_panels(app);

@@ -123,6 +123,7 @@ Values farthest(Builder &builder, Arguments args) {
 
 } // namespace
 
+// Long: a case for each op.
 std::vector<Value> select(Builder &builder, const Node &node, Arguments args,
                           std::span<const Type> types) {
     const bool whole = !types.empty() && (types.back() == Type::Int || types.back() == Type::Bool);

@@ -2,6 +2,7 @@
 // one has; a finished one is reported under a lock, so that the caller's function runs once at a
 // time.
 #include "backend-cpu/trace/rays.h"
+#include "base/srgb.h"
 
 #include "ir/shading.h"
 
@@ -57,7 +58,7 @@ void prune(Stage &stage, Prune how) {
     const ir::Frame &frame = stage.frame;
     Cube cube;
     double side = 2.1 * frame.far;
-    ir::Triple middle = frame.center;
+    glm::dvec3 middle = frame.center;
     if (frame.boxed) {
         side = 0;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -143,10 +144,7 @@ RayState eye(const Stage &stage, float x, float y) {
     return clipped(stage, origin, direction);
 }
 
-float encoded(float linear) {
-    const float c = clamp(linear, 0.0f, 1.0f);
-    return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f;
-}
+float encoded(float linear) { return srgb_of_linear(clamp(linear, 0.0f, 1.0f)); }
 
 std::uint8_t byte(float x) {
     return static_cast<std::uint8_t>(clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);

@@ -6,24 +6,15 @@
 #include "backend-cpu/trace/march.h"
 
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 
 namespace fathom::cpu {
 
-struct Vec {
-    float x = 0, y = 0, z = 0;
-};
-inline Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vec operator*(Vec a, Vec b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-inline Vec operator*(float s, Vec a) { return {s * a.x, s * a.y, s * a.z}; }
-inline Vec operator/(Vec a, float s) { return {a.x / s, a.y / s, a.z / s}; }
-inline Vec operator-(Vec a) { return {-a.x, -a.y, -a.z}; }
-inline float dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline float length(Vec a) { return std::sqrt(dot(a, a)); }
-inline Vec vec(const std::array<double, 3> &a) {
-    return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
-}
+using Vec = glm::vec3;
+using glm::dot, glm::length;
+inline Vec vec(const glm::dvec3 &a) { return Vec(a); }
 inline float clamp(float x, float lo, float hi) { return std::fmin(std::fmax(x, lo), hi); }
 
 // Rows of numbers, one column a point: what a Program takes and gives.

@@ -43,6 +43,53 @@ int sectors_of(const Scene &scene, ShapeId id, int count) {
     return std::min(evaluated > 0 ? evaluated : 3, count);
 }
 
+// One axis of a lattice of copies.
+struct LatticeAxis {
+    NodeId x, cell, shift, base, last; // last: the greatest index, invalid where endless
+    int copies = 1;
+    bool repeats = false;
+    bool fewer = false; // there may be fewer copies than are evaluated
+};
+
+// `nearest`, or the distance to the copies that were not evaluated where that is less.
+// The copies that were not evaluated lie, along some axis, beyond the first or the last
+// evaluated. Each side's are held by a box that is bounded there by the nearest of them, and
+// elsewhere by what all copies together extend to.
+NodeId nearest_of_others(Graph &g, const std::array<LatticeAxis, 3> &axes, int dims,
+                         const Box &held, NodeId nearest) {
+    const auto outside =
+        [&](int i) -> NodeId { // how far p is beyond all copies along axis i; invalid: never
+        const LatticeAxis &a = axes[static_cast<std::size_t>(i)];
+        const double lo = held.lo[static_cast<std::size_t>(i)],
+                     hi = held.hi[static_cast<std::size_t>(i)];
+        if (!std::isfinite(lo) || !std::isfinite(hi) || (a.repeats && !a.last)) return {};
+        const NodeId reach = a.repeats ? g.mul(a.shift, a.cell) : g.number(0);
+        return g.make(Op::Max, {g.sub(g.sub(g.number(lo), reach), a.x),
+                                g.sub(g.sub(a.x, reach), g.number(hi))});
+    };
+    for (int i = 0; i < dims; ++i) {
+        const LatticeAxis &a = axes[static_cast<std::size_t>(i)];
+        if (!a.repeats) continue;
+        const double lo = held.lo[static_cast<std::size_t>(i)],
+                     hi = held.hi[static_cast<std::size_t>(i)];
+        if (!std::isfinite(lo) || !std::isfinite(hi)) continue;
+        const NodeId before = g.sub(a.base, g.number(1)), after = g.add(a.base, g.number(a.copies));
+        NodeId left = g.sub(a.x, g.add(g.mul(g.sub(before, a.shift), a.cell), g.number(hi)));
+        NodeId right = g.sub(g.add(g.mul(g.sub(after, a.shift), a.cell), g.number(lo)), a.x);
+        const NodeId none = g.number(nowhere);
+        if (a.last) {
+            left = g.make(Op::Select, {g.make(Op::Less, {before, g.number(0)}), none, left});
+            right = g.make(Op::Select, {g.make(Op::Less, {a.last, after}), none, right});
+        }
+        std::vector<NodeId> distances{g.make(Op::Min, {left, right})};
+        for (int j = 0; j < dims; ++j)
+            if (j != i)
+                if (const NodeId out = outside(j)) distances.push_back(out);
+        nearest = g.make(Op::Union, {nearest, joined_distance(g, distances)});
+    }
+    return nearest;
+}
+
 } // namespace
 
 int copies_evaluated(const Scene &scene, ShapeId id) {
@@ -88,16 +135,10 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
     const NodeId cells = read(s.args[0], frame), counts = read(s.args[1], frame);
     const int dims = s.dims;
 
-    struct Axis {
-        NodeId x, cell, shift, base, last; // last: the greatest index, invalid where endless
-        int copies = 1;
-        bool repeats = false;
-        bool fewer = false; // there may be fewer copies than are evaluated
-    };
-    std::array<Axis, 3> axes;
+    std::array<LatticeAxis, 3> axes;
     int total = 1;
     for (int i = 0; i < dims; ++i) {
-        Axis &a = axes[static_cast<std::size_t>(i)];
+        LatticeAxis &a = axes[static_cast<std::size_t>(i)];
         a.x = g.component(frame.p, i);
         a.repeats = repetition.along[static_cast<std::size_t>(i)];
         if (!a.repeats) continue;
@@ -132,7 +173,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
         std::vector<NodeId> q;
         std::array<NodeId, 3> cell_id{g.number(0), g.number(0), g.number(0)};
         for (int i = 0; i < dims; ++i) {
-            const Axis &a = axes[static_cast<std::size_t>(i)];
+            const LatticeAxis &a = axes[static_cast<std::size_t>(i)];
             if (!a.repeats) {
                 q.push_back(a.x);
                 continue;
@@ -185,40 +226,7 @@ NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
     }
     if (!known.repeat.guard) return result;
 
-    // The copies that were not evaluated lie, along some axis, beyond the first or the last
-    // evaluated. Each side's are held by a box that is bounded there by the nearest of them, and
-    // elsewhere by what all copies together extend to.
-    const auto outside =
-        [&](int i) -> NodeId { // how far p is beyond all copies along axis i; invalid: never
-        const Axis &a = axes[static_cast<std::size_t>(i)];
-        const double lo = held.lo[static_cast<std::size_t>(i)],
-                     hi = held.hi[static_cast<std::size_t>(i)];
-        if (!std::isfinite(lo) || !std::isfinite(hi) || (a.repeats && !a.last)) return {};
-        const NodeId reach = a.repeats ? g.mul(a.shift, a.cell) : g.number(0);
-        return g.make(Op::Max, {g.sub(g.sub(g.number(lo), reach), a.x),
-                                g.sub(g.sub(a.x, reach), g.number(hi))});
-    };
-    NodeId nearest = distance_of(reading, result);
-    for (int i = 0; i < dims; ++i) {
-        const Axis &a = axes[static_cast<std::size_t>(i)];
-        if (!a.repeats) continue;
-        const double lo = held.lo[static_cast<std::size_t>(i)],
-                     hi = held.hi[static_cast<std::size_t>(i)];
-        if (!std::isfinite(lo) || !std::isfinite(hi)) continue;
-        const NodeId before = g.sub(a.base, g.number(1)), after = g.add(a.base, g.number(a.copies));
-        NodeId left = g.sub(a.x, g.add(g.mul(g.sub(before, a.shift), a.cell), g.number(hi)));
-        NodeId right = g.sub(g.add(g.mul(g.sub(after, a.shift), a.cell), g.number(lo)), a.x);
-        const NodeId none = g.number(nowhere);
-        if (a.last) {
-            left = g.make(Op::Select, {g.make(Op::Less, {before, g.number(0)}), none, left});
-            right = g.make(Op::Select, {g.make(Op::Less, {a.last, after}), none, right});
-        }
-        std::vector<NodeId> distances{g.make(Op::Min, {left, right})};
-        for (int j = 0; j < dims; ++j)
-            if (j != i)
-                if (const NodeId out = outside(j)) distances.push_back(out);
-        nearest = g.make(Op::Union, {nearest, joined_distance(g, distances)});
-    }
+    const NodeId nearest = nearest_of_others(g, axes, dims, held, distance_of(reading, result));
     return at_distance(reading, result, nearest);
 }
 

@@ -5,6 +5,7 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <unordered_map>
 
 namespace fathom::ir {
@@ -59,8 +60,8 @@ class Dumper {
         if (const auto it = names_.find(id); it != names_.end()) return it->second;
         const Node &node = graph_[id];
         if (node.op == Op::Const) return constant(graph_.constant_of(id));
-        if (node.op == Op::Param) return "param" + std::to_string(node.payload);
-        if (node.op == Op::Var) return names_[id] = "v" + std::to_string(variables_++);
+        if (node.op == Op::Param) return fmt::format("param{}", node.payload);
+        if (node.op == Op::Var) return names_[id] = fmt::format("v{}", variables_++);
         if (node.count == 0) return lower(info(node.op).name); // an input
         std::vector<NodeId> pending{id}; // without recursion: chains may be long
         while (!pending.empty()) {
@@ -126,8 +127,8 @@ class Dumper {
         } else if (node.op == Op::Blend) {
             text += std::string(".") + profile_name(static_cast<Profile>(node.payload));
         } else if (node.op == Op::TableRead) {
-            text += " table" + std::to_string(table_of(node.payload).index) + "[" +
-                    std::to_string(column_of(node.payload)) + "]";
+            text +=
+                fmt::format(" table{}[{}]", table_of(node.payload).index, column_of(node.payload));
         } else if (node.op == Op::Call) {
             text += " " + graph_.function(FunctionId{std::size_t{node.payload}}).name;
         } else if (node.op == Op::Cached) {
@@ -136,10 +137,10 @@ class Dumper {
                 " " + graph_.function(cache.field).name + " cell " + format_shortest(cache.cell);
         } else if (node.op == Op::Column || node.op == Op::Image || node.op == Op::Grid ||
                    node.op == Op::LoopResult) {
-            text += " " + std::to_string(node.payload);
+            text += fmt::format(" {}", node.payload);
         }
         for (NodeId arg : graph_.args(id)) text += " " + name(arg, indent);
-        const std::string own = "%" + std::to_string(lines_++);
+        const std::string own = fmt::format("%{}", lines_++);
         if (node.op == Op::Loop) text += loop(LoopId{std::size_t{node.payload}}, indent + 1);
         names_[id] = own;
         put(indent, own + ": " + type_name(node.type) + " = " + text);
@@ -155,8 +156,8 @@ class Dumper {
         for (NodeId result : loop.next) next += " " + name(result, indent);
         const std::string condition =
             loop.condition ? " while " + name(loop.condition, indent) : "";
-        return " for " + index + " < " + count + " (at most " + std::to_string(loop.max_count) +
-               ")" + condition + ":" + vars + " <-" + next;
+        return fmt::format(" for {} < {} (at most {}){}:{} <-{}", index, count, loop.max_count,
+                           condition, vars, next);
     }
 
     const Graph &graph_;
@@ -188,12 +189,12 @@ void dump_shape(Dumper &dumper, const Shapes &shapes, ShapeId id, int indent,
                 std::unordered_map<ShapeId, int> &seen) {
     const Shape &shape = shapes[id];
     if (const auto it = seen.find(id); it != seen.end()) {
-        dumper.put(indent, "#" + std::to_string(it->second));
+        dumper.put(indent, fmt::format("#{}", it->second));
         return;
     }
     const int number = static_cast<int>(seen.size());
     seen.emplace(id, number);
-    std::string text = "#" + std::to_string(number) + " " + shape_kind_name(shape.kind);
+    std::string text = fmt::format("#{} {}", number, shape_kind_name(shape.kind));
     if (shape.dims == 2) text += " flat";
     switch (shape.kind) {
     case ShapeKind::Map:
@@ -233,9 +234,9 @@ void dump_shape(Dumper &dumper, const Shapes &shapes, ShapeId id, int indent,
     }
     case ShapeKind::Instances: {
         const InstanceTable &instance_table = shapes.instance_tables[shape.payload];
-        text += " " + std::to_string(instance_table.count) +
-                (instance_table.smooth ? " smooth" : "") + " by " +
-                dumper.name(instance_table.index, indent + 1);
+        text += fmt::format(" {}{} by {}", instance_table.count,
+                            (instance_table.smooth ? " smooth" : ""),
+                            dumper.name(instance_table.index, indent + 1));
         break;
     }
     case ShapeKind::Empty:

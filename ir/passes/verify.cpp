@@ -3,6 +3,7 @@
 #include "ir/passes/verify.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <unordered_set>
 
 namespace fathom::ir {
@@ -35,8 +36,7 @@ class Verifier {
         if (problem_.empty()) problem_ = problem;
     }
     void fail(NodeId id, const std::string &problem) {
-        fail("node " + std::to_string(id.index) + " (" + info(graph_[id].op).name +
-             "): " + problem);
+        fail(fmt::format("node {} ({}): {}", id.index, info(graph_[id].op).name, problem));
     }
     Type type(NodeId id) const { return graph_.type(id); }
 
@@ -64,7 +64,7 @@ class Verifier {
         if (!reads.free_vars) return;
         for (NodeId var : graph_.free_vars(root))
             if (std::find(params.begin(), params.end(), var) == params.end())
-                fail(where + " has a free variable, node " + std::to_string(var.index));
+                fail(fmt::format("{} has a free variable, node {}", where, var.index));
     }
 
     void function(std::size_t index) {
@@ -83,7 +83,7 @@ class Verifier {
 
     void surface(std::size_t index) {
         const Surface &s = scene_.surfaces[index];
-        const std::string where = "surface " + std::to_string(index);
+        const std::string where = fmt::format("surface {}", index);
         callable_ = graph_.function_count();
         const std::pair<NodeId, Type> parts[] = {{s.diffuse, Type::Vec3},
                                                  {s.specular, Type::Vec3},
@@ -122,6 +122,7 @@ class Verifier {
         if (!rule) fail(id, what);
     }
 
+    // Long: a case for each op.
     void check(NodeId id, std::vector<NodeId> &stack) {
         const Node &node = graph_[id];
         const std::span<const NodeId> args = graph_.args(id);

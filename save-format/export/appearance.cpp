@@ -1,17 +1,15 @@
 // Textures and materials of a save file; see appearance.h.
 #include "save-format/export/appearance.h"
+#include "base/srgb.h"
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace fathom::save {
 
-// The inverse of sRGB's curve (IEC 61966-2-1).
 double channel_of(double linear) {
-    linear = std::clamp(linear, 0.0, 1.0);
-    const double encoded =
-        linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-    const double channel = encoded * 255;
+    const double channel = srgb_of_linear(std::clamp(linear, 0.0, 1.0)) * 255;
     return std::abs(channel - std::round(channel)) < 1e-4 ? std::round(channel)
                                                           : std::round(channel * 1e6) / 1e6;
 }
@@ -110,7 +108,7 @@ std::string Appearances::texture(std::int32_t image) {
     }
     std::string name = stem(file);
     for (int i = 2; name.empty() || is_none(name) || is_taken(name); ++i)
-        name = stem(file) + " " + std::to_string(i);
+        name = fmt::format("{} {}", stem(file), i);
     textures_.emplace_back(name, yaml_word(file));
     return name;
 }
@@ -128,7 +126,7 @@ std::string Appearances::material(std::uint32_t index) {
     }
     std::string name = material.name;
     for (int i = 1; name.empty() || by_name_.contains(name); ++i)
-        name = "Material " + std::to_string(i);
+        name = fmt::format("Material {}", i);
     by_name_.emplace(name, materials_.size());
     Value specular = color_value(appearance->specular, 255);
     specular.entries.emplace_back("Exponent", yaml_scalar(appearance->exponent));

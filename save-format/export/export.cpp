@@ -1,6 +1,7 @@
 // The main list of a save file, written: version, textures, materials, tree, lighting, and the
 // unlabelled rest. What was kept from an import goes back to its place; what the scene says by now
 // goes before it.
+#include "base/srgb.h"
 #include "ir/background.h"
 #include "ir/view.h"
 #include "save-format/export/appearance.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 #include <numbers>
 
@@ -41,7 +43,7 @@ Value node_value(const TreeNode &node, std::map<std::string, int> &ordinals) {
     std::string name = node.name;
     if (!node.head) { // as import/tree.cpp counts
         const int ordinal = ++ordinals[node.type];
-        if (!node.named) name = node.type + " " + std::to_string(ordinal);
+        if (!node.named) name = fmt::format("{} {}", node.type, ordinal);
     }
     Value type;
     type.text = node.type;
@@ -100,14 +102,10 @@ Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> 
                 const Value *part = old_color->find(names[i]);
                 had[i] = part ? number_of(*part).value_or(255) : 255;
             }
-            const auto linear = [](double channel) {
-                const double c = channel / 255;
-                return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-            };
             bool unchanged = true;
             for (std::size_t i = 0; i < 3; ++i)
-                unchanged = unchanged && std::abs(linear(had[i]) * was - (*color)[i]) <
-                                             1e-9 * std::max(1.0, was);
+                unchanged = unchanged && std::abs(linear_of_srgb(had[i] / 255) * was -
+                                                  (*color)[i]) < 1e-9 * std::max(1.0, was);
             if (!unchanged) {
                 set("Color", color_value(channels, 255));
                 set("Intensity", yaml_scalar(intensity));
@@ -130,7 +128,7 @@ Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> 
     const auto fresh = [&](std::size_t number) {
         Value light;
         light.kind = Value::Kind::Sequence;
-        light.items = {yaml_word("Generic"), yaml_word("Light " + std::to_string(number)),
+        light.items = {yaml_word("Generic"), yaml_word(fmt::format("Light {}", number)),
                        yaml_mapping({{"Children", yaml_list({})}})};
         return light;
     };
@@ -241,9 +239,9 @@ Pose pose_of(const ir::Scene &scene, Numbers &numbers) {
         pose.orthographic = scene.camera.orthographic;
     } else { // the frame that the scene is shown in
         const ir::View view = ir::view_of(scene, 0, 1.5);
-        at = view.origin;
-        for (std::size_t i = 0; i < 3; ++i)
-            target[i] = view.origin[i] + view.focus * view.forward[i];
+        const glm::dvec3 looked_at = view.origin + view.focus * view.forward;
+        at = {view.origin.x, view.origin.y, view.origin.z};
+        target = {looked_at.x, looked_at.y, looked_at.z};
     }
     const std::array<double, 3> away{at[0] - target[0], at[1] - target[1], at[2] - target[2]};
     const double distance = std::sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
@@ -312,7 +310,7 @@ std::vector<Value> settings_values(const ir::Scene &scene, Numbers &numbers,
         side.yaw = 0, side.pitch = -90;
         values.push_back(camera_value(side, "false", "false"));
         for (int i = 0; i < 4; ++i)
-            values.push_back(parse_text("[" + std::to_string(i) + ", false, false]").value);
+            values.push_back(parse_text(fmt::format("[{}, false, false]", i)).value);
         return values;
     }
     double chosen = 0;
@@ -401,7 +399,7 @@ static void report_labelled(const ir::Scene &scene, Numbers &numbers, const Tree
     std::string what;
     const auto say = [&](const std::string &text) { what += (what.empty() ? "" : ", ") + text; };
     const auto counted = [](std::size_t n, const std::string &one) {
-        return std::to_string(n) + " " + one + (n == 1 ? "" : "s");
+        return fmt::format("{} {}{}", n, one, (n == 1 ? "" : "s"));
     };
     const ir::RenderSettings usual;
     std::map<std::string, int> types;
@@ -449,7 +447,7 @@ std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
     for (const TreeRecord *record : apply_records(kept.tree, root)) {
         std::string place;
         for (const std::size_t index : record->path)
-            place += (place.empty() ? "" : "/") + std::to_string(index);
+            place += fmt::format("{}{}", (place.empty() ? "" : "/"), index);
         unsaved(diagnostics, {},
                 "the kept `" + record->label + " " + place +
                     "` no longer has a place in the scene");

@@ -116,6 +116,7 @@ bool TreeWriter::varying_turn(TreeNode &node, NodeId matrix) {
     return false;
 }
 
+// Long: a case for each kind of map.
 void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out) {
     const Shape &s = shape(id);
     ir::Graph &graph = numbers_.graph();

@@ -104,6 +104,7 @@ std::string leaf_text(Importer &in, const NodeTypeRow &row, Properties &properti
     return text + chain_mark + ".paint(" + found->second.identifier + ")";
 }
 
+// Long: a case for each transform.
 std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &properties, Span at) {
     const Reading reading(in, row, properties, at);
     double v[3];

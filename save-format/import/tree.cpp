@@ -10,6 +10,7 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <optional>
 
 namespace fathom::save {
@@ -17,7 +18,7 @@ std::string TreeReader::path_text() const {
     std::string text;
     for (const std::size_t index : path_) {
         if (!text.empty()) text += '/';
-        text += std::to_string(index);
+        text += fmt::to_string(index);
     }
     return text;
 }
@@ -131,6 +132,247 @@ void TreeReader::read_properties(Event event, const NodeTypeRow *row, const std:
     }
 }
 
+namespace {
+
+// A node of the file, read, and what it becomes: in the text, behind `begin`, and as a record in its
+// slot, for an export.
+struct NodeForm {
+    Importer &in_;
+    const NodeTypeRow *row; // none: the type is unknown, or cannot be used
+    std::string type;
+    Span type_span;
+    std::string name, name_flow, path;
+    Place place;
+    std::size_t slot; // of Importer::kept
+    Body &target;
+    std::size_t begin;
+    bool usable, custom; // custom: the name is no default one
+    Properties properties{};
+    Children kids{};
+    Result result{};
+    bool based = false; // an export has a node of this type here
+    std::string base_type{};
+
+    std::uint32_t part() const { return type_span.begin; }
+    void keep_given();
+    void as_group(std::size_t base);
+    void unite();
+    void group(std::size_t base);
+    void hold();
+    void combine();
+    void transform();
+    void leaf();
+    void settle();
+};
+
+void NodeForm::keep_given() {
+    for (std::size_t i = 0; row && i < row->properties.size(); ++i) {
+        const PropertyType &property = row->properties[i];
+        if (properties.values[i].given && property.kind != PropertyKind::Carried)
+            properties.keep(property.name, property_flow(property, properties.values[i]));
+    }
+    if (!properties.varying.entries.empty())
+        properties.keep("Varying", flow_text(properties.varying));
+}
+
+// A head that an export cannot know is recorded with all that it said.
+void NodeForm::as_group(std::size_t base) {
+    keep_given();
+    in_.kept[slot] = {"group",
+                      path,
+                      fmt::format("[{}, {}, {}, {{{}}}]", base, flow_scalar(type, true), name_flow,
+                                  properties.unknown),
+                      {},
+                      true};
+}
+
+// The children, in their united form, as this node's expression.
+void NodeForm::unite() {
+    if (kids.pieces > 1) {
+        target[begin] = {Piece::Kind::Open, "union {", {}};
+        target.push_back({Piece::Kind::Close, "}", {}});
+    }
+    result.contributed = kids.pieces > 0;
+}
+
+// A node that means no more than the union of its children.
+void NodeForm::group(std::size_t base) {
+    if (place == Place::United || base == 1) {
+        as_group(base);
+        result.base = base;
+    } else {
+        if (base_type != "Union")
+            in_.kept[slot] = {"type", path, flow_scalar(type, true), {}, true};
+        based = true;
+    }
+}
+
+// An operator of which one operand is left is no more than that; but a group that would dissolve in
+// its new place needs something to stand in.
+void NodeForm::hold() {
+    target[begin] = {Piece::Kind::Open, "difference {", {}};
+    target.push_back({Piece::Kind::Line, "empty", {}});
+    target.push_back({Piece::Kind::Close, "}", {}});
+    keep_given();
+    if (base_type != "Difference")
+        in_.kept[slot] = {"type", path, flow_scalar(type, true), {}, true};
+    based = true;
+}
+
+void NodeForm::combine() {
+    const NodeType kind = row ? row->type : NodeType::Generic;
+    if (kind == NodeType::Generic || kind == NodeType::Union) {
+        unite();
+        const std::string paint = row && result.contributed
+                                      ? paint_call(in_, *row, properties, type_span)
+                                      : std::string();
+        if (!paint.empty()) {
+            target.back().text += chain_mark + marked(part(), paint);
+            based = true;
+        } else if (result.contributed) {
+            group(kids.base);
+        }
+    } else if (kind == NodeType::Intersection) {
+        result.contributed = kids.pieces > 0;
+        if (kids.pieces > 1) {
+            target[begin] = {Piece::Kind::Open, "intersection {", {}};
+            target.push_back({Piece::Kind::Close, "}", {}});
+        }
+        if (kids.pieces == 1 && kids.dissolves == place) {
+            hold();
+        } else if (kids.base == 1 || (place == Place::Intersected && result.contributed)) {
+            as_group(kids.base);
+            result.base = kids.base;
+        } else {
+            based = result.contributed;
+        }
+    } else if (!kids.first && kind != NodeType::ProfileBlend) {
+        // Without its first operand there is nothing that the rest could be taken from or
+        // blended with.
+        if (kids.pieces > 0)
+            in_.report.content(type_span,
+                               "the first child of this node is missing, so that it is left out");
+    } else if (kids.pieces == 1) {
+        result.contributed = true;
+        if (kids.dissolves == place)
+            hold();
+        else
+            group(kids.base);
+    } else if (kids.pieces > 1) {
+        result.contributed = based = true;
+        operator_text(in_, *row, properties, target, begin, kids.first_end, kids.rest_mark,
+                      kids.rest_pieces, type_span);
+        for (Piece *piece : {&target[begin], &target.back()})
+            piece->text = marked(part(), std::move(piece->text));
+        if (target[target.size() - 2].kind == Piece::Kind::Line) // its last argument
+            target[target.size() - 2].text =
+                marked(part(), std::move(target[target.size() - 2].text));
+    }
+}
+
+void NodeForm::transform() {
+    const std::string call = transform_call(in_, *row, properties, type_span);
+    if (kids.differ && kids.pieces > 0 && call.ends_with(")")) {
+        // `s.repeat(…, copies: …)` needs of s only that it is a shape
+        target[begin] = {Piece::Kind::Open,
+                         marked(part(), "sphere(1)") + call.substr(0, call.size() - 1) +
+                             ", copies: (_, " + copy_name(in_.words.copies) + ") => union {",
+                         {}};
+        target.push_back({Piece::Kind::Close, "})", {}});
+        result.contributed = true;
+    } else {
+        unite();
+    }
+    if (result.contributed && kids.differ) {
+        based = true;
+    } else if (!result.contributed) {
+    } else if (call.empty()) {
+        group(kids.base);
+    } else {
+        target.back().text += chain_mark;
+        target.back().text += marked(part(), call);
+        based = true;
+    }
+    if (kids.pieces == 1 && !custom) result.display = kids.display;
+}
+
+void NodeForm::leaf() {
+    std::string text = usable ? leaf_text(in_, *row, properties, type_span) : std::string();
+    if (!text.empty()) {
+        target.push_back({Piece::Kind::Line, marked(part(), std::move(text)), {}});
+        result.contributed = based = true;
+    }
+}
+
+// Where a place of its kind would dissolve it, and how many nodes an export has there.
+void NodeForm::settle() {
+    const bool held = based && target[begin].text == "difference {"; // not marked: `hold` made it
+    if (!based)
+        result.dissolves = kids.dissolves;
+    else if (!held && (!row || row->type == NodeType::Generic || row->type == NodeType::Union))
+        result.dissolves = Place::United;
+    else if (!held && row->type == NodeType::Intersection)
+        result.dissolves = Place::Intersected;
+    if (based) {
+        result.base = 1;
+        // An export names nodes by their type and its ordinal among the nodes that it finds itself,
+        // children first.
+        const bool named =
+            row && name == fmt::format("{} {}", base_type,
+                                       ++in_.ordinals[static_cast<std::size_t>(row->type)]);
+        if (!named) in_.keep("name", path, name_flow);
+        if (!properties.unknown.empty())
+            in_.keep("properties", path, "{" + properties.unknown + "}");
+    }
+}
+
+} // namespace
+
+// The rest of a node whose first item is no type.
+void TreeReader::keep_untyped(Event event) {
+    in_.report.content(event.span, "a node's type has to be text")
+        .note("the node is left out, and kept for an export");
+    std::string flow = "[";
+    if (event.kind != EventKind::SequenceEnd) {
+        take_flow(in_.reader, std::move(event), flow);
+        in_.rest_of_sequence(flow);
+    } else {
+        flow += ']';
+    }
+    keep("node", std::move(flow));
+}
+
+// What stands in a node behind its properties.
+void TreeReader::keep_extra(Event event) {
+    in_.report
+        .content(event.span, "a node has a type, a name and one mapping of properties, and no more")
+        .note("the rest is kept for an export");
+    std::string flow = "[";
+    take_flow(in_.reader, std::move(event), flow);
+    in_.rest_of_sequence(flow);
+    keep("extra", std::move(flow));
+}
+
+// Says of a node's type that there is none of that name, or why it cannot be used.
+void TreeReader::report_type(const std::string &type, Span span, const NodeTypeRow *row,
+                             const std::string *unusable) {
+    if (unusable) {
+        const bool leaf = row && row->children == Arity::Leaf;
+        in_.report
+            .content(span, "this `" + std::string(cut(type, 80)) + "` cannot be used: " + *unusable)
+            .note(leaf ? "it is left out, and kept for an export"
+                       : "its children are united in its place; it is kept for an export");
+        return;
+    }
+    std::vector<std::string> known;
+    for (const NodeTypeRow &other : node_types()) known.emplace_back(other.name);
+    Remark remark =
+        in_.report.content(span, "there is no node type `" + std::string(cut(type, 80)) + "`");
+    remark.note("its children, if it has any, are united in its place; it is kept for an export");
+    const std::string near = nearest_name(type, known);
+    if (!near.empty()) remark.help("did you mean `" + near + "`?");
+}
+
 Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     if (first.kind == EventKind::Broken || first.kind == EventKind::End) return {};
     if (first.kind != EventKind::SequenceStart) {
@@ -148,16 +390,7 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
 
     Event event = in_.reader.next();
     if (event.kind != EventKind::Scalar) {
-        in_.report.content(event.span, "a node's type has to be text")
-            .note("the node is left out, and kept for an export");
-        std::string flow = "[";
-        if (event.kind != EventKind::SequenceEnd) {
-            take_flow(in_.reader, std::move(event), flow);
-            in_.rest_of_sequence(flow);
-        } else {
-            flow += ']';
-        }
-        keep("node", std::move(flow));
+        keep_untyped(std::move(event));
         return {};
     }
     const std::string type = event.text;
@@ -174,24 +407,8 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
         row = nullptr;
     }
     ++in_.nodes;
-    if (!usable) {
-        const bool leaf = row && row->children == Arity::Leaf;
-        in_.report
-            .content(type_span, "this `" + std::string(cut(type, 80)) +
-                                    "` cannot be used: " + unusable->second)
-            .note(leaf ? "it is left out, and kept for an export"
-                       : "its children are united in its place; it is kept for an export");
-        if (!leaf) row = nullptr;
-    } else if (!row) {
-        std::vector<std::string> known;
-        for (const NodeTypeRow &other : node_types()) known.emplace_back(other.name);
-        Remark remark = in_.report.content(type_span, "there is no node type `" +
-                                                          std::string(cut(type, 80)) + "`");
-        remark.note(
-            "its children, if it has any, are united in its place; it is kept for an export");
-        const std::string near = nearest_name(type, known);
-        if (!near.empty()) remark.help("did you mean `" + near + "`?");
-    }
+    if (!usable || !row) report_type(type, type_span, row, usable ? nullptr : &unusable->second);
+    if (!usable && !(row && row->children == Arity::Leaf)) row = nullptr;
 
     std::string name;
     bool name_plain = true;
@@ -218,167 +435,33 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
     const std::size_t begin = target.size();
     if (block) target.emplace_back();
 
-    Properties properties;
-    properties.values.resize(row ? row->properties.size() : 0);
-    Children kids;
+    NodeForm form{in_,         row,   type, type_span, name,  flow_scalar(name, name_plain),
+                  path_text(), place, slot, target,    begin, usable,
+                  custom};
+    form.properties.values.resize(row ? row->properties.size() : 0);
+    form.result.part = part;
+    form.result.display = name;
+    form.base_type = row ? row->name : type;
     if (event.kind == EventKind::MappingStart) {
-        read_properties(std::move(event), row, type, target, kids, properties);
+        read_properties(std::move(event), row, type, target, form.kids, form.properties);
         event = in_.reader.next();
     }
     Span end = event.span;
     if (event.kind != EventKind::SequenceEnd && event.kind != EventKind::Broken &&
         event.kind != EventKind::End) {
-        in_.report
-            .content(event.span,
-                     "a node has a type, a name and one mapping of properties, and no more")
-            .note("the rest is kept for an export");
-        std::string flow = "[";
-        take_flow(in_.reader, std::move(event), flow);
-        in_.rest_of_sequence(flow);
+        keep_extra(std::move(event));
         end = Span{in_.source_id, type_span.begin, type_span.begin};
-        keep("extra", std::move(flow));
     }
     blocks_ = blocks_mark;
 
-    const std::string name_flow = flow_scalar(name, name_plain);
-    const auto keep_given = [&] {
-        for (std::size_t i = 0; row && i < row->properties.size(); ++i) {
-            const PropertyType &property = row->properties[i];
-            if (properties.values[i].given && property.kind != PropertyKind::Carried)
-                properties.keep(property.name, property_flow(property, properties.values[i]));
-        }
-        if (!properties.varying.entries.empty())
-            properties.keep("Varying", flow_text(properties.varying));
-    };
-    // A head that an export cannot know is recorded with all that it said.
-    const auto as_group = [&](std::size_t base) {
-        keep_given();
-        in_.kept[slot] = {"group",
-                          path_text(),
-                          "[" + std::to_string(base) + ", " + flow_scalar(type, true) + ", " +
-                              name_flow + ", {" + properties.unknown + "}]",
-                          {},
-                          true};
-    };
+    if (!row || row->children == Arity::Many || row->children == Arity::Two)
+        form.combine();
+    else if (row->children == Arity::One)
+        form.transform();
+    else
+        form.leaf();
 
-    Result result;
-    result.part = part;
-    result.display = name;
-    bool based = false; // an export has a node of this type here
-    std::string base_type = row ? row->name : type;
-    const auto unite = [&] { // the children, in their united form, as this node's expression
-        if (kids.pieces > 1) {
-            target[begin] = {Piece::Kind::Open, "union {", {}};
-            target.push_back({Piece::Kind::Close, "}", {}});
-        }
-        result.contributed = kids.pieces > 0;
-    };
-    // A node that means no more than the union of its children.
-    const auto group = [&](std::size_t base) {
-        if (place == Place::United || base == 1) {
-            as_group(base);
-            result.base = base;
-        } else {
-            if (base_type != "Union")
-                in_.kept[slot] = {"type", path_text(), flow_scalar(type, true), {}, true};
-            based = true;
-        }
-    };
-
-    // An operator of which one operand is left is no more than that; but a group that would
-    // dissolve in its new place needs something to stand in.
-    const auto hold = [&] {
-        target[begin] = {Piece::Kind::Open, "difference {", {}};
-        target.push_back({Piece::Kind::Line, "empty", {}});
-        target.push_back({Piece::Kind::Close, "}", {}});
-        keep_given();
-        if (base_type != "Difference")
-            in_.kept[slot] = {"type", path_text(), flow_scalar(type, true), {}, true};
-        based = true;
-    };
-
-    if (!row || row->children == Arity::Many || row->children == Arity::Two) {
-        const NodeType kind = row ? row->type : NodeType::Generic;
-        if (kind == NodeType::Generic || kind == NodeType::Union) {
-            unite();
-            const std::string paint = row && result.contributed
-                                          ? paint_call(in_, *row, properties, type_span)
-                                          : std::string();
-            if (!paint.empty()) {
-                target.back().text += chain_mark + marked(part, paint);
-                based = true;
-            } else if (result.contributed) {
-                group(kids.base);
-            }
-        } else if (kind == NodeType::Intersection) {
-            result.contributed = kids.pieces > 0;
-            if (kids.pieces > 1) {
-                target[begin] = {Piece::Kind::Open, "intersection {", {}};
-                target.push_back({Piece::Kind::Close, "}", {}});
-            }
-            if (kids.pieces == 1 && kids.dissolves == place) {
-                hold();
-            } else if (kids.base == 1 || (place == Place::Intersected && result.contributed)) {
-                as_group(kids.base);
-                result.base = kids.base;
-            } else {
-                based = result.contributed;
-            }
-        } else if (!kids.first && kind != NodeType::ProfileBlend) {
-            // Without its first operand there is nothing that the rest could be taken from or
-            // blended with.
-            if (kids.pieces > 0)
-                in_.report.content(
-                    type_span, "the first child of this node is missing, so that it is left out");
-        } else if (kids.pieces == 1) {
-            result.contributed = true;
-            if (kids.dissolves == place)
-                hold();
-            else
-                group(kids.base);
-        } else if (kids.pieces > 1) {
-            result.contributed = based = true;
-            operator_text(in_, *row, properties, target, begin, kids.first_end, kids.rest_mark,
-                          kids.rest_pieces, type_span);
-            for (Piece *piece : {&target[begin], &target.back()})
-                piece->text = marked(part, std::move(piece->text));
-            if (target[target.size() - 2].kind == Piece::Kind::Line) // its last argument
-                target[target.size() - 2].text =
-                    marked(part, std::move(target[target.size() - 2].text));
-        }
-    } else if (row->children == Arity::One) {
-        const std::string call = transform_call(in_, *row, properties, type_span);
-        if (kids.differ && kids.pieces > 0 && call.ends_with(")")) {
-            // `s.repeat(…, copies: …)` needs of s only that it is a shape
-            target[begin] = {Piece::Kind::Open,
-                             marked(part, "sphere(1)") + call.substr(0, call.size() - 1) +
-                                 ", copies: (_, " + copy_name(in_.words.copies) + ") => union {",
-                             {}};
-            target.push_back({Piece::Kind::Close, "})", {}});
-            result.contributed = true;
-        } else {
-            unite();
-        }
-        if (result.contributed && kids.differ) {
-            based = true;
-        } else if (!result.contributed) {
-        } else if (call.empty()) {
-            group(kids.base);
-        } else {
-            target.back().text += chain_mark;
-            target.back().text += marked(part, call);
-            based = true;
-        }
-        if (kids.pieces == 1 && !custom) result.display = kids.display;
-    } else {
-        std::string text = usable ? leaf_text(in_, *row, properties, type_span) : std::string();
-        if (!text.empty()) {
-            target.push_back({Piece::Kind::Line, marked(part, std::move(text)), {}});
-            result.contributed = based = true;
-        }
-    }
-
-    if (!result.contributed) {
+    if (!form.result.contributed) {
         in_.kept.resize(kept_mark);
         in_.ordinals = ordinals_mark;
         in_.out.resize(out_mark);
@@ -393,23 +476,8 @@ Result TreeReader::node(const Event &first, Place place, Body &body, bool top) {
              true});
         return {};
     }
-    const bool held = based && target[begin].text == "difference {"; // not marked: `hold` made it
-    if (!based)
-        result.dissolves = kids.dissolves;
-    else if (!held && (!row || row->type == NodeType::Generic || row->type == NodeType::Union))
-        result.dissolves = Place::United;
-    else if (!held && row->type == NodeType::Intersection)
-        result.dissolves = Place::Intersected;
-    if (based) {
-        result.base = 1;
-        // An export names nodes by their type and its ordinal among the nodes that it finds itself,
-        // children first.
-        const bool named =
-            row && name == base_type + " " +
-                               std::to_string(++in_.ordinals[static_cast<std::size_t>(row->type)]);
-        if (!named) keep("name", name_flow);
-        if (!properties.unknown.empty()) keep("properties", "{" + properties.unknown + "}");
-    }
+    form.settle();
+    Result &result = form.result;
     if (hoisted) {
         const std::string identifier =
             in_.names.unique(result.display.empty() ? type : result.display, "shape");

@@ -48,6 +48,10 @@ class TreeReader {
 
   private:
     Result node(const Event &first, Place place, Body &body, bool top);
+    void report_type(const std::string &type, Span span, const NodeTypeRow *row,
+                     const std::string *unusable);
+    void keep_untyped(Event event);
+    void keep_extra(Event event);
     void top_level(const Event &first);
     void children(const Event &key, const NodeTypeRow *row, Body &body, Children &into,
                   Properties &properties);

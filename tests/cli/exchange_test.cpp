@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <fmt/format.h>
 #include <fstream>
 
 namespace {
@@ -132,8 +133,9 @@ TEST_CASE("a file of 100 MB is imported in bounded memory") {
         out << "- 0.3\n- {}\n- []\n- - Generic\n  - Distance field\n  - Children:\n";
         std::string block;
         for (int i = 0; block.size() < 1000000; ++i)
-            block += "    - [Sphere, a sphere with a name that is long enough, {Radius: 0." +
-                     std::to_string(i % 9 + 1) + ", Offset: {X: 0, Y: 0}}]\n";
+            block += fmt::format("    - [Sphere, a sphere with a name that is long enough, "
+                                 "{{Radius: 0.{}, Offset: {{X: 0, Y: 0}}}}]\n",
+                                 i % 9 + 1);
         for (int i = 0; i < 100; ++i) out << block;
     }
     CHECK(std::filesystem::file_size(folder / "big.yaml") > 100000000);

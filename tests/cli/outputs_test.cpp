@@ -174,8 +174,7 @@ TEST_CASE("no option is taken that nothing reads") {
     OutputScenes folder;
     for (const char *line :
          {"render good.sdf --size 8x8 --backend cpu -o a.png --fps 24",
-          "render good.sdf --size 8x8 --backend cpu --cache -o a.png", "bench good.sdf --cells 8",
-          "bench good.sdf --frames 8", "bench good.sdf --figure 8.2",
+          "render good.sdf --size 8x8 --backend cpu --cache -o a.png",
           "check good.sdf --json --explain", "check good.sdf -I nowhere",
           "check good.sdf -I good.sdf", "eval good.sdf --at nan,0,0", "eval good.sdf --at inf,0,0",
           "eval good.sdf", "help nonsense", "help render check", "check good.sdf -D nothing=1"}) {

@@ -2,6 +2,7 @@
 #include "tests/conformance/questions.h"
 
 #include <cmath>
+#include <fmt/format.h>
 
 namespace fathom::conformance {
 
@@ -64,7 +65,7 @@ constexpr ir::OpSet is_exact{Op::Neg,   Op::Add,          Op::Sub,     Op::Mul, 
 std::string Question::name() const {
     std::string text = ir::info(c.op).name;
     for (Type type : c.args) text += std::string(" ") + ir::type_name(type);
-    if (payload != 0) text += " (" + std::to_string(payload) + ")";
+    if (payload != 0) text += fmt::format(" ({})", payload);
     return text;
 }
 
@@ -103,14 +104,13 @@ std::string fault(const Question &question, std::size_t index, const Constant &a
     for (const Constant &arg : row)
         for (int i = 0; i < ir::components(arg.type); ++i) {
             scale = std::max(scale, std::abs(arg.value[static_cast<std::size_t>(i)]));
-            text += " " + std::to_string(arg.value[static_cast<std::size_t>(i)]);
+            text += fmt::format(" {}", arg.value[static_cast<std::size_t>(i)]);
         }
     for (std::size_t i = 0; i < static_cast<std::size_t>(ir::components(question.c.result)); ++i) {
         const bool is_float = question.c.result != Type::Int && question.c.result != Type::Bool;
         const double exact = want.value[i], w = is_float ? static_cast<float>(exact) : exact,
                      got = is_float ? static_cast<float>(answer.value[i]) : answer.value[i];
-        const std::string said = " of" + text + ": component " + std::to_string(i) + " is " +
-                                 std::to_string(got) + ", not " + std::to_string(w);
+        const std::string said = fmt::format(" of{}: component {} is {}, not {}", text, i, got, w);
         if (std::isnan(w)) continue; // has no stated value
         if (w == got) continue;
         if (op == Op::Div && std::isinf(w) && std::isinf(got))

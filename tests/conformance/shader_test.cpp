@@ -5,6 +5,7 @@
 #include "tests/unit/render_gl/harness.h"
 
 #include <cmath>
+#include <fmt/format.h>
 
 using namespace fathom;
 using namespace fathom::conformance;
@@ -137,7 +138,7 @@ std::string fault_in_shader(const Question &question, std::size_t index, const C
             const double v = arg.value[static_cast<std::size_t>(i)];
             scale = std::max(scale, std::abs(v));
             tiny |= v != 0 && std::abs(v) < 1.2e-38;
-            text += " " + std::to_string(v);
+            text += fmt::format(" {}", v);
         }
     if (tiny) return {};
     const bool cancels =
@@ -157,9 +158,7 @@ std::string fault_in_shader(const Question &question, std::size_t index, const C
         if (!whole &&
             question.c.op == Op::Mod) // next to a multiple of the divisor, either end of a turn
             good |= std::abs(std::abs(got - w) - std::abs(row[1].value[i])) <= slack;
-        if (!good)
-            return " of" + text + ": component " + std::to_string(i) + " is " +
-                   std::to_string(got) + ", not " + std::to_string(w);
+        if (!good) return fmt::format(" of{}: component {} is {}, not {}", text, i, got, w);
     }
     return {};
 }

@@ -2,6 +2,8 @@
 // print; a text without an error formats to one with the same tree that formats to itself.
 #include "unit/lang/support.h"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

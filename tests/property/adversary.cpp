@@ -2,6 +2,7 @@
 // before. Whatever the checker accepts is measured where such fields go wrong: on borders and next
 // to them, at 0, over params' ends and inside, over time. FATHOM_SCENES and FATHOM_SEED in the
 // environment make it longer, or another; FATHOM_SHOW says what each scene came to.
+// Long: one generator and its table of hostile calls.
 #include "driver/compile.h"
 #include "ir/lower/lower.h"
 #include "tests/support/slopes.h"
@@ -10,6 +11,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <map>
 
 using namespace fathom;
@@ -455,14 +457,14 @@ std::string measured(const ir::Scene &scene, double time, Adversary &random, int
     }
     const std::vector<float> a = sampler.values(p), b = sampler.values(q);
     for (std::size_t i = 0; i < p.size(); ++i) {
-        if (!std::isfinite(a[i])) return "it is " + std::to_string(a[i]) + " at " + text_of(p[i]);
+        if (!std::isfinite(a[i])) return fmt::format("it is {} at {}", a[i], text_of(p[i]));
         double way = 0;
         for (std::size_t k = 0; k < 3; ++k) way += (p[i][k] - q[i][k]) * (p[i][k] - q[i][k]);
         way = std::sqrt(way);
         const double rounding = 6e-5 + 2e-6 * std::fabs(double(a[i]));
         if (std::fabs(double(a[i]) - double(b[i])) > way * 1.002 + rounding)
-            return "it is " + std::to_string(a[i]) + " at " + text_of(p[i]) + " and " +
-                   std::to_string(b[i]) + " at " + text_of(q[i]);
+            return fmt::format("it is {} at {} and {} at {}", a[i], text_of(p[i]), b[i],
+                               text_of(q[i]));
     }
     return {};
 }
@@ -489,8 +491,8 @@ Verdict judge(const std::string &text, Adversary &random, int pairs) {
         out.wrong = measured(c.scene, time, random, pairs);
         if (!out.wrong.empty()) {
             if (!c.scene.params.empty())
-                out.wrong += ", k = " + std::to_string(c.scene.params[0].value[0]);
-            out.wrong += ", time = " + std::to_string(time);
+                out.wrong += fmt::format(", k = {}", c.scene.params[0].value[0]);
+            out.wrong += fmt::format(", time = {}", time);
             return out;
         }
     }

@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include <cstdlib>
+#include <fmt/format.h>
 #include <map>
 
 using namespace fathom;
@@ -56,10 +57,7 @@ void set_params(ir::Scene &scene, int end) {
                                     : (param.lo[0] + param.hi[0]) / 2;
 }
 
-std::string place(const Point3 &p) {
-    return "[" + std::to_string(p[0]) + ", " + std::to_string(p[1]) + ", " + std::to_string(p[2]) +
-           "]";
-}
+std::string place(const Point3 &p) { return fmt::format("[{}, {}, {}]", p[0], p[1], p[2]); }
 
 // A marched distance d at p, against the plain solid: no point within |d| may have the other sign.
 std::string against_plain(const ir::Scene &scene, const ir::Scene &truth, int count) {
@@ -75,11 +73,11 @@ std::string against_plain(const ir::Scene &scene, const ir::Scene &truth, int co
     for (std::size_t i = 0; i < p.size(); ++i) {
         if (std::fabs(d[i]) < rounding) continue;
         if ((own[i] < 0) != (d[i] < 0) && std::fabs(own[i]) > rounding)
-            return "the solid is another at " + place(p[i]) + ": marched " + std::to_string(d[i]) +
-                   ", plain " + std::to_string(own[i]);
+            return fmt::format("the solid is another at {}: marched {}, plain {}", place(p[i]),
+                               d[i], own[i]);
         if ((e[i] < 0) != (d[i] < 0) && std::fabs(e[i]) > rounding)
-            return "the step " + std::to_string(d[i]) + " at " + place(p[i]) + " reaches over " +
-                   place(q[i]) + ", where the field is " + std::to_string(e[i]);
+            return fmt::format("the step {} at {} reaches over {}, where the field is {}", d[i],
+                               place(p[i]), place(q[i]), e[i]);
     }
     return {};
 }
@@ -109,12 +107,11 @@ Verdict judge(const std::string &head, const Term &tree, int count) {
             Slopes s = measure(c.scene, {-reach, -reach, -reach}, {reach, reach, reach}, count);
             out.steepest = std::max(out.steepest, s.steepest);
             if (s.unsafe)
-                out.wrong = "the offset's step at " + place(s.unsafe_center) + " is " +
-                            std::to_string(s.unsafe_by) + " times the way to " +
-                            place(s.unsafe_point);
+                out.wrong = fmt::format("the offset's step at {} is {} times the way to {}",
+                                        place(s.unsafe_center), s.unsafe_by, place(s.unsafe_point));
             if (s.steepest > 1 + 5e-3)
-                out.wrong = "the raw field is " + std::to_string(s.steepest) +
-                            " times as steep as proved, at " + place(s.where);
+                out.wrong = fmt::format("the raw field is {} times as steep as proved, at {}",
+                                        s.steepest, place(s.where));
             if (!out.wrong.empty()) return out;
         }
     }

@@ -1,6 +1,8 @@
+// Long: one grammar, whose rules call each other.
 #include "programs.h"
 
 #include <array>
+#include <fmt/format.h>
 #include <initializer_list>
 #include <random>
 #include <utility>
@@ -85,7 +87,7 @@ class Writer {
     bool often() { return pick(2) == 0; }
     bool rarely() { return pick(5) == 0; }
     Kind one_of(std::initializer_list<Kind> kinds) { return kinds.begin()[pick(kinds.size())]; }
-    std::string fresh(const char *stem) { return stem + std::to_string(++named_); }
+    std::string fresh(const char *stem) { return fmt::format("{}{}", stem, ++named_); }
 
     std::string number() {
         static constexpr std::array plain = {"0.5", "1",   "2",    "1.5",  "0.25",
@@ -167,13 +169,13 @@ class Writer {
     std::string whole(int depth) {
         const std::string name = name_of(Kind::Int);
         if (depth <= 0 || rarely())
-            return name.empty() || rarely() ? std::to_string(pick(5)) : name;
+            return name.empty() || rarely() ? fmt::to_string(pick(5)) : name;
         const std::string a = whole(depth - 1), b = whole(depth - 1);
         switch (pick(9)) {
         case 0: return "(" + a + " + " + b + ") % 11";
         case 1: return "(" + a + " - " + b + ") % 7";
         case 2: return "(" + a + " * " + b + ") % 5";
-        case 3: return "div(" + a + ", " + std::to_string(1 + pick(4)) + ")";
+        case 3: return fmt::format("div({}, {})", a, 1 + pick(4));
         case 4: return "min(" + a + ", " + b + ")";
         case 5: return "max(" + a + ", " + b + ")";
         case 6: return "int(clamp(" + scalar(depth - 1) + ", -9, 9))";
@@ -320,8 +322,8 @@ class Writer {
         case 0: text = "[" + expression(item, 0) + ", " + expression(item, 1) + "]"; break;
         case 1: {
             const std::string i = fresh("i");
-            text = "[for " + i + " in 0.." + std::to_string(2 + pick(6)) + " { " +
-                   inside({{i, Kind::Int}}, item, 1) + " }]";
+            text = fmt::format("[for {} in 0..{} {{ {} }}]", i, 2 + pick(6),
+                               inside({{i, Kind::Int}}, item, 1));
             break;
         }
         case 2:
@@ -436,9 +438,9 @@ class Writer {
             const std::string i = fresh("i");
             const bool over_list = rarely();
             std::string head = over_list  ? expression(Kind::Floats, 0)
-                               : rarely() ? "range(1, " + std::to_string(5 + pick(9)) + ", 2)"
-                               : rarely() ? "0..=" + std::to_string(pick(6))
-                                          : "0.." + std::to_string(pick(9));
+                               : rarely() ? fmt::format("range(1, {}, 2)", 5 + pick(9))
+                               : rarely() ? fmt::format("0..={}", pick(6))
+                                          : fmt::format("0..{}", pick(9));
             names_.push_back({i, over_list ? Kind::Float : Kind::Int, true, false});
             std::string text = margin + "for " + i + " in " + head + " " +
                                loop_block(margin, result, depth - 1) + "\n";
@@ -447,8 +449,8 @@ class Writer {
         }
         case 7: {
             const std::string head = scalar(1) + " < " + scalar(1);
-            return margin + "while " + head + " limit " + std::to_string(1 + pick(9)) + " " +
-                   loop_block(margin, result, depth - 1) + "\n";
+            return fmt::format("{}while {} limit {} {}\n", margin, head, 1 + pick(9),
+                               loop_block(margin, result, depth - 1));
         }
         case 8:
         case 9: {
@@ -621,7 +623,7 @@ class Writer {
         switch (depth > 0 ? pick(6) : 0) {
         case 1: {
             const std::string i = fresh("i");
-            out_ += margin + "for " + i + " in 0.." + std::to_string(2 + pick(12)) + " {\n";
+            out_ += fmt::format("{}for {} in 0..{} {{\n", margin, i, 2 + pick(12));
             names_.push_back({i, Kind::Int, false, false});
             contribute(margin + "  ", depth - 1);
             out_ += margin + "}\n";

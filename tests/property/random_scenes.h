@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <fmt/format.h>
 #include <memory>
 #include <string>
 #include <vector>
@@ -70,7 +71,7 @@ class RandomScene {
         if (params_.size() >= 3 || !dice_.chance(0.2)) return n(lo, hi);
         double a = dice_.in(lo, hi), b = dice_.in(lo, hi);
         if (a > b) std::swap(a, b);
-        const std::string name = "k" + std::to_string(params_.size());
+        const std::string name = fmt::format("k{}", params_.size());
         params_.push_back("param " + name + " = " + number(a) + " in " + number(a) + ".." +
                           number(b + 0.01) + "\n");
         return name;
@@ -114,8 +115,8 @@ class RandomScene {
             return term("round_cone(" + n(0.3, 0.6) + ", " + n(0.1, 0.3) + ", " + n(0.5, 1.2) +
                         ")");
         case 13:
-            return term("prism(" + std::to_string(3 + dice_.below(5)) + ", " + n(0.3, 1) + ", " +
-                        n(0.3, 1.5) + ")");
+            return term(
+                fmt::format("prism({}, {}, {})", 3 + dice_.below(5), n(0.3, 1), n(0.3, 1.5)));
         case 14: return term("pyramid(" + vec(0.5, 1.6) + ")");
         case 15: return term("tetrahedron(" + n(0.5, 1.2) + ")");
         case 16: return term("icosahedron(" + n(0.5, 1.2) + ")");
@@ -191,8 +192,7 @@ class RandomScene {
         case 2: return term("$.scale(" + vec2(0.5, 1.6) + ")", {s}, true);
         case 3: return term("$.offset(" + slider(-0.15, 0.3) + ")", {s}, true);
         case 4: return term("$.shell(" + n(0.05, 0.2) + ")", {s}, true);
-        case 5:
-            return term("$.repeat_polar(" + std::to_string(2 + dice_.below(6)) + ")", {s}, true);
+        case 5: return term(fmt::format("$.repeat_polar({})", 2 + dice_.below(6)), {s}, true);
         case 6: return term("$.repeat(" + vec2(0.6, 2) + ", count: [2, 3])", {s}, true);
         default: return term("$.mirror(X)", {s}, true);
         }
@@ -216,7 +216,7 @@ class RandomScene {
         const std::string by = flat_ones ? vec2(-0.7, 0.7) : vec(-0.7, 0.7);
         b = term("$.translate(" + by + ")", {b}, flat_ones);
         const std::string both = " { $; $ }", r = slider(0.05, 0.6);
-        const std::string steps = std::to_string(1 + dice_.below(4));
+        const std::string steps = fmt::to_string(1 + dice_.below(4));
         auto two = [&](const std::string &text) { return term(text, {a, b}, flat_ones); };
         static const char *sets[] = {"union", "intersection", "difference"};
         const std::string set = sets[dice_.below(3)];
@@ -301,12 +301,12 @@ class RandomScene {
                 ", copies: (s, id) => s.rotate(6 * hash(id)).translate(y: 0.4 * hash(id.zxy)))");
         case 24: return one("$.repeat_mirror(" + cell() + ")");
         case 25:
-            return one("$.translate(" + vec(-1, 1) + ").repeat_polar(" +
-                       std::to_string(2 + dice_.below(9)) + ", " + axis() + ")");
+            return one(fmt::format("$.translate({}).repeat_polar({}, {})", vec(-1, 1),
+                                   2 + dice_.below(9), axis()));
         case 26:
-            return one("$.translate(x: " + n(0.2, 1.5) + ").repeat_polar(" +
-                       std::to_string(2 + dice_.below(9)) + ", " + axis() +
-                       ", (s, id) => s.scale(0.6 + 0.4 * hash(id)))");
+            return one(fmt::format(
+                "$.translate(x: {}).repeat_polar({}, {}, (s, id) => s.scale(0.6 + 0.4 * hash(id)))",
+                n(0.2, 1.5), 2 + dice_.below(9), axis()));
         case 27: {
             static const char *regions[] = {
                 "ball(0.9, at: [0.2, 0, 0.1])",

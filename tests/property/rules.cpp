@@ -1,5 +1,6 @@
 // Each rule of the analysis in a case where its bound is attained: never exceeded, nearly reached,
 // and wrong at once when the rule is halved.
+// Long: one table of cases.
 #include "build.h"
 #include "ir/lower/lower.h"
 #include "ir/passes/verify.h"
@@ -8,6 +9,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <fmt/format.h>
 #include <functional>
 #include <iostream>
 
@@ -48,6 +50,7 @@ ShapeId off_axis(Scenery &s, double x) {
     return s.add(translated(s.g, s.sphere(0.4), s.g.vec3(x, 0, 0)));
 }
 
+// Long: the table, a row for each rule.
 std::vector<Case> cases() {
     std::vector<Case> out;
     out.push_back({"twist", Rule::Twist,
@@ -416,6 +419,7 @@ TEST_CASE("each rule has a case of its own") {
     }
 }
 
+// Long: the table, a row for each kind.
 TEST_CASE("kinds that must not lengthen, in float32") {
     struct Plain {
         std::string name;
@@ -423,14 +427,14 @@ TEST_CASE("kinds that must not lengthen, in float32") {
     };
     std::vector<Plain> plain;
     for (int profile = 0; profile < 4; ++profile)
-        plain.push_back({"profile " + std::to_string(profile), [profile](Scenery &s) {
+        plain.push_back({fmt::format("profile {}", profile), [profile](Scenery &s) {
                              return s.add(ShapeKind::Blend,
                                           {s.sphere(1), s.add(translated(s.g, s.box(1, 1.5, 1),
                                                                          s.g.vec3(1, 0.3, 0)))},
                                           {s.n(0.5), s.n(3)}, static_cast<std::uint32_t>(profile));
                          }});
     for (int seam = 1; seam < 4; ++seam)
-        plain.push_back({"seam " + std::to_string(seam), [seam](Scenery &s) {
+        plain.push_back({fmt::format("seam {}", seam), [seam](Scenery &s) {
                              return s.add(ShapeKind::Seam,
                                           {s.sphere(1), s.add(translated(s.g, s.box(1, 1.5, 1),
                                                                          s.g.vec3(1, 0.3, 0)))},
@@ -473,7 +477,7 @@ TEST_CASE("kinds that must not lengthen, in float32") {
              return s.add(ShapeKind::Repeat, {motif}, {s.g.vec3(1, 0, 0), s.g.vec3(1e9, 1, 1)}, 0);
          }});
     for (int n : {2, 3, 5, 12})
-        plain.push_back({"a ring of " + std::to_string(n), [n](Scenery &s) {
+        plain.push_back({fmt::format("a ring of {}", n), [n](Scenery &s) {
                              Repetition r;
                              r.polar = true;
                              r.axis = 1;
@@ -508,8 +512,7 @@ TEST_CASE("kinds that must not lengthen, in float32") {
                      }});
     for (double off : {0.955, 0.3})
         plain.push_back(
-            {"a bend of what turns about an axis " + std::to_string(off) + " away",
-             [off](Scenery &s) {
+            {fmt::format("a bend of what turns about an axis {} away", off), [off](Scenery &s) {
                  auto flat = [&](double x, double y) {
                      return s.g.make(Op::Make, Type::Vec2, {s.n(x), s.n(y)});
                  };

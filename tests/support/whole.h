@@ -10,6 +10,8 @@
 #include "proof/prove.h"
 #include "typecheck/check.h"
 
+#include <nlohmann/json.hpp>
+
 #include <string>
 
 namespace fathom::test {

@@ -48,7 +48,7 @@ TEST_CASE("turning keeps the distance, panning the direction, framing the whole 
     CHECK(std::isfinite(viewer::view_of(camera).right[0])); // never straight up
     viewer::frame(camera, {1, 2, 3}, 2, 0.5);
     CHECK(2 / camera.distance <= Approx(std::sin(std::atan(camera.slope * 0.5))));
-    CHECK(camera.target == ir::Triple{1, 2, 3});
+    CHECK(camera.target == glm::dvec3{1, 2, 3});
 }
 
 TEST_CASE("a slider's value outlives a reload, unless the text's own value changed") {

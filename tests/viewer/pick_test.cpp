@@ -4,6 +4,7 @@
 #include "tests/viewer/drawn.h"
 #include "viewer/lines.h"
 
+#include <fmt/format.h>
 #include <set>
 
 using namespace fathom;
@@ -25,7 +26,7 @@ std::set<std::string> seen(const std::string &text, const char *on) {
             const gl::Pick pick = drawn.canvas.pick(x, y);
             if (pick.t < 0) continue;
             const viewer::Part part = viewer::part_of(drawn.compilation, pick.part);
-            found.insert(part.number ? std::to_string(part.line) + " " + part.words : "nothing");
+            found.insert(part.number ? fmt::format("{} {}", part.line, part.words) : "nothing");
         }
     return found;
 }
@@ -118,7 +119,7 @@ TEST_CASE("lines are followed through edits") {
 
 TEST_CASE("a selection stays on its shape when lines come and go, and goes with its own") {
     const std::string at = "sphere(0.3).translate([", end = ", 0, 0])\n";
-    const auto row = [&](int x) { return at + std::to_string(x) + end; };
+    const auto row = [&](int x) { return fmt::format("{}{}{}", at, x, end); };
     const auto found = [](const driver::Compilation &before, const viewer::Part &part,
                           const std::string &text) {
         const driver::Compilation now = compiled(text);

@@ -1,8 +1,10 @@
 // The viewer for real: saves, keys and clicks, and pictures of the window compared.
+// Long: one window, and what a user does to it.
 #include "driver/compile.h"
 #include "save-format/save_format.h"
 #include "tests/viewer/window.h"
 
+#include <fmt/format.h>
 #include <sys/stat.h>
 
 using namespace fathom;
@@ -91,8 +93,8 @@ TEST_CASE("a number that was edited before, and a param, leave the driver alone;
 TEST_CASE("fifty saves in a burst: the newest wins, by two reloads at most after the last, as from "
           "a cold start") {
     const auto text = [&](int i) {
-        return "sphere(" + std::to_string(1 + i * 0.01) + ")" +
-               (i % 2 ? ".paint(blue)\n" : ".paint(red)\n") + camera;
+        return fmt::format("sphere({}){}{}", 1 + i * 0.01,
+                           (i % 2 ? ".paint(blue)\n" : ".paint(red)\n"), camera);
     };
     const Picture wanted = cold_picture(text(49));
     Window window("sphere(1)\n" + camera);
@@ -112,7 +114,7 @@ TEST_CASE("fifty saves in a burst: the newest wins, by two reloads at most after
 TEST_CASE("no save of a hundred is missed, and memory stays flat") {
     Window window("sphere(1)\n" + camera);
     const auto resident = [&] {
-        std::ifstream in("/proc/" + std::to_string(window.process().id()) + "/status");
+        std::ifstream in(fmt::format("/proc/{}/status", window.process().id()));
         for (std::string line; std::getline(in, line);)
             if (line.starts_with("VmRSS:")) return std::stol(line.substr(6));
         return 0L;
@@ -123,7 +125,7 @@ TEST_CASE("no save of a hundred is missed, and memory stays flat") {
         // Every tenth save is another shader, so programs come and go.
         const std::string shape = i % 10 ? "sphere(" : i % 20 ? "box(" : "torus(major: 1, minor: ";
         const std::size_t before = window.lines().size();
-        window.save(shape + std::to_string(0.5 + i * 0.001) + ").paint(orange)\n" + camera);
+        window.save(fmt::format("{}{}).paint(orange)\n{}", shape, 0.5 + i * 0.001, camera));
         missed += !window.reloads(before + 1);
         if (i == 40) warm = resident();
     }
@@ -176,7 +178,7 @@ TEST_CASE("a slider stays under the mouse when its value begins to differ from t
     CHECK(panel_begins() == begin);
     window.key("BackSpace");
     window.hands("mousemove 300 44 mousedown 1"); // its value differs from here on
-    for (int x : {301, 302, 301, 300}) window.hands("mousemove " + std::to_string(x) + " 44");
+    for (int x : {301, 302, 301, 300}) window.hands(fmt::format("mousemove {} 44", x));
     window.hands("mouseup 1");
     window.key("i"); // what it holds goes into the text
     REQUIRE(window.reloads(2));
@@ -418,8 +420,8 @@ TEST_CASE("no frame is blank while the driver works on the next shader") {
     window.key("space");
     for (int i = 0; i < 8; ++i) {
         const std::string shape = i % 2 ? "box(" : "torus(major: 0.2, minor: ";
-        window.reload(shape + std::to_string(1.5 + 0.01 * i) +
-                      ").rotate(time, axis: Y).paint(red)\n" + camera);
+        window.reload(fmt::format("{}{}).rotate(time, axis: Y).paint(red)\n{}", shape,
+                                  1.5 + 0.01 * i, camera));
     }
     window.key("m");
     int frames = 0, blank = 0;
@@ -516,7 +518,7 @@ TEST_CASE("a still scene costs less than a hundredth of a core") {
     Window window("sphere(1).paint(orange)\n" + camera);
     window.picture();
     const auto ticks = [&] { // processor time, in hundredths of a second
-        std::ifstream in("/proc/" + std::to_string(window.process().id()) + "/stat");
+        std::ifstream in(fmt::format("/proc/{}/stat", window.process().id()));
         std::string word;
         long used = 0;
         for (int i = 1; i <= 15 && in >> word; ++i)

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <csignal>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <functional>
 #include <memory>
 #include <set>
@@ -193,7 +194,7 @@ class Window {
     ir::ImageData picture(bool mouse_away = true) {
         if (mouse_away) hands("mousemove 2 2");
         key("p");
-        const fs::path file = folder / ("scene-" + std::to_string(++pictures_) + ".png");
+        const fs::path file = folder / (fmt::format("scene-{}.png", ++pictures_));
         REQUIRE(waited([&] { return fs::exists(file) || !process_->runs(); }));
         std::string error;
         auto image = driver::decode_image(folder.read(file.filename().string()), error);
@@ -201,7 +202,7 @@ class Window {
         // Kept for whoever wants to look at what the tests saw.
         if (const char *keep = std::getenv("FATHOM_KEEP_PICTURES")) {
             static int kept = 0;
-            fs::copy_file(file, fs::path(keep) / (std::to_string(1000 + ++kept) + ".png"),
+            fs::copy_file(file, fs::path(keep) / (fmt::format("{}.png", 1000 + ++kept)),
                           fs::copy_options::overwrite_existing);
         }
         return *image;

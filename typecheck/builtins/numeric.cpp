@@ -1,5 +1,6 @@
 // GLSL's numeric functions by their names, constructors, and the library's noise primitives: names
 // for ops of the graph.
+#include "base/srgb.h"
 #include "typecheck/binding.h"
 #include "typecheck/interpreter.h"
 
@@ -277,8 +278,7 @@ static Value rgb_call(Interpreter &ev, const CallSite &site, std::vector<Value> 
     // sRGB in the text, linear inside (docs/language.md)
     auto linear = [&](const Value &v) {
         if (v.kind != ValueKind::Field) {
-            double c = v.num[0];
-            return number(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+            return number(linear_of_srgb(v.num[0]));
         }
         ir::Graph &g = ev.scene.graph;
         ir::NodeId c = to_node(ev, to_float(ev, v));

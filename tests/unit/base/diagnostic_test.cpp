@@ -2,6 +2,7 @@
 #include "base/diagnostic.h"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include <set>
 
@@ -136,13 +137,18 @@ TEST_CASE("JSON has the fields that editors read") {
     f.diagnostics.add(Code::UnknownName, f.span("spere"), "no \"spere\"")
         .label(f.span("1"), "one")
         .help("write `sphere`", {{f.span("spere"), "sphere"}});
-    CHECK(
-        to_json(f.diagnostics.items()[0], f.sources) ==
-        R"({"code": "unknown-name", "severity": "error", "message": "no \"spere\"", "file": "a.sdf", )"
-        R"("line": 1, "column": 5, "end_line": 1, "end_column": 10, "label": "", "labels": [)"
-        R"({"file": "a.sdf", "line": 1, "column": 11, "end_line": 1, "end_column": 12, "message": "one"}], )"
-        R"("notes": [], "fix": {"message": "write `sphere`", "edits": [{"file": "a.sdf", "line": 1, )"
-        R"("column": 5, "end_line": 1, "end_column": 10, "replacement": "sphere"}]}})");
+    CHECK(json_text(to_json(f.diagnostics.items()[0], f.sources)) ==
+          R"({"code":"unknown-name","severity":"error","message":"no \"spere\"","file":"a.sdf",)"
+          R"("line":1,"column":5,"end_line":1,"end_column":10,"label":"","labels":[)"
+          R"({"file":"a.sdf","line":1,"column":11,"end_line":1,"end_column":12,"message":"one"}],)"
+          R"("notes":[],"fix":{"message":"write `sphere`","edits":[{"file":"a.sdf","line":1,)"
+          R"("column":5,"end_line":1,"end_column":10,"replacement":"sphere"}]}})");
+}
+
+TEST_CASE("JSON is ASCII, and what is no UTF-8 is replaced in it") {
+    const std::string text =
+        json_text({{"a", "\xe2\x80\xae\xc3\xa9"}, {"b", "\xff"}, {"c", "\x1b[31m\x7f"}});
+    CHECK(text == R"({"a":"\u202e\u00e9","b":"\ufffd","c":"\u001b[31m\u007f"})");
 }
 
 TEST_CASE("repeats are dropped, and the number kept is bounded") {

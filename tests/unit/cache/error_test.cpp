@@ -27,18 +27,12 @@ Error error_of(const gl::CachedView &view, const ir::Scene &scene, const gl::Fra
             if ((got.rgba[i + 3] > 0) != (wanted.rgba[i + 3] > 0)) ++error.only_one;
             if (got.rgba[i + 3] == 0) continue;
             const double u = 2 * (x + 0.5) / got.width - 1, v = 1 - 2 * (y + 0.5) / got.height;
-            std::array<double, 3> d{}, p{};
-            double size = 0;
-            for (std::size_t a = 0; a < 3; ++a) {
-                d[a] = in.view.forward[a] +
-                       in.view.extent * (u * in.view.right[a] + v * in.view.up[a]);
-                size += d[a] * d[a];
-            }
-            for (std::size_t a = 0; a < 3; ++a)
-                p[a] = in.view.origin[a] +
-                       static_cast<double>(got.rgba[i + 1]) * d[a] / std::sqrt(size);
-            const double f = std::hypot(p[0], p[1], p[2]) - 1 -
-                             reference.call(cache.field, {test::Reference::vec3(p)}).value[0];
+            const glm::dvec3 d = glm::normalize(
+                in.view.forward + in.view.extent * (u * in.view.right + v * in.view.up));
+            const glm::dvec3 p = in.view.origin + double(got.rgba[i + 1]) * d;
+            const double f =
+                glm::length(p) - 1 -
+                reference.call(cache.field, {test::Reference::vec3({p.x, p.y, p.z})}).value[0];
             error.maximum = std::max(error.maximum, std::abs(f));
             error.mean += std::abs(f);
             ++error.hits;

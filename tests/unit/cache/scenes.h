@@ -6,6 +6,8 @@
 #include "tests/support/gl_context.h"
 
 #include <catch2/catch.hpp>
+#define GLM_ENABLE_EXPERIMENTAL
+#include <glm/gtx/rotate_vector.hpp>
 
 #include <cmath>
 #include <string>
@@ -30,10 +32,9 @@ inline gl::FrameInputs frame_of(const ir::Scene &scene, int side, double turn = 
     gl::FrameInputs inputs;
     inputs.view = ir::view_of(scene, 0, 1);
     inputs.sun = ir::lights_of(scene, 0, inputs.view)[0].position;
-    const double c = std::cos(turn), s = std::sin(turn);
-    for (ir::Triple *v :
+    for (glm::dvec3 *v :
          {&inputs.view.origin, &inputs.view.right, &inputs.view.up, &inputs.view.forward})
-        *v = {c * (*v)[0] + s * (*v)[2], (*v)[1], c * (*v)[2] - s * (*v)[0]};
+        *v = glm::rotateY(*v, turn);
     inputs.width = inputs.height = side;
     inputs.mode = mode;
     return inputs;

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <fmt/format.h>
 
 using namespace fathom;
 
@@ -31,7 +32,7 @@ std::size_t length_of(const driver::Compilation &c, glsl::Target target) {
 
 std::string with(std::string text, int count) {
     for (std::size_t at; (at = text.find('#')) != text.npos;)
-        text.replace(at, 1, std::to_string(count));
+        text.replace(at, 1, fmt::to_string(count));
     return text;
 }
 

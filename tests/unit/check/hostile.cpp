@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 using namespace fathom;
@@ -40,8 +41,7 @@ TEST_CASE("recursion has an end") {
     CHECK(answer("let f0 = p => length(p)\n" + [] {
               std::string text;
               for (int i = 1; i < 40; ++i)
-                  text += "let f" + std::to_string(i) + " = p => f" + std::to_string(i - 1) +
-                          "(p) + f" + std::to_string(i - 1) + "(p * 2)\n";
+                  text += fmt::format("let f{} = p => f{}(p) + f{}(p * 2)\n", i, i - 1, i - 1);
               return text;
           }() + "implicit(f39, estimate: 2)") == "loop-limit");
 }

@@ -12,6 +12,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 #include <set>
 
@@ -233,7 +234,7 @@ std::string fault_of(const std::string &text, bool to_shader) {
         cpu::evaluate(program, scratch, in, out, d.size());
         for (std::size_t i = 0; i < d.size(); ++i)
             if (std::isnan(d[i]))
-                return "no number at point " + std::to_string(i) + (low ? ", low" : ", high");
+                return fmt::format("no number at point {}{}", i, (low ? ", low" : ", high"));
     }
     if (!constants_fit(scene.graph, scene.graph.function(scene.distance).result))
         return "a constant of none";

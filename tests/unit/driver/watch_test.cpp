@@ -5,6 +5,7 @@
 #include "scratch_folder.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 #include <optional>
 #include <sys/resource.h>
 #include <thread>
@@ -43,7 +44,7 @@ TEST_CASE("each way to save is seen, 100 of 100") {
     int seen = 0, once = 0;
     for (int i = 1; i <= 100; ++i) {
         std::string text =
-            "sphere(" + std::to_string(i) + ")" + std::string(static_cast<std::size_t>(i), ' ');
+            fmt::format("sphere({}){}", i, std::string(static_cast<std::size_t>(i), ' '));
         if (way == "in place") w.folder.write("scene.sdf", text);
         if (way == "rename over") fs::rename(w.folder.write(".scene.sdf.tmp", text), w.file);
         if (way == "delete and create") {
@@ -63,8 +64,7 @@ TEST_CASE("each way to save is seen, 100 of 100") {
             out << text;
         }
         if (way == "sed -i") {
-            const std::string command =
-                "sed -i 's/(.*)/(" + std::to_string(i) + ")/' " + w.file.string();
+            const std::string command = fmt::format("sed -i 's/(.*)/({})/' {}", i, w.file.string());
             REQUIRE(std::system(command.c_str()) == 0);
         }
         seen += w.watcher.wait(patience);

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <fmt/format.h>
 
 using namespace fathom;
 using namespace fathom::ir;
@@ -17,8 +18,8 @@ namespace {
 // How many different arguments a spelling names, if it names them all: {0}, {1}, … without a gap.
 int named(const char *form) {
     int n = 0;
-    while (std::strstr(form, ("{" + std::to_string(n) + "}").c_str())) ++n;
-    CHECK(std::strstr(form, ("{" + std::to_string(n + 1) + "}").c_str()) == nullptr);
+    while (std::strstr(form, (fmt::format("{{{}}}", n)).c_str())) ++n;
+    CHECK(std::strstr(form, (fmt::format("{{{}}}", n + 1)).c_str()) == nullptr);
     return n;
 }
 } // namespace

@@ -4,6 +4,7 @@
 #include "support.h"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 using lang_test::Parsed;
 

@@ -44,7 +44,7 @@ std::vector<float> drawn(const gl::Program &program, const Scene &scene, double 
     request.height = 72;
     request.time = time;
     request.view = ir::view_of(scene, time, 96.0 / 72);
-    for (double &x : request.view->origin) x *= away;
+    request.view->origin *= away;
     const auto pixels = gl::draw(program, scene, request, mode);
     REQUIRE(pixels);
     return pixels->rgba;

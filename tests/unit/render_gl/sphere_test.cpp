@@ -5,6 +5,7 @@
 #include "render-gl/render.h"
 
 #include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
 
 using namespace fathom;
 using namespace fathom::scenes;
@@ -36,26 +37,20 @@ float at(const std::vector<float> &rgba, int x, int y, int component) {
 }
 
 struct PixelRay {
-    Triple origin, direction;
+    glm::dvec3 origin, direction;
 };
 PixelRay ray(const View &view, double x, double y) {
     const double u = (2 * x / width - 1) * width / height, v = 1 - 2 * y / height;
     PixelRay r{view.origin, view.forward};
-    double size = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double aside = view.extent * (u * view.right[i] + v * view.up[i]);
-        (view.orthographic ? r.origin[i] : r.direction[i]) += aside;
-        size += r.direction[i] * r.direction[i];
-    }
-    for (double &c : r.direction) c /= std::sqrt(size);
+    (view.orthographic ? r.origin : r.direction) += view.extent * (u * view.right + v * view.up);
+    r.direction = glm::normalize(r.direction);
     return r;
 }
 
 // Where a ray first meets the unit sphere; negative where it does not.
 double meets(const PixelRay &r, double radius = 1) {
-    double b = 0, c = -radius * radius;
-    for (std::size_t i = 0; i < 3; ++i)
-        b += r.origin[i] * r.direction[i], c += r.origin[i] * r.origin[i];
+    const double b = glm::dot(r.origin, r.direction),
+                 c = glm::dot(r.origin, r.origin) - radius * radius;
     return b * b < c ? -1 : -b - std::sqrt(b * b - c);
 }
 

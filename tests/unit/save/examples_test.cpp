@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fmt/format.h>
 #include <random>
 
 using namespace save_test;
@@ -111,7 +112,7 @@ std::vector<driver::Override> moved_params(const ir::Scene &scene) {
     for (const ir::Param &param : scene.params)
         if (param.has_range && param.type == ir::Type::Float && !param.structural)
             moved.push_back(
-                {param.name, std::to_string(param.lo[0] + (param.hi[0] - param.lo[0]) / 3)});
+                {param.name, fmt::to_string(param.lo[0] + (param.hi[0] - param.lo[0]) / 3)});
     return moved;
 }
 

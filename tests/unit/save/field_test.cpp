@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <fmt/format.h>
 #include <random>
 
 using namespace save_test;
@@ -141,7 +142,7 @@ class Generator {
   private:
     int pick(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
     std::string number(double lo, double hi) {
-        return std::to_string(std::round(100 * (lo + (hi - lo) * (random_() / 4294967296.0))) /
+        return fmt::to_string(std::round(100 * (lo + (hi - lo) * (random_() / 4294967296.0))) /
                               100);
     }
     std::string size() { return number(0.3, 1.2); }
@@ -174,8 +175,7 @@ class Generator {
         case 11: return "dfmodel.cone(" + size() + ", " + size() + ")";
         case 12: return "dfmodel.cylinder(" + size() + ", " + size() + ")";
         case 13: return "dfmodel.menger_sponge(" + number(1, 2) + ", 2)";
-        case 14:
-            return "dfmodel.blobby(5, size: 1, radius: 0.1, seed: " + std::to_string(pick(9)) + ")";
+        case 14: return fmt::format("dfmodel.blobby(5, size: 1, radius: 0.1, seed: {})", pick(9));
         case 15:
             return "dfmodel.gdf_pair(dfmodel.cube, dfmodel.octahedron, a_scale: 1.6, b_scale: "
                    "-0.8, radius: 0.6)";

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <ctime>
+#include <fmt/format.h>
 #include <locale>
 #include <random>
 
@@ -300,9 +301,8 @@ TEST_CASE("hostile files are answered in bounded time and memory", "[save]") {
 
     std::string laughs = head + "- [Generic, r, {a0: &a0 [ha, ha, ha, ha]";
     for (int i = 1; i < 30; ++i) {
-        const std::string last = "*a" + std::to_string(i - 1);
-        laughs += ", a" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + last + ", " +
-                  last + ", " + last + ", " + last + "]";
+        const std::string last = fmt::format("*a{}", i - 1);
+        laughs += fmt::format(", a{}: &a{} [{}, {}, {}, {}]", i, i, last, last, last, last);
     }
     const Imported laughed = import_text(laughs + "}]\n");
     CHECK_FALSE(laughed.result.structural_error);
@@ -320,7 +320,7 @@ TEST_CASE("hostile files are answered in bounded time and memory", "[save]") {
 TEST_CASE("a hundred thousand nodes stay a line each", "[save]") {
     std::string text = "- 0.3\n- {}\n- []\n- - Generic\n  - Distance field\n  - Children:\n";
     for (int i = 1; i <= 100000; ++i)
-        text += "    - [Sphere, Sphere " + std::to_string(i) + ", {Radius: 0.5}]\n";
+        text += fmt::format("    - [Sphere, Sphere {}, {{Radius: 0.5}}]\n", i);
     const Imported imported = import_text(text);
     CHECK(imported.result.nodes == 100000);
     CHECK(imported.result.sdf.size() < 60 * 100000);

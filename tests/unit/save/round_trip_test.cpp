@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <fmt/format.h>
 #include <random>
 
 using namespace save_test;
@@ -143,7 +144,7 @@ TEST_CASE("long lists of like shapes keep their order, doubles and digits", "[sa
     std::string nodes =
         "[Difference, Difference 1, {Children: [[Box, Box 1, {Size: {X: 9, Y: 9, Z: 9}}]";
     for (int i = 0; i < 20; ++i) {
-        const std::string x = "0." + std::to_string(123456789012345 + i % 7);
+        const std::string x = fmt::format("0.{}", 123456789012345 + i % 7);
         nodes += i % 3 == 0 ? ", [Sphere, s, {Radius: " + x + "}]"
                             : ", [Translation, t, {Vector: {X: " + x +
                                   ", Y: 0, Z: 1}, Children: [[Sphere, s, {Radius: 0.25}]]}]";
@@ -169,16 +170,14 @@ TEST_CASE("the version and a lighting node among the shapes come back", "[save]"
 TEST_CASE("generated trees come back whole", "[save]") {
     std::mt19937 random(1);
     const auto pick = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
-    const auto number = [&] {
-        return std::to_string(1 + pick(9)) + "." + std::to_string(pick(1000));
-    };
+    const auto number = [&] { return fmt::format("{}.{}", 1 + pick(9), pick(1000)); };
     const auto xyz = [&] {
         return "{X: " + number() + ", Y: " + number() + ", Z: -" + number() + "}";
     };
     int names = 0;
     const std::function<std::string(int)> node = [&](int depth) -> std::string {
-        const std::string name = pick(2) == 0 ? "node " + std::to_string(++names)
-                                              : "Sphere " + std::to_string(1 + pick(4));
+        const std::string name =
+            pick(2) == 0 ? fmt::format("node {}", ++names) : fmt::format("Sphere {}", 1 + pick(4));
         std::string children;
         const auto kids = [&](int minimum, int maximum) {
             const int count = minimum + pick(maximum - minimum + 1);
@@ -196,11 +195,12 @@ TEST_CASE("generated trees come back whole", "[save]") {
             return "[Generalized Distance Function, " + name +
                    ", {Shape: Dodecahedron, Radius: " + number() + ", Exponent: 9}]";
         case 15:
-            return "[Blobby Objects, " + name + ", {Balls: 3, Size: {X: 1, Y: " + number() +
-                   ", Z: 1}, Radius: 0.1, Seed: " + std::to_string(pick(9)) + "}]";
+            return fmt::format("[Blobby Objects, {}, {{Balls: 3, Size: {{X: 1, Y: {}, Z: 1}}, "
+                               "Radius: 0.1, Seed: {}}}]",
+                               name, number(), pick(9));
         case 16:
-            return "[Menger Sponge, " + name + ", {Size: " + number() +
-                   ", Iterations: " + std::to_string(pick(4)) + "}]";
+            return fmt::format("[Menger Sponge, {}, {{Size: {}, Iterations: {}}}]", name, number(),
+                               pick(4));
         case 17:
             return "[Twist, " + name + ", {Rate: " + number() + ", Tightness: {X: [1, 2]}, " +
                    kids(1, 2);

@@ -3,6 +3,7 @@
 #include "save-format/import/importer.h"
 
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <sstream>
 
@@ -33,7 +34,7 @@ std::string lines(const Diagnostics &diagnostics, const Sources &sources, bool e
         if (errors_only && d.severity != Severity::Error) continue;
         if (d.primary.span.source) {
             const Position at = position(sources[d.primary.span.source], d.primary.span.begin);
-            text += std::to_string(at.line) + ":" + std::to_string(at.column) + " ";
+            text += fmt::format("{}:{} ", at.line, at.column);
         }
         text += std::string(d.severity == Severity::Error ? "error " : "") +
                 std::string(code_name(d.code)) + " " + d.message + "\n";
@@ -85,10 +86,9 @@ std::string difference(const save::Value &a, const save::Value &b, const std::st
         return a.text == b.text ? "" : place + ": " + a.text + " became " + b.text;
     }
     if (a.items.size() != b.items.size())
-        return place + ": " + std::to_string(a.items.size()) + " items became " +
-               std::to_string(b.items.size());
+        return fmt::format("{}: {} items became {}", place, a.items.size(), b.items.size());
     for (std::size_t i = 0; i < a.items.size(); ++i) {
-        std::string found = difference(a.items[i], b.items[i], place + "/" + std::to_string(i));
+        std::string found = difference(a.items[i], b.items[i], fmt::format("{}/{}", place, i));
         if (!found.empty()) return found;
     }
     // Every entry of the first; the second may say defaults that the first leaves out.

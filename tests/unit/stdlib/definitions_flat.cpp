@@ -40,6 +40,7 @@ bool near_bezier(double x, double y, const Corners &c, double r) {
 
 } // namespace
 
+// Long: the table, a row for each shape.
 std::vector<Solid> flat_solids() {
     const Inside can = [](Point p) { return std::hypot(p[0], p[2]) < 0.8 && std::abs(p[1]) < 0.5; };
     const Corners arrow{{-1, -0.6}, {1, -0.6}, {0.3, 0}, {0, 0.9}};

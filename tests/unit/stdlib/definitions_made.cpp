@@ -138,6 +138,7 @@ std::vector<Solid> combined_solids() {
     };
 }
 
+// Long: the table, a row for each transform.
 std::vector<Solid> transformed_solids() {
     auto stick = [](Point p) { return in_box(p, 2, 0.5, 0.8); };
     Point off{0.5, 0.1, 0.2};

@@ -128,6 +128,7 @@ bool in_menger(Point p, double size, int iterations) {
 
 } // namespace
 
+// Long: the table, a row for each shape.
 std::vector<Solid> round_solids() {
     const std::vector<Point> path{{-1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 0, 1}};
     const std::vector<Point> blobs{{-0.6, 0, 0}, {0.5, 0.1, 0}, {0, 0.7, 0}};

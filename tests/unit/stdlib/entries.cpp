@@ -42,6 +42,7 @@ driver::Compilation compiled(const std::string &text) {
 }
 
 // Calls that make no shape; of each entry that can be called wrongly at least one.
+// Long: the table, a row for each condition.
 std::vector<std::string> wrong_calls() {
     std::vector<std::string> calls{
         "sphere(0)",

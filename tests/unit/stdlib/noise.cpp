@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 using namespace fathom;
 using namespace fathom::test;
@@ -31,7 +32,7 @@ const std::vector<Noise> noises{
 
 std::string seeded(const Noise &noise, int seed) {
     std::string call = noise.call;
-    return call.replace(call.find("SEED"), 4, std::to_string(seed));
+    return call.replace(call.find("SEED"), 4, fmt::to_string(seed));
 }
 
 // The noise's own values: the marched field of {noise < 0}, times the bound that it was divided by.

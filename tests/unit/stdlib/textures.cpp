@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <fmt/format.h>
 
 using namespace fathom;
 using namespace fathom::test;
@@ -206,10 +207,9 @@ TEST_CASE("a grid of distances is a solid of its own size, place and slope", "[t
     for (int z = 0; z < n[2]; ++z)
         for (int y = 0; y < n[1]; ++y)
             for (int x = 0; x < n[0]; ++x)
-                text += std::to_string(norm(Point{lo[0] + step * x - 0.25, lo[1] + step * y,
-                                                  lo[2] + step * z}) -
-                                       0.5) +
-                        "\n";
+                text += fmt::format(
+                    "{}\n",
+                    norm(Point{lo[0] + step * x - 0.25, lo[1] + step * y, lo[2] + step * z}) - 0.5);
     folder.write("ball.nrrd", text);
     Field field("distance_grid(\"ball.nrrd\")", folder.path().string());
     INFO(field.said());

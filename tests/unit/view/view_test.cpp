@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <glm/geometric.hpp>
 #include <set>
 
 using namespace fathom;
@@ -11,7 +12,7 @@ using namespace fathom::scenes;
 
 namespace {
 
-double dot(Triple a, Triple b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+using glm::dot;
 
 void check_frame(const View &v) {
     CHECK(dot(v.right, v.right) == Approx(1));
@@ -19,17 +20,14 @@ void check_frame(const View &v) {
     CHECK(dot(v.forward, v.forward) == Approx(1));
     CHECK(dot(v.right, v.up) == Approx(0).margin(1e-12));
     CHECK(dot(v.right, v.forward) == Approx(0).margin(1e-12));
-    const Triple back{v.right[1] * v.up[2] - v.right[2] * v.up[1],
-                      v.right[2] * v.up[0] - v.right[0] * v.up[2],
-                      v.right[0] * v.up[1] - v.right[1] * v.up[0]};
-    CHECK(dot(back, v.forward) == Approx(-1)); // right-handed
+    CHECK(dot(glm::cross(v.right, v.up), v.forward) == Approx(-1)); // right-handed
 }
 
 } // namespace
 
 TEST_CASE("a view is a right-handed frame, also straight up and down") {
-    for (Triple from :
-         {Triple{3, 2, 5}, Triple{0, 4, 0}, Triple{0, -4, 0}, Triple{0, 0, 0}, Triple{-1e6, 1, 1}})
+    for (glm::dvec3 from : {glm::dvec3{3, 2, 5}, glm::dvec3{0, 4, 0}, glm::dvec3{0, -4, 0},
+                            glm::dvec3{0, 0, 0}, glm::dvec3{-1e6, 1, 1}})
         check_frame(look_at(from, {0, 0, 0}, 1, false));
     CHECK(look_at({0, 4, 0}, {0, 0, 0}, 1, false).right[0] ==
           Approx(1)); // a map: x to the right, -z up
@@ -127,5 +125,5 @@ TEST_CASE("without a light a sun shines from the upper left behind the camera") 
     CHECK(dot(lights[0].position, view.up) > 0);
     CHECK(dot(lights[0].position, view.forward) < 0);
     scene.lights.push_back({false, scene.graph.vec3(1, 2, 3), scene.graph.vec3(1, 1, 1)});
-    CHECK(lights_of(scene, 0, view)[0].position == Triple{1, 2, 3});
+    CHECK(lights_of(scene, 0, view)[0].position == glm::dvec3{1, 2, 3});
 }

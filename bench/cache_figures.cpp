@@ -1,7 +1,8 @@
-// fathom bench --noise-cache: what the thesis measured of its cache (figures 8.2 to 8.6), of one
+// fathom-bench figures SCENE: what the thesis measured of its cache (figures 8.2 to 8.6), of one
 // scene. Times are ratios of two ways taken alternately in one run; where the CPU draws, its own
 // time counts, since others may share the machine.
-#include "cli/bench.h"
+#include "bench/measure.h"
+
 #include "ir/passes/cost.h"
 #include "render-gl/cache_passes.h"
 #include "render-gl/context.h"
@@ -9,10 +10,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
 #include <fmt/format.h>
+#define GLM_ENABLE_EXPERIMENTAL
+#include <glm/gtx/rotate_vector.hpp>
 
-namespace fathom::cli {
+namespace fathom::bench {
 namespace {
 
 constexpr double frame_time = 1.0 / 30;
@@ -21,7 +25,6 @@ struct Bench {
     const ir::Scene &scene;
     int width, height;
     bool software; // the CPU draws
-    Terminal &terminal;
 
     double now() const {
         if (software) return static_cast<double>(std::clock()) / CLOCKS_PER_SEC * 1000;
@@ -29,8 +32,8 @@ struct Bench {
         return std::chrono::duration<double, std::milli>(since).count();
     }
     void put(const std::string &row) const { // at once: the next one may take long
-        terminal.put(row);
-        terminal.flush();
+        std::fputs(row.c_str(), stdout);
+        std::fflush(stdout);
     }
     std::uint64_t pixels() const {
         return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
@@ -46,16 +49,9 @@ struct Bench {
 // The scene's own view, turned about the height through what it looks at: as if the scene turned.
 ir::View turned(const ir::Scene &scene, double aspect, double angle) {
     ir::View view = ir::view_of(scene, 0, aspect);
-    const double c = std::cos(angle), s = std::sin(angle);
-    ir::Triple target{};
-    for (std::size_t i = 0; i < 3; ++i) target[i] = view.origin[i] + view.focus * view.forward[i];
-    const auto turn = [&](const ir::Triple &v) {
-        return ir::Triple{c * v[0] + s * v[2], v[1], c * v[2] - s * v[0]};
-    };
-    ir::Triple back = view.origin;
-    for (std::size_t i = 0; i < 3; ++i) back[i] -= target[i];
-    back = turn(back);
-    for (std::size_t i = 0; i < 3; ++i) view.origin[i] = target[i] + back[i];
+    const glm::dvec3 target = view.origin + view.focus * view.forward;
+    const auto turn = [&](const glm::dvec3 &v) { return glm::rotateY(v, angle); };
+    view.origin = target + turn(view.origin - target);
     view.right = turn(view.right);
     view.up = turn(view.up);
     view.forward = turn(view.forward);
@@ -244,16 +240,16 @@ void print_edits(const Bench &bench, gl::CachedView &view, int frames) {
     }
 }
 
-void measure(const Bench &bench, gl::CachedView &view, const BenchCommand &command) {
+void measure(const Bench &bench, gl::CachedView &view, const FigureOptions &options) {
     const int side = view.store().side();
     const auto wanted = [&](const char *figure) {
-        return command.figure.empty() || command.figure == figure;
+        return options.figure.empty() || options.figure == figure;
     };
     // As many frames as take about three minutes in all, unless it was said.
     const gl::FrameInputs inputs = inputs_of(bench, 0);
     const double one = bench.time([&] { view.draw_exactly(inputs, bench.scene.params); });
     const int usual = std::clamp(static_cast<int>(2000 / std::max(one, 1.0)), 2, 24);
-    const int frames = command.frames > 0 ? command.frames : usual;
+    const int frames = options.frames > 0 ? options.frames : usual;
     if (wanted("8.4")) print_difference(bench, view);
     if (wanted("8.6")) print_speeds(bench, view, frames);
     if (wanted("8.2") || wanted("8.3")) print_ages(bench, view, frames);
@@ -266,31 +262,37 @@ void measure(const Bench &bench, gl::CachedView &view, const BenchCommand &comma
 
 } // namespace
 
-Exit bench_noise_cache(const BenchCommand &command, const ir::Scene &scene, Terminal &terminal) {
+int measure_figures(const FigureOptions &options) {
+    const driver::Compilation compilation = driver::compile_file(options.scene, {});
+    if (!compilation.good()) {
+        std::fprintf(stderr, "fathom-bench: %s: %s\n", options.scene.c_str(),
+                     complaint(compilation).c_str());
+        return 1;
+    }
+    const ir::Scene &scene = compilation.scene;
     auto context = gl::Context::make();
     if (const std::string *why = std::get_if<std::string>(&context)) {
-        terminal.say(fmt::format("fathom: no GL to measure with: {}", *why));
-        return device_error;
+        std::fprintf(stderr, "fathom-bench: no GL to measure with: %s\n", why->c_str());
+        return 3;
     }
     const std::string driver = std::get<gl::Context>(context).describe();
     Diagnostics diagnostics;
-    Bench bench{scene, command.width, command.height, driver.find("llvmpipe") != driver.npos,
-                terminal};
-    terminal.put(fmt::format("GL {}; times are {}\n", driver,
-                             bench.software ? "the processor's" : "on the clock"));
+    Bench bench{scene, options.width, options.height, driver.find("llvmpipe") != driver.npos};
+    bench.put(fmt::format("GL {}; times are {}\n", driver,
+                          bench.software ? "the processor's" : "on the clock"));
     print_fields(bench);
     gl::CachedView view;
     const gl::CacheSize size =
-        command.cache_bits ? gl::CacheSize{.bits = command.cache_bits} : gl::usual_cache_size;
+        options.cache_bits ? gl::CacheSize{.bits = options.cache_bits} : gl::usual_cache_size;
     const std::string why = view.use(scene, size, diagnostics);
     if (!why.empty()) {
-        terminal.say(fmt::format("fathom: drawn exactly: {}", why));
-        return done;
+        std::fprintf(stderr, "fathom-bench: drawn exactly: %s\n", why.c_str());
+        return 0;
     }
     bench.put(fmt::format("cache: {0}x{0}x{0} cells, {1:.3g} MB\n", view.store().side(),
                           static_cast<double>(view.store().size().bytes()) / 1e6));
-    measure(bench, view, command);
-    return done;
+    measure(bench, view, options);
+    return 0;
 }
 
-} // namespace fathom::cli
+} // namespace fathom::bench

@@ -1,0 +1,247 @@
+// What other languages write where a rule of the grammar could not go on; see builder.h.
+#include "lang/builder.h"
+
+namespace fathom::lang {
+
+bool Builder::foreign_instead(Index at, std::string message, const std::string &replacement) {
+    foreign(span(at), std::move(message))
+        .help("write " + in_code(replacement), {{span(at), replacement}});
+    return true;
+}
+
+// Where a statement or an expression should begin.
+bool Builder::foreign_operand(Wanted wanted, Index at) {
+    const Tok found = kind(at);
+    const Index before = at > 0 ? at - 1 : 0;
+    if (found == Tok::Plus) {
+        foreign(span(at), "a value needs no `+` before it").help("leave it away", {{span(at), ""}});
+        return true;
+    }
+    if (found == Tok::PlusPlus || found == Tok::MinusMinus) {
+        const std::string op = found == Tok::PlusPlus ? " += 1" : " -= 1";
+        Diagnostic &d = foreign(span(at), "there is no " + in_code(text(at)));
+        if (kind(at + 1) == Tok::Name)
+            d.help("write `" + std::string(text(at + 1)) + op + "`",
+                   {{span(at), ""}, {{id_, token(at + 1).end, token(at + 1).end}, op}});
+        return true;
+    }
+    if (found == Tok::For && wanted == Wanted::Expression) {
+        diagnostics_.add(Code::WrongPlace, span(at), "a `for` has no value")
+            .help("write `[for … { … }]` for a list, `union { for … { … } }` for a shape");
+        return true;
+    }
+    if (found == Tok::Bar && kind(at + 1) == Tok::Name && kind(at + 2) == Tok::Bar) {
+        const std::string head = std::string(text(at + 1)) + " =>";
+        foreign(span(at, at + 2), "a function without a name is written `p => …`")
+            .help("write " + in_code(head + " …"), {{span(at, at + 2), head}});
+        return true;
+    }
+    if (found == Tok::Greater && kind(before) == Tok::Bar && token(before).end == token(at).begin) {
+        foreign_pipe(at);
+        return true;
+    }
+    if (found == Tok::Greater && kind(before) == Tok::Greater &&
+        token(before).end == token(at).begin) {
+        foreign_pipe(at);
+        return true;
+    }
+    if (found == Tok::Question && kind(before) == Tok::Question) {
+        foreign(span(before, at), "there is no `??`: every name has a value");
+        return true;
+    }
+    if (wanted == Wanted::Statement && found == Tok::In) {
+        foreign(span(at), "a name is known to the end of its block, without `in`")
+            .help("leave it away", {{span(at), ""}});
+        return true;
+    }
+    if (wanted == Wanted::Statement && (found == Tok::Star || found == Tok::Percent) &&
+        kind(at + 1) == Tok::Name) {
+        foreign(span(at), "there are no modifiers of shapes")
+            .help("leave it away; what `//` stands before is not drawn", {{span(at), ""}});
+        return true;
+    }
+    if (found == Tok::Fn) {
+        Diagnostic &d = foreign(span(at), "a function without a name is written `p => …`");
+        if (kind(at + 1) == Tok::LambdaOpen) d.help("leave `fn` away", {{span(at), ""}});
+        return true;
+    }
+    return false;
+}
+
+// In brackets, where an element ended and neither a comma nor the bracket's end follows.
+bool Builder::foreign_list(Index at) {
+    const Tok found = kind(at);
+    const Index before = at > 0 ? at - 1 : 0;
+    if (found == Tok::Colon && foreign_slice(at)) return true;
+    if (found == Tok::Colon) {
+        foreign(span(at), "a range is written with `..`, or `..=` with its end")
+            .help("write `..=`", {{span(at), "..="}});
+        return true;
+    }
+    if (found == Tok::For) {
+        const Index open = enclosing(at), close = tokens_.match[open];
+        const std::string item(text(token(open + 1).begin, token(before).end));
+        const std::string loop(text(token(at).begin, token(close - 1).end));
+        const std::string list = "[" + loop + " { " + item + " }]";
+        Diagnostic &d = foreign(span(at), "in a list, the loop stands before what it gives");
+        if (list.find('\n') == std::string::npos)
+            d.help("write " + in_code(list), {{span(open, close), list}});
+        return true;
+    }
+    return foreign_group(at, true);
+}
+
+// The same in parentheses; `list` in brackets.
+bool Builder::foreign_group(Index at, bool list) {
+    const Tok found = kind(at);
+    const Index before = at > 0 ? at - 1 : 0;
+    if (foreign_lambda(at) || separated_unit(at)) return true;
+    const Index open = enclosing(at);
+    const bool head = open >= 2 && kind(open - 2) == Tok::Fn;
+    if ((head || kind(open) == Tok::LambdaOpen) && found == Tok::Name &&
+        kind(before) == Tok::Name && !token(at).first_on_line) {
+        const bool swapped = is_type_word(text(at));
+        const std::string name(text(swapped ? before : at)), type(text(swapped ? at : before));
+        foreign(span(before, at), "a parameter's type stands behind its name, after a `:`")
+            .help("write " + in_code(name + ": " + type), {{span(before, at), name + ": " + type}});
+        return true;
+    }
+    if (found == Tok::If) {
+        foreign_choice(value_start(open + 1, at), at);
+        return true;
+    }
+    if (found == Tok::For) {
+        const Index close = tokens_.match[open];
+        Diagnostic &d = diagnostics_.add(Code::WrongPlace, span(at), "a `for` has no value");
+        if (at == open + 1 && kind(open - 1) == Tok::Name)
+            d.help("a block takes it", {{span(open), " { "}, {span(close), " }"}});
+        else
+            d.help("write `[for … { … }]` for a list, `union { for … { … } }` for a shape");
+        return true;
+    }
+    if (found == Tok::DotDot && text(at) == ".." && kind(at + 1) == Tok::Dot) {
+        foreign(span(at, at + 1), "a list is not spread out")
+            .help("lists are joined by `concat(a, b)`");
+        return true;
+    }
+    if (foreign_concat(at) || joined_by_space(at, list)) return true;
+    const bool grouping = open > 0 && kind(open) == Tok::Open && kind(open - 1) != Tok::Name &&
+                          kind(open - 1) != Tok::Close && kind(open - 1) != Tok::ListClose;
+    if (grouping && found == Tok::Comma) { // a tuple
+        const Index close = tokens_.match[open];
+        foreign(span(open), "a vector or a list stands in brackets")
+            .help("write `[ … ]`", {{span(open), "["}, {span(close), "]"}});
+        return true;
+    }
+    if (found == Tok::Arrow)
+        return foreign_instead(at, "a function without a name is written with `=>`", "=>");
+    return false;
+}
+
+// Behind the name of a `let`, `var` or `param`.
+bool Builder::foreign_binding(Index at) {
+    const Tok found = kind(at);
+    const Index before = at > 0 ? at - 1 : 0;
+    if (found == Tok::EqualEqual) return foreign_instead(at, "a name is bound with one `=`", "=");
+    if (found == Tok::Open && kind(at - 2) == Tok::Let) {
+        foreign(span(at - 2), "a function is declared with `fn`")
+            .help("write `fn`", {{span(at - 2), "fn"}});
+        return true;
+    }
+    if (found == Tok::Name && text(before) == "mut") {
+        foreign(span(at - 2, before), "a name that changes is bound with `var`")
+            .help("write `var`", {{span(at - 2, before), "var"}});
+        return true;
+    }
+    if (found == Tok::Name && kind(before) == Tok::Name && kind(at + 1) == Tok::Assign) {
+        const std::string typed = std::string(text(at)) + ": " + std::string(text(before));
+        foreign(span(before, at), "a type stands behind its name")
+            .help("write " + in_code(typed), {{span(before, at), typed}});
+        return true;
+    }
+    return false;
+}
+
+// Where a declaration's name should stand.
+bool Builder::foreign_name(Index at) {
+    const Tok found = kind(at);
+    const Index before = at > 0 ? at - 1 : 0;
+    if (kind(before) == Tok::Let && at < tokens_.tokens.size() &&
+        (found == Tok::End || found == Tok::Open)) {
+        const Index close = tokens_.match[at];
+        std::vector<Edit> edits;
+        if (found == Tok::End) // Curv's: the names follow on lines of their own
+            edits.push_back({span(before), ""});
+        else if (kind(at + 1) == Tok::Name && kind(at + 2) == Tok::Assign)
+            edits = {{span(at), ""}, {span(close), ";"}}, lost_.push_back(at + 1);
+        foreign(span(before), "each name is bound by a `let` of its own")
+            .help("write `let a = 1`, and what uses it behind that", std::move(edits));
+        return true;
+    }
+    return foreign_loop(at);
+}
+
+// Behind the variable of a `for`.
+bool Builder::foreign_in(Index at) {
+    const Tok found = kind(at);
+    if (found == Tok::Assign)
+        return foreign_instead(at, "a loop runs over what stands behind `in`", "in");
+    if (found == Tok::Name && text(at) == "of")
+        return foreign_instead(at, "a loop runs over what stands behind `in`", "in");
+    if (found == Tok::Comma) {
+        foreign(span(at), "a loop has one variable")
+            .help("loop over the places: `for i in 0..len(list) { let x = list[i] … }`");
+        return true;
+    }
+    return false;
+}
+
+// Behind the head of a function.
+bool Builder::foreign_function_body(Index at) {
+    const Tok found = kind(at);
+    if (found == Tok::Colon) {
+        const bool type = kind(at + 1) == Tok::Name &&
+                          (kind(at + 2) == Tok::Body || kind(at + 2) == Tok::Trailing ||
+                           kind(at + 2) == Tok::Assign);
+        if (type) return foreign_instead(at, "a function's result stands behind `->`", " ->");
+        foreign(span(at), "a function's body stands in braces, or behind a `=`")
+            .help("write `{ … }`");
+        return true;
+    }
+    if (found == Tok::FatArrow)
+        return foreign_instead(at, "the body of a `fn` stands behind `=`", "=");
+    return false;
+}
+
+bool Builder::foreign_failure(Wanted wanted, Index at) {
+    switch (wanted) {
+    case Wanted::Statement:
+    case Wanted::Expression: return foreign_operand(wanted, at);
+    case Wanted::CloseList: return foreign_list(at);
+    case Wanted::CloseParen: return foreign_group(at, false);
+    case Wanted::AssignSign: return foreign_binding(at);
+    case Wanted::Type:
+        if (kind(at) != Tok::Assign || at == 0 || kind(at - 1) != Tok::Colon) return false;
+        foreign(span(at - 1, at), "a name is bound with `=`")
+            .help("leave the `:` away", {{span(at - 1), ""}});
+        return true;
+    case Wanted::Name: return foreign_name(at);
+    case Wanted::In: return foreign_in(at);
+    case Wanted::FunctionBody: return foreign_function_body(at);
+    case Wanted::Block: return foreign_body(at);
+    case Wanted::ImportPath: return foreign_import(at);
+    case Wanted::CloseBrace:
+    case Wanted::ParameterName:
+    case Wanted::OpenParen:
+    case Wanted::TypeEnd:
+    case Wanted::TypeNumber:
+    case Wanted::TypeArrow:
+    case Wanted::Arrow:
+    case Wanted::MemberName:
+    case Wanted::TernaryColon:
+    case Wanted::StatementEnd: return false;
+    }
+    return false;
+}
+
+} // namespace fathom::lang
