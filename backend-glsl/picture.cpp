@@ -27,6 +27,19 @@ std::string version_of(const Module &module, const TargetTraits &target) {
     return fmt::format("{} core", std::max(target.version, used));
 }
 
+// What was proved of the scene, and on what that rests (docs/trusted.md).
+std::string proof_of(const ir::Scene &scene) {
+    using Kind = ir::Axiom::Kind;
+    const auto many = [&](Kind kind) {
+        return std::ranges::count(scene.axioms, kind, &ir::Axiom::kind);
+    };
+    if (many(Kind::Estimated) > 0) return "estimated";
+    if (many(Kind::Assumed) > 0) return "assumed";
+    const std::size_t axioms = scene.axioms.size();
+    if (axioms == 0) return "proved";
+    return "proved, on " + std::to_string(axioms) + (axioms == 1 ? " axiom" : " axioms");
+}
+
 std::string head(const Module &module) {
     const Options &options = module.options;
     const TargetTraits &target = traits_of(options.target);
@@ -38,6 +51,8 @@ std::string head(const Module &module) {
               });
     return expand("head", {{"VERSION", version_of(module, target)},
                            {"WRITTEN_BY", written_by(options)},
+                           {"OWN", shown(options.instruments != Instruments::None)},
+                           {"PROOF", proof_of(module.scene)},
                            {"FIELD_ONLY", shown(options.field_only)},
                            {"USE", target.use},
                            {"FIXED_PARAMS", fixed},

@@ -43,6 +43,13 @@ void explain(const proof::Explanation &node, const Sources &sources, const std::
     }
 }
 
+// What the bound rests on beside the proof, an entry of the library a line.
+void explain_axioms(const ir::Scene &scene, Terminal &terminal) {
+    if (scene.axioms.empty()) terminal.put("rests on no axiom\n");
+    for (const ir::Axiom &axiom : scene.axioms)
+        terminal.put(for_terminal(fmt::format("rests on {}", axiom.says)) + "\n");
+}
+
 void explain_params(const ir::Scene &scene, Terminal &terminal) {
     for (const ir::Param &param : scene.params)
         terminal.put(fmt::format("param {}: {}\n", param.name,
@@ -68,6 +75,7 @@ Exit say(const CheckCommand &command, const driver::Compilation &compilation, Te
         if (exit != done) return exit;
         if (command.explain) {
             explain(proof::explain(compilation.scene), compilation.sources, "", "", terminal);
+            explain_axioms(compilation.scene, terminal);
             explain_params(compilation.scene, terminal);
             explain_pruning(compilation.scene, terminal);
             for (int rows : glsl::prunable_rows(compilation.scene))

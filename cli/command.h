@@ -31,6 +31,7 @@ struct SceneArguments {
     std::vector<typecheck::Override> overrides;         // -D
     std::vector<std::filesystem::path> include_folders; // -I
     Limits limits;                                      // --limit
+    bool strict_proof = false;                          // of check, compile and render
 };
 
 // `fathom check`.

@@ -119,6 +119,7 @@ driver::CompileOptions compile_options(const SceneArguments &scene) {
     options.include_folders = scene.include_folders;
     options.overrides = scene.overrides;
     options.limits = scene.limits;
+    options.strict_proof = scene.strict_proof;
     return options;
 }
 

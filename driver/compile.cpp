@@ -6,6 +6,7 @@
 #include "ir/passes/operations.h"
 #include "ir/passes/verify.h"
 #include "proof/prove.h"
+#include "proof/rounding.h"
 #include "save-format/save_format.h"
 
 #include <fmt/format.h>
@@ -77,6 +78,27 @@ typecheck::Options check_options(const CompileOptions &options, std::size_t &wor
     return result;
 }
 
+// `--strict-proof`: what is assumed, estimated or not bounded is an error.
+void refuse_unproved(Compilation &out) {
+    for (const ir::Axiom &axiom : out.scene.axioms) {
+        std::string help;
+        switch (axiom.kind) {
+        case ir::Axiom::Kind::Library: continue;
+        case ir::Axiom::Kind::Assumed: help = "leave `lipschitz:` out, to have it proved"; break;
+        case ir::Axiom::Kind::Estimated:
+            help = "leave `estimate:` out, or use another shape";
+            break;
+        case ir::Axiom::Kind::Rounding:
+            help = "use smaller numbers and regions, or leave `--strict-proof` out";
+            break;
+        }
+        out.diagnostics
+            .add(Code::Unproved, axiom.at,
+                 "this is not proved, under `--strict-proof`: " + axiom.says)
+            .help(help);
+    }
+}
+
 void run_phases(Compilation &out, const typecheck::Loader &loader, const std::string &identity,
                 SourceId root, const CompileOptions &options) {
     enter(options, Phase::Check);
@@ -106,6 +128,8 @@ void run_phases(Compilation &out, const typecheck::Loader &loader, const std::st
             out.parts = ir::lower_with_parts(out.scene);
         else
             ir::lower(out.scene);
+        proof::bound_rounding(out.scene, out.diagnostics, proof_options.times);
+        if (options.strict_proof) refuse_unproved(out);
         assert(ir::verify(out.scene).empty());
         const ir::Graph &graph = out.scene.graph;
         const double cost = ir::operations(graph, graph.function(out.scene.distance).result);

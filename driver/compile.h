@@ -28,6 +28,7 @@ struct CompileOptions {
     std::vector<Override> overrides;                    // -D
     Limits limits;                                      // --limit
     std::function<void(Phase)> entered;                 // may be empty
+    bool strict_proof = false; // an error at all that is not proved but by the library's claims
     // Proved for the params' present values and from the first to the last of these times alone, in
     // seconds: for what is drawn once. None: for all that the scene allows.
     std::optional<std::pair<double, double>> times;

@@ -36,10 +36,20 @@ Json json_number(std::optional<double> number) {
     return number && std::isfinite(*number) ? Json(*number) : Json();
 }
 
+std::string_view axiom_kind(ir::Axiom::Kind kind) {
+    switch (kind) {
+    case ir::Axiom::Kind::Library: return "library";
+    case ir::Axiom::Kind::Assumed: return "assumed";
+    case ir::Axiom::Kind::Estimated: return "estimated";
+    case ir::Axiom::Kind::Rounding: return "rounding";
+    }
+    return "";
+}
+
 } // namespace
 
 std::string verdict_json(const Compilation &compilation) {
-    Json shapes = Json::array(), diagnostics = Json::array(), bounds;
+    Json shapes = Json::array(), axioms = Json::array(), diagnostics = Json::array(), bounds;
     Verdict verdict;
     if (compilation.good()) {
         const ir::Scene &scene = compilation.scene;
@@ -52,6 +62,11 @@ std::string verdict_json(const Compilation &compilation) {
                               {"status", status_name(fact.status)},
                               {"exact", fact.kind == ir::FieldKind::Exact}});
         }
+        for (const ir::Axiom &axiom : scene.axioms)
+            axioms.push_back(
+                {{"kind", axiom_kind(axiom.kind)},
+                 {"says", axiom.says},
+                 {"span", axiom.at.source ? place_json(compilation.sources, axiom.at) : Json()}});
     } else {
         verdict.exact = false;
         verdict.status = ir::ProofStatus::Estimated;
@@ -64,6 +79,7 @@ std::string verdict_json(const Compilation &compilation) {
                       {"exact", verdict.exact},
                       {"bounds", bounds},
                       {"shapes", shapes},
+                      {"axioms", axioms},
                       {"diagnostics", diagnostics}}) +
            "\n";
 }

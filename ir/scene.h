@@ -157,6 +157,19 @@ struct GridData {
 };
 
 // A whole scene: shapes and expressions, and after lowering its functions.
+// Something that the proof relies on and does not prove (docs/trusted.md).
+struct Axiom {
+    enum class Kind : std::uint8_t { Library, Assumed, Estimated, Rounding } kind{};
+    std::string says; // "sphere: exact"
+    Span at;          // one place that relies on it
+};
+
+// What single precision makes of the marched distance (proof/rounding.h).
+struct Rounding {
+    bool bounded = true;   // proved: within the tolerance with which rays arrive, or `subtracted`
+    double subtracted = 0; // by which all marched distances are less
+};
+
 struct Scene {
     Graph graph;
     Shapes shapes;
@@ -186,6 +199,8 @@ struct Scene {
                                      // has others beside them
     std::vector<Surface> surfaces;   // by a hit's paint; the last is that of what nobody painted
     FunctionId background_function;  // (vec3 direction) -> vec3
+    Rounding rounding;               // filled after lowering
+    std::vector<Axiom> axioms;       // each once; filled by the analysis
     Box bounds;                      // of the finite top-level parts; empty when there are none
     double far = 0;                  // a far limit for rays
 };

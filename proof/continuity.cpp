@@ -179,7 +179,7 @@ bool same(Graph &graph, NodeId a, NodeId b) {
     // not without end: beside 1e13 y^8 a jump by 5 is one
     const double granted = rounding * std::clamp(size, 1e-30, 1e3);
     for (const auto &[m, c] : *p)
-        if (std::fabs(c) > granted) return false;
+        if (!(std::fabs(c) <= granted)) return false; // inf - inf is no number, and not 0
     return true;
 }
 

@@ -239,11 +239,46 @@ struct Border {
         return std::floor(x) == x && slope < 0 && side != Side::At ? x - 1 : std::floor(x);
     }
 
+    // In single precision two steps turn at one number alone where the one's argument is the
+    // other's, or a power of two times it.
+    bool turns_with(NodeId step, int component, const Near &t) const {
+        if (group.is_angle || is_own(step, component) || t.times == 0) return true;
+        const double at = t.number + (graph[step].op == Op::Round ? 0.5 : 0);
+        if (snapped(at) != std::floor(snapped(at))) return true; // not at its border
+        const auto base = [&](NodeId id) {
+            for (;;) {
+                const ir::Node &node = graph[id];
+                if (node.op == Op::Neg) {
+                    id = graph.arg(id, 0);
+                    continue;
+                }
+                if (node.op != Op::Mul) return id;
+                const bool first = is_power_of_two(graph.arg(id, 0));
+                if (!first && !is_power_of_two(graph.arg(id, 1))) return id;
+                id = graph.arg(id, first ? 1 : 0);
+            }
+        };
+        return base(graph.arg(step, 0)) == base(group.turning) ||
+               (graph[step].op == Op::Mod && graph[group.turning].op == Op::Div &&
+                graph.arg(step, 0) == graph.arg(group.turning, 0) &&
+                graph.arg(step, 1) == graph.arg(group.turning, 1));
+    }
+    bool is_power_of_two(NodeId id) const {
+        if (graph[id].op == Op::Splat) id = graph.arg(id, 0);
+        if (!graph.is_constant(id)) return false;
+        const ir::Constant &c = graph.constant_of(id);
+        int exponent = 0;
+        for (int i = 0; i < ir::components(c.type); ++i)
+            if (std::fabs(std::frexp(c.value[static_cast<std::size_t>(i)], &exponent)) != 0.5)
+                return false;
+        return true;
+    }
+
     NodeId value(NodeId step, int component, bool moves, int depth) {
         const Op op = graph[step].op;
         if (op == Op::Atan2) return angle(step, component, moves, depth);
         const auto t = near(step, component, depth);
-        if (!t) return unknown_of(step, component, depth);
+        if (!t || !turns_with(step, component, *t)) return unknown_of(step, component, depth);
         const NodeId multiple = graph.mul(graph.number(t->times), whole);
         const auto rest = [&] { // t - floor(t)
             const NodeId left = graph.number(snapped(t->number) - floor_of(t->number, t->slope));

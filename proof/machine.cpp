@@ -144,6 +144,7 @@ Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
     : tape_(tape), ranges_(ranges), value_(tape.components), grad_(tape.components),
       odd_(tape.components), norm_(tape.first.size()), bend_(bends ? tape.first.size() : 0),
       trouble_(tape.first.size(), Trouble::None), cause_(tape.first.size()) {
+    in_reach_ = tape.grows;
     run(tape.once);
 }
 

@@ -59,6 +59,7 @@ struct Prover {
 
     void test_conditions(); // conditions.cpp
     void know_caches();     // caches.cpp
+    void name_axioms();     // axioms.cpp: fills Scene::axioms
     void report_not_cached(ir::CacheId id);
 
     // -- places, from the root down

@@ -52,6 +52,11 @@ constexpr ir::OpTable<Look> look_of_op{
     {Op::Select, Look::Choice},
 };
 
+bool holds_infinity(const ir::Graph &graph, NodeId id) {
+    const ir::Constant &c = graph.constant_of(id);
+    return std::any_of(c.value.begin(), c.value.end(), [](double x) { return std::isinf(x); });
+}
+
 struct Scope {
     Scope *outer = nullptr;                    // a loop's surroundings; none for a function's body
     std::vector<Instruction> *block = nullptr; // where what depends on this scope's variables goes
@@ -82,8 +87,10 @@ struct Flattener {
     }
 
     // Leaves single precision for arguments as scenes have them.
-    static bool grows(Op op) {
-        return op == Op::Exp || op == Op::Exp2 || op == Op::Sinh || op == Op::Cosh || op == Op::Pow;
+    bool grows(const Instruction &instruction) const {
+        constexpr ir::OpSet growing{Op::Exp, Op::Exp2, Op::Sinh, Op::Cosh, Op::Pow};
+        return growing[instruction.op] ||
+               (instruction.op == Op::Const && holds_infinity(graph, instruction.node));
     }
 
     Slot emit(Scope &scope, Instruction instruction) {
@@ -95,7 +102,7 @@ struct Flattener {
             instruction.form == Form::PNorm)
             instruction.groups = supports.groups(instruction.args);
         supports.follow(instruction);
-        tape.grows = tape.grows || grows(instruction.op);
+        tape.grows = tape.grows || grows(instruction);
         bool hoisted = !scope.loop && !instruction.varies;
         (hoisted ? tape.once : *scope.block).push_back(std::move(instruction));
         return out;

@@ -86,6 +86,7 @@ void Prover::run() {
         scene.facts[i].bounds = padded(k.fact.bounds);
         scene.facts[i].repeat.copy = padded(k.fact.repeat.copy);
     }
+    name_axioms();
     scene.bounds = {};
     double radius = 0;
     for (const ir::TopLevel &top : scene.top_level) {

@@ -3,6 +3,9 @@ $if VERSION
 #version $VERSION
 $end
 $WRITTEN_BY
+$if !OWN
+// The bound of its field is $PROOF.
+$end
 $if FIELD_ONLY
 // For a renderer of one's own: a step of sdf(p) never passes a surface.
 $else

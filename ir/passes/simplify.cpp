@@ -5,6 +5,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace fathom::ir {
@@ -239,9 +240,42 @@ NodeId simple_mix(const Made &n) {
     return n.is(2, 1) ? n.args[1] : NodeId{};
 }
 
+// x + c as x + (c - w) and w, w whole and c - w in 0..1: so that `floor(x)` and `fract(x - 1)` round
+// one number, and never find themselves in different cells. Only where that is exact.
+struct Shifted {
+    NodeId x, whole;
+};
+std::optional<Shifted> shifted(const Made &n) {
+    const Op op = n.op_of(0);
+    if (n.whole() || (op != Op::Add && op != Op::Sub)) return {};
+    const NodeId a = n.inside(0), b = n.graph.arg(n.args[0], 1);
+    const bool first = op == Op::Add && n.graph.is_constant(a);
+    if (!first && !n.graph.is_constant(b)) return {};
+    Constant whole = n.graph.constant_of(first ? a : b), rest = whole;
+    bool changes = false;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(components(n.type)); ++i) {
+        const double c = op == Op::Sub ? -whole.value[i] : whole.value[i];
+        constexpr double exact = 1024, most = 1e6; // c in 1024ths
+        if (!(std::abs(c) < most) || std::floor(c * exact) != c * exact) return {};
+        whole.value[i] = std::floor(c), rest.value[i] = c - std::floor(c);
+        changes = changes || whole.value[i] != 0;
+    }
+    if (!changes) return {};
+    return Shifted{n.make(Op::Add, {first ? b : a, n.graph.constant(rest)}),
+                   n.graph.constant(whole)};
+}
+
 NodeId simple_rounding(const Made &n) {
     constexpr OpSet rounds{Op::Floor, Op::Ceil, Op::Trunc, Op::Round};
-    return n.whole() || rounds[n.op_of(0)] ? n.args[0] : NodeId{};
+    if (n.whole() || rounds[n.op_of(0)]) return n.args[0];
+    if (n.op == Op::Trunc) return {};
+    if (const auto sum = shifted(n)) return n.make(Op::Add, {n.make(n.op, {sum->x}), sum->whole});
+    return {};
+}
+
+NodeId simple_fract(const Made &n) {
+    const auto sum = shifted(n);
+    return sum ? n.make(Op::Fract, {sum->x}) : NodeId{};
 }
 
 NodeId simple_and(const Made &n) {
@@ -302,6 +336,7 @@ constexpr OpTable<Rule> rules{
     {Op::Ceil, simple_rounding},
     {Op::Trunc, simple_rounding},
     {Op::Round, simple_rounding},
+    {Op::Fract, simple_fract},
     {Op::And, simple_and},
     {Op::Or, simple_or},
     {Op::Not, twice},

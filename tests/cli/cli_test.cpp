@@ -423,3 +423,36 @@ TEST_CASE("no name and no -D steers the terminal or adds a line to what is said"
     }
     CHECK(lines_of("fathom compile " + two + " --target spirv -o a.spv", 0).exit == 0);
 }
+
+TEST_CASE("what a proof rests on is named, and refused under --strict-proof") {
+    ScratchFolder folder;
+    folder.write("proved.sdf", "implicit(p => length(p) - 1)\n");
+    folder.write("library.sdf", "sphere(1)\n");
+    folder.write("assumed.sdf", "implicit(p => length(p) - 1, lipschitz: 1)\n");
+    folder.write("estimated.sdf", "implicit(p => length(p) - 1, estimate: 1)\n");
+    for (const std::string command : {"check ", "compile --field-only ", "compile ",
+                                      "render --size 8x8 --backend cpu -o a.png "}) {
+        INFO(command);
+        for (const std::string good : {"proved.sdf", "library.sdf"})
+            CHECK(shell(folder, "fathom " + command + good + " --strict-proof").exit == 0);
+        for (const std::string bad : {"assumed.sdf", "estimated.sdf"}) {
+            CHECK(shell(folder, "fathom " + command + bad).exit == 0);
+            const Result strict = shell(folder, "fathom " + command + bad + " --strict-proof");
+            CHECK(strict.exit == 1);
+            CHECK(contains(strict.err, "error[unproved]"));
+        }
+    }
+    CHECK(contains(shell(folder, "fathom check --explain proved.sdf").out, "rests on no axiom"));
+    CHECK(contains(shell(folder, "fathom check --explain library.sdf").out,
+                   "rests on sphere: exact"));
+    CHECK(contains(shell(folder, "fathom check --json library.sdf").out,
+                   R"("kind":"library","says":"sphere: exact")"));
+    CHECK(contains(shell(folder, "fathom check --json assumed.sdf").out, R"("kind":"assumed")"));
+    const auto header = [&](const std::string &scene) {
+        return shell(folder, "fathom compile " + scene).out.substr(0, 400);
+    };
+    CHECK(contains(header("proved.sdf"), "// The bound of its field is proved.\n"));
+    CHECK(contains(header("library.sdf"), "// The bound of its field is proved, on "));
+    CHECK(contains(header("assumed.sdf"), "// The bound of its field is assumed.\n"));
+    CHECK(contains(header("estimated.sdf"), "// The bound of its field is estimated.\n"));
+}

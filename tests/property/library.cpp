@@ -2,13 +2,13 @@
 // in the shader, and how near its steepest slope comes to the proved bound. What an example needs
 // of files lies in examples/parts.
 #include "driver/compile.h"
+#include "tests/support/library_entries.h"
 #include "tests/support/shader_balls.h"
 
 #include <catch2/catch.hpp>
 
 #include <cstdio>
 #include <map>
-#include <set>
 
 using namespace fathom;
 using namespace fathom::test;
@@ -17,38 +17,6 @@ namespace {
 
 constexpr double reach = 2.5;
 const Point3 lo{-reach, -reach, -reach}, hi{reach, reach, reach};
-
-struct Entry {
-    std::string name, text;
-};
-
-// `/// Example: `…`` above `fn NAME` or `let NAME`.
-std::vector<Entry> entries() {
-    std::vector<Entry> out;
-    for (const typecheck::LibraryFile &file : driver::standard_library()) {
-        std::string example;
-        std::set<std::string> seen;
-        for (std::size_t at = 0; at < file.text.size();) {
-            const std::size_t end = std::min(file.text.find('\n', at), file.text.size());
-            const std::string line(file.text.substr(at, end - at));
-            at = end + 1;
-            const std::string mark = "/// Example: `";
-            if (line.starts_with(mark))
-                example = line.substr(mark.size(), line.rfind('`') - mark.size());
-            for (const std::string head : {"fn ", "let "}) {
-                if (!line.starts_with(head) || example.empty()) continue;
-                const std::string name =
-                    line.substr(head.size(), line.find_first_of("( :=", head.size()) - head.size());
-                const bool own = example.find("dfmodel.") != std::string::npos;
-                if (seen.insert(name).second)
-                    out.push_back({(own ? "dfmodel." : "") + name,
-                                   (own ? "import \"dfmodel\" as dfmodel\n" : "") + example});
-                example.clear();
-            }
-        }
-    }
-    return out;
-}
 
 driver::Compilation compiled(const std::string &text) {
     return driver::compile_text("entry.sdf", text, FATHOM_SOURCE_DIR "/examples/parts", {});
@@ -71,7 +39,7 @@ TEST_CASE("every entry of the library is marched safely, and its bound is not fa
                                               {"displace_map", 0.45}};
     int safe = 0, shapes = 0;
     require_context();
-    for (const Entry &entry : entries()) {
+    for (const LibraryExample &entry : library_examples()) {
         INFO(entry.name << ": " << entry.text);
         driver::Compilation c = compiled(entry.text);
         if (!c.good())

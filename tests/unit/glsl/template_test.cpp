@@ -47,6 +47,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
         {"ZERO", "fathom_zero"},
         {"VERSION", "450"},
         {"WRITTEN_BY", "// a scene\n"},
+        {"PROOF", "proved"},
         {"USE", "what to do"},
         {"FIXED_PARAMS", ""},
         {"BEGIN", "#version 450\n"},

@@ -2,6 +2,8 @@
 // never bounded, and its neighbours that are continuous are.
 #include "build.h"
 
+#include "proof/continuity.h"
+
 #include <catch2/catch.hpp>
 
 using namespace fathom;
@@ -74,6 +76,31 @@ TEST_CASE("steps that turn at one border are taken together") {
     }
 }
 
+TEST_CASE("steps turn together where they round one number, or twice it") {
+    Scenery s;
+    const auto joined = [&](NodeId a, NodeId b, NodeId part) { // b is a + 1 but for rounding
+        return s.g.make(Op::Mix, {hash(s, s.call(Op::Floor, a)), hash(s, s.call(Op::Floor, b)),
+                                  fract(s, part)});
+    };
+    const NodeId one = s.n(1), sum = s.g.add(s.x, s.y);
+    CHECK(bounded(s, joined(s.x, s.g.add(s.x, one), s.x)));
+    CHECK(bounded(s, joined(s.x, s.g.add(s.x, one), s.g.sub(s.x, s.n(5)))));
+    CHECK(bounded(s, joined(sum, s.g.add(sum, one), sum)));
+    const NodeId other = s.g.add(s.g.add(s.x, one), s.y); // rounds x + 1 first
+    CHECK(!bounded(s, joined(sum, other, sum)));
+    CHECK(!bounded(s, joined(sum, s.g.add(sum, one), other)));
+    const NodeId k = s.parameter(1, 2), times = s.g.mul(k, s.x);
+    const NodeId again = s.g.div(s.x, s.g.div(one, k));
+    CHECK(bounded(s, joined(times, s.g.add(times, one), times)));
+    CHECK(!bounded(s, joined(times, s.g.add(times, one), again)));
+    // the same node in the end
+    CHECK(fract(s, s.g.add(s.x, s.n(3))) == fract(s, s.x));
+    CHECK(fract(s, s.g.sub(s.x, s.n(0.5))) == fract(s, s.g.add(s.x, s.n(0.5))));
+    CHECK(s.call(Op::Floor, s.g.sub(s.x, s.n(2))) ==
+          s.g.add(s.call(Op::Floor, s.x), s.n(-2)));
+    CHECK(s.call(Op::Floor, s.g.add(s.x, s.n(0.1))) != s.call(Op::Floor, s.x));
+}
+
 TEST_CASE("a border has a value of its own") {
     Scenery s;
     const NodeId floor = s.call(Op::Floor, s.x), ceil = s.call(Op::Ceil, s.x);
@@ -144,6 +171,39 @@ TEST_CASE("what leaves single precision is bounded only where it comes back") {
     const NodeId sum = s.g.add(e, s.call(Op::Exp, s.g.mul(s.n(60), s.y)));
     CHECK(s.bound(s.call(Op::Log, sum), cube(4)).lipschitz == Approx(60)); // made without overflow
     CHECK(s.bound(s.call(Op::Log, sum)).lipschitz == Approx(60));
+}
+
+TEST_CASE("what holds inf is bounded only where it comes back") {
+    Scenery s;
+    const NodeId k = s.parameter(0, 4), inf = s.n(ir::rounding::infinity), one = s.n(1);
+    const NodeId late = s.g.make(Op::Less, {s.n(2), k});
+    const NodeId some = s.g.make(Op::Select, {late, inf, one});
+    CHECK(!bounded(s, s.g.add(s.y, s.sin(some)))); // the sine of inf is no number
+    CHECK(!bounded(s, s.g.mul(s.y, s.call(Op::Fract, some))));
+    const NodeId other = s.g.make(Op::Select, {late, inf, s.n(3)});
+    CHECK(!bounded(s, s.g.mul(s.y, s.g.sub(some, other))));
+    CHECK(bounded(s, s.g.add(s.y, s.g.div(one, some))));
+    CHECK(bounded(s, s.g.make(Op::Min, {s.y, some})));
+    CHECK(bounded(s, s.g.mul(s.y, s.g.make(Op::Min, {some, one}))));
+    // by the point, it jumps
+    const NodeId right = s.g.make(Op::Less, {s.n(0), s.x});
+    for (const double limit : {ir::rounding::infinity, -ir::rounding::infinity}) {
+        const NodeId arm = s.g.make(Op::Select, {right, s.n(limit), s.y});
+        CHECK(!bounded(s, arm));
+        CHECK(!bounded(s, s.g.sub(arm, one)));
+        CHECK(!bounded(s, s.g.make(Op::Clamp, {arm, s.n(-1), one})));
+        CHECK(!bounded(s, s.call(Op::Atan, arm)));
+    }
+}
+
+TEST_CASE("arms whose factors are no numbers do not agree") {
+    Scenery s;
+    const auto times = [&](double a, double b, NodeId x) {
+        return s.g.mul(s.n(a), s.g.mul(s.n(b), x));
+    };
+    const NodeId y = s.call(Op::Abs, s.y);
+    CHECK(!proof::same(s.g, times(1e200, 1e200, y), times(1e200, 2e200, y)));
+    CHECK(proof::same(s.g, times(2, 6, y), times(3, 4, y)));
 }
 
 TEST_CASE("sin(u)/u is asked off 0") {
