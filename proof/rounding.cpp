@@ -5,6 +5,7 @@
 #include "ir/lower/lower.h"
 #include "ir/view.h"
 #include "proof/prover.h"
+#include "proof/trials.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,9 +21,9 @@ using ir::rounding::infinity;
 
 namespace {
 
-// Nodes, never time: for cutting up a region; and for all regions, from which on few points are tried.
-constexpr std::size_t cutting_work = 6'000, all_work = 100'000;
-constexpr int samples = 12, few_samples = 4, height = 1080;
+// Nodes, never time: for cutting up a region, and for trying points of it.
+constexpr std::size_t cutting_work = 6'000, trial_work = 30'000, least_trial_work = 6'000;
+constexpr int height = 1080;
 
 // A box of space, and the tolerance with which rays arrive there.
 struct Asked {
@@ -77,19 +78,6 @@ Inputs all_inputs(const ir::Scene &scene, const std::optional<Interval> &times) 
     }
     return out;
 }
-// One moment and one number for each param: an end of its range, or one inside.
-Inputs some_inputs(const Inputs &all, Dice &dice) {
-    const auto one = [&](Interval x) -> Interval {
-        const double at = dice.next();
-        if (x.is_point() || !x.finite()) return x;
-        return at < 0.3 ? x.hi : at < 0.5 ? x.lo : x.lo + x.width() * dice.next();
-    };
-    Inputs out{one(all.time), all.params};
-    for (auto &param : out.params)
-        for (Interval &x : param) x = one(x);
-    return out;
-}
-
 // A bound of the error in the box, no better than `enough` or the work allow.
 double bound_in(RoundingMachine &machine, const Asked &asked, const Inputs &inputs) {
     using Candidate = std::pair<double, std::size_t>;
@@ -115,54 +103,134 @@ double bound_in(RoundingMachine &machine, const Asked &asked, const Inputs &inpu
     return queue.top().first;
 }
 
-// The errors at some points, from the least on; of each the bound is nearly attained.
-std::vector<double> errors_at_points(RoundingMachine &machine, const Cell &box,
-                                     const Inputs &inputs) {
-    Dice dice{0x0f10a7};
-    std::vector<double> out;
-    for (int k = 0; k < (machine.work() < all_work ? samples : few_samples); ++k) {
-        Cell at;
-        for (std::size_t i = 0; i < 3; ++i)
-            at.p[i] = to_single(box.p[i].lo + box.p[i].width() * dice.next());
-        const Inputs one = some_inputs(inputs, dice);
-        out.push_back(machine.error(at, one.time, one.params));
+// -- trials
+
+// One moment and one number for each param.
+struct Moment {
+    double time = 0;
+    std::vector<std::array<double, 4>> params;
+};
+// The last ones, what the params are now at the last moment, and any.
+enum class Which { Last, Now, Any };
+constexpr Which moments[] = {Which::Last, Which::Now, Which::Any};
+
+Moment moment_of(const ir::Scene &scene, const Inputs &all, Which which, Dice &dice) {
+    const auto one = [&](Interval x, double now) {
+        if (!x.finite()) return now;
+        switch (which) {
+        case Which::Last: return x.hi;
+        case Which::Now: return x.contains(now) ? now : x.hi;
+        case Which::Any: return x.lo + x.width() * dice.next();
+        }
+        return now;
+    };
+    Moment out{one(all.time, all.time.hi), {}};
+    for (std::size_t i = 0; i < all.params.size(); ++i) {
+        auto &values = out.params.emplace_back();
+        for (std::size_t c = 0; c < 4; ++c) {
+            values[c] = one(all.params[i][c], scene.params[i].value[c]);
+            if (scene.params[i].type == ir::Type::Int || scene.params[i].type == ir::Type::Bool)
+                values[c] = std::floor(values[c]);
+        }
     }
-    std::sort(out.begin(), out.end());
     return out;
 }
-// The largest, where most points have a number.
-double typical(const std::vector<double> &errors) {
-    if (std::isinf(errors[errors.size() / 2])) return infinity;
-    double most = 0;
+
+// What is seen where rays arrive. Each ray counts once, with its largest error near a surface.
+struct Seen {
+    double error = 0;       // the largest number; 0 where fewer than three rays are wrong
+    bool useless = false;   // most rays are wrong, and by a good part of the scene
+    bool no_number = false; // a quarter of the rays meet an infinity that is not meant
+};
+
+// The error that a ray meets near a surface; nothing where it meets none. From anywhere in the box,
+// towards anywhere or, `aimed`, towards the surface next to it.
+std::optional<double> error_of_ray(Trials &trials, const Asked &asked, const Moment &now,
+                                   double scene_size, bool aimed, Dice &dice) {
+    constexpr int steps = 16;
+    std::array<double, 3> p{}, way{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Interval &x = asked.box.p[i];
+        p[i] = to_single(x.lo + x.width() * dice.next());
+        way[i] = x.lo + x.width() * dice.next() - p[i];
+    }
+    if (aimed) { // towards the surface next to it
+        const double at_p = trials.at(p, now.time, now.params).meant;
+        for (std::size_t i = 0; i < 3; ++i) {
+            std::array<double, 3> q = p;
+            q[i] += 1e-3 * scene_size;
+            way[i] = (at_p - trials.at(q, now.time, now.params).meant) * (at_p < 0 ? -1 : 1);
+        }
+    }
+    const double length = std::hypot(way[0], way[1], way[2]);
+    if (!(length > 0)) return {};
+    std::optional<double> error;
+    for (int step = 0; step < steps; ++step) {
+        for (double &x : p) x = to_single(x);
+        const Trial trial = trials.at(p, now.time, now.params);
+        const double by = std::fabs(trial.meant);
+        if (!(by < 1e3 * scene_size)) break;
+        if (by < 0.05 * scene_size) error = std::max(error.value_or(0), trial.error());
+        if (by < asked.tolerance) break;
+        bool inside = true;
+        for (std::size_t i = 0; i < 3; ++i) {
+            p[i] += by * way[i] / length;
+            inside = inside && asked.box.p[i].contains(p[i]);
+        }
+        if (!inside) break;
+    }
+    return error;
+}
+
+Seen look(const ir::Scene &scene, const Asked &asked, const Inputs &inputs, double scene_size,
+          std::size_t work) {
+    constexpr int most_rays = 240, enough = 96, few = 6;
+    Trials trials(scene, scene.distance);
+    Dice dice{0x0f10a7};
+    std::vector<double> errors;
+    for (int ray = 0; ray < most_rays && errors.size() < enough && trials.work() < work; ++ray) {
+        const Moment now = moment_of(scene, inputs, moments[ray % std::size(moments)], dice);
+        if (const auto e = error_of_ray(trials, asked, now, scene_size, ray % 2 == 1, dice))
+            errors.push_back(*e);
+    }
+    Seen out;
+    const std::size_t n = errors.size();
+    if (n < few) return out; // too few to say
+    std::sort(errors.begin(), errors.end());
+    if (errors[n - 3] <= asked.tolerance) return out;
     for (double e : errors)
-        if (!std::isinf(e)) most = e;
-    return most;
+        if (std::isfinite(e)) out.error = e;
+    out.no_number = std::isinf(errors[n * 3 / 4]);
+    out.useless =
+        out.no_number || (errors[n / 2] > asked.tolerance && 4 * errors[n - 3] > scene_size);
+    return out;
 }
 
 // The shape that the error comes from: from the top down as long as one child has half of it.
-ShapeId culprit(const ir::Scene &scene, const Cell &box, const Inputs &inputs) {
+ShapeId culprit(const ir::Scene &scene, const Asked &asked, const Inputs &inputs, double error,
+                double scene_size) {
+    constexpr std::size_t looked_at = 40; // children in all: each is lowered again
+    std::size_t looks = 0;
     ir::Scene copy = scene;
-    const auto error_of = [&](ShapeId shape) {
-        copy.root = shape;
-        copy.top_level = {{shape, {}}};
-        ir::lower(copy);
-        RoundingMachine machine(copy, copy.distance);
-        return typical(errors_at_points(machine, box, inputs));
-    };
-    ShapeId at = scene.root;
-    double error = error_of(at);
-    for (;;) {
+    for (ShapeId at = scene.root;;) {
         const ir::Shape shape = scene.shapes[at];
+        // What a repetition gives its copies has no value outside of it.
+        if (shape.kind == ShapeKind::Library || shape.kind == ShapeKind::Repeat ||
+            shape.kind == ShapeKind::Instances)
+            return at;
         ShapeId worst;
         double most = 0;
-        if (shape.kind != ShapeKind::Library)
-            for (ShapeId child : shape.children) {
-                if (scene.shapes[child].dims != 3) continue;
-                const double e = error_of(child);
-                if (!worst || e > most) worst = child, most = e;
-            }
+        for (ShapeId child : shape.children) {
+            if (scene.shapes[child].dims != 3 || ++looks > looked_at) continue;
+            copy.root = child;
+            copy.top_level = {{child, {}}};
+            ir::lower(copy);
+            const Seen seen = look(copy, asked, inputs, scene_size, trial_work);
+            const double e = seen.no_number ? infinity : seen.error;
+            if (e > most) worst = child, most = e;
+        }
         if (!worst || most < error / 2) return at;
-        at = worst, error = most;
+        at = worst;
     }
 }
 
@@ -194,7 +262,9 @@ void bound_rounding(ir::Scene &scene, Diagnostics &diagnostics,
     scene.rounding = {};
     const Inputs inputs = all_inputs(scene, times);
     RoundingMachine machine(scene, scene.distance);
-    double bound = 0, seen = 0;
+    const ir::Frame frame = ir::frame_of(scene, ir::view_of(scene, 0, 1), height);
+    double bound = 0;
+    Seen seen;
     const std::vector<Asked> regions = regions_of(scene);
     const Asked *worst = nullptr;
     bool all = true;
@@ -203,8 +273,10 @@ void bound_rounding(ir::Scene &scene, Diagnostics &diagnostics,
         bound = std::max(bound, e);
         if (e <= asked.tolerance) continue;
         all = false;
-        const double at_points = typical(errors_at_points(machine, asked.box, inputs));
-        if (at_points > asked.tolerance && at_points > seen) seen = at_points, worst = &asked;
+        const Seen here = look(scene, asked, inputs, frame.radius,
+                               std::max(least_trial_work, trial_work / regions.size()));
+        if (!(here.error > seen.error || (here.useless && !seen.useless))) continue;
+        seen = here, worst = &asked;
     }
     scene.rounding = {all, 0};
     const auto trust = [&](const char *says, Span at) {
@@ -212,23 +284,22 @@ void bound_rounding(ir::Scene &scene, Diagnostics &diagnostics,
     };
     constexpr const char *says = "single precision: errors are within the tolerance";
     if (!worst) return trust(says, scene.top_level.empty() ? Span{} : scene.top_level[0].span);
-    const ir::Frame frame = ir::frame_of(scene, ir::view_of(scene, 0, 1), height);
-    const ShapeId place = culprit(scene, worst->box, inputs);
+    const ShapeId place = culprit(scene, *worst, inputs, seen.error, frame.radius);
     const std::string name = operation_name(scene, place);
     const std::string help =
         "keep large numbers out: say with `render(time: …)` for how long the scene is looked at, "
         "leave out large offsets and factors, put shapes near the origin";
-    if (seen > frame.radius) {
+    if (seen.useless) {
         diagnostics
             .add(Code::NumberRange, scene.shapes[place].origin,
-                 std::isinf(seen) ? name + " has numbers that single precision does not hold"
-                                  : name + " is wrong by up to " + number_text(seen) +
-                                        " in single precision, which is more than the scene")
+                 seen.no_number ? name + " has numbers that single precision does not hold"
+                                : name + " is wrong by up to " + number_text(seen.error) +
+                                      " in single precision, which is more than the scene")
             .note("the scene is computed in single precision, of 7 digits, by graphics cards")
             .help(help);
         return;
     }
-    const double by = bound <= 4 * seen ? bound : 2 * seen;
+    const double by = bound <= 4 * seen.error ? bound : 2 * seen.error;
     scene.rounding = {by == bound, by};
     trust("single precision: errors are within what distances are less by",
           scene.shapes[place].origin);

@@ -23,6 +23,9 @@ struct Rounded {
     double above = -ir::rounding::infinity;
 };
 
+// What some nodes are made of and they themselves, arguments first; calls and loops count as one.
+std::vector<NodeId> reached_from(const ir::Graph &graph, const std::vector<NodeId> &roots);
+
 // A function of the lowered scene, (vec3) -> float or Hit, evaluated with errors.
 class RoundingMachine {
   public:
@@ -64,8 +67,8 @@ class RoundingMachine {
     ir::FunctionId function_;
     std::map<std::vector<NodeId>, std::unique_ptr<Plan>> plans_;
     std::vector<std::vector<Rounded>> vars_; // by Var payload
-    Work reading_;                           // without end: images and grids have limits of their own
-    std::unique_ptr<Ranges> sampled_;        // of images and grids, where some are read
+    Work reading_;                    // without end: images and grids have limits of their own
+    std::unique_ptr<Ranges> sampled_; // of images and grids, where some are read
     Interval time_;
     std::vector<std::array<Interval, 4>> params_;
     Interval value_;
@@ -73,9 +76,11 @@ class RoundingMachine {
     std::size_t work_ = 0, limit_ = 0;
 };
 
-// Bounds the error of a lowered scene's distance. Where it is larger than the tolerance with which
-// rays arrive, the marched distance is lowered by it, and its place is warned of; where it is larger
-// than the scene, the scene is refused. Fills Scene::rounding. `times` as in Options (prove.h).
+// Bounds the error of a lowered scene's distance by where rays go. Where the bound is larger than
+// the tolerance with which rays arrive, points are tried (trials.h): where the error is seen, the
+// marched distance is lowered by it and its place warned of; where most of them are off by more than
+// the scene, the scene is refused; where none is seen, that is an axiom of the scene. Fills
+// Scene::rounding. `times` as in Options (prove.h).
 void bound_rounding(ir::Scene &scene, Diagnostics &diagnostics,
                     const std::optional<Interval> &times = {});
 

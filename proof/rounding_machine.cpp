@@ -25,6 +25,19 @@ bool is_sum_of_squares(const ir::Graph &graph, NodeId sum, std::vector<NodeId> &
     return false;
 }
 
+Rounded joined(const Rounded &x, const Rounded &y) {
+    if (x.value == y.value && x.error == y.error && x.relative == y.relative &&
+        x.gradient == y.gradient)
+        return x;
+    return {hull(x.value, y.value),
+            std::max(x.error, y.error),
+            std::max(x.relative, y.relative),
+            false,
+            {}};
+}
+
+} // namespace
+
 std::vector<NodeId> reached_from(const ir::Graph &graph, const std::vector<NodeId> &roots) {
     std::vector<NodeId> out, todo = roots;
     std::unordered_map<NodeId, bool> seen;
@@ -38,19 +51,6 @@ std::vector<NodeId> reached_from(const ir::Graph &graph, const std::vector<NodeI
     std::sort(out.begin(), out.end());
     return out;
 }
-
-Rounded joined(const Rounded &x, const Rounded &y) {
-    if (x.value == y.value && x.error == y.error && x.relative == y.relative &&
-        x.gradient == y.gradient)
-        return x;
-    return {hull(x.value, y.value),
-            std::max(x.error, y.error),
-            std::max(x.relative, y.relative),
-            false,
-            {}};
-}
-
-} // namespace
 
 RoundingMachine::RoundingMachine(const ir::Scene &scene, ir::FunctionId function)
     : scene_(scene), function_(function), vars_(scene.graph.var_count()) {}

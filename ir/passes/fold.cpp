@@ -21,20 +21,21 @@ Constant scalar(Type type, double value) {
     return result;
 }
 
-template <class F> Constant map1(Type type, const Constant &a, F f) {
+template <class T, class F> Constant map1(Type type, const Constant &a, F f) {
     Constant result{type, {}};
-    for (std::size_t i = 0; i < size_of(type); ++i) result.value[i] = f(a.value[i]);
+    for (std::size_t i = 0; i < size_of(type); ++i) result.value[i] = f(T(a.value[i]));
     return result;
 }
-template <class F> Constant map2(Type type, const Constant &a, const Constant &b, F f) {
-    Constant result{type, {}};
-    for (std::size_t i = 0; i < size_of(type); ++i) result.value[i] = f(a.value[i], b.value[i]);
-    return result;
-}
-template <class F> Constant map3(Type type, Args a, F f) {
+template <class T, class F> Constant map2(Type type, const Constant &a, const Constant &b, F f) {
     Constant result{type, {}};
     for (std::size_t i = 0; i < size_of(type); ++i)
-        result.value[i] = f(a[0].value[i], a[1].value[i], a[2].value[i]);
+        result.value[i] = f(T(a.value[i]), T(b.value[i]));
+    return result;
+}
+template <class T, class F> Constant map3(Type type, Args a, F f) {
+    Constant result{type, {}};
+    for (std::size_t i = 0; i < size_of(type); ++i)
+        result.value[i] = f(T(a[0].value[i]), T(a[1].value[i]), T(a[2].value[i]));
     return result;
 }
 
@@ -59,28 +60,28 @@ double cos(double x) { return sine(x, 1); }
 } // namespace of_number
 
 // The arithmetic of ints where it differs from that of floats.
-template <class I, class F> Constant arithmetic(Type type, Args a, I of_int, F of_float) {
+template <class T, class I, class F> Constant arithmetic(Type type, Args a, I of_int, F of_float) {
     if (type == Type::Int) return scalar(type, of_int(whole(a[0].value[0]), whole(a[1].value[0])));
-    return map2(type, a[0], a[1], of_float);
+    return map2<T>(type, a[0], a[1], of_float);
 }
 
-double dot(const Constant &a, const Constant &b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < size_of(a.type); ++i) sum += a.value[i] * b.value[i];
+template <class T> T dot(const Constant &a, const Constant &b) {
+    T sum = 0;
+    for (std::size_t i = 0; i < size_of(a.type); ++i) sum += T(a.value[i]) * T(b.value[i]);
     return sum;
 }
 
-Constant multiply_matrices(Type type, const Constant &a, const Constant &b) {
+template <class T> Constant multiply_matrices(Type type, const Constant &a, const Constant &b) {
     Constant result{type, {}};
     // A vector on the left is a row, on the right a column.
     const std::size_t n = static_cast<std::size_t>(is_matrix(a.type) ? side(a.type) : side(b.type));
     const std::size_t rows = is_matrix(a.type) ? n : 1, columns = is_matrix(b.type) ? n : 1;
     for (std::size_t c = 0; c < columns; ++c)
         for (std::size_t r = 0; r < rows; ++r) {
-            double sum = 0;
+            T sum = 0;
             for (std::size_t k = 0; k < n; ++k)
-                sum += a.value[is_matrix(a.type) ? k * n + r : k] *
-                       b.value[is_matrix(b.type) ? c * n + k : k];
+                sum += T(a.value[is_matrix(a.type) ? k * n + r : k]) *
+                       T(b.value[is_matrix(b.type) ? c * n + k : k]);
             result.value[c * rows + r] = sum;
         }
     return result;
@@ -95,11 +96,11 @@ double hash(const Constant &a) {
     return sem::unit<double>(h);
 }
 
-double blend(Profile profile, Args a) {
-    const double r = a[0].value[0], n = a[1].value[0];
-    double result = a[2].value[0];
+template <class T> T blend(Profile profile, Args a) {
+    const T r = T(a[0].value[0]), n = T(a[1].value[0]);
+    T result = T(a[2].value[0]);
     for (std::size_t i = 3; i < a.size(); ++i) {
-        const double next = a[i].value[0];
+        const T next = T(a[i].value[0]);
         switch (profile) {
         case Profile::Smooth: result = sem::blend_smooth(result, next, r); break;
         case Profile::Round: result = sem::blend_round(result, next, r); break;
@@ -143,13 +144,12 @@ Constant column(Type type, const Constant &a, std::uint32_t index) {
     return result;
 }
 
-} // namespace
-
-std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload) {
-    using D = double;
+template <class T>
+std::optional<Constant> evaluate_in(Op op, Type type, Args a, std::uint32_t payload) {
+    using D = double; // of what does not round
     const auto x = [&](std::size_t i) { return a[i].value[0]; };
-    const auto at = [&](std::size_t i, std::size_t k) { return a[i].value[k]; };
-    const auto each = [&](auto f) { return map1(type, a[0], f); };
+    const auto at = [&](std::size_t i, std::size_t k) { return T(a[i].value[k]); };
+    const auto each = [&](auto f) { return map1<T>(type, a[0], f); };
     const auto flag = [](bool value) { return scalar(Type::Bool, value ? 1 : 0); };
     const auto number = [](double value) { return scalar(Type::Float, value); };
     switch (op) {
@@ -159,37 +159,37 @@ std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload
 
     case Op::Neg:
         if (type == Type::Int) return scalar(type, sem::int_neg(whole(x(0))));
-        return each([](D v) { return -v; });
-    case Op::Add: return arithmetic(type, a, sem::int_add, [](D u, D v) { return u + v; });
-    case Op::Sub: return arithmetic(type, a, sem::int_sub, [](D u, D v) { return u - v; });
-    case Op::Mul: return arithmetic(type, a, sem::int_mul, [](D u, D v) { return u * v; });
-    case Op::Div: return arithmetic(type, a, sem::int_div, [](D u, D v) { return u / v; });
-    case Op::Mod: return arithmetic(type, a, sem::int_mod, sem::mod<D>);
-    case Op::Pow: return map2(type, a[0], a[1], sem::pow<D>);
-    case Op::Min: return map2(type, a[0], a[1], sem::min<D>);
-    case Op::Max: return map2(type, a[0], a[1], sem::max<D>);
-    case Op::Step: return map2(type, a[0], a[1], sem::step<D>);
-    case Op::Atan2: return map2(type, a[0], a[1], sem::atan2<D>);
+        return each([](T v) { return -v; });
+    case Op::Add: return arithmetic<T>(type, a, sem::int_add, [](T u, T v) { return u + v; });
+    case Op::Sub: return arithmetic<T>(type, a, sem::int_sub, [](T u, T v) { return u - v; });
+    case Op::Mul: return arithmetic<T>(type, a, sem::int_mul, [](T u, T v) { return u * v; });
+    case Op::Div: return arithmetic<T>(type, a, sem::int_div, [](T u, T v) { return u / v; });
+    case Op::Mod: return arithmetic<T>(type, a, sem::int_mod, sem::mod<T>);
+    case Op::Pow: return map2<T>(type, a[0], a[1], sem::pow<T>);
+    case Op::Min: return map2<D>(type, a[0], a[1], sem::min<D>);
+    case Op::Max: return map2<D>(type, a[0], a[1], sem::max<D>);
+    case Op::Step: return map2<D>(type, a[0], a[1], sem::step<D>);
+    case Op::Atan2: return map2<T>(type, a[0], a[1], sem::atan2<T>);
     case Op::Abs:
         if (type == Type::Int) return scalar(type, whole(sem::abs(x(0))));
-        return each(sem::abs<D>);
-    case Op::Sign: return each(sem::sign<D>);
-    case Op::Floor: return each([](D v) { return std::floor(v); });
-    case Op::Ceil: return each([](D v) { return std::ceil(v); });
-    case Op::Round: return each(sem::round<D>);
-    case Op::Trunc: return each([](D v) { return std::trunc(v); });
-    case Op::Fract: return each(sem::fract<D>);
+        return map1<D>(type, a[0], sem::abs<D>);
+    case Op::Sign: return map1<D>(type, a[0], sem::sign<D>);
+    case Op::Floor: return each([](T v) { return std::floor(v); });
+    case Op::Ceil: return each([](T v) { return std::ceil(v); });
+    case Op::Round: return each(sem::round<T>);
+    case Op::Trunc: return each([](T v) { return std::trunc(v); });
+    case Op::Fract: return each(sem::fract<T>);
 #define FATHOM_FUNCTION(name, function, ...)                                                       \
     case Op::name: {                                                                               \
-        return each([](D v) { return of_number::function(v); });                                   \
+        return each([](T v) { return T(of_number::function(v)); });                                \
     }
 #include "ir/ops.def"
-    case Op::Clamp: return map3(type, a, sem::clamp<D>);
-    case Op::Mix: return map3(type, a, sem::mix<D>);
-    case Op::Smoothstep: return map3(type, a, sem::smoothstep<D>);
+    case Op::Clamp: return map3<D>(type, a, sem::clamp<D>);
+    case Op::Mix: return map3<T>(type, a, sem::mix<T>);
+    case Op::Smoothstep: return map3<T>(type, a, sem::smoothstep<T>);
 
-    case Op::Dot: return number(dot(a[0], a[1]));
-    case Op::Length: return number(std::sqrt(dot(a[0], a[0])));
+    case Op::Dot: return number(dot<T>(a[0], a[1]));
+    case Op::Length: return number(std::sqrt(dot<T>(a[0], a[0])));
     case Op::Cross: {
         Constant result{type, {}};
         for (std::size_t i = 0; i < 3; ++i) {
@@ -199,8 +199,8 @@ std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload
         return result;
     }
     case Op::Normalize: {
-        const double factor = sem::normalizer(dot(a[0], a[0]));
-        return each([factor](D v) { return v * factor; });
+        const T factor = sem::normalizer(dot<T>(a[0], a[0]));
+        return each([factor](T v) { return v * factor; });
     }
 
     case Op::Less: return flag(x(0) < x(1));
@@ -212,16 +212,16 @@ std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload
     case Op::Not: return flag(x(0) == 0);
     case Op::Select: return x(0) != 0 ? a[1] : a[2];
 
-    case Op::ToFloat: return number(x(0));
+    case Op::ToFloat: return number(T(x(0)));
     case Op::ToInt: return scalar(Type::Int, whole(x(0)));
     case Op::Splat: {
         const double value = x(0);
-        return map1(type, a[0], [value](D) { return value; });
+        return map1<D>(type, a[0], [value](D) { return value; });
     }
     case Op::Make: return joined(type, a);
     case Op::Swizzle: return swizzled(type, a[0], payload);
     case Op::Column: return column(type, a[0], payload);
-    case Op::MatMul: return multiply_matrices(type, a[0], a[1]);
+    case Op::MatMul: return multiply_matrices<T>(type, a[0], a[1]);
     case Op::Transpose: return transposed(a[0]);
 
     case Op::Hash: return number(hash(a[0]));
@@ -229,7 +229,8 @@ std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload
     case Op::Simplex: return number(sem::simplex(at(0, 0), at(0, 1), at(0, 2)));
     case Op::ValueNoise: return number(sem::value_noise(at(0, 0), at(0, 1), at(0, 2)));
     case Op::Worley: return number(sem::worley(at(0, 0), at(0, 1), at(0, 2)));
-    case Op::SpotNoise: return number(sem::spot_noise(at(0, 0), at(0, 1), at(0, 2), x(1), x(2)));
+    case Op::SpotNoise:
+        return number(sem::spot_noise(at(0, 0), at(0, 1), at(0, 2), at(1, 0), at(2, 0)));
 
     case Op::Union:
     case Op::Intersection: {
@@ -238,9 +239,18 @@ std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload
             result = op == Op::Union ? sem::min(result, x(i)) : sem::max(result, x(i));
         return number(result);
     }
-    case Op::Blend: return number(blend(static_cast<Profile>(payload), a));
+    case Op::Blend: return number(blend<T>(static_cast<Profile>(payload), a));
     }
     return std::nullopt;
+}
+
+} // namespace
+
+std::optional<Constant> evaluate(Op op, Type type, Args a, std::uint32_t payload) {
+    return evaluate_in<double>(op, type, a, payload);
+}
+std::optional<Constant> evaluate_single(Op op, Type type, Args a, std::uint32_t payload) {
+    return evaluate_in<float>(op, type, a, payload);
 }
 
 } // namespace fathom::ir
