@@ -63,7 +63,7 @@ Compilation compile_text(std::string name, std::string text, const std::filesyst
                          const CompileOptions &options);
 
 // Text whose imports, images and grids come from `loader`, which gets an empty `from` where the text
-// itself asks.
+// itself names.
 Compilation compile_loaded(std::string name, std::string text, const typecheck::Loader &loader,
                            const CompileOptions &options);
 

@@ -14,7 +14,7 @@ namespace fathom::proof {
 // answer is the same everywhere.
 std::unordered_set<ir::NodeId> meeting_choices(Flattening &context, ir::NodeId root);
 
-// Does the expression, its calls included, hold a choice that would be asked for?
+// Does the expression, its calls included, hold a choice that would be looked at?
 bool has_choices(const ir::Graph &graph, ir::NodeId root);
 
 } // namespace fathom::proof

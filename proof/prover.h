@@ -12,7 +12,7 @@
 
 namespace fathom::proof {
 
-// Where a shape is asked at all, in its own space.
+// Where a shape is evaluated at all, in its own space.
 struct Place {
     bool reached = false,
          reported = false; // reported: not only inside a body whose claims are taken
@@ -102,7 +102,7 @@ struct Prover {
 
     double bend(ir::NodeId field, const Box &box); // curvature.cpp
     double core_of_leaf(ir::NodeId field);
-    // c, where f'' <= 1/(f + c) along lines wherever f > -c; -infinity: unknown. Asked for what is
+    // c, where f'' <= 1/(f + c) along lines wherever f > -c; -infinity: unknown. Wanted for what is
     // displaced alone.
     double core_of(ir::ShapeId id, int depth = 0);
     double core_made(ir::ShapeId id, int depth);
@@ -139,7 +139,7 @@ struct Prover {
     std::map<std::tuple<ir::NodeId, std::array<double, 3>, std::array<double, 3>>, FieldBound>
         bounds; // by field and box
 
-    // The bound of an expression of the point over where the shape is asked. Reports failures.
+    // The bound of an expression of the point over where the shape is evaluated. Reports failures.
     FieldBound bound(ir::ShapeId id, ir::NodeId field, const std::string &what, bool report = true);
 
     void keep_local(Derived &k, double sup,

@@ -163,7 +163,7 @@ Derived Prover::know_repeat(ShapeId id) {
             if (need > max_per_axis) too_many = true;
             plan.neighbors[a] = need;
             product *= need;
-            // Which copies are asked changes in the middle between two; the guard is continuous
+            // Which copies are evaluated changes in the middle between two; the guard is continuous
             // there if the boxes lie evenly about their cells' middles.
             plan.copy.hi[a] = std::max(-lo, hi);
             plan.copy.lo[a] = -plan.copy.hi[a];
