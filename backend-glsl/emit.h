@@ -1,6 +1,6 @@
-// From a lowered scene to shader text, for each target (docs/shaders.md). What is given out has been
-// checked by glslang. Sees expressions, functions, folds and tables only; knows no language, opens
-// no file, calls no GL.
+// From a lowered scene to shader text, for each target (docs/shaders.md). What is given out has
+// been checked by glslang. Sees expressions, functions, folds and tables only; knows no language,
+// opens no file, calls no GL.
 #pragma once
 
 #include "backend-glsl/targets.h"

@@ -9,8 +9,8 @@
 
 namespace fathom::proof {
 
-// The choices (Select, Sign, Step) below `root` whose turning `root` is proved not to see. Enters no
-// loops; calls should have been written out before (written_out). Counts its work, so that the
+// The choices (Select, Sign, Step) below `root` whose turning `root` is proved not to see. Enters
+// no loops; calls should have been written out before (written_out). Counts its work, so that the
 // answer is the same everywhere.
 std::unordered_set<ir::NodeId> meeting_choices(Flattening &context, ir::NodeId root);
 

@@ -1,5 +1,5 @@
-// What library functions demand of arguments that depend on params, time and the ids of copies: proved
-// with intervals, by halving the ranges. Proofs: docs/lipschitz.md, 9.
+// What library functions demand of arguments that depend on params, time and the ids of copies:
+// proved with intervals, by halving the ranges. Proofs: docs/lipschitz.md, 9.
 #include "ir/passes/walk.h"
 #include "proof/continuity.h"
 #include "proof/prover.h"

@@ -1,5 +1,5 @@
-// Fields of the user's own: their bounds over the region where they are evaluated, what is assumed of
-// them, and the reports that say where and why there is none.
+// Fields of the user's own: their bounds over the region where they are evaluated, what is assumed
+// of them, and the reports that say where and why there is none.
 #include "ir/passes/operations.h"
 #include "ir/passes/walk.h"
 #include "proof/prover.h"
