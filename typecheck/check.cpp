@@ -2,6 +2,7 @@
 #include "typecheck/check.h"
 
 #include "lang/parse.h"
+#include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
 
 #include "ir/background.h"
