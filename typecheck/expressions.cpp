@@ -348,8 +348,8 @@ static Value eval_member(Interpreter &ev, const File &ast, const lang::Member &m
     return poison();
 }
 
-static Value make_closure(Interpreter &ev, const File &ast, lang::FunctionId function,
-                          std::uint32_t frame) {
+Value make_closure(Interpreter &ev, const File &ast, lang::FunctionId function,
+                   std::uint32_t frame) {
     Closure c;
     c.ast = &ast;
     c.function = function;

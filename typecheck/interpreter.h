@@ -410,6 +410,9 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
                 std::uint32_t frame); // assignment.cpp, as is the journal
 Outcome run_if(Interpreter &ev, const File &ast, const lang::If &node, std::uint32_t frame,
                Span place);
+// A function with the frame that its free names are read in.
+Value make_closure(Interpreter &ev, const File &ast, lang::FunctionId function,
+                   std::uint32_t frame);
 void hoist_functions(Interpreter &ev, const File &ast, lang::BlockId block, std::uint32_t frame);
 std::optional<std::vector<Value>> sequence_items(Interpreter &ev, const Value &v, Span place);
 bool may_list(Interpreter &ev, Span place, std::size_t count); // so many elements; else reported

@@ -396,7 +396,8 @@ bool may_list(Interpreter &ev, Span place, std::size_t count) {
     constexpr std::size_t copies = 4; // that stand side by side while a list is made from lists
     if (count > ev.options.limits.work) {
         report(ev, Code::LoopLimit, place, fmt::format("a range of {} numbers is too long", count))
-            .note(limit_note(ev.options.limits, &Limits::work));
+            .note(limit_note(ev.options.limits, &Limits::work))
+            .help(limit_help(ev.options.limits, &Limits::work));
         return false;
     }
     return spend(ev, place, count) && has_room(ev, place, copies * count * sizeof(Value));
