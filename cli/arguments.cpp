@@ -141,9 +141,9 @@ void add_scene(CLI::App *app, SceneArguments &scene, Read read = Read::Once) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-void add_strict_proof(CLI::App *app, SceneArguments &scene) {
-    app->add_flag("--strict-proof", scene.strict_proof,
-                  "refuse what is assumed, estimated or not bounded in single precision");
+void add_proved_scene(CLI::App *app, SceneArguments &scene) {
+    add_scene(app, scene);
+    app->add_flag("--strict-proof", scene.strict_proof, "refuse what is not proved");
 }
 
 // An empty name is a script's variable that was never set.
@@ -254,8 +254,7 @@ struct Reader {
                         "save a picture of the window here after every reload")
             ->check(named())
             ->type_name("DIR");
-        sub->add_flag("--save-view", view.save_view,
-                      "write the view into FILE when the window closes");
+        sub->add_flag("--save-view", view.save_view, "write the view into FILE at the end");
         sub->add_flag("--times", view.times, "say of each reload what took how long");
         sub->add_flag("--still", view.still, "begin with the time stopped");
         sub->add_flag("--one-context", view.one_context,
@@ -265,8 +264,7 @@ struct Reader {
 
     void add_check() {
         CLI::App *sub = command("check", "parse, type and prove a scene", check);
-        add_scene(sub, check.scene);
-        add_strict_proof(sub, check.scene);
+        add_proved_scene(sub, check.scene);
         sub->add_flag("--json", check.json, "one JSON document on standard output");
         sub->add_flag("--explain", check.explain, "show where the bound comes from, as a tree");
         sub->add_flag("--watch", check.watch, "check again after every save");
@@ -274,8 +272,7 @@ struct Reader {
 
     void add_compile() {
         CLI::App *sub = command("compile", "write the scene's shader, validated", compile);
-        add_scene(sub, compile.scene);
-        add_strict_proof(sub, compile.scene);
+        add_proved_scene(sub, compile.scene);
         add_out(
             sub, compile.out,
             fmt::format("write here, not to standard output; for {}, large tables to OUT.tables",
@@ -292,8 +289,7 @@ struct Reader {
 
     void add_render() {
         CLI::App *sub = command("render", "make a picture, without a window", render);
-        add_scene(sub, render.scene);
-        add_strict_proof(sub, render.scene);
+        add_proved_scene(sub, render.scene);
         add_out(sub, render.out,
                 "the picture, a PNG or JPEG by its suffix (`-`: a PNG to standard output); for "
                 "--frames, `#`s stand for the frame's number")

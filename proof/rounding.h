@@ -21,6 +21,12 @@ struct Rounded {
     std::array<double, 3> gradient{};
     // Where the error is unknown: both numbers are at least this, as 1/|q| near q = 0 is large.
     double above = -ir::rounding::infinity;
+    // Where it is a sum of squares or the like: its root is as near to the evaluator's number's as
+    // root_error + root_relative sqrt(x).
+    double root_error = ir::rounding::infinity, root_relative = 0;
+    // Where it is an angle: borders at which it decides lie that far off, and all of it is no
+    // farther than `reach` from its axis.
+    double off = ir::rounding::infinity, reach = 0;
 };
 
 // What some nodes are made of and they themselves, arguments first; calls and loops count as one.
@@ -47,7 +53,6 @@ class RoundingMachine {
         std::vector<int> sizes;
         std::uint32_t out = 0;
         int n = 1;
-        bool is_norm = false; // a root of a sum of squares: of the arguments'
     };
     struct Plan { // what some nodes are made of, in order
         std::vector<Step> steps;

@@ -12,22 +12,9 @@ using ir::rounding::infinity;
 
 namespace {
 
-// The parts whose squares the sum is made of.
-bool is_sum_of_squares(const ir::Graph &graph, NodeId sum, std::vector<NodeId> &parts) {
-    const ir::Node &node = graph[sum];
-    if (node.op == Op::Add)
-        return is_sum_of_squares(graph, graph.arg(sum, 0), parts) &&
-               is_sum_of_squares(graph, graph.arg(sum, 1), parts);
-    if ((node.op == Op::Mul || node.op == Op::Dot) && graph.arg(sum, 0) == graph.arg(sum, 1)) {
-        parts.push_back(graph.arg(sum, 0));
-        return true;
-    }
-    return false;
-}
-
 Rounded joined(const Rounded &x, const Rounded &y) {
     if (x.value == y.value && x.error == y.error && x.relative == y.relative &&
-        x.gradient == y.gradient)
+        x.gradient == y.gradient && x.root_error == y.root_error && x.off == y.off)
         return x;
     return {hull(x.value, y.value),
             std::max(x.error, y.error),
@@ -76,14 +63,7 @@ RoundingMachine::Plan &RoundingMachine::plan_of(const std::vector<NodeId> &roots
         Step step;
         step.id = id;
         step.n = ir::components(node.type);
-        std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
-        std::vector<NodeId> parts;
-        if (node.op == Op::Sqrt && node.type == ir::Type::Float &&
-            is_sum_of_squares(graph, args[0], parts)) {
-            step.is_norm = true;
-            args = parts;
-        }
-        for (NodeId a : args) {
+        for (NodeId a : graph.args(id)) {
             step.args.push_back(places.at(a));
             step.sizes.push_back(ir::components(graph[a].type));
         }

@@ -58,7 +58,6 @@ struct RoundingRule {
     const ir::Node node;
     std::span<const Rounded *const> args; // each its first component
     std::span<const int> sizes;
-    const bool is_norm; // a root of a sum of the arguments' squares
     Rounded *out;
     int n;
 
@@ -68,13 +67,19 @@ struct RoundingRule {
     }
     int count() const { return int(args.size()); }
 
+    static double slope_of(const Rounded &x) { // 1 where it is not known
+        const double slope = std::hypot(x.gradient[0], x.gradient[1], x.gradient[2]);
+        return x.linear && slope > 0 ? slope : 1;
+    }
     // A decision within `error` of a border is taken that far from it, over the slope.
     void decide(double error, const Rounded &x) {
         if (error == 0) return;
-        double slope = 0;
-        for (double g : x.gradient) slope += g * g;
-        slope = x.linear && slope > 0 ? std::sqrt(slope) : 1;
-        machine.misplaced_ = std::max(machine.misplaced_, error / slope);
+        machine.misplaced_ = std::max(machine.misplaced_, std::min(error / slope_of(x), x.off));
+    }
+    // An angle times or over a number, or more by one, which is rounded by that many units.
+    static void turn(Rounded &r, const Rounded &angle, double over, double units) {
+        r.reach = angle.reach * over;
+        r.off = angle.off + units * unit_roundoff * (r.value.magnitude() + total(r)) * r.reach;
     }
     static Rounded unknown() { return {Interval::everything(), infinity, 0, false, {}}; }
     static Rounded bent(Interval value, double error) {
@@ -136,6 +141,11 @@ struct RoundingRule {
             r.relative += unit_roundoff, r.error = r.error * (1 + unit_roundoff) + smallest_normal;
         r.linear = x.linear && y.linear;
         for (std::size_t j = 0; j < 3; ++j) r.gradient[j] = x.gradient[j] + sign * y.gradient[j];
+        if (sign > 0) {
+            r.root_error = std::hypot(x.root_error, y.root_error);
+            r.root_relative = std::max(x.root_relative, y.root_relative) + unit_roundoff;
+        }
+        if (still(x) != still(y)) turn(r, still(x) ? y : x, 1, 1);
         return r;
     }
     static bool power_of_two(const Rounded &x) {
@@ -161,6 +171,14 @@ struct RoundingRule {
         if (r.linear)
             for (std::size_t j = 0; j < 3; ++j)
                 r.gradient[j] = rest.gradient[j] * factor.value.middle();
+        if (&x == &y) {
+            r.root_error = x.error + std::sqrt(smallest_normal);
+            r.root_relative = x.relative + 2 * unit_roundoff;
+        } else if (still(factor) && factor.value.lo >= 0) {
+            r.root_error = times(std::sqrt(factor.value.hi), rest.root_error);
+            r.root_relative = rest.root_relative + factor.relative + 2 * unit_roundoff;
+        }
+        if (still(factor)) turn(r, rest, 1 / factor.value.mignitude(), 2);
         return r;
     }
     static Rounded quotient(const Rounded &x, const Rounded &y) {
@@ -174,6 +192,7 @@ struct RoundingRule {
         r.linear = still(y) && x.linear && (y.value.is_point() || still(x));
         if (r.linear)
             for (std::size_t j = 0; j < 3; ++j) r.gradient[j] = x.gradient[j] / y.value.middle();
+        if (still(y)) turn(r, x, y.value.magnitude(), 6);
         return r;
     }
     // A function of one number, with its slope over all that the evaluator may ask.
@@ -183,6 +202,11 @@ struct RoundingRule {
         const double moved = e == 0 ? 0 : std::min(times(slope.magnitude(), e), holder(node.op, e));
         Rounded r = made(v, moved + loss(node.op, widened(x), v));
         if (root) r.relative = x.relative + 6 * unit_roundoff;
+        if (node.op == Op::Sqrt &&
+            x.root_error + times(x.root_relative, v.magnitude()) < total(r)) {
+            r.error = x.root_error + loss(node.op, widened(x), v);
+            r.relative = x.root_relative + 6 * unit_roundoff;
+        }
         return r;
     }
     // Of what rounds: the decision is the evaluator's own, its result exact.
@@ -201,7 +225,17 @@ struct RoundingRule {
                          std::max(x.error, y.error));
         r.relative = std::max(x.relative, y.relative);
         r.linear = still(x) && still(y);
+        r.root_error = std::max(x.root_error, y.root_error);
+        r.root_relative = std::max(x.root_relative, y.root_relative);
         return r;
+    }
+    // In exact arithmetic and the evaluator's.
+    bool never_negative(NodeId x) const {
+        constexpr ir::OpSet sizes_of{Op::Length, Op::Sqrt, Op::Abs};
+        if (graph[x].op == Op::Splat) x = graph.arg(x, 0);
+        if (graph[x].op == Op::Max)
+            return never_negative(graph.arg(x, 0)) || never_negative(graph.arg(x, 1));
+        return sizes_of[graph[x].op] || graph.as_number(x).value_or(-1) >= 0;
     }
     Rounded dot(int a, int b) const {
         Rounded r = product(arg(a, 0), arg(b, 0), false);

@@ -3,6 +3,7 @@
 
 namespace fathom::proof {
 
+// Long: a case for each op.
 Rounded RoundingRule::component(int c) {
     const auto of = [&](int a) -> const Rounded & { return arg(a, c); };
     switch (node.op) {
@@ -18,6 +19,7 @@ Rounded RoundingRule::component(int c) {
         Rounded r = of(0);
         r.value = -r.value;
         for (double &g : r.gradient) g = -g;
+        r.root_error = infinity;
         return r;
     }
     case Op::Add:
@@ -25,11 +27,8 @@ Rounded RoundingRule::component(int c) {
     case Op::Mul: return product(of(0), of(1), whole());
     case Op::Div:
         if (!whole()) {
-            constexpr ir::OpSet sizes_of{Op::Length, Op::Sqrt, Op::Abs}; // never below 0
             Rounded r = quotient(of(0), of(1));
-            NodeId divisor = graph.arg(id, 1);
-            if (graph[divisor].op == Op::Splat) divisor = graph.arg(divisor, 0);
-            if (std::isinf(r.error) && sizes_of[graph[divisor].op])
+            if (std::isinf(r.error) && never_negative(graph.arg(id, 1)))
                 r.above = std::max(0.0, widened(of(0)).lo) / widened(of(1)).hi * (1 - 1e-6);
             return r;
         }
@@ -40,13 +39,16 @@ Rounded RoundingRule::component(int c) {
         const Rounded &x = of(0), &m = of(1);
         if (whole() || (m.value == Interval(0.0) && total(m) == 0))
             return made(hull(hull(m.value, -m.value), x.value), 0);
+        const Interval range{std::min(m.value.lo, 0.0), std::max(m.value.hi, 0.0)};
+        // The turns are exact, and the rest is rounded once.
+        if (power_of_two(m) && total(x) == 0)
+            return made(range, unit_roundoff * m.value.magnitude());
         const Rounded turns = quotient(x, m);
         const Interval times_m = floor(widened(turns));
         if (!times_m.is_point()) decide(total(turns), turns);
         const double size = times_m.magnitude();
-        return made({std::min(m.value.lo, 0.0), std::max(m.value.hi, 0.0)},
-                    total(x) + times(size, total(m)) + 3 * rounded_by(x.value, total(x)) +
-                        3 * unit_roundoff * m.value.magnitude());
+        return made(range, total(x) + times(size, total(m)) + 3 * rounded_by(x.value, total(x)) +
+                               3 * unit_roundoff * m.value.magnitude());
     }
     case Op::Pow: return power(of(0), of(1));
     case Op::Min: return extremum(of(0), of(1), -1);
@@ -109,7 +111,11 @@ Rounded RoundingRule::component(int c) {
                     lo = std::min(lo, std::atan2(p, q)), hi = std::max(hi, std::atan2(p, q));
             v = ir::outward(lo, hi, ir::rounding::library);
         }
-        return made(v, std::min(e == 0 ? 0 : 1.6 * e / r, 6.3) + 32 * unit_roundoff);
+        Rounded angle = made(v, std::min(e == 0 ? 0 : 1.6 * e / r, 6.3) + 32 * unit_roundoff);
+        const double slope = std::min(slope_of(of(0)), slope_of(of(1)));
+        angle.reach = std::hypot(of(0).value.magnitude(), of(1).value.magnitude()) / slope;
+        angle.off = 1.6 * e / slope + 32 * unit_roundoff * angle.reach;
+        return angle;
     }
     case Op::Abs: {
         Rounded r = of(0);
@@ -160,6 +166,8 @@ Rounded RoundingRule::component(int c) {
         Rounded r = bent(hull(of(1).value, of(2).value), std::max(of(1).error, of(2).error));
         r.relative = std::max(of(1).relative, of(2).relative);
         r.linear = still(of(1)) && still(of(2)) && still(arg(0));
+        r.root_error = std::max(of(1).root_error, of(2).root_error);
+        r.root_relative = std::max(of(1).root_relative, of(2).root_relative);
         return r;
     }
     case Op::ToFloat: return made(arg(0).value, arg(0).value.magnitude() > 0x1p24 ? 128 : 0);
@@ -241,10 +249,6 @@ void RoundingRule::run() {
                 out[c++] = args[static_cast<std::size_t>(a)][k];
         return;
     }
-    if (is_norm) {
-        out[0] = length();
-        return;
-    }
     for (int c = 0; c < n; ++c) out[c] = component(c);
 }
 
@@ -256,9 +260,9 @@ void RoundingMachine::run_step(Plan &plan, const Step &step) {
     const Rounded **args = count > few.size() ? many.data() : few.data();
     for (std::size_t a = 0; a < count; ++a) args[a] = &plan.frame[step.args[a]];
     const ir::Graph &graph = scene_.graph;
-    RoundingRule rule{*this,         graph,      step.id,      graph[step.id],
-                      {args, count}, step.sizes, step.is_norm, &plan.frame[step.out],
-                      step.n};
+    RoundingRule rule{
+        *this, graph, step.id, graph[step.id], {args, count}, step.sizes, &plan.frame[step.out],
+        step.n};
     rule.run();
     // A number that is the same for all points is what evaluators make of it: the field is proved
     // for all of them.
@@ -266,6 +270,7 @@ void RoundingMachine::run_step(Plan &plan, const Step &step) {
         Rounded &x = plan.frame[step.out + static_cast<std::uint32_t>(c)];
         if (!still(x) || !std::isfinite(total(x))) continue;
         x.error = x.relative = 0;
+        if (x.value.lo >= 0) x.root_error = x.root_relative = 0;
         if (x.value.is_point()) x.value = to_single(x.value.lo);
     }
 }

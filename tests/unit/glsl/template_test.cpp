@@ -16,13 +16,14 @@ using glsl::Values;
 
 namespace {
 
-const std::vector<std::string> flags{"BOXED",     "STEEP",        "HAS_SAFE_RADIUS",
-                                     "APART",     "SKIP_SHADING", "LOCAL_NORMALS",
-                                     "PICK",      "CACHED",       "FAR_CELLS",
-                                     "AROUND",    "ONE_LIGHT",    "BLENDED",
-                                     "PICTURE",   "FIELD_ONLY",   "TIME",
-                                     "ES",        "LOCATIONS",    "MARKED",
-                                     "UNPAINTED", "PAINTED",      "LIT"};
+const std::vector<std::string> flags{"BOXED",   "STEEP",        "HAS_SAFE_RADIUS",
+                                     "APART",   "SKIP_SHADING", "LOCAL_NORMALS",
+                                     "PICK",    "CACHED",       "FAR_CELLS",
+                                     "AROUND",  "ONE_LIGHT",    "BLENDED",
+                                     "PICTURE", "FIELD_ONLY",   "TIME",
+                                     "ES",      "LOCATIONS",    "MARKED",
+                                     "OWN",     "UNPAINTED",    "PAINTED",
+                                     "LIT"};
 
 // What a flag decides beside its own `$if`, as the emitter has it.
 Values values_with(std::string_view name, const std::set<std::string> &on) {
