@@ -22,8 +22,9 @@ using ir::rounding::infinity;
 namespace {
 
 // Nodes, never time: for cutting up a region, and for trying points of it.
-constexpr std::size_t cutting_work = 6'000, trial_work = 30'000, least_trial_work = 6'000;
+constexpr std::size_t cutting_work = 6'000, trial_work = 30'000;
 constexpr int height = 1080;
+constexpr std::ptrdiff_t tried_regions = 3; // the last 16 times as large as what is looked at
 
 // A box of space, and the tolerance with which rays arrive there.
 struct Asked {
@@ -273,9 +274,11 @@ void bound_rounding(ir::Scene &scene, Diagnostics &diagnostics,
         bound = std::max(bound, e);
         if (e <= asked.tolerance) continue;
         all = false;
+        // What is wrong far away alone is no reason to lower what is near.
+        if (&asked - regions.data() >= tried_regions) continue;
         const Seen here = look(scene, asked, inputs, frame.radius,
-                               std::max(least_trial_work, trial_work / regions.size()));
-        if (!(here.error > seen.error || (here.useless && !seen.useless))) continue;
+                               regions.size() == 1 ? trial_work : trial_work / tried_regions);
+        if (seen.useless ? !here.useless : !here.useless && here.error <= seen.error) continue;
         seen = here, worst = &asked;
     }
     scene.rounding = {all, 0};

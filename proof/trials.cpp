@@ -96,7 +96,7 @@ void Trials::run(Plan &plan) {
         else if (node.op == Op::Loop)
             run_loop(plan, step);
         else
-            plan.frame[step.out] = run_step(plan, step);
+            run_step(plan, step);
     }
 }
 
@@ -148,21 +148,18 @@ void Trials::run_loop(Plan &plan, const Plan::Step &step) {
     }
 }
 
-Trials::Number Trials::run_step(Plan &plan, const Plan::Step &step) {
+void Trials::run_step(Plan &plan, const Plan::Step &step) {
     const ir::Graph &graph = scene_.graph;
     const ir::Node &node = graph[step.id];
     const auto arg = [&](std::size_t i) -> const Number & { return plan.frame[step.args[i]]; };
-    Number r;
-    r.meant.type = r.computed.type = node.type;
+    Number &r = plan.frame[step.out];
+    r.varies = Varies::Never;
     for (std::size_t i = 0; i < step.args.size(); ++i) r.varies = std::max(r.varies, arg(i).varies);
     const std::size_t n = static_cast<std::size_t>(ir::components(node.type));
-    const auto still = [&](const Constant &value) {
-        r.meant = r.computed = rounded(value);
-        return r;
-    };
+    const auto still = [&](const Constant &value) { r.meant = r.computed = rounded(value); };
     Constant given{node.type, {}};
     switch (node.op) {
-    case Op::Var: return vars_[node.payload];
+    case Op::Var: r = vars_[node.payload]; return;
     case Op::Time: given.value[0] = time_; return still(given);
     case Op::Param:
         for (std::size_t c = 0; c < n; ++c) given.value[c] = params_[node.payload][c];
@@ -179,8 +176,8 @@ Trials::Number Trials::run_step(Plan &plan, const Plan::Step &step) {
     }
     case Op::FillPaint:
     case Op::HitDistance:
-    case Op::MakeHit: return arg(0); // of a hit its distance alone is followed
-    case Op::HitWith: return arg(1);
+    case Op::MakeHit: r = arg(0); return; // of a hit its distance alone is followed
+    case Op::HitWith: r = arg(1); return;
     case Op::NearestHit:
     case Op::FarthestHit: {
         const double sign = node.op == Op::NearestHit ? 1 : -1;
@@ -192,7 +189,8 @@ Trials::Number Trials::run_step(Plan &plan, const Plan::Step &step) {
                 sign * std::min(sign * best.computed.value[0], sign * arg(a).computed.value[0]);
         }
         best.varies = r.varies;
-        return best;
+        r = best;
+        return;
     }
     case Op::Image:
     case Op::Grid:
@@ -211,28 +209,27 @@ Trials::Number Trials::run_step(Plan &plan, const Plan::Step &step) {
     case Op::LoopResult:
     case Op::Cached: break; // run
     }
-    meant_args_.clear(), computed_args_.clear();
-    for (std::size_t i = 0; i < step.args.size(); ++i) {
-        meant_args_.push_back(arg(i).meant);
-        computed_args_.push_back(arg(i).computed);
-    }
-    r.computed = ir::evaluate_single(node.op, node.type, computed_args_, node.payload).value();
+    args_.clear();
+    for (std::size_t i = 0; i < step.args.size(); ++i) args_.push_back(arg(i).computed);
+    r.computed = *ir::evaluate_single(node.op, node.type, args_, node.payload);
     const bool decides = deciding[node.op];
     if (decides) r.varies = std::min(r.varies, Varies::Steps);
     if (decides || r.varies == Varies::Never || (r.varies == Varies::Steps && !placing[node.op])) {
         r.meant = r.computed;
-        return r;
+        return;
     }
-    r.meant = ir::evaluate(node.op, node.type, meant_args_, node.payload).value();
-    if (node.op != Op::Fract && node.op != Op::Mod && node.op != Op::Atan2) return r;
+    args_.clear();
+    for (std::size_t i = 0; i < step.args.size(); ++i) args_.push_back(arg(i).meant);
+    r.meant = *ir::evaluate(node.op, node.type, args_, node.payload);
+    if (node.op != Op::Fract && node.op != Op::Mod && node.op != Op::Atan2) return;
     // What follows from a decision follows from that of single precision.
     for (std::size_t c = 0; c < n; ++c) {
         double &v = r.meant.value[c];
         const auto of = [&](std::size_t a) {
-            return arg(a).meant.value[meant_args_[a].type == node.type ? c : 0];
+            return arg(a).meant.value[arg(a).meant.type == node.type ? c : 0];
         };
         const auto computed = [&](std::size_t a) {
-            return arg(a).computed.value[computed_args_[a].type == node.type ? c : 0];
+            return arg(a).computed.value[arg(a).computed.type == node.type ? c : 0];
         };
         if (node.op == Op::Fract) v = of(0) - std::floor(computed(0));
         if (node.op == Op::Mod && computed(1) != 0)
@@ -242,7 +239,6 @@ Trials::Number Trials::run_step(Plan &plan, const Plan::Step &step) {
             if (std::fabs(apart) > turn / 2) v += apart > 0 ? turn : -turn;
         }
     }
-    return r;
 }
 
 Trial Trials::at(const std::array<double, 3> &point, double time,

@@ -47,7 +47,7 @@ class Trials {
     void run(Plan &plan);
     void run_call(Plan &plan, const Plan::Step &step, ir::FunctionId function);
     void run_loop(Plan &plan, const Plan::Step &step);
-    Number run_step(Plan &plan, const Plan::Step &step);
+    void run_step(Plan &plan, const Plan::Step &step);
 
     const ir::Scene &scene_;
     ir::FunctionId function_;
@@ -55,7 +55,7 @@ class Trials {
     std::vector<Number> vars_; // by Var payload
     double time_ = 0;
     std::vector<std::array<double, 4>> params_;
-    std::vector<ir::Constant> meant_args_, computed_args_; // of the op in hand
+    std::vector<ir::Constant> args_; // of the op in hand
     std::size_t work_ = 0, limit_ = 0;
 };
 
