@@ -1,6 +1,7 @@
 #include "driver/compile.h"
 
 #include "driver/edit.h"
+#include "driver/framing.h"
 #include "driver/scene_files.h"
 #include "ir/lower/lower.h"
 #include "ir/passes/operations.h"
@@ -105,6 +106,8 @@ void run_phases(Compilation &out, SceneFiles &files, const std::string &identity
                 .note(fmt::format("at most {:.0e} are allowed, so that every picture ends",
                                   ir::max_operations))
                 .help("look for copies of copies, or loops in loops");
+        else
+            find_framing(out.scene, out.diagnostics);
     }
     enter(options, Phase::Done);
 }

@@ -300,7 +300,7 @@ TEST_CASE("explaining says whether shapes are left out where they cannot matter"
     folder.write("many.sdf", "for i in 0..500 { sphere(0.1).translate([0.5 * i, 0, 0]) }\n");
     CHECK(contains(shell(folder, "fathom check --explain good.sdf").out, "pruning: not worth it"));
     CHECK(contains(shell(folder, "fathom check --explain many.sdf").out,
-                   "pruning: the processor asks in each cell"));
+                   "pruning: the processor computes for each cell"));
     CHECK_FALSE(contains(shell(folder, "fathom check many.sdf").out, "pruning"));
 }
 
