@@ -1,6 +1,6 @@
-// From a lowered scene to shader text, for each target (docs/shaders.md). What is given out has been
-// checked by glslang. Sees expressions, functions, folds and tables only; knows no language, opens
-// no file, calls no GL.
+// From a lowered scene to shader text, for each target (docs/shaders.md). What is given out has
+// been checked by glslang. Sees expressions, functions, folds and tables only; knows no language,
+// opens no file, calls no GL.
 #pragma once
 
 #include "backend-glsl/targets.h"
@@ -38,7 +38,7 @@ struct Options {
         false; // GL 4.2: cached fields worth it are read through the noise cache (cache.h)
     bool pruning =
         false; // GL 4.3: long loops run over the rows that can matter in a cell (prune.h)
-    bool far_cells = true; // … and rays ask no rows where those are known to be far
+    bool far_cells = true; // … and rays evaluate no rows where those are known to be far
     double time = 0; // where a target has no host that sets a camera: the moment whose camera is
                      // the first view
     std::string title = "scene";              // html: the page's title

@@ -14,7 +14,7 @@
 
 namespace fathom::glsl {
 
-// The texts of what was asked for and of all that these need, callees first.
+// The texts of what was wanted and of all that these need, callees first.
 std::string helper_text(const std::set<HelperKey> &wanted);
 
 // Every helper, by name and form.

@@ -31,7 +31,7 @@ struct MarcherOptions {
     bool default_sun = false;
     bool pick = false;      // writes fathom_pick too (emit.h)
     bool cached = false;    // some field is read through the noise cache (cache.h)
-    bool far_cells = false; // rays may ask `fathom_clear` (prune.h)
+    bool far_cells = false; // rays may call `fathom_clear` (prune.h)
     bool around = false; // outside of the cells the field may be less than the distance (prune.h)
     int lights = 0;
     int max_steps = 256;

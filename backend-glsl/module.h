@@ -15,7 +15,7 @@
 
 namespace fathom::glsl {
 
-// A helper function `fathom_…` and the type that it was asked for ("" where it has one form only).
+// A helper function `fathom_…` and the type that it was wanted for ("" where it has one form only).
 using HelperKey = std::pair<std::string, std::string>;
 
 struct TableUse {
@@ -45,7 +45,7 @@ struct Module {
 
     std::map<std::uint32_t, PrunePlan::Use> pruned{}; // by LoopId: loops over a cell's rows
     bool around = false;    // outside of the cells there are the scene's endless parts (prune.h)
-    bool far_cells = false; // rays ask which cells are far from all surfaces (prune.h)
+    bool far_cells = false; // rays read which cells are far from all surfaces (prune.h)
 
     ir::NodeId result_of(ir::FunctionId id) const {
         const auto it = results.find(id.index);

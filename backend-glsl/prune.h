@@ -2,7 +2,8 @@
 // matter, so a list of the others has the same values there (Barbier et al. 2025, on Lipschitz
 // pruning). A compute shader makes the lists for a grid of cells, level by level, each from that of
 // the cell 4^3 as large; the picture's text then runs over the list of the cell that a point is in,
-// and over all rows outside of the grid, where it asks them. So the field is the same to the bit.
+// and over all rows outside of the grid, where it evaluates them. So the field is the same to the
+// bit.
 //
 // A loop: acc = start(p); for each row i: acc = joined(acc, v_i(p)). With L a bound of every v_i's
 // slope, M one of acc's (the larger of L and start's), R half a cell's diagonal, c its centre:
@@ -14,8 +15,8 @@
 //
 // Far cells: no surface is nearer to a cell's centre c than sdf(c). Where that is more than R,
 // one number stands for the cell: a ray in it goes on to where it leaves the ball of that radius
-// about c, and asks no row. A shadow's ray leaves the ball made smaller by what could shade it.
-// Outside of all cells the box of what has an end, and what has none (a ground), say as much.
+// about c, and evaluates no row. A shadow's ray leaves the ball made smaller by what could shade
+// it. Outside of all cells the box of what has an end, and what has none (a ground), say as much.
 #pragma once
 
 #include "backend-glsl/emit.h"

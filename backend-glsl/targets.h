@@ -1,5 +1,5 @@
 // The targets as a table: targets.def has a row for each, and what a target decides is a column of
-// it. Code asks the row and names no target.
+// it. Code reads the row and names no target.
 #pragma once
 
 #include <span>

@@ -12,9 +12,9 @@ namespace {
 
 // The field at any number of points: coordinates in, printed lines out. The distance is the one
 // that is marched; where the field has a kink the gradient's numbers may have taken its other side.
-class Evaluator {
+class PointPrinter {
   public:
-    Evaluator(const ir::Scene &scene, double time)
+    PointPrinter(const ir::Scene &scene, double time)
         : program_(cpu::compile(scene, scene.distance)),
           values_(cpu::make_scratch(program_, cpu::inputs_of(scene, time))),
           scratch_(cpu::make_gradient_scratch(program_, cpu::inputs_of(scene, time))) {}
@@ -69,7 +69,7 @@ bool read_point(std::string_view line, std::array<double, 3> &point, bool &empty
 
 // Answers each block of lines as it comes, so that a program may send a point, read the answer, and
 // send again.
-Exit answer_standard_input(Evaluator &evaluator, Terminal &terminal) {
+Exit answer_standard_input(PointPrinter &evaluator, Terminal &terminal) {
     std::string pending;
     std::array<char, 1 << 16> block;
     std::size_t line_number = 0;
@@ -114,7 +114,7 @@ Exit run(const EvalCommand &command, Terminal &terminal) {
     if (exit != done) return exit;
     if (!in_proved_time(compilation.scene, command.time, command.time, terminal))
         return usage_error;
-    Evaluator evaluator(compilation.scene, command.time);
+    PointPrinter evaluator(compilation.scene, command.time);
     for (const std::array<double, 3> &point : command.at) evaluator.add(point);
     evaluator.print(terminal);
     return command.points ? answer_standard_input(evaluator, terminal) : done;

@@ -59,8 +59,8 @@ def wrapped(text, indent=""):
 def entries(path):
     doc = []
     # A head that goes over several lines is read as one.
-    text = re.sub(r"^fn \w+\(\n[^)]*\n\)", lambda head: re.sub(r"\n\s*", " ", head[0]).replace("( ", "(").replace(" )", ")"),
-                  path.read_text(), flags=re.MULTILINE)
+    text = re.sub(r"^fn \w+\(\n.*?^\)", lambda head: re.sub(r"\n\s*", " ", head[0]).replace("( ", "(").replace(" )", ")"),
+                  path.read_text(), flags=re.MULTILINE | re.DOTALL)
     for line in text.splitlines():
         if line.startswith("///"):
             doc.append(line[3:].strip())

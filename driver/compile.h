@@ -58,13 +58,13 @@ struct Compilation {
 // (`.yaml`, `.yml`) is imported first.
 Compilation compile_file(const std::filesystem::path &file, const CompileOptions &options);
 
-// Text that is no file (yet): printed as `name`, importing as if it lay in `folder`. Where `name` is
-// that of a save file the text is imported first.
+// Text that is no file (yet): printed as `name`, importing as if it lay in `folder`. Where `name`
+// is that of a save file the text is imported first.
 Compilation compile_text(std::string name, std::string text, const std::filesystem::path &folder,
                          const CompileOptions &options);
 
-// Text whose imports, images and grids come from `loader`, which gets an empty `from` where the text
-// itself asks.
+// Text whose imports, images and grids come from `loader`, which gets an empty `from` where the
+// text itself names.
 Compilation compile_loaded(std::string name, std::string text, const typecheck::Loader &loader,
                            const CompileOptions &options);
 

@@ -16,7 +16,7 @@ namespace fathom::driver {
 
 // The largest text and the largest save file that is read where no option says another.
 inline constexpr std::size_t max_source_bytes = Limits{}.source * mebibyte;
-inline constexpr std::size_t max_save_bytes = 4 * max_source_bytes;
+inline constexpr std::size_t max_save_bytes = 16 * max_source_bytes;
 
 // What tells one state of a file from the next without reading it.
 struct FileStamp {

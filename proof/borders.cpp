@@ -1,5 +1,5 @@
 // A choice's border is where the two sides of one of its comparisons are equal. The smallest
-// expression that all uses of the choice go through is asked there, then the next larger one
+// expression that all uses of the choice go through is tested there, then the next larger one
 // (border_cases.h).
 #include "proof/borders.h"
 

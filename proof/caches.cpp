@@ -1,8 +1,8 @@
 // What is proved of the fields that the noise cache may keep: how steep they are and how far their
-// values lie apart, wherever they are asked. So the error of interpolation has a bound. The shapes
+// values lie apart, wherever they are read. So the error of interpolation has a bound. The shapes
 // that read such a field are proved with what is known of it everywhere and not with what its text
-// says where they lie: the cached field, which is interpolated, is as steep as the former allows and
-// may be steeper than the latter (docs/noise-cache.md).
+// says where they lie: the cached field, which is interpolated, is as steep as the former allows
+// and may be steeper than the latter (docs/noise-cache.md).
 #include "proof/prover.h"
 
 #include "ir/passes/cost.h"

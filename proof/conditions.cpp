@@ -1,5 +1,5 @@
-// What library functions ask of arguments that hang on params, time and the ids of copies: proved
-// with intervals, by halving the ranges. Proofs: docs/lipschitz.md, 9.
+// What library functions demand of arguments that depend on params, time and the ids of copies:
+// proved with intervals, by halving the ranges. Proofs: docs/lipschitz.md, 9.
 #include "ir/passes/walk.h"
 #include "proof/continuity.h"
 #include "proof/prover.h"
@@ -106,8 +106,8 @@ bool always(Flattening &flattening, Ranges &ranges, NodeId condition,
             all.back().hi = all.back().lo + period * (1 + 1e-9);
     }
     std::vector<std::vector<Interval>> boxes{all};
-    for (int asked = 0; !boxes.empty(); ++asked) {
-        if (asked == max_boxes) return false;
+    for (int tried = 0; !boxes.empty(); ++tried) {
+        if (tried == max_boxes) return false;
         const std::vector<Interval> box = boxes.back();
         boxes.pop_back();
         Cell cell;

@@ -29,7 +29,7 @@ bool own_box(const Shape &shape, const Derived &k) {
 
 } // namespace
 
-// The largest distance from the axis at which the shape is asked.
+// The largest distance from the axis at which the shape is evaluated.
 double Prover::region_radius(ShapeId id, int axis) const {
     const Place &here = place(id);
     double radius = radius_about(here.box, axis);

@@ -11,7 +11,7 @@ struct Deformation {
     int axis = 1;  // of a twist and a taper; of a bend the one about which the points turn
     Interval rate; // Twist, Bend: radians a unit
     Interval ratio, from, to; // Taper
-    Cell box;                 // in the deformed space: where the slope is asked for
+    Cell box;                 // in the deformed space: where the slope is wanted
 };
 
 // >= the slope of the deformed field in the box; infinity where none was proved. `field`: the

@@ -1,6 +1,6 @@
 // A border of floor(u) is where u is a whole number K, a fresh variable that stands for all whole
 // numbers at once. The field is written three times: for u a little less than K, for K, and for a
-// little more; "a little" is an infinitesimal, which every other step is asked with, too. A step
+// little more; "a little" is an infinitesimal, at which every other step is evaluated, too. A step
 // whose argument is then a number, a whole multiple of K and a multiple of the infinitesimal has
 // one value (floor(u + 1) moves with floor(u)). Any other that the point moves is taken for
 // unknown: one variable for equal arguments. Where a sum of products makes all three equal

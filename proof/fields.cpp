@@ -1,5 +1,5 @@
-// Fields of the user's own: their bounds over the region where they are asked, what is assumed of
-// them, and the reports that say where and why there is none.
+// Fields of the user's own: their bounds over the region where they are evaluated, what is assumed
+// of them, and the reports that say where and why there is none.
 #include "ir/passes/operations.h"
 #include "ir/passes/walk.h"
 #include "proof/prover.h"
@@ -256,10 +256,10 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                        (b.trouble == Trouble::Singular && only_grows(graph, b.cause));
     if (b.at_infinity || (grows && endless)) {
         const bool jumps = b.trouble == Trouble::Jump;
-        if (Diagnostic *d =
-                report(id, Code::LipschitzUnbounded,
-                       jumps ? "it cannot be proved that " + what + " does not jump"
-                             : what + " grows steeper without limit, as it is asked everywhere"))
+        if (Diagnostic *d = report(
+                id, Code::LipschitzUnbounded,
+                jumps ? "it cannot be proved that " + what + " does not jump"
+                      : what + " grows steeper without limit, as it is evaluated everywhere"))
             d->note(jumps ? cause + " jumps, and that both sides meet is not seen"
                           : "no bound on its slope holds for all points" +
                                 (b.cause ? "; far from the origin " + cause + " has none" : ""))
@@ -312,7 +312,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
         if (Diagnostic *d = report(id, Code::FieldSingular,
                                    what + " is undefined or infinitely steep near " +
                                        point_text(b.where, dims)))
-            d->note(cause + " happens there, and the field is asked in all of its region")
+            d->note(cause + " happens there, and the field is evaluated in all of its region")
                 .help(std::string(has_region
                                       ? "choose a region that avoids it, as in `within: ball(2) - "
                                         "tube(Y, 0.1)`, "
@@ -384,7 +384,7 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
         return p;
     };
     using Values = std::array<Interval, 4>;
-    auto ask = [&](const std::array<double, 3> &p) {
+    auto evaluate = [&](const std::array<double, 3> &p) {
         machine.run({{Interval(p[0]), Interval(p[1]), Interval(p[2])}});
         Values v{Interval(0), Interval(0), Interval(0), Interval(0)};
         for (int i = 0; i < std::min(machine.size(), 4); ++i)
@@ -394,7 +394,7 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
     // The rise is what lies between the two intervals: where rounding leaves a choice open, both of
     // its branches are in there, and nothing is refuted.
     auto slope = [&](const std::array<double, 3> &p, const std::array<double, 3> &q) {
-        Values a = ask(p), b = ask(q);
+        Values a = evaluate(p), b = evaluate(q);
         double rise = 0, run = 0;
         for (std::size_t i = 0; i < 4; ++i) {
             double gap = std::max({0.0, a[i].lo - b[i].hi, b[i].lo - a[i].hi});

@@ -134,7 +134,7 @@ struct Step {
         return int(machine.tape_.size[in.args[static_cast<std::size_t>(arg)]]);
     }
     // The axes along which an argument may change, a bit for each. Where they are other ones for A
-    // than for B, |(A + B) v| <= hypot(|A|, |B|) |v|, as each asks a part of v of its own.
+    // than for B, |(A + B) v| <= hypot(|A|, |B|) |v|, as each reads a part of v of its own.
     unsigned axes(int arg) const {
         unsigned bits = 0;
         for (int c = 0; c < size(arg); ++c)

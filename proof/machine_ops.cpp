@@ -71,7 +71,7 @@ namespace {
 
 using OpRule = void (Step::*)();
 
-// One for each op; `nothing` of what is never asked here: calls and loops are flattened away,
+// One for each op; `nothing` of what never comes here: calls and loops are flattened away,
 // lengths become Form::Norm, and hits and paints are colours.
 constexpr ir::OpTable<OpRule> rule_of_op{
     {Op::Const, &Step::constant},

@@ -1,6 +1,7 @@
 // The Lipschitz analysis: proves, for every shape of a scene, how steep its raw field can be over
-// all points and the values of params and times that it is asked for, and what else the lowering may rely on (ir::ShapeFact). Rules and
-// proofs: docs/lipschitz.md. Knows nothing of syntax; places come from Shape::origin.
+// all points and the values of params and times that it is proved for, and what else the lowering
+// may rely on (ir::ShapeFact). Rules and proofs: docs/lipschitz.md. Knows nothing of syntax; places
+// come from Shape::origin.
 #pragma once
 
 #include "base/diagnostic.h"

@@ -12,7 +12,7 @@
 
 namespace fathom::proof {
 
-// Where a shape is asked at all, in its own space.
+// Where a shape is evaluated at all, in its own space.
 struct Place {
     bool reached = false,
          reported = false; // reported: not only inside a body whose claims are taken
@@ -94,6 +94,11 @@ struct Prover {
     Derived know_taper(ir::ShapeId id, Derived k);
     Derived know_distort(ir::ShapeId id, Derived k);
     void needs_region(ir::ShapeId id, Derived &k, const std::string &what);
+    struct Copies; // repeat.cpp
+    Copies ring_copies(const ir::Shape &shape, const ir::Repetition &repetition,
+                       const Derived &motif, Derived &k);
+    Copies lattice_copies(const ir::Shape &shape, const ir::Repetition &repetition,
+                          const Derived &motif, Derived &k);
     Derived know_repeat(ir::ShapeId id);
     Derived know_within(ir::ShapeId id);
     Derived know_instances(ir::ShapeId id);
@@ -106,7 +111,7 @@ struct Prover {
 
     double bend(ir::NodeId field, const Box &box); // curvature.cpp
     double core_of_leaf(ir::NodeId field);
-    // c, where f'' <= 1/(f + c) along lines wherever f > -c; -infinity: unknown. Asked for what is
+    // c, where f'' <= 1/(f + c) along lines wherever f > -c; -infinity: unknown. Wanted for what is
     // displaced alone.
     double core_of(ir::ShapeId id, int depth = 0);
     double core_made(ir::ShapeId id, int depth);
@@ -143,7 +148,7 @@ struct Prover {
     std::map<std::tuple<ir::NodeId, std::array<double, 3>, std::array<double, 3>>, FieldBound>
         bounds; // by field and box
 
-    // The bound of an expression of the point over where the shape is asked. Reports failures.
+    // The bound of an expression of the point over where the shape is evaluated. Reports failures.
     FieldBound bound(ir::ShapeId id, ir::NodeId field, const std::string &what, bool report = true);
 
     void keep_local(Derived &k, double sup,

@@ -75,14 +75,14 @@ struct Tape {
     std::size_t length() const;
 };
 
-// Border questions: is this Select continuous (continuity.h)? Asked once a Select that varies.
+// Border questions: is this Select continuous (continuity.h)? Answered once a Select that varies.
 struct Flattening {
     ir::Graph &graph;
     Work &work;
     std::unordered_map<NodeId, bool> joined{}; // by Select, remembered over fields
     bool borders =
-        true; // are choices asked for whether the field sees them turn? Slopes depend on it
-    // By field: the choices that it does not see turn (borders.h), asked once a field.
+        true; // is each choice tested for whether the field changes there? Slopes depend on it
+    // By field: the choices at which it does not change (borders.h), found once a field.
     std::unordered_map<NodeId, std::unordered_set<NodeId>> meeting{};
     std::vector<bool> cached{}; // by cached field: known by its bounds alone (Ranges::caches)
 };

@@ -1,5 +1,5 @@
 // What values a raw field takes over a box of points: intervals up the tree of shapes. For rules
-// that need how large a field can be; slopes are not asked here.
+// that need how large a field can be; slopes are not wanted here.
 #include "proof/prover.h"
 
 #include <algorithm>

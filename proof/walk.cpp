@@ -70,7 +70,7 @@ void Prover::run() {
     }
     for (std::size_t i = 0; i < count; ++i) {
         Derived k = derived.front();
-        if (places[i].reached) { // what no one asks keeps facts that say nothing
+        if (places[i].reached) { // what is never evaluated keeps facts that say nothing
             k = know(ShapeId{i});
             if (!is_field(ShapeId{i})) k.leaf = {};
             find_extent(ShapeId{i}, k);

@@ -2,6 +2,7 @@
 #include "typecheck/check.h"
 
 #include "lang/parse.h"
+#include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
 
 #include "ir/background.h"
@@ -12,6 +13,7 @@
 #include <new>
 #include <pthread.h>
 #include <set>
+#include <sys/mman.h>
 
 namespace fathom::typecheck {
 
@@ -20,7 +22,8 @@ ir::Lighting default_lighting(Interpreter &ev); // builtins/scene.cpp
 namespace {
 
 // Evaluation recurses with the scene's own recursion (max_depth, max_call_depth), so it gets a
-// stack made for that: as large as the system grants. Evaluation ends in time before its end.
+// stack made for that: as large as the system grants, with as much left for what is evaluated.
+// Evaluation ends in time before its end.
 constexpr std::size_t most_stack = std::size_t{1} << 30; // reserved: pages come as they are touched
 constexpr std::size_t least_stack = std::size_t{4} << 20;      // below, what is ours already serves
 constexpr std::size_t most_of_one_step = std::size_t{1} << 18; // of a builtin, a report, the parser
@@ -37,12 +40,19 @@ const char *end_of_stack() {
     return static_cast<const char *>(lowest) + std::max(most_of_one_step, size / 16);
 }
 
+// Whether the system would map so many bytes of addresses.
+bool is_granted(std::size_t bytes) {
+    void *at = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    return at != MAP_FAILED && munmap(at, bytes) == 0;
+}
+
 void with_stack(const std::function<void()> &work) {
     auto run = [](void *f) -> void * {
         (*static_cast<const std::function<void()> *>(f))();
         return nullptr;
     };
     for (std::size_t bytes = most_stack; bytes >= least_stack; bytes /= 4) {
+        if (!is_granted(2 * bytes)) continue;
         pthread_attr_t attributes;
         pthread_attr_init(&attributes);
         pthread_attr_setstacksize(&attributes, bytes);

@@ -101,7 +101,7 @@ struct Checked {
     std::vector<NameFact> names; // of the scene's own file, as declared
     std::size_t evaluations = 0; // counted work of scene time
     bool no_memory = false;      // the system gave no more: all else is empty
-    bool over_limit = false;     // evaluation ended at a limit, which is reported: not worth a proof
+    bool over_limit = false; // evaluation ended at a limit, which is reported: not worth a proof
 };
 
 // `root` is already in `sources`; imported files are added to it. Reports every independent error.

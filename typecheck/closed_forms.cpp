@@ -5,6 +5,7 @@
 // by a unit in its last place, gives every row to within `close_enough`: so no floor or comparison
 // stands at an edge, and a shader shows what was proved of the data.
 #include "typecheck/closed_forms.h"
+#include "typecheck/instances.h"
 
 #include "ir/passes/fold.h"
 #include "ir/passes/inline.h"

@@ -231,7 +231,8 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
     ok = false;
     Diagnostic &d =
         report(ev, Code::TypeMismatch, place,
-               fmt::format("{} wants a `{}`, this is {}", what, type_text(type), describe(ev, v)));
+               fmt::format("{} wants {} `{}`, this is {}", what, type.in_radians ? "an" : "a",
+                           type_text(type), describe(ev, v)));
     if (!is_library_place(ev, type.span) && !(type.span == place))
         d.label(type.span, "because of this type");
     if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Shape &&

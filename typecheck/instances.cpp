@@ -4,6 +4,7 @@
 //
 // Two shapes are alike when their trees differ in constants only. A shape's *skeleton* is its tree
 // with the constants taken out, in the order of a walk; the constants, in that order, are its row.
+#include "typecheck/instances.h"
 #include "typecheck/closed_forms.h"
 
 #include "ir/passes/rows.h"

@@ -410,6 +410,9 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
                 std::uint32_t frame); // assignment.cpp, as is the journal
 Outcome run_if(Interpreter &ev, const File &ast, const lang::If &node, std::uint32_t frame,
                Span place);
+// A function with the frame that its free names are read in.
+Value make_closure(Interpreter &ev, const File &ast, lang::FunctionId function,
+                   std::uint32_t frame);
 void hoist_functions(Interpreter &ev, const File &ast, lang::BlockId block, std::uint32_t frame);
 std::optional<std::vector<Value>> sequence_items(Interpreter &ev, const Value &v, Span place);
 bool may_list(Interpreter &ev, Span place, std::size_t count); // so many elements; else reported
@@ -474,23 +477,6 @@ void add_shape_builtins(std::vector<Builtin> &table);
 void add_transform_builtins(std::vector<Builtin> &table);
 void add_scene_builtins(std::vector<Builtin> &table);
 void add_texture_builtins(std::vector<Builtin> &table);
-
-// -- iterations.cpp
-// After a loop in shape position: what its iterations made, each from `starts[i]` on; `iteration`
-// runs its body for a value of its variable.
-constexpr std::size_t min_computed = 64; // shapes from which on a table's rows are worth a formula
-void note_iterations(
-    Interpreter &ev, const std::vector<Value> &items, const std::vector<std::size_t> &starts,
-    const std::vector<Contribution> &made,
-    const std::function<void(const Value &item, std::vector<Contribution> &out)> &iteration);
-
-// -- instances.cpp
-void shape_nodes(const ir::Scene &scene, ir::ShapeId id, std::vector<ir::NodeId> &out);
-std::vector<ir::ShapeId> gather_instances(Interpreter &ev, std::vector<ir::ShapeId> shapes,
-                                          int dims);
-std::optional<ir::ShapeId> smooth_instances(Interpreter &ev, const std::vector<ir::ShapeId> &shapes,
-                                            ir::NodeId k, int dims);
-ir::ShapeId unite(Interpreter &ev, std::vector<ir::ShapeId> shapes, int dims, Span origin);
 
 // -- modules.cpp
 Value import_module(Interpreter &ev, const lang::Import &import, Span place,

@@ -3,6 +3,7 @@
 // shapes too, each shape of iteration i is what these become at i. Whoever gathers the shapes into
 // a table (instances.cpp) may then compute a column instead of listing it. Says nothing of numbers:
 // what is noted here is checked row by row before it is used (closed_forms.cpp).
+#include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
 
 #include <cmath>

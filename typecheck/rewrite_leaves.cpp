@@ -1,4 +1,5 @@
 #include "typecheck/rewrite_leaves.h"
+#include "typecheck/instances.h"
 
 #include <map>
 #include <tuple>

@@ -1,6 +1,7 @@
 // Blocks and statements, in both places where they stand: a body, whose last expression is its
 // value, and a contributing block (a file, a trailing block, a comprehension), in which every
 // expression counts (semantics.md, 3).
+#include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
 
 #include <fmt/format.h>
@@ -395,7 +396,8 @@ bool may_list(Interpreter &ev, Span place, std::size_t count) {
     constexpr std::size_t copies = 4; // that stand side by side while a list is made from lists
     if (count > ev.options.limits.work) {
         report(ev, Code::LoopLimit, place, fmt::format("a range of {} numbers is too long", count))
-            .note(limit_note(ev.options.limits, &Limits::work));
+            .note(limit_note(ev.options.limits, &Limits::work))
+            .help(limit_help(ev.options.limits, &Limits::work));
         return false;
     }
     return spend(ev, place, count) && has_room(ev, place, copies * count * sizeof(Value));
@@ -427,6 +429,33 @@ std::optional<std::vector<Value>> sequence_items(Interpreter &ev, const Value &v
                fmt::format("a loop runs over a range or a list, this is {}", describe(ev, v)));
     if (is_scalar(ev, v)) d.help("write a range: `0..n`");
     return std::nullopt;
+}
+
+void hoist_functions(Interpreter &ev, const File &ast, lang::BlockId block, std::uint32_t frame) {
+    for (const lang::Stmt &s : ast.blocks[block].stmts)
+        if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind)) {
+            const lang::Function &fn = ast.functions[f->function];
+            if (!fn.name) continue;
+            Value closure = make_closure(ev, ast, f->function, frame);
+            bool library = ev.modules[ev.current_module].library;
+            // the library overloads by parameter type
+            const Symbol name = symbol_of(ast, *fn.name);
+            if (library && ev.frames[frame].index) {
+                Frame &fr = ev.frames[frame];
+                if (auto slot = slot_in_module(ev, frame, name)) {
+                    Value old = fr.bindings[*slot].value;
+                    std::vector<Value> all = old.kind == ValueKind::Overloads
+                                                 ? ev.lists[old.id]
+                                                 : std::vector<Value>{old};
+                    all.push_back(closure);
+                    Value overloads =
+                        make_value(ValueKind::Overloads, list_value(ev, std::move(all)).id);
+                    ev.frames[frame].bindings[*slot].value = overloads;
+                    continue;
+                }
+            }
+            declare(ev, frame, name, closure, false, fn.name->span);
+        }
 }
 
 } // namespace fathom::typecheck

@@ -1,7 +1,7 @@
 // Where in space which parts of a field matter: a hierarchy of cells, 64 in each, with a shorter
 // tape each (shorten.h), or, far from every surface, one number. Cells are made when a point first
-// asks for them and depend on nothing but their place, so that pictures are the same whoever asks
-// first; any number of threads may evaluate.
+// wants them and depend on nothing but their place, so that pictures are the same whoever wants
+// them first; any number of threads may evaluate.
 //
 // A value is that of the whole tape to the bit, unless the evaluator says that less will do: of a
 // distance that is at least its `limit` any lower bound that is at least the limit. Far cells

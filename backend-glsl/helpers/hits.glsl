@@ -7,7 +7,7 @@ Hit fathom_nearest(Hit a, Hit b) {
 }
 
 $helper fathom_farthest_of
-// Of hits that are asked in a row: an unpainted one shows the first one's paint.
+// Of hits that are evaluated in a row: an unpainted one shows the first one's paint.
 Hit fathom_farthest_of(Hit first, Hit best, Hit next) {
     if (next.distance <= best.distance) return best;
     if (next.paint >= 0) return next;

@@ -103,8 +103,8 @@ $# What was reached by curvature is not remembered: 0 proves less, and costs a s
 $end
     for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
 $if FAR_CELLS
-$# Through far cells first, all rays together; then the field is asked, once. A step is
-$# what asks it.
+$# Through far cells first, all rays together; then the field is evaluated, once. A step is
+$# what evaluates it.
         while (t <= end) {
             vec2 clear = fathom_clear(origin + t * direction, direction, fathom_tolerance(t));
             if (!(clear.y > 0.0 && stride <= before + clear.x)) break;

@@ -1,5 +1,5 @@
 // Shapes to functions: the driver, functions for what is shared, and the frames in which shapes are
-// asked.
+// evaluated.
 #include "ir/lower/lowering.h"
 #include "ir/passes/walk.h"
 

@@ -39,7 +39,7 @@ int sectors_of(const Scene &scene, ShapeId id, int count) {
     const int evaluated = *std::max_element(plan.neighbors.begin(), plan.neighbors.end());
     if (plan.guard)
         return count; // copies that differ: a wedge bounds nothing that a box knows, so all are
-                      // asked
+                      // evaluated
     return std::min(evaluated > 0 ? evaluated : 3, count);
 }
 
@@ -125,7 +125,8 @@ NodeId Lowering::repeated(Reading reading, ShapeId id, Where frame) {
 
 // Along an axis with cells of width c, u = x/c + h counts cells; h puts cell 0 at the origin, or,
 // of a finite number n of them, the middle there: copy i stands at (i - h) c. The first of N copies
-// asked is floor(u) - N/2 + 1 for even N, the nearest less (N-1)/2 for odd, kept within 0 .. n-N.
+// evaluated is floor(u) - N/2 + 1 for even N, the nearest less (N-1)/2 for odd, kept within 0 ..
+// n-N.
 NodeId Lowering::lattice(Reading reading, ShapeId id, Where frame) {
     Graph &g = graph_;
     const Shape &s = shape(id);

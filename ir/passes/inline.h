@@ -1,7 +1,7 @@
 // Inlining: calls and iterations of loops written out where they stand. In come a graph and a call,
 // a loop or an expression; out go nodes of the same graph with the same values. Names that a
 // function or a loop binds are replaced by what is given for them. It never enters the body of a
-// loop that it is not asked for, and removes nothing.
+// loop that it is not given, and removes nothing.
 #pragma once
 
 #include "ir/passes/walk.h"

@@ -74,7 +74,7 @@ struct Hostile {
 
 std::vector<Hostile> hostile_scenes() {
     const std::string twice = "fn d(s, n) = if n == 0 { s } else { d(s + s, n - 1) }\n";
-    const std::string loops = "  for i in 0..1000 {\n    for j in 0..1000 {\n"
+    const std::string loops = "  for i in 0..900 {\n    for j in 0..900 {\n"
                               "      s = s + sin(i * p.x + j)\n    }\n  }\n";
     const auto ifs = [](const char *otherwise) {
         return lines(3000, [&](int i) {
@@ -88,7 +88,7 @@ std::vector<Hostile> hostile_scenes() {
          twice + "let l = map(0..1000, i => d(\"abcdefgh\", 20))\nsphere(1)\n"},
         {"a string that grows", "memory-limit",
          "print(len(fold(0..1000000, \"\", (s, i) => s + \"abcdefghijklmn\")))\nsphere(1)\n"},
-        {"a list, doubled", "memory-limit",
+        {"a list, doubled", "loop-limit",
          "fn d(l, n) = if n == 0 { l } else { d(concat(l, l), n - 1) }\n"
          "print(len(d([1, 2, 3, 4, 5], 40)))\nsphere(1)\n"},
         {"shared lists, not used", "", shared_lists("\"x\"", "")},

@@ -2,6 +2,7 @@
 // begin with `_` and only the library sees them), and the few public forms that the language itself
 // cannot say (`implicit`, `cached`).
 #include "typecheck/builtins/builtins.h"
+#include "typecheck/instances.h"
 #include "typecheck/textures.h"
 
 #include <fmt/format.h>

@@ -235,5 +235,6 @@ TEST_CASE("the page of the library shows every entry", "[stdlib]") {
     for (const typecheck::LibraryEntry &entry : entries()) {
         INFO(entry.file << ": " << entry.name);
         CHECK(page.str().find("### `" + entry.name + "`") != std::string::npos);
+        CHECK(page.str().find("\n" + entry.signature + "\n") != std::string::npos);
     }
 }
