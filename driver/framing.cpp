@@ -8,7 +8,8 @@
 namespace fathom::driver {
 namespace {
 
-constexpr int moments = 16; // of a scene that moves
+constexpr int moments = 16;         // of a scene that moves
+constexpr double most_work = 200e6; // operations on boxes
 
 // Spread over the whole time by the golden ratio, so that no period of the motion is met in step.
 std::vector<double> times_of(const ir::Scene &scene, ir::FunctionId part) {
@@ -20,10 +21,11 @@ std::vector<double> times_of(const ir::Scene &scene, ir::FunctionId part) {
     return times;
 }
 
-ir::Box over_time(const ir::Scene &scene, ir::FunctionId part, const ir::Box &domain) {
+ir::Box over_time(const ir::Scene &scene, ir::FunctionId part, const ir::Box &domain,
+                  double &work) {
     ir::Box box;
     for (const double time : times_of(scene, part))
-        box = ir::hull(box, cpu::solid_box(scene, part, domain, time));
+        box = ir::hull(box, cpu::solid_box(scene, part, domain, time, work));
     return box;
 }
 
@@ -31,12 +33,14 @@ ir::Box over_time(const ir::Scene &scene, ir::FunctionId part, const ir::Box &do
 
 void find_framing(ir::Scene &scene, Diagnostics &diagnostics) {
     if (scene.camera.given || scene.top_level.empty()) return;
-    if (scene.framed_together) scene.framed = over_time(scene, scene.framed_together, scene.framed);
+    double work = most_work;
+    if (scene.framed_together)
+        scene.framed = over_time(scene, scene.framed_together, scene.framed, work);
     constexpr double far = cpu::endless_from;
     const ir::Box space{{-far, -far, -far}, {far, far, far}};
     bool endless = false;
     for (const ir::FunctionId part : scene.framed_alone) {
-        const ir::Box box = over_time(scene, part, space);
+        const ir::Box box = over_time(scene, part, space, work);
         bool inside = true;
         for (std::size_t i = 0; i < 3; ++i)
             inside = inside && (box.empty() || (box.lo[i] > -far / 2 && box.hi[i] < far / 2));
@@ -45,7 +49,7 @@ void find_framing(ir::Scene &scene, Diagnostics &diagnostics) {
         else
             endless = true;
     }
-    if (!scene.framed.empty()) return;
+    if (!scene.framed.empty() || work <= 0) return; // what was not found may be there
     const Span span = scene.top_level.front().span;
     if (endless)
         diagnostics

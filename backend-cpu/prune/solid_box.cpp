@@ -3,6 +3,7 @@
 #include "backend-cpu/prune/solid_box.h"
 
 #include "backend-cpu/prune/shorten.h"
+#include "ir/passes/operations.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,9 +61,12 @@ struct Search {
     Shortener shortener;
     ShortTape whole;
     Boxes boxes;
-    int runs = 0; // allowed for a side
+    double a_box = 0; // operations for a box, with loops counted out
+    double &work;     // how many are left
+    int runs = 0;     // allowed for a side
 
-    explicit Search(const PruneProgram &p) : parts(p), shortener(p), whole(whole_tape(p)) {
+    Search(const PruneProgram &p, double operations, double &left)
+        : parts(p), shortener(p), whole(whole_tape(p)), a_box(operations), work(left) {
         runs = std::clamp(static_cast<int>(max_work / (6 * std::max(whole.cost, 1.0f))), min_runs,
                           max_runs);
     }
@@ -95,7 +99,8 @@ struct Search {
         std::vector<Box> children;
         for (int run = 0; !heap.empty(); ++run) {
             const Cell &top = heap.front();
-            if (run == runs || top.far <= known + fine || longest(top.box) <= fine)
+            if (work < 16 * a_box) work = 0;
+            if (run == runs || work <= 0 || top.far <= known + fine || longest(top.box) <= fine)
                 return up ? top.far : -top.far;
             children.clear();
             for (std::size_t k = 0; k < cells_a_run && !heap.empty(); ++k) {
@@ -112,6 +117,7 @@ struct Search {
                     put(k, middle(child), middle(child));
             }
             boxes.count = padded;
+            work -= a_box * static_cast<double>(padded);
             run_over(parts, shortener, whole.selection(parts), boxes);
             for (std::size_t k = 0; k < count; ++k) {
                 const double far = far_of(children[k]), at = middle(children[k])[axis];
@@ -132,10 +138,10 @@ struct Search {
 } // namespace
 
 ir::Box solid_box(const ir::Scene &scene, ir::FunctionId distance, const ir::Box &domain,
-                  double time) {
+                  double time, double &work) {
     const Program program = compile(scene, distance, Choices::Apart);
     const PruneProgram parts = prune_program_of(program, inputs_of(scene, time));
-    Search search(parts);
+    Search search(parts, ir::operations(scene.graph, scene.graph.function(distance).result), work);
     Box box = domain;
     // Coarsely until the box stays, then as exactly as is wanted.
     double share = first_share;

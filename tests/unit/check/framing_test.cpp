@@ -90,6 +90,15 @@ TEST_CASE("the solid fills what is framed") {
     check_frame("sphere(1).translate([3 * sin(time), 0, 0])", {-4, -1, -1}, {4, 1, 1}, 0.02);
 }
 
+TEST_CASE("a field too dear to be searched is framed by its box") {
+    const std::string loops =
+        "implicit(p => {\n var s = p.y\n for i in 0..600 { for j in 0..600 { s = s + sin(i * p.x "
+        "+ j) } }\n length(p) - 1 + 0.0000001 * s\n}, lipschitz: 5, within: ball(3))";
+    const driver::Compilation made = framed(loops);
+    CHECK(!told(made));
+    CHECK(made.scene.framed.hi[0] == Approx(3).epsilon(0.01));
+}
+
 TEST_CASE("what cannot be framed is told, and what to write") {
     for (const char *text : {"plane(Y, 0)", "plane(Y, 0) - sphere(1)", "gyroid(1, 0.1)", "slab(1)",
                              "sphere(0.2).repeat(cell: 1)", "sphere(1) & sphere(1).translate(x: 5)",
