@@ -1,6 +1,7 @@
 #include "driver/compile.h"
 
 #include "driver/edit.h"
+#include "driver/framing.h"
 #include "driver/scene_files.h"
 #include "ir/lower/lower.h"
 #include "ir/passes/operations.h"
@@ -141,6 +142,8 @@ void run_phases(Compilation &out, const typecheck::Loader &loader, const std::st
                 .note(limit_note(options.limits, &Limits::point))
                 .note("look for copies of copies, or loops in loops")
                 .help(limit_help(options.limits, &Limits::point));
+        else
+            find_framing(out.scene, out.diagnostics);
     }
     enter(options, Phase::Done);
 }

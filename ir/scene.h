@@ -197,12 +197,20 @@ struct Scene {
     FunctionId hit;  // (vec3) -> Hit: the same distance, with the surface that decides
     FunctionId endless, endless_hit; // the same of the parts without an end alone, where the scene
                                      // has others beside them
+    // (vec3) -> float, below 0 in the solid; where no camera is given: the parts whose bounds are
+    // known together (none: there are none), and each other part alone.
+    FunctionId framed_together;
+    std::vector<FunctionId> framed_alone;
     std::vector<Surface> surfaces;   // by a hit's paint; the last is that of what nobody painted
     FunctionId background_function;  // (vec3 direction) -> vec3
     Rounding rounding;               // filled after lowering
     std::vector<Axiom> axioms;       // each once; filled by the analysis
     Box bounds;                      // of the finite top-level parts; empty when there are none
     double far = 0;                  // a far limit for rays
+
+    // What a view without a camera frames: the box of the solid itself at the params' present
+    // values (driver/framing.h). Empty: `bounds`.
+    Box framed;
 };
 
 } // namespace fathom::ir

@@ -160,7 +160,7 @@ View frame_sphere(View view, glm::dvec3 center, double radius, double aspect) {
 View view_of(const Scene &scene, double time, double aspect) {
     const Camera &camera = scene.camera;
     if (!camera.given) {
-        const auto [center, radius] = sphere_of(scene.bounds);
+        const auto [center, radius] = sphere_of(scene.framed.empty() ? scene.bounds : scene.framed);
         const View from = look_at(center + glm::dvec3(3, 2, 5), center, std::tan(default_fov / 2),
                                   camera.orthographic);
         return frame_sphere(from, center, radius, aspect);

@@ -26,7 +26,7 @@ std::array<double, 16> value_of(const Scene &scene, NodeId id, double time);
 View look_at(glm::dvec3 position, glm::dvec3 target, double extent, bool orthographic);
 
 // The scene's camera, or the rule of semantics.md, 23: from [3, 2, 5]'s direction, framing the
-// finite parts' bounding sphere, 45 degrees. `aspect`: width / height.
+// sphere about Scene::framed, 45 degrees. `aspect`: width / height.
 View view_of(const Scene &scene, double time, double aspect);
 
 // Frames a sphere from the direction in which a view already looks.

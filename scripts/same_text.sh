@@ -3,7 +3,7 @@
 # bytes: each example for each target, and its field at some points.
 #   scripts/same_text.sh PROGRAM PROGRAM
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
-first=${1:?a program} second=${2:?another program}
+first=$(realpath -- "${1:?a program}") second=$(realpath -- "${2:?another program}") || exit 3
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 3
 cd "$root/examples" || exit 3
 targets=$("$first" help compile | sed -n 's/.*--target TARGET *//p' | tr -d ',' | sed 's/(unless said)//; s/ or / /')

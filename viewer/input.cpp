@@ -41,6 +41,8 @@ void App::frame_box(const ir::Box &box) {
 
 void App::frame_all() {
     if (!scene) return;
+    if (const ir::Box &framed = scene->compilation.scene.framed; !framed.empty())
+        return frame_box(framed);
     const ir::Frame whole = ir::frame_of(scene->compilation.scene, view_of(views.camera()), 100);
     ir::Box box;
     for (std::size_t i = 0; i < 3; ++i) {

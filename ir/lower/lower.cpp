@@ -45,6 +45,8 @@ double operations_below(const Graph &graph, std::span<const NodeId> roots) {
     return count;
 }
 
+} // namespace
+
 bool is_transparent(const Shape &shape, const Shapes &shapes) {
     switch (shape.kind) {
     case ShapeKind::Paint:
@@ -73,6 +75,8 @@ bool is_transparent(const Shape &shape, const Shapes &shapes) {
     }
     return false;
 }
+
+namespace {
 
 void region_numbers(const Region &region, std::vector<NodeId> &out) {
     if (region.center) out.push_back(region.center);
@@ -109,6 +113,7 @@ void Lowering::run() {
     }
 
     add_endless(frame);
+    add_framed(frame);
 
     Surface plain =
         blank_surface(); // what nobody painted: the gray of sRGB 0.7, with a white highlight

@@ -129,6 +129,9 @@ class Lowering {
     Surface blank_surface();
     NodeId point3(NodeId p);
     void add_endless(Where frame);
+    void add_framed(Where frame); // framing.cpp
+    void find_framed(ShapeId id, Where frame, std::vector<NodeId> &bounded,
+                     std::vector<NodeId> &alone);
     void find_bounds();
 
     const Shape &shape(ShapeId id) const { return shapes_[id]; }
@@ -156,6 +159,9 @@ class Lowering {
     std::vector<std::string> names_;
     std::vector<std::vector<NodeId>> free_vars_;
 };
+
+// lower.cpp: its field is its child's.
+bool is_transparent(const Shape &shape, const Shapes &shapes);
 
 // regions.cpp
 NodeId joined_distance(Graph &graph, std::span<const NodeId> distances);

@@ -25,7 +25,7 @@ const std::map<std::string, Names> sees{
     {"backend-glsl", {"base", "ir"}},
     {"backend-cpu", {"base", "ir"}},
     {"save-format", {"base", "ir"}},
-    {"driver", {"base", "lang", "ir", "proof", "typecheck", "save-format"}},
+    {"driver", {"base", "lang", "ir", "proof", "typecheck", "backend-cpu", "save-format"}},
     {"api",
      {"base", "lang", "ir", "proof", "typecheck", "backend-glsl", "backend-cpu", "save-format",
       "driver"}},

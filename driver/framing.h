@@ -1,0 +1,14 @@
+// What a view without a camera frames (semantics.md, 23): the solid itself.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "ir/scene.h"
+
+namespace fathom::driver {
+
+// Narrows Scene::framed of a lowered scene whose camera is not given to the box of what has an end,
+// at the params' present values and over the scene's time. Where nothing has one, or there is no
+// solid at all, a note says so and what to write.
+void find_framing(ir::Scene &scene, Diagnostics &diagnostics);
+
+} // namespace fathom::driver

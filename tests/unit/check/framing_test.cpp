@@ -1,0 +1,114 @@
+// A view without a camera frames the solid itself, however its text says it.
+#include "compiled.h"
+
+#include "ir/view.h"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+
+using namespace fathom;
+
+namespace {
+
+driver::Compilation framed(const std::string &text) {
+    driver::Compilation made = test::compiled(text);
+    INFO(text);
+    REQUIRE(made.good());
+    return made;
+}
+
+bool told(const driver::Compilation &made) {
+    for (const Diagnostic &d : made.diagnostics.items())
+        if (d.code == Code::NothingFramed) return true;
+    return false;
+}
+
+// Each side of what is framed lies at most `share` of the box's diagonal from what is wanted, and
+// outward.
+void check_frame(const std::string &text, const std::array<double, 3> &lo,
+                 const std::array<double, 3> &hi, double share = 0.005) {
+    const driver::Compilation made = framed(text);
+    const ir::Box &box = made.scene.framed;
+    INFO(text);
+    INFO("framed [" << box.lo[0] << ", " << box.lo[1] << ", " << box.lo[2] << "] to [" << box.hi[0]
+                    << ", " << box.hi[1] << ", " << box.hi[2] << "]");
+    const double by = share * std::hypot(hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(box.lo[i] == Approx(lo[i]).margin(by));
+        CHECK(box.hi[i] == Approx(hi[i]).margin(by));
+    }
+    CHECK(!told(made));
+}
+
+} // namespace
+
+TEST_CASE("texts of one solid are framed equally") {
+    const std::vector<std::vector<std::string>> solids{
+        {"box(2)",
+         "plane([1, 0, 0], 1) & plane([-1, 0, 0], 1) & plane([0, 1, 0], 1) & plane([0, -1, 0], 1) "
+         "& plane([0, 0, 1], 1) & plane([0, 0, -1], 1)",
+         "slab(2) & slab(2, axis: X) & slab(2, axis: Z)", "box([2, 2, 50]) & slab(2, axis: Z)",
+         "box(2) | (box(40) & sphere(1).translate(x: 1000))", "box(9) & box(2)",
+         "box(2)\nplane(Y, -1)", "box(2) | plane(Y, -1)",
+         "(box(2).translate(x: -7) | plane(Y, -1)).paint(#ff0000).translate(x: 7)",
+         "param s = 2 in 1.0..50.0\nbox(s)", "param s = 0 in -30.0..30.0\nbox(2).translate(x: s)",
+         "implicit(p => max(abs(p.x), max(abs(p.y), abs(p.z))) - 1, within: ball(30))"},
+        {"sphere(1) & plane(-Y, -0.5)", "sphere(1) - plane(Y, 0.5)",
+         "sphere(1) - box([9, 9, 9]).translate(y: -4)"},
+    };
+    for (const std::vector<std::string> &texts : solids) {
+        const auto distance_of = [](const std::string &text) {
+            return ir::view_of(framed(text).scene, 0, 1).focus;
+        };
+        const double first = distance_of(texts.front());
+        for (const std::string &text : texts) {
+            INFO(text);
+            CHECK(distance_of(text) == Approx(first).epsilon(0.01));
+        }
+    }
+}
+
+TEST_CASE("the solid fills what is framed") {
+    check_frame("box([1, 1, 1000]).shell(0.1) & slab(2)", {-0.55, -0.55, -500.05},
+                {0.55, 0.55, 500.05});
+    check_frame("box([1, 1, 1000]).shell(0.1) & slab(2, axis: Z)", {-0.55, -0.55, -1},
+                {0.55, 0.55, 1});
+    check_frame("sphere(10) & plane(-Y, -9)", {-4.3589, 9, -4.3589}, {4.3589, 10, 4.3589});
+    check_frame("smooth_union(0.5) { sphere(1); sphere(1).translate(x: 5) }", {-1, -1, -1},
+                {6, 1, 1});
+    check_frame("sphere(0.001)", {-0.001, -0.001, -0.001}, {0.001, 0.001, 0.001});
+    check_frame("sphere(5000)", {-5000, -5000, -5000}, {5000, 5000, 5000});
+    check_frame("sphere(1).shell(0.001)", {-1, -1, -1}, {1, 1, 1});
+    check_frame("implicit(p => p.x*p.x + 2*p.y*p.y + p.z*p.z - 1, within: ball(3))",
+                {-1, -0.7071, -1}, {1, 0.7071, 1});
+    check_frame("sphere(0.3).repeat(cell: 1) & box([20, 1, 1])", {-10, -0.3, -0.3}, {10, 0.3, 0.3});
+    check_frame("param r = 1.0 in 0.5..50.0\nsphere(r)", {-1, -1, -1}, {1, 1, 1});
+    check_frame("sphere(1)\nsphere(1).translate(x: 9)\nplane(Y, -1)\nslab(2, axis: X)",
+                {-1, -1, -1}, {10, 1, 1});
+    check_frame("sphere(1).translate([3 * sin(time), 0, 0])", {-4, -1, -1}, {4, 1, 1}, 0.02);
+}
+
+TEST_CASE("a field too dear to be searched is framed by its box") {
+    const std::string loops =
+        "implicit(p => {\n var s = p.y\n for i in 0..600 { for j in 0..600 { s = s + sin(i * p.x "
+        "+ j) } }\n length(p) - 1 + 0.0000001 * s\n}, lipschitz: 5, within: ball(3))";
+    const driver::Compilation made = framed(loops);
+    CHECK(!told(made));
+    CHECK(made.scene.framed.hi[0] == Approx(3).epsilon(0.01));
+}
+
+TEST_CASE("what cannot be framed is told, and what to write") {
+    for (const char *text : {"plane(Y, 0)", "plane(Y, 0) - sphere(1)", "gyroid(1, 0.1)", "slab(1)",
+                             "sphere(0.2).repeat(cell: 1)", "sphere(1) & sphere(1).translate(x: 5)",
+                             "sphere(1) - box(4)", "plane(Y, -1) & plane(-Y, -1)", "empty"}) {
+        INFO(text);
+        CHECK(told(framed(text)));
+    }
+    for (const char *text : {"sphere(1)", "plane(Y, 0)\ncamera(at: [3, 2, 5], look_at: [0, 0, 0])",
+                             "sphere(1)\nplane(Y, 0)", "let a = 1"}) {
+        INFO(text);
+        CHECK(!told(framed(text)));
+    }
+}
