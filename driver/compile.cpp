@@ -129,12 +129,9 @@ void run_phases(Compilation &out, const typecheck::Loader &loader, const std::st
             out.parts = ir::lower_with_parts(out.scene);
         else
             ir::lower(out.scene);
-        proof::bound_rounding(out.scene, out.diagnostics, proof_options.times);
-        if (options.strict_proof) refuse_unproved(out);
-        assert(ir::verify(out.scene).empty());
         const ir::Graph &graph = out.scene.graph;
         const double cost = ir::operations(graph, graph.function(out.scene.distance).result);
-        if (cost > double(options.limits.point))
+        if (cost > double(options.limits.point)) {
             out.diagnostics
                 .add(Code::LoopLimit,
                      out.scene.top_level.empty() ? Span{root, 0, 0} : out.scene.top_level[0].span,
@@ -142,8 +139,12 @@ void run_phases(Compilation &out, const typecheck::Loader &loader, const std::st
                 .note(limit_note(options.limits, &Limits::point))
                 .note("look for copies of copies, or loops in loops")
                 .help(limit_help(options.limits, &Limits::point));
-        else
-            find_framing(out.scene, out.diagnostics);
+        } else {
+            find_framing(out.scene, out.diagnostics); // which says what a pixel shows
+            proof::bound_rounding(out.scene, out.diagnostics, proof_options.times);
+        }
+        if (options.strict_proof) refuse_unproved(out);
+        assert(ir::verify(out.scene).empty());
     }
     enter(options, Phase::Done);
 }

@@ -15,7 +15,7 @@ using ir::rounding::infinity;
 
 namespace {
 
-constexpr std::size_t most_work_of_trial = 200'000; // nodes at one point
+constexpr std::size_t most_work_of_trial = 30'000; // nodes at one point
 
 // What decides: between its steps it is the same for all points.
 constexpr ir::OpSet deciding{Op::Floor, Op::Ceil,  Op::Round,    Op::Trunc, Op::Sign,

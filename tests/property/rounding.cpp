@@ -167,6 +167,7 @@ TEST_CASE("families of fields that lose digits are seen") {
     CHECK(verdict("implicit(p => length(1e-25 * p) * 1e25 - 0.5, within: ball(1))") == Refused);
 }
 
+// Long: a list of fields.
 TEST_CASE("fields that keep their digits are not warned of") {
     // Folds, seams, cells, loops and deep nestings: where the error is not bounded, that is an axiom.
     const std::vector<std::pair<const char *, const char *>> fields{
@@ -251,6 +252,87 @@ implicit(p => p.y - 0.05 * sin(k * p.x), within: ball(1)))"},
         {"twist", R"(box([0.3, 1, 0.3]).twist(90deg))"},
         {"waves axis",
          R"(implicit(p => length(p.xz) - 0.5 - 0.05 * sin(6 * atan(p.z, p.x)) , within: ball(1) - tube(Y, 0.2)))"},
+        {"bend", R"(box([2, 0.2, 0.2]).bend(1))"},
+        {"bulb", R"(mandelbulb())"},
+        {"deep",
+         R"(sphere(0.3).translate(x: 0.1).rotate(0.1, axis: X).translate(x: 0.2).rotate(0.2, axis: Y).translate(x: 0.3).rotate(0.3, axis: Z).translate(x: 0.4).rotate(0.4, axis: X).translate(x: 0.5).rotate(0.5, axis: Y).translate(x: 0.6).rotate(0.6, axis: Z).translate(x: 0.7).rotate(0.7, axis: X).translate(x: 0.8).rotate(0.1, axis: Y).translate(x: 0.9).rotate(0.2, axis: Z).translate(x: 0.1).rotate(0.3, axis: X).translate(x: 0.2).rotate(0.4, axis: Y).translate(x: 0.3).rotate(0.5, axis: Z).translate(x: 0.4).rotate(0.6, axis: X).translate(x: 0.5).rotate(0.7, axis: Y).translate(x: 0.6).rotate(0.1, axis: Z).translate(x: 0.7).rotate(0.2, axis: X).translate(x: 0.8).rotate(0.3, axis: Y).translate(x: 0.9).rotate(0.4, axis: Z).translate(x: 0.1).rotate(0.5, axis: X).translate(x: 0.2).rotate(0.6, axis: Y).translate(x: 0.3).rotate(0.7, axis: Z).translate(x: 0.4).rotate(0.1, axis: X).translate(x: 0.5).rotate(0.2, axis: Y).translate(x: 0.6).rotate(0.3, axis: Z).translate(x: 0.7).rotate(0.4, axis: X).translate(x: 0.8).rotate(0.5, axis: Y).translate(x: 0.9).rotate(0.6, axis: Z).translate(x: 0.1).rotate(0.7, axis: X).translate(x: 0.2).rotate(0.1, axis: Y).translate(x: 0.3).rotate(0.2, axis: Z))"},
+        {"extrude", R"(star(5, 1, 0.5).extrude(0.4))"},
+        {"fbm",
+         R"(implicit(p => length(p) - 0.8 - 0.1 * fbm(3 * p, octaves: 5), within: ball(1.2)))"},
+        {"grid cells",
+         R"(implicit(p => {
+  let c = round(p / 0.5)
+  let h = hash(c)
+  length(p - 0.5 * c) - 0.1 - 0.05 * sin(h)
+}, within: ball(2), estimate: 2))"},
+        {"gyroid big",
+         R"(implicit(p => (sin(2*p.x)*cos(2*p.y) + sin(2*p.y)*cos(2*p.z) + sin(2*p.z)*cos(2*p.x)) / 4, within: ball(6)))"},
+        {"kaleido",
+         R"(implicit(p => {
+  let r = length(p.xz)
+  let a = atan(p.z, p.x)
+  let s = abs((a + pi) % (tau / 8) - tau / 16)
+  length([r * cos(s) - 0.6, p.y, r * sin(s)]) - 0.2
+}, within: ball(1) - tube(Y, 0.1), estimate: 3))"},
+        {"log spiral",
+         R"(implicit(p => p.y - 0.05 * sin(3 * atan(p.z, p.x) + 4 * log(length(p.xz))), within: ball(1) - tube(Y, 0.15)))"},
+        {"mandelbox",
+         R"(implicit(p => {
+  var z = p
+  var dr = 1.0
+  for i in 0..6 {
+    z = clamp(z, -1, 1) * 2 - z
+    let r2 = dot(z, z)
+    let k = clamp(1 / max(r2, 0.25), 1, 4)
+    z = z * k * 2 + p
+    dr = dr * k * 2 + 1
+  }
+  length(z) / dr
+}, within: ball(4), estimate: 2))"},
+        {"many",
+         R"(for i in 0..60 { sphere(0.1 + 0.05 * hash(i)).translate([3 * hash(i + 100), 2 * hash(i + 200), 3 * hash(i + 300)]) })"},
+        {"plane scene",
+         R"(plane(Y)
+sphere(1).translate(y: 1)
+torus(2, 0.3).rotate(90deg, axis: X))"},
+        {"revolve", R"(circle(0.3).translate([0.8, 0]).revolve())"},
+        {"ridged", R"(sphere(1).displace(p => 0.05 * ridged(4 * p, octaves: 4)))"},
+        {"scaled big",
+         R"(union { sphere(1)
+ box(0.5).translate(x: 1.2) }.scale(1e4))"},
+        {"scaled small",
+         R"(union { sphere(1)
+ box(0.5).translate(x: 1.2) }.scale(1e-3))"},
+        {"sierpinski",
+         R"(implicit(p => {
+  var z = p
+  for i in 0..8 {
+    if z.x + z.y < 0 { z = [-z.y, -z.x, z.z] }
+    if z.x + z.z < 0 { z = [-z.z, z.y, -z.x] }
+    if z.y + z.z < 0 { z = [z.x, -z.z, -z.y] }
+    z = 2 * z - 1
+  }
+  length(z) * 0.00390625 - 0.005
+}, within: ball(2)))"},
+        {"small time",
+         R"(render(time: 5)
+sphere(0.3).translate([sin(time), 0, cos(3 * time)]))"},
+        {"smax",
+         R"(implicit(p => smax(length(p) - 0.8, 0.2 - length(p.xz), 0.2), within: ball(1.2)))"},
+        {"spiral",
+         R"(implicit(p => p.y - 0.05 * sin(3 * atan(p.z, p.x) + 8 * length(p.xz)), within: ball(1) - tube(Y, 0.15)))"},
+        {"taper", R"(box([0.5, 2, 0.5]).taper(0.5))"},
+        {"terrain",
+         R"(implicit(p => (p.y - 0.4 * noise(0.7 * [p.x, 0, p.z]) - 0.1 * noise(3 * p)), within: aabb([-8, -2, -8], [8, 2, 8])))"},
+        {"value noise time",
+         R"(render(time: 60)
+implicit(p => p.y - 0.1 * value_noise(2 * p + time), within: ball(1.5)))"},
+        {"warp",
+         R"(implicit(p => {
+  let q = p + 0.2 * [noise(3 * p), noise(3 * p + 5.2), noise(3 * p + 9.1)]
+  length(q) - 0.6
+}, within: ball(1.2)))"},
+        {"worley", R"(implicit(p => length(p) - 0.8 - 0.1 * worley(4 * p), within: ball(1.2)))"},
     };
     for (const auto &[name, text] : fields) {
         INFO(name << ": " << text);
@@ -258,6 +340,7 @@ implicit(p => p.y - 0.05 * sin(k * p.x), within: ball(1)))"},
     }
 }
 
+// Long: a list of fields.
 TEST_CASE("fields that lose their digits are warned of or refused") {
     const std::vector<std::pair<const char *, const char *>> fields{
         {"add sub", R"(implicit(p => p.y + 0.5 * ((p.x + 1e5) - 1e5), within: ball(1)))"},
@@ -313,6 +396,43 @@ camera([0, 0, 5], look_at: [0, 0, 0]))"},
 })"},
         {"worley far",
          R"(implicit(p => length(p) - 0.8 - 0.1 * worley(4 * p + 3e5), within: ball(1)))"},
+        {"acosh", R"(implicit(p => p.y + 0.3 * ((1 + 1e-6 * p.x) - 1) * 1e6, within: ball(1)))"},
+        {"displace", R"(sphere(1).displace(p => 0.05 * sin(8 * (p.x + 5e5))))"},
+        {"displace time", R"(sphere(1).displace(p => 0.05 * sin(20 * (p.y + 100 * time))))"},
+        {"height",
+         R"(implicit(p => p.y - 0.1 * fbm(2 * p + 4e6, octaves: 3), within: aabb([-2, -1, -2], [2, 1, 2])))"},
+        {"if arm",
+         R"(implicit(p => if p.y > 0 { length(p) - 0.6 } else { length(p + [3e5, 0, 0] - [3e5, 0, 0]) - 0.6 }, within: ball(1), estimate: 2))"},
+        {"loop sum",
+         R"(implicit(p => {
+  var s = p.x
+  for i in 0..12 { s = s * 3 + 7 }
+  for i in 0..12 { s = (s - 7) / 3 }
+  p.y + 0.5 * s + 0.0 * p.z + 0.4 * ((p.x + 2e5) - 2e5)
+}, within: ball(1)))"},
+        {"many one",
+         R"(for i in 0..30 { sphere(0.1 + 0.05 * hash(i)).translate([3 * hash(i + 100), 2 * hash(i + 200), 3 * hash(i + 300)]) }
+implicit(p => length(p) - 0.8 - 0.1 * noise(3 * p + 5e6), within: ball(1.2)).translate(x: -1))"},
+        {"matrix",
+         R"(implicit(p => {
+  let q = rotate2(p.xy + 3e5, 0.5)
+  let r = rotate2(q, -0.5) - 3e5
+  length([r.x, r.y, p.z]) - 0.5
+}, within: ball(1)))"},
+        {"param time",
+         R"(param speed = 1 in 0..500
+implicit(p => p.y - 0.05 * sin(8 * (p.x + speed * time)), within: ball(1)))"},
+        {"smooth far",
+         R"(implicit(p => smin(length(p + [2e5, 0, 0] - [2e5, 0, 0]) - 0.5, p.y + 0.3, 0.2), within: ball(1)))"},
+        {"spiral fast",
+         R"(implicit(p => p.y - 0.05 * sin(3 * atan(p.z, p.x) + 8 * (length(p.xz) + 40 * time)), within: ball(1) - tube(Y, 0.15)))"},
+        {"tan", R"(implicit(p => p.y + 0.3 * (tan(1e-6 * p.x) + 1 - 1) * 1e6, within: ball(1)))"},
+        {"twist fast",
+         R"(box([0.3, 1, 0.3]).translate(y: 100000).twist(90deg).translate(y: -100000))"},
+        {"under repeat",
+         R"(implicit(p => length(p) - 0.3 - 0.1 * noise(3 * p + 5e6), within: ball(0.5)).repeat([1.5, 1.5, 1.5], [2, 2, 2]))"},
+        {"under rotate",
+         R"(implicit(p => 0.5 * ((p.x + 3e5) - 3e5) + p.y, within: ball(1)).rotate(0.4, axis: Z).translate(z: 2))"},
     };
     for (const auto &[name, text] : fields) {
         INFO(name << ": " << text);
