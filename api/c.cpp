@@ -53,18 +53,6 @@ const Param *param_at(const fathom_scene *scene, size_t index) {
     return scene && index < scene->value.params().size() ? &scene->value.params()[index] : nullptr;
 }
 
-int components_of(Param::Type type) {
-    switch (type) {
-    case Param::Type::Bool:
-    case Param::Type::Int:
-    case Param::Type::Float: return 1;
-    case Param::Type::Vec2: return 2;
-    case Param::Type::Vec3: return 3;
-    case Param::Type::Vec4: return 4;
-    }
-    return 1;
-}
-
 int status_of(bool done) { return done ? FATHOM_OK : FATHOM_NO_MEMORY; }
 
 } // namespace
@@ -145,7 +133,7 @@ const char *fathom_scene_param_name(const fathom_scene *scene, size_t index) {
 }
 int fathom_scene_param_components(const fathom_scene *scene, size_t index) {
     const Param *param = param_at(scene, index);
-    return param ? components_of(param->type) : 0;
+    return param ? components(param->type) : 0;
 }
 void fathom_scene_param_value(const fathom_scene *scene, size_t index, double value[4]) {
     const Param *param = param_at(scene, index);

@@ -182,18 +182,6 @@ std::string expression_of(const Param &param, const std::vector<double> &value) 
     return value.size() == 1 ? list : "[" + list + "]";
 }
 
-int components(Param::Type type) {
-    switch (type) {
-    case Param::Type::Bool:
-    case Param::Type::Int:
-    case Param::Type::Float: return 1;
-    case Param::Type::Vec2: return 2;
-    case Param::Type::Vec3: return 3;
-    case Param::Type::Vec4: return 4;
-    }
-    return 1;
-}
-
 // Why a param cannot have a value, or an empty text.
 std::string refusal(const Param &param, const std::vector<double> &value) {
     if (value.size() != static_cast<std::size_t>(components(param.type)))

@@ -17,19 +17,7 @@ using ir::Op;
 using ir::Type;
 
 const char *glsl_type(Type type) {
-    switch (type) {
-    case Type::Bool: return "bool";
-    case Type::Int: return "int";
-    case Type::Float: return "float";
-    case Type::Vec2: return "vec2";
-    case Type::Vec3: return "vec3";
-    case Type::Vec4: return "vec4";
-    case Type::Mat2: return "mat2";
-    case Type::Mat3: return "mat3";
-    case Type::Mat4: return "mat4";
-    case Type::Hit: return "Hit";
-    }
-    return "";
+    return type == Type::Hit ? "Hit" : ir::type_name(type); // the language took GLSL's names
 }
 
 // GLSL has no words for infinity and NaN; both versions that we write know the bits.

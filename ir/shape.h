@@ -227,4 +227,9 @@ class Shapes {
     std::size_t listed_ = 0; // children and arguments of all
 };
 
+// Their names in dumps and explanations: "smooth", "twist", "pipe".
+const char *profile_name(Profile profile);
+const char *map_name(MapKind kind);
+const char *seam_name(SeamKind kind);
+
 } // namespace fathom::ir

@@ -22,37 +22,11 @@ std::string operation_name(const ir::Scene &scene, ShapeId id) {
     case ShapeKind::Complement: return "complement";
     case ShapeKind::Xor: return "xor";
     case ShapeKind::Blend:
-        switch (static_cast<ir::Profile>(shape.payload)) {
-        case ir::Profile::Smooth: return "smooth_union";
-        case ir::Profile::Round: return "round_union";
-        case ir::Profile::Chamfer: return "chamfer_union";
-        case ir::Profile::Stairs: return "stairs_union";
-        case ir::Profile::Columns: return "columns_union";
-        }
-        return "blend";
-    case ShapeKind::Seam:
-        switch (static_cast<ir::SeamKind>(shape.payload)) {
-        case ir::SeamKind::Pipe: return "pipe";
-        case ir::SeamKind::Engrave: return "engrave";
-        case ir::SeamKind::Groove: return "groove";
-        case ir::SeamKind::Tongue: return "tongue";
-        }
-        return "seam";
+        return ir::profile_name(static_cast<ir::Profile>(shape.payload)) + std::string("_union");
+    case ShapeKind::Seam: return ir::seam_name(static_cast<ir::SeamKind>(shape.payload));
     case ShapeKind::Lerp: return "blend";
     case ShapeKind::PseudoNorm: return "pseudonorm_blend";
-    case ShapeKind::Map:
-        switch (shape.map) {
-        case MapKind::Translate: return "translate";
-        case MapKind::Rotate: return "rotate";
-        case MapKind::Scale: return "scale";
-        case MapKind::MirrorFold: return "fold";
-        case MapKind::Revolve: return "revolve";
-        case MapKind::Twist: return "twist";
-        case MapKind::Bend: return "bend";
-        case MapKind::Taper: return "taper";
-        case MapKind::Distort: return "distort";
-        }
-        return "map";
+    case ShapeKind::Map: return ir::map_name(shape.map);
     case ShapeKind::Offset: return "offset";
     case ShapeKind::Shell: return "shell";
     case ShapeKind::Displace: return "displace";

@@ -55,6 +55,19 @@ struct Param {
     std::array<double, 4> value{}, initial{}, lo{}, hi{};
 };
 
+/** How many numbers of `value` a param of a type has: 1 to 4. */
+inline int components(Param::Type type) {
+    switch (type) {
+    case Param::Type::Bool:
+    case Param::Type::Int:
+    case Param::Type::Float: return 1;
+    case Param::Type::Vec2: return 2;
+    case Param::Type::Vec3: return 3;
+    case Param::Type::Vec4: return 4;
+    }
+    return 1;
+}
+
 /** How sure a bound is: derived by rule, stated by the scene's author (`within:`, `lipschitz:`), or
  *  estimated from samples (`estimate:`). */
 enum class Status { Proved, Assumed, Estimated };

@@ -11,42 +11,6 @@
 namespace fathom::ir {
 namespace {
 
-const char *profile_name(Profile profile) {
-    switch (profile) {
-    case Profile::Smooth: return "smooth";
-    case Profile::Round: return "round";
-    case Profile::Chamfer: return "chamfer";
-    case Profile::Stairs: return "stairs";
-    case Profile::Columns: return "columns";
-    }
-    return "";
-}
-
-const char *map_name(MapKind kind) {
-    switch (kind) {
-    case MapKind::Translate: return "translate";
-    case MapKind::Rotate: return "rotate";
-    case MapKind::Scale: return "scale";
-    case MapKind::MirrorFold: return "fold";
-    case MapKind::Revolve: return "revolve";
-    case MapKind::Twist: return "twist";
-    case MapKind::Bend: return "bend";
-    case MapKind::Taper: return "taper";
-    case MapKind::Distort: return "distort";
-    }
-    return "";
-}
-
-const char *seam_name(SeamKind kind) {
-    switch (kind) {
-    case SeamKind::Pipe: return "pipe";
-    case SeamKind::Engrave: return "engrave";
-    case SeamKind::Groove: return "groove";
-    case SeamKind::Tongue: return "tongue";
-    }
-    return "";
-}
-
 constexpr const char *axis_names[] = {"x", "y", "z"};
 
 class Dumper {
