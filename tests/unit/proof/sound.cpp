@@ -96,8 +96,7 @@ TEST_CASE("steps turn together where they round one number, or twice it") {
     // the same node in the end
     CHECK(fract(s, s.g.add(s.x, s.n(3))) == fract(s, s.x));
     CHECK(fract(s, s.g.sub(s.x, s.n(0.5))) == fract(s, s.g.add(s.x, s.n(0.5))));
-    CHECK(s.call(Op::Floor, s.g.sub(s.x, s.n(2))) ==
-          s.g.add(s.call(Op::Floor, s.x), s.n(-2)));
+    CHECK(s.call(Op::Floor, s.g.sub(s.x, s.n(2))) == s.g.add(s.call(Op::Floor, s.x), s.n(-2)));
     CHECK(s.call(Op::Floor, s.g.add(s.x, s.n(0.1))) != s.call(Op::Floor, s.x));
 }
 
