@@ -100,6 +100,15 @@ void refuse_unproved(Compilation &out) {
     }
 }
 
+// What a picture evaluates.
+std::vector<ir::NodeId> roots_of(const ir::Scene &scene) {
+    std::vector<ir::NodeId> roots{scene.graph.function(scene.distance).result,
+                                  scene.graph.function(scene.hit).result};
+    for (const ir::Surface &s : scene.surfaces)
+        roots.insert(roots.end(), {s.diffuse, s.specular, s.exponent, s.emission});
+    return roots;
+}
+
 void run_phases(Compilation &out, const typecheck::Loader &loader, const std::string &identity,
                 SourceId root, const CompileOptions &options) {
     enter(options, Phase::Check);
@@ -130,11 +139,20 @@ void run_phases(Compilation &out, const typecheck::Loader &loader, const std::st
         else
             ir::lower(out.scene);
         const ir::Graph &graph = out.scene.graph;
+        const Span whole =
+            out.scene.top_level.empty() ? Span{root, 0, 0} : out.scene.top_level[0].span;
+        const std::size_t functions = ir::functions_called(graph, roots_of(out.scene));
+        if (functions > options.limits.functions)
+            out.diagnostics
+                .add(Code::LoopLimit, whole,
+                     fmt::format("a shader of this scene would have {} functions", functions))
+                .note(limit_note(options.limits, &Limits::functions))
+                .note("write those that are alike as one function with an argument")
+                .help(limit_help(options.limits, &Limits::functions));
         const double cost = ir::operations(graph, graph.function(out.scene.distance).result);
         if (cost > double(options.limits.point)) {
             out.diagnostics
-                .add(Code::LoopLimit,
-                     out.scene.top_level.empty() ? Span{root, 0, 0} : out.scene.top_level[0].span,
+                .add(Code::LoopLimit, whole,
                      fmt::format("a point of this scene would take {:.0e} operations", cost))
                 .note(limit_note(options.limits, &Limits::point))
                 .note("look for copies of copies, or loops in loops")

@@ -31,6 +31,8 @@ class Counter {
         return operations;
     }
 
+    std::size_t functions() const { return functions_.size(); }
+
   private:
     double function(FunctionId id) {
         if (const auto known = functions_.find(id); known != functions_.end()) return known->second;
@@ -56,5 +58,11 @@ class Counter {
 } // namespace
 
 double operations(const Graph &graph, NodeId root) { return Counter(graph)({root}); }
+
+std::size_t functions_called(const Graph &graph, std::vector<NodeId> roots) {
+    Counter count(graph);
+    count(std::move(roots));
+    return count.functions();
+}
 
 } // namespace fathom::ir

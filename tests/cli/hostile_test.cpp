@@ -116,11 +116,11 @@ std::vector<Hostile> hostile_scenes() {
         {"4,000 unknown names", "unknown-name",
          lines(4000, [](int i) { return fmt::format("let known{}x = 1", i); }) +
              lines(4000, [](int i) { return fmt::format("unknown{}y(1)", i); })},
-        {"10,000 functions", "",
+        {"10,000 functions", "loop-limit",
          lines(10000, [](int i) { return fmt::format("fn f{0}(p) = sin(p.x * {0})", i); }) +
              "implicit(p => length(p) - 1 + 0.0001 * (" +
              lines(10000, [](int i) { return fmt::format("f{}(p) +", i); }) +
-             "0), lipschitz: 10)\n"},
+             "0), lipschitz: 10)\n"}, // of 4,000 functions a shader is made
         {"1.5 million lines", "memory-limit", lines(1'500'000, [](int) { return "sphere(1)"; })},
         {"a loop without end", "loop-limit",
          "fn f() {\n  var i = 0\n  while i >= 0 limit 2000000000 { i = 1 }\n  i\n}\nsphere(f())\n"},
