@@ -201,12 +201,12 @@ struct Scene {
     // known together (none: there are none), and each other part alone.
     FunctionId framed_together;
     std::vector<FunctionId> framed_alone;
-    std::vector<Surface> surfaces;   // by a hit's paint; the last is that of what nobody painted
-    FunctionId background_function;  // (vec3 direction) -> vec3
-    Rounding rounding;               // filled after lowering
-    std::vector<Axiom> axioms;       // each once; filled by the analysis
-    Box bounds;                      // of the finite top-level parts; empty when there are none
-    double far = 0;                  // a far limit for rays
+    std::vector<Surface> surfaces;  // by a hit's paint; the last is that of what nobody painted
+    FunctionId background_function; // (vec3 direction) -> vec3
+    Rounding rounding;              // filled after lowering
+    std::vector<Axiom> axioms;      // each once; filled by the analysis
+    Box bounds;                     // of the finite top-level parts; empty when there are none
+    double far = 0;                 // a far limit for rays
 
     // What a view without a camera frames: the box of the solid itself at the params' present
     // values (driver/framing.h). Empty: `bounds`.

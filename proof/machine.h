@@ -41,8 +41,7 @@ struct Ranges {
 };
 // Of params and time all that the scene allows, or the present values at these times (prove.h).
 // Reads the images and grids, which takes steps off `work`.
-Ranges ranges_of(const ir::Scene &scene, Work &work,
-                 const std::optional<Interval> &times = {});
+Ranges ranges_of(const ir::Scene &scene, Work &work, const std::optional<Interval> &times = {});
 
 enum class Trouble : std::uint8_t { None, Jump, Singular, Overflow };
 

@@ -270,7 +270,7 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
         threads.emplace_back(work);
     work();
     for (std::thread &thread : threads) thread.join();
-    picture.complete = finished == tiles.size();
+    picture.complete = finished == tiles.size() && !cancelled;
     return picture;
 }
 

@@ -1,7 +1,7 @@
 // Results: that a file holds what its name says, that what cannot be written is refused with what
 // to write, and that no option is taken and then not read.
-#include "tests/support/decoded.h"
 #include "shell.h"
+#include "tests/support/decoded.h"
 
 #include "backend-glsl/targets.h"
 

@@ -143,10 +143,10 @@ TEST_CASE("a grid is read from raw and from ascii, and a broken one is refused")
     CHECK_FALSE(test::decoded_grid("NRRD0004\ntype: float", error));
     CHECK_FALSE(test::decoded_grid("", error));
     for (const char *dimension : {"-3", "3.5", "1e300", "many", "-inf"})
-        CHECK_FALSE(test::decoded_grid("NRRD0004\ntype: float\ndimension: " +
-                                           std::string(dimension) +
-                                           "\nsizes: 2 2 2\nencoding: ascii\n\n0 1 2 3 4 5 6 7\n",
-                                       error));
+        CHECK_FALSE(
+            test::decoded_grid("NRRD0004\ntype: float\ndimension: " + std::string(dimension) +
+                                   "\nsizes: 2 2 2\nencoding: ascii\n\n0 1 2 3 4 5 6 7\n",
+                               error));
 }
 
 // A progressive JPEG of one component whose every block is empty, with `scans` scans of 12 bytes
