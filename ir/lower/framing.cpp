@@ -6,9 +6,10 @@ namespace fathom::ir {
 
 namespace {
 
-constexpr std::size_t max_alone = 64; // more parts without bounds are one function
+constexpr std::size_t max_alone = 64;  // more parts without bounds are one function
+constexpr std::size_t max_found = 512; // parts that are looked for; what they hold is not opened
 
-}
+} // namespace
 
 // Through what unites, paints or moves, down to what has bounds, or is endless on its own.
 void Lowering::find_framed(ShapeId id, Where frame, std::vector<NodeId> &bounded,
@@ -24,7 +25,8 @@ void Lowering::find_framed(ShapeId id, Where frame, std::vector<NodeId> &bounded
     const bool opens = s.kind == ShapeKind::Union || is_transparent(s, shapes_);
     const bool moves =
         s.kind == ShapeKind::Map && (s.map == MapKind::Translate || s.map == MapKind::Rotate);
-    if (!box.finite() && (opens || moves)) {
+    if (!framed_seen_.insert({id, frame.p}).second) return; // shapes share their parts
+    if (!box.finite() && (opens || moves) && framed_seen_.size() < max_found) {
         const Where there = opens ? frame : at(frame, read(s.args[0], frame));
         for (ShapeId child : s.children) find_framed(child, there, bounded, alone);
         return;
@@ -36,6 +38,7 @@ void Lowering::add_framed(Where frame) {
     scene_.framed_together = {};
     scene_.framed_alone.clear();
     scene_.framed = {};
+    framed_seen_.clear();
     if (scene_.camera.given) return;
     std::vector<NodeId> bounded, alone;
     for (const TopLevel &part : scene_.top_level) find_framed(part.shape, frame, bounded, alone);

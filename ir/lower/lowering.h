@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
 namespace fathom::ir {
@@ -151,11 +152,12 @@ class Lowering {
     std::vector<double> cost_, uses_; // by shape; saturating
     std::vector<char> paint_, reached_;
     std::vector<char>
-        curved_;  // by shape: something in it has a safe radius larger than its distance
-    Parts parts_; // stride 0: nothing is marked
-    std::vector<std::uint32_t> part_; // by shape, 0: none of its own
-    std::vector<char> colored_;       // by shape: something in it is painted; with parts only
-    std::vector<char> parts_below_;   // by shape: each of its hits is marked further down
+        curved_; // by shape: something in it has a safe radius larger than its distance
+    std::set<std::pair<ShapeId, NodeId>> framed_seen_; // framing.cpp: shapes and their points
+    Parts parts_;                                      // stride 0: nothing is marked
+    std::vector<std::uint32_t> part_;                  // by shape, 0: none of its own
+    std::vector<char> colored_;     // by shape: something in it is painted; with parts only
+    std::vector<char> parts_below_; // by shape: each of its hits is marked further down
     std::vector<std::string> names_;
     std::vector<std::vector<NodeId>> free_vars_;
 };

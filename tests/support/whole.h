@@ -42,6 +42,7 @@ inline Answer whole_compiler(const std::string &text) {
         sources, root, "a.sdf", driver::standard_library(), loader, options, diagnostics);
     proof::Options proof_options;
     proof_options.field_instructions = 5'000;
+    proof_options.work = 1'000'000;
     proof::prove(checked.scene, diagnostics, proof_options);
     for (const Diagnostic &d : diagnostics.items()) {
         if (d.message.empty()) return {"a report without words"};

@@ -99,6 +99,12 @@ TEST_CASE("a field too dear to be searched is framed by its box") {
     CHECK(made.scene.framed.hi[0] == Approx(3).epsilon(0.01));
 }
 
+TEST_CASE("shapes that share their parts are opened so far and no further") {
+    const driver::Compilation made =
+        framed("fold(0..14, gyroid(1, 0.1), (s, i) => s | s.translate(x: 0.01 * 2 ^ i))");
+    CHECK(made.scene.framed_alone.size() == 1); // of 16,384 places
+}
+
 TEST_CASE("what cannot be framed is told, and what to write") {
     for (const char *text : {"plane(Y, 0)", "plane(Y, 0) - sphere(1)", "gyroid(1, 0.1)", "slab(1)",
                              "sphere(0.2).repeat(cell: 1)", "sphere(1) & sphere(1).translate(x: 5)",

@@ -97,6 +97,7 @@ struct Builder {
         scene.root = root;
         scene.top_level = {{root, {}}};
         fact(root);
+        scene.camera.given = true; // else there are functions to frame it, too
         lower(scene);
         return scene;
     }
