@@ -43,7 +43,7 @@ void enter(const CompileOptions &options, Phase phase) {
 }
 
 // What the proof says of one shape while the scene is still being built (`lipschitz(s)`, `taper`).
-// Its complaints are not for now: the whole scene is proved afterwards, where it can say them once.
+// Its diagnostics are dropped: the whole scene is proved afterwards, and reports each of them once.
 // Takes its steps off `work`.
 std::optional<ir::ShapeFact> prove_one(ir::Scene &scene, ir::ShapeId shape, std::size_t &work) {
     Diagnostics discarded;
