@@ -4,6 +4,7 @@
 //
 // NAMES
 //   f     Scene::distance
+//   g     Scene::shaded: the same surface, and no bound divides it
 //   hit   Scene::hit
 //   eps   RenderSettings::epsilon
 //
@@ -14,34 +15,44 @@
 //                 orthographic: min(eps*focus, pixel/2) + slack
 //   step(t)       tolerance(t) + normal_slack*slack: the arm of a gradient's taps
 //
-// GRADIENT of f at p with arm h
-//   g = 0.75/h * sum of e_i * f(p + h*e_i), i = 0..3, with the corners of a tetrahedron
+// GRADIENT of g at p with arm h
+//   sum of e_i * g(p + h*e_i) times 0.75/h, i = 0..3, with the corners of a tetrahedron
 //   e = (1,-1,-1), (-1,-1,1), (-1,1,-1), (1,1,1), each / sqrt(3)
-//   (the sum of e e^T is 4/3 of the identity). In a loop, so that the shader holds f once.
-//   normal = g/|g|; where |g| is 0, minus the ray's direction.
+//   (the sum of e e^T is 4/3 of the identity). In a loop, so that the shader holds g once.
+//   normal = gradient/|gradient|; where that is 0, minus the ray's direction.
 //
-// TRUE DISTANCE (semantics.md, 10), so that a bound L does not change the picture
-//   near(p, d, h) = d where nothing in the scene is divided by a bound (`Frame::steep` is false),
-//   else d / clamp(|gradient(p, h)|, min_slope, 1).
+// TRUE DISTANCE (semantics.md, 10), which knows of no bound
+//   near(p, h) = g(p) where the slope of g is 1 almost everywhere (`Frame::unit_slope`),
+//   else g(p) / max(|gradient(p, h)|, min_slope).
 //
 // MARCH from `begin` to `end`: enhanced sphere tracing (Balint and Valasek 2018; the fallback is
-// that of Keinert et al. 2014)
-//   t = begin, before = 0, stride = 0; at most max_steps times while t <= end + slack:
+// that of Keinert et al. 2014). A ray ends in a hit (a change of sign), in a miss (all of its way is
+// free) or undecided (the budget of evaluations is spent, or a surface was touched and not crossed).
+//   t = begin, before = 0, stride = 0, touches = 0; while t <= end + slack:
+//     the budget is spent: undecided at t
 //     d = f(o + t*dir)
-//     reach = tolerance(t); in the last iteration the pixel's width there, if that is more
-//     if stride > before + max(d, 0) and it is not the last iteration: the last two spheres do
-//       not overlap, so something may lie between them. Go back to the first sphere's edge:
-//       t += before - stride, stride = before, and go on with the next iteration
-//     if d <= reach and (not steep or near(p, d, step(t)) <= reach): a hit at t + d
+//     if d <= 0 and stride <= jump*tolerance(t): a hit between t - stride and t (REFINED)
+//     if stride > before + max(d, 0): the last two spheres do not overlap, so something may lie
+//       between them. Go back to the first sphere's edge: t += before - stride, stride = before,
+//       and go on with the next iteration
+//     if d <= 0: a hit between t - stride and t (REFINED)
+//     if d < slack/4: touches += 1, which may be max_touches; else, or beyond, if touches > 0:
+//       undecided at t
 //     d = max(d, slack/4), never less than float32 can move
 //     next = d
 //     if stride > 0: assume that f goes on along the ray as straight as over the last stride. The
 //       sphere that would touch this one has the radius d*(stride + d - before)/(stride - d +
 //       before): add relaxation times that (numerator at least 0, denominator at least
-//       flattest*stride)
+//       flattest*stride). And where that line is 0 at most jump*tolerance(t) from here, less
+//       tolerance(t)/4: next = max(d, the way to 0 + tolerance(t)/4), so that the sign changes
 //     never past the end unproved, rounding or not: proved = max(end, t + d),
 //     next = min(next, proved - t), before = d, stride = next, t = min(t + next, proved)
-//   Out of steps or of way: a miss.
+//   Out of way: a miss.
+//
+//   REFINED: at most `refinements` times, x is where the chord between the ends is 0; where it moved
+//   by at most tolerance/8 the ray lands there; else f(x) takes the place of the end with its sign
+//   (and where one end stays twice in a row, its value counts half: the Illinois rule). So where a
+//   ray lands does not depend on where its samples fell.
 //
 //   `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to 0..far;
 //   else 0..far.
@@ -82,7 +93,9 @@
 //
 // OCCLUSION (thesis, 4.2.1: five samples along the normal)
 //   for i = 1..5, x = occlusion_reach*radius*i/5:
-//     sum of 2^-i * clamp(1 - near(p + x*n, f(p + x*n), h)/x, 0, 1), divided by the sum of the 2^-i
+//     sum of 2^-i * clamp(1 - near(p + x*n, h)/x, 0, 1), divided by the sum of the 2^-i. Where
+//     g(p + x*n) >= nearly*x and no bound is above 1 (g is f), the slope of g is at most 1, so that
+//     near is no less: g will do.
 //
 // SHADOW (thesis, 4.2.1: from the light towards the point, so that no ray has to leave a surface
 // slowly)
@@ -90,16 +103,20 @@
 //   reach = the light's distance from q; for a sun, the way from q out of the box along l, or `far`
 //   without a box
 //   angle = max(soft_shadows, min_angle): half the light's angular size
-//   s = reach (what is left of the way), before = 0, shadow = 1; at most shadow_steps times while
-//   s > shadow_bias*tolerance(t):
-//     d = f(q + s*l); if d < shadow*angle*s: d' = near(q + s*l, d, h), else d' = d
-//     y = before > 0 ? d'^2/(2*before') : 0: how far behind lies the nearest point of what two
-//       spheres in a row touch (both normalised alike: before' = before*d'/d)
-//     c = sqrt(max(d'^2 - y^2, 0))
-//     shadow = min(shadow, c/(angle*(s + y))); if d' <= 0 or shadow < 1/256: 0, done
+//   closed(s) = near(q + s*l, h)/(angle*s): where that is below 1, something covers the light
+//   s = reach (what is left of the way), before = 0, shadow = 2; while s > margin,
+//   margin = shadow_bias*tolerance(t):
+//     the budget is spent: undecided; it counts as what it is so far
+//     d = f(q + s*l)
+//     if d <= 0: all dark, done
+//     if d < shadow*angle*s and closed(s) < shadow: shadow = closed(s); if it is below 1/256 all
+//       dark, done; at = s, with the strides before it and after it
 //     before = d, s -= max(d, slack/4)
-//   result: shadow^2*(3 - 2*shadow)
+//   PENUMBRA, where shadow < 2: the least of closed between at + the stride before and at - the
+//   stride after, by penumbra_turns golden sections; |gradient| is taken from `at`
+//   shadow = min(shadow, 1); result: shadow^2*(3 - 2*shadow)
 //
+// UNDECIDED: shaded where the ray came to, as what it is nearest to.
 // MISS: color = background_function(dir); without one `background`.
 // Out: linear; samples of a pixel are averaged linear; then clamped to 0..1 and sRGB-encoded.
 #pragma once
@@ -118,7 +135,12 @@ inline constexpr float bent_relaxation = 0.7f; // measured on displaced spheres,
 inline constexpr float nearer = 0.9f;
 inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.08f;
-inline constexpr int shadow_steps = 128;
+inline constexpr float nearly = 0.98f;
+inline constexpr int penumbra_turns = 8;
+inline constexpr float jump = 4; // tolerances
+inline constexpr int refinements = 8;
+inline constexpr int max_touches = 8;
+inline constexpr int budget = 65536; // evaluations a ray, where the scene does not say
 inline constexpr float shadow_bias = 4;
 inline constexpr float min_angle = 0.002f; // a hard shadow's edge, soft enough not to flicker
 inline constexpr std::array<float, 3> background{0.35f, 0.45f, 0.6f};

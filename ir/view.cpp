@@ -205,13 +205,8 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
         frame.lo = vec_of(all.lo) - margin;
         frame.hi = vec_of(all.hi) + margin;
     }
-    frame.steep = steep(scene);
+    frame.unit_slope = scene.unit_slope;
     return frame;
-}
-
-bool steep(const Scene &scene) {
-    return std::ranges::any_of(scene.facts,
-                               [](const ShapeFact &fact) { return fact.lipschitz_sup > 1 + 1e-6; });
 }
 
 std::vector<LightValue> lights_of(const Scene &scene, double time, const View &view) {

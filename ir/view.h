@@ -52,13 +52,9 @@ struct Frame {
     bool boxed = false; // every part is finite: rays live between `lo` and `hi` alone (a little
                         // larger than the bounds)
     glm::dvec3 lo{}, hi{};
-    bool steep = false;
+    bool unit_slope = false; // Scene::unit_slope
 };
 Frame frame_of(const Scene &scene, const View &view, int height);
-
-// Whether any field was divided by a bound above 1, so that a marched distance may be much less
-// than the true one.
-bool steep(const Scene &scene);
 
 // Scene::lights at a time; where there are none, white sun from the upper left behind `view`.
 struct LightValue {
