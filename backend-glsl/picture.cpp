@@ -73,14 +73,14 @@ MarcherOptions marcher_options(const Module &module, const SceneText &text, cons
     const ir::Frame frame = ir::frame_of(scene, view, 1080);
     MarcherOptions marcher;
     marcher.boxed = frame.boxed;
-    marcher.steep = frame.steep;
-    marcher.has_safe_radius = frame.steep && scene.safe_radius;
+    marcher.steep = !frame.unit_slope;
+    marcher.has_safe_radius = scene.safe_radius && !frame.unit_slope;
     marcher.cheap = scene.distance &&
                     ir::operations(scene.graph, module.result_of(scene.distance)) <= cheap_field;
     marcher.skip_shading = scene.lighting.skip;
     marcher.local_normals = text.local_normals;
     marcher.lights = text.lights;
-    marcher.max_steps = scene.render.max_steps;
+    marcher.max_steps = ir::budget_of(scene);
     marcher.epsilon = scene.render.epsilon;
     marcher.far = scene.render.far;
     marcher.radius = frame.radius;

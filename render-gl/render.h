@@ -24,6 +24,7 @@ struct Request {
 struct Pixels {
     int width = 0, height = 0;
     std::vector<float> rgba;
+    std::uint64_t undecided = 0, undecided_shadows = 0; // rays (shading.h, MARCH and SHADOW)
 };
 
 // Waits until all commands given so far are done.
