@@ -77,10 +77,6 @@ struct Lengths {
     float width(float t) const { return orthographic ? pixel : pixel * t; } // of a pixel
 };
 
-// Whether the ray, at a place where it touches a surface, grazes a solid (shading.h, BESIDE).
-struct RayState;
-bool grazes(Worker &worker, const RayState &ray, float t);
-
 struct RayState {
     Vec origin, direction;
     float begin = 0, end = 0;
@@ -107,6 +103,9 @@ void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std:
 // The true distances near n points where it says g (shading.h, TRUE DISTANCE).
 void near(Worker &worker, const Vec *points, const float *g, const float *h, float *out,
           std::size_t n);
+
+// What a ray touches, as Walk::touches (shading.h, BESIDE), with the slope along it.
+int touches(Worker &worker, const RayState &ray, float t, float d, float along);
 
 // A hit's place: between the last two samples of its walk (shading.h, REFINED).
 struct Crossing {
