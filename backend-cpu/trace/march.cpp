@@ -97,7 +97,7 @@ void near(Worker &worker, const Vec *points, const float *g, const float *h, flo
 }
 
 int touches(Worker &worker, const RayState &ray, float t, float d, float along) {
-    const Lengths lengths(worker.stage);
+    const float slack = Lengths(worker.stage).slack_at(t);
     const Vec way = ray.direction;
     const Vec u =
         glm::normalize(glm::cross(way, std::fabs(way.x) < 0.5f ? Vec{1, 0, 0} : Vec{0, 1, 0}));
@@ -106,15 +106,14 @@ int touches(Worker &worker, const RayState &ray, float t, float d, float along) 
     for (int k = 0; k < places; ++k) {
         const float angle = 0.785398163f * static_cast<float>(k);
         const Vec beside = std::cos(angle) * u + std::sin(angle) * v;
-        worker.taps.set(0, static_cast<std::size_t>(k),
-                        ray.origin + t * way + 2.0f * lengths.slack * beside);
+        worker.taps.set(0, static_cast<std::size_t>(k), ray.origin + t * way + 4 * slack * beside);
     }
     std::array<float, places> values{};
     distances(worker, worker.taps, values.data(), places);
     const auto [least, greatest] = std::ranges::minmax(values);
     if (!(least > 0)) return -1;
-    const float across = (greatest - least) / (4 * lengths.slack);
-    return d > 2 * lengths.slack * std::hypot(across, along) ? 0 : 1;
+    const float across = (greatest - least) / (8 * slack);
+    return d > 2 * slack * std::hypot(across, along) ? 0 : 1;
 }
 
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,

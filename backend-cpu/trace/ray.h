@@ -36,7 +36,7 @@ inline Verdict judge(Walk &walk, const Lengths &lengths) {
     if (walk.d <= 0 && walk.aims) return Verdict::Crossed;
     if (apart(walk)) return Verdict::GoBack;
     if (walk.d <= 0) return Verdict::Crossed;
-    if (walk.d < 0.25f * lengths.slack) {
+    if (walk.d < 0.25f * lengths.slack_at(walk.t)) {
         if (walk.touches == 0) return Verdict::Touches;
         if (walk.touches > 0 && ++walk.touches > ir::shading::max_touches)
             return Verdict::Undecided;
@@ -71,7 +71,8 @@ inline void go_back(Walk &walk, const Lengths &lengths, bool by_curvature) {
 }
 
 inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
-    const float least = walk.touches < 0 ? lengths.tolerance(walk.t) : 0.25f * lengths.slack;
+    const float least =
+        walk.touches < 0 ? lengths.tolerance(walk.t) : 0.25f * lengths.slack_at(walk.t);
     const float d = std::max(walk.d, least);
     const float span = std::max(walk.span, d);
     float next = brute ? 0.1f * d : d;

@@ -4,6 +4,7 @@
 
 #include "backend-cpu/prune/pruning.h"
 #include "backend-cpu/trace/march.h"
+#include "ir/shading.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -74,6 +75,7 @@ struct Lengths {
     explicit Lengths(const Stage &stage);
     float tolerance(float t) const { return base + slope * t; }
     float arm(float t) const;
+    float slack_at(float t) const { return slack + ir::shading::float_slack * t; }
     float width(float t) const { return orthographic ? pixel : pixel * t; } // of a pixel
 };
 

@@ -69,7 +69,7 @@ class Shadows {
             const std::size_t i = active[k];
             const State &state = states_[i];
             const float d = worker_.values[k];
-            next_[k] = std::max(d, 0.25f * lengths_.slack);
+            next_[k] = std::max(d, 0.25f * lengths_.slack_at(state.s));
             if (!is_bound(worker_, k) && (d <= 0 || state.s < state.quiet) &&
                 d < state.shadow * angle_ * state.s)
                 close_.push_back({i, state.s, d, next_[k]});
