@@ -1,54 +1,186 @@
-$# Shading by ir/shading.h (SHADOW, OCCLUSION, SHADING); the sibling of backend-cpu/trace/shade.cpp.
-$# The scene: Hit fathom_hit(vec3), fathom_material, fathom_lighting, fathom_light (marcher.h).
+$# Shading by ir/shading.h (SHADOW, OCCLUSION, SHADING); the sibling of backend-cpu/trace/shade.cpp and shadow.cpp.
+$# The scene: float $SHADED(vec3), Hit fathom_hit(vec3), fathom_material, fathom_lighting, fathom_light (marcher.h).
 $if !SKIP_SHADING
 
 // How much of a light arrives: marched from the light towards the point (thesis, 4.2.1).
 float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, float h) {
-    float s = reach;
-    float before = 0.0;
-    float shadow = 1.0;
-    for (int i = $ZERO; i < $SHADOW_STEPS && s > margin; ++i) {
-$if FAR_CELLS
-$# What is farther than the shadow's edge as it is now changes nothing.
-        for (vec2 clear; s > margin; s -= clear.y) {
-            clear = fathom_clear(q + s * l, -l, max(shadow * angle * s, margin));
-            if (!(clear.y > 0.0)) break;
-            before = 0.0;
-        }
-        if (s <= margin) break;
+    float s = reach; // what is left of the way
+    float stride = 0.0;
+    float shadow = 2.0; // the least of `closed` so far, and where; the samples beside it, the field's slope at it
+    float at = 0.0, lo = 0.0, hi = 0.0, slope = 1.0;
+    int turn = $ZERO;
+$if PASSES
+    int taken = 0;
+    if (fathom_light_kept >= 0) {
+        vec4 kept = fathom_kept(fathom_kept_0);
+        s = kept.y;
+        stride = kept.z;
+        shadow = kept.w;
+        kept = fathom_kept(fathom_kept_1);
+        at = kept.x;
+        lo = kept.y;
+        hi = kept.z;
+        slope = kept.w;
+        taken = int(fathom_kept(fathom_kept_3).y);
+        fathom_light_kept = -1;
+    }
+    int limit = min(fathom_turns - fathom_taken, fathom_budget - taken);
+$else
+    int limit = $MAX_STEPS;
 $end
-        vec3 p = q + s * l;
+    float x = s, value = 0.0, next = 0.0;
+    int tap = -1;    // of the gradient at x; 0: the field itself, -1: none
+    int search = -1; // evaluations for the penumbra; -1: the way is not done yet
+    float a = 0.0, b = 0.0, at_a = 0.0, at_b = 0.0;
+    bool left = true;
+    vec3 sum = vec3(0.0);
+    while (true) {
+        bool ahead = tap < 0 && search < 0;
+        if (ahead) {
+$if SHADED_APART
+$# Where nothing is close the marched field is all that is asked, by all rays together.
+            float d = 1.0;
+            bool close = false;
+            for (; turn < limit && s > margin; s -= stride) {
+$include shadow_ahead
+                d = sdf(q + s * l);
 $if AROUND
-$# Beyond the cells a value that is not exact shades nothing.
-        if (fathom_outside(p)) {
-            float off = fathom_off(p);
-            float edge = max(shadow * angle * s, margin);
-            if (off > 2.0 * edge && off < fathom_endless(p)) {
-                s -= off - edge;
-                before = 0.0;
-                continue;
+                fathom_exact = false;
+$end
+$if CACHED
+                if (fathom_absent) return 1.0;
+$end
+                ++turn;
+                next = max(d, 0.25 * fathom_slack);
+                close = d < shadow * angle * s;
+                if (close) break;
+                stride = next;
+            }
+            if (close) {
+                if (!(d > 0.0)) return 0.0;
+                x = s;
+                tap = 0;
+            } else
+$else
+            for (; s > margin; s -= stride) {
+$include shadow_ahead
+                break;
+            }
+            x = s;
+            if (!(s > margin && turn < limit))
+$end
+            {
+$if PASSES
+                if (s > margin && taken + turn < fathom_budget) {
+                    fathom_goes_on = true;
+                    fathom_keep_0 = vec4(0.0, s, stride, shadow);
+                    fathom_keep_1 = vec4(at, lo, hi, slope);
+                    fathom_keep_3.y = float(taken + turn);
+                    return 1.0;
+                }
+$end
+                if (s > margin) fathom_shadow_undecided = true;
+                if (!(shadow < 2.0)) break;
+                ahead = false;
+                search = 0;
+                a = hi - $GOLDEN * (hi - lo);
+                b = lo + $GOLDEN * (hi - lo);
+                x = a;
             }
         }
+        vec3 p = q + x * l;
+$if !UNIT_SLOPE
+        if (tap > 0) p += h * fathom_corner(tap - 1);
+$end
+$if AROUND
         fathom_exact = true;
 $end
-$if STEEP
-        float d, near = fathom_near(p, h, shadow * angle * s, d);
-$else
-        float d = sdf(p), near = d;
-$end
+        float f = $SHADED(p);
 $if AROUND
         fathom_exact = false;
 $end
 $if CACHED
-        if (fathom_absent) break;
+        if (fathom_absent) return 1.0;
 $end
-        float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
-        float c = sqrt(max(near * near - y * y, 0.0));
-        shadow = min(shadow, c / (angle * (s + y)));
-        if (near <= 0.0 || shadow < 0.00390625) return 0.0;
-        before = d;
-        s -= max(d, 0.25 * fathom_slack);
+$if !SHADED_APART
+        if (ahead) {
+            ++turn;
+            if (!(f > 0.0)) return 0.0;
+            next = max(f, 0.25 * fathom_slack);
+            if (!(f < shadow * angle * s)) {
+                stride = next;
+                s -= stride;
+                continue;
+            }
+            tap = 0;
+        }
+$end
+        if (tap < 0) { // golden sections
+            if (left) at_a = f;
+            else at_b = f;
+            ++search;
+            if (search == 1) {
+                left = false;
+                x = b;
+                continue;
+            }
+            left = at_a * b < at_b * a;
+            if (search < $SEARCHES) {
+                if (left) {
+                    hi = b;
+                    b = a;
+                    at_b = at_a;
+                    a = hi - $GOLDEN * (hi - lo);
+                } else {
+                    lo = a;
+                    a = b;
+                    at_a = at_b;
+                    b = lo + $GOLDEN * (hi - lo);
+                }
+                x = left ? a : b;
+                continue;
+            }
+            x = left ? a : b;
+            f = left ? at_a : at_b;
+            tap = 0;
+        }
+$if UNIT_SLOPE
+        value = f;
+        float near = f;
+$else
+        if (tap == 0) {
+            value = f;
+            sum = vec3(0.0);
+        } else {
+            sum += f * fathom_corner(tap - 1);
+        }
+        if (tap < 4) {
+            ++tap;
+            continue;
+        }
+        float near = value / max(length(0.75 / h * sum), $MIN_SLOPE);
+$end
+        float closed = near / (angle * x);
+        if (!(closed >= 0.00390625)) return 0.0;
+        if (search >= 0) {
+            shadow = min(shadow, closed);
+            break;
+        }
+        if (closed < shadow) {
+            shadow = closed;
+            at = x;
+            slope = value / near;
+            lo = max(x - next, margin);
+            hi = min(x + stride, reach);
+        }
+        tap = -1;
+        stride = next;
+        s -= stride;
     }
+$if PASSES
+    fathom_taken += turn;
+$end
+    shadow = min(shadow, 1.0);
     return shadow * shadow * (3.0 - 2.0 * shadow);
 }
 $end
@@ -59,62 +191,76 @@ vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
     vec3 g = vec3(0.0);
     vec3 n = -direction;
     float slope = 0.0;
+    int taps = 4;
 $if !SKIP_SHADING
 $# The weights of the occlusion's samples are 1/2, 1/4, ...
     fathom_Lighting look = fathom_lighting();
-    int taps = look.ambient_occlusion > 0.0 ? $ALL_TAPS : 4;
     float open = 1.0;
     float weight = look.ambient_occlusion / $OCCLUSION_TOTAL;
+    if (look.ambient_occlusion > 0.0) taps = $ALL_TAPS;
+$if PASSES
+    if (fathom_light_kept >= 0) taps = 4; // the colour is known
 $end
-$if APART
+$end
+$if TWICE
     for (int i = $ZERO; i < 4; ++i) {
         vec3 e = fathom_corner(i);
-        g += e * sdf(p + h * e);
+        g += e * $SHADED(p + h * e);
     }
     g *= 0.75 / h;
     slope = length(g);
     if (slope > 0.0) n = g / slope;
+    int done = 4;
+$else
+    int done = 0;
+$end
+$# The gradient's four points and, along the normal that they give, the occlusion's five, each with
+$# its own gradient.
 $if !SKIP_SHADING
-    for (int i = $ZERO + 4; i < taps; ++i) {
-$if STEEP
-        float x = $OCCLUSION_REACH * float(i - 3), d;
-        float near = fathom_near(p + x * n, h, x, d);
+    vec3 sum = vec3(0.0);
+    float value = 0.0;
+    for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
+        int group = (i + 1) / 5;
+        int tap = i + 1 - 5 * group;
+        float x = $OCCLUSION_REACH * float(group);
+        vec3 place = p;
+        if (group > 0) place += x * n;
+        if (tap > 0) place += h * fathom_corner(tap - 1);
+        float f = $SHADED(place);
+        if (tap == 0) {
+            value = f;
+            sum = vec3(0.0);
+$if UNIT_SLOPE
+            tap = 5;
 $else
-        float x = $OCCLUSION_REACH * float(i - 3);
-        float near = sdf(p + x * n);
+$if !SHADED_APART
+            if (f >= $NEARLY * x) tap = 5;
 $end
-        weight *= 0.5;
-        open -= weight * clamp(1.0 - near / x, 0.0, 1.0);
-    }
 $end
-$else
-$# The gradient's four points and, along the normal that they give, the occlusion's five.
-$if SKIP_SHADING
-    for (int i = $ZERO; i < 4$AND_PRESENT; ++i) {
-        vec3 e = fathom_corner(i);
-        float f = sdf(p + h * e);
-$else
-    for (int i = $ZERO; i < taps$AND_PRESENT; ++i) {
-        vec3 e = fathom_corner(i);
-$if STEEP
-        float x = $OCCLUSION_REACH * float(i - 3), d;
-        float f = fathom_near(p + (i < 4 ? h * e : x * n), h, i < 4 ? -1e30 : x, d);
-$else
-        float x = $OCCLUSION_REACH * float(i - 3);
-        float f = sdf(p + (i < 4 ? h * e : x * n));
-$end
-        if (i >= 4) {
-            weight *= 0.5;
-            open -= weight * clamp(1.0 - f / x, 0.0, 1.0);
+        } else {
+            sum += f * fathom_corner(tap - 1);
+        }
+        if (tap < 4) continue;
+$if !TWICE
+        if (group == 0) {
+            g = 0.75 / h * sum;
+            slope = length(g);
+            if (slope > 0.0) n = g / slope;
             continue;
         }
 $end
-        g += e * f;
-        if (i < 3) continue;
-        g *= 0.75 / h;
-        slope = length(g);
-        if (slope > 0.0) n = g / slope;
+        if (tap == 5) i += 4;
+        else value /= max(length(0.75 / h * sum), $MIN_SLOPE);
+        weight *= 0.5;
+        open -= weight * clamp(1.0 - value / x, 0.0, 1.0);
     }
+$else
+$if !TWICE
+    for (int i = $ZERO; i < taps$AND_PRESENT; ++i) g += fathom_corner(i) * $SHADED(p + h * fathom_corner(i));
+    g *= 0.75 / h;
+    slope = length(g);
+    if (slope > 0.0) n = g / slope;
+$end
 $end
 $if LOCAL_NORMALS
 $# The normal in the paint's own space.
@@ -130,7 +276,7 @@ $end
     fathom_paint = s.paint;
 $if PICK
     fathom_pick.x = float(fathom_part);
-    fathom_pick.w = slope;
+    fathom_pick.w = fathom_end == 2 ? -1.0 : slope;
 $end
 $if LOCAL_NORMALS
     vec3 turned = ahead - s.point;
@@ -147,12 +293,19 @@ $else
     float margin = $SHADOW_BIAS * fathom_tolerance(t);
     vec3 q = p + margin * n;
     float angle = max(look.soft_shadows, $MIN_ANGLE);
+$if PASSES
+    int first = max(fathom_light_kept, 0);
+    if (fathom_light_kept >= 0) color = fathom_kept(fathom_kept_2).rgb;
+    for (int i = $ZERO + first; i < $LIGHTS; ++i) {
+        fathom_Light light = fathom_light(i);
+$else
 $if ONE_LIGHT
     {
         fathom_Light light = fathom_light(0);
 $else
     for (int i = $ZERO; i < $LIGHTS; ++i) {
         fathom_Light light = fathom_light(i);
+$end
 $end
         vec3 way = light.directional ? light.position : light.position - q;
         float away = length(way);
@@ -163,6 +316,15 @@ $end
         if (look.shadow_darkness > 0.0) {
             float reach = light.directional ? $SUN_REACH : away;
             seen -= look.shadow_darkness * (1.0 - fathom_shadow(q, l, reach, angle, margin, h));
+$if PASSES
+            if (fathom_goes_on) {
+                fathom_keep_0.x = t;
+                fathom_keep_2 = vec4(color, 0.0);
+                fathom_keep_3.xzw = vec3(float(fathom_steps), float(i),
+                                         (fathom_end == 2 ? 1.0 : 0.0) + (fathom_shadow_undecided ? 2.0 : 0.0));
+                return color;
+            }
+$end
         }
         vec3 r = 2.0 * facing * n - l;
         float gleam = max(-dot(r, direction), 0.0);
