@@ -14,8 +14,9 @@ Picture draw(const Scene &scene, const PictureOptions &options) {
         [&] {
             const ir::Scene &from = ir_of(scene);
             const double aspect = static_cast<double>(options.width) / options.height;
-            const cpu::Stage stage = cpu::prepare(from, ir::view_of(from, options.time, aspect),
-                                                  options.width, options.height, options.time);
+            cpu::Stage stage = cpu::prepare(from, ir::view_of(from, options.time, aspect),
+                                            options.width, options.height, options.time);
+            if (options.max_steps > 0) stage.budget = options.max_steps;
             cpu::PictureOptions to;
             to.samples = options.samples;
             to.jobs = options.threads;
@@ -23,7 +24,8 @@ Picture draw(const Scene &scene, const PictureOptions &options) {
                 cpu::render(stage, to, [&](double done, const cpu::Tile &, const cpu::Picture &) {
                     return !options.progress || options.progress(done);
                 });
-            return Picture{made.width, made.height, std::move(made.rgba), made.complete};
+            return Picture{made.width,    made.height,         std::move(made.rgba),
+                           made.complete, made.work.undecided, made.work.undecided_shadows};
         },
         [&](const Diagnostic &) { return empty; });
 }

@@ -10,6 +10,7 @@
 
 #include "backend-cpu/trace/march.h"
 #include "ir/lower/lower.h"
+#include "ir/view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +102,7 @@ Count trace_plainly(const ir::Scene &scene, const cpu::Stage &from, bool boxed) 
     }
     Count count;
     count.hit.assign(rays.size(), -1);
-    for (int step = 0; step < scene.render.max_steps && !active.empty(); ++step) {
+    for (int step = 0; step < ir::budget_of(scene) && !active.empty(); ++step) {
         for (std::size_t k = 0; k < active.size(); ++k)
             for (std::size_t c = 0; c < 3; ++c)
                 points[c][k] =

@@ -256,6 +256,13 @@ struct Reader {
         sub->add_option("--samples", render.samples, "rays a pixel, 1 to 256")
             ->check(quiet(CLI::Range(1, 256)))
             ->type_name("N");
+        sub->add_option(
+               "--max-steps", render.max_steps,
+               "evaluations that a ray may take, whatever the scene says; 65536 unless said")
+            ->check(quiet(CLI::Range(1, 100'000'000)))
+            ->type_name("N");
+        sub->add_flag("--strict", render.strict,
+                      "no picture, and status 1, where a ray stays undecided");
         sub->add_option("--quality", render.quality,
                         fmt::format("of a JPEG, 1 to 100, {} unless said", render.quality))
             ->check(quiet(CLI::Range(1, 100)))

@@ -59,8 +59,10 @@ struct RenderCommand {
     std::optional<std::pair<int, int>> frames; // first, one past the last
     double frame_rate = 30;
     int samples = 1;
-    int quality = 90;   // of a JPEG
-    bool cache = false; // through the noise cache
+    int max_steps = 0;   // evaluations of a ray; 0: what the scene says
+    bool strict = false; // a ray left undecided is an error
+    int quality = 90;    // of a JPEG
+    bool cache = false;  // through the noise cache
 };
 // `fathom eval`.
 struct EvalCommand {

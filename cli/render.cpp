@@ -168,7 +168,20 @@ struct Preview {
     }
 };
 
-std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
+// A picture, and how many of its rays ended neither in a hit nor in a miss.
+struct Painted {
+    Picture picture;
+    std::uint64_t rays = 0, undecided = 0, undecided_shadows = 0;
+};
+
+Painted painted(const gl::Pixels &pixels, const RenderCommand &command) {
+    return {picture_of_linear(pixels.width, pixels.height, pixels.rgba),
+            static_cast<std::uint64_t>(pixels.width) * static_cast<std::uint64_t>(pixels.height) *
+                static_cast<std::uint64_t>(command.samples),
+            pixels.undecided, pixels.undecided_shadows};
+}
+
+std::optional<Painted> paint(const Painter &painter, const ir::Scene &scene,
                              const RenderCommand &command, double time,
                              const std::function<void(double)> &progress, std::string &status,
                              Terminal &terminal) {
@@ -176,7 +189,7 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
         std::optional<gl::Pixels> pixels =
             draw_cached(*painter.cache, scene, command, time, progress, status);
         if (!pixels) return std::nullopt;
-        return picture_of_linear(pixels->width, pixels->height, pixels->rgba);
+        return painted(*pixels, command);
     }
     if (painter.program) {
         gl::Request request;
@@ -188,7 +201,7 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
         std::optional<gl::Pixels> pixels =
             gl::draw(*painter.program, scene, request, gl::Mode::Linear);
         if (!pixels) return std::nullopt;
-        return picture_of_linear(pixels->width, pixels->height, pixels->rgba);
+        return painted(*pixels, command);
     }
     double aspect = static_cast<double>(command.width) / command.height;
     cpu::Stage stage =
@@ -211,7 +224,26 @@ std::optional<Picture> paint(const Painter &painter, const ir::Scene &scene,
     if (stage.pruning && made.work.near > 0)
         status = fmt::format("pruned: {:.0f} shapes to {:.0f} a cell", cpu::shapes_of(scene),
                              made.work.near_shapes / static_cast<double>(made.work.near));
-    return Picture{made.width, made.height, std::move(made.rgba)};
+    return Painted{{made.width, made.height, std::move(made.rgba)},
+                   made.work.rays,
+                   made.work.undecided,
+                   made.work.undecided_shadows};
+}
+
+// Says what was left undecided. Whether that is an error.
+bool is_undecided(const Painted &painted, const std::string &out, const RenderCommand &command,
+                  Terminal &terminal) {
+    if (painted.undecided + painted.undecided_shadows == 0) return false;
+    std::string what;
+    if (painted.undecided > 0)
+        what = fmt::format("{} of {} rays stay undecided and show what they are nearest to",
+                           painted.undecided, painted.rays);
+    if (painted.undecided_shadows > 0)
+        what += fmt::format("{}{} shadow rays stay undecided and darken by what they met so far",
+                            what.empty() ? "" : "; ", painted.undecided_shadows);
+    terminal.say(fmt::format("fathom: {}: {}; --max-steps N gives them more steps{}", out, what,
+                             command.strict ? ". Nothing is written (--strict)" : ""));
+    return command.strict;
 }
 
 std::string encoded(const Picture &picture, const std::string &out, int quality) {
@@ -240,6 +272,7 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
         command.scene.file, compile_options(command.scene, time_of(first), time_of(last - 1)));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
+    if (command.max_steps > 0) compilation.scene.render.max_steps = command.max_steps;
     for (int frame = first; frame < last; ++frame)
         if (overwrites(compilation, out_of(frame), terminal)) return usage_error;
     if (!in_proved_time(compilation.scene, time_of(first), time_of(last - 1), terminal))
@@ -253,7 +286,7 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
         const std::string out = out_of(frame);
         const double time = time_of(frame);
         std::string status; // what is worth knowing of how it was drawn
-        std::optional<Picture> picture = paint(
+        std::optional<Painted> made = paint(
             painter, compilation.scene, command, time,
             [&](double share) { terminal.progress(out, (frame - first + share) / (last - first)); },
             status, terminal);
@@ -265,12 +298,13 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
         // `--cached` is answered by what became of it.
         if (!status.empty() && (terminal.interactive() || (command.cache && !command.frames)))
             terminal.say(out + ": " + status);
-        if (!picture) {
+        if (!made) {
             terminal.say(fmt::format("fathom: there is no memory for a picture of {}x{}",
                                      command.width, command.height));
             return device_error;
         }
-        exit = write_result(out, encoded(*picture, out, command.quality), terminal);
+        if (is_undecided(*made, out, command, terminal)) return scene_error;
+        exit = write_result(out, encoded(made->picture, out, command.quality), terminal);
         if (exit != done) return exit;
     }
     terminal.finish_progress();

@@ -111,7 +111,7 @@ struct Camera {
 
 // Limits of the sphere tracer.
 struct RenderSettings {
-    int max_steps = 256;
+    int max_steps = 0;      // evaluations of a ray; 0: shading.h's `budget`
     double epsilon = 5e-4;  // hit tolerance at distance 1, grows with the distance
     double far = 0;         // 0: by the rule of semantics.md, 23
     double time_end = 3600; // the span of time the proof covers starts at 0
@@ -194,7 +194,11 @@ struct Scene {
     FunctionId
         safe_radius; // (vec3) -> vec2, or none: the same distance, and the safe radius beside
                      // another sample (shading.h, MARCH), at least as far
-    FunctionId hit;  // (vec3) -> Hit: the same distance, with the surface that decides
+    FunctionId
+        shaded; // (vec3) -> float: the same surface and signs; no bound above 1 divides it, so
+                // it is no safe step. `distance` itself where no bound is above 1
+    bool unit_slope = false; // the slope of `shaded` is 1 almost everywhere
+    FunctionId hit;          // (vec3) -> Hit: the same distance, with the surface that decides
     FunctionId endless, endless_hit; // the same of the parts without an end alone, where the scene
                                      // has others beside them
     // (vec3) -> float, below 0 in the solid; where no camera is given: the parts whose bounds are

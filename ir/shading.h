@@ -113,7 +113,8 @@
 //       dark, done; at = s, with the strides before it and after it
 //     before = d, s -= max(d, slack/4)
 //   PENUMBRA, where shadow < 2: the least of closed between at + the stride before and at - the
-//   stride after, by penumbra_turns golden sections; |gradient| is taken from `at`
+//   stride after, by penumbra_turns golden sections with the
+//   |gradient| of `at`; at the least, closed is taken anew
 //   shadow = min(shadow, 1); result: shadow^2*(3 - 2*shadow)
 //
 // UNDECIDED: shaded where the ray came to, as what it is nearest to.
@@ -140,7 +141,8 @@ inline constexpr int penumbra_turns = 8;
 inline constexpr float jump = 4; // tolerances
 inline constexpr int refinements = 8;
 inline constexpr int max_touches = 8;
-inline constexpr int budget = 65536; // evaluations a ray, where the scene does not say
+inline constexpr int many_steps = 256; // red in a picture of steps
+inline constexpr int budget = 65536;   // evaluations a ray, where the scene does not say
 inline constexpr float shadow_bias = 4;
 inline constexpr float min_angle = 0.002f; // a hard shadow's edge, soft enough not to flicker
 inline constexpr std::array<float, 3> background{0.35f, 0.45f, 0.6f};

@@ -209,6 +209,10 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
     return frame;
 }
 
+int budget_of(const Scene &scene) {
+    return scene.render.max_steps > 0 ? scene.render.max_steps : shading::budget;
+}
+
 std::vector<LightValue> lights_of(const Scene &scene, double time, const View &view) {
     std::vector<LightValue> lights;
     for (const Light &light : scene.lights) {

@@ -56,6 +56,9 @@ struct Frame {
 };
 Frame frame_of(const Scene &scene, const View &view, int height);
 
+// How many evaluations a ray may take: render.max_steps, where it is set.
+int budget_of(const Scene &scene);
+
 // Scene::lights at a time; where there are none, white sun from the upper left behind `view`.
 struct LightValue {
     bool directional = true;

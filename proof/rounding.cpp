@@ -249,7 +249,12 @@ void lower_distances(ir::Scene &scene, double by) {
                                  {p},
                                  is_hit ? graph.make(Op::HitWith, {whole, less}) : less});
     };
+    const bool same = scene.shaded == scene.distance;
     wrap(scene.distance, false);
+    if (same)
+        scene.shaded = scene.distance;
+    else
+        wrap(scene.shaded, false);
     wrap(scene.hit, true);
     wrap(scene.endless, false);
     wrap(scene.endless_hit, true);

@@ -4,6 +4,7 @@
 
 #include "base/picture.h"
 #include "driver/files.h"
+#include "ir/shading.h"
 
 #include <GLFW/glfw3.h>
 #include <imgui.h>
@@ -249,7 +250,7 @@ void App::draw_panels(int width, int height) {
                  {static_cast<float>(tile.x) * to_window, static_cast<float>(tile.y) * to_window}});
         }
     if (scene) {
-        shown.max_steps = scene->compilation.scene.render.max_steps;
+        shown.max_steps = ir::shading::many_steps;
         shown.reach =
             ir::frame_of(scene->compilation.scene, view_of(views.cameras[0]), 100).radius * 1.5;
     }

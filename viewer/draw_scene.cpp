@@ -2,6 +2,8 @@
 // through the noise cache while it is moved.
 #include "viewer/app.h"
 
+#include "ir/shading.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -205,7 +207,7 @@ void App::finish_picture(double scale) {
     gl::PostSettings post;
     post.look = controls.look;
     post.fxaa = controls.fxaa;
-    post.max_steps = scene->compilation.scene.render.max_steps;
+    post.max_steps = ir::shading::many_steps;
     post.outlined = selected.number;
     post.hovered = hovered.number;
     post.thickness = std::max(1, static_cast<int>(std::lround(2 * font_scale * scale)));

@@ -11,12 +11,12 @@ class Marcher {
     Marcher(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings)
         : worker_(worker), pruning_(*worker.stage.pruning), evaluator_(*worker.evaluator),
           memory_(*worker.cell_march), rays_(rays), landings_(landings), lengths_(worker.stage),
-          max_steps_(worker.stage.scene->render.max_steps), steep_(worker.stage.frame.steep) {}
+          budget_(worker.stage.budget) {}
 
     void run() {
         memory_.walks.resize(std::max(memory_.walks.size(), rays_.size()));
         memory_.next.resize(std::max(memory_.next.size(), rays_.size()));
-        memory_.stops.clear(), memory_.queue.clear();
+        memory_.stops.clear(), memory_.queue.clear(), memory_.crossings.clear();
         ++memory_.turn;
         if (memory_.seen.empty()) memory_.seen.resize(4 * max_rays);
         for (std::uint32_t i = 0; i < rays_.size(); ++i) {
@@ -26,14 +26,8 @@ class Marcher {
             if (rays_[i].end >= rays_[i].begin) go_on(i);
         }
         std::size_t first = 0;
-        while (first < memory_.queue.size() || !memory_.arriving.rays.empty()) {
-            if (first == memory_.queue.size()) {
-                arrive();
-                continue;
-            }
-            halt(memory_.queue[first++]);
-            if (memory_.arriving.rays.size() > max_rays / 2) arrive();
-        }
+        while (first < memory_.queue.size()) halt(memory_.queue[first++]);
+        refine(worker_, rays_, memory_.crossings, landings_);
     }
 
   private:
@@ -51,18 +45,32 @@ class Marcher {
             ++evaluator_.tally.far, ++worker_.work.evaluations;
             walk.d = cell.far;
             ++walk.steps;
-            if (walk.steps < max_steps_ && apart(walk))
-                go_back(walk, lengths_, false);
-            else
-                advance(walk, ray.end, lengths_, false);
+            if (!goes_on_from(i)) return;
         }
     }
 
     // Who has run out of steps or of way is done.
     bool goes_on(std::uint32_t i) {
         const Walk &walk = memory_.walks[i];
-        if (walk.steps < max_steps_ && walk.t <= rays_[i].end + lengths_.slack) return true;
-        landings_[i] = {-1.0f, walk.steps};
+        const bool free = !(walk.t <= rays_[i].end + lengths_.slack);
+        if (!free && walk.steps < budget_) return true;
+        landings_[i] = {free ? -1.0f : walk.t, walk.steps, free ? RayEnd::Miss : RayEnd::Undecided};
+        return false;
+    }
+
+    // By the distance at its last sample.
+    bool goes_on_from(std::uint32_t i) {
+        Walk &walk = memory_.walks[i];
+        switch (judge(walk, lengths_)) {
+        case Verdict::GoOn: advance(walk, rays_[i].end, lengths_, false); return true;
+        case Verdict::GoBack: go_back(walk, lengths_, false); return true;
+        case Verdict::Crossed:
+            landings_[i].steps = walk.steps;
+            memory_.crossings.push_back(crossing(walk, i));
+            return false;
+        case Verdict::Undecided: break;
+        }
+        landings_[i] = {walk.t, walk.steps, RayEnd::Undecided};
         return false;
     }
 
@@ -113,53 +121,10 @@ class Marcher {
         evaluate_in(pruning_, evaluator_, cell, worker_.points.pointers(), &out, here.size());
         for (std::size_t k = 0; k < here.size(); ++k) {
             const std::uint32_t i = here[k];
-            if (step(i, worker_.values[k])) go_on(i);
+            memory_.walks[i].d = worker_.values[k];
+            ++memory_.walks[i].steps;
+            if (goes_on_from(i)) go_on(i);
         }
-    }
-
-    // False: the ray is done, or is looked at closely.
-    bool step(std::uint32_t i, float d) {
-        Walk &walk = memory_.walks[i];
-        const RayState &ray = rays_[i];
-        walk.d = d;
-        ++walk.steps;
-        if (walk.steps < max_steps_ && apart(walk)) {
-            go_back(walk, lengths_, false);
-            return true;
-        }
-        if (d <= tolerance_at(walk, lengths_, max_steps_)) {
-            if (!steep_) {
-                landings_[i] = {walk.t + d, walk.steps};
-                return false;
-            }
-            CellMarch::Arriving &arriving = memory_.arriving;
-            arriving.rays.push_back(i);
-            arriving.points.push_back(ray.origin + walk.t * ray.direction);
-            arriving.d.push_back(d);
-            arriving.arms.push_back(lengths_.arm(walk.t));
-            return false;
-        }
-        advance(walk, ray.end, lengths_, false);
-        return true;
-    }
-
-    void arrive() {
-        CellMarch::Arriving &arriving = memory_.arriving;
-        const std::size_t count = arriving.rays.size();
-        arriving.distances.resize(count);
-        near(worker_, arriving.points.data(), arriving.d.data(), arriving.arms.data(),
-             arriving.distances.data(), count);
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::uint32_t i = arriving.rays[k];
-            Walk &walk = memory_.walks[i];
-            if (arriving.distances[k] <= tolerance_at(walk, lengths_, max_steps_)) {
-                landings_[i] = {walk.t + walk.d, walk.steps};
-            } else {
-                advance(walk, rays_[i].end, lengths_, false);
-                go_on(i);
-            }
-        }
-        arriving.rays.clear(), arriving.points.clear(), arriving.d.clear(), arriving.arms.clear();
     }
 
     Worker &worker_;
@@ -169,8 +134,7 @@ class Marcher {
     std::span<const RayState> rays_;
     std::span<Landing> landings_;
     const Lengths lengths_;
-    const int max_steps_;
-    const bool steep_;
+    const int budget_;
 };
 
 } // namespace

@@ -25,11 +25,7 @@ struct CellMarch {
     std::vector<Seen> seen;
     std::uint32_t turn = 0;
     std::vector<std::uint32_t> here; // the rays whose cell's tape is run
-    struct Arriving {                // who found so small a distance that it is looked at closely
-        std::vector<std::uint32_t> rays;
-        std::vector<Vec> points;
-        std::vector<float> d, arms, distances;
-    } arriving;
+    std::vector<Crossing> crossings;
 };
 
 // By march() where the worker has cells.

@@ -19,6 +19,8 @@ struct Work {
     std::uint64_t steps = 0; // of rays from the eye: evaluations on their way, shading.h's `steps`
     std::uint64_t shadow_steps = 0;
     std::uint64_t evaluations = 0; // of the distance, for whatever purpose
+    std::uint64_t undecided = 0;   // rays from the eye that ended neither in a hit nor in a miss
+    std::uint64_t undecided_shadows = 0; // rays from lights that ran out of evaluations
     // With pruning: of those, how many a far cell answered; what cells near the surface keep of the
     // shapes, all told; and how many evaluations that were.
     std::uint64_t far = 0, near = 0;
@@ -40,12 +42,15 @@ struct Stage {
     ir::Frame frame;
     Inputs inputs;
     Program distance, hit, background;
+    Program shaded; // Scene::shaded, where that is not the distance
+    bool shaded_apart = false;
     Program safe_radius; // Scene::safe_radius, where `reaches`: not with pruning
-    std::shared_ptr<const Pruning> pruning, hit_pruning; // none: not worth it
+    std::shared_ptr<const Pruning> pruning, hit_pruning, shaded_pruning; // none: not worth it
     std::vector<Program> surfaces;
     std::vector<ir::LightValue> lights;
     bool has_background = false, has_safe_radius = false;
     bool local_normals = false; // some surface reads its normal
+    int budget = 0;             // evaluations that a ray may take
     struct Shading {
         float ambient[3] = {};
         float ambient_occlusion = 0, shadow_darkness = 0, soft_shadows = 0, specular_intensity = 0;
@@ -81,15 +86,19 @@ using Progress = std::function<bool(double done, const Tile &tile, const Picture
 
 Picture render(const Stage &stage, const PictureOptions &options, const Progress &progress = {});
 
-// Rays alone, for tests: where each hits (negative: nowhere) and after how many steps. `brute`
-// marches plainly, at a tenth of the proved step and ten times as often, as a check on what the
-// stepping may have jumped over.
+// How a ray ends (shading.h, MARCH).
+enum class RayEnd : std::uint8_t { Miss, Hit, Undecided };
+
+// Rays alone, for tests: where each ends and after how many steps. `brute` marches plainly, at a
+// tenth of the proved step and a hundred times as often, as a check on what the stepping may have
+// jumped over.
 struct Ray {
     std::array<float, 3> origin, direction;
 };
 struct Landing {
-    float t = -1;
+    float t = -1; // negative: a miss
     int steps = 0;
+    RayEnd end = RayEnd::Miss;
 };
 std::vector<Landing> cast(const Stage &stage, std::span<const Ray> rays, bool brute = false);
 Ray eye_ray(const Stage &stage, float x,

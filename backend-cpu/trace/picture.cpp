@@ -19,6 +19,8 @@ Work &Work::operator+=(const Work &other) {
     steps += other.steps;
     shadow_steps += other.shadow_steps;
     evaluations += other.evaluations;
+    undecided += other.undecided;
+    undecided_shadows += other.undecided_shadows;
     far += other.far;
     near += other.near;
     near_shapes += other.near_shapes;
@@ -77,6 +79,9 @@ void prune(Stage &stage, Prune how) {
     stage.pruning = std::make_shared<Pruning>(stage.distance, stage.inputs, cube, settings);
     settings.far_cells = false;
     stage.hit_pruning = std::make_shared<Pruning>(stage.hit, stage.inputs, cube, settings);
+    if (!stage.shaded_apart) return;
+    stage.shaded = compile(scene, scene.shaded, Choices::Apart);
+    stage.shaded_pruning = std::make_shared<Pruning>(stage.shaded, stage.inputs, cube, settings);
 }
 
 } // namespace
@@ -92,10 +97,13 @@ Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int heigh
     stage.width = width;
     stage.height = height;
     stage.view = view;
+    stage.budget = ir::budget_of(scene);
     stage.frame = ir::frame_of(scene, view, height);
     stage.inputs = inputs_of(scene, time);
     stage.distance = compile(scene, scene.distance);
     stage.hit = compile(scene, scene.hit);
+    stage.shaded_apart = scene.shaded != scene.distance;
+    if (stage.shaded_apart) stage.shaded = compile(scene, scene.shaded);
     prune(stage, how);
     stage.has_safe_radius = scene.safe_radius && !stage.pruning;
     if (stage.has_safe_radius) stage.safe_radius = compile(scene, scene.safe_radius);
@@ -121,11 +129,13 @@ Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int heigh
 
 Worker::Worker(const Stage &s)
     : stage(s), distance(make_scratch(s.distance, s.inputs)), hit(make_scratch(s.hit, s.inputs)) {
+    if (s.shaded_apart) shaded = make_scratch(s.shaded, s.inputs);
     if (s.has_safe_radius) safe_radius = make_scratch(s.safe_radius, s.inputs);
     if (s.has_background) background = make_scratch(s.background, s.inputs);
     for (const Program &surface : s.surfaces) surfaces.push_back(make_scratch(surface, s.inputs));
     if (s.pruning) evaluator.emplace(*s.pruning, s.inputs);
     if (s.hit_pruning) hit_evaluator.emplace(*s.hit_pruning, s.inputs);
+    if (s.shaded_pruning) shaded_evaluator.emplace(*s.shaded_pruning, s.inputs);
 }
 
 namespace {
@@ -151,10 +161,12 @@ std::uint8_t byte(float x) {
     return static_cast<std::uint8_t>(clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);
 }
 
-// Blue for few steps, through green and yellow to red for all that are allowed.
-Vec heat(int steps, int most) {
-    const float x =
-        std::log2(1.0f + static_cast<float>(steps)) / std::log2(1.0f + static_cast<float>(most));
+// Blue for few steps, through green and yellow to red for shading.h's `many_steps`; magenta for
+// undecided rays.
+Vec heat(const Landing &landing) {
+    if (landing.end == RayEnd::Undecided) return {1, 0, 1};
+    const float x = std::log2(1.0f + static_cast<float>(landing.steps)) /
+                    std::log2(1.0f + static_cast<float>(ir::shading::many_steps));
     return {clamp(2.0f * x - 0.6f, 0, 1), clamp(1.6f - std::fabs(3.2f * x - 1.6f), 0, 1),
             clamp(1.0f - 2.2f * x, 0, 1)};
 }
@@ -187,7 +199,7 @@ void draw(Worker &worker, const PictureOptions &options, const Tile &tile, Pictu
                  static_cast<std::size_t>(x));
         Vec c;
         if (options.mode == PictureMode::Steps) {
-            c = heat(landings[i].steps, stage.scene->render.max_steps);
+            c = heat(landings[i]);
         } else {
             c = sum[i] / static_cast<float>(samples);
             c = {encoded(c.x), encoded(c.y), encoded(c.z)};

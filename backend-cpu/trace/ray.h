@@ -12,14 +12,8 @@ namespace fathom::cpu {
 struct Walk {
     float t = 0, before = 0, stride = 0, d = 0;
     float span = 0, reached = 0; // how far d reaches, and `before`; where that is more than they
-    int steps = 0;
+    int steps = 0, touches = 0;
 };
-
-// How small the distance is at a hit; in the last turn a pixel's width will do.
-inline float tolerance_at(const Walk &walk, const Lengths &lengths, int max_steps) {
-    const float usual = lengths.tolerance(walk.t);
-    return walk.steps == max_steps ? std::max(usual, lengths.width(walk.t)) : usual;
-}
 
 // From which value on a lower bound of the distance will do: below it, whether the ray has arrived
 // is decided.
@@ -31,6 +25,23 @@ inline float limit_at(float t, const Lengths &lengths) {
 inline bool apart(const Walk &walk) {
     if (walk.stride <= walk.before + std::max(walk.d, 0.0f)) return false;
     return !(walk.d > 0 && walk.stride <= walk.reached + walk.span);
+}
+
+// What a sample says of its ray.
+enum class Verdict : std::uint8_t { GoOn, GoBack, Crossed, Undecided };
+inline Verdict judge(Walk &walk, const Lengths &lengths) {
+    if (std::isnan(walk.d)) return Verdict::Undecided;
+    if (walk.d <= 0 && walk.stride <= ir::shading::jump * lengths.tolerance(walk.t))
+        return Verdict::Crossed;
+    if (apart(walk)) return Verdict::GoBack;
+    if (walk.d <= 0) return Verdict::Crossed;
+    const bool touches = walk.d < 0.25f * lengths.slack;
+    if (touches ? ++walk.touches > ir::shading::max_touches : walk.touches > 0)
+        return Verdict::Undecided;
+    return Verdict::GoOn;
+}
+inline Crossing crossing(const Walk &walk, std::size_t ray) {
+    return {ray, walk.t - walk.stride, walk.t, walk.before, walk.d};
 }
 
 // How far beyond the last sample to look next, where what lies between is not known to be free.
@@ -64,6 +75,11 @@ inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
     } else if (!brute && walk.stride > 0)
         next += ir::shading::relaxation * d * std::max(walk.stride + d - walk.before, 0.0f) /
                 std::max(walk.stride - d + walk.before, ir::shading::flattest * walk.stride);
+    if (!brute && walk.stride > 0 && walk.before > walk.d) { // where the line through both is 0
+        const float tolerance = lengths.tolerance(walk.t);
+        const float to = walk.d * walk.stride / (walk.before - walk.d) + 0.25f * tolerance;
+        if (to <= ir::shading::jump * tolerance) next = std::max(d, to);
+    }
     // what is not proved yet ends at the end exactly, rounding or not, so that it is still checked
     const float proved = std::max(end, walk.t + d);
     next = std::min(next, proved - walk.t);

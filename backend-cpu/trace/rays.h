@@ -52,8 +52,8 @@ struct CellMarch;
 struct Worker {
     explicit Worker(const Stage &stage);
     const Stage &stage;
-    Scratch distance, safe_radius, hit, background;
-    std::optional<CellEvaluator> evaluator, hit_evaluator;
+    Scratch distance, safe_radius, hit, background, shaded;
+    std::optional<CellEvaluator> evaluator, hit_evaluator, shaded_evaluator;
     std::vector<float> limits = std::vector<float>(max_rays);
     std::vector<Scratch> surfaces;
     Columns points{3, max_rays};
@@ -95,13 +95,21 @@ void distances(Worker &worker, const Columns &points, float *out, std::size_t n,
 void safe_radii(Worker &worker, const Columns &points, float *out, float *spans, std::size_t n);
 bool is_bound(const Worker &worker, std::size_t k); // of the last distances'
 void hits(Worker &worker, std::size_t n);           // at worker.points, into worker.hits
-// The gradients of the distance at n points, with arms h.
+// Scene::shaded at the first n points.
+void shaded_values(Worker &worker, const Columns &points, float *out, std::size_t n);
+// Its gradients at n points, with arms h.
 void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std::size_t n);
-// The true distances near n points where the field says d; d itself where nothing was divided by a
-// bound.
-void near(Worker &worker, const Vec *points, const float *d, const float *h, float *out,
+// The true distances near n points where it says g (shading.h, TRUE DISTANCE).
+void near(Worker &worker, const Vec *points, const float *g, const float *h, float *out,
           std::size_t n);
 
+// A hit's place: between the last two samples of its walk (shading.h, REFINED).
+struct Crossing {
+    std::size_t ray;
+    float a, b, at_a, at_b; // along the ray, and the field there: above 0, at most 0
+};
+void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,
+            std::span<Landing> landings);
 void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings, bool brute);
 // Linear colours of the rays; those with t < 0 see the background.
 void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings,

@@ -87,9 +87,10 @@ void find_materials(Worker &worker, Points &at) {
 // How much of the surroundings five samples along the normal find closed (thesis, 4.2.1).
 std::vector<float> find_occlusion(Worker &worker, const Points &at) {
     const std::size_t count = at.size();
-    std::vector<float> sum(count, 0.0f), d(count), dq, h, truth;
+    std::vector<float> sum(count, 0.0f), g(count), close_g, h, truth;
     std::vector<std::size_t> close;
     std::vector<Vec> q;
+    const bool apart = worker.stage.shaded_apart;
     const float reach = shading::occlusion_reach * static_cast<float>(worker.stage.frame.radius) /
                         static_cast<float>(shading::occlusion_samples);
     float weight = 1, total = 0;
@@ -101,15 +102,21 @@ std::vector<float> find_occlusion(Worker &worker, const Points &at) {
             worker.points.set(0, k, at.p[k] + x * at.n[k]);
             worker.limits[k] = x;
         }
-        distances(worker, worker.points, d.data(), count, worker.limits.data());
-        close.clear(), q.clear(), dq.clear(), h.clear();
-        for (std::size_t k = 0; k < count; ++k) // the true distance is no less than d
-            if (!(d[k] >= x)) {
-                close.push_back(k), q.push_back(worker.points.vec(0, k));
-                dq.push_back(d[k]), h.push_back(at.h[k]);
+        if (apart)
+            shaded_values(worker, worker.points, g.data(), count);
+        else
+            distances(worker, worker.points, g.data(), count, worker.limits.data());
+        close.clear(), q.clear(), close_g.clear(), h.clear();
+        for (std::size_t k = 0; k < count; ++k) {
+            if (!apart && g[k] >= shading::nearly * x) {
+                sum[k] += weight * clamp(1.0f - g[k] / x, 0.0f, 1.0f);
+                continue;
             }
+            close.push_back(k), q.push_back(worker.points.vec(0, k));
+            close_g.push_back(g[k]), h.push_back(at.h[k]);
+        }
         truth.resize(close.size());
-        near(worker, q.data(), dq.data(), h.data(), truth.data(), close.size());
+        near(worker, q.data(), close_g.data(), h.data(), truth.data(), close.size());
         for (std::size_t i = 0; i < close.size(); ++i)
             sum[close[i]] += weight * clamp(1.0f - truth[i] / x, 0.0f, 1.0f);
     }

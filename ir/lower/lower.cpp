@@ -21,6 +21,7 @@ const char *suffix(Reading reading) {
     case Reading::Marched: return "_marched";
     case Reading::Hit: return "_hit";
     case Reading::SafeRadius: return "_reach";
+    case Reading::Shaded: return "_shaded";
     }
     return "";
 }
@@ -101,6 +102,7 @@ void Lowering::run() {
     find_names();
     find_free_vars();
     find_curved();
+    find_shaded();
     const Where frame{p3_, 0};
     const NodeId distance = expression_of(Reading::Marched, scene_.root, frame);
     scene_.distance = graph_.add_function({"scene_distance", {}, {p3_}, distance});
@@ -110,6 +112,13 @@ void Lowering::run() {
     if (curved_[scene_.root.index]) {
         const NodeId reach = expression_of(Reading::SafeRadius, scene_.root, frame);
         scene_.safe_radius = graph_.add_function({"scene_reach", {}, {p3_}, reach});
+    }
+
+    scene_.unit_slope = unit_slope_[scene_.root.index] != 0;
+    scene_.shaded = scene_.distance;
+    if (shaded_apart_[scene_.root.index]) {
+        const NodeId shaded = expression_of(Reading::Shaded, scene_.root, frame);
+        scene_.shaded = graph_.add_function({"scene_shaded", {}, {p3_}, shaded});
     }
 
     add_endless(frame);
@@ -272,13 +281,14 @@ void Lowering::find_free_vars() {
 bool Lowering::is_wrapper(Reading reading, ShapeId id) const {
     if (reading == Reading::Raw) return false;
     if (reading == Reading::SafeRadius) return !curved_[id.index];
-    if (fact(id).guard && reading == Reading::Marched) return false;
+    const bool distance = reading == Reading::Marched || reading == Reading::Shaded;
+    if (fact(id).guard && distance) return false;
     if (reading == Reading::Hit && !paint_[id.index]) return true;
-    return !passes_through(id) && shape(id).kind != ShapeKind::Within &&
-           reading == Reading::Marched;
+    return distance && !passes_through(id) && shape(id).kind != ShapeKind::Within;
 }
 
 NodeId Lowering::expression_of(Reading reading, ShapeId id, Where frame) {
+    if (reading == Reading::Shaded && !shaded_apart_[id.index]) reading = Reading::Marched;
     const auto key = std::make_tuple(reading, id, frame.p, frame.values);
     if (const auto it = answers_.find(key); it != answers_.end()) return it->second;
     NodeId result;

@@ -1,8 +1,7 @@
 // Shapes to functions. The one place that knows what each ShapeKind computes; after it a back end
 // sees only expressions, functions and loops.
 //
-// Four readings of a shape (semantics.md, 10 and 11). What looks at a picture (normals, occlusion,
-// |f|/|grad f|) uses the marched one, normalised by its gradient.
+// Five readings of a shape (semantics.md, 10 and 11):
 //   raw      the field itself, which offsets, blends and displacements consume
 //   marched  the distance that rays use. It goes through the outermost min/max tree (Union,
 //            Intersection, Complement, Xor, Paint, Repeat, Instances, Library without claims, Extrude,
@@ -11,6 +10,8 @@
 //            by its region, with its child's bound, which has to hold in the region; `guard`ed
 //            shapes by max with their box's distance
 //   hit      marched, carrying which surface decides
+//   shaded   what normals, occlusion and penumbrae look at: marched, but no bound above 1 divides it,
+//            so that a looser proof changes no picture. Equal to marched where no bound is above 1
 //   radius   marched, and the safe radius by curvature (shading.h); only where some displacement
 //            has it, and through the shapes that safe_radius.cpp names
 // A shape evaluated at more than one point becomes a function of its own (named after its library
@@ -22,7 +23,7 @@
 
 namespace fathom::ir {
 
-// Fills the functions of a scene (raw, marched, hit, safe radius) from its shapes and facts.
+// Fills the functions of a scene (raw, marched, hit, shaded, safe radius) from its shapes and facts.
 void lower(Scene &scene);
 
 // Lowered so that a hit also tells which part of the scene it is on: the innermost operand of a

@@ -1,7 +1,7 @@
 // The lowering's own parts, shared by the sources of this folder only. Knows shapes, not the
 // language.
 //
-// A shape is evaluated in one of four readings (lower.h) at a frame: a point, and values for the
+// A shape is evaluated in one of five readings (lower.h) at a frame: a point, and values for the
 // variables that shapes above bind. Every answer is made once; a shape that would be written out in
 // several places becomes a function.
 #pragma once
@@ -18,8 +18,8 @@ namespace fathom::ir {
 
 constexpr double nowhere = 1e9; // the distance to what is not there
 
-// Which of the four functions of a shape is made (lower.h).
-enum class Reading : std::uint8_t { Raw, Marched, Hit, SafeRadius };
+// Which of the five functions of a shape is made (lower.h).
+enum class Reading : std::uint8_t { Raw, Marched, Hit, SafeRadius, Shaded };
 
 // Where a field is evaluated.
 struct Where {
@@ -56,6 +56,11 @@ class Lowering {
     NodeId displaced(Reading reading, ShapeId id, Where frame);
     NodeId guard(ShapeId id, Where frame);
     NodeId guarded(Reading reading, ShapeId id, Where frame, NodeId value);
+
+    // -- what is looked at (shaded.cpp)
+    bool has_slope_above_one(ShapeId id) const;
+    void find_shaded();
+    NodeId shaded(ShapeId id, NodeId raw);
 
     // -- safe radius (safe_radius.cpp)
     bool passes_safe_radius_on(const Shape &shape) const;
@@ -153,6 +158,8 @@ class Lowering {
     std::vector<char> paint_, reached_;
     std::vector<char>
         curved_; // by shape: something in it has a safe radius larger than its distance
+    std::vector<char> shaded_apart_; // by shape: its shaded field is not its marched one
+    std::vector<char> unit_slope_;   // by shape: the shaded field's slope is 1 almost everywhere
     std::set<std::pair<ShapeId, NodeId>> framed_seen_; // framing.cpp: shapes and their points
     Parts parts_;                                      // stride 0: nothing is marked
     std::vector<std::uint32_t> part_;                  // by shape, 0: none of its own

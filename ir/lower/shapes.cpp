@@ -110,11 +110,14 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Where frame) {
     if (reading == Reading::Hit && !paint_[id.index])
         return unpainted(expression_of(Reading::Marched, id, frame));
     if (passes_through(id)) return guarded(reading, id, frame, structural(reading, id, frame));
-    if (reading == Reading::Marched && shape(id).kind == ShapeKind::Within)
+    const bool distance = reading == Reading::Marched || reading == Reading::Shaded;
+    if (distance && shape(id).kind == ShapeKind::Within)
         return guarded(reading, id, frame, within(reading, id, frame));
     if (reading == Reading::Hit)
         return graph_.make(Op::HitWith,
                            {colored(id, frame), expression_of(Reading::Marched, id, frame)});
+    if (reading == Reading::Shaded)
+        return guarded(reading, id, frame, shaded(id, expression_of(Reading::Raw, id, frame)));
     if (shape(id).kind == ShapeKind::Displace)
         return guarded(reading, id, frame, displaced(reading, id, frame));
     return guarded(reading, id, frame, divided(id, expression_of(Reading::Raw, id, frame)));
@@ -380,10 +383,13 @@ NodeId Lowering::within(Reading reading, ShapeId id, Where frame) {
     NodeId field = expression_of(Reading::Raw, child, inside(id, frame));
     const NodeId nearest = region_nearest(g, region, p);
     NodeId q = region_between_caps(g, region, nearest);
-    if (reading == Reading::Marched) {
+    if (reading == Reading::Marched || reading == Reading::Shaded) {
         // Ways round a hole are longer than straight ones. In a hole, less the way out.
-        field = fact(id).cells.lipschitz.empty() ? divided(child, field, fact(id).detour)
-                                                 : divided_by_cells(id, field, q);
+        if (reading == Reading::Shaded)
+            field = shaded(child, field);
+        else
+            field = fact(id).cells.lipschitz.empty() ? divided(child, field, fact(id).detour)
+                                                     : divided_by_cells(id, field, q);
         NodeId out = q;
         for (const Region &less : region.less) out = region_way_out(g, less, out).point;
         if (out != nearest) field = g.sub(field, g.make(Op::Length, {g.sub(nearest, out)}));

@@ -18,6 +18,7 @@ class Verifier {
         for (std::size_t i = 0; i < scene_.surfaces.size() && problem_.empty(); ++i) surface(i);
         callable_ = graph_.function_count();
         signature(scene_.distance, "distance", Type::Float);
+        signature(scene_.shaded, "shaded", Type::Float);
         signature(scene_.hit, "hit", Type::Hit);
         if (scene_.safe_radius) signature(scene_.safe_radius, "reach", Type::Vec2);
         if (scene_.endless) signature(scene_.endless, "endless", Type::Float);

@@ -297,7 +297,7 @@ std::vector<Value> settings_values(const ir::Scene &scene, Numbers &numbers,
     std::vector<Value> values;
     const Pose pose = pose_of(scene, numbers);
     if (kept.items.empty()) { // a scene that was in no save file
-        values.push_back(yaml_scalar(scene.render.max_steps));
+        values.push_back(yaml_scalar(ir::budget_of(scene)));
         values.push_back(parse_text("false").value);
         for (const double value : {1.0, 0.5, 0.0, 0.5, 0.5}) values.push_back(yaml_scalar(value));
         Pose side = pose;
@@ -327,8 +327,7 @@ std::vector<Value> settings_values(const ir::Scene &scene, Numbers &numbers,
             const auto steps = number_of(value);
             const bool legal =
                 steps && *steps >= 1 && *steps <= 100000 && *steps == std::floor(*steps);
-            if (legal && *steps != scene.render.max_steps)
-                value = yaml_scalar(scene.render.max_steps);
+            if (legal && *steps != ir::budget_of(scene)) value = yaml_scalar(ir::budget_of(scene));
         } else if (item.label == "camera" && value.items.size() == 10) {
             if (camera++ == chosen && scene.camera.given && !close(pose, value)) {
                 const Value second = value.items[8], third = value.items[9];

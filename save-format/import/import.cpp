@@ -4,6 +4,7 @@
 
 #include "base/encode.h"
 #include "base/text.h"
+#include "ir/shading.h"
 
 #include <charconv>
 #include <cmath>
@@ -80,8 +81,11 @@ class Settings {
         if (!seen_ && value.kind == Value::Kind::Scalar) {
             const auto steps = number_of(value);
             if (steps && *steps >= 1 && *steps <= 100000 && *steps == std::floor(*steps)) {
-                in.settings.push_back("render(max_steps: " + sdf_number(*steps) + in.limits + ")");
-                in.limits.clear();
+                if (*steps != ir::shading::budget) {
+                    in.settings.push_back("render(max_steps: " + sdf_number(*steps) + in.limits +
+                                          ")");
+                    in.limits.clear();
+                }
             } else {
                 in.report.content(
                     value.span,

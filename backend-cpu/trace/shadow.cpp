@@ -1,0 +1,199 @@
+// How much of a light arrives: ir/shading.h's SHADOW and PENUMBRA over batches of rays. Names and
+// order follow backend-glsl/templates/shade.glsl.
+#include "backend-cpu/trace/rays.h"
+
+#include "ir/shading.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace fathom::cpu {
+
+namespace shading = ir::shading;
+
+namespace {
+
+struct State {
+    float s, stride = 0;     // what is left of the way; how long the last step was
+    float shadow = 2;        // the least of `closed` so far, and
+    float at = 0, slope = 1; // where, and the gradient's length there
+    float lo = 0, hi = 0;    // the samples beside it
+};
+
+class Shadows {
+  public:
+    Shadows(Worker &worker, std::span<const ShadowRay> rays, float angle)
+        : worker_(worker), rays_(rays), angle_(angle), lengths_(worker.stage),
+          states_(rays.size()) {
+        for (std::size_t i = 0; i < rays.size(); ++i) states_[i].s = rays[i].reach;
+    }
+
+    void run(std::span<float> lit) {
+        march();
+        find_penumbrae();
+        for (std::size_t i = 0; i < rays_.size(); ++i) {
+            const float shadow = std::min(states_[i].shadow, 1.0f);
+            lit[i] = shadow * shadow * (3.0f - 2.0f * shadow);
+        }
+    }
+
+  private:
+    Vec place(std::size_t ray, float s) const { return rays_[ray].from + s * rays_[ray].towards; }
+
+    void march() {
+        const int budget = worker_.stage.budget;
+        std::vector<std::size_t> active(rays_.size());
+        std::iota(active.begin(), active.end(), std::size_t{0});
+        for (int turn = 0;; ++turn) {
+            std::erase_if(active, [&](std::size_t i) { return !(states_[i].s > rays_[i].margin); });
+            if (active.empty()) return;
+            if (turn == budget) break;
+            for (std::size_t k = 0; k < active.size(); ++k) {
+                const State &state = states_[active[k]];
+                worker_.points.set(0, k, place(active[k], state.s));
+                worker_.limits[k] = state.shadow * angle_ * state.s;
+            }
+            distances(worker_, worker_.points, worker_.values.data(), active.size(),
+                      worker_.limits.data());
+            worker_.work.shadow_steps += active.size();
+            step(active);
+        }
+        worker_.work.undecided_shadows += active.size();
+    }
+
+    void step(const std::vector<std::size_t> &active) {
+        close_.clear();
+        next_.resize(active.size());
+        for (std::size_t k = 0; k < active.size(); ++k) {
+            const std::size_t i = active[k];
+            const State &state = states_[i];
+            const float d = worker_.values[k];
+            next_[k] = std::max(d, 0.25f * lengths_.slack);
+            if (!is_bound(worker_, k) && d < state.shadow * angle_ * state.s)
+                close_.push_back({i, state.s, d, next_[k]});
+        }
+        look();
+        for (std::size_t k = 0; k < active.size(); ++k) {
+            State &state = states_[active[k]];
+            state.stride = next_[k];
+            state.s = state.shadow > 0 ? state.s - next_[k] : 0;
+        }
+    }
+
+    // Where something may cover the light, the true distance decides.
+    void look() {
+        if (close_.empty()) return;
+        measure();
+        for (std::size_t j = 0; j < close_.size(); ++j) {
+            const Close &close = close_[j];
+            State &state = states_[close.ray];
+            const float closed = near_[j] / (angle_ * close.s);
+            if (!(close.d > 0) || closed < 0.00390625f) {
+                state.shadow = 0;
+            } else if (closed < state.shadow) {
+                state.shadow = closed;
+                state.at = close.s;
+                state.slope = values_[j] > 0 ? values_[j] / near_[j] : 1.0f;
+                state.lo = std::max(close.s - close.next, rays_[close.ray].margin);
+                state.hi = std::min(close.s + state.stride, rays_[close.ray].reach);
+            }
+        }
+    }
+
+    // Of what is close: g in values_, the true distance in near_.
+    void measure() {
+        const std::size_t n = close_.size();
+        points_.resize(n), arms_.resize(n), values_.resize(n), near_.resize(n);
+        for (std::size_t j = 0; j < n; ++j) {
+            points_[j] = place(close_[j].ray, close_[j].s);
+            arms_[j] = rays_[close_[j].ray].arm;
+            values_[j] = close_[j].d;
+        }
+        if (worker_.stage.shaded_apart) evaluate_at(points_, values_);
+        near(worker_, points_.data(), values_.data(), arms_.data(), near_.data(), n);
+    }
+    void evaluate_at(const std::vector<Vec> &points, std::vector<float> &out) {
+        out.resize(points.size());
+        for (std::size_t j = 0; j < points.size(); ++j) worker_.points.set(0, j, points[j]);
+        shaded_values(worker_, worker_.points, out.data(), points.size());
+    }
+
+    void find_penumbrae() {
+        constexpr float golden = 0.618033989f;
+        struct Search {
+            std::size_t ray;
+            float lo, hi, a, b, at_a, at_b; // a < b, in between
+        };
+        std::vector<Search> searches;
+        for (std::size_t i = 0; i < rays_.size(); ++i) {
+            const State &state = states_[i];
+            if (!(state.shadow > 0 && state.shadow < 2)) continue;
+            const float part = golden * (state.hi - state.lo);
+            searches.push_back({i, state.lo, state.hi, state.hi - part, state.lo + part, 0, 0});
+        }
+        if (searches.empty()) return;
+        std::vector<Vec> points(searches.size());
+        std::vector<float> values;
+        const auto closed = [&](auto where, auto result) {
+            for (std::size_t j = 0; j < searches.size(); ++j)
+                points[j] = place(searches[j].ray, where(searches[j]));
+            evaluate_at(points, values);
+            for (std::size_t j = 0; j < searches.size(); ++j) {
+                Search &search = searches[j];
+                result(search, values[j] / (states_[search.ray].slope * angle_ * where(search)));
+            }
+        };
+        closed([](const Search &x) { return x.a; }, [](Search &x, float c) { x.at_a = c; });
+        closed([](const Search &x) { return x.b; }, [](Search &x, float c) { x.at_b = c; });
+        for (int turn = 0; turn < shading::penumbra_turns; ++turn) {
+            std::vector<char> left(searches.size());
+            for (std::size_t j = 0; j < searches.size(); ++j) {
+                Search &x = searches[j];
+                left[j] = x.at_a < x.at_b;
+                if (left[j]) {
+                    x.hi = x.b, x.b = x.a, x.at_b = x.at_a;
+                    x.a = x.hi - golden * (x.hi - x.lo);
+                } else {
+                    x.lo = x.a, x.a = x.b, x.at_a = x.at_b;
+                    x.b = x.lo + golden * (x.hi - x.lo);
+                }
+            }
+            const auto made = [&](const Search &x) {
+                return left[static_cast<std::size_t>(&x - searches.data())] ? x.a : x.b;
+            };
+            closed(made, [&](Search &x, float c) {
+                (left[static_cast<std::size_t>(&x - searches.data())] ? x.at_a : x.at_b) = c;
+            });
+        }
+        close_.clear();
+        for (const Search &x : searches)
+            close_.push_back({x.ray, x.at_a < x.at_b ? x.a : x.b, 0, 0});
+        for (std::size_t j = 0; j < close_.size(); ++j)
+            points[j] = place(close_[j].ray, close_[j].s);
+        evaluate_at(points, values);
+        for (std::size_t j = 0; j < close_.size(); ++j) close_[j].d = values[j];
+        look();
+    }
+
+    struct Close {
+        std::size_t ray;
+        float s, d, next;
+    };
+
+    Worker &worker_;
+    std::span<const ShadowRay> rays_;
+    const float angle_;
+    const Lengths lengths_;
+    std::vector<State> states_;
+    std::vector<Close> close_;
+    std::vector<Vec> points_;
+    std::vector<float> next_, arms_, values_, near_;
+};
+
+} // namespace
+
+void shadows(Worker &worker, std::span<const ShadowRay> rays, float angle, std::span<float> lit) {
+    Shadows(worker, rays, angle).run(lit);
+}
+
+} // namespace fathom::cpu
