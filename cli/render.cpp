@@ -127,6 +127,7 @@ Exit prepare_gl(Painter &painter, const driver::Compilation &compilation,
     Diagnostics diagnostics;
     glsl::Options options;
     options.target = glsl::Target::Glsl330;
+    options.passes = true;
     options.buffers = true;
     options.pruning = gl::can_prune();
     glsl::Output output = glsl::emit(compilation.scene, options, diagnostics);
