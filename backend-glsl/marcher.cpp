@@ -70,10 +70,6 @@ Values values_of(const MarcherOptions &options) {
         {"OCCLUSION_TOTAL", float_literal(1 - std::ldexp(1.0, -shading::occlusion_samples))},
         {"OCCLUSION_REACH",
          float_literal(shading::occlusion_reach * options.radius / shading::occlusion_samples)},
-<<<<<<< HEAD
-=======
-        {"SHADOW_STEPS", fmt::to_string(options.max_steps)},
->>>>>>> pictures
         {"SHADOW_BIAS", float_literal(shading::shadow_bias)},
         {"MIN_ANGLE", float_literal(shading::min_angle)},
         {"CHECK_STEPS", fmt::to_string(check_steps)},
