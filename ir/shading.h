@@ -28,31 +28,40 @@
 // MARCH from `begin` to `end`: enhanced sphere tracing (Balint and Valasek 2018; the fallback is
 // that of Keinert et al. 2014). A ray ends in a hit (a change of sign), in a miss (all of its way is
 // free) or undecided (the budget of evaluations is spent, or a surface was touched and not crossed).
-//   t = begin, before = 0, stride = 0, touches = 0; while t <= end + slack:
+//   t = begin, before = 0, stride = 0, touches = 0, aims = false; while t <= end + slack:
 //     the budget is spent: undecided at t
 //     d = f(o + t*dir)
-//     if d <= 0 and stride <= jump*tolerance(t): a hit between t - stride and t (REFINED)
+//     if d <= 0 and aims: a hit between t - stride and t (REFINED)
 //     if stride > before + max(d, 0): the last two spheres do not overlap, so something may lie
 //       between them. Go back to the first sphere's edge: t += before - stride, stride = before,
-//       and go on with the next iteration
+//       aims = false, and go on with the next iteration
 //     if d <= 0: a hit between t - stride and t (REFINED)
-//     if d < slack/4: touches += 1, which may be max_touches; else, or beyond, if touches > 0:
-//       undecided at t
+//     if d < slack/4 and touches = 0: look BESIDE; it grazes a solid: touches = -1; else touches = 1
+//     else if d < slack/4 and touches > 0: touches += 1; beyond max_touches undecided at t
+//     else if d >= slack/4: undecided at t if touches > 0; else touches = 0
 //     d = max(d, slack/4), never less than float32 can move
-//     next = d
+//     next = d, aims = false
 //     if stride > 0: assume that f goes on along the ray as straight as over the last stride. The
 //       sphere that would touch this one has the radius d*(stride + d - before)/(stride - d +
 //       before): add relaxation times that (numerator at least 0, denominator at least
-//       flattest*stride). And where that line is 0 at most jump*tolerance(t) from here, less
-//       tolerance(t)/4: next = max(d, the way to 0 + tolerance(t)/4), so that the sign changes
+//       flattest*stride). And where before > d: to = d*stride/(before - d) is the way to where that
+//       line is 0. If to + tolerance(t)/4 <= jump*tolerance(t), or far_jump*tolerance(t) where
+//       d <= tolerance(t) and no bound is above 1 (then half a pixel's height is all that a jump
+//       may miss): next = max(d, to + tolerance(t)/4), aims = true, so that the sign changes
 //     never past the end unproved, rounding or not: proved = max(end, t + d),
 //     next = min(next, proved - t), before = d, stride = next, t = min(t + next, proved)
 //   Out of way: a miss.
 //
-//   REFINED: at most `refinements` times, x is where the chord between the ends is 0; where it moved
-//   by at most tolerance/8 the ray lands there; else f(x) takes the place of the end with its sign
-//   (and where one end stays twice in a row, its value counts half: the Illinois rule). So where a
-//   ray lands does not depend on where its samples fell.
+//   REFINED: x is where the chord between the ends is 0. If the last step aims and x is at most
+//   tolerance/8 from t - tolerance/4, where it aimed at, the ray lands at x. Else, at most
+//   `refinements` times: f(x) takes the place of the end with its sign (and where one end stays twice
+//   in a row, its value counts half: the Illinois rule), x is found anew, and where it moved by at
+//   most tolerance/8, or the ends are as near, the ray lands there. So where a ray lands does not
+//   depend on where its samples fell.
+//
+//   BESIDE: f at eight places round the ray, 2*slack away: o + t*dir + 2*slack*(cos(k*pi/4)*u +
+//   sin(k*pi/4)*v), k = 0..7, with u, v perpendicular to the ray. One that is not above 0 tells of a
+//   solid that the ray grazes; none, of a sheet or a point.
 //
 //   `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to 0..far;
 //   else 0..far.
@@ -92,10 +101,10 @@
 //   both).
 //
 // OCCLUSION (thesis, 4.2.1: five samples along the normal)
-//   for i = 1..5, x = occlusion_reach*radius*i/5:
-//     sum of 2^-i * clamp(1 - near(p + x*n, h)/x, 0, 1), divided by the sum of the 2^-i. Where
-//     g(p + x*n) >= nearly*x and no bound is above 1 (g is f), the slope of g is at most 1, so that
-//     near is no less: g will do.
+//   for i = 1..5, x_i = occlusion_reach*radius*i/5, g_i = g(p + x_i*n); k is the i with the least
+//   g_i/x_i, the first of equals. slope = 1 where `Frame::unit_slope`, or where no bound is above 1
+//   (so that no slope is) and g_k >= nearly*x_k; else max(|gradient(p + x_k*n, h)|, min_slope).
+//   occlusion = sum of 2^-i * clamp(1 - g_i/(slope*x_i), 0, 1), divided by the sum of the 2^-i
 //
 // SHADOW (thesis, 4.2.1: from the light towards the point, so that no ray has to leave a surface
 // slowly)
@@ -137,8 +146,8 @@ inline constexpr float nearer = 0.9f;
 inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.08f;
 inline constexpr float nearly = 0.98f;
-inline constexpr int penumbra_turns = 8;
-inline constexpr float jump = 4; // tolerances
+inline constexpr int penumbra_turns = 5;
+inline constexpr float jump = 4, far_jump = 32; // tolerances
 inline constexpr int refinements = 8;
 inline constexpr int max_touches = 8;
 inline constexpr int many_steps = 256; // red in a picture of steps

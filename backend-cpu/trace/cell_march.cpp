@@ -68,6 +68,10 @@ class Marcher {
             landings_[i].steps = walk.steps;
             memory_.crossings.push_back(crossing(walk, i));
             return false;
+        case Verdict::Touches:
+            walk.touches = grazes(worker_, rays_[i], walk.t) ? -1 : 1;
+            advance(walk, rays_[i].end, lengths_, false);
+            return true;
         case Verdict::Undecided: break;
         }
         landings_[i] = {walk.t, walk.steps, RayEnd::Undecided};

@@ -13,8 +13,8 @@ Lengths::Lengths(const Stage &stage)
     : slack(static_cast<float>(stage.frame.slack)), pixel(static_cast<float>(stage.frame.pixel)),
       far(static_cast<float>(stage.frame.far)),
       base(static_cast<float>(stage.frame.tolerance_base)),
-      slope(static_cast<float>(stage.frame.tolerance_slope)),
-      orthographic(stage.view.orthographic) {}
+      slope(static_cast<float>(stage.frame.tolerance_slope)), orthographic(stage.view.orthographic),
+      proves_unit(!stage.shaded_apart) {}
 
 float Lengths::arm(float t) const { return tolerance(t) + shading::normal_slack * slack; }
 
@@ -96,6 +96,24 @@ void near(Worker &worker, const Vec *points, const float *g, const float *h, flo
         out[k] = g[k] / std::max(length(slopes[k]), shading::min_slope);
 }
 
+bool grazes(Worker &worker, const RayState &ray, float t) {
+    const Lengths lengths(worker.stage);
+    const Vec d = ray.direction;
+    const Vec u =
+        glm::normalize(glm::cross(d, std::fabs(d.x) < 0.5f ? Vec{1, 0, 0} : Vec{0, 1, 0}));
+    const Vec v = glm::cross(d, u);
+    constexpr int places = 8;
+    for (int k = 0; k < places; ++k) {
+        const float angle = 0.785398163f * static_cast<float>(k);
+        const Vec beside = std::cos(angle) * u + std::sin(angle) * v;
+        worker.taps.set(0, static_cast<std::size_t>(k),
+                        ray.origin + t * d + 2.0f * lengths.slack * beside);
+    }
+    std::array<float, places> values{};
+    distances(worker, worker.taps, values.data(), places);
+    return std::ranges::any_of(values, [](float value) { return !(value > 0); });
+}
+
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,
             std::span<Landing> landings) {
     const Lengths lengths(worker.stage);
@@ -107,6 +125,11 @@ void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> 
     std::vector<float> at(crossings.size());
     std::vector<char> kept(crossings.size()); // the end that stayed last: 0 none, 1 a, 2 b
     for (std::size_t i = 0; i < crossings.size(); ++i) at[i] = chord(crossings[i]);
+    std::erase_if(active, [&](std::size_t i) {
+        const float tolerance = lengths.tolerance(at[i]);
+        return crossings[i].aimed &&
+               std::fabs(at[i] - (crossings[i].b - 0.25f * tolerance)) <= 0.125f * tolerance;
+    });
     for (int turn = 0; turn < shading::refinements; ++turn) {
         std::erase_if(active, [&](std::size_t i) {
             return !(crossings[i].b - crossings[i].a > 0.125f * lengths.tolerance(at[i]));
@@ -168,6 +191,10 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
             landings[i].steps = walk.steps;
             crossings.push_back(crossing(walk, i));
             return true;
+        case Verdict::Touches:
+            walk.touches = grazes(worker, rays[i], walk.t) ? -1 : 1;
+            advance(walk, rays[i].end, lengths, brute);
+            return false;
         case Verdict::Undecided: break;
         }
         landings[i] = {walk.t, walk.steps, RayEnd::Undecided};

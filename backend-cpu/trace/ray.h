@@ -12,7 +12,9 @@ namespace fathom::cpu {
 struct Walk {
     float t = 0, before = 0, stride = 0, d = 0;
     float span = 0, reached = 0; // how far d reaches, and `before`; where that is more than they
-    int steps = 0, touches = 0;
+    int steps = 0;
+    int touches = 0;   // samples in a row as near as slack/4; below 0: of a solid that it grazes
+    bool aims = false; // the last step was to change the sign
 };
 
 // From which value on a lower bound of the distance will do: below it, whether the ray has arrived
@@ -27,21 +29,25 @@ inline bool apart(const Walk &walk) {
     return !(walk.d > 0 && walk.stride <= walk.reached + walk.span);
 }
 
-// What a sample says of its ray.
-enum class Verdict : std::uint8_t { GoOn, GoBack, Crossed, Undecided };
+// What a sample says of its ray. Touches: first it has to be known what lies beside it.
+enum class Verdict : std::uint8_t { GoOn, GoBack, Crossed, Touches, Undecided };
 inline Verdict judge(Walk &walk, const Lengths &lengths) {
     if (std::isnan(walk.d)) return Verdict::Undecided;
-    if (walk.d <= 0 && walk.stride <= ir::shading::jump * lengths.tolerance(walk.t))
-        return Verdict::Crossed;
+    if (walk.d <= 0 && walk.aims) return Verdict::Crossed;
     if (apart(walk)) return Verdict::GoBack;
     if (walk.d <= 0) return Verdict::Crossed;
-    const bool touches = walk.d < 0.25f * lengths.slack;
-    if (touches ? ++walk.touches > ir::shading::max_touches : walk.touches > 0)
-        return Verdict::Undecided;
+    if (walk.d < 0.25f * lengths.slack) {
+        if (walk.touches == 0) return Verdict::Touches;
+        if (walk.touches > 0 && ++walk.touches > ir::shading::max_touches)
+            return Verdict::Undecided;
+    } else {
+        if (walk.touches > 0) return Verdict::Undecided;
+        walk.touches = 0;
+    }
     return Verdict::GoOn;
 }
 inline Crossing crossing(const Walk &walk, std::size_t ray) {
-    return {ray, walk.t - walk.stride, walk.t, walk.before, walk.d};
+    return {ray, walk.t - walk.stride, walk.t, walk.before, walk.d, walk.aims};
 }
 
 // How far beyond the last sample to look next, where what lies between is not known to be free.
@@ -58,6 +64,7 @@ inline void go_back(Walk &walk, const Lengths &lengths, bool by_curvature) {
     const float stride = nearer(walk, lengths, by_curvature);
     walk.t += stride - walk.stride;
     walk.stride = stride;
+    walk.aims = false;
 }
 
 inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
@@ -75,10 +82,15 @@ inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
     } else if (!brute && walk.stride > 0)
         next += ir::shading::relaxation * d * std::max(walk.stride + d - walk.before, 0.0f) /
                 std::max(walk.stride - d + walk.before, ir::shading::flattest * walk.stride);
-    if (!brute && walk.stride > 0 && walk.before > walk.d) { // where the line through both is 0
+    walk.aims = false;
+    if (!brute && walk.stride > 0 && walk.before > walk.d) {
         const float tolerance = lengths.tolerance(walk.t);
         const float to = walk.d * walk.stride / (walk.before - walk.d) + 0.25f * tolerance;
-        if (to <= ir::shading::jump * tolerance) next = std::max(d, to);
+        const bool near = lengths.proves_unit && walk.d <= tolerance;
+        if (to <= (near ? ir::shading::far_jump : ir::shading::jump) * tolerance) {
+            next = std::max(d, to);
+            walk.aims = true;
+        }
     }
     // what is not proved yet ends at the end exactly, rounding or not, so that it is still checked
     const float proved = std::max(end, walk.t + d);

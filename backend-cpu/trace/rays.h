@@ -70,11 +70,16 @@ struct Worker {
 struct Lengths {
     float slack, pixel, far, base, slope;
     bool orthographic;
+    bool proves_unit; // no bound is above 1
     explicit Lengths(const Stage &stage);
     float tolerance(float t) const { return base + slope * t; }
     float arm(float t) const;
     float width(float t) const { return orthographic ? pixel : pixel * t; } // of a pixel
 };
+
+// Whether the ray, at a place where it touches a surface, grazes a solid (shading.h, BESIDE).
+struct RayState;
+bool grazes(Worker &worker, const RayState &ray, float t);
 
 struct RayState {
     Vec origin, direction;
@@ -107,6 +112,7 @@ void near(Worker &worker, const Vec *points, const float *g, const float *h, flo
 struct Crossing {
     std::size_t ray;
     float a, b, at_a, at_b; // along the ray, and the field there: above 0, at most 0
+    bool aimed;             // at a quarter of a tolerance before b
 };
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,
             std::span<Landing> landings);

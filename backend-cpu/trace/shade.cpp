@@ -86,39 +86,50 @@ void find_materials(Worker &worker, Points &at) {
 
 // How much of the surroundings five samples along the normal find closed (thesis, 4.2.1).
 std::vector<float> find_occlusion(Worker &worker, const Points &at) {
+    constexpr auto samples = static_cast<std::size_t>(shading::occlusion_samples);
     const std::size_t count = at.size();
-    std::vector<float> sum(count, 0.0f), g(count), close_g, h, truth;
-    std::vector<std::size_t> close;
-    std::vector<Vec> q;
     const bool apart = worker.stage.shaded_apart;
     const float reach = shading::occlusion_reach * static_cast<float>(worker.stage.frame.radius) /
-                        static_cast<float>(shading::occlusion_samples);
-    float weight = 1, total = 0;
-    for (int sample = 0; sample < shading::occlusion_samples; ++sample) {
-        const float x = reach * static_cast<float>(sample + 1);
-        weight *= 0.5f;
-        total += weight;
+                        static_cast<float>(samples);
+    const auto away = [&](std::size_t i) { return reach * static_cast<float>(i + 1); };
+    std::array<std::vector<float>, samples> g;
+    std::vector<std::size_t> closest(count, 0);
+    for (std::size_t i = 0; i < samples; ++i) {
+        const float x = away(i);
+        g[i].resize(count);
         for (std::size_t k = 0; k < count; ++k) {
             worker.points.set(0, k, at.p[k] + x * at.n[k]);
             worker.limits[k] = x;
         }
         if (apart)
-            shaded_values(worker, worker.points, g.data(), count);
+            shaded_values(worker, worker.points, g[i].data(), count);
         else
-            distances(worker, worker.points, g.data(), count, worker.limits.data());
-        close.clear(), q.clear(), close_g.clear(), h.clear();
+            distances(worker, worker.points, g[i].data(), count, worker.limits.data());
+        for (std::size_t k = 0; k < count; ++k)
+            if (g[i][k] / x < g[closest[k]][k] / away(closest[k])) closest[k] = i;
+    }
+    std::vector<float> slopes(count, 1.0f);
+    if (!worker.stage.frame.unit_slope) { // of what closes most
+        std::vector<std::size_t> steep;
+        std::vector<Vec> points;
+        std::vector<float> arms;
         for (std::size_t k = 0; k < count; ++k) {
-            if (!apart && g[k] >= shading::nearly * x) {
-                sum[k] += weight * clamp(1.0f - g[k] / x, 0.0f, 1.0f);
-                continue;
-            }
-            close.push_back(k), q.push_back(worker.points.vec(0, k));
-            close_g.push_back(g[k]), h.push_back(at.h[k]);
+            const float x = away(closest[k]);
+            if (!apart && g[closest[k]][k] >= shading::nearly * x) continue;
+            steep.push_back(k), points.push_back(at.p[k] + x * at.n[k]), arms.push_back(at.h[k]);
         }
-        truth.resize(close.size());
-        near(worker, q.data(), close_g.data(), h.data(), truth.data(), close.size());
-        for (std::size_t i = 0; i < close.size(); ++i)
-            sum[close[i]] += weight * clamp(1.0f - truth[i] / x, 0.0f, 1.0f);
+        std::vector<Vec> found(steep.size());
+        gradients(worker, points.data(), arms.data(), found.data(), steep.size());
+        for (std::size_t j = 0; j < steep.size(); ++j)
+            slopes[steep[j]] = std::max(length(found[j]), shading::min_slope);
+    }
+    std::vector<float> sum(count, 0.0f);
+    float weight = 1, total = 0;
+    for (std::size_t i = 0; i < samples; ++i) {
+        weight *= 0.5f;
+        total += weight;
+        for (std::size_t k = 0; k < count; ++k)
+            sum[k] += weight * clamp(1.0f - g[i][k] / (slopes[k] * away(i)), 0.0f, 1.0f);
     }
     for (float &s : sum) s /= total;
     return sum;
