@@ -11,7 +11,7 @@ using ir::Op;
 
 namespace {
 
-constexpr int grouped_from = 32; // turns of a loop
+constexpr int grouped_from = 32; // turns of a loop; drivers write out what is shorter
 constexpr double group = 4;      // turns, or more
 
 class Counter {
@@ -49,9 +49,11 @@ class Counter {
         const ir::Loop &loop = graph_.loop(ir::LoopId{index});
         std::vector<NodeId> body = loop.next;
         body.push_back(loop.condition);
-        const bool grouped =
-            loop.max_count >= grouped_from && !loop.condition && graph_.as_number(loop.count);
-        return loops_[index] = loop.max_count / (grouped ? group : 1) * (1 + below(body));
+        const double within = below(body);
+        if (loop.condition || !graph_.as_number(loop.count))
+            return loops_[index] = loop.max_count * (1 + within);
+        if (loop.max_count < grouped_from) return loops_[index] = loop.max_count * within;
+        return loops_[index] = loop.max_count / group * (1 + group * within);
     }
 
     const Module &module_;

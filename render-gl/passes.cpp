@@ -1,6 +1,7 @@
 #include "render-gl/passes.h"
 
 #include "render-gl/framebuffer.h"
+#include "render-gl/pruning.h"
 
 #include <epoxy/gl.h>
 
@@ -83,7 +84,12 @@ bool Passes::use(const Drawn &drawn) {
         if (!std::holds_alternative<Program>(built)) return false;
         mark_ = std::move(std::get<Program>(built));
     }
-    if (!query_) glGenQueries(1, &query_);
+    if (!query_) {
+        glGenQueries(1, &query_);
+        // A driver on the processor compiles a text anew for other targets, for seconds; there the
+        // first pass is as the others, and writing what nobody reads costs little.
+        keeps_first_ = is_software();
+    }
     drawn_ = drawn;
     rays_ = texture(GL_R8, GL_RED, drawn.width, drawn.height);
     glGenRenderbuffers(1, &depth_);
@@ -141,25 +147,26 @@ void Passes::begin(int bottom, int rows, int turns) {
 
 // Every pass is of all views: what it wrote is read by the next one, and never by itself.
 bool Passes::draw(const std::function<void(const FrameInputs &pass)> &draw) {
-    if (pass_ > 0 && !make_kept()) return false;
+    if (keeps() && !make_kept()) return false;
     const auto now = static_cast<std::size_t>(pass_ % 2);
     FrameInputs pass;
     pass.turns = turns_;
-    pass.resumed = pass_ > 1;
+    pass.resumed = pass_ > (keeps_first_ ? 0 : 1);
     pass.kept = kept_[1 - now];
-    glBindFramebuffer(GL_FRAMEBUFFER, pass_ > 0 ? turned_[now] : first_);
-    glDisablei(GL_BLEND, 2);
-    if (pass_ > 0) {
-        for (GLuint i = 3; i < 7; ++i) glDisablei(GL_BLEND, i);
+    glBindFramebuffer(GL_FRAMEBUFFER, keeps() ? turned_[now] : first_);
+    for (GLuint i = 2; i < (keeps() ? 7U : 3U); ++i) glDisablei(GL_BLEND, i);
+    glDisable(GL_DEPTH_TEST);
+    if (pass_ == 0) {
+        glEnable(GL_SCISSOR_TEST); // between views nothing is drawn
+        glScissor(0, bottom_, drawn_.width, rows_);
+        const float none[] = {0, 0, 0, 0}, all = 1;
+        glClearBufferfv(GL_COLOR, 2, none);
+        if (keeps()) glClearBufferfv(GL_DEPTH, 0, &all);
+    }
+    if (keeps()) {
         glEnable(GL_DEPTH_TEST);
         glDepthFunc(GL_LESS); // the triangle lies at 0.5, a ray that goes on at 1
         glDepthMask(GL_FALSE);
-    } else {
-        glDisable(GL_DEPTH_TEST);
-        glEnable(GL_SCISSOR_TEST); // between views nothing is drawn
-        glScissor(0, bottom_, drawn_.width, rows_);
-        const float none[] = {0, 0, 0, 0};
-        glClearBufferfv(GL_COLOR, 2, none);
     }
     draw(pass);
     glDisable(GL_DEPTH_TEST);

@@ -1,7 +1,7 @@
 // A picture by passes: a draw gives a ray so many steps, and the rays that are not done go on in the
 // next one, from textures that keep where they are; so no draw is long, and a ray may take as many
-// steps as it needs. The first pass keeps nothing, since few pictures need another: the second one
-// begins its rays anew. Needs a current context of GL 3.3.
+// steps as it needs. On a card the first pass keeps nothing, since few pictures need another: the
+// second one begins its rays anew. Needs a current context of GL 3.3.
 #pragma once
 
 #include "render-gl/program.h"
@@ -51,10 +51,12 @@ class Passes {
 
   private:
     bool make_kept();
+    bool keeps() const { return pass_ > 0 || keeps_first_; }
     std::uint64_t count(float above, float below, bool mark) const;
     void release();
 
     Drawn drawn_;
+    bool keeps_first_ = false;
     int bottom_ = 0, rows_ = 0, turns_ = 0, pass_ = 0;
     std::uint64_t left_ = 0;
     Undecided undecided_;

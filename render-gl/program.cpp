@@ -1,5 +1,6 @@
 #include "render-gl/program.h"
 
+#include "render-gl/passes.h"
 #include "render-gl/pruning.h"
 #include "render-gl/shaders.h"
 
@@ -180,7 +181,19 @@ void Program::warm_up(const std::vector<ir::Param> &params) const {
     FrameInputs inputs;
     inputs.width = inputs.height = side;
     inputs.mode = Mode::Linear;
-    draw(inputs, params);
+    Passes passes; // what is put off is put off for each kind of target
+    if (by_passes() && passes.use({textures[0], textures[1], side, side})) {
+        passes.begin(0, side, 1);
+        passes.draw([&](const FrameInputs &pass) {
+            inputs.turns = inputs.budget = 1;
+            inputs.kept = pass.kept;
+            glViewport(0, 0, side, side);
+            glDisable(GL_SCISSOR_TEST);
+            draw(inputs, params);
+        });
+    } else {
+        draw(inputs, params);
+    }
     glFinish();
     glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
     glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);

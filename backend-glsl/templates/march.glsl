@@ -14,7 +14,7 @@ $if PASSES
 //   0  the ray from the eye: t, before, stride, reached; one from a light: t of the hit, s, stride, shadow
 //   1  of that from a light: at, lo, hi, slope
 //   2  the colour without that light
-//   3  the steps, the touches or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
+//   3  the steps, the touches + 1 (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
 //      eye's ray is undecided, and 2 where one from a light is
 uniform int fathom_turns, fathom_budget;
 uniform bool fathom_resumed; // rays go on, else they begin
@@ -67,7 +67,8 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     float t = begin;
     float before = 0.0;
     float stride = 0.0;
-    int touches = 0;
+    int touches = 0;   // samples in a row as near as slack/4; below 0: of a solid that it grazes
+    bool aims = false; // the last step was to change the sign
 $if HAS_SAFE_RADIUS
     float reached = 0.0;
 $end
@@ -90,7 +91,8 @@ $if PASSES
 $if HAS_SAFE_RADIUS
         reached = kept.w;
 $end
-        touches = int(more.y);
+        aims = more.y > 15.0;
+        touches = int(more.y) - (aims ? 17 : 1);
     }
     int begun = steps;
     int limit = min(fathom_turns, fathom_budget - steps);
@@ -102,102 +104,125 @@ $end
     int limit = $MAX_STEPS - steps;
 $end
     fathom_end = 3;
-    int refined = -1; // how often the place of the hit was refined; -1: none is known yet
-    int stays = 0;    // which end stayed: 1 a, 2 b
+    int turn = $ZERO;
+    int phase = 0; // 0: it marches; 1: the place of the hit is refined; 2: it looks beside what it touches
+    int count = 0; // of refinements, of places beside
+    int stays = 0; // which end of the chord stayed: 1 a, 2 b
     float a = 0.0, b = 0.0, at_a = 0.0, at_b = 0.0;
-    for (int turn = $ZERO; refined >= 0 || turn < limit; ++turn) {
+    vec3 aside = vec3(0.0), u = vec3(0.0), v = vec3(0.0);
+    float d = 0.0, touched = 0.0;
+$if HAS_SAFE_RADIUS
+    float span = 0.0, touched_span = 0.0;
+$end
+$# Drivers compute both sides of a branch: what is seldom wanted stands outside of the loop that
+$# marches, and comes back to it for the field's one evaluation.
+    while (true) {
+        bool found = false;
+        for (; phase > 0 || turn < limit; ++turn) {
 $if FAR_CELLS
 $# Through far cells first, all rays together; then the field is evaluated, once. A step is
 $# what evaluates it.
-        while (refined < 0 && touches == 0 && t <= end) {
-            vec2 clear = fathom_clear(origin + t * direction, direction, fathom_tolerance(t));
-            if (!(clear.y > 0.0 && stride <= before + clear.x)) break;
-            t += clear.y;
-            before = 0.0;
-            stride = 0.0;
-        }
+            while (phase == 0 && touches <= 0 && t <= end) {
+                vec2 clear = fathom_clear(origin + t * direction, direction, fathom_tolerance(t));
+                if (!(clear.y > 0.0 && stride <= before + clear.x)) break;
+                t += clear.y;
+                before = 0.0;
+                stride = 0.0;
+                aims = false;
+            }
 $end
-        if (!(t <= end + fathom_slack)) break;
-        vec3 p = origin + t * direction;
-        float tolerance = fathom_tolerance(t);
+            if (!(t <= end + fathom_slack)) break;
+            vec3 p = origin + t * direction + aside;
 $if CACHED
-        fathom_width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
-        if (refined < 0) fathom_step(t, before, stride, steps);
+            fathom_width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
+            if (phase == 0) fathom_step(t, before, stride, steps);
 $end
 $if HAS_SAFE_RADIUS
-        vec2 both = fathom_safe_radius(p);
-        float d = both.x;
+            vec2 both = fathom_safe_radius(p);
+            d = both.x;
+            span = both.y;
 $else
-        float d = sdf(p);
+            d = sdf(p);
 $end
 $if CACHED
 $# Where a cached value is absent the pixel is left to the text that computes all, so that
 $# what the ray sees is one field (docs/noise-cache.md): its loops end at once.
-        if (fathom_absent) break;
+            if (fathom_absent) break;
 $end
-        ++steps;
-        if (refined < 0) {
+            found = phase > 0;
+            if (found) break;
+            ++steps;
+            float tolerance = fathom_tolerance(t);
             if (isnan(d)) {
                 fathom_end = 2;
                 break;
             }
-            bool crossed = d <= 0.0 && stride <= $JUMP * tolerance;
 $if HAS_SAFE_RADIUS
-            if (!crossed && stride > before + max(d, 0.0) && !(d > 0.0 && stride <= reached + both.y)) {
-                float to = reached + $NEARER_PART * min(both.y, reached);
+            if (!(d <= 0.0 && aims) && stride > before + max(d, 0.0) && !(d > 0.0 && stride <= reached + span)) {
+                float to = reached + $NEARER_PART * min(span, reached);
                 if (!(d > 0.0)) to = min(reached, stride * before / (before - d) - 0.5 * tolerance);
                 to = max(before, min(to, stride));
 $else
-            if (!crossed && stride > before + max(d, 0.0)) {
+            if (!(d <= 0.0 && aims) && stride > before + max(d, 0.0)) {
                 float to = before;
 $end
                 t += to - stride;
                 stride = to;
+                aims = false;
                 continue;
             }
-            if (d <= 0.0) {
-                refined = 0;
-                a = t - stride;
-                b = t;
-                at_a = before;
-                at_b = d;
-            } else {
-                bool touch = d < 0.25 * fathom_slack;
-                if (touch) ++touches;
-                if (touch ? touches > $MAX_TOUCHES : touches > 0) {
-                    fathom_end = 2;
-                    break;
-                }
-                d = max(d, 0.25 * fathom_slack);
-                float next = d;
+            bool touch = d < 0.25 * fathom_slack;
+            found = d <= 0.0 || (touch && touches == 0);
+            if (found) break;
+            if (touches > 0) touches = touch ? touches + 1 : $MAX_TOUCHES + 1;
+            if (touches > $MAX_TOUCHES) {
+                fathom_end = 2;
+                break;
+            }
+            if (!touch) touches = 0;
+$include march_ahead
+        }
+        if (!found) break;
+        if (phase == 0 && d > 0.0) {
+            phase = 2;
+            count = 0;
+            touched = d;
 $if HAS_SAFE_RADIUS
-                float span = max(both.y, d);
-                if (span > d) {
-                    next = span;
-                    if (stride > 0.0) {
-                        float change = (span * span - reached * reached) / stride;
-                        next = change < -span ? span * span / -change - 0.5 * tolerance
-                                              : span + $BENT_RELAXATION * (span + change);
-                        next = max(next, d);
-                    }
-                } else
+            touched_span = span;
 $end
-                if (stride > 0.0)
-                    next += $RELAXATION * d * max(stride + d - before, 0.0) / max(stride - d + before, $FLATTEST * stride);
-                if (stride > 0.0 && before > d) { // where the line through both is 0
-                    float to = d * stride / (before - d) + 0.25 * tolerance;
-                    if (to <= $JUMP * tolerance) next = max(d, to);
-                }
-                float proved = max(end, t + d);
-                next = min(next, proved - t);
-                before = d;
-$if HAS_SAFE_RADIUS
-                reached = span;
-$end
-                stride = next;
-                t = min(t + next, proved);
+            u = normalize(cross(direction, abs(direction.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+            v = cross(direction, u);
+            aside = 2.0 * fathom_slack * u;
+            continue;
+        }
+        if (phase == 2) {
+            bool solid = !(d > 0.0);
+            if (!solid && ++count < 8) {
+                vec3 turned = 0.707106781 * (u + v);
+                v = 0.707106781 * (v - u);
+                u = turned;
+                aside = 2.0 * fathom_slack * u;
                 continue;
             }
+            touches = solid ? -1 : 1;
+            phase = 0;
+            aside = vec3(0.0);
+            d = touched;
+            float tolerance = fathom_tolerance(t);
+$if HAS_SAFE_RADIUS
+            span = touched_span;
+$end
+            ++turn;
+$include march_ahead
+            continue;
+        }
+        if (phase == 0) {
+            phase = 1;
+            count = 0;
+            a = t - stride;
+            b = t;
+            at_a = before;
+            at_b = d;
         } else {
             bool inside = !(d > 0.0);
             if (inside) {
@@ -210,10 +235,12 @@ $end
                 if (stays == 2) at_b *= 0.5;
             }
             stays = inside ? 1 : 2;
-            ++refined;
+            ++count;
+            ++steps;
         }
         float x = b > a ? a + (b - a) * (at_a / (at_a - at_b)) : b;
-        bool there = refined == $REFINEMENTS || (refined > 0 && abs(x - t) <= 0.125 * tolerance);
+        float near = 0.125 * fathom_tolerance(count > 0 ? t : x);
+        bool there = count > 0 ? count == $REFINEMENTS || abs(x - t) <= near : aims && abs(x - b + 2.0 * near) <= near;
         t = x;
         if (there || !(b - a > 0.125 * fathom_tolerance(x))) {
             fathom_end = 1;
@@ -232,7 +259,7 @@ $if HAS_SAFE_RADIUS
 $else
         fathom_keep_0 = vec4(t, before, stride, 0.0);
 $end
-        fathom_keep_3 = vec4(float(steps), float(touches), -1.0, 0.0);
+        fathom_keep_3 = vec4(float(steps), float(touches + (aims ? 17 : 1)), -1.0, 0.0);
     }
 $else
     if (fathom_end == 3) fathom_end = 2;

@@ -193,7 +193,6 @@ vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
     float slope = 0.0;
     int taps = 4;
 $if !SKIP_SHADING
-$# The weights of the occlusion's samples are 1/2, 1/4, ...
     fathom_Lighting look = fathom_lighting();
     float open = 1.0;
     float weight = look.ambient_occlusion / $OCCLUSION_TOTAL;
@@ -214,45 +213,56 @@ $if TWICE
 $else
     int done = 0;
 $end
-$# The gradient's four points and, along the normal that they give, the occlusion's five, each with
-$# its own gradient.
+$# The gradient's four points; along the normal that they give, the occlusion's five; and where these
+$# are closed most, the gradient again.
 $if !SKIP_SHADING
     vec3 sum = vec3(0.0);
-    float value = 0.0;
+    float least = 1e30, x = 0.0;
+    float g1 = 0.0, g2 = 0.0, g3 = 0.0, g4 = 0.0, g5 = 0.0; // over their distances from p
     for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
-        int group = (i + 1) / 5;
-        int tap = i + 1 - 5 * group;
-        float x = $OCCLUSION_REACH * float(group);
-        vec3 place = p;
-        if (group > 0) place += x * n;
-        if (tap > 0) place += h * fathom_corner(tap - 1);
+        bool sample = i > 3 && i < 9;
+        float away = sample ? $OCCLUSION_REACH * float(i - 3) : x;
+        vec3 place = p + away * n;
+        vec3 e = fathom_corner(i < 4 ? i : i - 9);
+        if (!sample) place += h * e;
         float f = $SHADED(place);
-        if (tap == 0) {
-            value = f;
-            sum = vec3(0.0);
-$if UNIT_SLOPE
-            tap = 5;
-$else
+        if (sample) {
+            f /= away;
+            g1 = g2;
+            g2 = g3;
+            g3 = g4;
+            g4 = g5;
+            g5 = f;
+            if (f < least) {
+                least = f;
+                x = away;
+            }
+$if !UNIT_SLOPE
 $if !SHADED_APART
-            if (f >= $NEARLY * x) tap = 5;
+            if (i == 8 && least >= $NEARLY) break;
 $end
 $end
-        } else {
-            sum += f * fathom_corner(tap - 1);
+            continue;
         }
-        if (tap < 4) continue;
+        sum += f * e;
 $if !TWICE
-        if (group == 0) {
+        if (i == 3) {
             g = 0.75 / h * sum;
             slope = length(g);
             if (slope > 0.0) n = g / slope;
-            continue;
+            sum = vec3(0.0);
         }
 $end
-        if (tap == 5) i += 4;
-        else value /= max(length(0.75 / h * sum), $MIN_SLOPE);
-        weight *= 0.5;
-        open -= weight * clamp(1.0 - value / x, 0.0, 1.0);
+    }
+$if UNIT_SLOPE
+    float rise = 1.0;
+$else
+    float rise = length(0.75 / h * sum);
+    rise = $FLAT ? 1.0 : max(rise, $MIN_SLOPE);
+$end
+    if (taps > 4) {
+        vec4 few = clamp(1.0 - vec4(g1, g2, g3, g4) / rise, 0.0, 1.0);
+        open -= weight * (dot(few, vec4(0.5, 0.25, 0.125, 0.0625)) + 0.03125 * clamp(1.0 - g5 / rise, 0.0, 1.0));
     }
 $else
 $if !TWICE
