@@ -10,6 +10,7 @@
 //
 // LENGTHS, computed once a frame (view.h, `frame_of`)
 //   slack         float_slack * (|origin| + radius): what float32 cannot tell apart
+//   slack(t)      slack + float_slack*t: the same at t along a ray
 //   pixel         perspective: the width of a pixel at distance 1; orthographic: everywhere
 //   tolerance(t)  perspective:  min(eps, pixel/2)*t + slack
 //                 orthographic: min(eps*focus, pixel/2) + slack
@@ -36,10 +37,11 @@
 //       between them. Go back to the first sphere's edge: t += before - stride, stride = before,
 //       aims = false, and go on with the next iteration
 //     if d <= 0: a hit between t - stride and t (REFINED)
-//     if d < slack/4 and touches = 0: look BESIDE; it grazes a solid: touches = -1; else touches = 1
-//     else if d < slack/4 and touches > 0: touches += 1; beyond max_touches undecided at t
-//     else if d >= slack/4: undecided at t if touches > 0; else touches = 0
-//     d = max(d, slack/4), never less than float32 can move
+//     if d < slack(t)/4 and touches = 0: look BESIDE; by what is there touches = -1 (it grazes a
+//       solid), 1 (it touches a sheet) or 0 (the surface is farther than d says)
+//     else if d < slack(t)/4 and touches > 0: touches += 1; beyond max_touches undecided at t
+//     else if d >= slack(t)/4: undecided at t if touches > 0; else touches = 0
+//     d = max(d, slack(t)/4), never less than float32 can move; tolerance(t) while it grazes
 //     next = d, aims = false
 //     if stride > 0: assume that f goes on along the ray as straight as over the last stride. The
 //       sphere that would touch this one has the radius d*(stride + d - before)/(stride - d +
@@ -59,9 +61,11 @@
 //   most tolerance/8, or the ends are as near, the ray lands there. So where a ray lands does not
 //   depend on where its samples fell.
 //
-//   BESIDE: f at eight places round the ray, 2*slack away: o + t*dir + 2*slack*(cos(k*pi/4)*u +
+//   BESIDE: f at eight places round the ray, 4*slack(t) away: o + t*dir + 4*slack(t)*(cos(k*pi/4)*u +
 //   sin(k*pi/4)*v), k = 0..7, with u, v perpendicular to the ray. One that is not above 0 tells of a
-//   solid that the ray grazes; none, of a sheet or a point.
+//   solid that the ray grazes. Else the slope is that of `across` = (greatest - least)/(8*slack(t)) and
+//   `along` = (before - d)/stride: where d > 2*slack(t)*|(across, along)| the surface is farther; else
+//   it is a sheet or a point.
 //
 //   `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to 0..far;
 //   else 0..far.
@@ -118,12 +122,14 @@
 //     the budget is spent: undecided; it counts as what it is so far
 //     d = f(q + s*l)
 //     if d <= 0: all dark, done
-//     if d < shadow*angle*s and closed(s) < shadow: shadow = closed(s); if it is below 1/256 all
-//       dark, done; at = s, with the strides before it and after it
-//     before = d, s -= max(d, slack/4)
+//     where no bound is above 1, closed is taken without its slope, which is at most 1. Else it is
+//       not looked at while s is within half of the last near from where that was found.
+//     if d < shadow*angle*s and closed(s) < shadow: shadow = closed(s); at = s, with the strides
+//       before it and after it; where that is below 1/256 and closed has its slope: all dark, done
+//     before = d, s -= max(d, slack(s)/4)
 //   PENUMBRA, where shadow < 2: the least of closed between at + the stride before and at - the
 //   stride after, by penumbra_turns golden sections with the
-//   |gradient| of `at`; at the least, closed is taken anew
+//   slope of `at`; at the least, closed is taken anew, with the slope there
 //   shadow = min(shadow, 1); result: shadow^2*(3 - 2*shadow)
 //
 // UNDECIDED: shaded where the ray came to, as what it is nearest to.

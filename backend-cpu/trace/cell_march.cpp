@@ -69,7 +69,7 @@ class Marcher {
             memory_.crossings.push_back(crossing(walk, i));
             return false;
         case Verdict::Touches:
-            walk.touches = grazes(worker_, rays_[i], walk.t) ? -1 : 1;
+            walk.touches = touches(worker_, rays_[i], walk.t, walk.d, slope_along(walk));
             advance(walk, rays_[i].end, lengths_, false);
             return true;
         case Verdict::Undecided: break;

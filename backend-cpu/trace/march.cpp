@@ -96,22 +96,24 @@ void near(Worker &worker, const Vec *points, const float *g, const float *h, flo
         out[k] = g[k] / std::max(length(slopes[k]), shading::min_slope);
 }
 
-bool grazes(Worker &worker, const RayState &ray, float t) {
-    const Lengths lengths(worker.stage);
-    const Vec d = ray.direction;
+int touches(Worker &worker, const RayState &ray, float t, float d, float along) {
+    const float slack = Lengths(worker.stage).slack_at(t);
+    const Vec way = ray.direction;
     const Vec u =
-        glm::normalize(glm::cross(d, std::fabs(d.x) < 0.5f ? Vec{1, 0, 0} : Vec{0, 1, 0}));
-    const Vec v = glm::cross(d, u);
+        glm::normalize(glm::cross(way, std::fabs(way.x) < 0.5f ? Vec{1, 0, 0} : Vec{0, 1, 0}));
+    const Vec v = glm::cross(way, u);
     constexpr int places = 8;
     for (int k = 0; k < places; ++k) {
         const float angle = 0.785398163f * static_cast<float>(k);
         const Vec beside = std::cos(angle) * u + std::sin(angle) * v;
-        worker.taps.set(0, static_cast<std::size_t>(k),
-                        ray.origin + t * d + 2.0f * lengths.slack * beside);
+        worker.taps.set(0, static_cast<std::size_t>(k), ray.origin + t * way + 4 * slack * beside);
     }
     std::array<float, places> values{};
     distances(worker, worker.taps, values.data(), places);
-    return std::ranges::any_of(values, [](float value) { return !(value > 0); });
+    const auto [least, greatest] = std::ranges::minmax(values);
+    if (!(least > 0)) return -1;
+    const float across = (greatest - least) / (8 * slack);
+    return d > 2 * slack * std::hypot(across, along) ? 0 : 1;
 }
 
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,
@@ -192,7 +194,7 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
             crossings.push_back(crossing(walk, i));
             return true;
         case Verdict::Touches:
-            walk.touches = grazes(worker, rays[i], walk.t) ? -1 : 1;
+            walk.touches = touches(worker, rays[i], walk.t, walk.d, slope_along(walk));
             advance(walk, rays[i].end, lengths, brute);
             return false;
         case Verdict::Undecided: break;

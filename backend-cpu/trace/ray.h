@@ -36,7 +36,7 @@ inline Verdict judge(Walk &walk, const Lengths &lengths) {
     if (walk.d <= 0 && walk.aims) return Verdict::Crossed;
     if (apart(walk)) return Verdict::GoBack;
     if (walk.d <= 0) return Verdict::Crossed;
-    if (walk.d < 0.25f * lengths.slack) {
+    if (walk.d < 0.25f * lengths.slack_at(walk.t)) {
         if (walk.touches == 0) return Verdict::Touches;
         if (walk.touches > 0 && ++walk.touches > ir::shading::max_touches)
             return Verdict::Undecided;
@@ -45,6 +45,9 @@ inline Verdict judge(Walk &walk, const Lengths &lengths) {
         walk.touches = 0;
     }
     return Verdict::GoOn;
+}
+inline float slope_along(const Walk &walk) {
+    return walk.stride > 0 ? (walk.before - walk.d) / walk.stride : 0;
 }
 inline Crossing crossing(const Walk &walk, std::size_t ray) {
     return {ray, walk.t - walk.stride, walk.t, walk.before, walk.d, walk.aims};
@@ -68,7 +71,9 @@ inline void go_back(Walk &walk, const Lengths &lengths, bool by_curvature) {
 }
 
 inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
-    const float d = std::max(walk.d, 0.25f * lengths.slack);
+    const float least =
+        walk.touches < 0 ? lengths.tolerance(walk.t) : 0.25f * lengths.slack_at(walk.t);
+    const float d = std::max(walk.d, least);
     const float span = std::max(walk.span, d);
     float next = brute ? 0.1f * d : d;
     if (!brute && span > d) {
@@ -85,7 +90,7 @@ inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
     walk.aims = false;
     if (!brute && walk.stride > 0 && walk.before > walk.d) {
         const float tolerance = lengths.tolerance(walk.t);
-        const float to = walk.d * walk.stride / (walk.before - walk.d) + 0.25f * tolerance;
+        const float to = walk.d / slope_along(walk) + 0.25f * tolerance;
         const bool near = lengths.proves_unit && walk.d <= tolerance;
         if (to <= (near ? ir::shading::far_jump : ir::shading::jump) * tolerance) {
             next = std::max(d, to);

@@ -4,6 +4,7 @@
 
 #include "backend-cpu/prune/pruning.h"
 #include "backend-cpu/trace/march.h"
+#include "ir/shading.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -74,12 +75,9 @@ struct Lengths {
     explicit Lengths(const Stage &stage);
     float tolerance(float t) const { return base + slope * t; }
     float arm(float t) const;
+    float slack_at(float t) const { return slack + ir::shading::float_slack * t; }
     float width(float t) const { return orthographic ? pixel : pixel * t; } // of a pixel
 };
-
-// Whether the ray, at a place where it touches a surface, grazes a solid (shading.h, BESIDE).
-struct RayState;
-bool grazes(Worker &worker, const RayState &ray, float t);
 
 struct RayState {
     Vec origin, direction;
@@ -107,6 +105,9 @@ void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std:
 // The true distances near n points where it says g (shading.h, TRUE DISTANCE).
 void near(Worker &worker, const Vec *points, const float *g, const float *h, float *out,
           std::size_t n);
+
+// What a ray touches, as Walk::touches (shading.h, BESIDE), with the slope along it.
+int touches(Worker &worker, const RayState &ray, float t, float d, float along);
 
 // A hit's place: between the last two samples of its walk (shading.h, REFINED).
 struct Crossing {

@@ -18,6 +18,7 @@ struct State {
     float shadow = 2;        // the least of `closed` so far, and
     float at = 0, slope = 1; // where, and the gradient's length there
     float lo = 0, hi = 0;    // the samples beside it
+    float quiet = 1e30f;     // from where on it is looked at again
 };
 
 class Shadows {
@@ -68,11 +69,12 @@ class Shadows {
             const std::size_t i = active[k];
             const State &state = states_[i];
             const float d = worker_.values[k];
-            next_[k] = std::max(d, 0.25f * lengths_.slack);
-            if (!is_bound(worker_, k) && d < state.shadow * angle_ * state.s)
+            next_[k] = std::max(d, 0.25f * lengths_.slack_at(state.s));
+            if (!is_bound(worker_, k) && (d <= 0 || state.s < state.quiet) &&
+                d < state.shadow * angle_ * state.s)
                 close_.push_back({i, state.s, d, next_[k]});
         }
-        look();
+        look(!worker_.stage.shaded_apart);
         for (std::size_t k = 0; k < active.size(); ++k) {
             State &state = states_[active[k]];
             state.stride = next_[k];
@@ -81,16 +83,17 @@ class Shadows {
     }
 
     // Where something may cover the light, the true distance decides.
-    void look() {
+    void look(bool by_field) {
         if (close_.empty()) return;
-        measure();
+        measure(by_field);
         for (std::size_t j = 0; j < close_.size(); ++j) {
             const Close &close = close_[j];
             State &state = states_[close.ray];
             const float closed = near_[j] / (angle_ * close.s);
-            if (!(close.d > 0) || closed < 0.00390625f) {
-                state.shadow = 0;
-            } else if (closed < state.shadow) {
+            const bool certain = !by_field || worker_.stage.frame.unit_slope;
+            if (!(close.d > 0) || (certain && closed < 0.00390625f)) state.shadow = 0;
+            if (worker_.stage.shaded_apart) state.quiet = close.s - 0.5f * near_[j];
+            if (state.shadow > 0 && closed < state.shadow) {
                 state.shadow = closed;
                 state.at = close.s;
                 state.slope = values_[j] > 0 ? values_[j] / near_[j] : 1.0f;
@@ -101,7 +104,7 @@ class Shadows {
     }
 
     // Of what is close: g in values_, the true distance in near_.
-    void measure() {
+    void measure(bool by_field) {
         const std::size_t n = close_.size();
         points_.resize(n), arms_.resize(n), values_.resize(n), near_.resize(n);
         for (std::size_t j = 0; j < n; ++j) {
@@ -110,7 +113,10 @@ class Shadows {
             values_[j] = close_[j].d;
         }
         if (worker_.stage.shaded_apart) evaluate_at(points_, values_);
-        near(worker_, points_.data(), values_.data(), arms_.data(), near_.data(), n);
+        if (by_field)
+            near_ = values_;
+        else
+            near(worker_, points_.data(), values_.data(), arms_.data(), near_.data(), n);
     }
     void evaluate_at(const std::vector<Vec> &points, std::vector<float> &out) {
         out.resize(points.size());
@@ -171,8 +177,11 @@ class Shadows {
         for (std::size_t j = 0; j < close_.size(); ++j)
             points[j] = place(close_[j].ray, close_[j].s);
         evaluate_at(points, values);
-        for (std::size_t j = 0; j < close_.size(); ++j) close_[j].d = values[j];
-        look();
+        for (std::size_t j = 0; j < close_.size(); ++j) {
+            close_[j].d = values[j];
+            states_[close_[j].ray].shadow = 2;
+        }
+        look(false);
     }
 
     struct Close {
