@@ -12,7 +12,7 @@ $if PASSES
 
 // A draw takes at most fathom_turns steps a ray. What a ray that goes on needs is kept, and given back to the next draw:
 //   0  the ray from the eye: t, before, stride, reached; one from a light: t of the hit, s, stride, shadow
-//   1  of that from a light: at, lo, hi, slope
+//   1  of that from a light: lo, hi, quiet
 //   2  the colour without that light
 //   3  the steps, the touches + 1 (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
 //      eye's ray is undecided, and 2 where one from a light is
@@ -67,7 +67,7 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     float t = begin;
     float before = 0.0;
     float stride = 0.0;
-    int touches = 0;   // samples in a row as near as slack/4; below 0: of a solid that it grazes
+    int touches = 0;   // samples in a row as near as slack/4 to a sheet; below 0: to a solid that it grazes
     bool aims = false; // the last step was to change the sign
 $if HAS_SAFE_RADIUS
     float reached = 0.0;
@@ -110,7 +110,7 @@ $end
     int stays = 0; // which end of the chord stayed: 1 a, 2 b
     float a = 0.0, b = 0.0, at_a = 0.0, at_b = 0.0;
     vec3 aside = vec3(0.0), u = vec3(0.0), v = vec3(0.0);
-    float d = 0.0, touched = 0.0;
+    float d = 0.0, touched = 0.0, least = 0.0, greatest = 0.0;
 $if HAS_SAFE_RADIUS
     float span = 0.0, touched_span = 0.0;
 $end
@@ -193,9 +193,13 @@ $end
             u = normalize(cross(direction, abs(direction.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
             v = cross(direction, u);
             aside = 2.0 * fathom_slack * u;
+            least = 1e30;
+            greatest = 0.0;
             continue;
         }
         if (phase == 2) {
+            least = min(least, d);
+            greatest = max(greatest, d);
             bool solid = !(d > 0.0);
             if (!solid && ++count < 8) {
                 vec3 turned = 0.707106781 * (u + v);
@@ -204,7 +208,9 @@ $end
                 aside = 2.0 * fathom_slack * u;
                 continue;
             }
-            touches = solid ? -1 : 1;
+            float across = (greatest - least) / (4.0 * fathom_slack);
+            float along = stride > 0.0 ? (before - touched) / stride : 0.0;
+            touches = solid ? -1 : touched > 2.0 * fathom_slack * length(vec2(across, along)) ? 0 : 1;
             phase = 0;
             aside = vec3(0.0);
             d = touched;

@@ -6,8 +6,9 @@ $if !SKIP_SHADING
 float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, float h) {
     float s = reach; // what is left of the way
     float stride = 0.0;
-    float shadow = 2.0; // the least of `closed` so far, and where; the samples beside it, the field's slope at it
-    float at = 0.0, lo = 0.0, hi = 0.0, slope = 1.0;
+    float shadow = 2.0; // the least of `closed` so far, and the samples beside it
+    float lo = 0.0, hi = 0.0;
+    float quiet = 1e30; // from where on the shaded field is looked at again
     int turn = $ZERO;
 $if PASSES
     int taken = 0;
@@ -17,10 +18,9 @@ $if PASSES
         stride = kept.z;
         shadow = kept.w;
         kept = fathom_kept(fathom_kept_1);
-        at = kept.x;
-        lo = kept.y;
-        hi = kept.z;
-        slope = kept.w;
+        lo = kept.x;
+        hi = kept.y;
+        quiet = kept.z;
         taken = int(fathom_kept(fathom_kept_3).y);
         fathom_light_kept = -1;
     }
@@ -35,86 +35,96 @@ $end
     bool left = true;
     vec3 sum = vec3(0.0);
     while (true) {
+        float f = 0.0;
         bool ahead = tap < 0 && search < 0;
-        if (ahead) {
 $if SHADED_APART
-$# Where nothing is close the marched field is all that is asked, by all rays together.
-            float d = 1.0;
-            bool close = false;
-            for (; turn < limit && s > margin; s -= stride) {
+        for (; ahead && turn < limit && s > margin; s -= stride) {
 $include shadow_ahead
-                d = sdf(q + s * l);
 $if AROUND
-                fathom_exact = false;
+            fathom_exact = true;
+$end
+            f = sdf(q + s * l);
+$if AROUND
+            fathom_exact = false;
 $end
 $if CACHED
-                if (fathom_absent) return 1.0;
+            if (fathom_absent) return 1.0;
 $end
-                ++turn;
-                next = max(d, 0.25 * fathom_slack);
-                close = d < shadow * angle * s;
-                if (close) break;
-                stride = next;
-            }
-            if (close) {
-                if (!(d > 0.0)) return 0.0;
-                x = s;
+            ++turn;
+            next = max(f, 0.25 * fathom_slack);
+            if (f < shadow * angle * s && (f <= 0.0 || s < quiet)) {
+                if (!(f > 0.0)) return 0.0;
                 tap = 0;
-            } else
-$else
-            for (; s > margin; s -= stride) {
-$include shadow_ahead
+                x = s;
+                ahead = false;
                 break;
             }
-            x = s;
-            if (!(s > margin && turn < limit))
-$end
-            {
-$if PASSES
-                if (s > margin && taken + turn < fathom_budget) {
-                    fathom_goes_on = true;
-                    fathom_keep_0 = vec4(0.0, s, stride, shadow);
-                    fathom_keep_1 = vec4(at, lo, hi, slope);
-                    fathom_keep_3.y = float(taken + turn);
-                    return 1.0;
-                }
-$end
-                if (s > margin) fathom_shadow_undecided = true;
-                if (!(shadow < 2.0)) break;
-                ahead = false;
-                search = 0;
-                a = hi - $GOLDEN * (hi - lo);
-                b = lo + $GOLDEN * (hi - lo);
-                x = a;
-            }
+            stride = next;
         }
-        vec3 p = q + x * l;
+        if (!ahead) {
+            vec3 p = q + x * l;
 $if !UNIT_SLOPE
-        if (tap > 0) p += h * fathom_corner(tap - 1);
+            if (tap > 0) p += h * fathom_corner(tap - 1);
+$end
+            f = fathom_shaded(p);
+        }
+$else
+        for (; !ahead || (turn < limit && s > margin); s -= stride) {
+            if (ahead) {
+                x = s;
+$include shadow_ahead
+            }
+            vec3 p = q + x * l;
+$if !UNIT_SLOPE
+            if (tap > 0) p += h * fathom_corner(tap - 1);
 $end
 $if AROUND
-        fathom_exact = true;
+            fathom_exact = true;
 $end
-        float f = $SHADED(p);
+            f = sdf(p);
 $if AROUND
-        fathom_exact = false;
+            fathom_exact = false;
+$end
+$if CACHED
+            if (fathom_absent) return 1.0;
+$end
+            if (!ahead) break;
+            if (!(f > 0.0)) return 0.0;
+            ++turn;
+            next = max(f, 0.25 * fathom_slack);
+            float closed = f / (angle * s);
+$if UNIT_SLOPE
+            if (closed < 0.00390625) return 0.0;
+$end
+            if (closed < shadow) {
+                shadow = closed;
+                lo = max(s - next, margin);
+                hi = min(s + stride, reach);
+            }
+            stride = next;
+        }
 $end
 $if CACHED
         if (fathom_absent) return 1.0;
 $end
-$if !SHADED_APART
         if (ahead) {
-            ++turn;
-            if (!(f > 0.0)) return 0.0;
-            next = max(f, 0.25 * fathom_slack);
-            if (!(f < shadow * angle * s)) {
-                stride = next;
-                s -= stride;
-                continue;
+$if PASSES
+            if (s > margin && taken + turn < fathom_budget) {
+                fathom_goes_on = true;
+                fathom_keep_0 = vec4(0.0, s, stride, shadow);
+                fathom_keep_1 = vec4(lo, hi, quiet, 0.0);
+                fathom_keep_3.y = float(taken + turn);
+                return 1.0;
             }
-            tap = 0;
-        }
 $end
+            if (s > margin) fathom_shadow_undecided = true;
+            if (!(shadow < 2.0)) break;
+            search = 0;
+            a = hi - $GOLDEN * (hi - lo);
+            b = lo + $GOLDEN * (hi - lo);
+            x = a;
+            continue;
+        }
         if (tap < 0) { // golden sections
             if (left) at_a = f;
             else at_b = f;
@@ -144,16 +154,12 @@ $end
             f = left ? at_a : at_b;
             tap = 0;
         }
+        if (tap == 0) value = f;
 $if UNIT_SLOPE
-        value = f;
-        float near = f;
+        float near = value;
 $else
-        if (tap == 0) {
-            value = f;
-            sum = vec3(0.0);
-        } else {
-            sum += f * fathom_corner(tap - 1);
-        }
+        if (tap == 0) sum = vec3(0.0);
+        else sum += f * fathom_corner(tap - 1);
         if (tap < 4) {
             ++tap;
             continue;
@@ -163,19 +169,20 @@ $end
         float closed = near / (angle * x);
         if (!(closed >= 0.00390625)) return 0.0;
         if (search >= 0) {
-            shadow = min(shadow, closed);
+            shadow = closed;
             break;
         }
+$if SHADED_APART
+        quiet = x - 0.5 * near;
         if (closed < shadow) {
             shadow = closed;
-            at = x;
-            slope = value / near;
             lo = max(x - next, margin);
             hi = min(x + stride, reach);
         }
         tap = -1;
         stride = next;
         s -= stride;
+$end
     }
 $if PASSES
     fathom_taken += turn;

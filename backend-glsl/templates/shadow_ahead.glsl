@@ -17,5 +17,4 @@ $# Beyond the cells a value that is not exact shades nothing.
                         continue;
                     }
                 }
-                fathom_exact = true;
 $end
