@@ -129,7 +129,7 @@ bool Canvas::draw_passes(const Program &program, std::span<const TileView> views
     if (!passes_.use({sum_, picks_, width_, height_})) return false;
     if (!begun_) {
         if (sample == 0 && row == 0) passes_.forget();
-        passes_.begin(height_ - row - rows, rows, turns_ > 0 ? turns_ : program.most_turns());
+        passes_.begin(program, height_ - row - rows, rows, turns_);
     }
     begun_ = true;
     do {

@@ -17,15 +17,6 @@ constexpr GLenum rays_place = GL_COLOR_ATTACHMENT2;
 
 constexpr GLenum kept_place(std::size_t i) { return GL_COLOR_ATTACHMENT3 + static_cast<GLenum>(i); }
 
-constexpr const char *mark_text = R"(#version 330 core
-uniform sampler2D rays;
-uniform vec2 between;
-void main() {
-    float ray = texelFetch(rays, ivec2(gl_FragCoord.xy), 0).x;
-    if (!(ray > between.x && ray < between.y)) discard;
-}
-)";
-
 GLuint texture(GLint format, GLenum layout, int width, int height) {
     GLuint name = 0;
     glGenTextures(1, &name);
@@ -77,13 +68,6 @@ bool Passes::use(const Drawn &drawn) {
     release();
     while (glGetError() != GL_NO_ERROR) {
     } // what was wrong before is not ours to report
-    if (!mark_) {
-        glsl::Output alone;
-        alone.text = mark_text;
-        auto built = Program::build(alone, {});
-        if (!std::holds_alternative<Program>(built)) return false;
-        mark_ = std::move(std::get<Program>(built));
-    }
     if (!query_) {
         glGenQueries(1, &query_);
         // A driver on the processor compiles a text anew for other targets, for seconds; there the
@@ -137,10 +121,11 @@ bool Passes::make_kept() {
     return good;
 }
 
-void Passes::begin(int bottom, int rows, int turns) {
+void Passes::begin(const Program &program, int bottom, int rows, int turns) {
+    mark_ = program.marks();
     bottom_ = bottom;
     rows_ = rows;
-    turns_ = turns;
+    turns_ = turns > 0 ? turns : program.most_turns();
     pass_ = 0;
     left_ = 1; // or more: nobody knows yet
 }
@@ -194,9 +179,9 @@ std::uint64_t Passes::count(float above, float below, bool mark) const {
     glDepthRange(1, 1);
     const float done = 0;
     if (mark) glClearBufferfv(GL_DEPTH, 0, &done);
-    mark_->use();
-    glUniform1i(glGetUniformLocation(mark_->name(), "rays"), 0);
-    glUniform2f(glGetUniformLocation(mark_->name(), "between"), above, below);
+    glUseProgram(mark_);
+    glUniform1i(glGetUniformLocation(mark_, "rays"), 0);
+    glUniform2f(glGetUniformLocation(mark_, "between"), above, below);
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, rays_);
     glBeginQuery(GL_SAMPLES_PASSED, query_);

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 
 namespace fathom::gl {
 
@@ -36,8 +35,9 @@ class Passes {
     // What the next passes draw over. False where the card has no memory for it.
     bool use(const Drawn &drawn);
 
-    // Begins a sample of the rows from `bottom` on. `turns`: steps a pass may give a ray.
-    void begin(int bottom, int rows, int turns);
+    // Begins a sample of the rows from `bottom` on, of a program by passes. `turns`: steps a pass may
+    // give a ray; 0: as the program says.
+    void begin(const Program &program, int bottom, int rows, int turns);
     // One pass. `draw` draws all of it, in however many views, with `turns`, `resumed` and `kept` of
     // what it is given, and touches neither the framebuffer nor the depth test. False: there is no
     // memory for what is kept.
@@ -47,7 +47,16 @@ class Passes {
 
     const Undecided &undecided() const { return undecided_; } // of all that was begun since:
     void forget() { undecided_ = {}; }
-    int taken() const { return pass_; } // passes of the rows that were begun last
+
+    // The program that counts the rays of which something is said, and marks them.
+    static constexpr const char *marks_text = R"(#version 330 core
+uniform sampler2D rays;
+uniform vec2 between;
+void main() {
+    float ray = texelFetch(rays, ivec2(gl_FragCoord.xy), 0).x;
+    if (!(ray > between.x && ray < between.y)) discard;
+}
+)";
 
   private:
     bool make_kept();
@@ -64,8 +73,7 @@ class Passes {
     unsigned first_ = 0, marks_ = 0;   // framebuffers
     std::array<unsigned, 2> turned_{}; // … of the passes after the first
     std::array<std::array<unsigned, 4>, 2> kept_{}; // textures
-    std::optional<Program> mark_;
-    unsigned query_ = 0;
+    unsigned query_ = 0, mark_ = 0;                 // a program of another
 };
 
 } // namespace fathom::gl

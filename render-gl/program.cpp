@@ -76,6 +76,10 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
         GLint units = 16;
         glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
         result.first_kept_unit_ = units - kept_textures;
+        if (auto error = link(result.marks_, {{GL_VERTEX_SHADER, covering_triangle},
+                                              {GL_FRAGMENT_SHADER, Passes::marks_text}}))
+            return *error;
+        glUseProgram(result.program_);
         if (unit > result.first_kept_unit_)
             return ProgramError{
                 0,
@@ -183,7 +187,7 @@ void Program::warm_up(const std::vector<ir::Param> &params) const {
     inputs.mode = Mode::Linear;
     Passes passes; // what is put off is put off for each kind of target
     if (by_passes() && passes.use({textures[0], textures[1], side, side})) {
-        passes.begin(0, side, 1);
+        passes.begin(*this, 0, side, 1);
         passes.draw([&](const FrameInputs &pass) {
             inputs.turns = inputs.budget = 1;
             inputs.kept = pass.kept;
@@ -211,8 +215,9 @@ void Program::adopt(const glsl::Output &output) {
 void Program::release() {
     for (const auto &[target, name] : textures_) glDeleteTextures(1, &name);
     if (program_) glDeleteProgram(program_);
+    if (marks_) glDeleteProgram(marks_);
     textures_.clear();
-    program_ = 0;
+    program_ = marks_ = 0;
 }
 
 Program::Program() = default;
@@ -220,6 +225,7 @@ Program::Program(Program &&other) noexcept { *this = std::move(other); }
 
 Program &Program::operator=(Program &&other) noexcept {
     std::swap(program_, other.program_);
+    std::swap(marks_, other.marks_);
     std::swap(budget_, other.budget_);
     std::swap(most_turns_, other.most_turns_);
     std::swap(first_kept_unit_, other.first_kept_unit_);

@@ -52,6 +52,7 @@ class Program {
     // Whether its pictures are drawn by passes, and how many steps a draw may give a ray then.
     bool by_passes() const { return first_kept_unit_ > 0; }
     int most_turns() const { return most_turns_; }
+    unsigned marks() const { return marks_; } // what marks the rays that go on (passes.h)
 
     // For passes that set uniforms of their own: the GL program, and how to make it current.
     unsigned name() const { return program_; }
@@ -76,7 +77,7 @@ class Program {
     void release();
     int location(const char *name) const;
 
-    unsigned program_ = 0;
+    unsigned program_ = 0, marks_ = 0;
     int budget_ = 0, most_turns_ = 0, first_kept_unit_ = 0;
     TableData tables_;
     std::unique_ptr<Pruning> pruning_;                    // where the text runs over lists by cell

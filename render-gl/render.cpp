@@ -5,6 +5,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <fmt/format.h>
 
@@ -72,7 +73,7 @@ bool draw_sample(const Program &program, const ir::Scene &scene, const Target &t
         once({});
         return true;
     }
-    passes.begin(0, rows, turns > 0 ? turns : program.most_turns());
+    passes.begin(program, 0, rows, turns);
     while (!passes.done())
         if (!passes.draw(once)) return false;
     return true;

@@ -42,6 +42,10 @@ void fathom_lengths() {
     fathom_tolerance_slope = parallel ? 0.0 : min($EPSILON, 0.5 * fathom_pixel);
 }
 
+float fathom_slack_at(float t) {
+    return fathom_slack + $FLOAT_SLACK * t;
+}
+
 float fathom_tolerance(float t) {
     return fathom_tolerance_base + fathom_tolerance_slope * t;
 }
@@ -171,7 +175,7 @@ $end
                 aims = false;
                 continue;
             }
-            bool touch = d < 0.25 * fathom_slack;
+            bool touch = d < 0.25 * fathom_slack_at(t);
             found = d <= 0.0 || (touch && touches == 0);
             if (found) break;
             if (touches > 0) touches = touch ? touches + 1 : $MAX_TOUCHES + 1;
@@ -192,7 +196,7 @@ $if HAS_SAFE_RADIUS
 $end
             u = normalize(cross(direction, abs(direction.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
             v = cross(direction, u);
-            aside = 2.0 * fathom_slack * u;
+            aside = 4.0 * fathom_slack_at(t) * u;
             least = 1e30;
             greatest = 0.0;
             continue;
@@ -205,12 +209,13 @@ $end
                 vec3 turned = 0.707106781 * (u + v);
                 v = 0.707106781 * (v - u);
                 u = turned;
-                aside = 2.0 * fathom_slack * u;
+                aside = 4.0 * fathom_slack_at(t) * u;
                 continue;
             }
-            float across = (greatest - least) / (4.0 * fathom_slack);
+            float slack = fathom_slack_at(t);
+            float across = (greatest - least) / (8.0 * slack);
             float along = stride > 0.0 ? (before - touched) / stride : 0.0;
-            touches = solid ? -1 : touched > 2.0 * fathom_slack * length(vec2(across, along)) ? 0 : 1;
+            touches = solid ? -1 : touched > 2.0 * slack * length(vec2(across, along)) ? 0 : 1;
             phase = 0;
             aside = vec3(0.0);
             d = touched;

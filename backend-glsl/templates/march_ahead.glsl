@@ -1,5 +1,5 @@
 $# Statements: the next step of a ray that found d at t.
-            float ahead = max(d, touches < 0 ? tolerance : 0.25 * fathom_slack);
+            float ahead = max(d, touches < 0 ? tolerance : 0.25 * fathom_slack_at(t));
             float next = ahead;
 $if HAS_SAFE_RADIUS
             float reach = max(span, ahead);

@@ -51,7 +51,7 @@ $if CACHED
             if (fathom_absent) return 1.0;
 $end
             ++turn;
-            next = max(f, 0.25 * fathom_slack);
+            next = max(f, 0.25 * fathom_slack_at(s));
             if (f < shadow * angle * s && (f <= 0.0 || s < quiet)) {
                 if (!(f > 0.0)) return 0.0;
                 tap = 0;
@@ -91,7 +91,7 @@ $end
             if (!ahead) break;
             if (!(f > 0.0)) return 0.0;
             ++turn;
-            next = max(f, 0.25 * fathom_slack);
+            next = max(f, 0.25 * fathom_slack_at(s));
             float closed = f / (angle * s);
 $if UNIT_SLOPE
             if (closed < 0.00390625) return 0.0;
@@ -227,13 +227,13 @@ $if !SKIP_SHADING
     float least = 1e30, x = 0.0;
     float g1 = 0.0, g2 = 0.0, g3 = 0.0, g4 = 0.0, g5 = 0.0; // over their distances from p
     for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
-        bool sample = i > 3 && i < 9;
-        float away = sample ? $OCCLUSION_REACH * float(i - 3) : x;
+        bool outward = i > 3 && i < 9;
+        float away = outward ? $OCCLUSION_REACH * float(i - 3) : x;
         vec3 place = p + away * n;
         vec3 e = fathom_corner(i < 4 ? i : i - 9);
-        if (!sample) place += h * e;
+        if (!outward) place += h * e;
         float f = $SHADED(place);
-        if (sample) {
+        if (outward) {
             f /= away;
             g1 = g2;
             g2 = g3;
