@@ -3,9 +3,12 @@
 #include "tests/unit/glsl/scenes.h"
 
 #include "backend-glsl/emit.h"
+#include "backend-glsl/marcher.h"
 #include "backend-glsl/names.h"
 
 #include <catch2/catch.hpp>
+
+#include <cmath>
 
 #include <sstream>
 
@@ -281,4 +284,17 @@ TEST_CASE("infinities and the least int are written so that GLSL reads them") {
                                                             g.number(-INFINITY)})});
     });
     for (glsl::Target target : glsl::all_targets()) emitted(scene, {.target = target});
+}
+
+TEST_CASE(
+    "a picture of one pass gives a ray the more steps the steeper its field and the longer its "
+    "way") {
+    CHECK(glsl::steps_in_one_pass(1, 10) == 256);
+    CHECK(glsl::steps_in_one_pass(0, 0) == 256);
+    CHECK(glsl::steps_in_one_pass(10, std::exp(10.0)) == 6400);
+    CHECK(glsl::steps_in_one_pass(20, std::exp(10.0)) == 12800);
+    CHECK(glsl::steps_in_one_pass(2376, 1e6) == 65536);
+    Scene scene = sphere();
+    scene.render.max_steps = 77;
+    CHECK(count(emitted(scene, {.target = glsl::Target::Shadertoy}).text, "int limit = 77") == 2);
 }
