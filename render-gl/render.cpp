@@ -6,17 +6,13 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <fmt/format.h>
 
 namespace fathom::gl {
 
 namespace {
 
-// A picture is drawn in strips, between which `progress` is called: a 32nd of it at first, and more
-// while they are quick, since each has its price.
-constexpr int strips = 32, fewest_strips = 4;
-constexpr double quick_ms = 20;
+constexpr int strips = 32; // a picture; between two of them `progress` is called
 
 // A float texture to draw into, and what was bound before.
 class Target {
@@ -98,13 +94,11 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
     while (glGetError() != GL_NO_ERROR) {
     } // what was wrong before is not ours to report
     // What passes keep of their rays is as large as what is drawn at once: a strip.
-    const auto part = [&](int of) { return std::min(std::max((height + of - 1) / of, 8), height); };
-    const int most_rows = part(fewest_strips);
-    const Target target(width, most_rows);
+    const int rows = std::min(std::max((height + strips - 1) / strips, 8), height);
+    const Target target(width, rows);
     if (!target.complete()) return std::nullopt;
     Passes passes;
-    if (program.by_passes() && !passes.use({target.texture(), 0, width, most_rows}))
-        return std::nullopt;
+    if (program.by_passes() && !passes.use({target.texture(), 0, width, rows})) return std::nullopt;
 
     FrameInputs inputs;
     inputs.view = request.view
@@ -122,14 +116,12 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
     Pixels pixels{width, height, {}};
     const std::size_t row = static_cast<std::size_t>(width) * 4;
     pixels.rgba.resize(row * static_cast<std::size_t>(height));
-    std::vector<float> upward(row * static_cast<std::size_t>(most_rows));
+    std::vector<float> upward(row * static_cast<std::size_t>(rows));
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     bool stopped = false, good = true;
-    int rows = part(strips);
-    for (int top = 0; top < height && !stopped && good;) {
-        const auto start = std::chrono::steady_clock::now();
+    for (int top = 0; top < height && !stopped && good; top += rows) {
         const int count = std::min(rows, height - top), bottom = height - top - count;
         target.bind();
         glDisable(GL_SCISSOR_TEST);
@@ -150,10 +142,6 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
                            upward.begin() + static_cast<std::ptrdiff_t>(row) * (count - y),
                            pixels.rgba.begin() + static_cast<std::ptrdiff_t>(row) * (top + y),
                            [&](float sum) { return sum / static_cast<float>(samples); });
-        const std::chrono::duration<double, std::milli> took =
-            std::chrono::steady_clock::now() - start;
-        if (took.count() < quick_ms) rows = std::min(2 * rows, most_rows);
-        top += count;
     }
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_BLEND);
