@@ -55,10 +55,10 @@
 //   Out of way: a miss.
 //
 //   REFINED: x is where the chord between the ends is 0. If the last step aims and x is at most
-//   tolerance/8 from t - tolerance/4, where it aimed at, the ray lands at x. Else, at most
+//   tolerance/32 from t - tolerance/4, where it aimed at, the ray lands at x. Else, at most
 //   `refinements` times: f(x) takes the place of the end with its sign (and where one end stays twice
 //   in a row, its value counts half: the Illinois rule), x is found anew, and where it moved by at
-//   most tolerance/8, or the ends are as near, the ray lands there. So where a ray lands does not
+//   most tolerance/32, or the ends are as near, the ray lands there. So where a ray lands does not
 //   depend on where its samples fell.
 //
 //   BESIDE: f at eight places round the ray, 4*slack(t) away: o + t*dir + 4*slack(t)*(cos(k*pi/4)*u +
@@ -107,7 +107,8 @@
 // OCCLUSION (thesis, 4.2.1: five samples along the normal)
 //   for i = 1..5, x_i = occlusion_reach*radius*i/5, g_i = g(p + x_i*n); k is the i with the least
 //   g_i/x_i, the first of equals. slope = 1 where `Frame::unit_slope`, or where no bound is above 1
-//   (so that no slope is) and g_k >= nearly*x_k; else max(|gradient(p + x_k*n, h)|, min_slope).
+//   (so that no slope is) and g_k >= nearly*x_k; else max(|gradient(p + x_k*n, h)|, min(slope at
+//   p, 1), min_slope): where the samples of a gradient lie across a crease, it is too small.
 //   occlusion = sum of 2^-i * clamp(1 - g_i/(slope*x_i), 0, 1), divided by the sum of the 2^-i
 //
 // SHADOW (thesis, 4.2.1: from the light towards the point, so that no ray has to leave a surface
@@ -123,7 +124,7 @@
 //     d = f(q + s*l)
 //     if d <= 0: all dark, done
 //     where no bound is above 1, closed is taken without its slope, which is at most 1. Else it is
-//       not looked at while s is within half of the last near from where that was found.
+//       not looked at while s is within `quiet` times the last near from where that was found.
 //     if d < shadow*angle*s and closed(s) < shadow: shadow = closed(s); at = s, with the strides
 //       before it and after it; where that is below 1/256 and closed has its slope: all dark, done
 //     before = d, s -= max(d, slack(s)/4)
@@ -152,9 +153,11 @@ inline constexpr float nearer = 0.9f;
 inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.08f;
 inline constexpr float nearly = 0.98f;
-inline constexpr int penumbra_turns = 5;
+inline constexpr int penumbra_turns = 7;
+inline constexpr float quiet = 0.25f;           // of a distance near a shadow ray
 inline constexpr float jump = 4, far_jump = 32; // tolerances
 inline constexpr int refinements = 8;
+inline constexpr float refined = 1.0f / 32; // of a tolerance
 inline constexpr int max_touches = 8;
 inline constexpr int many_steps = 256; // red in a picture of steps
 inline constexpr int budget = 65536;   // evaluations a ray, where the scene does not say

@@ -129,12 +129,12 @@ void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> 
     for (std::size_t i = 0; i < crossings.size(); ++i) at[i] = chord(crossings[i]);
     std::erase_if(active, [&](std::size_t i) {
         const float tolerance = lengths.tolerance(at[i]);
-        return crossings[i].aimed &&
-               std::fabs(at[i] - (crossings[i].b - 0.25f * tolerance)) <= 0.125f * tolerance;
+        return crossings[i].aimed && std::fabs(at[i] - (crossings[i].b - 0.25f * tolerance)) <=
+                                         shading::refined * tolerance;
     });
     for (int turn = 0; turn < shading::refinements; ++turn) {
         std::erase_if(active, [&](std::size_t i) {
-            return !(crossings[i].b - crossings[i].a > 0.125f * lengths.tolerance(at[i]));
+            return !(crossings[i].b - crossings[i].a > shading::refined * lengths.tolerance(at[i]));
         });
         if (active.empty()) break;
         for (std::size_t k = 0; k < active.size(); ++k) {
@@ -156,7 +156,7 @@ void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> 
         std::erase_if(active, [&](std::size_t i) {
             const float last = at[i];
             at[i] = chord(crossings[i]);
-            return std::fabs(at[i] - last) <= 0.125f * lengths.tolerance(last);
+            return std::fabs(at[i] - last) <= shading::refined * lengths.tolerance(last);
         });
     }
     for (std::size_t i = 0; i < crossings.size(); ++i) {

@@ -22,7 +22,7 @@ struct Material {
 struct Points {
     std::vector<std::size_t> ray;
     std::vector<Vec> p, n;
-    std::vector<float> t, h;
+    std::vector<float> t, h, slope; // of the field
     std::vector<Material> material;
     std::size_t size() const { return ray.size(); }
 };
@@ -32,6 +32,7 @@ void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
     gradients(worker, at.p.data(), at.h.data(), gradient.data(), at.size());
     for (std::size_t k = 0; k < at.size(); ++k) {
         const float slope = length(gradient[k]);
+        at.slope.push_back(slope);
         at.n.push_back(slope > 0 ? gradient[k] / slope : -rays[at.ray[k]].direction);
     }
 }
@@ -121,7 +122,8 @@ std::vector<float> find_occlusion(Worker &worker, const Points &at) {
         std::vector<Vec> found(steep.size());
         gradients(worker, points.data(), arms.data(), found.data(), steep.size());
         for (std::size_t j = 0; j < steep.size(); ++j)
-            slopes[steep[j]] = std::max(length(found[j]), shading::min_slope);
+            slopes[steep[j]] = std::max(
+                {length(found[j]), std::min(at.slope[steep[j]], 1.0f), shading::min_slope});
     }
     std::vector<float> sum(count, 0.0f);
     float weight = 1, total = 0;

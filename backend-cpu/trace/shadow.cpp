@@ -92,7 +92,7 @@ class Shadows {
             const float closed = near_[j] / (angle_ * close.s);
             const bool certain = !by_field || worker_.stage.frame.unit_slope;
             if (!(close.d > 0) || (certain && closed < 0.00390625f)) state.shadow = 0;
-            if (worker_.stage.shaded_apart) state.quiet = close.s - 0.5f * near_[j];
+            if (worker_.stage.shaded_apart) state.quiet = close.s - shading::quiet * near_[j];
             if (state.shadow > 0 && closed < state.shadow) {
                 state.shadow = closed;
                 state.at = close.s;
