@@ -36,6 +36,7 @@ class Assembler {
             module_.options.part_stride > 0 ? "fathom_marked_hit" : "fathom_hit";
         want_function(scene_.distance, module_.around ? "fathom_all" : "sdf");
         if (!module_.options.field_only) want_function(scene_.safe_radius, "fathom_safe_radius");
+        if (with_shading && is_shaded_apart(scene_)) want_function(scene_.shaded, "fathom_shaded");
         if (scene_.hit != scene_.distance)
             want_function(scene_.hit, module_.around ? "fathom_all_hit" : hit.c_str());
         if (module_.around) {

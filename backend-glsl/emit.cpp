@@ -7,6 +7,8 @@
 #include "backend-glsl/picture.h"
 #include "backend-glsl/prune.h"
 #include "backend-glsl/reroll.h"
+#include "backend-glsl/turns.h"
+#include "ir/view.h"
 
 #include <cmath>
 
@@ -113,6 +115,8 @@ class Emitter {
         Output output;
         output.tables = module_.texels;
         output.reads_time = module_.reads_time;
+        output.budget = ir::budget_of(scene_);
+        output.turns = turns_of(module_);
         for (const auto &[index, name] : module_.params)
             if (!is_fixed(scene_.params[index], options_))
                 output.uniforms.push_back({name, scene_.params[index].type, index, -1});

@@ -20,8 +20,8 @@ namespace fathom::glsl {
 // camera or params changes no text.
 enum class Instruments {
     None,
-    Pick, // a second output, fathom_pick: (part, t, steps, slope of the marched field at the hit);
-          // (0, -1, steps, 0) where the ray hits nothing
+    Pick, // a second output, fathom_pick: (part, t, steps, slope of Scene::shaded at the hit);
+          // (0, -1, steps, 0) where the ray hits nothing; the slope is -1 where it is undecided
     Probe // no picture: fathom_pick is, by fathom_mode, what marcher.h says
 };
 
@@ -37,7 +37,9 @@ struct Options {
     bool noise_cache =
         false; // GL 4.2: cached fields worth it are read through the noise cache (cache.h)
     bool pruning =
-        false; // GL 4.3: long loops run over the rows that can matter in a cell (prune.h)
+        false;           // GL 4.3: long loops run over the rows that can matter in a cell (prune.h)
+    bool passes = false; // a host of ours draws it by passes (marcher.h), so that a ray may take
+                         // as many steps as it needs; not with the noise cache
     bool far_cells = true; // … and rays evaluate no rows where those are known to be far
     double time = 0; // where a target has no host that sets a camera: the moment whose camera is
                      // the first view
@@ -94,6 +96,8 @@ struct Output {
     std::vector<CachedField> cached;
     Pruning pruning;
     bool reads_time = false;
+    int budget = 0;   // steps that a ray may take in all passes (ir::budget_of)
+    double turns = 0; // of loops, in one evaluation of a field, at most
 };
 
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics);

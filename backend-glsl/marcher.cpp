@@ -5,6 +5,7 @@
 #include "backend-glsl/template.h"
 #include "ir/shading.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -12,7 +13,10 @@ namespace fathom::glsl {
 
 namespace {
 
-constexpr int check_steps_a_step = 40; // of the probe
+constexpr int check_steps = 16384;      // of the probe
+constexpr int most_probed_steps = 4096; // of the march that it checks
+constexpr int fewest_steps = 256;
+constexpr double steps_a_length = 64;
 
 std::string flag(bool on) { return on ? "1" : ""; }
 
@@ -22,10 +26,13 @@ Values values_of(const MarcherOptions &options) {
                             ", length(fathom_origin - " + options.center + "))";
     return {
         {"BOXED", flag(options.boxed)},
-        {"STEEP", flag(options.steep)},
+        {"UNIT_SLOPE", flag(options.unit_slope)},
+        {"SHADED_APART", flag(options.shaded_apart)},
+        {"SHADED", options.shaded_apart ? "fathom_shaded" : "sdf"},
+        {"PASSES", flag(options.passes)},
         {"HAS_SAFE_RADIUS", flag(options.has_safe_radius)},
         // Of a field that costs little, two copies are quicker than the loop round one.
-        {"APART", flag(options.cheap && !options.cached)},
+        {"TWICE", flag(options.cheap && !options.cached)},
         {"SKIP_SHADING", flag(options.skip_shading)},
         {"LOCAL_NORMALS", flag(options.local_normals)},
         {"PICK", flag(options.pick)},
@@ -33,9 +40,9 @@ Values values_of(const MarcherOptions &options) {
         {"FAR_CELLS", flag(options.far_cells)},
         {"AROUND", flag(options.around)},
         {"ONE_LIGHT", flag(options.lights == 1)},
-        {"NEAR", options.steep ? "near" : "d"},
         {"AND_PRESENT", options.cached ? " && !fathom_absent" : ""},
-        {"UNLIT", options.lights == 1 ? "return color" : "continue"},
+        {"UNLIT", options.lights == 1 && !options.passes ? "return color" : "continue"},
+        {"COUNTED", flag(options.cached || options.passes)},
         {"LIGHTS", fmt::to_string(options.lights)},
         {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
         {"FAR", options.far > 0 ? float_literal(options.far) : far},
@@ -52,27 +59,43 @@ Values values_of(const MarcherOptions &options) {
         {"FLATTEST", float_literal(shading::flattest)},
         {"NEARER_PART", float_literal(shading::nearer)},
         {"BENT_RELAXATION", float_literal(shading::bent_relaxation)},
-        {"ALL_TAPS", fmt::to_string(4 + shading::occlusion_samples)},
+        {"JUMP", float_literal(shading::jump)},
+        {"REFINEMENTS", fmt::to_string(shading::refinements)},
+        {"MAX_TOUCHES", fmt::to_string(shading::max_touches)},
+        {"MANY_STEPS", fmt::to_string(shading::many_steps)},
+        {"FAR_JUMP", float_literal(shading::far_jump)},
+        {"NEARLY", float_literal(shading::nearly)},
+        {"FLAT", options.shaded_apart ? "false" : "least >= " + float_literal(shading::nearly)},
+        {"GOLDEN", float_literal(0.618033989f)},
+        {"SEARCHES", fmt::to_string(2 + shading::penumbra_turns)},
+        {"ALL_TAPS", fmt::to_string((options.unit_slope ? 4 : 8) + shading::occlusion_samples)},
         {"OCCLUSION_TOTAL", float_literal(1 - std::ldexp(1.0, -shading::occlusion_samples))},
         {"OCCLUSION_REACH",
          float_literal(shading::occlusion_reach * options.radius / shading::occlusion_samples)},
-        {"SHADOW_STEPS", fmt::to_string(options.max_steps)},
         {"SHADOW_BIAS", float_literal(shading::shadow_bias)},
         {"MIN_ANGLE", float_literal(shading::min_angle)},
-        {"CHECK_STEPS", fmt::to_string(check_steps_a_step * options.max_steps)},
+        {"CHECK_STEPS", fmt::to_string(check_steps)},
     };
 }
 
 } // namespace
 
+int steps_in_one_pass(double bound, double lengths) {
+    const double steps = steps_a_length * std::max(bound, 1.0) * std::log(std::max(lengths, 2.0));
+    return static_cast<int>(
+        std::clamp(std::ceil(steps), double{fewest_steps}, double{ir::shading::budget}));
+}
+
 std::string marcher_text(const MarcherOptions &options) {
     const Values values = values_of(options);
     return (options.pick ? "\nlayout(location = 1) out vec4 fathom_pick;\n" : "") +
-           expand("march", values) + (options.steep ? "" : expand("corner", values)) +
-           expand("shade", values) + expand("picture", values);
+           expand("march", values) + expand("corner", values) + expand("shade", values) +
+           expand("picture", values);
 }
 
-std::string probe_text(const MarcherOptions &options) {
+std::string probe_text(MarcherOptions options) {
+    options.passes = false;
+    options.max_steps = std::min(options.max_steps, most_probed_steps);
     const Values values = values_of(options);
     return expand("march", values) + expand("probe", values);
 }

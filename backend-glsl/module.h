@@ -53,6 +53,11 @@ struct Module {
     }
 };
 
+// Whether points are shaded by another field than rays are marched by (ir/shading.h).
+inline bool is_shaded_apart(const ir::Scene &scene) {
+    return scene.shaded && scene.shaded != scene.distance;
+}
+
 const char *glsl_type(ir::Type type);
 std::string comment(std::string_view text); // a line of its own: what comes from outside is encoded
 std::string literal(const ir::Constant &constant); // "1.0", "vec3(0.0, 1.0, 0.0)"

@@ -9,6 +9,7 @@
 #include "ir/view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace fathom::glsl {
@@ -68,19 +69,34 @@ std::string hit_function(const Module &module) {
                           {"UNPAINTED", shown(!scene.hit)}});
 }
 
+// How many steps a ray may take where there is one pass.
+int steps_of(const Module &module, const ir::Frame &frame) {
+    constexpr int most_through_cache = 4096; // while it is moved
+    const ir::Scene &scene = module.scene;
+    double bound = 1;
+    for (const ir::ShapeFact &fact : scene.facts)
+        if (std::isfinite(fact.lipschitz_sup)) bound = std::max(bound, fact.lipschitz_sup);
+    const double lengths = (frame.boxed ? 2 * frame.radius : frame.far) /
+                           (frame.tolerance_base + frame.tolerance_slope * frame.radius);
+    int steps = steps_in_one_pass(bound, lengths);
+    if (scene.render.max_steps > 0) steps = std::min(steps, scene.render.max_steps);
+    return module.cached.empty() ? steps : std::min(steps, most_through_cache);
+}
+
 MarcherOptions marcher_options(const Module &module, const SceneText &text, const ir::View &view) {
     const ir::Scene &scene = module.scene;
     const ir::Frame frame = ir::frame_of(scene, view, 1080);
     MarcherOptions marcher;
     marcher.boxed = frame.boxed;
-    marcher.steep = !frame.unit_slope;
-    marcher.has_safe_radius = scene.safe_radius && !frame.unit_slope;
+    marcher.unit_slope = frame.unit_slope;
+    marcher.shaded_apart = is_shaded_apart(scene);
+    marcher.has_safe_radius = static_cast<bool>(scene.safe_radius);
     marcher.cheap = scene.distance &&
                     ir::operations(scene.graph, module.result_of(scene.distance)) <= cheap_field;
     marcher.skip_shading = scene.lighting.skip;
     marcher.local_normals = text.local_normals;
     marcher.lights = text.lights;
-    marcher.max_steps = ir::budget_of(scene);
+    marcher.max_steps = steps_of(module, frame);
     marcher.epsilon = scene.render.epsilon;
     marcher.far = scene.render.far;
     marcher.radius = frame.radius;
@@ -90,6 +106,7 @@ MarcherOptions marcher_options(const Module &module, const SceneText &text, cons
     marcher.zero = traits_of(module.options.target).zero;
     marcher.pick = module.options.instruments == Instruments::Pick;
     marcher.cached = !module.cached.empty();
+    marcher.passes = module.options.passes && !marcher.cached;
     marcher.far_cells = module.far_cells;
     marcher.around = module.around;
     return marcher;

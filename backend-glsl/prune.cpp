@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>
+#include <set>
 #include <tuple>
 #include <unordered_set>
 
@@ -53,8 +54,9 @@ class Planner {
     }
 
     PrunePlan run() {
-        for (ir::FunctionId id : {plan_.scene.distance, plan_.scene.hit})
-            if (id) look_through(id);
+        std::set<std::uint32_t> seen;
+        for (ir::FunctionId id : {plan_.scene.distance, plan_.scene.hit, plan_.scene.shaded})
+            if (id && (seen.insert(id.index).second)) look_through(id);
         return std::move(plan_);
     }
 

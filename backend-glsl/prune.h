@@ -46,7 +46,7 @@ struct PrunePlan {
     std::map<std::uint32_t, Use> loops; // by LoopId
 };
 
-// The loops of the scene's distance and hit that can be pruned. `results`: what functions hand back
+// The loops of the scene's distance, hit and shaded field that can be pruned. `results`: what functions hand back
 // instead of what they say (reroll.h). Nothing where there are none, or no part has an end.
 std::optional<PrunePlan> plan_pruning(const ir::Scene &scene,
                                       const std::map<std::uint32_t, ir::NodeId> &results);

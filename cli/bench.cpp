@@ -75,6 +75,7 @@ void bench_gl(const BenchCommand &command, const ir::Scene &scene, Terminal &ter
     Diagnostics diagnostics;
     glsl::Options options;
     options.target = glsl::Target::Glsl330;
+    options.passes = true;
     options.buffers = true;
     options.pruning = std::holds_alternative<gl::Context>(context) && gl::can_prune();
     glsl::Output output;

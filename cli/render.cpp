@@ -79,10 +79,12 @@ std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &sce
                                                      : view.draw(inputs, scene.params, {});
         if (!drawn) return std::nullopt;
         gl::Pixels pixels = view.read_pixels();
-        if (sum)
+        if (sum) {
             for (std::size_t i = 0; i < sum->rgba.size(); ++i) sum->rgba[i] += pixels.rgba[i];
-        else
+            sum->undecided += pixels.undecided;
+        } else {
             sum = std::move(pixels);
+        }
     }
     if (command.samples > 1)
         for (float &value : sum->rgba) value /= static_cast<float>(command.samples);
@@ -127,6 +129,7 @@ Exit prepare_gl(Painter &painter, const driver::Compilation &compilation,
     Diagnostics diagnostics;
     glsl::Options options;
     options.target = glsl::Target::Glsl330;
+    options.passes = true;
     options.buffers = true;
     options.pruning = gl::can_prune();
     glsl::Output output = glsl::emit(compilation.scene, options, diagnostics);

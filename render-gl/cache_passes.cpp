@@ -82,6 +82,7 @@ std::variant<CachePrograms, std::string> build_cache_programs(const ir::Scene &s
     if (picture.cached.empty()) return "no field of this scene is worth keeping";
     glsl::Options direct = target;
     direct.noise_cache = false;
+    direct.passes = true; // for its budget: it is drawn in one
     const glsl::Output exact = glsl::emit(scene, direct, diagnostics);
     if (exact.text.empty()) return "the shader cannot be made";
     target.instruments = glsl::Instruments::None;
@@ -468,7 +469,9 @@ bool CachedView::draw_exactly(const FrameInputs &inputs, const std::vector<ir::P
     if (!programs_ || !targets_.resize(inputs.width, inputs.height, programs_->pick)) return false;
     begin_picture();
     targets_.draw_into(false);
-    programs_->exact.draw(inputs, params);
+    FrameInputs at_once = inputs;
+    at_once.turns = at_once.budget = programs_->exact.most_turns();
+    programs_->exact.draw(at_once, params);
     targets_.draw_into(true);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return true;

@@ -88,7 +88,7 @@ bool Canvas::resize(int width, int height) {
     good &= complete();
     good &= glGetError() == GL_NO_ERROR;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    probed_ = false;
+    probed_ = begun_ = false;
     samples_ = 0;
     width_ = good ? width : 0;
     height_ = good ? height : 0;
@@ -99,7 +99,7 @@ bool Canvas::resize(int width, int height) {
 // tile lies.
 void Canvas::draw_views(const Program &program, std::span<const TileView> views,
                         const std::vector<ir::Param> &params, int sample, bool linear, int row,
-                        int rows) {
+                        int rows, const FrameInputs &pass) {
     glEnable(GL_SCISSOR_TEST);
     for (const TileView &view : views) {
         const Tile &tile = view.tile;
@@ -114,14 +114,47 @@ void Canvas::draw_views(const Program &program, std::span<const TileView> views,
         const std::array<double, 2> offset = ir::sample_offset(sample);
         inputs.offset = {offset[0] - tile.x, offset[1] + bottom};
         if (linear) inputs.mode = Mode::Linear;
+        inputs.turns = pass.turns;
+        inputs.resumed = pass.resumed;
+        inputs.kept = pass.kept;
         program.draw(inputs, params);
     }
     glDisable(GL_SCISSOR_TEST);
     glFinish();
 }
 
+bool Canvas::draw_passes(const Program &program, std::span<const TileView> views,
+                         const std::vector<ir::Param> &params, int sample, int row, int rows,
+                         const std::function<bool()> &patient) {
+    if (!passes_.use({sum_, picks_, width_, height_})) return false;
+    if (!begun_) {
+        if (sample == 0 && row == 0) passes_.forget();
+        passes_.begin(program, height_ - row - rows, rows, turns_);
+    }
+    begun_ = true;
+    do {
+        const bool good = passes_.draw([&](const FrameInputs &pass) {
+            if (sample > 0) { // colours add up; what a pixel shows is told by its first sample
+                glEnablei(GL_BLEND, 0);
+                glBlendFunc(GL_ONE, GL_ONE);
+                glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+            }
+            draw_views(program, views, params, sample, true, row, rows, pass);
+            glDisablei(GL_BLEND, 0);
+            glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        });
+        if (!good) {
+            begun_ = false;
+            return false;
+        }
+    } while (!passes_.done() && (!patient || patient()));
+    begun_ = !passes_.done();
+    return true;
+}
+
 bool Canvas::draw(const Program &program, int width, int height, std::span<const TileView> views,
-                  const std::vector<ir::Param> &params, int sample, int row, int rows) {
+                  const std::vector<ir::Param> &params, int sample, int row, int rows,
+                  const std::function<bool()> &patient) {
     rows = std::min(rows, height - row);
     if (!resize(width, height)) return false;
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
@@ -129,22 +162,27 @@ bool Canvas::draw(const Program &program, int width, int height, std::span<const
     glDisable(GL_CULL_FACE);
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_BLEND);
-    if (sample == 0 && row == 0) {
+    if (sample == 0 && row == 0 && !begun_) {
         samples_ = 0;
         const float background[] = {0.01f, 0.01f, 0.01f, 1}, nothing[] = {0, -1, 0, 0};
         glClearBufferfv(GL_COLOR, 0, background);
         glClearBufferfv(GL_COLOR, 1, nothing);
     }
-    if (sample >
-        0) { // colours add up; what a pixel shows is told by its first sample, in the middle
-        glEnablei(GL_BLEND, 0);
-        glBlendFunc(GL_ONE, GL_ONE);
-        glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    if (program.by_passes()) {
+        const bool good = draw_passes(program, views, params, sample, row, rows, patient);
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        if (!good || begun_) return good;
+    } else {
+        if (sample > 0) { // colours add up; what a pixel shows is told by its first sample
+            glEnablei(GL_BLEND, 0);
+            glBlendFunc(GL_ONE, GL_ONE);
+            glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        }
+        draw_views(program, views, params, sample, true, row, rows, {});
+        glDisablei(GL_BLEND, 0);
+        glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
     }
-    draw_views(program, views, params, sample, true, row, rows);
-    glDisablei(GL_BLEND, 0);
-    glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
     if (row + rows >= height_) samples_ = sample + 1;
     return true;
 }
@@ -217,7 +255,7 @@ bool Canvas::probe(const Program &program, std::span<const TileView> views,
     glDisable(GL_CULL_FACE);
     const float nothing[] = {0, 0, 0, 0};
     glClearBufferfv(GL_COLOR, 1, nothing);
-    draw_views(program, views, params, 0, false, 0, height_);
+    draw_views(program, views, params, 0, false, 0, height_, {});
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return true;
 }

@@ -4,9 +4,11 @@
 #pragma once
 
 #include "base/picture.h"
+#include "render-gl/passes.h"
 #include "render-gl/post.h"
 #include "render-gl/program.h"
 
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -27,10 +29,12 @@ struct TileView {
     FrameInputs inputs;
 };
 
-// What a pixel shows: part 0 is none, t < 0 nothing at all.
+// What a pixel shows: part 0 is none, t < 0 nothing at all; a slope below 0: the ray is undecided,
+// and what is told is what it is nearest to.
 struct Pick {
     int part = 0;
     float t = -1, steps = 0, slope = 0;
+    bool undecided() const { return slope < 0; }
 };
 
 // A picture on the card with the data of its pixels.
@@ -45,8 +49,15 @@ class Canvas {
     // is done. Of the canvas's rows only those from `row` on, `rows` of them: a slow picture is
     // drawn in bands from 0 down, and events are heard between them. What is shown stays until
     // finish(). False where the card has no memory for it.
+    // A program by passes (passes.h) is drawn pass by pass until all rays are decided, or `patient`,
+    // asked between two of them, says no: then decided() is false, and the same call goes on.
     bool draw(const Program &program, int width, int height, std::span<const TileView> views,
-              const std::vector<ir::Param> &params, int sample, int row = 0, int rows = 1 << 24);
+              const std::vector<ir::Param> &params, int sample, int row = 0, int rows = 1 << 24,
+              const std::function<bool()> &patient = {});
+    bool decided() const { return !begun_; }
+    void give_up() { begun_ = false; } // the rest of what was begun is not wanted any more
+    const Undecided &undecided() const { return passes_.undecided(); } // of all samples so far
+    void set_turns(int turns) { turns_ = turns; } // of a pass; 0: as the program says
     // The same of a program with Instruments::Probe, at the size that was drawn last.
     bool probe(const Program &program, std::span<const TileView> views,
                const std::vector<ir::Param> &params);
@@ -77,7 +88,10 @@ class Canvas {
     bool resize(int width, int height);
     void draw_views(const Program &program, std::span<const TileView> views,
                     const std::vector<ir::Param> &params, int sample, bool linear, int row,
-                    int rows);
+                    int rows, const FrameInputs &pass);
+    bool draw_passes(const Program &program, std::span<const TileView> views,
+                     const std::vector<ir::Param> &params, int sample, int row, int rows,
+                     const std::function<bool()> &patient);
     std::vector<float> read(unsigned framebuffer) const;
 
     unsigned sum_ = 0, picks_ = 0, probe_ = 0, shown_ = 0; // textures
@@ -88,6 +102,9 @@ class Canvas {
     int width_ = 0, height_ = 0, samples_ = 0; // samples: whole ones
     int shown_width_ = 0, shown_height_ = 0;
     bool probed_ = false; // the probe is of this size
+    bool begun_ = false;  // some rays of what was drawn last go on
+    int turns_ = 0;
+    Passes passes_;
     Post post_;
 };
 

@@ -69,6 +69,7 @@ void main() {
             picture = mix(picture, tint, hidden ? 0.5 : 0.88);
         }
     }
+    if ((look == 1 || look == 2) && pick.w < 0.0) picture = vec3(1.0, 0.0, 1.0); // undecided
     if (look == 4) {
         float verdict = texelFetch(probes, at, 0).x;
         picture = verdict == 1.0 ? vec3(1.0, 0.1, 0.1) : verdict == 2.0 ? vec3(1.0, 0.85, 0.1)

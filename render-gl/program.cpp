@@ -1,17 +1,31 @@
 #include "render-gl/program.h"
 
+#include "render-gl/passes.h"
 #include "render-gl/pruning.h"
 #include "render-gl/shaders.h"
 
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace fathom::gl {
 
 namespace {
+
+// Mesa's llvmpipe ends a shader after 65,536 turns of all its loops. Beside the steps that are
+// counted a ray takes some for its place, its normal and its penumbras.
+constexpr double most_loop_turns = 50000;
+constexpr int kept_textures = static_cast<int>(std::tuple_size_v<decltype(FrameInputs::kept)>);
+constexpr int uncounted_steps = 128, fewest_turns = 16, most_turns = 1024;
+
+int turns_within(double loops_a_step) {
+    const double steps = most_loop_turns / (1 + loops_a_step) - uncounted_steps;
+    return static_cast<int>(std::clamp(steps, double{fewest_turns}, double{most_turns}));
+}
 
 void unfiltered(GLenum target) {
     glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -25,6 +39,8 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
                                                    const ir::Scene &scene) {
     Program result;
     result.uniforms_ = output.uniforms;
+    result.budget_ = output.budget;
+    result.most_turns_ = turns_within(output.turns);
     if (auto error = link(result.program_, {{GL_VERTEX_SHADER, covering_triangle},
                                             {GL_FRAGMENT_SHADER, output.text}}))
         return *error;
@@ -55,6 +71,24 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
         unfiltered(GL_TEXTURE_3D);
         result.textures_.emplace_back(GL_TEXTURE_3D, texture);
         glUniform1i(result.location(sampler.name.c_str()), unit++);
+    }
+    if (result.location("fathom_kept_0") >= 0) {
+        GLint units = 16;
+        glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
+        result.first_kept_unit_ = units - kept_textures;
+        if (auto error = link(result.marks_, {{GL_VERTEX_SHADER, covering_triangle},
+                                              {GL_FRAGMENT_SHADER, Passes::marks_text}}))
+            return *error;
+        glUseProgram(result.program_);
+        if (unit > result.first_kept_unit_)
+            return ProgramError{
+                0,
+                fmt::format("the scene has {} images and grids, and this GL holds {}", unit - 1,
+                            result.first_kept_unit_ - 1),
+                ""};
+        for (int i = 0; i < kept_textures; ++i)
+            glUniform1i(result.location(fmt::format("fathom_kept_{}", i).c_str()),
+                        result.first_kept_unit_ + i);
     }
     if (!output.pruning.kernels.empty()) {
         auto pruning = Pruning::build(output.pruning);
@@ -93,6 +127,18 @@ void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) 
     if (!edited_.empty())
         glUniform1fv(location("fathom_edited"), static_cast<GLsizei>(edited_.size()),
                      edited_.data());
+
+    if (by_passes()) {
+        const int budget = in.budget > 0 ? in.budget : budget_;
+        glUniform1i(location("fathom_budget"), budget);
+        glUniform1i(location("fathom_turns"), in.turns > 0 ? in.turns : budget);
+        glUniform1i(location("fathom_resumed"), in.resumed ? 1 : 0);
+        for (std::size_t i = 0; i < in.kept.size(); ++i) {
+            glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_kept_unit_) +
+                            static_cast<GLenum>(i));
+            glBindTexture(GL_TEXTURE_2D, in.kept[i]);
+        }
+    }
 
     set_params(program_, uniforms_, params);
     tables_.bind();
@@ -139,7 +185,19 @@ void Program::warm_up(const std::vector<ir::Param> &params) const {
     FrameInputs inputs;
     inputs.width = inputs.height = side;
     inputs.mode = Mode::Linear;
-    draw(inputs, params);
+    Passes passes; // what is put off is put off for each kind of target
+    if (by_passes() && passes.use({textures[0], textures[1], side, side})) {
+        passes.begin(*this, 0, side, 1);
+        passes.draw([&](const FrameInputs &pass) {
+            inputs.turns = inputs.budget = 1;
+            inputs.kept = pass.kept;
+            glViewport(0, 0, side, side);
+            glDisable(GL_SCISSOR_TEST);
+            draw(inputs, params);
+        });
+    } else {
+        draw(inputs, params);
+    }
     glFinish();
     glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
     glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
@@ -149,6 +207,7 @@ void Program::warm_up(const std::vector<ir::Param> &params) const {
 
 void Program::adopt(const glsl::Output &output) {
     uniforms_ = output.uniforms;
+    budget_ = output.budget;
     tables_.replace(output.tables);
     if (pruning_) pruning_->adopt(output.pruning);
 }
@@ -156,8 +215,9 @@ void Program::adopt(const glsl::Output &output) {
 void Program::release() {
     for (const auto &[target, name] : textures_) glDeleteTextures(1, &name);
     if (program_) glDeleteProgram(program_);
+    if (marks_) glDeleteProgram(marks_);
     textures_.clear();
-    program_ = 0;
+    program_ = marks_ = 0;
 }
 
 Program::Program() = default;
@@ -165,6 +225,10 @@ Program::Program(Program &&other) noexcept { *this = std::move(other); }
 
 Program &Program::operator=(Program &&other) noexcept {
     std::swap(program_, other.program_);
+    std::swap(marks_, other.marks_);
+    std::swap(budget_, other.budget_);
+    std::swap(most_turns_, other.most_turns_);
+    std::swap(first_kept_unit_, other.first_kept_unit_);
     std::swap(tables_, other.tables_);
     std::swap(pruning_, other.pruning_);
     std::swap(textures_, other.textures_);

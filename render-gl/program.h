@@ -28,6 +28,11 @@ struct FrameInputs {
     double time = 0;
     Mode mode = Mode::Picture;
     std::array<double, 4> plane{0, 0, 1, 0}; // Mode::Slice: unit normal, offset
+    // Of a program by passes (passes.h): steps that a ray may take in this draw and in all of them,
+    // 0: as many as the scene says; whether rays go on, from what these textures keep of them.
+    int turns = 0, budget = 0;
+    bool resumed = false;
+    std::array<unsigned, 4> kept{};
 };
 
 // A linked scene shader with its data on the card.
@@ -43,6 +48,11 @@ class Program {
     void draw(const FrameInputs &inputs, const std::vector<ir::Param> &params) const;
 
     Pruning *pruning() const; // nothing where all rows are computed everywhere
+
+    // Whether its pictures are drawn by passes, and how many steps a draw may give a ray then.
+    bool by_passes() const { return first_kept_unit_ > 0; }
+    int most_turns() const { return most_turns_; }
+    unsigned marks() const { return marks_; } // what marks the rays that go on (passes.h)
 
     // For passes that set uniforms of their own: the GL program, and how to make it current.
     unsigned name() const { return program_; }
@@ -67,7 +77,8 @@ class Program {
     void release();
     int location(const char *name) const;
 
-    unsigned program_ = 0;
+    unsigned program_ = 0, marks_ = 0;
+    int budget_ = 0, most_turns_ = 0, first_kept_unit_ = 0;
     TableData tables_;
     std::unique_ptr<Pruning> pruning_;                    // where the text runs over lists by cell
     std::vector<std::pair<unsigned, unsigned>> textures_; // target, name; bound to units 1, 2, …

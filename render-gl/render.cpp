@@ -5,6 +5,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 
 namespace fathom::gl {
@@ -25,11 +26,10 @@ class Target {
         glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, nullptr);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glGenFramebuffers(1, &framebuffer_);
-        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+        bind();
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
         complete_ = glGetError() == GL_NO_ERROR &&
                     glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-        glViewport(0, 0, width, height);
     }
     ~Target() {
         glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before_));
@@ -40,6 +40,8 @@ class Target {
     Target(const Target &) = delete;
     Target &operator=(const Target &) = delete;
     bool complete() const { return complete_; }
+    void bind() const { glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_); }
+    GLuint texture() const { return texture_; }
 
   private:
     GLuint texture_ = 0, framebuffer_ = 0;
@@ -47,6 +49,31 @@ class Target {
     GLint viewport_[4]{};
     bool complete_ = false;
 };
+
+// One sample of a strip, whose lowest row is the picture's `bottom`. False: no memory.
+bool draw_sample(const Program &program, const ir::Scene &scene, const Target &target,
+                 Passes &passes, FrameInputs inputs, int rows, int turns) {
+    const auto once = [&](const FrameInputs &pass) {
+        inputs.turns = pass.turns;
+        inputs.resumed = pass.resumed;
+        inputs.kept = pass.kept;
+        glViewport(0, 0, inputs.width, rows);
+        glScissor(0, 0, inputs.width, rows);
+        glEnable(GL_SCISSOR_TEST);
+        glEnablei(GL_BLEND, 0); // samples are added up
+        glBlendFunc(GL_ONE, GL_ONE);
+        program.draw(inputs, scene.params);
+    };
+    if (!program.by_passes()) {
+        target.bind();
+        once({});
+        return true;
+    }
+    passes.begin(program, 0, rows, turns);
+    while (!passes.done())
+        if (!passes.draw(once)) return false;
+    return true;
+}
 
 } // namespace
 
@@ -66,8 +93,12 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
     if (width <= 0 || height <= 0 || std::max(width, height) > largest_side()) return std::nullopt;
     while (glGetError() != GL_NO_ERROR) {
     } // what was wrong before is not ours to report
-    const Target target(width, height);
+    // What passes keep of their rays is as large as what is drawn at once: a strip.
+    const int rows = std::min(std::max((height + strips - 1) / strips, 8), height);
+    const Target target(width, rows);
     if (!target.complete()) return std::nullopt;
+    Passes passes;
+    if (program.by_passes() && !passes.use({target.texture(), 0, width, rows})) return std::nullopt;
 
     FrameInputs inputs;
     inputs.view = request.view
@@ -82,47 +113,49 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
     inputs.time = request.time;
     inputs.mode = mode;
 
+    Pixels pixels{width, height, {}};
+    const std::size_t row = static_cast<std::size_t>(width) * 4;
+    pixels.rgba.resize(row * static_cast<std::size_t>(height));
+    std::vector<float> upward(row * static_cast<std::size_t>(rows));
     glDisable(GL_DEPTH_TEST);
-    glClearColor(0, 0, 0, 0);
-    glClear(GL_COLOR_BUFFER_BIT);
-    glEnable(GL_BLEND); // samples are added up
-    glBlendFunc(GL_ONE, GL_ONE);
-    glEnable(GL_SCISSOR_TEST);
-    const int rows = std::max((height + strips - 1) / strips, 8);
-    bool stopped = false;
-    for (int top = 0; top < height && !stopped; top += rows) {
-        const int count = std::min(rows, height - top);
-        glScissor(0, height - top - count, width, count);
-        for (int k = 0; k < samples && !stopped; ++k) {
-            inputs.offset = ir::sample_offset(k);
-            program.draw(inputs, scene.params);
+    glDisable(GL_CULL_FACE);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    bool stopped = false, good = true;
+    for (int top = 0; top < height && !stopped && good; top += rows) {
+        const int count = std::min(rows, height - top), bottom = height - top - count;
+        target.bind();
+        glDisable(GL_SCISSOR_TEST);
+        glClearColor(0, 0, 0, 0);
+        glClear(GL_COLOR_BUFFER_BIT);
+        for (int k = 0; k < samples && !stopped && good; ++k) {
+            const std::array<double, 2> offset = ir::sample_offset(k);
+            inputs.offset = {offset[0], offset[1] - bottom};
+            good = draw_sample(program, scene, target, passes, inputs, count, request.turns);
             glFinish(); // so that progress is true, and no strip waits behind many others
             const double done = (top + count * (k + 1.0) / samples) / height;
             stopped = request.progress && !request.progress(std::min(done, 1.0));
         }
+        target.bind();
+        glReadPixels(0, 0, width, count, GL_RGBA, GL_FLOAT, upward.data());
+        for (int y = 0; y < count; ++y)
+            std::transform(upward.begin() + static_cast<std::ptrdiff_t>(row) * (count - 1 - y),
+                           upward.begin() + static_cast<std::ptrdiff_t>(row) * (count - y),
+                           pixels.rgba.begin() + static_cast<std::ptrdiff_t>(row) * (top + y),
+                           [&](float sum) { return sum / static_cast<float>(samples); });
     }
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_BLEND);
-    if (stopped || glGetError() != GL_NO_ERROR) return std::nullopt;
-
-    Pixels pixels{width, height, {}};
-    const std::size_t row = static_cast<std::size_t>(width) * 4;
-    std::vector<float> upward(row * static_cast<std::size_t>(height));
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, upward.data());
-    pixels.rgba.resize(upward.size());
-    for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
-        for (std::size_t x = 0; x < row; ++x)
-            pixels.rgba[y * row + x] =
-                upward[(static_cast<std::size_t>(height) - 1 - y) * row + x] /
-                static_cast<float>(samples);
+    if (stopped || !good || glGetError() != GL_NO_ERROR) return std::nullopt;
+    pixels.undecided = passes.undecided().rays;
+    pixels.undecided_shadows = passes.undecided().shadows;
     return pixels;
 }
 
 std::optional<Picture> render(const ir::Scene &scene, const Request &request,
                               Diagnostics &diagnostics) {
     const glsl::Output output = glsl::emit(
-        scene, {.target = glsl::Target::Glsl330, .buffers = true, .pruning = can_prune()},
+        scene,
+        {.target = glsl::Target::Glsl330, .buffers = true, .pruning = can_prune(), .passes = true},
         diagnostics);
     if (output.text.empty()) return std::nullopt;
     const auto built = Program::build(output, scene);

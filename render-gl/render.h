@@ -4,7 +4,7 @@
 
 #include "base/diagnostic.h"
 #include "base/picture.h"
-#include "render-gl/program.h"
+#include "render-gl/passes.h"
 
 #include <functional>
 #include <optional>
@@ -18,13 +18,16 @@ struct Request {
     double time = 0;
     std::optional<ir::View> view{};         // else the scene's own
     std::function<bool(double)> progress{}; // called now and then with 0..1; false stops
+    int turns =
+        0; // steps that one draw gives a ray; 0: as the program says. No picture depends on it
 };
 
 // Rows from the top, RGBA.
 struct Pixels {
     int width = 0, height = 0;
     std::vector<float> rgba;
-    std::uint64_t undecided = 0, undecided_shadows = 0; // rays (shading.h, MARCH and SHADOW)
+    // Rays from the eye, and samples with rays from lights, that ended neither in a hit nor in a miss.
+    std::uint64_t undecided = 0, undecided_shadows = 0;
 };
 
 // Waits until all commands given so far are done.

@@ -48,7 +48,10 @@ void show_ramp(const std::vector<std::string> &marks) {
 void show_look(Controls &controls, const Shown &shown, Asked &asked) {
     switch (controls.look) {
     case gl::Look::Picture: break;
-    case gl::Look::Heat: show_ramp({"0 steps", fmt::to_string(shown.max_steps)}); break;
+    case gl::Look::Heat:
+        show_ramp({"0 steps", fmt::to_string(shown.max_steps)});
+        ImGui::Text("%s rays undecided (magenta)", fmt::to_string(shown.undecided).c_str());
+        break;
     case gl::Look::Bound:
         ImGui::TextUnformatted("steps that the bound costs, times as many:");
         show_ramp({"1", "32"});
@@ -71,7 +74,7 @@ void show_look(Controls &controls, const Shown &shown, Asked &asked) {
     case gl::Look::Check: {
         const auto &v = shown.verdicts;
         ImGui::Text("%zu pixels passed a surface (red)", v[1]);
-        ImGui::Text("%zu ran out of steps (yellow), %zu could not be checked (pink)", v[2], v[3]);
+        ImGui::Text("%zu stayed undecided (yellow), %zu could not be checked (pink)", v[2], v[3]);
         ImGui::TextUnformatted("against a march at a tenth of the step");
         break;
     }

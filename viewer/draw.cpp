@@ -234,8 +234,12 @@ void App::draw_panels(int width, int height) {
     if (selected.number) shown.selected = part_line(selected);
     if (hovered.number) {
         const gl::Pick pick = pick_at_cursor();
-        shown.hovered = fmt::format("{}\n{:.0f} steps, field rises by {:.3g} a unit here",
-                                    part_line(hovered), pick.steps, pick.slope);
+        shown.hovered =
+            part_line(hovered) +
+            (pick.undecided()
+                 ? fmt::format("\n{:.0f} steps, and it is undecided what is here", pick.steps)
+                 : fmt::format("\n{:.0f} steps, field rises by {:.3g} a unit here", pick.steps,
+                               pick.slope));
     }
     if (views.count > 1)
         for (const gl::Tile &tile : tiles_of(views, width, height)) {
@@ -251,6 +255,7 @@ void App::draw_panels(int width, int height) {
         }
     if (scene) {
         shown.max_steps = ir::shading::many_steps;
+        shown.undecided = canvas.undecided().rays;
         shown.reach =
             ir::frame_of(scene->compilation.scene, view_of(views.cameras[0]), 100).radius * 1.5;
     }

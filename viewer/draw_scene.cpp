@@ -14,6 +14,12 @@ namespace {
 
 constexpr int coarsest = 16;     // pixels a side for one of a coarse picture
 constexpr double quick_ms = 150; // a picture that takes longer is drawn coarsely before
+constexpr int moved_budget =
+    2048; // steps of a ray while it is moved: what needs more comes at rest
+
+void give_budget(std::vector<gl::TileView> &views, int budget) {
+    for (gl::TileView &view : views) view.inputs.budget = budget;
+}
 
 // The finest coarseness, up to a limit, at which a picture is quick.
 int finest_quick(double frame_ms, int maximum) {
@@ -40,7 +46,9 @@ bool App::pending() const {
 void App::measure(int width, int height) {
     constexpr int apart = 32;
     const int few_wide = std::max(1, width / apart), few_high = std::max(1, height / apart);
-    const std::vector<gl::TileView> tiles = tile_views(few_wide, few_high);
+    std::vector<gl::TileView> tiles = tile_views(few_wide, few_high);
+    give_budget(tiles, moved_budget);
+    canvas.give_up();
     for (int i = 0; i < 2; ++i) {
         const Clock::time_point start = Clock::now();
         if (!canvas.draw(*program, few_wide, few_high, tiles, params, 0)) return;
@@ -66,22 +74,24 @@ int App::first_coarseness(bool same_view) const {
 bool App::draw_rows(bool whole) {
     constexpr double turn_ms = 30, band_ms = 10;
     const Clock::time_point start = Clock::now();
-    const std::vector<gl::TileView> tiles = tile_views(drawn.width, drawn.height);
+    std::vector<gl::TileView> tiles = tile_views(drawn.width, drawn.height);
+    if (whole) give_budget(tiles, moved_budget);
     const double expected = std::max(status.frame_ms * drawn.scale * drawn.scale, band_ms);
     const int band =
         whole ? drawn.height
               : std::clamp(static_cast<int>(drawn.height * band_ms / expected), 1, drawn.height);
+    const auto patient = [&] { return whole || milliseconds_since(start) <= turn_ms; };
     while (progress.next_row < drawn.height) {
         const bool timed = timer.begin();
         const bool good = canvas.draw(*program, drawn.width, drawn.height, tiles, params,
-                                      progress.next_sample, progress.next_row, band);
+                                      progress.next_sample, progress.next_row, band, patient);
         timer.end();
         if (!good) {
             progress.drawing = false;
             note("the graphics card has no memory for this size");
             return false;
         }
-        progress.next_row += band;
+        if (canvas.decided()) progress.next_row += band; // else the rest of its rays goes on
         if (timed) progress.bands_requested.push_back(progress.next_row >= drawn.height);
         while (const auto milliseconds = timer.poll()) {
             progress.gpu_ms += *milliseconds;
@@ -160,6 +170,7 @@ void App::draw_scene(int width, int height, bool moving, bool drew_before) {
         progress.next_sample = anew ? 0 : progress.samples_drawn;
         progress.next_row = 0;
         progress.sample_ms = 0;
+        canvas.give_up();
     }
     if (!progress.drawing && progress.finished) return;
     const bool drew = progress.drawing;

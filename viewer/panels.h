@@ -46,7 +46,8 @@ struct Shown {
     const std::array<std::size_t, 4> &verdicts;
     const CacheFigures *cache = nullptr; // where the scene has cached fields
     int max_steps = 256;
-    double reach = 1; // how far a slice can be moved
+    std::uint64_t undecided = 0; // rays of the picture
+    double reach = 1;            // how far a slice can be moved
 };
 
 // What the user did in the panels this frame.

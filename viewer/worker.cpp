@@ -161,6 +161,7 @@ std::unique_ptr<Build> Worker::build() {
             true; // no places in the text: a moved line changes nothing for the graphics driver
         target.part_stride = compilation.parts.stride;
         target.pruning = pruning_;
+        target.passes = true;
         target.instruments = glsl::Instruments::Pick;
         Diagnostics emission;
         result->picture = glsl::emit(compilation.scene, target, emission);

@@ -1,4 +1,4 @@
-$# Ray marching by ir/shading.h (LENGTHS, TRUE DISTANCE, MARCH), which explains; the sibling of
+$# Ray marching by ir/shading.h (LENGTHS, MARCH, REFINED), which explains; the sibling of
 $# backend-cpu/trace/march.cpp. The scene: float sdf(vec3), and with HAS_SAFE_RADIUS vec2 fathom_safe_radius(vec3).
 
 // ---- how rays are marched and points are shaded ----
@@ -6,6 +6,32 @@ $# backend-cpu/trace/march.cpp. The scene: float sdf(vec3), and with HAS_SAFE_RA
 float fathom_slack, fathom_pixel, fathom_far, fathom_tolerance_base, fathom_tolerance_slope;
 int fathom_steps = 0;
 int fathom_paint = -2; // of what the ray hit
+int fathom_end = 0;    // of the ray: 0 a miss, 1 a hit, 2 undecided, 3 it goes on in another pass
+bool fathom_shadow_undecided = false;
+$if PASSES
+
+// A draw takes at most fathom_turns steps a ray. What a ray that goes on needs is kept, and given back to the next draw:
+//   0  the ray from the eye: t, before, stride, reached; one from a light: t of the hit, s, stride, shadow
+//   1  of that from a light: lo, hi, quiet
+//   2  the colour without that light
+//   3  the steps, the touches + 1 (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
+//      eye's ray is undecided, and 2 where one from a light is
+uniform int fathom_turns, fathom_budget;
+uniform bool fathom_resumed; // rays go on, else they begin
+uniform sampler2D fathom_kept_0, fathom_kept_1, fathom_kept_2, fathom_kept_3;
+layout(location = 2) out float fathom_left; // 1 the ray goes on; else 0.25 it is undecided, 0.5 a ray from a light is
+layout(location = 3) out vec4 fathom_keep_0;
+layout(location = 4) out vec4 fathom_keep_1;
+layout(location = 5) out vec4 fathom_keep_2;
+layout(location = 6) out vec4 fathom_keep_3;
+
+int fathom_taken = 0;       // steps of this draw
+int fathom_light_kept = -1; // whose ray goes on
+bool fathom_goes_on = false;
+vec4 fathom_kept(sampler2D kept) {
+    return texelFetch(kept, ivec2(gl_FragCoord.xy), 0);
+}
+$end
 
 void fathom_lengths() {
     fathom_slack = $FLOAT_SLACK * (length(fathom_origin) + $RADIUS);
@@ -16,6 +42,10 @@ void fathom_lengths() {
     fathom_tolerance_slope = parallel ? 0.0 : min($EPSILON, 0.5 * fathom_pixel);
 }
 
+float fathom_slack_at(float t) {
+    return fathom_slack + $FLOAT_SLACK * t;
+}
+
 float fathom_tolerance(float t) {
     return fathom_tolerance_base + fathom_tolerance_slope * t;
 }
@@ -23,57 +53,6 @@ float fathom_tolerance(float t) {
 float fathom_arm(float t) {
     return fathom_tolerance(t) + $NORMAL_SLACK * fathom_slack;
 }
-$if HAS_SAFE_RADIUS
-
-float fathom_span; // how far the last of the distances reaches
-$end
-$if STEEP
-$include corner
-
-// The field at p in d; and, where that is at most `limit`, the true distance |f| / |grad f|, since
-// the field was divided by a bound; else d again.
-$if APART
-float fathom_near(vec3 p, float h, float limit, out float d) {
-$if HAS_SAFE_RADIUS
-    vec2 f = fathom_safe_radius(p);
-    d = f.x;
-    fathom_span = f.y;
-$else
-    d = sdf(p);
-$end
-    if (!(d <= limit)) return d;
-    vec3 sum = vec3(0.0);
-    for (int i = $ZERO; i < 4; ++i) {
-        vec3 e = fathom_corner(i);
-        sum += e * sdf(p + h * e);
-    }
-    return d / clamp(length(0.75 / h * sum), $MIN_SLOPE, 1.0);
-}
-$else
-float fathom_near(vec3 p, float h, float limit, out float d) {
-    vec3 sum = vec3(0.0);
-    for (int i = $ZERO; i < 5$AND_PRESENT; ++i) {
-        vec3 e = i == 0 ? vec3(0.0) : fathom_corner(i - 1);
-$if HAS_SAFE_RADIUS
-        vec2 both = fathom_safe_radius(p + h * e);
-        float f = both.x;
-$else
-        float f = sdf(p + h * e);
-$end
-        if (i == 0) {
-            d = f;
-$if HAS_SAFE_RADIUS
-            fathom_span = both.y;
-$end
-            if (!(d <= limit)) return d;
-            continue;
-        }
-        sum += e * f;
-    }
-    return d / clamp(length(0.75 / h * sum), $MIN_SLOPE, 1.0);
-}
-$end
-$end
 $if BOXED
 
 // Where a ray enters and leaves the box that holds everything.
@@ -87,96 +66,214 @@ vec2 fathom_box(vec3 origin, vec3 direction) {
 }
 $end
 
-// Enhanced sphere tracing. The distance of the hit along the ray, or -1.
+// Enhanced sphere tracing. The distance of the hit along the ray, or of where an undecided ray came to; -1: a miss.
 float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     float t = begin;
     float before = 0.0;
     float stride = 0.0;
-    float d = 0.0;
+    int touches = 0;   // samples in a row as near as slack/4 to a sheet; below 0: to a solid that it grazes
+    bool aims = false; // the last step was to change the sign
 $if HAS_SAFE_RADIUS
     float reached = 0.0;
 $end
     int steps = 0;
+$if PASSES
+    if (fathom_resumed) {
+        vec4 kept = fathom_kept(fathom_kept_0);
+        vec4 more = fathom_kept(fathom_kept_3);
+        t = kept.x;
+        steps = int(more.x);
+        fathom_light_kept = int(more.z);
+        if (fathom_light_kept >= 0) {
+            fathom_steps = steps;
+            fathom_end = mod(more.w, 2.0) > 0.0 ? 2 : 1;
+            fathom_shadow_undecided = more.w > 1.0;
+            return t;
+        }
+        before = kept.y;
+        stride = kept.z;
+$if HAS_SAFE_RADIUS
+        reached = kept.w;
+$end
+        aims = more.y > 15.0;
+        touches = int(more.y) - (aims ? 17 : 1);
+    }
+    int begun = steps;
+    int limit = min(fathom_turns, fathom_budget - steps);
+$else
 $if CACHED
 $# What was reached by curvature is not remembered: 0 proves less, and costs a step.
     fathom_resume(t, before, stride, steps);
 $end
-    for (; steps < $MAX_STEPS && t <= end + fathom_slack; ++steps) {
+    int limit = $MAX_STEPS - steps;
+$end
+    fathom_end = 3;
+    int turn = $ZERO;
+    int phase = 0; // 0: it marches; 1: the place of the hit is refined; 2: it looks beside what it touches
+    int count = 0; // of refinements, of places beside
+    int stays = 0; // which end of the chord stayed: 1 a, 2 b
+    float a = 0.0, b = 0.0, at_a = 0.0, at_b = 0.0;
+    vec3 aside = vec3(0.0), u = vec3(0.0), v = vec3(0.0);
+    float d = 0.0, touched = 0.0, least = 0.0, greatest = 0.0;
+$if HAS_SAFE_RADIUS
+    float span = 0.0, touched_span = 0.0;
+$end
+$# Drivers compute both sides of a branch: what is seldom wanted stands outside of the loop that
+$# marches, and comes back to it for the field's one evaluation.
+    while (true) {
+        bool found = false;
+        for (; phase > 0 || turn < limit; ++turn) {
 $if FAR_CELLS
 $# Through far cells first, all rays together; then the field is evaluated, once. A step is
 $# what evaluates it.
-        while (t <= end) {
-            vec2 clear = fathom_clear(origin + t * direction, direction, fathom_tolerance(t));
-            if (!(clear.y > 0.0 && stride <= before + clear.x)) break;
-            t += clear.y;
-            before = 0.0;
-            stride = 0.0;
-        }
-        if (t > end + fathom_slack) break;
+            while (phase == 0 && touches <= 0 && t <= end) {
+                vec2 clear = fathom_clear(origin + t * direction, direction, fathom_tolerance(t));
+                if (!(clear.y > 0.0 && stride <= before + clear.x)) break;
+                t += clear.y;
+                before = 0.0;
+                stride = 0.0;
+                aims = false;
+            }
 $end
-        vec3 p = origin + t * direction;
-        bool last = steps == $MAX_STEPS - 1;
-        float reach = fathom_tolerance(t);
-        if (last) reach = max(reach, fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t);
+            if (!(t <= end + fathom_slack)) break;
+            vec3 p = origin + t * direction + aside;
 $if CACHED
-        fathom_width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
-        fathom_step(t, before, stride, steps);
+            fathom_width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
+            if (phase == 0) fathom_step(t, before, stride, steps);
 $end
-$if STEEP
-        float near = fathom_near(p, fathom_arm(t), reach, d);
+$if HAS_SAFE_RADIUS
+            vec2 both = fathom_safe_radius(p);
+            d = both.x;
+            span = both.y;
 $else
-        d = sdf(p);
+            d = sdf(p);
 $end
 $if CACHED
 $# Where a cached value is absent the pixel is left to the text that computes all, so that
 $# what the ray sees is one field (docs/noise-cache.md): its loops end at once.
-        if (fathom_absent) break;
+            if (fathom_absent) break;
 $end
-$if HAS_SAFE_RADIUS
-        if (!last && stride > before + max(d, 0.0) && !(d > 0.0 && stride <= reached + fathom_span)) {
-            float to = reached + $NEARER_PART * min(fathom_span, reached);
-            if (!(d > 0.0)) to = min(reached, stride * before / (before - d) - 0.5 * fathom_tolerance(t));
-            to = max(before, min(to, stride));
-            t += to - stride;
-            stride = to;
-            continue;
-        }
-$else
-        if (!last && stride > before + max(d, 0.0)) {
-            t += before - stride;
-            stride = before;
-            continue;
-        }
-$end
-        if ($NEAR <= reach) {
-            fathom_steps = steps + 1;
-            return t + d;
-        }
-        d = max(d, 0.25 * fathom_slack);
-        float next = d;
-$if HAS_SAFE_RADIUS
-        float span = max(fathom_span, d);
-        if (span > d) {
-            next = span;
-            if (stride > 0.0) {
-                float change = (span * span - reached * reached) / stride;
-                next = change < -span ? span * span / -change - 0.5 * fathom_tolerance(t)
-                                      : span + $BENT_RELAXATION * (span + change);
-                next = max(next, d);
+            found = phase > 0;
+            if (found) break;
+            ++steps;
+            float tolerance = fathom_tolerance(t);
+            if (isnan(d)) {
+                fathom_end = 2;
+                break;
             }
-        } else
-$end
-        if (stride > 0.0)
-            next += $RELAXATION * d * max(stride + d - before, 0.0) / max(stride - d + before, $FLATTEST * stride);
-        float proved = max(end, t + d);
-        next = min(next, proved - t);
-        before = d;
 $if HAS_SAFE_RADIUS
-        reached = span;
+            if (!(d <= 0.0 && aims) && stride > before + max(d, 0.0) && !(d > 0.0 && stride <= reached + span)) {
+                float to = reached + $NEARER_PART * min(span, reached);
+                if (!(d > 0.0)) to = min(reached, stride * before / (before - d) - 0.5 * tolerance);
+                to = max(before, min(to, stride));
+$else
+            if (!(d <= 0.0 && aims) && stride > before + max(d, 0.0)) {
+                float to = before;
 $end
-        stride = next;
-        t = min(t + next, proved);
+                t += to - stride;
+                stride = to;
+                aims = false;
+                continue;
+            }
+            bool touch = d < 0.25 * fathom_slack_at(t);
+            found = d <= 0.0 || (touch && touches == 0);
+            if (found) break;
+            if (touches > 0) touches = touch ? touches + 1 : $MAX_TOUCHES + 1;
+            if (touches > $MAX_TOUCHES) {
+                fathom_end = 2;
+                break;
+            }
+            if (!touch) touches = 0;
+$include march_ahead
+        }
+        if (!found) break;
+        if (phase == 0 && d > 0.0) {
+            phase = 2;
+            count = 0;
+            touched = d;
+$if HAS_SAFE_RADIUS
+            touched_span = span;
+$end
+            u = normalize(cross(direction, abs(direction.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+            v = cross(direction, u);
+            aside = 4.0 * fathom_slack_at(t) * u;
+            least = 1e30;
+            greatest = 0.0;
+            continue;
+        }
+        if (phase == 2) {
+            least = min(least, d);
+            greatest = max(greatest, d);
+            bool solid = !(d > 0.0);
+            if (!solid && ++count < 8) {
+                vec3 turned = 0.707106781 * (u + v);
+                v = 0.707106781 * (v - u);
+                u = turned;
+                aside = 4.0 * fathom_slack_at(t) * u;
+                continue;
+            }
+            float slack = fathom_slack_at(t);
+            float across = (greatest - least) / (8.0 * slack);
+            float along = stride > 0.0 ? (before - touched) / stride : 0.0;
+            touches = solid ? -1 : touched > 2.0 * slack * length(vec2(across, along)) ? 0 : 1;
+            phase = 0;
+            aside = vec3(0.0);
+            d = touched;
+            float tolerance = fathom_tolerance(t);
+$if HAS_SAFE_RADIUS
+            span = touched_span;
+$end
+            ++turn;
+$include march_ahead
+            continue;
+        }
+        if (phase == 0) {
+            phase = 1;
+            count = 0;
+            a = t - stride;
+            b = t;
+            at_a = before;
+            at_b = d;
+        } else {
+            bool inside = !(d > 0.0);
+            if (inside) {
+                b = t;
+                at_b = d;
+                if (stays == 1) at_a *= 0.5;
+            } else {
+                a = t;
+                at_a = d;
+                if (stays == 2) at_b *= 0.5;
+            }
+            stays = inside ? 1 : 2;
+            ++count;
+            ++steps;
+        }
+        float x = b > a ? a + (b - a) * (at_a / (at_a - at_b)) : b;
+        float near = 0.125 * fathom_tolerance(count > 0 ? t : x);
+        bool there = count > 0 ? count == $REFINEMENTS || abs(x - t) <= near : aims && abs(x - b + 2.0 * near) <= near;
+        t = x;
+        if (there || !(b - a > 0.125 * fathom_tolerance(x))) {
+            fathom_end = 1;
+            break;
+        }
     }
     fathom_steps = steps;
-    return -1.0;
+    if (fathom_end == 3 && !(t <= end + fathom_slack)) fathom_end = 0;
+$if PASSES
+    fathom_taken = steps - begun;
+    if (fathom_end == 3 && steps >= fathom_budget) fathom_end = 2;
+    if (fathom_end == 3) {
+        fathom_goes_on = true;
+$if HAS_SAFE_RADIUS
+        fathom_keep_0 = vec4(t, before, stride, reached);
+$else
+        fathom_keep_0 = vec4(t, before, stride, 0.0);
+$end
+        fathom_keep_3 = vec4(float(steps), float(touches + (aims ? 17 : 1)), -1.0, 0.0);
+    }
+$else
+    if (fathom_end == 3) fathom_end = 2;
+$end
+    return fathom_end == 0 ? -1.0 : t;
 }

@@ -5,9 +5,10 @@ vec3 fathom_encode(vec3 linear) {
     return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
 }
 
-// Blue for few steps, through green and yellow to red for all that are allowed.
+// Blue for few steps, through green and yellow to red for many; magenta for an undecided ray.
 vec3 fathom_heat(int steps) {
-    float x = log2(1.0 + float(steps)) / log2(1.0 + float($MAX_STEPS));
+    if (fathom_end == 2) return vec3(1.0, 0.0, 1.0);
+    float x = log2(1.0 + float(steps)) / log2(1.0 + float($MANY_STEPS));
     return clamp(vec3(2.0 * x - 0.6, 1.6 - abs(3.2 * x - 1.6), 1.0 - 2.2 * x), 0.0, 1.0);
 }
 
@@ -18,8 +19,33 @@ $include ray
 $if PICK
     fathom_pick = vec4(0.0, t, float(fathom_steps), 0.0);
 $end
+$if PASSES
+    if (fathom_goes_on) {
+        fathom_left = 1.0;
+        return vec4(0.0);
+    }
+    fathom_left = fathom_end == 2 ? 0.25 : 0.0;
+$end
     if (fathom_mode == 1) return vec4(fathom_heat(fathom_steps), 1.0);
     vec3 color = t < 0.0 ? fathom_background(direction) : fathom_shade(origin, direction, t);
-    if (fathom_mode == 2) return vec4(float(fathom_steps), t, float(fathom_paint), t < 0.0 ? 0.0 : 1.0);
+$if PASSES
+    if (fathom_goes_on) {
+        fathom_left = 1.0;
+        return vec4(0.0);
+    }
+    if (fathom_shadow_undecided) fathom_left += 0.5;
+$end
+    if (fathom_mode == 2)
+        return vec4(float(fathom_steps), t, float(fathom_paint), fathom_end == 2 ? 2.0 : t < 0.0 ? 0.0 : 1.0);
+$if COUNTED
+    float opaque = fathom_end == 2 ? 0.5 : 1.0;
+$if CACHED
+#if !defined(FATHOM_CACHE) && !defined(FATHOM_CACHE_LEARN)
+    opaque = 1.0;
+#endif
+$end
+    return vec4(fathom_mode == 3 ? color : fathom_encode(color), opaque);
+$else
     return vec4(fathom_mode == 3 ? color : fathom_encode(color), 1.0);
+$end
 }

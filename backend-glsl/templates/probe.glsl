@@ -21,7 +21,7 @@ $end
 vec4 fathom_check(vec3 origin, vec3 direction, float begin, float end) {
     if (end < begin) return vec4(0.0, -1.0, -1.0, 0.0);
     float t = fathom_march(origin, direction, begin, end);
-    float verdict = t < 0.0 && fathom_steps >= $MAX_STEPS ? 2.0 : 0.0;
+    float verdict = fathom_end == 2 ? 2.0 : 0.0;
     float s = begin;
     float last = t < 0.0 ? end : t;
     int i = 0;

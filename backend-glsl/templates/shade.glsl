@@ -1,54 +1,193 @@
-$# Shading by ir/shading.h (SHADOW, OCCLUSION, SHADING); the sibling of backend-cpu/trace/shade.cpp.
-$# The scene: Hit fathom_hit(vec3), fathom_material, fathom_lighting, fathom_light (marcher.h).
+$# Shading by ir/shading.h (SHADOW, OCCLUSION, SHADING); the sibling of backend-cpu/trace/shade.cpp and shadow.cpp.
+$# The scene: float $SHADED(vec3), Hit fathom_hit(vec3), fathom_material, fathom_lighting, fathom_light (marcher.h).
 $if !SKIP_SHADING
 
 // How much of a light arrives: marched from the light towards the point (thesis, 4.2.1).
 float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, float h) {
-    float s = reach;
-    float before = 0.0;
-    float shadow = 1.0;
-    for (int i = $ZERO; i < $SHADOW_STEPS && s > margin; ++i) {
-$if FAR_CELLS
-$# What is farther than the shadow's edge as it is now changes nothing.
-        for (vec2 clear; s > margin; s -= clear.y) {
-            clear = fathom_clear(q + s * l, -l, max(shadow * angle * s, margin));
-            if (!(clear.y > 0.0)) break;
-            before = 0.0;
-        }
-        if (s <= margin) break;
-$end
-        vec3 p = q + s * l;
-$if AROUND
-$# Beyond the cells a value that is not exact shades nothing.
-        if (fathom_outside(p)) {
-            float off = fathom_off(p);
-            float edge = max(shadow * angle * s, margin);
-            if (off > 2.0 * edge && off < fathom_endless(p)) {
-                s -= off - edge;
-                before = 0.0;
-                continue;
-            }
-        }
-        fathom_exact = true;
-$end
-$if STEEP
-        float d, near = fathom_near(p, h, shadow * angle * s, d);
+    float s = reach; // what is left of the way
+    float stride = 0.0;
+    float shadow = 2.0; // the least of `closed` so far, and the samples beside it
+    float lo = 0.0, hi = 0.0;
+    float quiet = 1e30; // from where on the shaded field is looked at again
+    int turn = $ZERO;
+$if PASSES
+    int taken = 0;
+    if (fathom_light_kept >= 0) {
+        vec4 kept = fathom_kept(fathom_kept_0);
+        s = kept.y;
+        stride = kept.z;
+        shadow = kept.w;
+        kept = fathom_kept(fathom_kept_1);
+        lo = kept.x;
+        hi = kept.y;
+        quiet = kept.z;
+        taken = int(fathom_kept(fathom_kept_3).y);
+        fathom_light_kept = -1;
+    }
+    int limit = min(fathom_turns - fathom_taken, fathom_budget - taken);
 $else
-        float d = sdf(p), near = d;
+    int limit = $MAX_STEPS;
 $end
+    float x = s, value = 0.0, next = 0.0;
+    int tap = -1;    // of the gradient at x; 0: the field itself, -1: none
+    int search = -1; // evaluations for the penumbra; -1: the way is not done yet
+    float a = 0.0, b = 0.0, at_a = 0.0, at_b = 0.0;
+    bool left = true;
+    vec3 sum = vec3(0.0);
+    while (true) {
+        float f = 0.0;
+        bool ahead = tap < 0 && search < 0;
+$if SHADED_APART
+        for (; ahead && turn < limit && s > margin; s -= stride) {
+$include shadow_ahead
 $if AROUND
-        fathom_exact = false;
+            fathom_exact = true;
+$end
+            f = sdf(q + s * l);
+$if AROUND
+            fathom_exact = false;
 $end
 $if CACHED
-        if (fathom_absent) break;
+            if (fathom_absent) return 1.0;
 $end
-        float y = before > 0.0 ? 0.5 * near * d / before : 0.0;
-        float c = sqrt(max(near * near - y * y, 0.0));
-        shadow = min(shadow, c / (angle * (s + y)));
-        if (near <= 0.0 || shadow < 0.00390625) return 0.0;
-        before = d;
-        s -= max(d, 0.25 * fathom_slack);
+            ++turn;
+            next = max(f, 0.25 * fathom_slack_at(s));
+            if (f < shadow * angle * s && (f <= 0.0 || s < quiet)) {
+                if (!(f > 0.0)) return 0.0;
+                tap = 0;
+                x = s;
+                ahead = false;
+                break;
+            }
+            stride = next;
+        }
+        if (!ahead) {
+            vec3 p = q + x * l;
+$if !UNIT_SLOPE
+            if (tap > 0) p += h * fathom_corner(tap - 1);
+$end
+            f = fathom_shaded(p);
+        }
+$else
+        for (; !ahead || (turn < limit && s > margin); s -= stride) {
+            if (ahead) {
+                x = s;
+$include shadow_ahead
+            }
+            vec3 p = q + x * l;
+$if !UNIT_SLOPE
+            if (tap > 0) p += h * fathom_corner(tap - 1);
+$end
+$if AROUND
+            fathom_exact = true;
+$end
+            f = sdf(p);
+$if AROUND
+            fathom_exact = false;
+$end
+$if CACHED
+            if (fathom_absent) return 1.0;
+$end
+            if (!ahead) break;
+            if (!(f > 0.0)) return 0.0;
+            ++turn;
+            next = max(f, 0.25 * fathom_slack_at(s));
+            float closed = f / (angle * s);
+$if UNIT_SLOPE
+            if (closed < 0.00390625) return 0.0;
+$end
+            if (closed < shadow) {
+                shadow = closed;
+                lo = max(s - next, margin);
+                hi = min(s + stride, reach);
+            }
+            stride = next;
+        }
+$end
+$if CACHED
+        if (fathom_absent) return 1.0;
+$end
+        if (ahead) {
+$if PASSES
+            if (s > margin && taken + turn < fathom_budget) {
+                fathom_goes_on = true;
+                fathom_keep_0 = vec4(0.0, s, stride, shadow);
+                fathom_keep_1 = vec4(lo, hi, quiet, 0.0);
+                fathom_keep_3.y = float(taken + turn);
+                return 1.0;
+            }
+$end
+            if (s > margin) fathom_shadow_undecided = true;
+            if (!(shadow < 2.0)) break;
+            search = 0;
+            a = hi - $GOLDEN * (hi - lo);
+            b = lo + $GOLDEN * (hi - lo);
+            x = a;
+            continue;
+        }
+        if (tap < 0) { // golden sections
+            if (left) at_a = f;
+            else at_b = f;
+            ++search;
+            if (search == 1) {
+                left = false;
+                x = b;
+                continue;
+            }
+            left = at_a * b < at_b * a;
+            if (search < $SEARCHES) {
+                if (left) {
+                    hi = b;
+                    b = a;
+                    at_b = at_a;
+                    a = hi - $GOLDEN * (hi - lo);
+                } else {
+                    lo = a;
+                    a = b;
+                    at_a = at_b;
+                    b = lo + $GOLDEN * (hi - lo);
+                }
+                x = left ? a : b;
+                continue;
+            }
+            x = left ? a : b;
+            f = left ? at_a : at_b;
+            tap = 0;
+        }
+        if (tap == 0) value = f;
+$if UNIT_SLOPE
+        float near = value;
+$else
+        if (tap == 0) sum = vec3(0.0);
+        else sum += f * fathom_corner(tap - 1);
+        if (tap < 4) {
+            ++tap;
+            continue;
+        }
+        float near = value / max(length(0.75 / h * sum), $MIN_SLOPE);
+$end
+        float closed = near / (angle * x);
+        if (!(closed >= 0.00390625)) return 0.0;
+        if (search >= 0) {
+            shadow = closed;
+            break;
+        }
+$if SHADED_APART
+        quiet = x - 0.5 * near;
+        if (closed < shadow) {
+            shadow = closed;
+            lo = max(x - next, margin);
+            hi = min(x + stride, reach);
+        }
+        tap = -1;
+        stride = next;
+        s -= stride;
+$end
     }
+$if PASSES
+    fathom_taken += turn;
+$end
+    shadow = min(shadow, 1.0);
     return shadow * shadow * (3.0 - 2.0 * shadow);
 }
 $end
@@ -59,62 +198,86 @@ vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
     vec3 g = vec3(0.0);
     vec3 n = -direction;
     float slope = 0.0;
+    int taps = 4;
 $if !SKIP_SHADING
-$# The weights of the occlusion's samples are 1/2, 1/4, ...
     fathom_Lighting look = fathom_lighting();
-    int taps = look.ambient_occlusion > 0.0 ? $ALL_TAPS : 4;
     float open = 1.0;
     float weight = look.ambient_occlusion / $OCCLUSION_TOTAL;
+    if (look.ambient_occlusion > 0.0) taps = $ALL_TAPS;
+$if PASSES
+    if (fathom_light_kept >= 0) taps = 4; // the colour is known
 $end
-$if APART
+$end
+$if TWICE
     for (int i = $ZERO; i < 4; ++i) {
         vec3 e = fathom_corner(i);
-        g += e * sdf(p + h * e);
+        g += e * $SHADED(p + h * e);
     }
     g *= 0.75 / h;
     slope = length(g);
     if (slope > 0.0) n = g / slope;
+    int done = 4;
+$else
+    int done = 0;
+$end
+$# The gradient's four points; along the normal that they give, the occlusion's five; and where these
+$# are closed most, the gradient again.
 $if !SKIP_SHADING
-    for (int i = $ZERO + 4; i < taps; ++i) {
-$if STEEP
-        float x = $OCCLUSION_REACH * float(i - 3), d;
-        float near = fathom_near(p + x * n, h, x, d);
-$else
-        float x = $OCCLUSION_REACH * float(i - 3);
-        float near = sdf(p + x * n);
+    vec3 sum = vec3(0.0);
+    float least = 1e30, x = 0.0;
+    float g1 = 0.0, g2 = 0.0, g3 = 0.0, g4 = 0.0, g5 = 0.0; // over their distances from p
+    for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
+        bool outward = i > 3 && i < 9;
+        float away = outward ? $OCCLUSION_REACH * float(i - 3) : x;
+        vec3 place = p + away * n;
+        vec3 e = fathom_corner(i < 4 ? i : i - 9);
+        if (!outward) place += h * e;
+        float f = $SHADED(place);
+        if (outward) {
+            f /= away;
+            g1 = g2;
+            g2 = g3;
+            g3 = g4;
+            g4 = g5;
+            g5 = f;
+            if (f < least) {
+                least = f;
+                x = away;
+            }
+$if !UNIT_SLOPE
+$if !SHADED_APART
+            if (i == 8 && least >= $NEARLY) break;
 $end
-        weight *= 0.5;
-        open -= weight * clamp(1.0 - near / x, 0.0, 1.0);
-    }
 $end
-$else
-$# The gradient's four points and, along the normal that they give, the occlusion's five.
-$if SKIP_SHADING
-    for (int i = $ZERO; i < 4$AND_PRESENT; ++i) {
-        vec3 e = fathom_corner(i);
-        float f = sdf(p + h * e);
-$else
-    for (int i = $ZERO; i < taps$AND_PRESENT; ++i) {
-        vec3 e = fathom_corner(i);
-$if STEEP
-        float x = $OCCLUSION_REACH * float(i - 3), d;
-        float f = fathom_near(p + (i < 4 ? h * e : x * n), h, i < 4 ? -1e30 : x, d);
-$else
-        float x = $OCCLUSION_REACH * float(i - 3);
-        float f = sdf(p + (i < 4 ? h * e : x * n));
-$end
-        if (i >= 4) {
-            weight *= 0.5;
-            open -= weight * clamp(1.0 - f / x, 0.0, 1.0);
             continue;
         }
+        sum += f * e;
+$if !TWICE
+        if (i == 3) {
+            g = 0.75 / h * sum;
+            slope = length(g);
+            if (slope > 0.0) n = g / slope;
+            sum = vec3(0.0);
+        }
 $end
-        g += e * f;
-        if (i < 3) continue;
-        g *= 0.75 / h;
-        slope = length(g);
-        if (slope > 0.0) n = g / slope;
     }
+$if UNIT_SLOPE
+    float rise = 1.0;
+$else
+    float rise = length(0.75 / h * sum);
+    rise = $FLAT ? 1.0 : max(rise, $MIN_SLOPE);
+$end
+    if (taps > 4) {
+        vec4 few = clamp(1.0 - vec4(g1, g2, g3, g4) / rise, 0.0, 1.0);
+        open -= weight * (dot(few, vec4(0.5, 0.25, 0.125, 0.0625)) + 0.03125 * clamp(1.0 - g5 / rise, 0.0, 1.0));
+    }
+$else
+$if !TWICE
+    for (int i = $ZERO; i < taps$AND_PRESENT; ++i) g += fathom_corner(i) * $SHADED(p + h * fathom_corner(i));
+    g *= 0.75 / h;
+    slope = length(g);
+    if (slope > 0.0) n = g / slope;
+$end
 $end
 $if LOCAL_NORMALS
 $# The normal in the paint's own space.
@@ -130,7 +293,7 @@ $end
     fathom_paint = s.paint;
 $if PICK
     fathom_pick.x = float(fathom_part);
-    fathom_pick.w = slope;
+    fathom_pick.w = fathom_end == 2 ? -1.0 : slope;
 $end
 $if LOCAL_NORMALS
     vec3 turned = ahead - s.point;
@@ -147,12 +310,19 @@ $else
     float margin = $SHADOW_BIAS * fathom_tolerance(t);
     vec3 q = p + margin * n;
     float angle = max(look.soft_shadows, $MIN_ANGLE);
+$if PASSES
+    int first = max(fathom_light_kept, 0);
+    if (fathom_light_kept >= 0) color = fathom_kept(fathom_kept_2).rgb;
+    for (int i = $ZERO + first; i < $LIGHTS; ++i) {
+        fathom_Light light = fathom_light(i);
+$else
 $if ONE_LIGHT
     {
         fathom_Light light = fathom_light(0);
 $else
     for (int i = $ZERO; i < $LIGHTS; ++i) {
         fathom_Light light = fathom_light(i);
+$end
 $end
         vec3 way = light.directional ? light.position : light.position - q;
         float away = length(way);
@@ -163,6 +333,15 @@ $end
         if (look.shadow_darkness > 0.0) {
             float reach = light.directional ? $SUN_REACH : away;
             seen -= look.shadow_darkness * (1.0 - fathom_shadow(q, l, reach, angle, margin, h));
+$if PASSES
+            if (fathom_goes_on) {
+                fathom_keep_0.x = t;
+                fathom_keep_2 = vec4(color, 0.0);
+                fathom_keep_3.xzw = vec3(float(fathom_steps), float(i),
+                                         (fathom_end == 2 ? 1.0 : 0.0) + (fathom_shadow_undecided ? 2.0 : 0.0));
+                return color;
+            }
+$end
         }
         vec3 r = 2.0 * facing * n - l;
         float gleam = max(-dot(r, direction), 0.0);

@@ -32,6 +32,7 @@ struct Drawn {
             glsl::Options target;
             target.target = glsl::Target::Glsl330;
             target.buffers = true;
+            target.passes = true;
             target.instruments = instruments;
             target.part_stride = compilation.parts.stride;
             auto built = gl::Program::build(glsl::emit(compilation.scene, target, diagnostics),

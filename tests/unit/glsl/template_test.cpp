@@ -16,22 +16,21 @@ using glsl::Values;
 
 namespace {
 
-const std::vector<std::string> flags{"BOXED",   "STEEP",        "HAS_SAFE_RADIUS",
-                                     "APART",   "SKIP_SHADING", "LOCAL_NORMALS",
-                                     "PICK",    "CACHED",       "FAR_CELLS",
-                                     "AROUND",  "ONE_LIGHT",    "BLENDED",
-                                     "PICTURE", "FIELD_ONLY",   "TIME",
-                                     "ES",      "LOCATIONS",    "MARKED",
-                                     "OWN",     "UNPAINTED",    "PAINTED",
-                                     "LIT"};
+const std::vector<std::string> flags{
+    "BOXED",  "UNIT_SLOPE",   "SHADED_APART",  "PASSES",  "COUNTED",    "HAS_SAFE_RADIUS",
+    "TWICE",  "SKIP_SHADING", "LOCAL_NORMALS", "PICK",    "CACHED",     "FAR_CELLS",
+    "AROUND", "ONE_LIGHT",    "BLENDED",       "PICTURE", "FIELD_ONLY", "TIME",
+    "ES",     "LOCATIONS",    "MARKED",        "OWN",     "UNPAINTED",  "PAINTED",
+    "LIT"};
 
 // What a flag decides beside its own `$if`, as the emitter has it.
 Values values_with(std::string_view name, const std::set<std::string> &on) {
     const auto is = [&](const char *flag) { return on.contains(flag); };
     Values values{
-        {"NEAR", is("STEEP") ? "near" : "d"},
+        {"SHADED", is("SHADED_APART") ? "fathom_shaded" : "sdf"},
+        {"FLAT", is("SHADED_APART") ? "false" : "least >= 0.5"},
         {"AND_PRESENT", is("CACHED") ? " && !fathom_absent" : ""},
-        {"UNLIT", is("ONE_LIGHT") ? "return color" : "continue"},
+        {"UNLIT", is("ONE_LIGHT") && !is("PASSES") ? "return color" : "continue"},
         {"SUN_REACH", is("BOXED") ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
         {"OUTSIDE", "fathom_off(p)"},
         {"VALUES", "    if (which == 0) return vec4(p.x);\n"},
@@ -76,35 +75,20 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
         name == "field" ? "Hit fathom_hit(vec3 p) { return Hit(1.0); }\n" : "fathom_hit";
     for (const char *vector : {"LO", "HI", "ORIGIN", "RIGHT", "UP", "FORWARD", "TARGET", "COLOR"})
         values.emplace(vector, "vec3(1.0)");
-    for (const char *number : {"FAR",
-                               "EPSILON",
-                               "FLOAT_SLACK",
-                               "NORMAL_SLACK",
-                               "MIN_SLOPE",
-                               "RELAXATION",
-                               "FLATTEST",
-                               "NEARER_PART",
-                               "BENT_RELAXATION",
-                               "OCCLUSION_TOTAL",
-                               "OCCLUSION_REACH",
-                               "SHADOW_BIAS",
-                               "MIN_ANGLE",
-                               "MIN_WAY",
-                               "FAR_FROM",
-                               "RADIUS",
-                               "SLOPE",
-                               "BOUND",
-                               "BACK_X",
-                               "BACK_Z",
-                               "CELL"})
+    for (const char *number :
+         {"FAR",         "EPSILON",   "FLOAT_SLACK", "NORMAL_SLACK",    "MIN_SLOPE",
+          "RELAXATION",  "FLATTEST",  "NEARER_PART", "BENT_RELAXATION", "JUMP",
+          "FAR_JUMP",    "NEARLY",    "GOLDEN",      "OCCLUSION_TOTAL", "OCCLUSION_REACH",
+          "SHADOW_BIAS", "MIN_ANGLE", "MIN_WAY",     "FAR_FROM",        "RADIUS",
+          "SLOPE",       "BOUND",     "BACK_X",      "BACK_Z",          "CELL"})
         values.emplace(number, "0.5");
     for (const char *count :
-         {"LIGHTS",    "MAX_STEPS",  "ALL_TAPS", "SHADOW_STEPS", "CHECK_STEPS", "AGES",
-          "ROWS",      "COUNT",      "WISHES",   "SAMPLED",      "HIGHEST",     "HIGH_BITS",
-          "HIGH_MASK", "PLACE_BITS", "HEAD",     "TAIL",         "LIMIT",       "INSERTED",
-          "EVICTED",   "DELETED",    "CROWDED",  "FULL",         "SWEPT",       "CHANGED",
-          "PAID",      "WASTED",     "LEFT",     "STEPS",        "MANY",        "REFUSED",
-          "STRIDE",    "LAST"})
+         {"LIGHTS",   "MAX_STEPS",   "ALL_TAPS",  "REFINEMENTS", "MAX_TOUCHES", "MANY_STEPS",
+          "SEARCHES", "CHECK_STEPS", "AGES",      "ROWS",        "COUNT",       "WISHES",
+          "SAMPLED",  "HIGHEST",     "HIGH_BITS", "HIGH_MASK",   "PLACE_BITS",  "HEAD",
+          "TAIL",     "LIMIT",       "INSERTED",  "EVICTED",     "DELETED",     "CROWDED",
+          "FULL",     "SWEPT",       "CHANGED",   "PAID",        "WASTED",      "LEFT",
+          "STEPS",    "MANY",        "REFUSED",   "STRIDE",      "LAST"})
         values.emplace(count, "2");
     for (const char *word : {"EMPTY", "NOWHERE", "PLACES"}) values.emplace(word, "7u");
     for (const std::string &flag : flags) values.emplace(flag, is(flag.c_str()) ? "1" : "");
@@ -130,6 +114,7 @@ struct fathom_Material { vec3 diffuse, specular, emission; float exponent; };
 struct fathom_Lighting { vec3 ambient; float ambient_occlusion, soft_shadows, shadow_darkness, specular_intensity; };
 struct fathom_Light { bool directional; vec3 position, color; };
 float sdf(vec3 p) { return length(p) - 1.0; }
+float fathom_shaded(vec3 p) { return 2.0 * sdf(p); }
 vec2 fathom_safe_radius(vec3 p) { return vec2(sdf(p)); }
 Hit fathom_hit(vec3 p) { return Hit(sdf(p), 0, p, vec4(0.0)); }
 fathom_Material fathom_material(Hit s, vec3 n) { return fathom_Material(n, n, n, 1.0); }
@@ -188,12 +173,21 @@ std::string with_entry(const glsl::TargetTraits &target, Values values) {
 Frame frame_of(std::string_view name, const Values &values) {
     const std::string scene = version + inputs + cells + cache;
     const auto expanded = [&](const char *other) { return glsl::expand(other, values); };
-    const bool steep = !values.at("STEEP").empty();
     if (name == "march") return {scene, end};
     if (name == "corner") return {version, end};
     if (name == "ray") return {scene + expanded("march") + "void ray(vec2 place) {\n", "}\n" + end};
-    const std::string marched =
-        scene + pick + expanded("march") + (steep ? "" : expanded("corner"));
+    const std::string marched = scene + pick + expanded("march") + expanded("corner");
+    if (name == "march_ahead")
+        return {
+            scene + expanded("march") +
+                "void ahead(float t, float d, float before, float stride, float end, float span, "
+                "float reached) {\n    int touches = 0;\n    bool aims;\n    float tolerance = "
+                "0.1;\n",
+            "}\n" + end};
+    if (name == "shadow_ahead")
+        return {marched + "void ahead(vec3 q, vec3 l, float s, float stride, float shadow, float "
+                          "angle, float margin) {\n    for (; s > margin; s -= stride) {\n",
+                "    }\n}\n" + end};
     if (name == "shade") return {marched, end};
     if (name == "picture") return {marched + expanded("shade"), end};
     if (name == "probe")
@@ -305,8 +299,7 @@ TEST_CASE("every template is a shader on its own, whatever flags are set") {
         }
         std::set<std::string> tried;
         for (std::set<std::string> &on : choices) {
-            if (!on.contains("STEEP")) on.erase("HAS_SAFE_RADIUS"); // only a steep field reaches
-            if (on.contains("CACHED")) on.insert("LOCATIONS");      // there are several outputs
+            if (on.contains("CACHED")) on.insert("LOCATIONS"); // there are several outputs
             const Values values = values_with(name, on);
             for (const char *cached :
                  {"", "#define FATHOM_CACHE\n", "#define FATHOM_CACHE_LEARN\n"}) {

@@ -1,0 +1,36 @@
+$# Statements: the next step of a ray that found d at t.
+            float ahead = max(d, touches < 0 ? tolerance : 0.25 * fathom_slack_at(t));
+            float next = ahead;
+$if HAS_SAFE_RADIUS
+            float reach = max(span, ahead);
+            if (reach > ahead) {
+                next = reach;
+                if (stride > 0.0) {
+                    float change = (reach * reach - reached * reached) / stride;
+                    next = change < -reach ? reach * reach / -change - 0.5 * tolerance
+                                           : reach + $BENT_RELAXATION * (reach + change);
+                    next = max(next, ahead);
+                }
+            } else
+$end
+            if (stride > 0.0)
+                next += $RELAXATION * ahead * max(stride + ahead - before, 0.0) /
+                        max(stride - ahead + before, $FLATTEST * stride);
+            aims = false;
+            if (stride > 0.0 && before > d) { // where the line through both is 0
+                float to = d * stride / (before - d) + 0.25 * tolerance;
+$if SHADED_APART
+                aims = to <= $JUMP * tolerance;
+$else
+                aims = to <= (d <= tolerance ? $FAR_JUMP : $JUMP) * tolerance;
+$end
+                if (aims) next = max(ahead, to);
+            }
+            float proved = max(end, t + ahead);
+            next = min(next, proved - t);
+            before = ahead;
+$if HAS_SAFE_RADIUS
+            reached = reach;
+$end
+            stride = next;
+            t = min(t + next, proved);

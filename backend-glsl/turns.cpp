@@ -1,0 +1,73 @@
+#include "backend-glsl/turns.h"
+
+#include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace fathom::glsl {
+
+using ir::NodeId;
+using ir::Op;
+
+namespace {
+
+constexpr int grouped_from = 32; // turns of a loop; drivers write out what is shorter
+constexpr double group = 4;      // turns, or more
+
+class Counter {
+  public:
+    explicit Counter(const Module &module) : module_(module), graph_(module.scene.graph) {}
+
+    double of(ir::FunctionId id) {
+        if (!id) return 0;
+        if (const auto known = functions_.find(id.index); known != functions_.end())
+            return known->second;
+        functions_[id.index] = 0;
+        return functions_[id.index] = below({module_.result_of(id)});
+    }
+
+  private:
+    // Of what these nodes are made of.
+    double below(std::vector<NodeId> todo) {
+        std::unordered_set<NodeId> seen;
+        double sum = 0;
+        while (!todo.empty()) {
+            const NodeId id = todo.back();
+            todo.pop_back();
+            if (!id || !seen.insert(id).second) continue;
+            const ir::Node &node = graph_[id];
+            todo.insert(todo.end(), graph_.args(id).begin(), graph_.args(id).end());
+            if (node.op == Op::Call) sum += of(ir::FunctionId{node.payload});
+            if (node.op == Op::Loop) sum += loop(node.payload);
+        }
+        return sum;
+    }
+
+    double loop(std::uint32_t index) {
+        if (const auto known = loops_.find(index); known != loops_.end()) return known->second;
+        loops_[index] = 0;
+        const ir::Loop &loop = graph_.loop(ir::LoopId{index});
+        std::vector<NodeId> body = loop.next;
+        body.push_back(loop.condition);
+        const double within = below(body);
+        if (loop.condition || !graph_.as_number(loop.count))
+            return loops_[index] = loop.max_count * (1 + within);
+        if (loop.max_count < grouped_from) return loops_[index] = loop.max_count * within;
+        return loops_[index] = loop.max_count / group * (1 + group * within);
+    }
+
+    const Module &module_;
+    const ir::Graph &graph_;
+    std::unordered_map<std::uint32_t, double> functions_, loops_;
+};
+
+} // namespace
+
+double turns_of(const Module &module) {
+    Counter counter(module);
+    const ir::Scene &scene = module.scene;
+    return std::max({counter.of(scene.distance), counter.of(scene.safe_radius),
+                     counter.of(scene.shaded), counter.of(scene.hit)});
+}
+
+} // namespace fathom::glsl
