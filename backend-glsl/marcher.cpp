@@ -60,6 +60,8 @@ Values values_of(const MarcherOptions &options) {
         {"NEARER_PART", float_literal(shading::nearer)},
         {"BENT_RELAXATION", float_literal(shading::bent_relaxation)},
         {"JUMP", float_literal(shading::jump)},
+        {"REFINED", float_literal(shading::refined)},
+        {"QUIET", float_literal(shading::quiet)},
         {"REFINEMENTS", fmt::to_string(shading::refinements)},
         {"MAX_TOUCHES", fmt::to_string(shading::max_touches)},
         {"MANY_STEPS", fmt::to_string(shading::many_steps)},

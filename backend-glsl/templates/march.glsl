@@ -250,10 +250,11 @@ $include march_ahead
             ++steps;
         }
         float x = b > a ? a + (b - a) * (at_a / (at_a - at_b)) : b;
-        float near = 0.125 * fathom_tolerance(count > 0 ? t : x);
-        bool there = count > 0 ? count == $REFINEMENTS || abs(x - t) <= near : aims && abs(x - b + 2.0 * near) <= near;
+        float tolerance = fathom_tolerance(count > 0 ? t : x);
+        float near = $REFINED * tolerance;
+        bool there = count > 0 ? count == $REFINEMENTS || abs(x - t) <= near : aims && abs(x - b + 0.25 * tolerance) <= near;
         t = x;
-        if (there || !(b - a > 0.125 * fathom_tolerance(x))) {
+        if (there || !(b - a > $REFINED * fathom_tolerance(x))) {
             fathom_end = 1;
             break;
         }

@@ -173,7 +173,7 @@ $end
             break;
         }
 $if SHADED_APART
-        quiet = x - 0.5 * near;
+        quiet = x - $QUIET * near;
         if (closed < shadow) {
             shadow = closed;
             lo = max(x - next, margin);
@@ -265,7 +265,7 @@ $if UNIT_SLOPE
     float rise = 1.0;
 $else
     float rise = length(0.75 / h * sum);
-    rise = $FLAT ? 1.0 : max(rise, $MIN_SLOPE);
+    rise = $FLAT ? 1.0 : max(max(rise, min(slope, 1.0)), $MIN_SLOPE);
 $end
     if (taps > 4) {
         vec4 few = clamp(1.0 - vec4(g1, g2, g3, g4) / rise, 0.0, 1.0);

@@ -75,12 +75,33 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
         name == "field" ? "Hit fathom_hit(vec3 p) { return Hit(1.0); }\n" : "fathom_hit";
     for (const char *vector : {"LO", "HI", "ORIGIN", "RIGHT", "UP", "FORWARD", "TARGET", "COLOR"})
         values.emplace(vector, "vec3(1.0)");
-    for (const char *number :
-         {"FAR",         "EPSILON",   "FLOAT_SLACK", "NORMAL_SLACK",    "MIN_SLOPE",
-          "RELAXATION",  "FLATTEST",  "NEARER_PART", "BENT_RELAXATION", "JUMP",
-          "FAR_JUMP",    "NEARLY",    "GOLDEN",      "OCCLUSION_TOTAL", "OCCLUSION_REACH",
-          "SHADOW_BIAS", "MIN_ANGLE", "MIN_WAY",     "FAR_FROM",        "RADIUS",
-          "SLOPE",       "BOUND",     "BACK_X",      "BACK_Z",          "CELL"})
+    for (const char *number : {"FAR",
+                               "EPSILON",
+                               "FLOAT_SLACK",
+                               "NORMAL_SLACK",
+                               "MIN_SLOPE",
+                               "RELAXATION",
+                               "FLATTEST",
+                               "NEARER_PART",
+                               "BENT_RELAXATION",
+                               "JUMP",
+                               "FAR_JUMP",
+                               "REFINED",
+                               "QUIET",
+                               "NEARLY",
+                               "GOLDEN",
+                               "OCCLUSION_TOTAL",
+                               "OCCLUSION_REACH",
+                               "SHADOW_BIAS",
+                               "MIN_ANGLE",
+                               "MIN_WAY",
+                               "FAR_FROM",
+                               "RADIUS",
+                               "SLOPE",
+                               "BOUND",
+                               "BACK_X",
+                               "BACK_Z",
+                               "CELL"})
         values.emplace(number, "0.5");
     for (const char *count :
          {"LIGHTS",   "MAX_STEPS",   "ALL_TAPS",  "REFINEMENTS", "MAX_TOUCHES", "MANY_STEPS",
