@@ -108,9 +108,10 @@ TEST_CASE("rays are held in a box only where everything is finite") {
     CHECK(frame_of(scene, view, 100).lo[0] < -1);
     scene.facts[scene.root.index].bounds = Box::everything();
     CHECK_FALSE(frame_of(scene, view, 100).boxed);
-    CHECK_FALSE(frame_of(scene, view, 100).steep);
-    scene.facts[scene.root.index].lipschitz_sup = 2;
-    CHECK(frame_of(scene, view, 100).steep);
+    scene.unit_slope = true;
+    CHECK(frame_of(scene, view, 100).unit_slope);
+    scene.unit_slope = false;
+    CHECK_FALSE(frame_of(scene, view, 100).unit_slope);
     scene.render.far = 7;
     CHECK(frame_of(scene, view, 100).far == 7);
 }
