@@ -6,6 +6,8 @@
 namespace fathom::mesh {
 namespace {
 
+// How many boxes are looked at for what no corner shows: so many, or so many a crossed cell.
+constexpr std::size_t least_hidden_boxes = 2'000'000, hidden_boxes_a_cell = 64;
 constexpr int task_levels = 4; // of a task, down to the lattice's level
 
 // One thread's memory for dividing.
@@ -234,6 +236,40 @@ void graft_all(Octree &octree, const Field &field, const std::vector<Cell> &cell
               trees[k]);
 }
 
+// Divides open cells without a crossed neighbour, level by level, as long as the work allows.
+void search_hidden(Octree &octree, const Field &field, const OctreeSettings &settings,
+                   Progress &progress) {
+    std::size_t crossed = 0;
+    std::vector<Cell> cells;
+    for (const Cell &cell : open_leaves(octree)) {
+        if (octree.nodes[static_cast<std::size_t>(cell.node)].crossed())
+            ++crossed;
+        else if (!beside_crossed(octree, cell))
+            cells.push_back(cell);
+    }
+    std::size_t boxes = std::max(least_hidden_boxes, hidden_boxes_a_cell * crossed);
+    for (int level = octree.lattice.level; level < octree.lattice.depth && !cells.empty();
+         ++level) {
+        if (16 * cells.size() > boxes) break;
+        boxes -= 16 * cells.size();
+        graft_all(octree, field, cells, level + 1, true, settings, progress);
+        if (progress.cancelled) return;
+        std::vector<Cell> parts;
+        for (const Cell &cell : cells) {
+            const std::int32_t first = octree.nodes[static_cast<std::size_t>(cell.node)].children;
+            for (int k = 0; first != none && k < 8; ++k) {
+                const Cell part{first + k, level + 1,
+                                corner(cell.at, octree.lattice.cells(level + 1), k)};
+                const Node &node = octree.nodes[static_cast<std::size_t>(part.node)];
+                if (node.space == Space::Open && !node.crossed() && !beside_crossed(octree, part))
+                    parts.push_back(part);
+            }
+        }
+        cells = std::move(parts);
+    }
+    octree.undecided = std::move(cells);
+}
+
 } // namespace
 
 Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSettings &settings,
@@ -254,14 +290,8 @@ Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSetti
     }
     progress.phase(share(0.8));
     graft_all(octree, field, cells, lattice.level, false, settings, progress);
-    std::vector<Cell> alone;
-    for (const Cell &cell : open_leaves(octree))
-        if (!octree.nodes[static_cast<std::size_t>(cell.node)].crossed() &&
-            !beside_crossed(octree, cell))
-            alone.push_back(cell);
     progress.phase(to);
-    if (lattice.depth > lattice.level)
-        graft_all(octree, field, alone, lattice.depth, true, settings, progress);
+    if (!progress.cancelled) search_hidden(octree, field, settings, progress);
     return octree;
 }
 

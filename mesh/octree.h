@@ -33,6 +33,9 @@ struct Octree {
     Lattice lattice;
     std::vector<Node> nodes;    // the first is all of it
     std::vector<TapePtr> tapes; // by task
+    // Open leaves without a crossed one beside them: the field does not say whether surface is in
+    // them, by the work that was spent on it.
+    std::vector<Cell> undecided;
 };
 
 struct OctreeSettings {
@@ -41,7 +44,8 @@ struct OctreeSettings {
 };
 
 // All leaves are of the lattice's level or left out; then those open ones that no crossed cell
-// touches are divided further, to the finest level, until they are crossed or left out.
+// touches are divided further until they are crossed, touched or left out: to the finest level, or as
+// far as a counted amount of work goes.
 Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSettings &settings,
                    Progress &progress);
 

@@ -1,0 +1,87 @@
+/** @file
+ *  A scene's surface as a mesh of triangles, and the bytes of mesh files.
+ *
+ *  @code
+ *  #include <fathom/mesh.h>
+ *  #include <cstdio>
+ *
+ *  int main() {
+ *      const auto result = fathom::compile_text("ring.sdf", "torus(1, 0.3)\n");
+ *      if (!result) return 1;
+ *      fathom::MeshOptions options;
+ *      options.resolution = 24;
+ *      const fathom::Mesh mesh = fathom::make_mesh(*result.scene, options);
+ *      if (!mesh) return std::fprintf(stderr, "%s\n", mesh.message.c_str()), 1;
+ *      const std::string stl = fathom::mesh_file(mesh, fathom::MeshFormat::Stl);
+ *      std::printf("%zu triangles, %zu bytes\n", mesh.triangles.size(), stl.size());
+ *      return stl.size() == 84 + 50 * mesh.triangles.size() ? 0 : 1;
+ *  }
+ *  @endcode
+ */
+#pragma once
+
+#include <fathom/scene.h>
+
+#include <cstdint>
+#include <span>
+
+namespace fathom::FATHOM_V1 {
+
+/** How fine a mesh is, and of what. */
+struct MeshOptions {
+    /** The side of the cells that the surface is drawn by, at most, in the scene's units; the surface
+     *  and the mesh are that near to each other, but where cells are undecided
+     *  (docs/meshes.md). 0: by `resolution`. */
+    double tolerance = 0;
+    int resolution = 128;      /**< cells along the longest side of the solid's box, 1 to 8,000 */
+    std::optional<Box> bounds; /**< finite: the solid is cut off there */
+    double time = 0;           /**< seconds, in [0, Facts::time_end] */
+    unsigned threads = 0;      /**< 0: as many as the machine has cores */
+    /** Called now and then by one thread at a time, with the share that is done; false cancels. */
+    std::function<bool(double done)> progress;
+};
+
+/** What came of it. */
+enum class MeshStatus {
+    Done,
+    Cancelled,
+    Empty,       /**< no point lies in the solid */
+    Endless,     /**< no box holds the solid: `bounds` cuts it off */
+    TooFine,     /**< more than 8,192 cells a side, or single precision cannot tell them apart */
+    TooLarge,    /**< more cells than are counted, or than there is memory for */
+    Contradicted /**< signs of the field are not as was stated: `estimate:` or `lipschitz:` is wrong */
+};
+
+/** A closed, oriented 2-manifold that does not cross itself (docs/meshes.md says why). Vertices are
+ *  single-precision coordinates in the scene's units and axes; `normals`, one a vertex, are the
+ *  gradient of the distance there, of length 1, at creases that of one side; `triangles` are
+ *  counterclockwise as seen from outside. The same bytes on every machine and for any number of
+ *  threads. Empty unless `status` is Done. */
+struct Mesh {
+    MeshStatus status = MeshStatus::Done;
+    std::string message; /**< why there is none, and what to do: a sentence in lower case */
+    std::vector<Point> vertices, normals;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    /** Cells in which there may be surface that the mesh does not show, since the bound is too loose
+     *  to tell, or since what is there is thinner than the finest cells; the first 1,000 of them. */
+    std::vector<Box> undecided;
+    std::size_t undecided_cells = 0; /**< all of them */
+    explicit operator bool() const { return status == MeshStatus::Done; }
+};
+
+/** Never throws. Takes some 400 bytes of memory a triangle meanwhile. */
+FATHOM_API Mesh make_mesh(const Scene &scene, const MeshOptions &options = {}) noexcept;
+
+/** The formats of mesh files: binary STL, Wavefront OBJ, binary PLY, binary glTF 2.0. Only OBJ and
+ *  GLB hold normals: each corner's, with creases of 30 degrees and more sharp. */
+enum class MeshFormat { Stl, Obj, Ply, Glb };
+
+/** By a file name's suffix, `.stl`, `.obj`, `.ply` or `.glb` in either case; or nothing. */
+FATHOM_API std::optional<MeshFormat> mesh_format(std::string_view file_name) noexcept;
+
+/** The bytes of a file. `name`: the object's, where the format has one. Empty where there is no memory
+ *  for it, or more than the format holds (a GLB: 4 GiB). */
+FATHOM_API std::string mesh_file(const Mesh &mesh, MeshFormat format,
+                                 std::string_view name = "scene") noexcept;
+
+} // namespace fathom::FATHOM_V1
