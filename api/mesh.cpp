@@ -1,6 +1,6 @@
 #include "api/impl.h"
 
-#include "mesh/mesh.h"
+#include "mesh/certify.h"
 #include "mesh/write.h"
 
 #include <fmt/format.h>
@@ -50,16 +50,34 @@ Mesh refused(const fathom::mesh::Made &made) {
     return without_mesh(MeshStatus::Empty, "");
 }
 
-void list_undecided(const fathom::mesh::Octree &octree, Mesh &mesh) {
+void list_undecided(const fathom::mesh::Octree &octree,
+                    const std::vector<fathom::mesh::Cell> &cells, Mesh &mesh) {
     constexpr std::size_t listed = 1000;
-    mesh.undecided_cells = octree.undecided.size();
-    for (const fathom::mesh::Cell &cell : octree.undecided) {
+    mesh.undecided_cells = cells.size();
+    for (const fathom::mesh::Cell &cell : cells) {
         if (mesh.undecided.size() == listed) break;
         const std::int32_t side = octree.lattice.cells(cell.level);
         mesh.undecided.push_back(
             {point_of(octree.lattice, cell.at),
              point_of(octree.lattice, fathom::mesh::corner(cell.at, side, 7))});
     }
+}
+
+MeshCertificate certificate_of(const fathom::mesh::Certificate &found) {
+    MeshCertificate made;
+    made.certified = found.certified();
+    made.mesh_to_surface = found.mesh_to_surface;
+    made.surface_to_mesh = found.surface_to_mesh;
+    made.unproved_places = found.unproved.size();
+    made.components = found.components;
+    made.genus = found.genus;
+    made.least_volume = found.least_volume;
+    made.largest_volume = found.largest_volume;
+    made.mesh_volume = found.mesh_volume;
+    made.mesh_area = found.mesh_area;
+    made.rests_on = {"intervals", "single-precision"};
+    if (found.used_bound) made.rests_on.push_back("bound");
+    return made;
 }
 
 bool good(const MeshOptions &options) {
@@ -88,7 +106,9 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
             settings.resolution = options.resolution;
             settings.time = options.time;
             settings.threads = options.threads;
-            settings.progress = options.progress;
+            const double share = options.certify ? 0.6 : 1; // of the time
+            if (options.progress)
+                settings.progress = [&](double done) { return options.progress(share * done); };
             if (options.bounds) {
                 settings.bounds.emplace();
                 for (std::size_t i = 0; i < 3; ++i) {
@@ -99,7 +119,17 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
             fathom::mesh::Made made = fathom::mesh::make_mesh(ir_of(scene), settings);
             if (made.failure != fathom::mesh::Failure::None) return refused(made);
             Mesh mesh;
-            list_undecided(made.octree, mesh);
+            if (options.certify) {
+                fathom::mesh::Progress progress;
+                progress.report = options.progress;
+                progress.from = share;
+                const auto found = certify(ir_of(scene), settings, made, progress);
+                if (progress.cancelled) return without_mesh(MeshStatus::Cancelled, "cancelled");
+                mesh.certificate = certificate_of(found);
+                list_undecided(made.octree, found.undecided, mesh);
+            } else {
+                list_undecided(made.octree, made.octree.undecided, mesh);
+            }
             mesh.vertices = std::move(made.mesh.vertices);
             mesh.normals = std::move(made.mesh.normals);
             mesh.triangles = std::move(made.mesh.triangles);

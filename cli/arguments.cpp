@@ -297,6 +297,8 @@ struct Reader {
             "cut the solid off at a box: its least corner, then its greatest")
             ->type_name("X,Y,Z,X,Y,Z");
         add_time(sub, mesh.time, "seconds");
+        sub->add_flag("--json", mesh.json,
+                      "prove what can be proved of the mesh: one JSON document on standard output");
     }
 
     void add_eval() {
@@ -423,6 +425,8 @@ std::string contradiction(const Reader &reader) {
         return "--quality is of a JPEG: -o OUT.jpg writes one";
     if (is("render") && given("--fps") && !reader.render.frames)
         return "--fps is for --frames: one picture has no rate";
+    if (is("mesh") && reader.mesh.json && reader.mesh.out == "-")
+        return "--json and the mesh cannot both go to standard output: name a file by -o";
     if (is("mesh") && given("--tolerance") && given("--resolution"))
         return "--tolerance and --resolution both say how fine a mesh is: give one of them";
     if (is("eval") && reader.eval.at.empty() && !reader.eval.points)

@@ -70,6 +70,7 @@ struct MeshCommand {
     int resolution = 128;
     std::optional<std::array<std::array<double, 3>, 2>> bounds;
     double time = 0;
+    bool json = false; // the certificate
 };
 // `fathom eval`.
 struct EvalCommand {

@@ -7,6 +7,7 @@
 #include <fathom/mesh.h>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace fathom::cli {
 namespace {
@@ -67,6 +68,7 @@ v1::MeshOptions mesh_options(const MeshCommand &command) {
     options.tolerance = command.tolerance;
     options.resolution = command.resolution;
     options.time = command.time;
+    options.certify = command.json;
     if (!command.bounds) return options;
     options.bounds.emplace();
     for (std::size_t i = 0; i < 3; ++i) {
@@ -87,6 +89,32 @@ void say_undecided(const v1::Mesh &mesh, const MeshCommand &command, Terminal &t
                              "bound tells more",
                              command.out, mesh.undecided_cells, box.lo[0], box.lo[1], box.lo[2],
                              box.hi[0], box.hi[1], box.hi[2], 2 * command.resolution));
+}
+
+// The certificate as a document; distances are null where they do not hold everywhere.
+std::string json_of(const v1::Mesh &mesh) {
+    using Json = nlohmann::ordered_json;
+    const v1::MeshCertificate &c = *mesh.certificate;
+    Json json;
+    json["status"] = c.certified ? "certified" : "partial";
+    json["triangles"] = mesh.triangles.size();
+    json["vertices"] = mesh.vertices.size();
+    json["watertight"] = true;
+    json["self_intersections"] = 0; // both by construction
+    json["components"] = c.components;
+    json["genus"] = c.genus;
+    const auto everywhere = [&](double d) { return c.certified ? Json(d) : Json(); };
+    json["mesh_to_surface"] = everywhere(c.mesh_to_surface);
+    json["surface_to_mesh"] = everywhere(c.surface_to_mesh);
+    json["volume"] = {c.least_volume, c.largest_volume};
+    json["mesh_volume"] = c.mesh_volume;
+    json["mesh_area"] = c.mesh_area;
+    json["undecided_cells"] = mesh.undecided_cells;
+    json["unproved_places"] = c.unproved_places;
+    json["undecided"] = Json::array();
+    for (const v1::Box &box : mesh.undecided) json["undecided"].push_back({box.lo, box.hi});
+    json["rests_on"] = c.rests_on;
+    return json.dump() + "\n";
 }
 
 } // namespace
@@ -138,7 +166,9 @@ Exit run(const MeshCommand &command, Terminal &terminal) {
     if (terminal.interactive())
         terminal.say(fmt::format("{}: {} triangles, {} vertices", command.out,
                                  mesh.triangles.size(), mesh.vertices.size()));
-    return write_result(command.out, bytes, terminal);
+    const Exit exit = write_result(command.out, bytes, terminal);
+    if (exit == done && command.json) terminal.put(json_of(mesh));
+    return exit;
 }
 
 } // namespace fathom::cli

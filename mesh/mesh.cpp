@@ -74,10 +74,11 @@ Made make_mesh(const ir::Scene &scene, const Settings &settings) {
     if (const Failure failure = untangle(made, field, octree, progress); failure != Failure::None)
         return fail(failure);
     progress.phase(0.9);
-    const Vertices vertices =
-        place_vertices(made.octree, field, made.loops, octree.threads, progress);
+    Vertices vertices = place_vertices(made.octree, field, made.loops, octree.threads, progress);
     if (progress.cancelled) return fail(Failure::Cancelled);
     made.mesh = make_polygons(made.octree.lattice, made.loops, vertices);
+    made.roots = std::move(vertices.roots);
+    made.root_slack = std::move(vertices.root_slack);
     if (made.mesh.triangles.empty()) return fail(Failure::Empty);
     return made;
 }

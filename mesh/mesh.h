@@ -35,7 +35,9 @@ struct Made {
     Mesh mesh;
     Octree octree; // what the mesh was made of
     Loops loops;
-    ir::Box box; // that holds the solid
+    std::vector<Point> roots;      // by crossing: where the surface crosses the edge,
+    std::vector<float> root_slack; // … no farther from there than this
+    ir::Box box;                   // that holds the solid
 };
 
 Made make_mesh(const ir::Scene &scene, const Settings &settings);

@@ -20,10 +20,8 @@ struct Divider {
     std::vector<float> values;
 };
 
-// Half a cell's diagonal, with what rounding may take from it.
-double reach_of(const Lattice &lattice, int level) {
-    return 0.8660254037844387 * lattice.side(level) * (1 + 1e-6) +
-           8 * lattice.ulp; // the middle and the value are rounded
+double half_diagonal(const Lattice &lattice, int level) {
+    return 0.8660254037844387 * lattice.side(level);
 }
 
 // The eight parts of a cell and their middles, into boxes from `first` on.
@@ -39,16 +37,6 @@ void put_parts(const Lattice &lattice, const Index &at, int level, std::size_t f
             boxes.lo[i][middle] = boxes.hi[i][middle] = 0.5f * (a + b);
         }
     }
-}
-
-// What is known of the part that lies in box k, after ranges_over.
-Space space_of(const Evaluator &evaluator, std::size_t k, double reach, bool trusts_bounds) {
-    const cpu::Shortener &ranges = evaluator.ranges;
-    const double lo = ranges.result_lo[k], hi = ranges.result_hi[k];
-    const bool trusts = trusts_bounds && evaluator.field.proved;
-    if (lo > 0 || (trusts && ranges.result_lo[k + 8] > reach)) return Space::Outside;
-    if (hi < 0 || (trusts && ranges.result_hi[k + 8] < -reach)) return Space::Inside;
-    return Space::Open;
 }
 
 struct Branch { // a node of the levels above the tasks
@@ -67,7 +55,7 @@ std::vector<Branch> divide_top(Octree &octree, const Field &field, const OctreeS
     };
     for (int level = 0; level < levels; ++level) {
         std::vector<Parts> made(branches.size());
-        const double reach = reach_of(octree.lattice, level + 1);
+        const double half_way = half_diagonal(octree.lattice, level + 1);
         in_parallel(
             branches.size(), settings.threads, progress, [&] { return Divider(field); },
             [&](Divider &divider, std::size_t number) {
@@ -76,8 +64,8 @@ std::vector<Branch> divide_top(Octree &octree, const Field &field, const OctreeS
                 put_parts(octree.lattice, branch.cell.at, level, 0, divider.boxes);
                 ranges_over(divider.evaluator, *branch.tape, divider.boxes);
                 for (std::size_t k = 0; k < 8; ++k) {
-                    made[number].space[k] =
-                        space_of(divider.evaluator, k, reach, settings.trusts_bounds);
+                    made[number].space[k] = space_of(divider.evaluator, k, half_way,
+                                                     octree.lattice.ulp, settings.trusts_bounds);
                     if (made[number].space[k] == Space::Open)
                         made[number].tapes[k] = shortened(divider.evaluator, branch.tape, k);
                 }
@@ -143,7 +131,7 @@ std::vector<Cell> parts_of(Divider &divider, const Lattice &lattice, const cpu::
                            const std::vector<Cell> &cells, int level, bool trusts_bounds,
                            std::vector<Node> &nodes) {
     constexpr std::size_t at_once = cpu::max_boxes / 16;
-    const double reach = reach_of(lattice, level + 1);
+    const double half_way = half_diagonal(lattice, level + 1);
     std::vector<Cell> open;
     for (std::size_t begin = 0; begin < cells.size(); begin += at_once) {
         const std::size_t count = std::min(at_once, cells.size() - begin);
@@ -155,7 +143,8 @@ std::vector<Cell> parts_of(Divider &divider, const Lattice &lattice, const cpu::
             const Cell &cell = cells[begin + j];
             std::array<Space, 8> space;
             for (std::size_t k = 0; k < 8; ++k)
-                space[k] = space_of(divider.evaluator, 16 * j + k, reach, trusts_bounds);
+                space[k] =
+                    space_of(divider.evaluator, 16 * j + k, half_way, lattice.ulp, trusts_bounds);
             const bool same = std::ranges::all_of(
                 space, [&](Space s) { return s == space[0] && s != Space::Open; });
             if (same) {
@@ -319,6 +308,17 @@ void divide(Octree &octree, const Field &field, const std::vector<Cell> &leaves,
     for (std::size_t k = 0; k < leaves.size(); ++k)
         graft(octree, leaves[k].node, octree.nodes[static_cast<std::size_t>(leaves[k].node)].task,
               made[k].nodes);
+}
+
+Space space_of(const Evaluator &evaluator, std::size_t k, double half, double ulp,
+               bool trusts_bounds) {
+    const cpu::Shortener &ranges = evaluator.ranges;
+    const double lo = ranges.result_lo[k], hi = ranges.result_hi[k];
+    const bool trusts = trusts_bounds && evaluator.field.proved;
+    const double reach = half * (1 + 1e-6) + 8 * ulp; // the middle and the value are rounded
+    if (lo > 0 || (trusts && ranges.result_lo[k + 8] > reach)) return Space::Outside;
+    if (hi < 0 || (trusts && ranges.result_hi[k + 8] < -reach)) return Space::Inside;
+    return Space::Open;
 }
 
 std::vector<Cell> open_leaves(const Octree &octree) {

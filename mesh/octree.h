@@ -53,6 +53,11 @@ Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSetti
 void divide(Octree &octree, const Field &field, const std::vector<Cell> &leaves,
             const OctreeSettings &settings, Progress &progress);
 
+// Whether surface may be in box k, after ranges_over; box k + 8 is its middle, a point. `half`: half
+// its diagonal.
+Space space_of(const Evaluator &evaluator, std::size_t k, double half, double ulp,
+               bool trusts_bounds);
+
 std::vector<Cell> open_leaves(const Octree &octree); // in the order of the octree
 // The leaf that holds a cell of the finest level; `node` is none outside of the cube.
 Cell leaf_at(const Octree &octree, const Index &finest);

@@ -18,11 +18,13 @@ namespace fathom::mesh {
 struct Progress {
     std::function<bool(double done)> report;
     double from = 0, to = 1; // the part of the whole that the work at hand is
+    double told = 0;         // never less than before
     std::atomic<bool> cancelled{false};
     std::mutex mutex;
     void phase(double until) { from = to, to = until; }
     void tell(double share) {
-        if (report && !cancelled && !report(from + share * (to - from))) cancelled = true;
+        told = std::max(told, from + share * (to - from));
+        if (report && !cancelled && !report(told)) cancelled = true;
     }
 };
 

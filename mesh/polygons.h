@@ -6,7 +6,7 @@
 
 namespace fathom::mesh {
 
-// Vertices as floats, with the field's gradient there, of length 1; triangles counterclockwise as
+// Vertices as floats, with the surface's normal about there, of length 1; triangles counterclockwise as
 // seen from outside.
 struct Mesh {
     std::vector<Point> vertices, normals;

@@ -56,6 +56,44 @@ double dot(const Point &a, const Point &b) {
     return double(a[0]) * b[0] + double(a[1]) * b[1] + double(a[2]) * b[2];
 }
 
+// The surface's normal at each root: the mean of the gradients a little to both sides along the edge.
+// On the surface itself a field that is the root of a square has none, in floats.
+void find_normals(Memory &memory, const cpu::ShortTape &tape, const Lattice &lattice,
+                  const Loops &loops, const Group &group, Vertices &vertices) {
+    constexpr double share = 1.0 / 128, agreeing = 0.98;
+    const std::size_t n = group.members.size();
+    memory.points.clear();
+    std::vector<std::uint8_t> moved(2 * n);
+    for (const bool up : {false, true})
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::uint32_t number = group.members[k];
+            const Crossing &crossing = loops.crossings[number];
+            const std::size_t axis = crossing.axis;
+            const auto step = static_cast<float>(2 * lattice.unit * crossing.length * share);
+            Point at = vertices.roots[number];
+            const float low = lattice.at(axis, crossing.low[axis]),
+                        high = lattice.at(axis, crossing.low[axis] + crossing.length),
+                        root = at[axis];
+            at[axis] = std::clamp(up ? root + step : root - step, low, high);
+            moved[k + (up ? n : 0)] = std::fabs(at[axis] - root) > 0.4f * step;
+            memory.points.add(at);
+        }
+    gradients_at(memory.evaluator, tape, memory.points, memory.gradients);
+    for (std::size_t k = 0; k < n; ++k) {
+        const Crossing &crossing = loops.crossings[group.members[k]];
+        Point along{};
+        along[crossing.axis] = crossing.low_inside ? 1.0f : -1.0f;
+        const Point below = unit(memory, k, along), above = unit(memory, k + n, along);
+        const Point &outer = crossing.low_inside ? above : below;
+        Point normal = !moved[k] ? above : !moved[k + n] ? below : outer;
+        if (moved[k] && moved[k + n] && dot(below, above) > agreeing)
+            for (std::size_t i = 0; i < 3; ++i) normal[i] = 0.5f * (below[i] + above[i]);
+        const auto length = static_cast<float>(std::sqrt(dot(normal, normal)));
+        for (float &x : normal) x /= length;
+        vertices.edge_normals[group.members[k]] = normal;
+    }
+}
+
 // Where the field changes its sign between the ends of some edges: a share of each.
 struct Roots {
     std::vector<double> low, high, low_value, high_value;
@@ -112,18 +150,14 @@ void find_roots(Memory &memory, const cpu::ShortTape &tape, const Lattice &latti
         Point root = points[k];
         root[axis] = std::clamp(static_cast<float>(guess(k)), from[k], to[k]);
         vertices.roots[number] = root;
+        vertices.root_slack[number] =
+            static_cast<float>(std::max(root[axis] - roots.low[k], roots.high[k] - root[axis]));
         const auto margin =
             static_cast<float>(margin_of(lattice, 2 * lattice.unit * crossing_of(k).length));
         root[axis] = std::clamp(root[axis], from[k] + margin, to[k] - margin);
         vertices.on_edge[number] = root;
-        for (std::size_t i = 0; i < 3; ++i) points.at[i][k] = vertices.roots[number][i];
     }
-    gradients_at(memory.evaluator, tape, points, memory.gradients);
-    for (std::size_t k = 0; k < n; ++k) {
-        Point along{};
-        along[crossing_of(k).axis] = crossing_of(k).low_inside ? 1.0f : -1.0f;
-        vertices.edge_normals[group.members[k]] = unit(memory, k, along);
-    }
+    find_normals(memory, tape, lattice, loops, group, vertices);
 }
 
 Plane plane_at(const Vertices &vertices, std::int32_t crossing) {
@@ -204,10 +238,10 @@ void approach(Memory &memory, const cpu::ShortTape &tape, const Lattice &lattice
             const double step =
                 squares > 0 ? -double(before[k]) * memory.gradients[1 + i][k] / squares : 0;
             x[i] = vertices.in_cell[p][i] + step;
-            if (!(std::fabs(step) <= 0.25 * lattice.side(cell.level)))
+            if (!(std::fabs(step) <= 0.25 * lattice.side(cell.level)) ||
+                std::fabs(before[k]) < 1e-4 * lattice.side(cell.level))
                 x[i] = vertices.in_cell[p][i];
         }
-        vertices.cell_normals[p] = unit(memory, k, vertices.cell_normals[p]);
         moved.add(placed(x, room_of(lattice, cell)));
     }
     values_at(memory.evaluator, tape, moved, memory.values);
@@ -270,7 +304,7 @@ Vertices place_vertices(const Octree &octree, const Field &field, const Loops &l
     Vertices vertices;
     const std::size_t edges = loops.crossings.size(), cells = loops.patches.size();
     vertices.on_edge.resize(edges), vertices.roots.resize(edges);
-    vertices.edge_normals.resize(edges);
+    vertices.edge_normals.resize(edges), vertices.root_slack.resize(edges);
     vertices.in_cell.resize(cells), vertices.cell_normals.resize(cells);
     vertices.has_face.resize(loops.segments.size()), vertices.on_face.resize(loops.segments.size());
     const double from = progress.from, to = progress.to;

@@ -8,9 +8,11 @@ namespace fathom::mesh {
 
 struct Vertices {
     // By crossing: the point on the edge, strictly between its ends; where the surface crosses it,
-    // at one of its ends perhaps; and the field's gradient there, of length 1.
+    // at one of its ends perhaps; and its normal there, of length 1.
     std::vector<Point> on_edge, roots, edge_normals;
-    // By patch: strictly inside of its cell; the gradient, of length 1.
+    // By crossing: the field changes its sign on the edge no farther than this from the root.
+    std::vector<float> root_slack;
+    // By patch: strictly inside of its cell; the mean of its crossings' normals, of length 1.
     std::vector<Point> in_cell, cell_normals;
     // By segment: whether it has a vertex of its own on its face, and where: strictly inside of it.
     // Without one the straight way between the two cells' vertices goes through the face.

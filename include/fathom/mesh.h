@@ -37,6 +37,7 @@ struct MeshOptions {
     std::optional<Box> bounds; /**< finite: the solid is cut off there */
     double time = 0;           /**< seconds, in [0, Facts::time_end] */
     unsigned threads = 0;      /**< 0: as many as the machine has cores */
+    bool certify = false;      /**< prove what `Mesh::certificate` says; takes longer */
     /** Called now and then by one thread at a time, with the share that is done; false cancels. */
     std::function<bool(double done)> progress;
 };
@@ -52,9 +53,27 @@ enum class MeshStatus {
     Contradicted /**< signs of the field are not as was stated: `estimate:` or `lipschitz:` is wrong */
 };
 
+/** What is proved of a mesh, and what of it is a number of the mesh alone. docs/meshes.md has the
+ *  argument, and what it rests on. */
+struct MeshCertificate {
+    /** The two distances hold everywhere: no cell is undecided, no place of the mesh unproved. */
+    bool certified = false;
+    /** Every point of the mesh has surface as near as this; every point of the surface has mesh as
+     *  near as this. Where not `certified`: but for the undecided cells and the unproved places. */
+    double mesh_to_surface = 0, surface_to_mesh = 0;
+    std::size_t unproved_places = 0; /**< pieces of triangles without surface found near them */
+    std::size_t components = 0;      /**< of the mesh */
+    long genus = 0;                  /**< of the mesh, all its components together */
+    /** The solid's volume lies between these. */
+    double least_volume = 0, largest_volume = 0;
+    double mesh_volume = 0, mesh_area = 0; /**< of the triangles */
+    /** `intervals`, `single-precision`; `bound` where the proved bound left cells out. */
+    std::vector<std::string> rests_on;
+};
+
 /** A closed, oriented 2-manifold that does not cross itself (docs/meshes.md says why). Vertices are
- *  single-precision coordinates in the scene's units and axes; `normals`, one a vertex, are the
- *  gradient of the distance there, of length 1, at creases that of one side; `triangles` are
+ *  single-precision coordinates in the scene's units and axes; `normals`, one a vertex, are means
+ *  of the distance's gradients about there, of length 1, also at creases; `triangles` are
  *  counterclockwise as seen from outside. The same bytes on every machine and for any number of
  *  threads. Empty unless `status` is Done. */
 struct Mesh {
@@ -63,9 +82,11 @@ struct Mesh {
     std::vector<Point> vertices, normals;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     /** Cells in which there may be surface that the mesh does not show, since the bound is too loose
-     *  to tell, or since what is there is thinner than the finest cells; the first 1,000 of them. */
+     *  to tell, or since what is there is thinner than the finest cells; the first 1,000 of them.
+     *  With a certificate those in which surface may be farther from the mesh than a cell's side. */
     std::vector<Box> undecided;
-    std::size_t undecided_cells = 0; /**< all of them */
+    std::size_t undecided_cells = 0;            /**< all of them */
+    std::optional<MeshCertificate> certificate; /**< with MeshOptions::certify */
     explicit operator bool() const { return status == MeshStatus::Done; }
 };
 

@@ -32,6 +32,26 @@ TEST_CASE("a mesh is written in the format of its suffix") {
     CHECK((finer.exit == 0 && finer.out.size() > stl.size()));
 }
 
+TEST_CASE("--json prints the certificate, and says partial where something is undecided") {
+    ScratchFolder folder;
+    folder.write("ball.sdf", "sphere(1)\n");
+    const Result made = shell(folder, "fathom mesh ball.sdf --resolution 20 --json -o a.stl");
+    CHECK(made.exit == 0);
+    CHECK(made.err.empty());
+    for (const char *part :
+         {"{\"status\":\"certified\",", "\"watertight\":true", "\"genus\":0", "\"components\":1",
+          "\"undecided_cells\":0", "\"rests_on\":[\"intervals\",\"single-precision\",\"bound\"]"})
+        CHECK(contains(made.out, part));
+    CHECK(fs::exists(folder / "a.stl"));
+    folder.write("steep.sdf", "sphere(1).displace(p => 0.18 * fbm(2.5 * p, octaves: 7))\n");
+    const Result steep = shell(folder, "fathom mesh steep.sdf --resolution 48 --json -o a.stl");
+    CHECK(steep.exit == 0);
+    CHECK(contains(steep.out, "{\"status\":\"partial\","));
+    CHECK(contains(steep.out, "\"mesh_to_surface\":null"));
+    CHECK(contains(steep.err, "cells may hold surface"));
+    CHECK(shell(folder, "fathom mesh ball.sdf --json -o -").exit == 2);
+}
+
 TEST_CASE("what has no mesh says why, and writes nothing") {
     ScratchFolder folder;
     folder.write("ground.sdf", "plane(Y, 0)\n");
