@@ -174,14 +174,13 @@ std::optional<double> farthest_in(const Inquiry &inquiry, Evaluator &evaluator, 
         for (const Box &box : open) {
             const Real3 middle = middle_of(box);
             const double half = 0.5 * distance(real(box.lo), real(box.hi));
-            double best = inquiry.allowed - half; // what would do
-            bool found = false;
-            for (const std::uint32_t t : near) {
-                const double d = to_triangle(middle, inquiry.triangles[t]);
-                if (d <= best) best = d, found = true;
-            }
-            if (found)
-                farthest = std::max(farthest, (best + half) * outward);
+            // The first that is near enough will do: the claim is no more than what is allowed.
+            const double enough = inquiry.allowed - half;
+            double d = 2 * inquiry.allowed;
+            for (std::size_t k = 0; k < near.size() && d > enough; ++k)
+                d = to_triangle(middle, inquiry.triangles[near[k]]);
+            if (d <= enough)
+                farthest = std::max(farthest, (d + half) * outward);
             else
                 left.push_back(box);
         }
@@ -250,15 +249,13 @@ double farthest_on(const Inquiry &inquiry, const std::array<Real3, 3> &triangle,
             const Real3 middle = along({}, sum_of(piece), 1.0 / 3);
             const double radius = std::max({distance(middle, piece[0]), distance(middle, piece[1]),
                                             distance(middle, piece[2])});
-            double best = inquiry.allowed - radius;
-            bool found = false;
-            for (const std::uint32_t r : near) {
-                const double d =
-                    distance(middle, real(inquiry.made.roots[r])) + inquiry.made.root_slack[r];
-                if (d <= best) best = d, found = true;
-            }
-            if (found) {
-                farthest = std::max(farthest, (best + radius) * outward);
+            const double enough = inquiry.allowed - radius;
+            double d = 2 * inquiry.allowed;
+            for (std::size_t k = 0; k < near.size() && d > enough; ++k)
+                d = distance(middle, real(inquiry.made.roots[near[k]])) +
+                    inquiry.made.root_slack[near[k]];
+            if (d <= enough) {
+                farthest = std::max(farthest, (d + radius) * outward);
             } else if (depth == finest_piece) {
                 left.push_back(piece);
             } else {

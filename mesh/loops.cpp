@@ -243,9 +243,9 @@ Loops find_loops(const Octree &octree, unsigned threads, Progress &progress) {
     find_patches(octree, loops, loops.tangled);
     const auto before = [](const Cell &x, const Cell &y) { return x.node < y.node; };
     std::ranges::sort(loops.tangled, before);
-    const auto rest = std::ranges::unique(
-        loops.tangled, [](const Cell &x, const Cell &y) { return x.node == y.node; });
-    loops.tangled.erase(rest.begin(), rest.end());
+    const auto same = [](const Cell &x, const Cell &y) { return x.node == y.node; };
+    loops.tangled.erase(std::unique(loops.tangled.begin(), loops.tangled.end(), same),
+                        loops.tangled.end());
     return loops;
 }
 
