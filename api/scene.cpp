@@ -158,8 +158,13 @@ driver::CompileOptions driver_options(const CompileOptions &options) {
     return to;
 }
 
+CompileResult failed(Diagnostic diagnostic);
+
 CompileResult compile(std::shared_ptr<const Origin> origin) {
-    const driver::CompileOptions options = driver_options(origin->options);
+    driver::CompileOptions options = driver_options(origin->options);
+    for (const auto &[name, value] : origin->options.limits)
+        if (const std::string wrong = set_limit(options.limits, name + "=" + value); !wrong.empty())
+            return failed(sentence("usage", wrong));
     if (origin->is_file) return result_of(driver::compile_file(origin->file, options), origin);
     if (origin->options.files)
         return result_of(driver::compile_loaded(origin->name, origin->text,

@@ -290,9 +290,13 @@ std::size_t evaluate(const Program &program, Scratch &scratch, const float *cons
     return open;
 }
 
-void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in,
-                       float *const *out, std::size_t n) {
+namespace {
+
+template <class Run> void gradients_in_batches(const Program &program, GradientScratch &scratch,
+                                               const float *const *in, float *const *out,
+                                               std::size_t n, Run &&run) {
     DualCell *cells = scratch.cells;
+    const Loops<DualCell> loops = gradient_loops();
     for (std::size_t first = 0; first < n; first += batch_size) {
         std::size_t count = std::min(batch_size, n - first);
         for (std::size_t c = 0; c < program.params.size(); ++c) {
@@ -306,8 +310,7 @@ void evaluate_gradient(const Program &program, GradientScratch &scratch, const f
                     store(to[k], std::bit_cast<std::int32_t>(x));
             }
         }
-        Runner<DualCell>(program, gradient_loops(), cells, count)
-            .run(static_cast<std::uint32_t>(program.blocks.size() - 1));
+        run(Runner<DualCell>(program, loops, cells, count));
         const Program::Slot result = program.results[0];
         for (std::size_t k = 0; k < count; ++k) {
             Dual value = load<Dual>(cells[result.address + (result.shared ? 0 : k)]);
@@ -317,6 +320,21 @@ void evaluate_gradient(const Program &program, GradientScratch &scratch, const f
             out[3][first + k] = value.dz;
         }
     }
+}
+
+} // namespace
+
+void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in,
+                       float *const *out, std::size_t n) {
+    const auto root = static_cast<std::uint32_t>(program.blocks.size() - 1);
+    gradients_in_batches(program, scratch, in, out, n,
+                         [&](const Runner<DualCell> &runner) { runner.run(root); });
+}
+
+void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in,
+                       float *const *out, std::size_t n, const Selection &selection) {
+    gradients_in_batches(program, scratch, in, out, n,
+                         [&](const Runner<DualCell> &runner) { runner.run(selection); });
 }
 
 std::string dump(const Program &program) {

@@ -178,6 +178,9 @@ struct GradientScratch {
 GradientScratch make_gradient_scratch(const Program &program, const Inputs &inputs);
 void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in,
                        float *const *out, std::size_t n);
+// The same by some of the program's steps, none of whose loops has a Cut.
+void evaluate_gradient(const Program &program, GradientScratch &scratch, const float *const *in,
+                       float *const *out, std::size_t n, const Selection &selection);
 
 std::string dump(const Program &program); // one line a step, for tests and for reading
 

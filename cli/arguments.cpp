@@ -124,6 +124,7 @@ struct Reader {
     CheckCommand check;
     CompileCommand compile;
     RenderCommand render;
+    MeshCommand mesh;
     EvalCommand eval;
     ViewCommand view;
     ImportCommand import;
@@ -173,6 +174,7 @@ struct Reader {
         add_check();
         add_compile();
         add_render();
+        add_mesh();
         add_eval();
         add_import();
         add_export();
@@ -269,6 +271,41 @@ struct Reader {
             ->type_name("N");
         sub->add_flag("--cache", render.cache,
                       "read cached fields through the noise cache, as a moving view does");
+    }
+
+    void add_mesh() {
+        CLI::App *sub = command("mesh", "write the scene's surface as triangles", mesh);
+        add_scene(sub, mesh.scene);
+        add_out(
+            sub, mesh.out,
+            "the mesh, by its suffix: .stl, .obj, .ply or .glb (`-`: an STL to standard output)")
+            ->type_name("OUT.stl")
+            ->required();
+        option(
+            sub, "--tolerance",
+            [this](const std::string &word) {
+                const std::optional<double> number = parse_number(word);
+                if (!number || !(*number > 0) || !fits_single(*number))
+                    return fmt::format("wants a length above 0, as 0.01, not `{}`", word);
+                mesh.tolerance = *number;
+                return std::string();
+            },
+            "the side of the cells that the surface is drawn by, in the scene's units")
+            ->type_name("T");
+        sub->add_option("--resolution", mesh.resolution,
+                        fmt::format("instead: cells along the longest side of the solid's box, "
+                                    "{} unless said",
+                                    mesh.resolution))
+            ->check(quiet(CLI::Range(1, 8000)))
+            ->type_name("N");
+        option(
+            sub, "--bounds",
+            [this](const std::string &word) { return read_box(word, mesh.bounds.emplace()); },
+            "cut the solid off at a box: its least corner, then its greatest")
+            ->type_name("X,Y,Z,X,Y,Z");
+        add_time(sub, mesh.time, "seconds");
+        sub->add_flag("--json", mesh.json,
+                      "prove what can be proved of the mesh: one JSON document on standard output");
     }
 
     void add_eval() {
@@ -395,6 +432,10 @@ std::string contradiction(const Reader &reader) {
         return "--quality is of a JPEG: -o OUT.jpg writes one";
     if (is("render") && given("--fps") && !reader.render.frames)
         return "--fps is for --frames: one picture has no rate";
+    if (is("mesh") && reader.mesh.json && reader.mesh.out == "-")
+        return "--json and the mesh cannot both go to standard output: name a file by -o";
+    if (is("mesh") && given("--tolerance") && given("--resolution"))
+        return "--tolerance and --resolution both say how fine a mesh is: give one of them";
     if (is("eval") && reader.eval.at.empty() && !reader.eval.points)
         return "eval wants points: --at X,Y,Z or --points -";
     if (is("eval") && reader.eval.points && reader.eval.scene.file == "-")

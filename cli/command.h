@@ -64,6 +64,16 @@ struct RenderCommand {
     int quality = 90;    // of a JPEG
     bool cache = false;  // through the noise cache
 };
+// `fathom mesh`.
+struct MeshCommand {
+    SceneArguments scene;
+    std::string out;
+    double tolerance = 0; // 0: by resolution
+    int resolution = 128;
+    std::optional<std::array<std::array<double, 3>, 2>> bounds;
+    double time = 0;
+    bool json = false; // the certificate
+};
 // `fathom eval`.
 struct EvalCommand {
     SceneArguments scene;
@@ -109,9 +119,9 @@ struct BenchCommand {
     int width = 400, height = 400;
 };
 
-using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, EvalCommand, ViewCommand,
-                             ImportCommand, ExportCommand, FmtCommand, DocCommand, ExplainCommand,
-                             LspCommand, BenchCommand>;
+using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, MeshCommand, EvalCommand,
+                             ViewCommand, ImportCommand, ExportCommand, FmtCommand, DocCommand,
+                             ExplainCommand, LspCommand, BenchCommand>;
 
 // A command with the options that all commands share.
 struct Invocation {
@@ -133,6 +143,7 @@ class Terminal;
 Exit run(const CheckCommand &, Terminal &);
 Exit run(const CompileCommand &, Terminal &);
 Exit run(const RenderCommand &, Terminal &);
+Exit run(const MeshCommand &, Terminal &);
 Exit run(const EvalCommand &, Terminal &);
 Exit run(const ViewCommand &, Terminal &);
 Exit run(const ImportCommand &, Terminal &);

@@ -15,7 +15,7 @@ struct Suffix {
 };
 
 // The suffixes that promise what a file holds. Others promise nothing and are free.
-constexpr std::array<Suffix, 11> suffixes{{{".png", Content::Picture},
+constexpr std::array<Suffix, 15> suffixes{{{".png", Content::Picture},
                                            {".jpg", Content::Picture},
                                            {".jpeg", Content::Picture},
                                            {".glsl", Content::Shader},
@@ -23,6 +23,10 @@ constexpr std::array<Suffix, 11> suffixes{{{".png", Content::Picture},
                                            {".spv", Content::SpirV},
                                            {".html", Content::Page},
                                            {".htm", Content::Page},
+                                           {".stl", Content::Mesh},
+                                           {".obj", Content::Mesh},
+                                           {".ply", Content::Mesh},
+                                           {".glb", Content::Mesh},
                                            {".sdf", Content::Scene},
                                            {".yaml", Content::SaveFile},
                                            {".yml", Content::SaveFile}}};
@@ -39,6 +43,7 @@ std::string_view name_of(Content content) {
     case Content::Shader: return "a GLSL text";
     case Content::SpirV: return "a SPIR-V file";
     case Content::Page: return "a web page";
+    case Content::Mesh: return "a mesh";
     case Content::Scene: return "a scene";
     case Content::SaveFile: return "a save file";
     }
@@ -61,6 +66,7 @@ std::string writer_of(Content content) {
     case Content::Shader:
     case Content::SpirV:
     case Content::Page: return compiler_of(content);
+    case Content::Mesh: return "`fathom mesh`";
     case Content::Scene: return "`fathom import`";
     case Content::SaveFile: return "`fathom export`";
     }
@@ -129,6 +135,11 @@ bool misnamed(const std::string &out, Content content, Terminal &terminal) {
             fmt::format("fathom: -o {}: pictures are written as .png, .jpg or .jpeg", out));
         return true;
     }
+    if (content == Content::Mesh && !known) {
+        terminal.say(
+            fmt::format("fathom: -o {}: meshes are written as .stl, .obj, .ply or .glb", out));
+        return true;
+    }
     return false;
 }
 
@@ -140,11 +151,17 @@ bool overwrites(const std::string &file, const std::string &out, Terminal &termi
 
 bool overwrites(const driver::Compilation &compilation, const std::string &out,
                 Terminal &terminal) {
+    std::vector<fs::path> files;
+    for (const auto &[file, stamp] : compilation.files)
+        if (stamp.exists) files.push_back(file);
+    return overwrites(files, out, terminal);
+}
+
+bool overwrites(const std::vector<fs::path> &files, const std::string &out, Terminal &terminal) {
     std::error_code none;
     if (is_stream(out) || !fs::exists(out, none)) return false;
-    for (const auto &[file, stamp] : compilation.files)
-        if (stamp.exists && fs::equivalent(file, out, none))
-            return refuse_overwriting(out, terminal);
+    for (const fs::path &file : files)
+        if (fs::equivalent(file, out, none)) return refuse_overwriting(out, terminal);
     return false;
 }
 

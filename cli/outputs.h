@@ -8,7 +8,7 @@
 namespace fathom::cli {
 
 // What a command writes.
-enum class Content { Picture, Shader, SpirV, Page, Scene, SaveFile };
+enum class Content { Picture, Shader, SpirV, Page, Mesh, Scene, SaveFile };
 
 Content content_of(glsl::Target target); // by its suffix
 
@@ -31,6 +31,8 @@ bool misnamed(const std::string &out, Content content, Terminal &terminal);
 // scene reads; says so.
 bool overwrites(const std::string &file, const std::string &out, Terminal &terminal);
 bool overwrites(const driver::Compilation &compilation, const std::string &out, Terminal &terminal);
+bool overwrites(const std::vector<std::filesystem::path> &files, const std::string &out,
+                Terminal &terminal);
 
 // Whether `out` is a folder, or lies in none; says so. For results that take long to make.
 bool unwritable(const std::string &out, Terminal &terminal);

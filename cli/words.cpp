@@ -40,6 +40,20 @@ std::string read_point(const std::string &word, std::array<double, 3> &point) {
     return "";
 }
 
+std::string read_box(const std::string &word, std::array<std::array<double, 3>, 2> &box) {
+    std::size_t half = 0; // the third comma
+    for (int k = 0; k < 3 && half != word.npos; ++k) half = word.find(',', half + (k > 0));
+    const bool good = half != word.npos && read_point(word.substr(0, half), box[0]).empty() &&
+                      read_point(word.substr(half + 1), box[1]).empty();
+    for (std::size_t i = 0; good && i < 3; ++i)
+        if (!(box[0][i] < box[1][i]))
+            return fmt::format("the box {} is empty: its least corner comes first", word);
+    return good ? ""
+                : fmt::format("a box is X,Y,Z,X,Y,Z, its least corner first, as -1,-1,0,1,1,2, "
+                              "not `{}`",
+                              word);
+}
+
 std::string read_frames(const std::string &word, std::pair<int, int> &frames) {
     std::size_t dots = word.find("..");
     bool inclusive = dots != word.npos && word.compare(dots, 3, "..=") == 0;

@@ -4,6 +4,7 @@
 
 #include <fathom/diagnostic.h>
 #include <fathom/field.h>
+#include <fathom/mesh.h>
 #include <fathom/picture.h>
 #include <fathom/save_format.h>
 #include <fathom/scene.h>

@@ -99,6 +99,9 @@ struct CompileOptions {
     std::vector<std::filesystem::path> include_folders;
     /** Params set by expressions of the language, as `-D name=text` does. */
     std::map<std::string, std::string> definitions;
+    /** What a scene may cost, as `--limit NAME=VALUE` says it (docs/limits.md): by name, in units of
+     *  the limit. A name that there is not is an error, with the code `usage`. */
+    std::map<std::string, std::string> limits;
     /** Where named files come from. None: the file system. With one, no file is opened. */
     FileProvider files;
 };

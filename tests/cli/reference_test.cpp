@@ -85,8 +85,8 @@ TEST_CASE("help lists every command") {
     CHECK(help.exit == 0);
     CHECK(help.err.empty());
     CHECK(commands_in_help(folder) ==
-          std::set<std::string>{"view", "check", "compile", "render", "eval", "import", "export",
-                                "fmt", "doc", "explain", "lsp", "bench", "help"});
+          std::set<std::string>{"view", "check", "compile", "render", "mesh", "eval", "import",
+                                "export", "fmt", "doc", "explain", "lsp", "bench", "help"});
     for (const char *same : {"fathom --help", "fathom -h"}) {
         INFO(same);
         CHECK(shell(folder, same).out == help.out);

@@ -1,0 +1,178 @@
+#include "api/impl.h"
+
+#include "mesh/certify.h"
+#include "mesh/write.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace fathom::v1 {
+namespace {
+
+constexpr int most_cells = 8000;
+
+Mesh without_mesh(MeshStatus status, std::string message) {
+    Mesh mesh;
+    mesh.status = status;
+    mesh.message = std::move(message);
+    return mesh;
+}
+
+Mesh refused(const fathom::mesh::Made &made) {
+    using fathom::mesh::Failure;
+    switch (made.failure) {
+    case Failure::None: break;
+    case Failure::Cancelled: return without_mesh(MeshStatus::Cancelled, "cancelled");
+    case Failure::Empty:
+        return without_mesh(MeshStatus::Empty,
+                            "this scene is empty: no point lies in the solid; look for an "
+                            "intersection or a difference that leaves nothing over");
+    case Failure::Endless:
+        return without_mesh(MeshStatus::Endless,
+                            "the solid has no end: cut it off by bounds, or in the scene, as with "
+                            "`& box(10)`");
+    case Failure::TooFine:
+        return without_mesh(MeshStatus::TooFine,
+                            "that is too fine: a mesh has at most 8,192 cells a side, and single "
+                            "precision has to tell them apart where the solid is; take a larger "
+                            "tolerance, or move the solid to the origin");
+    case Failure::TooMany:
+        return without_mesh(MeshStatus::TooLarge,
+                            "that takes too many cells: take a larger tolerance");
+    case Failure::Contradicted:
+        return without_mesh(
+            MeshStatus::Contradicted,
+            fmt::format("near [{}, {}, {}] the field's sign contradicts its bound; where the bound "
+                        "is stated (`lipschitz:`, `estimate:`), state a larger one",
+                        made.place[0], made.place[1], made.place[2]));
+    }
+    return without_mesh(MeshStatus::Empty, "");
+}
+
+void list_undecided(const fathom::mesh::Octree &octree,
+                    const std::vector<fathom::mesh::Cell> &cells, Mesh &mesh) {
+    constexpr std::size_t listed = 1000;
+    mesh.undecided_cells = cells.size();
+    for (const fathom::mesh::Cell &cell : cells) {
+        if (mesh.undecided.size() == listed) break;
+        const std::int32_t side = octree.lattice.cells(cell.level);
+        mesh.undecided.push_back(
+            {point_of(octree.lattice, cell.at),
+             point_of(octree.lattice, fathom::mesh::corner(cell.at, side, 7))});
+    }
+}
+
+MeshCertificate certificate_of(const fathom::mesh::Certificate &found) {
+    MeshCertificate made;
+    made.certified = found.certified();
+    made.mesh_to_surface = found.mesh_to_surface;
+    made.surface_to_mesh = found.surface_to_mesh;
+    made.unproved_places = found.unproved.size();
+    made.components = found.components;
+    made.genus = found.genus;
+    made.least_volume = found.least_volume;
+    made.largest_volume = found.largest_volume;
+    made.mesh_volume = found.mesh_volume;
+    made.mesh_area = found.mesh_area;
+    made.rests_on = {"intervals", "single-precision"};
+    if (found.used_bound) made.rests_on.push_back("bound");
+    return made;
+}
+
+bool good(const MeshOptions &options) {
+    if (!(options.tolerance >= 0 && std::isfinite(options.tolerance))) return false;
+    if (options.tolerance == 0 && (options.resolution < 1 || options.resolution > most_cells))
+        return false;
+    if (!std::isfinite(options.time)) return false;
+    for (std::size_t i = 0; options.bounds && i < 3; ++i) {
+        const float lo = options.bounds->lo[i], hi = options.bounds->hi[i];
+        if (!(std::isfinite(lo) && std::isfinite(hi) && lo < hi)) return false;
+    }
+    return true;
+}
+
+} // namespace
+
+Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
+    if (!good(options))
+        return without_mesh(MeshStatus::TooFine,
+                            "a tolerance is a number above 0, a resolution 1 to 8,000, and bounds "
+                            "are finite, the lower ones first");
+    return guarded(
+        [&] {
+            fathom::mesh::Settings settings;
+            settings.side = options.tolerance;
+            settings.resolution = options.resolution;
+            settings.time = options.time;
+            settings.threads = options.threads;
+            const double share = options.certify ? 0.6 : 1; // of the time
+            if (options.progress)
+                settings.progress = [&](double done) { return options.progress(share * done); };
+            if (options.bounds) {
+                settings.bounds.emplace();
+                for (std::size_t i = 0; i < 3; ++i) {
+                    settings.bounds->lo[i] = options.bounds->lo[i];
+                    settings.bounds->hi[i] = options.bounds->hi[i];
+                }
+            }
+            fathom::mesh::Made made = fathom::mesh::make_mesh(ir_of(scene), settings);
+            if (made.failure != fathom::mesh::Failure::None) return refused(made);
+            Mesh mesh;
+            if (options.certify) {
+                fathom::mesh::Progress progress;
+                progress.report = options.progress;
+                progress.from = share;
+                const auto found = certify(ir_of(scene), settings, made, progress);
+                if (progress.cancelled) return without_mesh(MeshStatus::Cancelled, "cancelled");
+                mesh.certificate = certificate_of(found);
+                list_undecided(made.octree, found.undecided, mesh);
+            } else {
+                list_undecided(made.octree, made.octree.undecided, mesh);
+            }
+            mesh.vertices = std::move(made.mesh.vertices);
+            mesh.normals = std::move(made.mesh.normals);
+            mesh.triangles = std::move(made.mesh.triangles);
+            return mesh;
+        },
+        [](const Diagnostic &why) { return without_mesh(MeshStatus::TooLarge, why.message); });
+}
+
+std::optional<MeshFormat> mesh_format(std::string_view file_name) noexcept {
+    struct Suffix {
+        std::string_view text;
+        MeshFormat format;
+    };
+    constexpr Suffix suffixes[] = {{".stl", MeshFormat::Stl},
+                                   {".obj", MeshFormat::Obj},
+                                   {".ply", MeshFormat::Ply},
+                                   {".glb", MeshFormat::Glb}};
+    for (const auto &[text, format] : suffixes) {
+        if (file_name.size() <= text.size()) continue;
+        const std::string_view end = file_name.substr(file_name.size() - text.size());
+        bool same = true;
+        for (std::size_t k = 0; k < end.size(); ++k) {
+            const char c = end[k] >= 'A' && end[k] <= 'Z' ? static_cast<char>(end[k] + 32) : end[k];
+            same = same && c == text[k];
+        }
+        if (same) return format;
+    }
+    return std::nullopt;
+}
+
+std::string mesh_file(const Mesh &mesh, MeshFormat format, std::string_view name) noexcept {
+    return guarded(
+        [&] {
+            const fathom::mesh::Surface surface{mesh.vertices, mesh.normals, mesh.triangles};
+            switch (format) {
+            case MeshFormat::Stl: return file_of(surface, fathom::mesh::Format::Stl, name);
+            case MeshFormat::Obj: return file_of(surface, fathom::mesh::Format::Obj, name);
+            case MeshFormat::Ply: return file_of(surface, fathom::mesh::Format::Ply, name);
+            case MeshFormat::Glb: return file_of(surface, fathom::mesh::Format::Glb, name);
+            }
+            return std::string();
+        },
+        [](const Diagnostic &) { return std::string(); });
+}
+
+} // namespace fathom::v1

@@ -1,0 +1,174 @@
+// fathom mesh: the surface as triangles, in a file. By the public library alone; what it says of the
+// scene has no excerpts, as `fathom check` has. The mesh is whole before its file appears.
+#include "base/limits.h"
+#include "cli/interrupt.h"
+#include "cli/outputs.h"
+
+#include <fathom/mesh.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace fathom::cli {
+namespace {
+
+v1::CompileOptions library_options(const SceneArguments &scene) {
+    v1::CompileOptions options;
+    options.include_folders = scene.include_folders;
+    for (const typecheck::Override &set : scene.overrides) options.definitions[set.name] = set.text;
+    for (const LimitRow &row : limit_rows())
+        if (scene.limits.*row.member != row.usual)
+            options.limits[row.name] = fmt::to_string(scene.limits.*row.member);
+    return options;
+}
+
+std::string_view word_of(v1::Severity severity) {
+    switch (severity) {
+    case v1::Severity::Error: return "error";
+    case v1::Severity::Warning: return "warning";
+    case v1::Severity::Note: return "note";
+    }
+    return "";
+}
+
+// Says what is to be said of a scene, and how the command ends because of it.
+Exit say_diagnostics(const v1::CompileResult &result, Terminal &terminal) {
+    Exit exit = done;
+    for (const v1::Diagnostic &d : result.diagnostics) {
+        if (d.at.line == 0) {
+            terminal.say("fathom: " + d.message);
+            exit = d.code == "usage" ? usage_error : device_error;
+            continue;
+        }
+        terminal.say(fmt::format("{}:{}:{}: {}[{}]: {}", d.at.file, d.at.line, d.at.column,
+                                 word_of(d.severity), d.code, d.message));
+        for (const std::string &note : d.notes) terminal.say("  note: " + note);
+        if (!d.help.empty()) terminal.say("  help: " + d.help);
+        if (d.severity == v1::Severity::Error) exit = scene_error;
+    }
+    return result.scene ? done : exit == done ? scene_error : exit;
+}
+
+// How a command ends that made no mesh.
+Exit exit_of(v1::MeshStatus status) {
+    switch (status) {
+    case v1::MeshStatus::Done:
+    case v1::MeshStatus::Cancelled: return done;
+    case v1::MeshStatus::Empty:
+    case v1::MeshStatus::Endless:
+    case v1::MeshStatus::Contradicted: return scene_error;
+    case v1::MeshStatus::TooFine: return usage_error;
+    case v1::MeshStatus::TooLarge: return device_error;
+    }
+    return done;
+}
+
+v1::MeshOptions mesh_options(const MeshCommand &command) {
+    v1::MeshOptions options;
+    options.tolerance = command.tolerance;
+    options.resolution = command.resolution;
+    options.time = command.time;
+    options.certify = command.json;
+    if (!command.bounds) return options;
+    options.bounds.emplace();
+    for (std::size_t i = 0; i < 3; ++i) {
+        options.bounds->lo[i] = static_cast<float>((*command.bounds)[0][i]);
+        options.bounds->hi[i] = static_cast<float>((*command.bounds)[1][i]);
+    }
+    return options;
+}
+
+// What may be there and is not in the mesh.
+void say_undecided(const v1::Mesh &mesh, const MeshCommand &command, Terminal &terminal) {
+    if (mesh.undecided_cells == 0) return;
+    const v1::Box &box = mesh.undecided.front();
+    terminal.say(fmt::format("{}: {} cells may hold surface that the mesh does not show, the first "
+                             "of them from [{:.6g}, "
+                             "{:.6g}, {:.6g}] to [{:.6g}, {:.6g}, {:.6g}]; a finer mesh "
+                             "(`--resolution {}`) or a tighter "
+                             "bound tells more",
+                             command.out, mesh.undecided_cells, box.lo[0], box.lo[1], box.lo[2],
+                             box.hi[0], box.hi[1], box.hi[2], 2 * command.resolution));
+}
+
+// The certificate as a document; distances are null where they do not hold everywhere.
+std::string json_of(const v1::Mesh &mesh) {
+    using Json = nlohmann::ordered_json;
+    const v1::MeshCertificate &c = *mesh.certificate;
+    Json json;
+    json["status"] = c.certified ? "certified" : "partial";
+    json["triangles"] = mesh.triangles.size();
+    json["vertices"] = mesh.vertices.size();
+    json["watertight"] = true;
+    json["self_intersections"] = 0; // both by construction
+    json["components"] = c.components;
+    json["genus"] = c.genus;
+    const auto everywhere = [&](double d) { return c.certified ? Json(d) : Json(); };
+    json["mesh_to_surface"] = everywhere(c.mesh_to_surface);
+    json["surface_to_mesh"] = everywhere(c.surface_to_mesh);
+    json["volume"] = {c.least_volume, c.largest_volume};
+    json["mesh_volume"] = c.mesh_volume;
+    json["mesh_area"] = c.mesh_area;
+    json["undecided_cells"] = mesh.undecided_cells;
+    json["unproved_places"] = c.unproved_places;
+    json["undecided"] = Json::array();
+    for (const v1::Box &box : mesh.undecided) json["undecided"].push_back({box.lo, box.hi});
+    json["rests_on"] = c.rests_on;
+    return json.dump() + "\n";
+}
+
+} // namespace
+
+Exit run(const MeshCommand &command, Terminal &terminal) {
+    if (overwrites(command.scene.file, command.out, terminal) ||
+        misnamed(command.out, Content::Mesh, terminal))
+        return usage_error;
+    if (unwritable(command.out, terminal)) return device_error;
+    const v1::CompileResult result =
+        v1::compile_file(command.scene.file, library_options(command.scene));
+    if (const Exit exit = say_diagnostics(result, terminal); exit != done) return exit;
+    if (overwrites(result.files, command.out, terminal)) return usage_error;
+    if (command.time < 0 || command.time > result.scene->facts().time_end) {
+        terminal.say(fmt::format("fathom: --time {}: this scene is proved from 0 to {} seconds; "
+                                 "`render(time: …)` in it says to which time",
+                                 command.time, result.scene->facts().time_end));
+        return usage_error;
+    }
+    v1::MeshOptions options = mesh_options(command);
+    const Interrupts interrupts;
+    options.progress = [&](double share) {
+        terminal.progress(command.out, share);
+        return !Interrupts::noticed();
+    };
+    const v1::Mesh mesh = v1::make_mesh(*result.scene, options);
+    terminal.finish_progress();
+    if (Interrupts::noticed()) { // nothing is written
+        terminal.flush();
+        Interrupts::obey();
+    }
+    if (!mesh) {
+        const bool endless = mesh.status == v1::MeshStatus::Endless;
+        terminal.say(fmt::format("fathom: {}: no mesh: {}{}", command.scene.file, mesh.message,
+                                 endless ? "; here `--bounds X,Y,Z,X,Y,Z` does it" : ""));
+        return exit_of(mesh.status);
+    }
+    say_undecided(mesh, command, terminal);
+    const v1::MeshFormat format =
+        v1::mesh_format(command.out).value_or(v1::MeshFormat::Stl); // a stream has no suffix
+    const std::string name = std::filesystem::path(command.scene.file).stem().string();
+    const std::string bytes = v1::mesh_file(mesh, format, name == "-" ? "scene" : name);
+    if (bytes.empty()) {
+        terminal.say(fmt::format("fathom: {} triangles are more than `{}` can hold, or than there "
+                                 "is memory for",
+                                 mesh.triangles.size(), command.out));
+        return device_error;
+    }
+    if (terminal.interactive())
+        terminal.say(fmt::format("{}: {} triangles, {} vertices", command.out,
+                                 mesh.triangles.size(), mesh.vertices.size()));
+    const Exit exit = write_result(command.out, bytes, terminal);
+    if (exit == done && command.json) terminal.put(json_of(mesh));
+    return exit;
+}
+
+} // namespace fathom::cli

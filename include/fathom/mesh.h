@@ -1,0 +1,108 @@
+/** @file
+ *  A scene's surface as a mesh of triangles, and the bytes of mesh files.
+ *
+ *  @code
+ *  #include <fathom/mesh.h>
+ *  #include <cstdio>
+ *
+ *  int main() {
+ *      const auto result = fathom::compile_text("ring.sdf", "torus(1, 0.3)\n");
+ *      if (!result) return 1;
+ *      fathom::MeshOptions options;
+ *      options.resolution = 24;
+ *      const fathom::Mesh mesh = fathom::make_mesh(*result.scene, options);
+ *      if (!mesh) return std::fprintf(stderr, "%s\n", mesh.message.c_str()), 1;
+ *      const std::string stl = fathom::mesh_file(mesh, fathom::MeshFormat::Stl);
+ *      std::printf("%zu triangles, %zu bytes\n", mesh.triangles.size(), stl.size());
+ *      return stl.size() == 84 + 50 * mesh.triangles.size() ? 0 : 1;
+ *  }
+ *  @endcode
+ */
+#pragma once
+
+#include <fathom/scene.h>
+
+#include <cstdint>
+#include <span>
+
+namespace fathom::FATHOM_V1 {
+
+/** How fine a mesh is, and of what. */
+struct MeshOptions {
+    /** The side of the cells that the surface is drawn by, at most, in the scene's units; the surface
+     *  and the mesh are that near to each other, but where cells are undecided
+     *  (docs/meshes.md). 0: by `resolution`. */
+    double tolerance = 0;
+    int resolution = 128;      /**< cells along the longest side of the solid's box, 1 to 8,000 */
+    std::optional<Box> bounds; /**< finite: the solid is cut off there */
+    double time = 0;           /**< seconds, in [0, Facts::time_end] */
+    unsigned threads = 0;      /**< 0: as many as the machine has cores */
+    bool certify = false;      /**< prove what `Mesh::certificate` says; takes longer */
+    /** Called now and then by one thread at a time, with the share that is done; false cancels. */
+    std::function<bool(double done)> progress;
+};
+
+/** What came of it. */
+enum class MeshStatus {
+    Done,
+    Cancelled,
+    Empty,       /**< no point lies in the solid */
+    Endless,     /**< no box holds the solid: `bounds` cuts it off */
+    TooFine,     /**< more than 8,192 cells a side, or single precision cannot tell them apart */
+    TooLarge,    /**< more cells than are counted, or than there is memory for */
+    Contradicted /**< signs of the field are not as was stated: `estimate:` or `lipschitz:` is wrong */
+};
+
+/** What is proved of a mesh, and what of it is a number of the mesh alone. docs/meshes.md has the
+ *  argument, and what it rests on. */
+struct MeshCertificate {
+    /** The two distances hold everywhere: no cell is undecided, no place of the mesh unproved. */
+    bool certified = false;
+    /** Every point of the mesh has surface as near as this; every point of the surface has mesh as
+     *  near as this. Where not `certified`: but for the undecided cells and the unproved places. */
+    double mesh_to_surface = 0, surface_to_mesh = 0;
+    std::size_t unproved_places = 0; /**< pieces of triangles without surface found near them */
+    std::size_t components = 0;      /**< of the mesh */
+    long genus = 0;                  /**< of the mesh, all its components together */
+    /** The solid's volume lies between these. */
+    double least_volume = 0, largest_volume = 0;
+    double mesh_volume = 0, mesh_area = 0; /**< of the triangles */
+    /** `intervals`, `single-precision`; `bound` where the proved bound left cells out. */
+    std::vector<std::string> rests_on;
+};
+
+/** A closed, oriented 2-manifold that does not cross itself (docs/meshes.md says why). Vertices are
+ *  single-precision coordinates in the scene's units and axes; `normals`, one a vertex, are means
+ *  of the distance's gradients about there, of length 1, also at creases; `triangles` are
+ *  counterclockwise as seen from outside. The same bytes on every machine and for any number of
+ *  threads. Empty unless `status` is Done. */
+struct Mesh {
+    MeshStatus status = MeshStatus::Done;
+    std::string message; /**< why there is none, and what to do: a sentence in lower case */
+    std::vector<Point> vertices, normals;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    /** Cells in which there may be surface that the mesh does not show, since the bound is too loose
+     *  to tell, or since what is there is thinner than the finest cells; the first 1,000 of them.
+     *  With a certificate those in which surface may be farther from the mesh than a cell's side. */
+    std::vector<Box> undecided;
+    std::size_t undecided_cells = 0;            /**< all of them */
+    std::optional<MeshCertificate> certificate; /**< with MeshOptions::certify */
+    explicit operator bool() const { return status == MeshStatus::Done; }
+};
+
+/** Never throws. Takes some 400 bytes of memory a triangle meanwhile. */
+FATHOM_API Mesh make_mesh(const Scene &scene, const MeshOptions &options = {}) noexcept;
+
+/** The formats of mesh files: binary STL, Wavefront OBJ, binary PLY, binary glTF 2.0. Only OBJ and
+ *  GLB hold normals: each corner's, with creases of 30 degrees and more sharp. */
+enum class MeshFormat { Stl, Obj, Ply, Glb };
+
+/** By a file name's suffix, `.stl`, `.obj`, `.ply` or `.glb` in either case; or nothing. */
+FATHOM_API std::optional<MeshFormat> mesh_format(std::string_view file_name) noexcept;
+
+/** The bytes of a file. `name`: the object's, where the format has one. Empty where there is no memory
+ *  for it, or more than the format holds (a GLB: 4 GiB). */
+FATHOM_API std::string mesh_file(const Mesh &mesh, MeshFormat format,
+                                 std::string_view name = "scene") noexcept;
+
+} // namespace fathom::FATHOM_V1

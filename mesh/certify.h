@@ -1,0 +1,28 @@
+// What is proved of a mesh: how far it and the surface are apart at most, each from the other, in
+// how many pieces it is, and what volume the solid has (docs/meshes.md, 6).
+#pragma once
+
+#include "mesh/mesh.h"
+
+namespace fathom::mesh {
+
+struct Certificate {
+    // Every point of the mesh has surface as near as this, and every point of the surface in the
+    // cells that are not undecided has mesh as near as that. At most the side of a drawing cell.
+    double mesh_to_surface = 0, surface_to_mesh = 0;
+    std::vector<Cell> undecided; // leaves that may hold surface farther from the mesh
+    std::vector<Point> unproved; // pieces of triangles without surface found near them: middles
+    std::size_t components = 0;  // of the mesh
+    long genus = 0;              // of all of them together
+    double least_volume = 0, largest_volume = 0; // the solid's lies between them
+    double mesh_volume = 0, mesh_area = 0;
+    // Whether the proofs used the proved bound, besides intervals.
+    bool used_bound = false;
+    bool certified() const { return undecided.empty() && unproved.empty(); }
+};
+
+// Of a mesh of that scene and those settings.
+Certificate certify(const ir::Scene &scene, const Settings &settings, const Made &made,
+                    Progress &progress);
+
+} // namespace fathom::mesh

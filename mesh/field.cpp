@@ -1,0 +1,96 @@
+#include "mesh/field.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::mesh {
+namespace {
+
+constexpr float short_enough = 32; // kernels
+
+// How far a coordinate is beyond the nearer end, negative between them.
+float beyond(float x, float lo, float hi) { return std::max(lo - x, x - hi); }
+
+} // namespace
+
+Field::Field(const ir::Scene &scene, double time, const std::optional<ir::Box> &box)
+    : program(cpu::compile(scene, scene.distance, cpu::Choices::Apart)),
+      inputs(cpu::inputs_of(scene, time)), parts(cpu::prune_program_of(program, inputs)),
+      whole(std::make_shared<const cpu::ShortTape>(cpu::whole_tape(parts))),
+      proved(scene.rounding.subtracted == 0) {
+    for (const ir::TopLevel &top : scene.top_level)
+        proved = proved && scene.facts[top.shape.index].status == ir::ProofStatus::Proved;
+    if (!box) return;
+    cut.emplace();
+    for (std::size_t i = 0; i < 3; ++i) {
+        (*cut)[0][i] = static_cast<float>(box->lo[i]);
+        (*cut)[1][i] = static_cast<float>(box->hi[i]);
+    }
+}
+
+Evaluator::Evaluator(const Field &of)
+    : field(of), values(cpu::make_scratch(of.program, of.inputs)),
+      gradients(cpu::make_gradient_scratch(of.program, of.inputs)), ranges(of.parts) {}
+
+void values_at(Evaluator &evaluator, const cpu::ShortTape &tape, const Points &points,
+               std::vector<float> &out) {
+    const Field &field = evaluator.field;
+    out.resize(points.size());
+    const float *in[] = {points.at[0].data(), points.at[1].data(), points.at[2].data()};
+    float *to[] = {out.data()};
+    cpu::evaluate(field.program, evaluator.values, in, to, points.size(),
+                  tape.selection(field.parts), nullptr); // no tape here has a Cut
+    if (!field.cut) return;
+    const auto &[lo, hi] = *field.cut;
+    for (std::size_t k = 0; k < points.size(); ++k)
+        for (std::size_t i = 0; i < 3; ++i)
+            out[k] = std::max(out[k], beyond(points.at[i][k], lo[i], hi[i]));
+}
+
+void gradients_at(Evaluator &evaluator, const cpu::ShortTape &tape, const Points &points,
+                  std::array<std::vector<float>, 4> &out) {
+    const Field &field = evaluator.field;
+    for (std::vector<float> &column : out) column.resize(points.size());
+    const float *in[] = {points.at[0].data(), points.at[1].data(), points.at[2].data()};
+    float *to[] = {out[0].data(), out[1].data(), out[2].data(), out[3].data()};
+    cpu::evaluate_gradient(field.program, evaluator.gradients, in, to, points.size(),
+                           tape.selection(field.parts));
+    if (!field.cut) return;
+    const auto &[lo, hi] = *field.cut;
+    for (std::size_t k = 0; k < points.size(); ++k)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float x = points.at[i][k], d = beyond(x, lo[i], hi[i]);
+            if (!(d > out[0][k])) continue;
+            out[0][k] = d;
+            for (std::size_t j = 0; j < 3; ++j) out[1 + j][k] = 0;
+            out[1 + i][k] = lo[i] - x > x - hi[i] ? -1.0f : 1.0f;
+        }
+}
+
+void ranges_over(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::Boxes &boxes) {
+    const Field &field = evaluator.field;
+    cpu::run_over(field.parts, evaluator.ranges, tape.selection(field.parts), boxes);
+    if (!field.cut) return;
+    const auto &[lo, hi] = *field.cut;
+    for (std::size_t k = 0; k < boxes.count; ++k)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float a = boxes.lo[i][k], b = boxes.hi[i][k];
+            const float middle = std::clamp(0.5f * (lo[i] + hi[i]), a, b);
+            float &least = evaluator.ranges.result_lo[k], &most = evaluator.ranges.result_hi[k];
+            // It is least at the middle or the end next to it; rounding is monotone.
+            least = std::max(least, std::min({beyond(a, lo[i], hi[i]), beyond(b, lo[i], hi[i]),
+                                              beyond(middle, lo[i], hi[i])}));
+            most = std::max({most, beyond(a, lo[i], hi[i]), beyond(b, lo[i], hi[i])});
+        }
+}
+
+TapePtr shortened(Evaluator &evaluator, const TapePtr &tape, std::size_t box) {
+    if (tape->cost <= short_enough) return tape;
+    const Field &field = evaluator.field;
+    cpu::shorten(field.parts, evaluator.ranges, tape->selection(field.parts), box, false,
+                 evaluator.made);
+    if (evaluator.made.cost > 0.9f * tape->cost) return tape;
+    return std::make_shared<const cpu::ShortTape>(evaluator.made);
+}
+
+} // namespace fathom::mesh

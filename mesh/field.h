@@ -1,0 +1,68 @@
+// A scene's marched distance as meshing reads it: values and gradients at points and ranges over
+// boxes, by tapes that are shortened for the part of space at hand; cut off at a box where one is
+// given. Values are the whole tape's to the bit, whichever tape that holds at a point gave them.
+#pragma once
+
+#include "backend-cpu/prune/shorten.h"
+#include "ir/scene.h"
+
+#include <memory>
+#include <optional>
+
+namespace fathom::mesh {
+
+using Point = std::array<float, 3>;
+
+// Points by coordinate, as tapes take them.
+struct Points {
+    std::array<std::vector<float>, 3> at;
+    std::size_t size() const { return at[0].size(); }
+    void clear() {
+        for (std::vector<float> &axis : at) axis.clear();
+    }
+    void add(const Point &p) {
+        for (std::size_t i = 0; i < 3; ++i) at[i].push_back(p[i]);
+    }
+    Point operator[](std::size_t k) const { return {at[0][k], at[1][k], at[2][k]}; }
+};
+
+struct Field {
+    // `cut`: the solid ends there, too.
+    Field(const ir::Scene &scene, double time, const std::optional<ir::Box> &cut);
+    Field(const Field &) = delete;
+    Field &operator=(const Field &) = delete;
+    const cpu::Program program;
+    const cpu::Inputs inputs;
+    const cpu::PruneProgram parts; // refers to `program`
+    const std::shared_ptr<const cpu::ShortTape> whole;
+    std::optional<std::array<Point, 2>> cut; // its ends
+    // |value| is proved never to exceed the distance to the surface, in real arithmetic, and no
+    // distance was lowered for the sake of rounding.
+    bool proved = false;
+};
+
+using TapePtr = std::shared_ptr<const cpu::ShortTape>;
+
+// One thread's memory.
+struct Evaluator {
+    explicit Evaluator(const Field &of);
+    const Field &field;
+    cpu::Scratch values;
+    cpu::GradientScratch gradients;
+    cpu::Shortener ranges;
+    cpu::ShortTape made;
+};
+
+// `out`: one number a point.
+void values_at(Evaluator &evaluator, const cpu::ShortTape &tape, const Points &points,
+               std::vector<float> &out);
+// `out`: the value and its derivatives. At a kink those of one side.
+void gradients_at(Evaluator &evaluator, const cpu::ShortTape &tape, const Points &points,
+                  std::array<std::vector<float>, 4> &out);
+// Into evaluator.ranges.result_lo and result_hi: what the values in each box lie within.
+void ranges_over(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::Boxes &boxes);
+// After ranges_over, with the same tape: a tape that holds in one of the boxes; the same one where a
+// shorter one does not pay.
+TapePtr shortened(Evaluator &evaluator, const TapePtr &tape, std::size_t box);
+
+} // namespace fathom::mesh

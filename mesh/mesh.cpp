@@ -1,0 +1,86 @@
+#include "mesh/mesh.h"
+
+#include "backend-cpu/prune/solid_box.h"
+
+#include <cmath>
+#include <limits>
+
+namespace fathom::mesh {
+namespace {
+
+constexpr double box_work = 200e6; // operations on boxes, to find the solid's
+
+// The box of the solid in its cut, or why there is none.
+Failure box_of(const ir::Scene &scene, const Settings &settings, ir::Box &box) {
+    constexpr double far = cpu::endless_from;
+    ir::Box space{{-far, -far, -far}, {far, far, far}};
+    const bool known = settings.bounds || (!scene.endless && scene.bounds.finite());
+    if (known) space = settings.bounds ? *settings.bounds : scene.bounds;
+    double work = box_work;
+    box = cpu::solid_box(scene, scene.distance, space, settings.time, work);
+    if (box.empty()) return Failure::Empty;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!known && !(box.lo[i] > -far / 2 && box.hi[i] < far / 2)) return Failure::Endless;
+    return Failure::None;
+}
+
+// Cells that are tangled are divided until none is, or their parts are the finest.
+Failure untangle(Made &made, const Field &field, const OctreeSettings &settings,
+                 Progress &progress) {
+    constexpr int most_rounds = 64;
+    for (int round = 0; round < most_rounds; ++round) {
+        if (made.octree.nodes.size() > std::size_t(std::numeric_limits<std::int32_t>::max() / 8))
+            return Failure::TooMany;
+        made.loops = find_loops(made.octree, settings.threads, progress);
+        if (progress.cancelled) return Failure::Cancelled;
+        if (made.loops.torn > 0) {
+            made.place = point_of(made.octree.lattice, made.loops.torn_at);
+            return Failure::Contradicted;
+        }
+        if (made.loops.tangled.empty()) return Failure::None;
+        divide(made.octree, field, made.loops.tangled, settings, progress);
+    }
+    return Failure::None;
+}
+
+} // namespace
+
+Made make_mesh(const ir::Scene &scene, const Settings &settings) {
+    Made made;
+    const auto fail = [&](Failure failure) {
+        made.failure = failure;
+        return std::move(made);
+    };
+    if (const Failure failure = box_of(scene, settings, made.box); failure != Failure::None)
+        return fail(failure);
+    double longest = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        longest = std::max(longest, made.box.hi[i] - made.box.lo[i]);
+    const double side =
+        settings.side > 0 ? settings.side : longest / std::max(settings.resolution, 1);
+    const std::optional<Lattice> lattice = make_lattice(made.box, side, settings.extra);
+    if (!lattice) return fail(Failure::TooFine);
+
+    const Field field(scene, settings.time, settings.bounds);
+    OctreeSettings octree;
+    octree.threads =
+        settings.threads > 0 ? settings.threads : std::max(std::thread::hardware_concurrency(), 1u);
+    Progress progress;
+    progress.report = settings.progress;
+    progress.to = 0.5;
+    made.octree = make_octree(field, *lattice, octree, progress);
+    if (progress.cancelled) return fail(Failure::Cancelled);
+    progress.phase(0.6);
+    if (const Failure failure = untangle(made, field, octree, progress); failure != Failure::None)
+        return fail(failure);
+    progress.phase(0.9);
+    Vertices vertices = place_vertices(made.octree, field, made.loops, octree.threads, progress);
+    if (progress.cancelled) return fail(Failure::Cancelled);
+    made.mesh = make_polygons(made.octree.lattice, made.loops, vertices);
+    made.roots = std::move(vertices.roots);
+    made.root_slack = std::move(vertices.root_slack);
+    if (made.mesh.triangles.empty()) return fail(Failure::Empty);
+    return made;
+}
+
+} // namespace fathom::mesh

@@ -1,0 +1,45 @@
+// A scene's surface as a mesh of triangles that is closed, oriented, a 2-manifold, and does not
+// cross itself: manifold dual contouring on an octree (Ju, Losasso, Schaefer and Warren 2002;
+// Schaefer, Ju and Warren 2007) with the vertices on edges and faces that keep polygons apart (Ju
+// and Udeshi 2006). The argument: docs/meshes.md. Opens no file and prints nothing.
+#pragma once
+
+#include "mesh/polygons.h"
+
+namespace fathom::mesh {
+
+struct Settings {
+    double side = 0;      // of a cell that the surface is drawn by, at most; or
+    int resolution = 128; // cells along the longest side of the solid's box, where `side` is 0
+    int extra = 3;        // levels below, where something may be hidden between corners
+    double time = 0;      // seconds
+    std::optional<ir::Box> bounds;             // the solid is cut off at it
+    unsigned threads = 0;                      // 0: as many as the machine has cores
+    std::function<bool(double done)> progress; // as Progress::report
+};
+
+// Why there is no mesh.
+enum class Failure : std::uint8_t {
+    None,
+    Cancelled,
+    Empty,       // no point lies in the solid
+    Endless,     // no box holds the solid
+    TooFine,     // more than 8,192 cells a side, or floats cannot tell such cells apart
+    TooMany,     // cells or triangles than can be counted
+    Contradicted // signs are not as was proved
+};
+
+struct Made {
+    Failure failure = Failure::None;
+    Point place{}; // of Contradicted: about there
+    Mesh mesh;
+    Octree octree; // what the mesh was made of
+    Loops loops;
+    std::vector<Point> roots;      // by crossing: where the surface crosses the edge,
+    std::vector<float> root_slack; // … no farther from there than this
+    ir::Box box;                   // that holds the solid
+};
+
+Made make_mesh(const ir::Scene &scene, const Settings &settings);
+
+} // namespace fathom::mesh

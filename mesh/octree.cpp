@@ -1,0 +1,357 @@
+#include "mesh/octree.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::mesh {
+namespace {
+
+// How many boxes are looked at for what no corner shows: so many, or so many a crossed cell.
+constexpr std::size_t least_hidden_boxes = 2'000'000, hidden_boxes_a_cell = 64;
+constexpr int task_levels = 4; // of a task, down to the lattice's level
+
+// One thread's memory for dividing.
+struct Divider {
+    explicit Divider(const Field &field) : evaluator(field) {}
+    Evaluator evaluator;
+    cpu::Boxes boxes;
+    std::vector<std::uint64_t> keys;
+    Points points;
+    std::vector<float> values;
+};
+
+double half_diagonal(const Lattice &lattice, int level) {
+    return 0.8660254037844387 * lattice.side(level);
+}
+
+// The eight parts of a cell and their middles, into boxes from `first` on.
+void put_parts(const Lattice &lattice, const Index &at, int level, std::size_t first,
+               cpu::Boxes &boxes) {
+    const std::int32_t half = lattice.cells(level + 1);
+    for (int part = 0; part < 8; ++part) {
+        const Index lo = corner(at, half, part);
+        const std::size_t k = first + static_cast<std::size_t>(part), middle = k + 8;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float a = lattice.at(i, lo[i]), b = lattice.at(i, lo[i] + half);
+            boxes.lo[i][k] = a, boxes.hi[i][k] = b;
+            boxes.lo[i][middle] = boxes.hi[i][middle] = 0.5f * (a + b);
+        }
+    }
+}
+
+struct Branch { // a node of the levels above the tasks
+    Cell cell;
+    TapePtr tape;
+};
+
+// The levels above the tasks, one after the other.
+std::vector<Branch> divide_top(Octree &octree, const Field &field, const OctreeSettings &settings,
+                               Progress &progress, int levels) {
+    std::vector<Branch> branches{{{0, 0, {}}, field.whole}};
+    octree.nodes.emplace_back();
+    struct Parts {
+        std::array<Space, 8> space{};
+        std::array<TapePtr, 8> tapes;
+    };
+    for (int level = 0; level < levels; ++level) {
+        std::vector<Parts> made(branches.size());
+        const double half_way = half_diagonal(octree.lattice, level + 1);
+        in_parallel(
+            branches.size(), settings.threads, progress, [&] { return Divider(field); },
+            [&](Divider &divider, std::size_t number) {
+                const Branch &branch = branches[number];
+                divider.boxes.count = 16;
+                put_parts(octree.lattice, branch.cell.at, level, 0, divider.boxes);
+                ranges_over(divider.evaluator, *branch.tape, divider.boxes);
+                for (std::size_t k = 0; k < 8; ++k) {
+                    made[number].space[k] = space_of(divider.evaluator, k, half_way,
+                                                     octree.lattice.ulp, settings.trusts_bounds);
+                    if (made[number].space[k] == Space::Open)
+                        made[number].tapes[k] = shortened(divider.evaluator, branch.tape, k);
+                }
+            });
+        if (progress.cancelled) return {};
+        std::vector<Branch> below;
+        const std::int32_t half = octree.lattice.cells(level + 1);
+        for (std::size_t number = 0; number < branches.size(); ++number) {
+            const auto first = static_cast<std::int32_t>(octree.nodes.size());
+            octree.nodes[static_cast<std::size_t>(branches[number].cell.node)].children = first;
+            for (int k = 0; k < 8; ++k) {
+                const auto part = static_cast<std::size_t>(k);
+                octree.nodes.push_back({none, none, made[number].space[part], 0});
+                if (made[number].space[part] == Space::Open)
+                    below.push_back(
+                        {{first + k, level + 1, corner(branches[number].cell.at, half, k)},
+                         std::move(made[number].tapes[part])});
+            }
+        }
+        branches = std::move(below);
+    }
+    return branches;
+}
+
+std::uint64_t key_of(const Index &at) {
+    return std::uint64_t(std::uint32_t(at[0])) << 42 | std::uint64_t(std::uint32_t(at[1])) << 21 |
+           std::uint64_t(std::uint32_t(at[2]));
+}
+Index index_of(std::uint64_t key) {
+    constexpr std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
+    return {static_cast<std::int32_t>(key >> 42), static_cast<std::int32_t>(key >> 21 & mask),
+            static_cast<std::int32_t>(key & mask)};
+}
+
+// The signs at the corners of cells in which a tape holds.
+void sign(Divider &divider, const Lattice &lattice, const cpu::ShortTape &tape,
+          const std::vector<Cell> &cells, std::vector<Node> &nodes) {
+    divider.keys.clear();
+    for (const Cell &cell : cells)
+        for (int c = 0; c < 8; ++c)
+            divider.keys.push_back(key_of(corner(cell.at, lattice.cells(cell.level), c)));
+    std::ranges::sort(divider.keys);
+    divider.keys.erase(std::unique(divider.keys.begin(), divider.keys.end()), divider.keys.end());
+    divider.points.clear();
+    for (const std::uint64_t key : divider.keys)
+        divider.points.add(point_of(lattice, index_of(key)));
+    values_at(divider.evaluator, tape, divider.points, divider.values);
+    for (const Cell &cell : cells) {
+        std::uint8_t &signs = nodes[static_cast<std::size_t>(cell.node)].signs;
+        signs = 0;
+        for (int c = 0; c < 8; ++c) {
+            const auto at = std::ranges::lower_bound(
+                divider.keys, key_of(corner(cell.at, lattice.cells(cell.level), c)));
+            if (divider.values[static_cast<std::size_t>(at - divider.keys.begin())] < 0)
+                signs |= static_cast<std::uint8_t>(1 << c);
+        }
+    }
+}
+
+// Divides cells of one level, all with one tape; gives the open parts. A cell whose parts are all
+// left out, on one side, is left out itself.
+std::vector<Cell> parts_of(Divider &divider, const Lattice &lattice, const cpu::ShortTape &tape,
+                           const std::vector<Cell> &cells, int level, bool trusts_bounds,
+                           std::vector<Node> &nodes) {
+    constexpr std::size_t at_once = cpu::max_boxes / 16;
+    const double half_way = half_diagonal(lattice, level + 1);
+    std::vector<Cell> open;
+    for (std::size_t begin = 0; begin < cells.size(); begin += at_once) {
+        const std::size_t count = std::min(at_once, cells.size() - begin);
+        divider.boxes.count = 16 * count;
+        for (std::size_t j = 0; j < count; ++j)
+            put_parts(lattice, cells[begin + j].at, level, 16 * j, divider.boxes);
+        ranges_over(divider.evaluator, tape, divider.boxes);
+        for (std::size_t j = 0; j < count; ++j) {
+            const Cell &cell = cells[begin + j];
+            std::array<Space, 8> space;
+            for (std::size_t k = 0; k < 8; ++k)
+                space[k] =
+                    space_of(divider.evaluator, 16 * j + k, half_way, lattice.ulp, trusts_bounds);
+            const bool same = std::ranges::all_of(
+                space, [&](Space s) { return s == space[0] && s != Space::Open; });
+            if (same) {
+                nodes[static_cast<std::size_t>(cell.node)].space = space[0];
+                continue;
+            }
+            const auto first = static_cast<std::int32_t>(nodes.size());
+            nodes[static_cast<std::size_t>(cell.node)].children = first;
+            for (int k = 0; k < 8; ++k) {
+                const Space s = space[static_cast<std::size_t>(k)];
+                nodes.push_back({none, none, s, 0});
+                if (s == Space::Open)
+                    open.push_back(
+                        {first + k, level + 1, corner(cell.at, lattice.cells(level + 1), k)});
+            }
+        }
+    }
+    return open;
+}
+
+// A tree of its own below one cell: its nodes, the first that of the cell. Down to `until`, or where
+// `hidden` until cells are crossed.
+std::vector<Node> subtree(Divider &divider, const Lattice &lattice, const cpu::ShortTape &tape,
+                          const Cell &top, int until, bool hidden, bool trusts_bounds) {
+    std::vector<Node> nodes(1);
+    std::vector<Cell> cells{{0, top.level, top.at}};
+    for (int level = top.level; level < until && !cells.empty(); ++level) {
+        cells = parts_of(divider, lattice, tape, cells, level, trusts_bounds, nodes);
+        if (!hidden) continue;
+        sign(divider, lattice, tape, cells, nodes);
+        std::erase_if(cells, [&](const Cell &cell) {
+            return nodes[static_cast<std::size_t>(cell.node)].crossed();
+        });
+    }
+    if (!hidden) sign(divider, lattice, tape, cells, nodes);
+    return nodes;
+}
+
+// Puts a subtree in the place of a leaf.
+void graft(Octree &octree, std::int32_t leaf, std::int32_t task, const std::vector<Node> &tree) {
+    const auto offset = static_cast<std::int32_t>(octree.nodes.size()) - 1;
+    const auto placed = [&](Node node) {
+        node.task = task;
+        if (node.children != none) node.children += offset;
+        return node;
+    };
+    octree.nodes[static_cast<std::size_t>(leaf)] = placed(tree[0]);
+    for (std::size_t k = 1; k < tree.size(); ++k) octree.nodes.push_back(placed(tree[k]));
+}
+
+// Whether a crossed leaf touches an open one.
+bool beside_crossed(const Octree &octree, const Cell &cell) {
+    const std::int32_t side = octree.lattice.cells(cell.level);
+    for (int k = 0; k < 27; ++k) {
+        const Index at{cell.at[0] + (k % 3 - 1) * side, cell.at[1] + (k / 3 % 3 - 1) * side,
+                       cell.at[2] + (k / 9 - 1) * side};
+        const Cell near = leaf_at(octree, at);
+        if (near.node != none && octree.nodes[static_cast<std::size_t>(near.node)].crossed())
+            return true;
+    }
+    return false;
+}
+
+void graft_all(Octree &octree, const Field &field, const std::vector<Cell> &cells, int until,
+               bool hidden, const OctreeSettings &settings, Progress &progress) {
+    std::vector<std::vector<Node>> trees(cells.size());
+    in_parallel(
+        cells.size(), settings.threads, progress, [&] { return Divider(field); },
+        [&](Divider &divider, std::size_t k) {
+            const Node &node = octree.nodes[static_cast<std::size_t>(cells[k].node)];
+            trees[k] =
+                subtree(divider, octree.lattice, *octree.tapes[static_cast<std::size_t>(node.task)],
+                        cells[k], until, hidden, settings.trusts_bounds);
+        });
+    if (progress.cancelled) return;
+    for (std::size_t k = 0; k < cells.size(); ++k)
+        graft(octree, cells[k].node, octree.nodes[static_cast<std::size_t>(cells[k].node)].task,
+              trees[k]);
+}
+
+// Divides open cells without a crossed neighbour, level by level, as long as the work allows.
+void search_hidden(Octree &octree, const Field &field, const OctreeSettings &settings,
+                   Progress &progress) {
+    std::size_t crossed = 0;
+    std::vector<Cell> cells;
+    for (const Cell &cell : open_leaves(octree)) {
+        if (octree.nodes[static_cast<std::size_t>(cell.node)].crossed())
+            ++crossed;
+        else if (!beside_crossed(octree, cell))
+            cells.push_back(cell);
+    }
+    std::size_t boxes = std::max(least_hidden_boxes, hidden_boxes_a_cell * crossed);
+    for (int level = octree.lattice.level; level < octree.lattice.depth && !cells.empty();
+         ++level) {
+        if (16 * cells.size() > boxes) break;
+        boxes -= 16 * cells.size();
+        graft_all(octree, field, cells, level + 1, true, settings, progress);
+        if (progress.cancelled) return;
+        std::vector<Cell> parts;
+        for (const Cell &cell : cells) {
+            const std::int32_t first = octree.nodes[static_cast<std::size_t>(cell.node)].children;
+            for (int k = 0; first != none && k < 8; ++k) {
+                const Cell part{first + k, level + 1,
+                                corner(cell.at, octree.lattice.cells(level + 1), k)};
+                const Node &node = octree.nodes[static_cast<std::size_t>(part.node)];
+                if (node.space == Space::Open && !node.crossed() && !beside_crossed(octree, part))
+                    parts.push_back(part);
+            }
+        }
+        cells = std::move(parts);
+    }
+    octree.undecided = std::move(cells);
+}
+
+} // namespace
+
+Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSettings &settings,
+                   Progress &progress) {
+    Octree octree;
+    octree.lattice = lattice;
+    const double from = progress.from, to = progress.to;
+    const auto share = [&](double s) { return from + s * (to - from); };
+    progress.to = share(0.05);
+    const int top = std::max(0, lattice.level - task_levels);
+    const std::vector<Branch> branches = divide_top(octree, field, settings, progress, top);
+    std::vector<Cell> cells;
+    for (const Branch &branch : branches) {
+        octree.nodes[static_cast<std::size_t>(branch.cell.node)].task =
+            static_cast<std::int32_t>(cells.size());
+        cells.push_back(branch.cell);
+        octree.tapes.push_back(branch.tape);
+    }
+    progress.phase(share(0.8));
+    graft_all(octree, field, cells, lattice.level, false, settings, progress);
+    progress.phase(to);
+    if (!progress.cancelled) search_hidden(octree, field, settings, progress);
+    return octree;
+}
+
+void divide(Octree &octree, const Field &field, const std::vector<Cell> &leaves,
+            const OctreeSettings &settings, Progress &progress) {
+    struct Parts {
+        std::vector<Node> nodes;
+    };
+    std::vector<Parts> made(leaves.size());
+    in_parallel(
+        leaves.size(), settings.threads, progress, [&] { return Divider(field); },
+        [&](Divider &divider, std::size_t k) {
+            const Cell &leaf = leaves[k];
+            std::vector<Cell> parts;
+            for (int c = 0; c < 8; ++c)
+                parts.push_back({c + 1, leaf.level + 1,
+                                 corner(leaf.at, octree.lattice.cells(leaf.level + 1), c)});
+            made[k].nodes.resize(9);
+            made[k].nodes[0].children = 1;
+            const Node &node = octree.nodes[static_cast<std::size_t>(leaf.node)];
+            sign(divider, octree.lattice, *octree.tapes[static_cast<std::size_t>(node.task)], parts,
+                 made[k].nodes);
+        });
+    if (progress.cancelled) return;
+    for (std::size_t k = 0; k < leaves.size(); ++k)
+        graft(octree, leaves[k].node, octree.nodes[static_cast<std::size_t>(leaves[k].node)].task,
+              made[k].nodes);
+}
+
+Space space_of(const Evaluator &evaluator, std::size_t k, double half, double ulp,
+               bool trusts_bounds) {
+    const cpu::Shortener &ranges = evaluator.ranges;
+    const double lo = ranges.result_lo[k], hi = ranges.result_hi[k];
+    const bool trusts = trusts_bounds && evaluator.field.proved;
+    const double reach = half * (1 + 1e-6) + 8 * ulp; // the middle and the value are rounded
+    if (lo > 0 || (trusts && ranges.result_lo[k + 8] > reach)) return Space::Outside;
+    if (hi < 0 || (trusts && ranges.result_hi[k + 8] < -reach)) return Space::Inside;
+    return Space::Open;
+}
+
+std::vector<Cell> open_leaves(const Octree &octree) {
+    std::vector<Cell> leaves, stack{{0, 0, {}}};
+    while (!stack.empty()) {
+        const Cell cell = stack.back();
+        stack.pop_back();
+        const Node &node = octree.nodes[static_cast<std::size_t>(cell.node)];
+        if (node.children == none) {
+            if (node.space == Space::Open) leaves.push_back(cell);
+            continue;
+        }
+        for (int k = 7; k >= 0; --k)
+            stack.push_back({node.children + k, cell.level + 1,
+                             corner(cell.at, octree.lattice.cells(cell.level + 1), k)});
+    }
+    return leaves;
+}
+
+Cell leaf_at(const Octree &octree, const Index &finest) {
+    const std::int32_t side = octree.lattice.cells(0);
+    for (std::size_t i = 0; i < 3; ++i)
+        if (finest[i] < 0 || finest[i] >= side) return {};
+    Cell cell{0, 0, {}};
+    while (octree.nodes[static_cast<std::size_t>(cell.node)].children != none) {
+        const std::int32_t half = octree.lattice.cells(cell.level + 1);
+        int part = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+            if (finest[i] >= cell.at[i] + half) part |= 1 << i;
+        cell = {octree.nodes[static_cast<std::size_t>(cell.node)].children + part, cell.level + 1,
+                corner(cell.at, half, part)};
+    }
+    return cell;
+}
+
+} // namespace fathom::mesh

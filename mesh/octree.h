@@ -1,0 +1,73 @@
+// Space divided where the surface may be. A cell is left out only where no surface is in it: where
+// the ranges of the field over it leave 0 out, or where the proof says that the ball about its
+// middle which holds it is free (docs/meshes.md, 2).
+#pragma once
+
+#include "mesh/field.h"
+#include "mesh/lattice.h"
+#include "mesh/parallel.h"
+
+namespace fathom::mesh {
+
+inline constexpr std::int32_t none = -1;
+
+enum class Space : std::uint8_t { Outside, Inside, Open }; // Open: it may hold surface
+
+// A cell: divided into eight, or a leaf.
+struct Node {
+    std::int32_t children =
+        none;                 // the first of eight: bit 0 of their number is x, bit 1 y, bit 2 z
+    std::int32_t task = none; // whose tape holds in it
+    Space space = Space::Open;
+    std::uint8_t signs = 0; // of an open leaf: bit c is set where the field is negative at corner c
+    bool crossed() const { return signs != 0 && signs != 0xff; }
+};
+
+struct Cell {
+    std::int32_t node = none;
+    int level = 0;
+    Index at{}; // its least corner
+};
+
+struct Octree {
+    Lattice lattice;
+    std::vector<Node> nodes;    // the first is all of it
+    std::vector<TapePtr> tapes; // by task
+    // Open leaves without a crossed one beside them: the field does not say whether surface is in
+    // them, by the work that was spent on it.
+    std::vector<Cell> undecided;
+};
+
+struct OctreeSettings {
+    bool trusts_bounds = true; // else ranges alone leave cells out
+    unsigned threads = 1;
+};
+
+// All leaves are of the lattice's level or left out; then those open ones that no crossed cell
+// touches are divided further until they are crossed, touched or left out: to the finest level, or as
+// far as a counted amount of work goes.
+Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSettings &settings,
+                   Progress &progress);
+
+// Divides leaves once. Their parts are all open.
+void divide(Octree &octree, const Field &field, const std::vector<Cell> &leaves,
+            const OctreeSettings &settings, Progress &progress);
+
+// Whether surface may be in box k, after ranges_over; box k + 8 is its middle, a point. `half`: half
+// its diagonal.
+Space space_of(const Evaluator &evaluator, std::size_t k, double half, double ulp,
+               bool trusts_bounds);
+
+std::vector<Cell> open_leaves(const Octree &octree); // in the order of the octree
+// The leaf that holds a cell of the finest level; `node` is none outside of the cube.
+Cell leaf_at(const Octree &octree, const Index &finest);
+
+inline Index corner(const Index &at, std::int32_t side, int number) {
+    return {at[0] + (number & 1 ? side : 0), at[1] + (number & 2 ? side : 0),
+            at[2] + (number & 4 ? side : 0)};
+}
+inline Point point_of(const Lattice &lattice, const Index &at) {
+    return {lattice.at(0, at[0]), lattice.at(1, at[1]), lattice.at(2, at[2])};
+}
+
+} // namespace fathom::mesh

@@ -1,0 +1,87 @@
+// `fathom mesh` as scripts see it: files by suffix, exit statuses, and what is left behind.
+#include "shell.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstring>
+
+TEST_CASE("a mesh is written in the format of its suffix") {
+    ScratchFolder folder;
+    folder.write("ring.sdf", "param r = 1 in 0.5..2\ntorus(r, 0.3)\n");
+    for (const char *name : {"a.stl", "a.obj", "a.ply", "a.glb", "a.STL"}) {
+        INFO(name);
+        const Result made =
+            shell(folder, std::string("fathom mesh ring.sdf --resolution 12 -o ") + name);
+        CHECK(made.exit == 0);
+        CHECK(made.err.empty());
+        CHECK(made.out.empty());
+    }
+    CHECK(folder.read("a.obj").starts_with("# by Fathom\no ring\nv "));
+    CHECK(folder.read("a.ply").starts_with("ply\n"));
+    CHECK(folder.read("a.glb").starts_with("glTF"));
+    const std::string stl = folder.read("a.stl");
+    CHECK(stl == folder.read("a.STL"));
+    std::uint32_t triangles = 0;
+    REQUIRE(stl.size() > 84);
+    std::memcpy(&triangles, stl.data() + 80, 4);
+    CHECK(stl.size() == 84 + 50 * std::size_t{triangles});
+    CHECK(shell(folder, "fathom mesh ring.sdf --resolution 12 -o -").out == stl);
+    CHECK(shell(folder, "cat ring.sdf | fathom mesh - --resolution 12 -o -").out == stl);
+    CHECK(shell(folder, "fathom mesh ring.sdf -D r=2 --resolution 12 -o -").out != stl);
+    const Result finer = shell(folder, "fathom mesh ring.sdf --tolerance 0.1 -o -");
+    CHECK((finer.exit == 0 && finer.out.size() > stl.size()));
+}
+
+TEST_CASE("--json prints the certificate, and says partial where something is undecided") {
+    ScratchFolder folder;
+    folder.write("ball.sdf", "sphere(1)\n");
+    const Result made = shell(folder, "fathom mesh ball.sdf --resolution 20 --json -o a.stl");
+    CHECK(made.exit == 0);
+    CHECK(made.err.empty());
+    for (const char *part :
+         {"{\"status\":\"certified\",", "\"watertight\":true", "\"genus\":0", "\"components\":1",
+          "\"undecided_cells\":0", "\"rests_on\":[\"intervals\",\"single-precision\",\"bound\"]"})
+        CHECK(contains(made.out, part));
+    CHECK(fs::exists(folder / "a.stl"));
+    folder.write("steep.sdf", "sphere(1).displace(p => 0.18 * fbm(2.5 * p, octaves: 7))\n");
+    const Result steep = shell(folder, "fathom mesh steep.sdf --resolution 48 --json -o a.stl");
+    CHECK(steep.exit == 0);
+    CHECK(contains(steep.out, "{\"status\":\"partial\","));
+    CHECK(contains(steep.out, "\"mesh_to_surface\":null"));
+    CHECK(contains(steep.err, "cells may hold surface"));
+    CHECK(shell(folder, "fathom mesh ball.sdf --json -o -").exit == 2);
+}
+
+TEST_CASE("what has no mesh says why, and writes nothing") {
+    ScratchFolder folder;
+    folder.write("ground.sdf", "plane(Y, 0)\n");
+    folder.write("nothing.sdf", "sphere(1) & sphere(1).translate(x: 5)\n");
+    folder.write("ball.sdf", "sphere(1)\n");
+    folder.write("wrong.sdf", "shpere(1)\n");
+    const auto fails = [&](const std::string &arguments, int exit, const std::string &words) {
+        INFO(arguments);
+        const Result made = shell(folder, "fathom mesh " + arguments);
+        CHECK(made.exit == exit);
+        INFO(made.err);
+        CHECK(contains(made.err, words));
+        CHECK_FALSE(fs::exists(folder / "a.stl"));
+    };
+    fails("ground.sdf -o a.stl", 1, "`--bounds X,Y,Z,X,Y,Z`");
+    fails("nothing.sdf -o a.stl", 1, "empty");
+    fails("wrong.sdf -o a.stl", 1, "wrong.sdf:1:1: error[unknown-name]");
+    fails("none.sdf -o a.stl", 3, "none.sdf");
+    fails("ball.sdf -o a.stl -D r=1", 2, "r");
+    fails("ball.sdf -o a.stl --tolerance 1e-9", 2, "too fine");
+    fails("ball.sdf -o a.stl --tolerance -1", 2, "above 0");
+    fails("ball.sdf -o a.stl --tolerance 1 --resolution 5", 2, "one of them");
+    fails("ball.sdf -o a.stl --resolution 0", 2, "--resolution");
+    fails("ball.sdf -o a.stl --bounds 1,1,1,0,0,0", 2, "least corner");
+    fails("ball.sdf -o a.stl --bounds 1,1", 2, "X,Y,Z,X,Y,Z");
+    fails("ball.sdf -o a.stl --time -1", 2, "--time");
+    fails("ball.sdf", 2, "-o");
+    fails("ball.sdf -o a.png", 2, "`fathom render`");
+    fails("ball.sdf -o a.txt", 2, ".stl, .obj, .ply or .glb");
+    fails("ball.sdf -o none/a.stl", 3, "none");
+    CHECK(shell(folder, "fathom mesh ground.sdf --bounds=-1,-1,-1,1,1,1 -o a.stl").exit == 0);
+    CHECK(fs::exists(folder / "a.stl"));
+}

@@ -1,0 +1,111 @@
+// Certificates: what they say is true where the truth is known, and what is not known they do not
+// say.
+#include "driver/compile.h"
+#include "mesh/certify.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+
+using namespace fathom;
+
+namespace {
+
+struct Certified {
+    mesh::Made made;
+    mesh::Certificate certificate;
+};
+
+Certified certified(const std::string &text, mesh::Settings settings) {
+    const driver::Compilation c =
+        driver::compile_text("mesh.sdf", text, FATHOM_SOURCE_DIR "/examples/parts", {});
+    REQUIRE(c.good());
+    Certified result;
+    result.made = mesh::make_mesh(c.scene, settings);
+    REQUIRE(result.made.failure == mesh::Failure::None);
+    mesh::Progress progress;
+    result.certificate = mesh::certify(c.scene, settings, result.made, progress);
+    return result;
+}
+
+mesh::Settings cells(int resolution) {
+    mesh::Settings settings;
+    settings.resolution = resolution;
+    return settings;
+}
+
+} // namespace
+
+TEST_CASE("a ball's certificate encloses what is known of balls") {
+    const auto [made, certificate] = certified("sphere(1)", cells(30));
+    CHECK(certificate.certified());
+    const double side = made.octree.lattice.side(made.octree.lattice.level);
+    CHECK(certificate.surface_to_mesh <= side);
+    CHECK(certificate.mesh_to_surface <= side);
+    double farthest = 0; // of the vertices, from the ball
+    for (const mesh::Point &p : made.mesh.vertices)
+        farthest = std::max(farthest, std::fabs(std::hypot(p[0], p[1], p[2]) - 1.0));
+    CHECK(farthest <= certificate.mesh_to_surface);
+    const double volume = 4.0 / 3 * std::numbers::pi;
+    CHECK(certificate.least_volume < volume);
+    CHECK(volume < certificate.largest_volume);
+    CHECK(certificate.largest_volume - certificate.least_volume < 3 * side * 4 * std::numbers::pi);
+    CHECK(certificate.mesh_volume == Approx(volume).epsilon(0.01));
+    CHECK((certificate.components == 1 && certificate.genus == 0));
+}
+
+TEST_CASE("pieces and handles of the mesh are counted") {
+    const auto [made, certificate] =
+        certified("torus(1, 0.3) | sphere(0.4) | menger(1, 1).translate(x: 3)", cells(70));
+    CHECK(certificate.components == 3);
+    CHECK(certificate.genus == 6);
+    CHECK(certificate.certified());
+}
+
+TEST_CASE("corners and creases are certified") {
+    for (const char *text : {"box([2, 1, 1.5])", "box(1) - sphere(0.62)", "cone(1, 1.5)",
+                             "box(1).rotate(0.4, axis: [1, 2, 3])"}) {
+        INFO(text);
+        const auto [made, certificate] = certified(text, cells(25));
+        CHECK(certificate.undecided.size() == 0);
+        CHECK(certificate.unproved.size() == 0);
+    }
+}
+
+TEST_CASE("a mesh that misses part of the surface is not certified") {
+    mesh::Settings settings = cells(20);
+    settings.extra = 0; // nothing is looked for between corners
+    const std::string text = "sphere(1).translate(x: -2) | box([0.002, 1, 1]).translate(x: 1.11)";
+    const auto [made, certificate] = certified(text, settings);
+    CHECK(certificate.components == 1); // the plate is missed
+    CHECK_FALSE(certificate.certified());
+    CHECK(certificate.undecided.size() > 20);
+    for (const mesh::Cell &cell : certificate.undecided) // all of them lie about the plate
+        CHECK(mesh::point_of(made.octree.lattice, cell.at)[0] > 0.8f);
+    // Wherever the plate is, some undecided cell is.
+    for (int k = 0; k < 100; ++k) {
+        const double y = (k % 10) / 10.0 - 0.45, z = (k / 10) / 10.0 - 0.45;
+        bool found = false;
+        for (const mesh::Cell &cell : certificate.undecided) {
+            const auto lo = mesh::point_of(made.octree.lattice, cell.at),
+                       hi = mesh::point_of(
+                           made.octree.lattice,
+                           mesh::corner(cell.at, made.octree.lattice.cells(cell.level), 7));
+            found = found || (lo[0] <= 1.11f && hi[0] >= 1.11f && lo[1] <= y && hi[1] >= y &&
+                              lo[2] <= z && hi[2] >= z);
+        }
+        CHECK(found);
+    }
+}
+
+TEST_CASE("a mesh that is moved from its surface is not certified") {
+    const driver::Compilation c = driver::compile_text("mesh.sdf", "sphere(1)", "", {});
+    REQUIRE(c.good());
+    mesh::Made made = mesh::make_mesh(c.scene, cells(24));
+    for (mesh::Point &p : made.mesh.vertices) p[0] += 0.4f;
+    mesh::Progress progress;
+    const mesh::Certificate certificate = mesh::certify(c.scene, cells(24), made, progress);
+    CHECK(certificate.unproved.size() > 0);
+    CHECK_FALSE(certificate.undecided.empty());
+}

@@ -1,0 +1,180 @@
+// Meshes of scenes whose topology, volume and corners are known.
+#include "driver/compile.h"
+#include "mesh/mesh.h"
+#include "tests/support/mesh_checks.h"
+
+#include <catch2/catch.hpp>
+
+#include <numbers>
+
+using namespace fathom;
+
+namespace {
+
+mesh::Made mesh_of(const std::string &text, const mesh::Settings &settings) {
+    const driver::Compilation c =
+        driver::compile_text("mesh.sdf", text, FATHOM_SOURCE_DIR "/examples/parts", {});
+    INFO(text);
+    REQUIRE(c.good());
+    return mesh::make_mesh(c.scene, settings);
+}
+
+mesh::Made mesh_of(const std::string &text, int resolution) {
+    mesh::Settings settings;
+    settings.resolution = resolution;
+    return mesh_of(text, settings);
+}
+
+test::Survey checked(const mesh::Made &made) {
+    REQUIRE(made.failure == mesh::Failure::None);
+    const test::Survey found = test::survey(made.mesh.vertices, made.mesh.triangles);
+    CHECK(found.border_edges == 0);
+    CHECK(found.crowded_edges == 0);
+    CHECK(found.turned_edges == 0);
+    CHECK(found.pinched == 0);
+    CHECK(found.degenerate == 0);
+    CHECK(found.equal_points == 0);
+    CHECK(test::crossings(made.mesh.vertices, made.mesh.triangles) == 0);
+    CHECK(found.volume > 0); // the outside is where it belongs
+    return found;
+}
+
+} // namespace
+
+TEST_CASE("a ball: closed, of genus 0, with its volume and area") {
+    const test::Survey found = checked(mesh_of("sphere(1)", 32));
+    CHECK(found.components == 1);
+    CHECK(found.genus == 0);
+    CHECK(found.volume == Approx(4.0 / 3 * std::numbers::pi).epsilon(0.01));
+    CHECK(found.area == Approx(4 * std::numbers::pi).epsilon(0.01));
+}
+
+TEST_CASE("components and genus where they are known") {
+    struct Known {
+        const char *text;
+        int resolution;
+        std::size_t components;
+        long genus;
+    };
+    const Known known[] = {
+        {"torus(1, 0.3)", 24, 1, 1},
+        {"torus(1, 0.3)", 61, 1, 1},
+        {"menger(2, 1)", 40, 1, 5},
+        {"menger(2, 2)", 64, 1, 81},
+        {"sphere(0.5).translate(x: -1) | sphere(0.5).translate(x: 1)", 40, 2, 0},
+        {"sphere(1).shell(0.1)", 60, 2, 0},
+        {"box(1) | box(1).translate(x: 2.5) | torus(0.4, 0.1).translate(y: 2)", 70, 3, 1},
+    };
+    for (const Known &k : known) {
+        INFO(k.text << " at " << k.resolution);
+        const test::Survey found = checked(mesh_of(k.text, k.resolution));
+        CHECK(found.components == k.components);
+        CHECK(found.genus == k.genus);
+    }
+}
+
+TEST_CASE("sharp edges and corners are kept") {
+    for (const int resolution : {9, 20, 33}) {
+        const mesh::Made made = mesh_of("box([2, 1, 1.5])", resolution);
+        const test::Survey found = checked(made);
+        CHECK(found.volume == Approx(3).epsilon(1e-4));
+        CHECK(found.area == Approx(2 * (2 + 3 + 1.5)).epsilon(1e-4));
+        std::size_t corners = 0;
+        for (const mesh::Point &p : made.mesh.vertices)
+            corners += std::fabs(std::fabs(p[0]) - 1) < 1e-4 &&
+                       std::fabs(std::fabs(p[1]) - 0.5) < 1e-4 &&
+                       std::fabs(std::fabs(p[2]) - 0.75) < 1e-4;
+        CHECK(corners == 8);
+    }
+}
+
+TEST_CASE("solids that touch, and ones finer than the cells, still give a closed mesh") {
+    for (const char *text : {"box(1) | box(1).translate([1, 1, 0])",      // along an edge
+                             "box(1) | box(1).translate([1, 1, 1])",      // at a corner
+                             "box(1) | box(1).translate(x: 1.0001)",      // all but
+                             "gyroid(0.5, 0.05).within(ball(1))",         //
+                             "menger(2, 3)", "sphere(1) - sphere(0.999)", //
+                             "(sphere(1) | sphere(0.3).translate(x: 1.2)) - box([0.01, 3, 3])"})
+        for (const int resolution : {7, 18, 31}) {
+            INFO(text << " at " << resolution);
+            checked(mesh_of(text, resolution));
+        }
+}
+
+TEST_CASE("a thin wall between the corners of the lattice is found") {
+    const mesh::Made made =
+        mesh_of("sphere(0.4).translate(x: -4) | box([0.01, 3, 3]).translate(x: 2)", 100);
+    const test::Survey found = checked(made);
+    CHECK(found.components == 2);
+    CHECK(found.volume == Approx(0.01 * 9 + 4.0 / 3 * std::numbers::pi * 0.064).epsilon(0.02));
+}
+
+TEST_CASE("the same mesh for any number of threads") {
+    mesh::Settings settings;
+    settings.resolution = 50;
+    std::optional<mesh::Mesh> first;
+    for (const unsigned threads : {1u, 2u, 5u, 16u}) {
+        settings.threads = threads;
+        const mesh::Made made =
+            mesh_of("smooth_union(0.2) { sphere(1); box(1.4).rotate(0.3, axis: X) }", settings);
+        REQUIRE(made.failure == mesh::Failure::None);
+        if (!first) first = made.mesh;
+        CHECK(made.mesh.vertices == first->vertices);
+        CHECK(made.mesh.normals == first->normals);
+        CHECK(made.mesh.triangles == first->triangles);
+    }
+}
+
+TEST_CASE("what has no end, is empty or is too fine gives no mesh, and says which") {
+    CHECK(mesh_of("plane(Y, 0)", 20).failure == mesh::Failure::Endless);
+    CHECK(mesh_of("sphere(1) & sphere(1).translate(x: 5)", 20).failure == mesh::Failure::Empty);
+    mesh::Settings settings;
+    settings.side = 1e-7;
+    CHECK(mesh_of("sphere(1)", settings).failure == mesh::Failure::TooFine);
+    settings = {};
+    settings.side = 0.01;
+    CHECK(mesh_of("sphere(1).translate(x: 1e6)", settings).failure == mesh::Failure::TooFine);
+}
+
+TEST_CASE("bounds cut the solid off, with sharp edges") {
+    mesh::Settings settings;
+    settings.resolution = 30;
+    settings.bounds = ir::Box{{-1, -1, -1}, {1, 2, 1}};
+    const test::Survey found = checked(mesh_of("plane(Y, 0)", settings));
+    CHECK(found.components == 1);
+    CHECK(found.volume == Approx(4).epsilon(1e-3));
+}
+
+TEST_CASE("the survey counts what is wrong with a mesh") {
+    // A tetrahedron; then without a side, with a side turned, and with another one stuck through it.
+    const std::vector<test::MeshPoint> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const std::vector<test::MeshTriangle> solid{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+    const test::Survey good = test::survey(points, solid);
+    CHECK((good.closed() && good.genus == 0 && good.components == 1));
+    CHECK(good.volume == Approx(1.0 / 6));
+    CHECK(test::crossings(points, solid) == 0);
+    CHECK(test::survey(points, std::span(solid).first(3)).border_edges == 3);
+    std::vector<test::MeshTriangle> turned = solid;
+    std::swap(turned[0][0], turned[0][1]);
+    CHECK(test::survey(points, turned).turned_edges == 3);
+    std::vector<test::MeshPoint> two = points;
+    std::vector<test::MeshTriangle> both = solid;
+    for (const test::MeshPoint &p : points) two.push_back({p[0] + 0.1f, p[1] + 0.15f, p[2] - 0.3f});
+    for (const test::MeshTriangle &t : solid) both.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
+    CHECK(test::survey(two, both).closed());
+    CHECK(test::crossings(two, both) > 0);
+    std::vector<test::MeshTriangle> pinched = solid; // two solids at one vertex
+    for (const test::MeshTriangle &t : solid) {
+        const auto of = [](std::uint32_t v) { return v == 0 ? 0 : v + 4; };
+        pinched.push_back({of(t[0]), of(t[1]), of(t[2])});
+    }
+    CHECK(test::survey(two, pinched).pinched == 1);
+}
+
+TEST_CASE("a mesh can be cancelled") {
+    mesh::Settings settings;
+    int calls = 0;
+    settings.progress = [&](double) { return ++calls < 3; };
+    CHECK(mesh_of("sphere(1)", settings).failure == mesh::Failure::Cancelled);
+    CHECK(calls == 3);
+}

@@ -1,0 +1,130 @@
+// The bytes of mesh files, read back by what their formats say.
+#include "mesh/write.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+using namespace fathom;
+using namespace fathom::mesh;
+
+namespace {
+
+// A tetrahedron with a right angle, its normals away from its middle.
+Mesh corner_of_a_cube() {
+    Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1f}};
+    mesh.normals = {{-0.6f, -0.64f, -0.48f}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+    return mesh;
+}
+
+std::string bytes_of(const Mesh &mesh, Format format, std::string_view name = "a") {
+    return file_of({mesh.vertices, mesh.normals, mesh.triangles}, format, name);
+}
+
+template <class Number> Number read(const std::string &bytes, std::size_t at) {
+    Number number;
+    REQUIRE(at + sizeof number <= bytes.size());
+    std::memcpy(&number, bytes.data() + at, sizeof number);
+    return number;
+}
+
+} // namespace
+
+TEST_CASE("a binary STL: a head that is no text's, a count, 50 bytes a triangle") {
+    const Mesh mesh = corner_of_a_cube();
+    const std::string bytes = bytes_of(mesh, Format::Stl);
+    REQUIRE(bytes.size() == 84 + 4 * 50);
+    CHECK_FALSE(bytes.starts_with("solid"));
+    CHECK(read<std::uint32_t>(bytes, 80) == 4);
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t i = 0; i < 3; ++i)
+                CHECK(read<float>(bytes, 84 + 50 * k + 12 + 12 * c + 4 * i) ==
+                      mesh.vertices[mesh.triangles[k][c]][i]);
+    // The first one looks down, the second to -y.
+    CHECK((read<float>(bytes, 84) == 0 && read<float>(bytes, 92) == -1));
+    CHECK((read<float>(bytes, 134) == 0 && read<float>(bytes, 138) == -1));
+}
+
+TEST_CASE("an OBJ counts from 1, keeps every digit, and its name is one word") {
+    const Mesh mesh = corner_of_a_cube();
+    std::istringstream lines(bytes_of(mesh, Format::Obj, "two words\nv 9 9 9"));
+    std::vector<Point> points;
+    std::size_t normals = 0, faces = 0, names = 0;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("o ")) {
+            ++names;
+            CHECK(line == "o two_words_v_9_9_9");
+        }
+        if (line.starts_with("vn ")) ++normals;
+        if (line.starts_with("v ")) {
+            Point p;
+            std::istringstream(line.substr(2)) >> p[0] >> p[1] >> p[2];
+            points.push_back(p);
+        }
+        if (line.starts_with("f ")) {
+            std::array<std::size_t, 6> index{};
+            REQUIRE(std::sscanf(line.c_str(), "f %zu//%zu %zu//%zu %zu//%zu", &index[0], &index[1],
+                                &index[2], &index[3], &index[4], &index[5]) == 6);
+            for (std::size_t c = 0; c < 3; ++c) {
+                CHECK(index[2 * c] == mesh.triangles[faces][c] + 1);
+                CHECK((index[2 * c + 1] >= 1 && index[2 * c + 1] <= normals));
+            }
+            ++faces;
+        }
+    }
+    CHECK(points == mesh.vertices);
+    CHECK((faces == 4 && names == 1 && normals > 4)); // creases have normals of their own
+}
+
+TEST_CASE("a PLY: what its head says, little-endian") {
+    const Mesh mesh = corner_of_a_cube();
+    const std::string bytes = bytes_of(mesh, Format::Ply), end = "end_header\n";
+    CHECK(bytes.starts_with("ply\nformat binary_little_endian 1.0\n"));
+    CHECK(bytes.find("element vertex 4\n") != bytes.npos);
+    CHECK(bytes.find("element face 4\n") != bytes.npos);
+    const std::size_t data = bytes.find(end) + end.size();
+    REQUIRE(bytes.size() == data + 4 * 12 + 4 * 13);
+    CHECK(read<float>(bytes, data + 3 * 12 + 8) == 0.1f);
+    CHECK(read<std::uint8_t>(bytes, data + 48) == 3);
+    CHECK(read<std::uint32_t>(bytes, data + 48 + 5) == 2);
+}
+
+TEST_CASE("a GLB: chunks, views and accessors fit their data") {
+    const Mesh mesh = corner_of_a_cube();
+    const std::string bytes = bytes_of(mesh, Format::Glb, "a \"name\"\xff");
+    CHECK(bytes.starts_with("glTF"));
+    CHECK(read<std::uint32_t>(bytes, 4) == 2);
+    CHECK(read<std::uint32_t>(bytes, 8) == bytes.size());
+    const std::size_t length = read<std::uint32_t>(bytes, 12);
+    CHECK((length % 4 == 0 && bytes.substr(16, 4) == "JSON"));
+    const auto json = nlohmann::json::parse(bytes.substr(20, length));
+    const std::size_t data = 20 + length + 8;
+    CHECK(read<std::uint32_t>(bytes, 20 + length) == bytes.size() - data);
+    CHECK(json["buffers"][0]["byteLength"] == bytes.size() - data);
+    std::size_t end = 0;
+    for (const auto &view : json["bufferViews"]) {
+        CHECK(view.value("byteOffset", 0u) == end);
+        end += view["byteLength"].get<std::size_t>();
+    }
+    CHECK(end == bytes.size() - data);
+    const std::size_t vertices = json["accessors"][0]["count"],
+                      corners = json["accessors"][2]["count"];
+    CHECK((corners == 12 && vertices > 4)); // creases are split
+    CHECK(json["accessors"][1]["count"] == vertices);
+    CHECK(json["accessors"][0]["max"][2].get<float>() == 0.1f);
+    for (std::size_t k = 0; k < vertices; ++k) {
+        double squares = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float x = read<float>(bytes, data + 12 * (vertices + k) + 4 * i);
+            squares += double(x) * x;
+        }
+        CHECK(squares == Approx(1));
+    }
+    for (std::size_t k = 0; k < corners; ++k)
+        CHECK(read<std::uint32_t>(bytes, data + 24 * vertices + 4 * k) < vertices);
+}
