@@ -197,6 +197,7 @@ std::optional<WaveParts> wave(Graph &graph, NodeId id) {
             }
         }
     }
+    a = graph.arg(id, 0), b = graph.arg(id, 1); // the loop has swapped them
     if (node.op == Op::Sub && graph[b].op == Op::Round && graph.arg(b, 0) == a)
         return WaveParts{a, graph.splat(graph.number(1), node.type)};
     if (node.op == Op::Sub && graph[b].op == Op::Mul)

@@ -1,4 +1,5 @@
 // Flattening: nodes in schedule order, one scope a function body and a loop body.
+// Long: one flattener, whose looks at nodes share its scopes.
 #include "proof/tape.h"
 
 #include "proof/borders.h"
@@ -291,13 +292,31 @@ struct Flattener {
         return emit_plain(scope, id, std::move(out));
     }
 
+    // Does the step that a wave is made with? x - m*round(x/m), held or not, x % m - m/2, …
+    bool step_cancels(NodeId wave) const {
+        if (const auto rounded = rounding_in(graph.arg(wave, 1)))
+            return cancelling.contains(*rounded);
+        return std::ranges::any_of(graph.args(wave), [&](NodeId arg) {
+            return (graph[arg].op == Op::Mod || graph[arg].op == Op::Fract) &&
+                   cancelling.contains(arg);
+        });
+    }
+    std::optional<NodeId> rounding_in(NodeId id) const {
+        if (graph[id].op == Op::Round) return id;
+        if (graph[id].op == Op::Clamp) return rounding_in(graph.arg(id, 0));
+        if (graph[id].op != Op::Mul) return {};
+        for (NodeId factor : graph.args(id))
+            if (const auto found = rounding_in(factor)) return found;
+        return {};
+    }
+
     Slot sum(Scope &scope, NodeId id, Instruction out) {
         if (const auto parts = wave(graph, id)) {
-            for (NodeId arg : args_of(id)) out.cancels = out.cancels || cancelling.contains(arg);
+            out.cancels = out.cancels || step_cancels(id);
             return emit(scope, out, Form::Wave, {parts->x, parts->m});
         }
         if (const auto parts = held_wave(graph, id)) {
-            for (NodeId arg : args_of(id)) out.cancels = out.cancels || cancelling.contains(arg);
+            out.cancels = out.cancels || step_cancels(id);
             return emit(scope, out, Form::HeldWave, {parts->x, parts->m, parts->lo, parts->hi});
         }
         if (const auto scaled = scaled_wave(graph, id); scaled && *scaled != id)

@@ -209,6 +209,7 @@ constexpr std::array steep = {
     Steep{"max(0.2, min(p.x, p.y)) + length(max(vec2(0.2 - p.x, 0.2 - p.y), 0))", 1},
     Steep{"max(0.2, min(p.x, p.y)) - length(max(vec2(0.3 - p.x, 0.2 - p.y), 0))", 2},
     Steep{"abs(p.x - round(p.x)) + p.x", 2},
+    Steep{"p.y - (if round(p.y) % 2 == 0 { p.y - round(p.y) } else { round(p.y) - p.y })", 2},
     Steep{"min(p.x, 0.3) - min(p.x, 0.4) + p.x", 1},
 };
 
