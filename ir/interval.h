@@ -75,7 +75,8 @@ inline Interval operator-(Interval a) { return {-a.hi, -a.lo}; }
 inline Interval operator+(const Interval &a, const Interval &b) {
     if (a.lo == 0 && a.hi == 0) return b; // exact, and common in gradients
     if (b.lo == 0 && b.hi == 0) return a;
-    return outward(a.lo + b.lo, a.hi + b.hi);
+    const Interval sum(a.lo + b.lo, a.hi + b.hi), out = outward(sum.lo, sum.hi);
+    return {sum.lo == 0 ? 0 : out.lo, sum.hi == 0 ? 0 : out.hi}; // a sum of 0 is exact
 }
 inline Interval operator-(Interval a, Interval b) { return a + (-b); }
 // By numbers, not intervals: pairs of doubles just written are slow to read again as one.

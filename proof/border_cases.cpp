@@ -1,14 +1,17 @@
+// Long: one class, whose cases share their state.
 // Each `min`, `abs`, `clamp`, `if` that is met decides one way or the other, with an inequality for
 // it; lengths become roots, which are |s| where s*s is below them. A case is done where both sides
 // are equal, where inequalities say so, or where they contradict each other (cases.h).
 #include "proof/border_cases.h"
 
 #include "proof/cases.h"
+#include "proof/on_line.h"
 #include "proof/tape.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 namespace fathom::proof {
@@ -16,14 +19,11 @@ namespace {
 
 using ir::Graph;
 
-constexpr int max_cases = 600, max_forks = 40, max_depth_of_cases = 200;
+constexpr int max_cases = 600, max_forks = 40, max_depth_of_cases = 200, max_squares = 12;
 
 // -- atoms
 
-struct Atom {
-    bool never_negative = false;
-    std::optional<Sum> square; // of a root: what is below it
-};
+using Atom = LineAtom;
 using AtomKey = std::vector<double>;
 
 // -- one case
@@ -43,7 +43,8 @@ struct Case {
 
 class Cases {
   public:
-    Cases(Graph &graph, bool split_sizes) : graph_(graph), split_sizes_(split_sizes) {}
+    Cases(Graph &graph, bool split_sizes, Looked &looked)
+        : graph_(graph), split_sizes_(split_sizes), looked_(looked) {}
 
     bool hold(const Claim &claim) {
         claim_ = claim;
@@ -54,6 +55,7 @@ class Cases {
   private:
     Graph &graph_;
     const bool split_sizes_; // |x| of an atom by cases, too; else it is an atom
+    Looked &looked_;
     Claim claim_;
     Case case_;
     std::optional<Fork> fork_;
@@ -63,13 +65,19 @@ class Cases {
     std::map<std::pair<NodeId, NodeId>, bool> reads_;
     std::map<AtomKey, std::uint32_t> index_;
     std::vector<Atom> atoms_;
-    int count_ = 0, depth_ = 0;
+    int count_ = 0, depth_ = 0, squares_ = 0;
 
     bool hold(const Case &given, int depth) {
         if (++count_ > max_cases || depth > max_forks) return false;
         case_ = given;
         fork_.reset();
         const std::optional<bool> answer = attempt();
+        if (answer && !*answer) {
+            Case next = case_;
+            if (!solve_equality(next)) return false;
+            next.way = given.way;
+            return hold(next, depth + 1);
+        }
         if (answer) return *answer;
         if (!fork_) return false; // too large
         const Fork fork = *fork_;
@@ -151,7 +159,77 @@ class Cases {
     bool are_equal(const Sum &a, const Sum &b) {
         const Sum gap = add(a, b, -1);
         if (is_small(gap, a) || is_small(gap, b)) return true;
-        return impossible(case_, {gap, true}) && impossible(case_, {add({}, gap, -1), true});
+        if (impossible(case_, {gap, true}) && impossible(case_, {add({}, gap, -1), true}))
+            return true;
+        return split_sizes_ && are_equal_on_line(a, b);
+    }
+
+    // Where all that is left hangs on one number.
+    bool are_equal_on_line(const Sum &a, const Sum &b) {
+        std::vector<Sum> rows;
+        for (const Sum &sum : case_.at_least_0) rows.push_back(reduced(sum, case_));
+        for (const auto &[atom, sum] : case_.solved)
+            if (atoms_[atom].never_negative) rows.push_back(reduced(sum, case_));
+        std::vector<Atom> atoms = atoms_;
+        Sum one = a, other = b;
+        for (Atom &atom : atoms) {
+            if (!atom.below) continue;
+            atom.below = reduced(*atom.below, case_);
+            if (!atom.range) atom.range = range_of_root(*atom.below, atoms);
+        }
+        bool holds = agree_on_line(rows, one, other, atoms, looked_.on_lines);
+        for (std::uint32_t r = 0; !holds && r < atoms.size(); ++r) { // x*x + y*y as r*r
+            if (!atoms[r].square || atoms[r].square->size() < 2) continue;
+            const Sum square = *atoms[r].square;
+            const auto rewrite = [&](Sum &sum) {
+                sum = reduced(with_square(sum, r, square), case_);
+            };
+            std::ranges::for_each(rows, rewrite);
+            rewrite(one), rewrite(other);
+            for (std::uint32_t k = 0; k < atoms.size(); ++k)
+                if (k != r && atoms[k].below) rewrite(*atoms[k].below);
+            holds = agree_on_line(rows, one, other, atoms, looked_.on_lines);
+        }
+        if (!holds) return false;
+        looked_.near = true;
+        return true;
+    }
+    // With r*r for the leading term of what r is the root of, less the other terms.
+    static Sum with_square(const Sum &sum, std::uint32_t r, const Sum &square) {
+        const auto &[lead, by] = *square.begin();
+        if (lead.size() != 2) return sum;
+        Sum out = sum;
+        for (int round = 0; round < 40; ++round) {
+            const auto it = std::find_if(out.begin(), out.end(), [&](const auto &term) {
+                return std::includes(term.first.begin(), term.first.end(), lead.begin(),
+                                     lead.end());
+            });
+            if (it == out.end()) return out;
+            Product rest;
+            std::set_difference(it->first.begin(), it->first.end(), lead.begin(), lead.end(),
+                                std::back_inserter(rest));
+            Sum is{{{r, r}, 1 / by}};
+            for (const auto &[m, c] : square)
+                if (m != lead) is = add(is, Sum{{m, c}}, -1 / by);
+            const auto whole = multiply(Sum{{rest, it->second}}, is);
+            if (!whole) return sum;
+            out.erase(it);
+            out = add(out, *whole);
+        }
+        return sum;
+    }
+    // Of the root of a sum of products of what has a range.
+    static std::optional<Interval> range_of_root(const Sum &below, const std::vector<Atom> &atoms) {
+        Interval sum;
+        for (const auto &[m, c] : below) {
+            Interval term = c;
+            for (std::uint32_t a : m) {
+                if (!atoms[a].range) return {};
+                term = term * *atoms[a].range;
+            }
+            sum += term;
+        }
+        return Interval(0, sqrt(sum).hi);
     }
 
     bool impossible(const Case &c, const Inequality &more) {
@@ -181,6 +259,25 @@ class Cases {
         return true;
     }
 
+    // Of s >= 0 and -s >= 0: s = 0, if that can be solved.
+    bool solve_equality(Case &c) {
+        std::vector<Sum> rows;
+        for (const Sum &sum : c.at_least_0) rows.push_back(reduced(sum, c));
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k) {
+                if (as_constant(rows[i]) || as_constant(rows[k])) continue;
+                const auto &[m, by] = *rows[i].begin();
+                const auto other = rows[k].find(m);
+                if (other == rows[k].end() || other->second * by > 0) continue;
+                if (!is_small(add(rows[i], rows[k], -by / other->second), rows[i])) continue;
+                if (auto found = solved_for_atom(rows[i])) {
+                    c.solved.push_back(std::move(*found));
+                    return true;
+                }
+            }
+        return false;
+    }
+
     // gap = 0: for an atom that stands in one term alone; else as two inequalities.
     void solve(const Sum &gap) {
         if (auto found = solved_for_atom(gap)) {
@@ -204,7 +301,9 @@ class Cases {
         return it->second;
     }
     Sum leaf(NodeId id, int i) {
-        return reduced(atom(atom_of({-1.0, double(id.index), double(i)}, {})), case_);
+        Atom about;
+        if (graph_[id].op == Op::Point) about.range = Interval(-near_enough, near_enough);
+        return reduced(atom(atom_of({-1.0, double(id.index), double(i)}, about)), case_);
     }
     // A function of which nothing is known but its arguments.
     std::optional<Sum> unknown(NodeId id, int i) {
@@ -299,6 +398,7 @@ class Cases {
         if (const auto s = root_of_square(sum)) return size_of(at, Lengths + i, *s);
         Atom about;
         about.never_negative = true;
+        about.below = sum;
         if (of_squares) about.square = sum; // of less than 0 the root is 0
         AtomKey key{-3.0, double(of_squares)};
         add_to_key(key, sum);
@@ -348,7 +448,11 @@ class Cases {
             }
             Product rest = m;
             rest.erase(rest.begin() + (twice - m.begin()), rest.begin() + (twice - m.begin()) + 2);
+            // What a root's square is made of may have been solved by that root.
+            if (squares_ >= max_squares) return {};
+            ++squares_;
             const auto whole = times(Sum{{rest, c}}, reduced(*atoms_[*twice].square, case_));
+            --squares_;
             if (!whole) return {};
             sum = add(sum, *whole);
         }
@@ -372,11 +476,17 @@ class Cases {
             if (node.op == Op::Select) return value(graph_.arg(id, 1 + *side_), i);
             return constant(node.op == Op::Step ? *side_ : *side_ - 1);
         }
-        if (graph_.is_constant(id))
-            return constant(graph_.constant_of(id).value[static_cast<std::size_t>(i)]);
+        if (graph_.is_constant(id)) {
+            const double c = graph_.constant_of(id).value[static_cast<std::size_t>(i)];
+            return std::isfinite(c) ? std::optional(constant(c)) : std::nullopt;
+        }
         if (node.type == ir::Type::Bool || ir::is_matrix(node.type)) return unknown(id, i);
         if (node.op == Op::ToFloat && graph_[graph_.arg(id, 0)].type == ir::Type::Int)
             return value(graph_.arg(id, 0));
+        if (node.op == Op::ToFloat) {
+            const auto t = truth(graph_.arg(id, 0));
+            return t ? std::optional(constant(*t)) : std::nullopt;
+        }
         if (by_component_[node.op] && !(node.type == ir::Type::Int && node.op == Op::Div)) {
             const auto a = arg(0), b = node.count > 1 && a ? arg(1) : std::nullopt,
                        c = node.count > 2 && b ? arg(2) : std::nullopt;
@@ -456,6 +566,7 @@ class Cases {
     std::optional<bool> truth(NodeId id) {
         const ir::Node node = graph_[id];
         if (turned_ && id == claim_.comparison) return *turned_;
+        if (side_ && id == claim_.choice) return *side_ == 1;
         if (graph_.is_constant(id)) return graph_.constant_of(id).value[0] != 0;
         if (node.op == Op::Not) {
             const auto t = truth(graph_.arg(id, 0));
@@ -486,13 +597,16 @@ class Cases {
 
 } // namespace
 
-bool is_proved(Graph &graph, const Claim &claim, int &cases) {
+bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {
+    const bool near = looked.near;
     for (const bool split_sizes : {false, true}) {
-        Cases attempt(graph, split_sizes);
+        looked.near = near;
+        Cases attempt(graph, split_sizes, looked);
         const bool holds = attempt.hold(claim);
-        cases += attempt.count();
+        looked.cases += attempt.count();
         if (holds) return true;
     }
+    looked.near = near;
     return false;
 }
 

@@ -5,14 +5,21 @@
 
 namespace fathom::proof {
 
-// `of` has one value for all sides of the choice (a Select, Sign or Step), where u = v and, with
-// that comparison true or false, the choice's condition is not the same.
+// `of` has one value for all sides of the choice (a Select, Sign or Step, or a comparison, which is
+// true or false), where u = v and, with that comparison true or false, the choice's condition is
+// not the same.
 struct Claim {
     ir::NodeId of, choice;
-    ir::NodeId comparison, u, v; // comparison: none of a Sign or Step
+    ir::NodeId comparison, u, v; // comparison: of a Select
 };
 
-// True is a proof; false is none. `cases` counts up by the cases that were looked at.
-bool is_proved(ir::Graph &graph, const Claim &claim, int &cases);
+// What proofs have looked at so far.
+struct Looked {
+    int cases = 0, on_lines = 0;
+    bool near = false; // a proof holds where no coordinate is above `near_enough` alone (on_line.h)
+};
+
+// True is a proof; false is none.
+bool is_proved(ir::Graph &graph, const Claim &claim, Looked &looked);
 
 } // namespace fathom::proof

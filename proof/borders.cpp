@@ -62,7 +62,7 @@ void comparisons_of(const Graph &graph, NodeId condition, std::vector<NodeId> &o
 }
 
 // Does `of` have one value on every border of the choice?
-bool meets(Graph &graph, NodeId choice, NodeId of, int &work) {
+bool meets(Graph &graph, NodeId choice, NodeId of, Looked &looked) {
     const ir::Node node = graph[choice];
     std::vector<Claim> claims;
     if (node.op == Op::Select) {
@@ -80,7 +80,38 @@ bool meets(Graph &graph, NodeId choice, NodeId of, int &work) {
         claims.push_back({of, choice, {}, graph.arg(choice, 0), graph.number(0)});
     }
     return std::all_of(claims.begin(), claims.end(),
-                       [&](const Claim &claim) { return is_proved(graph, claim, work); });
+                       [&](const Claim &claim) { return is_proved(graph, claim, looked); });
+}
+
+// A comparison turns all choices by it at once: does what all of its uses go through have one value
+// whether it is true or not, where both its sides are equal?
+bool turns_unseen(Field &field, NodeId comparison, NodeId root, Looked &looked) {
+    Graph &graph = field.graph;
+    const Claim claim{root, comparison, {}, graph.arg(comparison, 0), graph.arg(comparison, 1)};
+    NodeId of = comparison;
+    for (int climb = 0; climb < max_climb && looked.cases < max_cases_of_field && of != root;
+         ++climb) {
+        of = field.through[of];
+        if (graph[of].type == ir::Type::Bool) continue;
+        Claim here = claim;
+        here.of = of;
+        if (is_proved(graph, here, looked)) return true;
+    }
+    return false;
+}
+
+// By each of its condition's comparisons.
+bool turns_unseen(Field &field, NodeId select, NodeId root,
+                  std::unordered_map<NodeId, bool> &by_comparison, Looked &looked) {
+    std::vector<NodeId> comparisons;
+    bool all = true;
+    comparisons_of(field.graph, field.graph.arg(select, 0), comparisons, all);
+    if (!all || comparisons.empty() || comparisons.size() > 8) return false;
+    return std::ranges::all_of(comparisons, [&](NodeId c) {
+        const auto [known, fresh] = by_comparison.try_emplace(c, false);
+        if (fresh) known->second = turns_unseen(field, c, root, looked);
+        return by_comparison[c];
+    });
 }
 
 bool is_open(const Graph &graph, NodeId id) { // turns with the point, and is a number
@@ -90,7 +121,7 @@ bool is_open(const Graph &graph, NodeId id) { // turns with the point, and is a 
             (node.type == ir::Type::Int && node.op == Op::Select));
 }
 
-std::unordered_set<NodeId> find_choices(Flattening &context, NodeId root) {
+Meeting find_choices(Flattening &context, NodeId root) {
     Graph &graph = context.graph;
     Field field{graph, {}, {}};
     look_at(field, root);
@@ -111,19 +142,24 @@ std::unordered_set<NodeId> find_choices(Flattening &context, NodeId root) {
         if (graph[id].op == Op::Loop)
             for (NodeId inside : in_body(graph, id)) std::erase(choices, inside);
     if (choices.size() > max_choices) return {};
-    std::unordered_set<NodeId> out;
-    int work = 0;
+    Meeting out;
+    Looked looked;
+    std::unordered_map<NodeId, bool> by_comparison;
     for (NodeId choice : choices) {
         NodeId of = graph[choice].op == Op::Select ? choice : field.through[choice];
-        for (int climb = 0; climb < max_climb && work < max_cases_of_field; ++climb) {
-            if (meets(graph, choice, of, work)) {
-                out.insert(choice);
+        for (int climb = 0; climb < max_climb && looked.cases < max_cases_of_field; ++climb) {
+            if (meets(graph, choice, of, looked)) {
+                out.choices.insert(choice);
                 break;
             }
             if (of == root) break;
             of = field.through[of];
         }
+        if (!out.choices.contains(choice) && graph[choice].op == Op::Select &&
+            turns_unseen(field, choice, root, by_comparison, looked))
+            out.choices.insert(choice);
     }
+    out.near = looked.near;
     return out;
 }
 
@@ -144,7 +180,7 @@ bool has_choices(const Graph &graph, NodeId root) {
     return false;
 }
 
-std::unordered_set<NodeId> meeting_choices(Flattening &context, NodeId root) {
+Meeting meeting_choices(Flattening &context, NodeId root) {
     const auto known = context.meeting.find(root);
     if (known != context.meeting.end()) return known->second;
     return context.meeting[root] = find_choices(context, root);

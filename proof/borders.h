@@ -5,14 +5,12 @@
 
 #include "proof/tape.h"
 
-#include <unordered_set>
-
 namespace fathom::proof {
 
 // The choices (Select, Sign, Step) below `root` whose turning `root` is proved not to see. Enters
 // no loops; calls should have been written out before (written_out). Counts its work, so that the
 // answer is the same everywhere.
-std::unordered_set<ir::NodeId> meeting_choices(Flattening &context, ir::NodeId root);
+Meeting meeting_choices(Flattening &context, ir::NodeId root);
 
 // Does the expression, its calls included, hold a choice that would be looked at?
 bool has_choices(const ir::Graph &graph, ir::NodeId root);

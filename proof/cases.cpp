@@ -10,7 +10,8 @@
 namespace fathom::proof {
 namespace {
 
-constexpr double rounding_of_cases = 1e-11, granted = 5e-7;
+// written: what is left where numbers of 9 digits cancel; single precision has 7 of them
+constexpr double rounding_of_cases = 1e-11, written = 5e-9, granted = 5e-7;
 constexpr std::size_t max_terms_of_cases = 60, max_degree_of_cases = 8, max_inequalities = 160;
 
 void drop_rounding(Sum &a, double size) {
@@ -62,7 +63,7 @@ Sum add(const Sum &a, const Sum &b, double times) {
         double &to = out[m];
         const double size = std::fabs(to) + std::fabs(times * c);
         to += times * c;
-        if (std::fabs(to) <= rounding_of_cases * size) out.erase(m);
+        if (std::fabs(to) <= written * size) out.erase(m);
     }
     return out;
 }

@@ -259,6 +259,24 @@ std::optional<std::vector<double>> combination(Graph &graph, NodeId scalar,
     return out;
 }
 
+std::optional<Linear> linear_in(Graph &graph, NodeId scalar, NodeId atom) {
+    const auto sum = polynomial(graph, scalar), alone = polynomial(graph, atom);
+    if (!sum || !alone || alone->size() != 1 || alone->begin()->first.size() != 1) return {};
+    const NodeId own = alone->begin()->first[0];
+    Linear out;
+    Polynomial rest;
+    for (const auto &[factors, c] : *sum) {
+        const auto times = std::count(factors.begin(), factors.end(), own);
+        if (times > 0 && factors.size() > 1) return {};
+        if (times > 0)
+            out.by = c;
+        else
+            rest[factors] = c;
+    }
+    out.rest = rebuilt(graph, rest);
+    return out;
+}
+
 std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {
     auto p = polynomial(graph, a), q = polynomial(graph, b);
     if (!p || !q) return {};
@@ -285,6 +303,16 @@ NodeId component_of(Graph &graph, NodeId vector, int i) {
 NodeId in_one_form(Graph &graph, NodeId scalar) {
     auto p = polynomial(graph, scalar);
     return p ? rebuilt(graph, *p) : scalar;
+}
+
+NodeId without_rounding(Graph &graph, NodeId scalar) {
+    auto sum = polynomial(graph, scalar);
+    if (!sum) return scalar;
+    double size = 0;
+    for (const auto &[factors, c] : *sum) size = std::max(size, std::fabs(c));
+    std::erase_if(*sum,
+                  [&](const auto &term) { return std::fabs(term.second) <= rounding * size; });
+    return rebuilt(graph, *sum);
 }
 
 NodeId without_iterations(Graph &graph, NodeId angle) {

@@ -19,6 +19,8 @@ bool arms_agree(ir::Graph &graph, ir::NodeId condition, ir::NodeId a, ir::NodeId
 ir::NodeId component_of(ir::Graph &graph, ir::NodeId vector, int i);
 // The same number as a sum of products: equal sums become one node.
 ir::NodeId in_one_form(ir::Graph &graph, ir::NodeId scalar);
+// … without what is no more than rounding beside its other terms: for comparing.
+ir::NodeId without_rounding(ir::Graph &graph, ir::NodeId scalar);
 // The same angle in one form, with whole turns left out: of a + 3 pi, a + pi; of 2 pi n with n
 // whole, 0. Numbers are rounded to 2^-32 on the way, so this is for comparing.
 ir::NodeId without_iterations(ir::Graph &graph, ir::NodeId angle);
@@ -45,6 +47,13 @@ std::optional<Solved> solved(ir::Graph &graph, ir::NodeId scalar, ir::NodeId is)
 // which comes last.
 std::optional<std::vector<double>> combination(ir::Graph &graph, ir::NodeId scalar,
                                                std::span<const ir::NodeId> atoms);
+
+// by and rest of by*atom + rest, where `atom` stands nowhere else but inside other functions.
+struct Linear {
+    double by = 0;
+    ir::NodeId rest;
+};
+std::optional<Linear> linear_in(ir::Graph &graph, ir::NodeId scalar, ir::NodeId atom);
 
 // a - b as a sum in which equal terms have cancelled; nothing where the expressions are too large.
 std::optional<ir::NodeId> difference(ir::Graph &graph, ir::NodeId a, ir::NodeId b);

@@ -1,3 +1,4 @@
+// Long: one form for expressions, borders in it, and their cases share their state.
 // A border of floor(u) is where u is a whole number K, a fresh variable that stands for all whole
 // numbers at once. The field is written three times: for u a little less than K, for K, and for a
 // little more; "a little" is an infinitesimal, at which every other step is evaluated, too. A step
@@ -9,6 +10,7 @@
 // (docs/lipschitz.md, 2).
 #include "proof/discontinuities.h"
 
+#include "ir/interval.h"
 #include "ir/passes/inline.h"
 #include "proof/continuity.h"
 
@@ -25,6 +27,7 @@ namespace fathom::proof {
 namespace {
 
 using ir::Graph;
+using ir::Interval;
 using ir::NodeId;
 using ir::Op;
 
@@ -86,7 +89,8 @@ struct Canonical {
         return graph.make(Op::ToFloat, ir::Type::Float, {id});
     }
 
-    NodeId scalar(NodeId id) { return in_one_form(graph, id); }
+    NodeId scalar(NodeId id);
+    std::optional<NodeId> turned(Op op, NodeId angle);
 
     NodeId of(NodeId id, int depth = 0) {
         if (auto it = known.find(id); it != known.end()) return it->second;
@@ -102,6 +106,8 @@ struct Canonical {
         return out;
     }
     NodeId step(NodeId id, const ir::Node &node, int depth);
+    std::optional<NodeId> decided(const ir::Node &node, const std::vector<NodeId> &args);
+    std::optional<NodeId> read_of(const ir::Node &node, NodeId index);
 
     NodeId rewritten(NodeId id, const ir::Node &node, int depth) {
         std::vector<NodeId> args;
@@ -109,12 +115,17 @@ struct Canonical {
             args.push_back(of(a, depth + 1));
         if (node.op == Op::Mix)
             if (auto t = number(args[2]); t && (*t == 0 || *t == 1)) return args[*t == 0 ? 0 : 1];
+        if (const auto known_one = decided(node, args)) return *known_one;
+        if (node.op == Op::TableRead)
+            if (const auto read = read_of(node, args[0])) return *read;
         if (node.op == Op::ToFloat && graph[args[0]].type == ir::Type::Int)
             return scalar(as_float(args[0]));
         if (node.op == Op::ToInt)
             if (auto w = whole(args[0])) return *w;
-        if ((node.op == Op::Sin || node.op == Op::Cos) && node.type == ir::Type::Float)
+        if ((node.op == Op::Sin || node.op == Op::Cos) && node.type == ir::Type::Float) {
+            if (const auto sum = turned(node.op, args[0])) return *sum;
             args[0] = without_iterations(graph, args[0]);
+        }
         if (node.op == Op::Length) {
             NodeId sum = graph.number(0);
             for (int i = 0; i < ir::components(graph[args[0]].type); ++i) {
@@ -173,14 +184,27 @@ struct Near {
     double times = 0, number = 0, slope = 0;
 };
 
+// Which of all whole numbers K is one of. `met`: what it would help to know of it.
+struct Counts {
+    std::optional<int> parity;
+    Interval range = Interval::everything();
+};
+struct Met {
+    std::vector<double> thresholds;
+    bool parity = false;
+};
+
 // One side of a group's borders, where what turns is K, or K + 1/2.
 struct Border {
     Graph &graph;
     const Group &group;
-    const NodeId whole, little, little_angle; // K; how far from the border; by which angle
+    const NodeId whole, little, little_angle, radius;      // K; how far from the border; by which
+                                                           // angle; how far from an axis
     std::map<std::vector<std::uint32_t>, NodeId> &unknown; // by op and arguments, of all sides
     const bool half;
     const Side side;
+    const Counts &counts;
+    Met &met;
     Canonical limit{graph, this, false}, moving{graph, this, true};
 
     // What is known there of coordinates, and of the group's own arguments.
@@ -197,6 +221,7 @@ struct Border {
             if (!graph.is_constant(node))
                 into.known[node] = with_component(graph, node, group.component, value);
         };
+        if (!moves && enter_turned(into, border)) return;
         if (auto at = solved(graph, component_of(graph, group.turning, group.component), border))
             into.known[at->vector] = with_component(graph, at->vector, at->component, at->value);
         put(group.turning, border);
@@ -204,6 +229,54 @@ struct Border {
             if (graph[step].op == Op::Mod)
                 put(graph.arg(step, 0),
                     graph.mul(border, component_of(graph, graph.arg(step, 1), group.component)));
+    }
+
+    // Where an angle of two coordinates turns: these by it and their distance from the axis.
+    bool by_angle = false;
+    bool enter_turned(Canonical &into, NodeId border) {
+        if (group.is_angle) return false;
+        const NodeId turning = component_of(graph, group.turning, group.component);
+        std::optional<NodeId> angle;
+        for (NodeId id : reached_below(graph, turning))
+            if (graph[id].op == Op::Atan2) {
+                if (angle) return false;
+                angle = id;
+            }
+        const auto linear = angle ? linear_in(graph, turning, *angle) : std::nullopt;
+        if (!linear || linear->by == 0 || !graph.is_constant(linear->rest)) return false;
+        const NodeId y = graph.arg(*angle, 0), x = graph.arg(*angle, 1);
+        if (graph[y].op != Op::Swizzle || graph[x].op != Op::Swizzle) return false;
+        const NodeId vector = graph.arg(y, 0);
+        if (graph.arg(x, 0) != vector || x == y) return false;
+        const NodeId at = in_one_form(
+            graph, graph.mul(graph.sub(border, linear->rest), graph.number(1 / linear->by)));
+        by_angle = true;
+        const auto with = [&](NodeId of, NodeId part, Op op) {
+            return with_component(graph, of, ir::swizzle_component(graph[part].payload, 0),
+                                  graph.mul(radius, of_angle(into, op, at)));
+        };
+        into.known[vector] = with(with(vector, x, Op::Cos), y, Op::Sin);
+        into.known[x] = into.scalar(graph.mul(radius, of_angle(into, Op::Cos, at)));
+        into.known[y] = into.scalar(graph.mul(radius, of_angle(into, Op::Sin, at)));
+        into.known[*angle] = at;
+        into.known[group.turning] = border;
+        return true;
+    }
+    NodeId of_angle(Canonical &into, Op op, NodeId angle) {
+        const auto sum = into.turned(op, angle);
+        return sum ? *sum : graph.make(op, {angle});
+    }
+    static std::vector<NodeId> reached_below(const Graph &graph, NodeId root) {
+        std::vector<NodeId> out, todo{root};
+        std::unordered_set<NodeId> seen;
+        while (!todo.empty() && out.size() < 200) {
+            const NodeId id = todo.back();
+            todo.pop_back();
+            if (!seen.insert(id).second) continue;
+            out.push_back(id);
+            for (NodeId a : graph.args(id)) todo.push_back(a);
+        }
+        return out;
     }
 
     bool is_own(NodeId step, int component) const {
@@ -331,8 +404,22 @@ struct Border {
         if (std::floor(j) != j || std::floor(n) != n) return {};
         const bool odd = std::fmod(n, 2) != 0;
         if (std::fmod(j, 2) == 0) return graph.number(odd ? 1 : 0);
+        met.parity = true;
+        if (counts.parity) return graph.number((*counts.parity + (odd ? 1 : 0)) % 2);
         const NodeId rest = graph.make(Op::Mod, ir::Type::Float, std::array{whole, two});
         return odd ? graph.sub(graph.number(1), rest) : rest;
+    }
+    // The sign of j K + n, where that is known of K.
+    std::optional<int> sign_of_count(NodeId count) {
+        const auto sum = combination(graph, count, std::array{whole});
+        if (!sum) return {};
+        const double j = (*sum)[0], n = (*sum)[1];
+        const Interval all = Interval(j) * counts.range + Interval(n);
+        if (j == 0) return n > 0 ? 1 : n < 0 ? -1 : 0;
+        if (all.lo > 0) return 1;
+        if (all.hi < 0) return -1;
+        met.thresholds.push_back(-n / j);
+        return {};
     }
     bool reads_little(NodeId id) const {
         for (NodeId var : graph.free_vars(id))
@@ -349,24 +436,127 @@ NodeId Canonical::step(NodeId id, const ir::Node &node, int depth) {
     return parts.size() == 1 ? scalar(parts[0]) : graph.make(Op::Make, node.type, parts);
 }
 
-bool cancels(Graph &graph, NodeId root, const Group &group) {
-    const NodeId whole = graph.make(Op::ToFloat, ir::Type::Float, {graph.fresh_var(ir::Type::Int)}),
+NodeId Canonical::scalar(NodeId id) {
+    return border && border->by_angle ? without_rounding(graph, id) : in_one_form(graph, id);
+}
+
+// The sine or cosine of a K + b by those of a K and of b.
+std::optional<NodeId> Canonical::turned(Op op, NodeId angle) {
+    if (!border) return {};
+    const auto sum = combination(graph, angle, std::array{border->whole});
+    if (!sum || (*sum)[0] == 0) return {};
+    constexpr double grain = 0x1p32; // so that equal angles are one
+    const NodeId part =
+        graph.mul(graph.number(std::round((*sum)[0] * grain) / grain), border->whole);
+    const NodeId sine = graph.make(Op::Sin, {part}), cosine = graph.make(Op::Cos, {part});
+    const NodeId s = graph.number(std::sin((*sum)[1])), c = graph.number(std::cos((*sum)[1]));
+    if (op == Op::Cos) return scalar(graph.sub(graph.mul(cosine, c), graph.mul(sine, s)));
+    return scalar(graph.add(graph.mul(sine, c), graph.mul(cosine, s)));
+}
+
+// What compares and chooses by K, as far as that is known.
+std::optional<NodeId> Canonical::decided(const ir::Node &node, const std::vector<NodeId> &args) {
+    constexpr ir::OpSet compares{Op::Less, Op::LessEqual, Op::Equal, Op::NotEqual},
+        extremes{Op::Min, Op::Max};
+    if (node.op == Op::Select && graph.is_constant(args[0]))
+        return args[graph.constant_of(args[0]).value[0] != 0 ? 1 : 2];
+    if (!border || (!compares[node.op] && !extremes[node.op])) return {};
+    const ir::Type type = graph[args[0]].type;
+    if (type != ir::Type::Float && type != ir::Type::Int) return {};
+    const auto number = [&](NodeId id) { return type == ir::Type::Int ? as_float(id) : id; };
+    const auto sign = border->sign_of_count(graph.sub(number(args[0]), number(args[1])));
+    if (!sign) return {};
+    if (node.op == Op::Min) return args[*sign <= 0 ? 0 : 1];
+    if (node.op == Op::Max) return args[*sign >= 0 ? 0 : 1];
+    return graph.boolean(node.op == Op::Less        ? *sign < 0
+                         : node.op == Op::LessEqual ? *sign <= 0
+                         : node.op == Op::Equal     ? *sign == 0
+                                                    : *sign != 0);
+}
+
+// A list is read at its first entry below that, and at its last beyond: so limits of the index
+// that are no narrower say nothing.
+std::optional<NodeId> Canonical::read_of(const ir::Node &node, NodeId index) {
+    const int last = graph.table(ir::table_of(node.payload)).rows - 1;
+    NodeId inner = index;
+    for (bool again = true; again;) {
+        again = false;
+        const ir::Node limit = graph[inner];
+        if (limit.op != Op::Min && limit.op != Op::Max) break;
+        for (int i = 0; i < 2 && !again; ++i) {
+            const auto end = graph.as_number(graph.arg(inner, i));
+            if (!end || (limit.op == Op::Min ? *end < last : *end > 0)) continue;
+            inner = graph.arg(inner, 1 - i);
+            again = true;
+        }
+    }
+    if (inner == index) return {};
+    return graph.make(node.op, node.type, {inner}, node.payload);
+}
+
+// Is the field the same on all sides of the borders with these K?
+bool cancels(Graph &graph, NodeId root, const Group &group, bool half, const Counts &counts,
+             Met &met) {
+    const bool one = counts.range.is_point();
+    const NodeId whole = one ? graph.number(counts.range.lo)
+                             : graph.make(Op::ToFloat, ir::Type::Float,
+                                          {graph.fresh_var(ir::Type::Int)}),
                  little = graph.fresh_var(ir::Type::Float),
-                 little_angle = graph.fresh_var(ir::Type::Float);
+                 little_angle = graph.fresh_var(ir::Type::Float),
+                 radius = graph.fresh_var(ir::Type::Float);
+    std::map<std::vector<std::uint32_t>, NodeId> unknown;
+    std::vector<NodeId> sides;
+    bool same_for_all = true;
+    for (const Side side : {Side::Before, Side::At, Side::After}) {
+        Border border{graph,   group, whole, little, little_angle, radius,
+                      unknown, half,  side,  counts, met};
+        border.enter(border.limit, false);
+        border.enter(border.moving, true);
+        sides.push_back(border.limit.of(root));
+        if (border.limit.failed || border.moving.failed) return false;
+        same_for_all = same_for_all && same(graph, sides.front(), sides.back());
+        if (!same_for_all && met.thresholds.empty() && !met.parity) return false;
+    }
+    return same_for_all;
+}
+
+// By cases for K: even and odd, and beside each number that it is compared with.
+bool cancels_by_cases(Graph &graph, NodeId root, const Group &group, bool half, Met met) {
+    constexpr std::size_t most_thresholds = 8;
+    if (met.thresholds.empty() && !met.parity) return false;
+    std::vector<double> whole;
+    for (double t : met.thresholds)
+        for (double k : {std::floor(t), std::ceil(t)}) whole.push_back(k);
+    std::sort(whole.begin(), whole.end());
+    whole.erase(std::unique(whole.begin(), whole.end()), whole.end());
+    if (whole.size() > 2 * most_thresholds) return false;
+    std::vector<Interval> ranges;
+    double from = -ir::rounding::infinity;
+    for (double k : whole) {
+        if (from < k) ranges.push_back({from, k - 1});
+        ranges.push_back(k);
+        from = k + 1;
+    }
+    ranges.push_back({from, ir::rounding::infinity});
+    for (const Interval &range : ranges)
+        for (int parity = 0; parity < 2; ++parity) {
+            const bool odd = std::fmod(std::fabs(range.lo), 2) == 1;
+            if (range.is_point() && odd != (parity == 1)) continue;
+            Met more;
+            if (!cancels(graph, root, group, half, {parity, range}, more)) return false;
+        }
+    return true;
+}
+
+bool cancels(Graph &graph, NodeId root, const Group &group) {
     bool halves = false, wholes = false;
     for (NodeId step : group.steps) (graph[step].op == Op::Round ? halves : wholes) = true;
     for (const bool half : {false, true}) {
         if (half ? !halves : !wholes) continue;
-        std::map<std::vector<std::uint32_t>, NodeId> unknown;
-        std::vector<NodeId> sides;
-        for (const Side side : {Side::Before, Side::At, Side::After}) {
-            Border border{graph, group, whole, little, little_angle, unknown, half, side};
-            border.enter(border.limit, false);
-            border.enter(border.moving, true);
-            sides.push_back(border.limit.of(root));
-            if (border.limit.failed || border.moving.failed) return false;
-            if (sides.size() > 1 && !same(graph, sides.front(), sides.back())) return false;
-        }
+        Met met;
+        if (!cancels(graph, root, group, half, {}, met) &&
+            !cancels_by_cases(graph, root, group, half, met))
+            return false;
     }
     return true;
 }

@@ -41,10 +41,10 @@ std::optional<NodeId> above_zero(Graph &graph, Op op, NodeId id) {
         if (all_zero(graph, graph.arg(id, i))) return graph.arg(id, 1 - i);
     return {};
 }
-void greatest_of(Graph &graph, NodeId id, std::vector<NodeId> &out) {
-    if (graph[id].op == Op::Max && graph[id].type == ir::Type::Float) {
-        greatest_of(graph, graph.arg(id, 0), out);
-        greatest_of(graph, graph.arg(id, 1), out);
+void greatest_of(Graph &graph, NodeId id, std::vector<NodeId> &out, Op op = Op::Max) {
+    if (graph[id].op == op && graph[id].type == ir::Type::Float) {
+        greatest_of(graph, graph.arg(id, 0), out, op);
+        greatest_of(graph, graph.arg(id, 1), out, op);
     } else if (out.size() < 4) {
         out.push_back(id);
     }
@@ -197,6 +197,7 @@ std::optional<WaveParts> wave(Graph &graph, NodeId id) {
             }
         }
     }
+    a = graph.arg(id, 0), b = graph.arg(id, 1); // the loop has swapped them
     if (node.op == Op::Sub && graph[b].op == Op::Round && graph.arg(b, 0) == a)
         return WaveParts{a, graph.splat(graph.number(1), node.type)};
     if (node.op == Op::Sub && graph[b].op == Op::Mul)
@@ -337,6 +338,72 @@ std::optional<NodeId> corner(Graph &graph, NodeId id) {
         std::sort(found.begin(), found.end());
         std::sort(wanted.begin(), wanted.end());
         if (found == wanted) return v;
+    }
+    return {};
+}
+
+std::optional<NodeId> round_edge(Graph &graph, NodeId id) {
+    const ir::Node node = graph[id];
+    if (node.type != ir::Type::Float || (node.op != Op::Add && node.op != Op::Sub)) return {};
+    const bool outside = node.op == Op::Add; // of an intersection
+    for (int i = outside ? 0 : 1; i < 2; ++i) {
+        const NodeId length = graph.arg(id, i), inside = graph.arg(id, 1 - i);
+        if (graph[length].op != Op::Length || graph[inside].op != (outside ? Op::Min : Op::Max))
+            continue;
+        const auto v = above_zero(graph, Op::Max, graph.arg(length, 0));
+        for (int k = 0; v && k < 2; ++k) {
+            const NodeId c = graph.arg(inside, k);
+            std::vector<NodeId> terms;
+            greatest_of(graph, graph.arg(inside, 1 - k), terms, outside ? Op::Max : Op::Min);
+            const int n = ir::components(graph[*v].type);
+            if (!graph.as_number(c) || graph.as_number(c) == 0.0 || int(terms.size()) != n)
+                continue;
+            NodeId most;
+            for (int m = 0; m < n; ++m) {
+                const NodeId part = component_of(graph, *v, m);
+                const auto found = std::find_if(terms.begin(), terms.end(), [&](NodeId t) {
+                    return same(graph, part, outside ? graph.sub(t, c) : graph.sub(c, t));
+                });
+                if (found == terms.end()) break;
+                terms.erase(found);
+                const NodeId own = graph.component(*v, m);
+                most = most ? graph.make(Op::Max, {most, own}) : own;
+            }
+            if (!terms.empty()) continue;
+            const NodeId corner = graph.add(length, graph.make(Op::Min, {most, graph.number(0)}));
+            return outside ? graph.add(corner, c) : graph.sub(c, corner);
+        }
+    }
+    return {};
+}
+
+std::optional<NodeId> hermite(Graph &graph, NodeId id) {
+    std::vector<NodeId> factors{id};
+    for (std::size_t i = 0; i < factors.size();)
+        if (const NodeId f = factors[i]; graph[f].op == Op::Mul && factors.size() < 4) {
+            factors[i] = graph.arg(f, 0);
+            factors.push_back(graph.arg(f, 1));
+        } else {
+            ++i;
+        }
+    if (factors.size() != 3) return {};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const NodeId rest = factors[i], u = factors[(i + 1) % 3];
+        if (factors[(i + 2) % 3] != u || graph[rest].op != Op::Sub) continue;
+        const ir::Node node = graph[u];
+        const bool in_unit = node.op == Op::Fract ||
+                             (node.op == Op::Clamp && number(graph, graph.arg(u, 1)) == 0.0 &&
+                              number(graph, graph.arg(u, 2)) == 1.0);
+        const NodeId twice = graph.arg(rest, 1);
+        if (!in_unit || number(graph, graph.arg(rest, 0)) != 3.0 || graph[twice].op != Op::Mul)
+            continue;
+        for (int k = 0; k < 2; ++k)
+            if (graph.arg(twice, k) == u && number(graph, graph.arg(twice, 1 - k)) == 2.0) {
+                const auto whole = [&](double x) {
+                    return graph.splat(graph.number(x), node.type);
+                };
+                return graph.make(Op::Smoothstep, {whole(0), whole(1), u});
+            }
     }
     return {};
 }

@@ -52,6 +52,13 @@ std::optional<PNormParts> p_norm(ir::Graph &graph, NodeId id);
 // v of |max(v, 0)| + min(max of all components of v, 0), as everyone writes a box.
 std::optional<NodeId> corner(ir::Graph &graph, NodeId id);
 
+// |max(v, 0)| + min(greatest of v + c, c) as corner(v) + c, and max(c, least of c - v) -
+// |max(v, 0)| as c - corner(v): round edges of intersections and unions.
+std::optional<NodeId> round_edge(ir::Graph &graph, NodeId id);
+
+// u*u*(3 - 2*u) as smoothstep(0, 1, u), of a u that is in 0..1 by its making.
+std::optional<NodeId> hermite(ir::Graph &graph, NodeId id);
+
 // x and c of x*|x|^c, c > 0, whose slope (c + 1)*|x|^c is finite at 0 where that of |x|^c is not.
 struct OddPowerParts {
     NodeId x, exponent;

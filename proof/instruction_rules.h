@@ -42,7 +42,8 @@ struct Step {
     Step(Machine &of, const Instruction &instruction);
     void run();
     bool overflows() const;
-    double bend() const; // machine_bend.cpp
+    double bend() const;   // machine_bend.cpp
+    void look_back(int c); // ways.cpp
 
     // -- inputs (machine_inputs.cpp)
     void constant();
@@ -80,6 +81,7 @@ struct Step {
 
     // -- choices (machine_choices.cpp)
     void extreme();
+    int known_extreme(int c) const;
     void combine();
     void blend();
     void clamped();
@@ -92,6 +94,7 @@ struct Step {
     void trunc_of();
     void fraction();
     void compare();
+    void compared();
     void both();
     void either();
     void opposite();
@@ -151,6 +154,41 @@ struct Step {
     void finish(double norm, bool odd_used) { machine.finish(in, norm, odd_used); }
     void fail(Trouble why) { machine.fail(in, why); }
 
+    // Is it proved that the result does not see this choice or step turn, here?
+    bool cancels() const { return in.cancels && (!machine.tape_.near || machine.near_); }
+
+    // -- runs by ways (ways.h)
+    bool by_ways() const { return machine.ways_ != nullptr; }
+    // Of an open choice of so many ways, the one that this run goes; -1 where all are looked at.
+    // Asked of each choice that a rule meets, open or not, in one order.
+    int way(bool open, int many, int known = -1) {
+        return by_ways() ? machine.ways_->way(open, many, known) : -1;
+    }
+    // What is known of the sign of a difference, and of that of a value which is one: 0 where a <= b
+    // (the value is at most 0), 1 where a >= b; -1: nothing.
+    int order_of(int a, int ac, int b, int bc) const {
+        return machine.order(in.args[std::size_t(a)], ac, in.args[std::size_t(b)], bc);
+    }
+    void keep_order(int lesser, int lc, int greater, int gc) {
+        machine.keep_order(in.args[std::size_t(lesser)], lc, in.args[std::size_t(greater)], gc);
+    }
+    // One of the whole numbers.
+    Interval one_of(Interval whole) {
+        const bool few = !whole.is_point() && whole.width() <= 2;
+        const int w = way(few, few ? int(whole.width()) + 1 : 1);
+        return w < 0 ? whole : Interval(whole.lo + w);
+    }
+    void keep_sign(int arg, int c, bool negative) {
+        machine.keep_sign(in.args[std::size_t(arg)], c, negative);
+    }
+    std::optional<double> number(int arg, int c) const {
+        const Interval x = value(arg, c);
+        return x.is_point() ? std::optional(x.lo) : std::nullopt;
+    }
+    void narrow(int arg, int c, Interval to) {
+        machine.narrow(in.args[static_cast<std::size_t>(arg)], c, to);
+    }
+
     // -- shapes of rules
     // f by component with the derivative's interval; norm(diag(D) J) <= max |D| * norm(J).
     template <class F, class D> void unary(F f, D derivative) {
@@ -171,15 +209,23 @@ struct Step {
             if (!machine.value_[at + static_cast<std::uint32_t>(c)].is_point()) return false;
         return true;
     }
-    // Constant by pieces: fine where one piece holds the cell.
-    template <class F> void stepped(F f) {
+    // Constant by pieces: fine where one piece holds the cell. `where`: of an argument whose value
+    // is that whole number.
+    template <class F, class B> void stepped(F f, B where) {
         bool jumps = false;
         for (int c = 0; c < n; ++c) {
             Interval v = f(c);
+            if (by_ways()) {
+                v = one_of(v);
+                set(c, v, none);
+                if (v.is_point()) narrow(0, c, where(v.lo));
+                continue;
+            }
             jumps = jumps || (!v.is_point() && !zero(grad(0, c)));
             set(c, v, none);
         }
-        if (jumps && !in.cancels)
+        // what jumps of itself need not pass a border of the step
+        if (jumps && (!cancels() || norm(0) == ir::rounding::infinity))
             fail(Trouble::Jump);
         else
             finish(0, any_odd && !jumps);
@@ -195,14 +241,27 @@ struct Step {
         if (turns && (norms == ir::rounding::infinity || any_odd)) return fail(Trouble::Jump);
         finish(turns ? 1 : 0, false);
     }
-    template <class AV, class AG, class BV, class BG> double
-    extremum(int sign, AV a_value, AG a_grad, BV b_value, BG b_grad, double a_norm, double b_norm) {
+    // `told`: that a component goes way 0, which is a, or 1, which is b; `known`: of which way that
+    // is known already, or -1.
+    template <class AV, class AG, class BV, class BG, class T, class K>
+    double extremum(int sign, AV a_value, AG a_grad, BV b_value, BG b_grad, double a_norm,
+                    double b_norm, T told, K known) {
         bool some_a = false, some_b = false;
         for (int c = 0; c < n; ++c) {
             Interval a = a_value(c), b = b_value(c);
             Choice which = sign > 0 ? greater(a, b) : greater(-a, -b);
-            some_a = some_a || which.first, some_b = some_b || which.second;
             Interval v = sign > 0 ? max(a, b) : min(a, b);
+            if (by_ways()) {
+                // Where they touch alone, the one that is not beyond the other is all there is.
+                const Interval above = sign > 0 ? a : -a, other = sign > 0 ? b : -b;
+                which = {above.hi > other.lo, other.hi > above.lo};
+                if (!which.first && !which.second) which.second = true;
+                const int w = way(which.first && which.second, 2, known(c));
+                if (w == 0) which.second = false, v = meet(a, v);
+                if (w == 1) which.first = false, v = meet(b, v);
+                if (w >= 0) told(c, w);
+            }
+            some_a = some_a || which.first, some_b = some_b || which.second;
             if (!which.second)
                 set(c, v, a_grad(c));
             else if (!which.first)

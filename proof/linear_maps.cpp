@@ -27,7 +27,7 @@ bool by_component(Op op) {
 }
 
 // A sum of coefficient times component of `of`, and a rest without any.
-struct Sum {
+struct LinearSum {
     std::array<NodeId, 4> by{}; // invalid: 0
     NodeId rest;                // invalid: 0
     bool linear() const { return by[0] || by[1] || by[2] || by[3]; }
@@ -140,17 +140,17 @@ struct Reader {
         return sum;
     }
 
-    Sum constant(NodeId id) {
+    LinearSum constant(NodeId id) {
         constants.push_back(id);
         return {{}, id};
     }
 
-    Sum read(NodeId id) {
+    LinearSum read(NodeId id) {
         if (++steps > max_steps) failed = true;
         if (failed) return {};
         const ir::Node node = graph[id];
         constexpr ir::OpSet sums{Op::Add, Op::Sub, Op::Neg}, products{Op::Mul, Op::Div};
-        std::optional<Sum> sum;
+        std::optional<LinearSum> sum;
         if (node.op == Op::Swizzle)
             sum = component(id, node);
         else if (sums[node.op])
@@ -164,9 +164,9 @@ struct Reader {
         else if (const NodeId inner = entered(id); inner != id)
             return read(inner);
         failed = failed || !sum;
-        return sum.value_or(Sum{});
+        return sum.value_or(LinearSum{});
     }
-    std::optional<Sum> component(NodeId id, const ir::Node &node) {
+    std::optional<LinearSum> component(NodeId id, const ir::Node &node) {
         const NodeId x = part(graph.arg(id, 0), ir::swizzle_component(node.payload, 0));
         if (!x) return {};
         if (graph[x].op != Op::Swizzle) return read(x);
@@ -175,13 +175,13 @@ struct Reader {
         if (!(*varies)(vector)) return constant(x);
         if (!of) of = vector;
         if (of != vector) return {};
-        Sum out;
+        LinearSum out;
         out.by[static_cast<std::size_t>(ir::swizzle_component(graph[x].payload, 0))] =
             graph.number(1);
         return out;
     }
-    Sum combined(NodeId id, const ir::Node &node) {
-        Sum a = read(graph.arg(id, 0)), b;
+    LinearSum combined(NodeId id, const ir::Node &node) {
+        LinearSum a = read(graph.arg(id, 0)), b;
         if (node.op == Op::Neg)
             std::swap(a, b);
         else
@@ -190,15 +190,15 @@ struct Reader {
         a.rest = joined(a.rest, b.rest, node.op);
         return a;
     }
-    std::optional<Sum> scaled(NodeId id, const ir::Node &node) {
+    std::optional<LinearSum> scaled(NodeId id, const ir::Node &node) {
         const NodeId x = graph.arg(id, 0), y = graph.arg(id, 1);
-        const Sum a = read(x), b = read(y);
+        const LinearSum a = read(x), b = read(y);
         if (failed) return {};
-        if (!a.linear() && !b.linear()) return Sum{{}, id};
+        if (!a.linear() && !b.linear()) return LinearSum{{}, id};
         if (b.linear() && (a.linear() || node.op == Op::Div)) return {};
-        const Sum &sum = a.linear() ? a : b;
+        const LinearSum &sum = a.linear() ? a : b;
         const NodeId by = a.linear() ? y : x;
-        Sum out;
+        LinearSum out;
         for (std::size_t i = 0; i < 4; ++i)
             if (sum.by[i])
                 out.by[i] =
@@ -206,7 +206,7 @@ struct Reader {
         if (sum.rest) out.rest = id;
         return out;
     }
-    std::optional<Sum> dotted(NodeId id) {
+    std::optional<LinearSum> dotted(NodeId id) {
         NodeId sum;
         for (int i = 0; i < ir::components(graph[graph.arg(id, 0)].type); ++i) {
             const NodeId x = part(graph.arg(id, 0), i), y = part(graph.arg(id, 1), i);

@@ -148,13 +148,19 @@ Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
     run(tape.once);
 }
 
-void Machine::run(const Cell &cell) {
+void Machine::reach(const Cell &cell) {
     constexpr double far = 1e6; // further off whatever grows has left single precision
     cell_ = cell;
-    if (ranges_.work->spent()) return know_nothing();
-    const std::size_t before = work_;
+    near_ =
+        std::ranges::all_of(cell.p, [](const Interval &x) { return x.magnitude() <= near_enough; });
     in_reach_ = tape_.grows && std::all_of(cell.p.begin(), cell.p.end(),
                                            [](const Interval &x) { return x.magnitude() <= far; });
+}
+
+void Machine::run(const Cell &cell) {
+    if (ranges_.work->spent()) return know_nothing();
+    const std::size_t before = work_;
+    reach(cell);
     run(tape_.each);
     ranges_.work->take(work_ - before);
     Slot s = tape_.result;

@@ -8,6 +8,7 @@
 #include "base/ids.h"
 #include "ir/scene.h"
 #include "proof/tape.h"
+#include "proof/ways.h"
 
 #include <array>
 #include <optional>
@@ -87,6 +88,12 @@ class Machine {
     NodeId cause() const { return cause_[tape_.result]; } // the first node that is in trouble
     std::size_t work() const { return work_; }            // instructions run so far
 
+    // The greatest norm over all ways in which the tape's choices may go within the cell, each way
+    // with its own gradients: no hull of two sides (ways.h; docs/lipschitz.md, 2.6). For cells in
+    // which `run` found a finite norm. Stops where that is at least `enough`; infinity where there
+    // are too many ways.
+    double norm_by_ways(const Cell &cell, double enough);
+
   private:
     static constexpr double infinity_ = ir::rounding::infinity;
     friend struct Step; // the rules of one instruction (instruction_rules.h)
@@ -99,10 +106,24 @@ class Machine {
     void copy(Slot from, Slot to);
     void join(Slot into, Slot other, bool jump, NodeId cause);
     Interval box_length(Slot s) const;
+    void reach(const Cell &cell);
+    void run_way();
+    void look_back();
+    void narrow(Slot s, int component, Interval to);
+    void settle(Slot s);
+    // Which of two values is known to be the lesser in a run by ways: 0, 1, or -1 for neither; and
+    // of a difference its sign, 0 for at most 0.
+    int order(Slot a, int ac, Slot b, int bc) const;
+    void keep_order(Slot lesser, int lc, Slot greater, int gc);
+    int sign_of(Slot s, int c) const;
+    void keep_sign(Slot s, int c, bool negative);
+    std::uint32_t origin(Slot s, int component) const;
+    std::optional<std::pair<std::uint32_t, std::uint32_t>> difference(Slot s, int c) const;
 
     const Tape &tape_;
     const Ranges &ranges_;
     Cell cell_;
+    bool near_ = false;     // no coordinate of the cell is above `near_enough`
     bool in_reach_ = false; // the cell is where rays go, and values may leave single precision
     std::vector<Interval> value_;
     std::vector<Row> grad_;
@@ -113,6 +134,9 @@ class Machine {
     std::vector<NodeId> cause_;
     double result_norm_ = 0;
     std::size_t work_ = 0;
+    Ways *ways_ = nullptr;              // in a run by ways
+    std::vector<std::int32_t> made_by_; // by slot: the instruction of Tape::each, or -1
+    std::vector<bool> still_; // by slot: not computed anew by each run; none before runs by ways
 };
 
 } // namespace fathom::proof

@@ -84,11 +84,20 @@ void Step::remainder() {
             continue;
         }
         Interval turns = floor(x / m);
+        if (by_ways()) {
+            turns = one_of(turns);
+            const bool one = turns.is_point() && turns.finite();
+            const Interval whole(std::min(m.lo, 0.0), std::max(m.hi, 0.0));
+            set(c, one ? meet(whole, x - m * turns) : whole,
+                one ? sum(grad(0, c), scaled(-turns, grad(1, c))) : grad(0, c));
+            jumps = jumps || !zero(grad(1, c));
+            continue;
+        }
         if (turns.is_point() && turns.finite()) {
             set(c, x - m * turns, sum(grad(0, c), scaled(-turns, grad(1, c))));
             continue;
         }
-        jumps = jumps || !zero(grad(1, c)) || (!in.cancels && !zero(grad(0, c)));
+        jumps = jumps || !zero(grad(1, c)) || (!cancels() && !zero(grad(0, c)));
         set(c, {std::min(m.lo, 0.0), std::max(m.hi, 0.0)}, grad(0, c));
     }
     if (is_int()) return settle_int();
@@ -189,10 +198,17 @@ void Step::wave() {
             continue;
         }
         Interval turns = floor(x / m + Interval(0.5));
+        if (by_ways()) {
+            turns = one_of(turns);
+            const bool one = turns.is_point() && turns.finite();
+            const Interval whole(-m.hi / 2, m.hi / 2);
+            set(c, one ? meet(whole, x - m * turns) : whole, grad(0, c));
+            continue;
+        }
         if (turns.is_point() && turns.finite())
             set(c, x - m * turns, grad(0, c), odd(0, c));
         else
-            set(c, {-m.hi / 2, m.hi / 2}, grad(0, c), !in.cancels && !zero(grad(0, c)));
+            set(c, {-m.hi / 2, m.hi / 2}, grad(0, c), !cancels() && !zero(grad(0, c)));
     }
     if (bad) return fail(Trouble::Jump);
     finish(norm(0), any_odd);
@@ -205,14 +221,15 @@ void Step::held_wave() {
     for (int c = 0; c < n; ++c) {
         const Interval x = value(0, c), m = value(1, c), lo = value(2, c), hi = value(3, c);
         bad = bad || m.lo <= 0 || !lo.is_point() || !hi.is_point() || lo.lo > hi.lo || odd(0, c);
-        const Interval turns = min(max(floor(x / m + Interval(0.5)), lo), hi);
+        Interval turns = min(max(floor(x / m + Interval(0.5)), lo), hi);
+        if (by_ways() && !bad) turns = one_of(turns);
         if (bad || (turns.is_point() && turns.finite())) {
             set(c, bad ? Interval::everything() : x - m * turns, grad(0, c));
             continue;
         }
         const Interval below = x - m * lo, above = x - m * hi;
         set(c, {std::min(-m.hi / 2, below.lo), std::max(m.hi / 2, above.hi)}, grad(0, c),
-            !in.cancels && !zero(grad(0, c)));
+            !cancels() && !by_ways() && !zero(grad(0, c)));
     }
     if (bad) return fail(Trouble::Jump);
     finish(norm(0), false);
@@ -236,6 +253,13 @@ void Step::sinc() {
 void Step::absolute() {
     for (int c = 0; c < n; ++c) {
         Interval x = value(0, c);
+        const bool open = x.lo < 0 && x.hi > 0;
+        const int sign = by_ways() && open ? machine.sign_of(in.args[0], c) : -1;
+        if (const int w = way(open, 2, sign < 0 ? -1 : 1 - sign); w >= 0) {
+            keep_sign(0, c, w == 1);
+            narrow(0, c, w == 0 ? Interval(0, infinity) : Interval(-infinity, 0));
+            x = value(0, c);
+        }
         Interval d = x.lo >= 0 && !odd(0, c)   ? Interval(1.0)
                      : x.hi <= 0 && !odd(0, c) ? Interval(-1.0)
                                                : Interval(-1, 1);
@@ -251,9 +275,9 @@ void Step::angle() {
     bool varies = norm(0) > 0 || norm(1) > 0;
     bool cut = x.lo <= 0 && y.contains(0);
     Interval v = pi;
-    if (cut && in.cancels && x.hi < 0 && y.lo >= 0) // the cut from above: up to pi
+    if (cut && cancels() && x.hi < 0 && y.lo >= 0) // the cut from above: up to pi
         v = meet(pi, ir::outward(std::atan2(y.hi, x.hi), pi.hi, ir::rounding::library));
-    else if (cut && in.cancels && x.hi < 0 && y.hi <= 0) // and from below, its limit there
+    else if (cut && cancels() && x.hi < 0 && y.hi <= 0) // and from below, its limit there
         v = meet(pi, ir::outward(pi.lo, std::atan2(y.lo, x.hi), ir::rounding::library));
     if (!cut) {
         double a = std::atan2(y.lo, x.lo), b = std::atan2(y.lo, x.hi), c = std::atan2(y.hi, x.lo),
@@ -261,7 +285,13 @@ void Step::angle() {
         v = meet(
             pi, ir::outward(std::min({a, b, c, d}), std::max({a, b, c, d}), ir::rounding::library));
     }
-    const bool crosses = cut && !(in.cancels && !x.contains(0));
+    if (cut && varies && in.stepped && cancels() && norm(0) != infinity && norm(1) != infinity) {
+        // read by steps alone, which have no slope
+        constexpr Interval any = Interval::everything();
+        set(0, v, {any, any, any});
+        return finish(1, any_odd);
+    }
+    const bool crosses = cut && !(cancels() && !x.contains(0));
     if (!varies || crosses) {
         set(0, v, none);
         if (varies) return fail(x.contains(0) ? Trouble::Singular : Trouble::Jump);

@@ -168,6 +168,8 @@ void Step::length() {
         double m = column == 0 ? 0 : std::min(up(std::sqrt(column), 4), norms);
         g[j] = {-m, m};
         if (length.lo > 0) g[j] = meet(g[j], along / length);
+        if (along.lo >= 0) g[j].lo = std::max(g[j].lo, 0.0);
+        if (along.hi <= 0) g[j].hi = std::min(g[j].hi, 0.0);
     }
     set(0, length, g);
     finish(norms, false);

@@ -106,6 +106,7 @@ std::optional<Smooth> by_least(Graph &graph, NodeId extremum, const Product &bul
     for (NodeId f : rest.factors)
         if (above_zero(graph, f)) h = f;
     if (!h || !take(graph, rest, h) || !take(graph, rest, h)) return {};
+    const bool cubic = take(graph, rest, h); // c*h*h*h with c = 1/(6 k k)
     // h = max(k - |x - y|, 0)
     const NodeId inner = *above_zero(graph, h);
     for (NodeId way : {graph.sub(x, y), graph.sub(y, x)}) {
@@ -113,11 +114,13 @@ std::optional<Smooth> by_least(Graph &graph, NodeId extremum, const Product &bul
         const NodeId k = in_one_form(graph, graph.add(inner, size));
         if (graph.reads(k).point) continue;
         Product by = rest;
-        by.number *= 4;
+        by.number *= cubic ? 6 : 4;
         gather(graph, k, by);
+        if (cubic) gather(graph, k, by);
         cancel(graph, by);
         if (by.factors.empty() && std::fabs(by.number - 1) < 1e-12)
             return Smooth{x, y, k, k, false, !graph.as_number(k), true};
+        if (cubic) continue;
         // c may be 1/(4 max(k, tiny)): no more than 1/(4 k), and the same for all points
         for (NodeId f : rest.factors) {
             if (rest.factors.size() != 1 || rest.number != 1 || graph[f].op != Op::Div) continue;

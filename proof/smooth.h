@@ -12,6 +12,7 @@ namespace fathom::proof {
 // The smooth minimum of x and y (or maximum, where `greater`), within k of it, by
 //   mix(y, x, h) - k h (1 - h),  h = clamp(1/2 + (y - x)/(2 k), 0, 1)
 //   min(x, y) - h^2/(4 k),       h = max(k - |x - y|, 0)
+//   min(x, y) - h^3/(6 k^2),     with the same h: another function, with the same bounds
 // and whatever equals these as sums of products.
 struct Smooth {
     ir::NodeId x, y, k;

@@ -1,4 +1,5 @@
 // Flattening: nodes in schedule order, one scope a function body and a loop body.
+// Long: one flattener, whose looks at nodes share its scopes.
 #include "proof/tape.h"
 
 #include "proof/borders.h"
@@ -6,6 +7,7 @@
 #include "proof/discontinuities.h"
 #include "proof/forms.h"
 #include "proof/linear_maps.h"
+#include "proof/polar.h"
 #include "proof/segments.h"
 #include "proof/smooth.h"
 #include "proof/supports.h"
@@ -72,7 +74,9 @@ struct Flattener {
     std::vector<bool> varies; // by slot
     std::size_t count = 0;
     std::unordered_set<NodeId> cancelling; // steps and choices
+    std::unordered_set<NodeId> stepped;    // angles that steps alone read
     std::unordered_set<NodeId> known_linear;
+    int steps_of_pieces = 0;
     Supports supports{tape};
 
     explicit Flattener(Flattening &c) : context(c), graph(c.graph) {}
@@ -153,6 +157,49 @@ struct Flattener {
         return s ? *s : 0;
     }
 
+    // What is affine by pieces, in what it is made of.
+    // Scalars, but those of one vector together: their norm is no more than the vector's.
+    std::vector<NodeId> by_vector(std::vector<NodeId> parts) {
+        std::vector<NodeId> out;
+        while (!parts.empty()) {
+            const NodeId first = parts.front();
+            const NodeId vector = graph[first].op == Op::Swizzle ? graph.arg(first, 0) : NodeId();
+            std::vector<int> own;
+            std::erase_if(parts, [&](NodeId part) {
+                if (part != first &&
+                    (!vector || graph[part].op != Op::Swizzle || graph.arg(part, 0) != vector))
+                    return false;
+                if (vector) own.push_back(ir::swizzle_component(graph[part].payload, 0));
+                return true;
+            });
+            out.push_back(own.size() > 1 ? graph.swizzle(vector, own) : first);
+        }
+        return out;
+    }
+    std::optional<Pieces> pieces_of(NodeId id, const std::vector<NodeId> &of) {
+        const auto [known, fresh] = context.pieces.try_emplace(id);
+        if (fresh) {
+            const int before = steps_of_pieces;
+            known->second = by_pieces(graph, of, steps_of_pieces);
+            context.work.take(std::size_t(steps_of_pieces - before));
+        }
+        return known->second;
+    }
+    Slot emit_by_pieces(Scope &scope, NodeId id, Instruction out, const std::vector<NodeId> &of) {
+        const auto found = pieces_of(id, of);
+        if (!found) return emit(scope, std::move(out));
+        const Pieces &pieces = *found;
+        NodeId base = pieces.parts[0];
+        if (pieces.parts.size() > 1)
+            base = graph.make(Op::Make, ir::vector_type(int(pieces.parts.size())),
+                              by_vector(pieces.parts));
+        if (base != out.node) {
+            out.norm = pieces.norm;
+            out.turned = {slot(scope, base)};
+        }
+        return emit(scope, std::move(out));
+    }
+
     // A vector that may be another one turned, or moved along a direction.
     Slot emit_turned(Scope &scope, NodeId id, Instruction out) {
         if (const auto way = moved_along(graph, id)) {
@@ -164,7 +211,8 @@ struct Flattener {
         const bool is_matrix = out.op == Op::MatMul; // whose rule has the matrix' norm
         const auto t = ir::is_vector(out.type) ? turned(graph, id, may_be, known_linear)
                                                : std::optional<LinearMap>();
-        if (!t) return emit(scope, out);
+        if (!t && is_matrix) return emit(scope, out);
+        if (!t) return emit_by_pieces(scope, id, std::move(out), {id});
         bool still = true;
         std::vector<Slot> constants;
         for (NodeId c : t->constants) {
@@ -172,7 +220,9 @@ struct Flattener {
             still = still && !varies[constants.back()];
         }
         const Slot of = slot(scope, t->of);
-        if (!still && !scope.loop) return emit(scope, out);
+        const bool may_stand_still = scope.loop || !cancelling.empty(); // as steps do
+        if (!still && (!may_stand_still || (!is_matrix && pieces_of(id, {id}))))
+            return emit_by_pieces(scope, id, std::move(out), {id});
         if (!is_matrix) {
             out.norm = t->norm;
             out.turned = {of};
@@ -204,6 +254,7 @@ struct Flattener {
         out.payload = node.payload;
         out.node = id;
         out.cancels = cancelling.contains(id);
+        out.stepped = stepped.contains(id);
         switch (look_of_op[node.op]) {
         case Look::Point: out.varies = true; return emit(scope, out);
         case Look::Call: return call(scope, id, ir::FunctionId{node.payload});
@@ -220,7 +271,12 @@ struct Flattener {
                 if (cancelling.contains(inward->from)) cancelling.insert(inward->choice);
                 return slot(scope, inward->choice);
             }
-            if (auto parts = norm_parts(graph, id)) return emit(scope, out, Form::Norm, *parts);
+            if (auto parts = norm_parts(graph, id)) {
+                out.form = Form::Norm;
+                for (NodeId a : *parts) out.args.push_back(slot(scope, a));
+                return parts->size() > 1 ? emit_by_pieces(scope, id, std::move(out), *parts)
+                                         : emit(scope, std::move(out));
+            }
             if (auto parts = p_norm(graph, id)) {
                 parts->parts.push_back(parts->power);
                 return emit(scope, out, Form::PNorm, parts->parts);
@@ -236,13 +292,31 @@ struct Flattener {
         return emit_plain(scope, id, std::move(out));
     }
 
+    // Does the step that a wave is made with? x - m*round(x/m), held or not, x % m - m/2, …
+    bool step_cancels(NodeId wave) const {
+        if (const auto rounded = rounding_in(graph.arg(wave, 1)))
+            return cancelling.contains(*rounded);
+        return std::ranges::any_of(graph.args(wave), [&](NodeId arg) {
+            return (graph[arg].op == Op::Mod || graph[arg].op == Op::Fract) &&
+                   cancelling.contains(arg);
+        });
+    }
+    std::optional<NodeId> rounding_in(NodeId id) const {
+        if (graph[id].op == Op::Round) return id;
+        if (graph[id].op == Op::Clamp) return rounding_in(graph.arg(id, 0));
+        if (graph[id].op != Op::Mul) return {};
+        for (NodeId factor : graph.args(id))
+            if (const auto found = rounding_in(factor)) return found;
+        return {};
+    }
+
     Slot sum(Scope &scope, NodeId id, Instruction out) {
         if (const auto parts = wave(graph, id)) {
-            for (NodeId arg : args_of(id)) out.cancels = out.cancels || cancelling.contains(arg);
+            out.cancels = out.cancels || step_cancels(id);
             return emit(scope, out, Form::Wave, {parts->x, parts->m});
         }
         if (const auto parts = held_wave(graph, id)) {
-            for (NodeId arg : args_of(id)) out.cancels = out.cancels || cancelling.contains(arg);
+            out.cancels = out.cancels || step_cancels(id);
             return emit(scope, out, Form::HeldWave, {parts->x, parts->m, parts->lo, parts->hi});
         }
         if (const auto scaled = scaled_wave(graph, id); scaled && *scaled != id)
@@ -261,16 +335,23 @@ struct Flattener {
             for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
             return emit_turned(scope, id, std::move(out));
         }
+        if (const auto edge = round_edge(graph, id); edge && *edge != id) return slot(scope, *edge);
         if (const auto v = corner(graph, id)) return emit(scope, out, Form::Corner, {*v});
-        return emit_plain(scope, id, std::move(out));
+        for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
+        if (out.type != ir::Type::Float) return emit(scope, std::move(out));
+        return emit_by_pieces(scope, id, std::move(out), {id});
     }
 
     Slot product(Scope &scope, NodeId id, Instruction out) {
+        if (const auto smooth = hermite(graph, id)) return slot(scope, *smooth);
         if (graph.arg(id, 0) == graph.arg(id, 1))
             return emit(scope, out, Form::Square, {graph.arg(id, 0)});
         if (const auto parts = odd_power(graph, id))
             return emit(scope, out, Form::OddPower, {parts->x, parts->exponent});
-        return emit_plain(scope, id, std::move(out));
+        for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
+        if (out.type != ir::Type::Float && !ir::is_vector(out.type))
+            return emit(scope, std::move(out));
+        return emit_by_pieces(scope, id, std::move(out), {id});
     }
 
     Slot quotient(Scope &scope, NodeId id, Instruction out) {
@@ -294,6 +375,17 @@ struct Flattener {
         return emit_turned(scope, id, std::move(out));
     }
 
+    // A choice of vectors as a vector of choices, where components differ.
+    NodeId by_component(const std::vector<NodeId> &choice) {
+        std::vector<NodeId> parts;
+        const ir::Type type = graph[choice[1]].type;
+        for (int i = 0; i < ir::components(type); ++i) {
+            const NodeId a = graph.component(choice[1], i), b = graph.component(choice[2], i);
+            parts.push_back(same(graph, a, b) ? b : graph.make(Op::Select, {choice[0], a, b}));
+        }
+        return graph.make(Op::Make, type, parts);
+    }
+
     Slot choice(Scope &scope, NodeId id, Instruction out) {
         const std::vector<NodeId> args = args_of(id);
         for (NodeId a : args) out.args.push_back(slot(scope, a));
@@ -312,6 +404,8 @@ struct Flattener {
             else if (out.type == ir::Type::Float &&
                      arms_agree(graph, args[0], args[1], graph.neg(args[2]), context.work))
                 out.form = Form::Opposite;
+            else if (ir::is_vector(out.type))
+                return slot(scope, by_component(args));
         }
         return emit(scope, std::move(out));
     }
@@ -394,9 +488,20 @@ Tape flatten(Flattening &context, NodeId root) {
     const bool steps = has_steps(context.graph, root),
                choices = context.borders && has_choices(context.graph, root);
     if (steps || choices) {
-        const NodeId whole = written_out(context.graph, root);
-        if (steps) flattener.cancelling = cancelling_steps(context.graph, whole);
-        if (choices) flattener.cancelling.merge(meeting_choices(context, whole));
+        NodeId whole = written_out(context.graph, root);
+        if (steps) {
+            flattener.cancelling = cancelling_steps(context.graph, whole);
+            const Turned turned = without_angles(context.graph, whole);
+            for (const auto &[wave, step] : turned.steps)
+                if (flattener.cancelling.contains(wave)) flattener.cancelling.insert(step);
+            whole = turned.root;
+            flattener.stepped = stepped_angles(context.graph, whole, flattener.cancelling);
+        }
+        if (choices) {
+            Meeting meeting = meeting_choices(context, whole);
+            flattener.cancelling.merge(meeting.choices);
+            flattener.tape.near = meeting.near;
+        }
         if (!flattener.cancelling.empty()) root = whole;
     }
     Scope scope;

@@ -5,6 +5,7 @@
 
 #include "ir/graph.h"
 #include "ir/interval.h"
+#include "proof/pieces.h"
 #include "proof/work.h"
 
 #include <unordered_map>
@@ -42,6 +43,7 @@ struct Instruction {
     Form form = Form::Plain;
     ir::Type type = ir::Type::Float;
     bool varies = false;  // with the point
+    bool stepped = false; // an angle that steps alone read (polar.h)
     bool cancels = false; // a step whose jumps the result does not see (discontinuities.h)
     Slot out = 0;
     std::vector<Slot> args;
@@ -71,8 +73,17 @@ struct Tape {
     std::uint32_t components = 0;
     Slot result = 0;
     bool grows = false;     // some values may leave single precision
+    bool near = false;      // what cancels does so where no coordinate is above `near_enough` alone
     bool too_large = false; // the field was cut off while flattening; nothing may be concluded
     std::size_t length() const;
+};
+
+constexpr double near_enough = 1000; // coordinates up to which some proofs hold (on_line.h)
+
+// Choices whose turning a field is proved not to see (borders.h).
+struct Meeting {
+    std::unordered_set<NodeId> choices;
+    bool near = false; // where no coordinate is above `near_enough` alone (on_line.h)
 };
 
 // Border questions: is this Select continuous (continuity.h)? Answered once a Select that varies.
@@ -83,7 +94,8 @@ struct Flattening {
     bool borders =
         true; // is each choice tested for whether the field changes there? Slopes depend on it
     // By field: the choices at which it does not change (borders.h), found once a field.
-    std::unordered_map<NodeId, std::unordered_set<NodeId>> meeting{};
+    std::unordered_map<NodeId, Meeting> meeting{};
+    std::unordered_map<NodeId, std::optional<Pieces>> pieces{}; // by node, remembered over fields
     std::vector<bool> cached{}; // by cached field: known by its bounds alone (Ranges::caches)
 };
 

@@ -136,6 +136,81 @@ constexpr std::array near_misses = {
     "pow(pow(p.x, 4) - pow(p.y, 4), 1 / 4)",
     "sqrt(max(p.x, p.y) - 1)",
     "sqrt(min(p.x * p.x, p.y))",
+    // one comparison in several choices
+    "if p.x < 0 or p.x > 1 { if p.x < 0 { p.y } else { p.y + p.x - 1 } } else { p.y + 0.001 }",
+    "if p.x < 0 or p.x > 1 { if p.x < 0 { p.y } else { p.y + p.x } } else { p.y }",
+    "(if p.x < 0 { 1 } else { -1 }) * (if p.x > 0 { 1 } else { -1 }) * p.y",
+    "float(p.x < 0) * p.y + (if p.x < 0 { 0 } else { p.y + 0.001 })",
+    // on a line: a number is another, arms meet on a part alone, or up to 500
+    "if max(-0.6 * p.x * p.x + 0.72 * (1.2 - 2 * p.y), 0.3 * abs(p.x) - 0.848528137 * p.y) < 0 "
+    "{ length(p.xy) - 0.9 } else if abs(p.x) < 0.848528137 { 0.301 - p.y } "
+    "else { length(vec2(abs(p.x) - 0.848528137, p.y - 0.3)) }",
+    "if max(-0.6 * p.x * p.x + 0.72 * (1.2 - 2 * p.y), 0.3 * abs(p.x) - 0.848528137 * p.y) < 0 "
+    "{ length(p.xy) - 0.9 } else if abs(p.x) < 0.84 { 0.3 - p.y } "
+    "else { length(vec2(abs(p.x) - 0.848528137, p.y - 0.3)) }",
+    "if p.x < 0 { max(p.y, 0) } else { max(p.y, -0.5) }",
+    "if p.x < 0 { abs(p.y) } else { max(abs(p.y), 0.001) }",
+    "if p.x < 0 { p.y * p.y } else { max(p.y * p.y, 0.001 * p.y) }",
+    "if p.x < 0 { p.y } else { max(p.y, sqrt(p.y * p.y + 0.0001) - 1) }",
+    "if p.x < 0 { p.y } else { min(p.y, 500) }",
+    "if p.y < p.x * p.x { length(p.xy) } else { abs(p.x) * sqrt(1 + p.y) + 0.0001 }",
+    // counts
+    "if round(p.x) % 2 == 0 { p.x - round(p.x) } else { round(p.x) - p.x + 0.001 }",
+    "if round(p.x) % 3 == 0 { p.x - round(p.x) } else { round(p.x) - p.x }",
+    "if round(p.x) > 1 { p.x - round(p.x) } else { round(p.x) - p.x }",
+    "abs(((p.x + 0.25) % 0.5) - 0.25 + (if floor((p.x + 0.25) / 0.5) > 2 "
+    "{ 0.51 * (floor((p.x + 0.25) / 0.5) - 2) } else { 0 }))",
+    "abs(((p.x + 0.25) % 0.5) - 0.25 + (if floor((p.x + 0.25) / 0.5) > 2 "
+    "{ 0.5 * (floor((p.x + 0.25) / 0.5) - 1) } else { 0 }))",
+    "mix([0.1, 0.4, 0.2, 0.5][int(floor(clamp(2 * p.x + 1.5, 0, 3)))], [0.1, 0.4, 0.2, 0.5]"
+    "[min(int(floor(clamp(2 * p.x + 1.5, 0, 3))) + 1, 2)], fract(clamp(2 * p.x + 1.5, 0, 3)))",
+    "min(floor(p.x), 1) + fract(p.x)",
+    // angles: another count, another angle, another length, a part of a turn
+    "length(vec2(length(p.xy) * cos(((atan(p.y, p.x) + 0.3) % 1.2) - 0.6) - 1, p.z))",
+    "length(vec2(length(p.xy) * cos((atan(p.y, p.x) % (2 * pi / 5)) - pi / 4) - 1, p.z))",
+    "length(vec2(length(p.xz) * cos((atan(p.y, p.x) % (pi / 3)) - pi / 6) - 1, p.z))",
+    "length(p.xy) * sin((atan(p.y, p.x) % (pi / 3)) - pi / 6) + p.z",
+    "length(p.xy) * cos((atan(p.y, p.x) % (pi / 3)) - pi / 6 + 0.01) + p.z",
+    "length(p.xy) * sin(abs((atan(p.y, p.x) % (pi / 3)) - pi / 6.01)) + p.z",
+    "length(p.xy - 0.1) * cos((atan(p.y, p.x) % (pi / 3)) - pi / 6) + p.z",
+    "p.z + 0.1 * floor(atan(p.y, p.x) * 3 / pi)",
+    "p.z * (1 + floor(atan(p.y, p.x) * 3 / pi) % 2)",
+    // vectors by component
+    "length(if p.x > 1 { vec2(p.x - 2.1, p.y) } else { p.xy })",
+    "length((if p.x > 1 { vec2(p.x - 2, p.y) } else { p.xy }) - vec2(0.1, 0))",
+    "length(if p.x > 1 { vec2(p.x - 2, p.y + 0.001) } else { p.xy })",
+};
+
+// Fields with the steepest slope that they have, by pieces: the bound is no less, and hardly more.
+struct Steep {
+    const char *field;
+    double slope;
+};
+constexpr std::array steep = {
+    Steep{"abs(p.x) + p.x", 2},
+    Steep{"max(p.x, 0) - min(p.x, 0)", 1},
+    Steep{"min(p.x, p.y) + max(p.x, 0)", 2},
+    Steep{"min(p.x + p.y, 2 * p.x)", 2},
+    Steep{"abs(p.x - p.y) + abs(p.x + p.y)", 2},
+    Steep{"abs(p.x - p.y) - abs(p.x + p.y) + p.x + p.y", 3.1622777},
+    Steep{"max(abs(p.x), abs(p.y)) + min(abs(p.x), abs(p.y))", 1.4142136},
+    Steep{"length(vec2(length(p.xz), p.x))", 1.4142136},
+    Steep{"length(vec2(length(p.xz), 2 * p.y))", 2},
+    Steep{"length(vec3(p.x, abs(p.x), p.y))", 1.4142136},
+    Steep{"length(vec2(2 * abs(p.x), min(p.y, 0)))", 2},
+    Steep{"length(p.xy - vec2(clamp(p.x, -0.5, 0.5), -p.y))", 2},
+    Steep{"length(p.xy - vec2(clamp(p.x, -0.5, 0.5), 0))", 1},
+    Steep{"length(p.xy - 3 * min(dot(p.xy, vec2(0.6, 0.8)), 0) * vec2(0.6, 0.8))", 2},
+    Steep{"length(p.xy - 2 * min(dot(p.xy, vec2(0.6, 0.8)), 0) * vec2(0.6, 0.8))", 1},
+    Steep{"length(if p.x < p.y { p.yx } else { p.xy })", 1},
+    Steep{"length(if p.x < p.y { 2 * p.yx } else { 2 * p.xy })", 2},
+    Steep{"max(0.2, min(p.x, p.y)) - length(max(vec2(0.2 - p.x, 0.2 - p.y), 0))", 1},
+    Steep{"min(-0.2, max(p.x, p.y)) + length(max(vec2(0.2 + p.x, 0.2 + p.y), 0))", 1},
+    Steep{"max(0.2, min(p.x, p.y)) + length(max(vec2(0.2 - p.x, 0.2 - p.y), 0))", 1},
+    Steep{"max(0.2, min(p.x, p.y)) - length(max(vec2(0.3 - p.x, 0.2 - p.y), 0))", 2},
+    Steep{"abs(p.x - round(p.x)) + p.x", 2},
+    Steep{"p.y - (if round(p.y) % 2 == 0 { p.y - round(p.y) } else { round(p.y) - p.y })", 2},
+    Steep{"min(p.x, 0.3) - min(p.x, 0.4) + p.x", 1},
 };
 
 } // namespace
@@ -146,6 +221,33 @@ TEST_CASE("what only nearly meets is refused") {
         const std::optional<double> bound = proved(idiom);
         INFO(field << ": " << bound.value_or(0));
         CHECK(!bound);
+    }
+}
+
+TEST_CASE("what agrees up to a distance alone is proved up to there") {
+    const std::string field = "fn f(p: vec3) -> float = "
+                              "if p.x < 0 { p.y } else { min(p.y, sqrt(p.y * p.y + 1) + 2000) }\n",
+                      jumps = "fn f(p: vec3) -> float = "
+                              "if p.x < 0 { p.y } else { min(p.y, max(p.y, 0) * 0.5 + 1500) }\n";
+    const auto good = [](const std::string &text, const std::string &region) {
+        return driver::compile_text("near.sdf", text + "implicit(f, within: " + region + ")\n", "",
+                                    {})
+            .good();
+    };
+    CHECK(good(field, "ball(2)"));
+    CHECK(good(jumps, "ball(2)"));
+    CHECK_FALSE(good(jumps, "ball(5000)"));
+}
+
+TEST_CASE("the bound by pieces is the steepest slope") {
+    for (const Steep &one : steep) {
+        const Idiom idiom{one.field, "fn f(p: vec3) -> float = " + std::string(one.field) + "\n"};
+        const std::optional<double> bound = proved(idiom);
+        INFO(one.field << ": " << bound.value_or(-1));
+        REQUIRE(bound);
+        CHECK(*bound >= one.slope * (1 - 1e-6));
+        CHECK(*bound <= std::max(one.slope, 1.0) * 1.06);
+        CHECK(seen(idiom) <= *bound * 1.002);
     }
 }
 
