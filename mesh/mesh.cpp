@@ -3,7 +3,6 @@
 #include "backend-cpu/prune/solid_box.h"
 
 #include <cmath>
-#include <limits>
 
 namespace fathom::mesh {
 namespace {
@@ -29,8 +28,7 @@ Failure untangle(Made &made, const Field &field, const OctreeSettings &settings,
                  Progress &progress) {
     constexpr int most_rounds = 64;
     for (int round = 0; round < most_rounds; ++round) {
-        if (made.octree.nodes.size() > std::size_t(std::numeric_limits<std::int32_t>::max() / 8))
-            return Failure::TooMany;
+        if (made.octree.nodes.size() > 2 * most_nodes) return Failure::TooMany;
         made.loops = find_loops(made.octree, settings.threads, progress);
         if (progress.cancelled) return Failure::Cancelled;
         if (made.loops.torn > 0) {
@@ -70,6 +68,7 @@ Made make_mesh(const ir::Scene &scene, const Settings &settings) {
     progress.to = 0.5;
     made.octree = make_octree(field, *lattice, octree, progress);
     if (progress.cancelled) return fail(Failure::Cancelled);
+    if (made.octree.full) return fail(Failure::TooMany);
     progress.phase(0.6);
     if (const Failure failure = untangle(made, field, octree, progress); failure != Failure::None)
         return fail(failure);

@@ -211,15 +211,19 @@ bool beside_crossed(const Octree &octree, const Cell &cell) {
 void graft_all(Octree &octree, const Field &field, const std::vector<Cell> &cells, int until,
                bool hidden, const OctreeSettings &settings, Progress &progress) {
     std::vector<std::vector<Node>> trees(cells.size());
+    std::atomic<std::size_t> nodes{octree.nodes.size()};
     in_parallel(
         cells.size(), settings.threads, progress, [&] { return Divider(field); },
         [&](Divider &divider, std::size_t k) {
+            if (nodes > most_nodes) return;
             const Node &node = octree.nodes[static_cast<std::size_t>(cells[k].node)];
             trees[k] =
                 subtree(divider, octree.lattice, *octree.tapes[static_cast<std::size_t>(node.task)],
                         cells[k], until, hidden, settings.trusts_bounds);
+            nodes += trees[k].size();
         });
-    if (progress.cancelled) return;
+    octree.full = octree.full || nodes > most_nodes;
+    if (progress.cancelled || octree.full) return;
     for (std::size_t k = 0; k < cells.size(); ++k)
         graft(octree, cells[k].node, octree.nodes[static_cast<std::size_t>(cells[k].node)].task,
               trees[k]);
@@ -242,7 +246,7 @@ void search_hidden(Octree &octree, const Field &field, const OctreeSettings &set
         if (16 * cells.size() > boxes) break;
         boxes -= 16 * cells.size();
         graft_all(octree, field, cells, level + 1, true, settings, progress);
-        if (progress.cancelled) return;
+        if (progress.cancelled || octree.full) return;
         std::vector<Cell> parts;
         for (const Cell &cell : cells) {
             const std::int32_t first = octree.nodes[static_cast<std::size_t>(cell.node)].children;
@@ -280,7 +284,7 @@ Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSetti
     progress.phase(share(0.8));
     graft_all(octree, field, cells, lattice.level, false, settings, progress);
     progress.phase(to);
-    if (!progress.cancelled) search_hidden(octree, field, settings, progress);
+    if (!progress.cancelled && !octree.full) search_hidden(octree, field, settings, progress);
     return octree;
 }
 

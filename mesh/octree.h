@@ -11,6 +11,9 @@ namespace fathom::mesh {
 
 inline constexpr std::int32_t none = -1;
 
+// Some ten million cells that are crossed: what comes of them takes a few gigabytes.
+inline constexpr std::size_t most_nodes = std::size_t{1} << 25;
+
 enum class Space : std::uint8_t { Outside, Inside, Open }; // Open: it may hold surface
 
 // A cell: divided into eight, or a leaf.
@@ -36,6 +39,7 @@ struct Octree {
     // Open leaves without a crossed one beside them: the field does not say whether surface is in
     // them, by the work that was spent on it.
     std::vector<Cell> undecided;
+    bool full = false; // more than most_nodes were wanted: it is not whole
 };
 
 struct OctreeSettings {
