@@ -270,6 +270,11 @@ class PieceReader {
                     if (std::find(out.parts.begin(), out.parts.end(), part) == out.parts.end())
                         out.parts.push_back(part);
         if (out.parts.empty() || out.parts.size() > max_parts) return {};
+        // What is a part of itself is made of nothing nearer.
+        for (NodeId part : out.parts)
+            if (of_.size() == 1 && (part == of_[0] || (graph_[part].op == Op::Swizzle &&
+                                                       graph_.arg(part, 0) == of_[0])))
+                return {};
         double longest = 0; // of a row
         for (const auto &rows : pieces) {
             std::vector<Row> matrix;
