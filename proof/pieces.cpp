@@ -247,7 +247,8 @@ class PieceReader {
     void expand_lengths(std::vector<Affine> &rows) {
         for (std::size_t r = 0; r < rows.size() && !failed_; ++r) {
             if (rows[r].size() != 1) continue;
-            const auto [length, by] = *rows[r].begin();
+            const NodeId length = rows[r].begin()->first;
+            const double by = rows[r].begin()->second;
             if (graph_[length].op != Op::Length) continue;
             const bool elsewhere = std::any_of(rows.begin(), rows.end(), [&](const Affine &row) {
                 return &row != &rows[r] && row.contains(length);
