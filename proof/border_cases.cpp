@@ -196,7 +196,8 @@ class Cases {
     }
     // With r*r for the leading term of what r is the root of, less the other terms.
     static Sum with_square(const Sum &sum, std::uint32_t r, const Sum &square) {
-        const auto &[lead, by] = *square.begin();
+        const Product &lead = square.begin()->first;
+        const double by = square.begin()->second;
         if (lead.size() != 2) return sum;
         Sum out = sum;
         for (int round = 0; round < 40; ++round) {

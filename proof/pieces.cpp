@@ -247,7 +247,8 @@ class PieceReader {
     void expand_lengths(std::vector<Affine> &rows) {
         for (std::size_t r = 0; r < rows.size() && !failed_; ++r) {
             if (rows[r].size() != 1) continue;
-            const auto [length, by] = *rows[r].begin();
+            const NodeId length = rows[r].begin()->first;
+            const double by = rows[r].begin()->second;
             if (graph_[length].op != Op::Length) continue;
             const bool elsewhere = std::any_of(rows.begin(), rows.end(), [&](const Affine &row) {
                 return &row != &rows[r] && row.contains(length);
@@ -270,6 +271,11 @@ class PieceReader {
                     if (std::find(out.parts.begin(), out.parts.end(), part) == out.parts.end())
                         out.parts.push_back(part);
         if (out.parts.empty() || out.parts.size() > max_parts) return {};
+        // What is a part of itself is made of nothing nearer.
+        for (NodeId part : out.parts)
+            if (of_.size() == 1 && (part == of_[0] || (graph_[part].op == Op::Swizzle &&
+                                                       graph_.arg(part, 0) == of_[0])))
+                return {};
         double longest = 0; // of a row
         for (const auto &rows : pieces) {
             std::vector<Row> matrix;
