@@ -16,7 +16,7 @@ namespace {
 struct OneBall : Fields {
     OneBall() {
         NodeId d = make_distance();
-        scene.distance = function(d);
+        scene.distance = scene.shaded = function(d);
         NodeId q = g.fresh_var(Type::Vec3);
         NodeId there = g.call(scene.distance, std::span(&q, 1));
         NodeId zero4 = g.make(Op::Splat, Type::Vec4, {g.number(0)});
