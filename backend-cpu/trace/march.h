@@ -90,8 +90,8 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
 enum class RayEnd : std::uint8_t { Miss, Hit, Undecided };
 
 // Rays alone, for tests: where each ends and after how many steps. `brute` marches plainly, at a
-// tenth of the proved step and a hundred times as often, as a check on what the stepping may have
-// jumped over.
+// tenth of the proved step, or an eighth of the tolerance where that is more, and a hundred times as
+// often, as a check on what the stepping may have jumped over.
 struct Ray {
     std::array<float, 3> origin, direction;
 };

@@ -75,7 +75,7 @@ inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
         walk.touches < 0 ? lengths.tolerance(walk.t) : 0.25f * lengths.slack_at(walk.t);
     const float d = std::max(walk.d, least);
     const float span = std::max(walk.span, d);
-    float next = brute ? 0.1f * d : d;
+    float next = brute ? std::max(0.1f * d, 0.125f * lengths.tolerance(walk.t)) : d;
     if (!brute && span > d) {
         next = span;
         if (walk.stride > 0) {
