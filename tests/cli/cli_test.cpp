@@ -239,11 +239,11 @@ TEST_CASE("a large table goes into a buffer's file beside the shader, a loop's i
     folder.write("loop.sdf", "for i in 0..300 { sphere(0.4).translate(x: i) }\n");
     CHECK(shell(folder, "fathom compile data.sdf -o data.glsl").exit == 0);
     CHECK(contains(folder.read("data.glsl"), "uniform samplerBuffer fathom_tables"));
-    CHECK(folder.read("data.glsl").size() < 15000);
+    const std::size_t size = folder.read("data.glsl").size();
     CHECK(folder.read("data.glsl.tables").size() == 300 * 4 * sizeof(float));
-    CHECK(shell(folder, "fathom compile data.sdf").out.size() > 10000); // no file, no buffer
+    CHECK(shell(folder, "fathom compile data.sdf").out.size() > size + 2000); // no file, no buffer
     CHECK(shell(folder, "fathom compile loop.sdf -o loop.glsl").exit == 0);
-    CHECK(folder.read("loop.glsl").size() < 15000);
+    CHECK(folder.read("loop.glsl").size() < size + 500);
     CHECK(folder.read("loop.glsl.tables").empty());
 }
 
