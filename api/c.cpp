@@ -205,7 +205,7 @@ void fathom_text_free(fathom_text *text) { delete text; }
 
 int fathom_scene_draw(const fathom_scene *scene, int width, int height, int samples, double time,
                       unsigned char *rgba) {
-    if (!scene || !rgba || width < 1 || height < 1 || samples < 1) return FATHOM_BAD_ARGUMENT;
+    if (!scene || !rgba || width < 1 || height < 1 || samples < 0) return FATHOM_BAD_ARGUMENT;
     try {
         PictureOptions options;
         options.width = width;

@@ -8,7 +8,7 @@ Picture draw(const Scene &scene, const PictureOptions &options) {
     constexpr int max_side = 65536;
     Picture empty;
     if (options.width < 1 || options.height < 1 || options.width > max_side ||
-        options.height > max_side || options.samples < 1)
+        options.height > max_side || options.samples < 0)
         return empty;
     return guarded(
         [&] {

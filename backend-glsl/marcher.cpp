@@ -20,6 +20,8 @@ constexpr double steps_a_length = 64;
 
 std::string flag(bool on) { return on ? "1" : ""; }
 
+std::string vec3_of(const std::array<float, 3> &v) { return vec3_literal({v[0], v[1], v[2]}); }
+
 Values values_of(const MarcherOptions &options) {
     namespace shading = ir::shading;
     const std::string far = "100.0 * max(" + float_literal(options.radius) +
@@ -34,6 +36,8 @@ Values values_of(const MarcherOptions &options) {
         // Of a field that costs little, two copies are quicker than the loop round one.
         {"TWICE", flag(options.cheap && !options.cached)},
         {"SKIP_SHADING", flag(options.skip_shading)},
+        {"CLASSIC", flag(options.classic)},
+        {"SOFT", flag(!options.classic && !options.skip_shading)},
         {"LOCAL_NORMALS", flag(options.local_normals)},
         {"PICK", flag(options.pick)},
         {"CACHED", flag(options.cached)},
@@ -72,8 +76,12 @@ Values values_of(const MarcherOptions &options) {
         {"SEARCHES", fmt::to_string(2 + shading::penumbra_turns)},
         {"ALL_TAPS", fmt::to_string((options.unit_slope ? 4 : 8) + shading::occlusion_samples)},
         {"OCCLUSION_TOTAL", float_literal(1 - std::ldexp(1.0, -shading::occlusion_samples))},
-        {"OCCLUSION_REACH",
-         float_literal(shading::occlusion_reach * options.radius / shading::occlusion_samples)},
+        {"OCCLUSION_SAMPLES", float_literal(float{shading::occlusion_samples})},
+        {"SOIL", vec3_of(shading::soil)},
+        {"SKY", vec3_of(shading::sky)},
+        {"SHOULDER", float_literal(shading::shoulder)},
+        {"FADE_FROM", float_literal(shading::fade_from)},
+        {"ARM", float_literal(shading::arm)},
         {"SHADOW_BIAS", float_literal(shading::shadow_bias)},
         {"MIN_ANGLE", float_literal(shading::min_angle)},
         {"CHECK_STEPS", fmt::to_string(check_steps)},

@@ -36,6 +36,7 @@ struct MarcherOptions {
     bool passes = false;          // a picture is drawn by passes
     bool cheap = false;           // the field is a few operations
     bool skip_shading = false;
+    bool classic = false;       // Lighting::classic
     bool local_normals = false; // some material reads its normal
     bool default_sun = false;
     bool pick = false;      // writes fathom_pick too (emit.h)

@@ -94,6 +94,7 @@ MarcherOptions marcher_options(const Module &module, const SceneText &text, cons
     marcher.cheap = scene.distance &&
                     ir::operations(scene.graph, module.result_of(scene.distance)) <= cheap_field;
     marcher.skip_shading = scene.lighting.skip;
+    marcher.classic = scene.lighting.classic;
     marcher.local_normals = text.local_normals;
     marcher.lights = text.lights;
     marcher.max_steps = steps_of(module, frame);

@@ -15,10 +15,21 @@ struct Picture {
     std::vector<std::uint8_t> rgba;
 };
 
-std::uint8_t srgb_byte(float linear); // clamped to 0..1, rounded; NaN is 0
+// What is added to an encoded value of 0..255 at a pixel before it is cut to a byte: 0.02 to 0.98 by
+// an ordered pattern of 8x8 pixels (Bayer 1973), so that a slow gradient shows no bands. A value
+// within 0.02 of a whole number stays that number everywhere: flat colours stay flat.
+float dither(int x, int y);
 
-// Of linear RGBA, rows from the top; every pixel opaque.
+// Clamped to 0..1, encoded, with `dither` cut to a byte; 0.5 rounds. NaN is 0.
+std::uint8_t srgb_byte(float linear, float dither = 0.5f);
+
+// Of linear RGBA, rows from the top; every pixel opaque, dithered.
 Picture picture_of_linear(int width, int height, std::span<const float> rgba);
+
+// The pixels that one sample does not do for: those which differ from one of the four beside them
+// by more than `rough_contrast` in some channel, encoded 0..1. 1 or 0 a pixel; of linear RGBA.
+inline constexpr float rough_contrast = 0.08f;
+std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const float> rgba);
 
 // A whole PNG file; empty where the picture has no pixels or is larger than PNG allows.
 std::string encode_png(const Picture &picture);

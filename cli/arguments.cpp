@@ -255,7 +255,10 @@ struct Reader {
         sub->add_option("--fps", render.frame_rate, "frames in a second, 30 unless said")
             ->check(quiet(CLI::Range(0.001, 1000.0)))
             ->type_name("N");
-        sub->add_option("--samples", render.samples, "rays a pixel, 1 to 256")
+        sub->add_option(
+               "--samples", render.samples,
+               "rays a pixel, 1 to 256; unless said, one, and 4 where it differs from those "
+               "beside it")
             ->check(quiet(CLI::Range(1, 256)))
             ->type_name("N");
         sub->add_option(

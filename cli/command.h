@@ -58,7 +58,7 @@ struct RenderCommand {
     double time = 0;
     std::optional<std::pair<int, int>> frames; // first, one past the last
     double frame_rate = 30;
-    int samples = 1;
+    int samples = 0;     // a pixel; 0: one, and more where it is rough
     int max_steps = 0;   // evaluations of a ray; 0: what the scene says
     bool strict = false; // a ray left undecided is an error
     int quality = 90;    // of a JPEG

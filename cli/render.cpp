@@ -73,7 +73,8 @@ std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &sce
     inputs.time = time;
     inputs.mode = gl::Mode::Linear;
     std::optional<gl::Pixels> sum;
-    for (int k = 0; k < command.samples; ++k) {
+    const int samples = std::max(command.samples, 1);
+    for (int k = 0; k < samples; ++k) {
         inputs.offset = ir::sample_offset(k);
         const bool drawn = k == 0 && !command.frames ? draw_still(view, scene, inputs, progress)
                                                      : view.draw(inputs, scene.params, {});
@@ -86,8 +87,8 @@ std::optional<gl::Pixels> draw_cached(gl::CachedView &view, const ir::Scene &sce
             sum = std::move(pixels);
         }
     }
-    if (command.samples > 1)
-        for (float &value : sum->rgba) value /= static_cast<float>(command.samples);
+    for (float &value : sum->rgba) value /= static_cast<float>(samples);
+    sum->rays = static_cast<std::uint64_t>(samples) * sum->rgba.size() / 4;
     status = cached_share(view);
     return sum;
 }
@@ -177,10 +178,8 @@ struct Painted {
     std::uint64_t rays = 0, undecided = 0, undecided_shadows = 0;
 };
 
-Painted painted(const gl::Pixels &pixels, const RenderCommand &command) {
-    return {picture_of_linear(pixels.width, pixels.height, pixels.rgba),
-            static_cast<std::uint64_t>(pixels.width) * static_cast<std::uint64_t>(pixels.height) *
-                static_cast<std::uint64_t>(command.samples),
+Painted painted(const gl::Pixels &pixels) {
+    return {picture_of_linear(pixels.width, pixels.height, pixels.rgba), pixels.rays,
             pixels.undecided, pixels.undecided_shadows};
 }
 
@@ -192,7 +191,7 @@ std::optional<Painted> paint(const Painter &painter, const ir::Scene &scene,
         std::optional<gl::Pixels> pixels =
             draw_cached(*painter.cache, scene, command, time, progress, status);
         if (!pixels) return std::nullopt;
-        return painted(*pixels, command);
+        return painted(*pixels);
     }
     if (painter.program) {
         gl::Request request;
@@ -204,7 +203,7 @@ std::optional<Painted> paint(const Painter &painter, const ir::Scene &scene,
         std::optional<gl::Pixels> pixels =
             gl::draw(*painter.program, scene, request, gl::Mode::Linear);
         if (!pixels) return std::nullopt;
-        return painted(*pixels, command);
+        return painted(*pixels);
     }
     double aspect = static_cast<double>(command.width) / command.height;
     cpu::Stage stage =

@@ -98,7 +98,10 @@ struct Lighting {
     NodeId shadow_darkness;   // 0 none … 1 black
     NodeId soft_shadows;      // half the light's angular size, radians; 0 is hard
     NodeId specular_intensity;
-    bool skip = false; // `Skip Shadows & Shading`
+    NodeId fill;            // of a light at the eye that casts no shadow; 0 none
+    NodeId occlusion_reach; // how far occlusion looks, in units; none: view.h says
+    bool skip = false;      // `Skip Shadows & Shading`
+    bool classic = false;   // plain Phong: ambient light alike from everywhere, highlights clamped
 };
 
 // Where the picture is taken from; closed expressions, angles in radians.

@@ -14,7 +14,8 @@
 //   pixel         perspective: the width of a pixel at distance 1; orthographic: everywhere
 //   tolerance(t)  perspective:  min(eps, pixel/2)*t + slack
 //                 orthographic: min(eps*focus, pixel/2) + slack
-//   step(t)       tolerance(t) + normal_slack*slack: the arm of a gradient's taps
+//   step(t)       arm*tolerance(t) + normal_slack*slack: the arm of a gradient's taps, so short that
+//                 they seldom lie on both sides of an edge
 //
 // GRADIENT of g at p with arm h
 //   sum of e_i * g(p + h*e_i) times 0.75/h, i = 0..3, with the corners of a tetrahedron
@@ -55,17 +56,18 @@
 //   Out of way: a miss.
 //
 //   REFINED: x is where the chord between the ends is 0. If the last step aims and x is at most
-//   tolerance/32 from t - tolerance/4, where it aimed at, the ray lands at x. Else, at most
+//   refined*tolerance from t - tolerance/4, where it aimed at, the ray lands at x. Else, at most
 //   `refinements` times: f(x) takes the place of the end with its sign (and where one end stays twice
 //   in a row, its value counts half: the Illinois rule), x is found anew, and where it moved by at
-//   most tolerance/32, or the ends are as near, the ray lands there. So where a ray lands does not
+//   most refined*tolerance, or the ends are as near, the ray lands there. So where a ray lands does not
 //   depend on where its samples fell.
 //
 //   BESIDE: f at eight places round the ray, 4*slack(t) away: o + t*dir + 4*slack(t)*(cos(k*pi/4)*u +
 //   sin(k*pi/4)*v), k = 0..7, with u, v perpendicular to the ray. One that is not above 0 tells of a
 //   solid that the ray grazes. Else the slope is that of `across` = (greatest - least)/(8*slack(t)) and
-//   `along` = (before - d)/stride: where d > 2*slack(t)*|(across, along)| the surface is farther; else
-//   it is a sheet or a point.
+//   `along` = (before - d)/stride: where d > 2*slack(t)*|(across, along)| the surface is farther. Else
+//   f at eight places tolerance(t)/4 away tells alike of a solid that the ray grazes; else it is a
+//   sheet or a point.
 //
 //   `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to 0..far;
 //   else 0..far.
@@ -93,19 +95,23 @@
 //   hit(p + h*n).point - s.point, normalised (n where that is 0).
 //   With Lighting::skip: color = diffuse + emission. Else Phong (thesis, 2.1), with the light's
 //   visibility:
-//     color = ao * diffuse * ambient + emission
+//     color = ao * diffuse * (around + fill * max(n.v, 0)) + emission
 //           + sum over lights of seen * light color
 //             * (diffuse * max(n.l, 0) + specular_intensity * specular * max(r.v, 0)^exponent)
 //     r     l mirrored in n
 //     seen  1 - shadow_darkness * (1 - shadow)
 //     ao    1 - ambient_occlusion * occlusion
+//     around  ambient * mix(soil, sky, (1 + n.y)/2): more comes from above, and it is cooler
+//   Last, highlights: a channel c above `shoulder` becomes
+//   shoulder + (1 - shoulder)*(1 - exp(-(c - shoulder)/(1 - shoulder))), which stays below 1.
+//   With Lighting::classic, which is the thesis's, around = ambient and no channel is changed.
 //   Lights with n.l <= 0 add nothing. A sun's l is its direction; else l points from p to its
 //   place. What is closed in sees less of the sky, so `ao` dims the ambient light alone; how much
 //   of a light arrives is for `seen` to say, which never makes a contact black (thesis, 4.2.1 has
 //   both).
 //
 // OCCLUSION (thesis, 4.2.1: five samples along the normal)
-//   for i = 1..5, x_i = occlusion_reach*radius*i/5, g_i = g(p + x_i*n); k is the i with the least
+//   for i = 1..5, x_i = reach*i/5 (view.h, occlusion_reach), g_i = g(p + x_i*n); k is the i with the least
 //   g_i/x_i, the first of equals. slope = 1 where `Frame::unit_slope`, or where no bound is above 1
 //   (so that no slope is) and g_k >= nearly*x_k; else max(|gradient(p + x_k*n, h)|, min(slope at
 //   p, 1), min_slope): where the samples of a gradient lie across a crease, it is too small.
@@ -135,7 +141,10 @@
 //
 // UNDECIDED: shaded where the ray came to, as what it is nearest to.
 // MISS: color = background_function(dir); without one `background`.
-// Out: linear; samples of a pixel are averaged linear; then clamped to 0..1 and sRGB-encoded.
+// FADE: where rays have no box, what lies as far as `far` cannot be told from what is endless: a
+//   hit's color = mix(color, that of a miss, smoothstep(fade_from*far, far, t)).
+// Out: linear; samples of a pixel are averaged linear; then clamped to 0..1, sRGB-encoded, and
+//   rounded to bytes by the pixel's place in a pattern (base/picture.h, `dither`).
 #pragma once
 
 #include <array>
@@ -144,6 +153,7 @@ namespace fathom::ir::shading {
 
 inline constexpr float float_slack = 1e-6f;
 inline constexpr float normal_slack = 50;
+inline constexpr float arm = 0.25f; // tolerances
 inline constexpr float min_slope = 1.0f / 1024;
 inline constexpr float relaxation =
     0.9f; // performance.md, 2: best of those measured on scenes with L = 1
@@ -151,18 +161,22 @@ inline constexpr float flattest = 1e-3f;
 inline constexpr float bent_relaxation = 0.7f; // measured on displaced spheres, as these
 inline constexpr float nearer = 0.9f;
 inline constexpr int occlusion_samples = 5;
-inline constexpr float occlusion_reach = 0.08f;
+inline constexpr float occlusion_reach = 0.07f; // of the least side of what has an end
 inline constexpr float nearly = 0.98f;
 inline constexpr int penumbra_turns = 7;
 inline constexpr float quiet = 0.25f;           // of a distance near a shadow ray
 inline constexpr float jump = 4, far_jump = 32; // tolerances
 inline constexpr int refinements = 8;
-inline constexpr float refined = 1.0f / 32; // of a tolerance
+inline constexpr float refined = 1.0f / 128; // of a tolerance
 inline constexpr int max_touches = 8;
 inline constexpr int many_steps = 256; // red in a picture of steps
 inline constexpr int budget = 65536;   // evaluations a ray, where the scene does not say
 inline constexpr float shadow_bias = 4;
 inline constexpr float min_angle = 0.002f; // a hard shadow's edge, soft enough not to flicker
 inline constexpr std::array<float, 3> background{0.35f, 0.45f, 0.6f};
+inline constexpr std::array<float, 3> sky{1.1f, 1.15f, 1.25f}, soil{0.9f, 0.85f, 0.75f};
+inline constexpr float shoulder = 0.8f;
+inline constexpr float fade_from = 0.3f;
+inline constexpr int rough_samples = 4; // of a pixel where one does not do
 
 } // namespace fathom::ir::shading

@@ -56,6 +56,10 @@ struct Frame {
 };
 Frame frame_of(const Scene &scene, const View &view, int height);
 
+// How far occlusion looks where Lighting does not say: shading.h's part of the least side of the
+// finite parts' box, so that a lawn round a house changes nothing in its corners.
+double occlusion_reach(const Scene &scene);
+
 // How many evaluations a ray may take: render.max_steps, where it is set.
 int budget_of(const Scene &scene);
 

@@ -2,6 +2,7 @@
 // of them, and the reports that say where and why there is none.
 #include "ir/passes/operations.h"
 #include "ir/passes/walk.h"
+#include "proof/param_bounds.h"
 #include "proof/prover.h"
 
 #include "ir/lower/lower.h"
@@ -114,6 +115,19 @@ FieldBound Prover::bound_once(NodeId field, const Place &here) {
     out.value = out.value * Interval(parts.by);
     out.value_a *= parts.by, out.value_b *= parts.by;
     return out;
+}
+
+NodeId Prover::by_params(ShapeId id, NodeId field, double whole) {
+    const Place &here = place(id);
+    NodeId formula;
+    if (here.reported && !work.spent()) {
+        Budget budget;
+        budget.instructions = options.field_instructions;
+        formula = bound_by_params(flattening, ranges, field, {to_cell(here.box), here.zone}, budget,
+                                  whole);
+    }
+    const NodeId number = graph.number(whole);
+    return formula ? graph.make(Op::Min, {formula, number}) : number;
 }
 
 FieldBound Prover::bound(ShapeId id, NodeId field, const std::string &what, bool report_it) {
@@ -348,7 +362,11 @@ Derived Prover::know_leaf(ShapeId id) {
         fail(k);
         return k;
     }
-    set_lipschitz(k, b.lipschitz * options.rules[Rule::Field]);
+    const double sup = b.lipschitz * options.rules[Rule::Field];
+    if (options.rules[Rule::Field] == 1)
+        set_lipschitz(k, by_params(id, shape.args[0], sup), sup);
+    else
+        set_lipschitz(k, sup);
     k.leaf = shape.args[0];
     if (b.lipschitz == 0) set_lipschitz(k, 1); // a constant
     return k;

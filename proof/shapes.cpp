@@ -291,8 +291,16 @@ Derived Prover::know_displaced(ShapeId id) {
     if (shape.kind == ShapeKind::Displace && varies && shape.args.size() <= 3)
         k.fact.partial = partial_sums(id, slope);
     double sup = up(k.fact.lipschitz_sup + slope);
-    set_lipschitz(
-        k, slope == 0 ? k.fact.lipschitz : graph.add(k.fact.lipschitz, graph.number(slope)), sup);
+    if (slope == 0) {
+        set_lipschitz(k, k.fact.lipschitz, sup);
+        return k;
+    }
+    const bool by_field = varies && shape.args.size() <= 3 && shape.kind == ShapeKind::Displace &&
+                          options.rules[Rule::Displace] == 1;
+    set_lipschitz(k,
+                  graph.add(k.fact.lipschitz,
+                            by_field ? by_params(id, shape.args[0], slope) : graph.number(slope)),
+                  sup);
     return k;
 }
 

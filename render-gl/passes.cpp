@@ -84,6 +84,7 @@ bool Passes::use(const Drawn &drawn) {
     attach(GL_COLOR_ATTACHMENT0, drawn.color);
     attach(GL_COLOR_ATTACHMENT1, drawn.picks);
     attach(rays_place, rays_);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
     draw_into(drawn.picks != 0, 0);
     bool good = complete();
     glGenFramebuffers(1, &marks_);
@@ -121,13 +122,23 @@ bool Passes::make_kept() {
     return good;
 }
 
-void Passes::begin(const Program &program, int bottom, int rows, int turns) {
+void Passes::begin(const Program &program, int bottom, int rows, int turns,
+                   std::span<const std::uint8_t> only) {
     mark_ = program.marks();
     bottom_ = bottom;
     rows_ = rows;
     turns_ = turns > 0 ? turns : program.most_turns();
     pass_ = 0;
     left_ = 1; // or more: nobody knows yet
+    some_ = !only.empty();
+    if (!some_) return;
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, rays_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, bottom, drawn_.width, rows, GL_RED, GL_UNSIGNED_BYTE,
+                    only.data());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    count(goes_on, 2, true);
 }
 
 // Every pass is of all views: what it wrote is read by the next one, and never by itself.
@@ -146,9 +157,9 @@ bool Passes::draw(const std::function<void(const FrameInputs &pass)> &draw) {
         glScissor(0, bottom_, drawn_.width, rows_);
         const float none[] = {0, 0, 0, 0}, all = 1;
         glClearBufferfv(GL_COLOR, 2, none);
-        if (keeps()) glClearBufferfv(GL_DEPTH, 0, &all);
+        if (keeps() && !some_) glClearBufferfv(GL_DEPTH, 0, &all);
     }
-    if (keeps()) {
+    if (keeps() || some_) {
         glEnable(GL_DEPTH_TEST);
         glDepthFunc(GL_LESS); // the triangle lies at 0.5, a ray that goes on at 1
         glDepthMask(GL_FALSE);

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 
 namespace fathom::gl {
 
@@ -37,7 +38,9 @@ class Passes {
 
     // Begins a sample of the rows from `bottom` on, of a program by passes. `turns`: steps a pass may
     // give a ray; 0: as the program says.
-    void begin(const Program &program, int bottom, int rows, int turns);
+    // `only`: not 0 where a pixel of these rows is drawn, from the lowest row up; without, all are.
+    void begin(const Program &program, int bottom, int rows, int turns,
+               std::span<const std::uint8_t> only = {});
     // One pass. `draw` draws all of it, in however many views, with `turns`, `resumed` and `kept` of
     // what it is given, and touches neither the framebuffer nor the depth test. False: there is no
     // memory for what is kept.
@@ -65,7 +68,7 @@ void main() {
     void release();
 
     Drawn drawn_;
-    bool keeps_first_ = false;
+    bool keeps_first_ = false, some_ = false; // some: the first pass draws marked pixels alone
     int bottom_ = 0, rows_ = 0, turns_ = 0, pass_ = 0;
     std::uint64_t left_ = 0;
     Undecided undecided_;

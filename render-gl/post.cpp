@@ -29,6 +29,13 @@ vec3 encode(vec3 linear) {
     return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
 }
 
+// What decides how a byte is rounded (base/picture.h, `dither`).
+float dither(ivec2 at) {
+    int place = 0;
+    for (int bit = 0; bit < 3; ++bit) place = place * 4 + (((at.x ^ at.y) >> bit & 1) * 2 + (at.y >> bit & 1));
+    return (0.02 + 0.96 / 63.0 * float(place) - 0.5) / 255.0;
+}
+
 vec3 ramp(float x) {
     return clamp(vec3(2.0 * x - 0.6, 1.6 - abs(3.2 * x - 1.6), 1.0 - 2.2 * x), 0.0, 1.0);
 }
@@ -45,6 +52,7 @@ float change(ivec2 at) {
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     vec3 picture = encode(share * texelFetch(sums, at, 0).rgb);
+    if (look == 0) picture += dither(ivec2(at.x, textureSize(sums, 0).y - 1 - at.y));
     vec3 gray = vec3(0.35 * dot(picture, vec3(0.299, 0.587, 0.114)) + 0.12);
     vec4 pick = texelFetch(picks, at, 0);   // part, t, steps, slope
     if (look == 1) picture = ramp(log2(1.0 + pick.z) / log2(1.0 + max_steps));

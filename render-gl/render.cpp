@@ -1,5 +1,6 @@
 #include "render-gl/render.h"
 
+#include "ir/shading.h"
 #include "render-gl/pruning.h"
 
 #include <epoxy/gl.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <span>
 
 namespace fathom::gl {
 
@@ -51,8 +53,10 @@ class Target {
 };
 
 // One sample of a strip, whose lowest row is the picture's `bottom`. False: no memory.
+// `only`: the pixels of it that are drawn, where the program draws by passes; all without.
 bool draw_sample(const Program &program, const ir::Scene &scene, const Target &target,
-                 Passes &passes, FrameInputs inputs, int rows, int turns) {
+                 Passes &passes, FrameInputs inputs, int rows, int turns,
+                 std::span<const std::uint8_t> only) {
     const auto once = [&](const FrameInputs &pass) {
         inputs.turns = pass.turns;
         inputs.resumed = pass.resumed;
@@ -69,7 +73,7 @@ bool draw_sample(const Program &program, const ir::Scene &scene, const Target &t
         once({});
         return true;
     }
-    passes.begin(program, 0, rows, turns);
+    passes.begin(program, 0, rows, turns, only);
     while (!passes.done())
         if (!passes.draw(once)) return false;
     return true;
@@ -88,8 +92,8 @@ int largest_side() {
 
 std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const Request &request,
                            Mode mode) {
-    const int width = request.width, height = request.height,
-              samples = std::max(request.samples, 1);
+    const int width = request.width, height = request.height;
+    const bool smooth = request.samples == 0 && mode == Mode::Linear;
     if (width <= 0 || height <= 0 || std::max(width, height) > largest_side()) return std::nullopt;
     while (glGetError() != GL_NO_ERROR) {
     } // what was wrong before is not ours to report
@@ -121,27 +125,61 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
     glDisable(GL_CULL_FACE);
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     bool stopped = false, good = true;
-    for (int top = 0; top < height && !stopped && good; top += rows) {
-        const int count = std::min(rows, height - top), bottom = height - top - count;
-        target.bind();
-        glDisable(GL_SCISSOR_TEST);
-        glClearColor(0, 0, 0, 0);
-        glClear(GL_COLOR_BUFFER_BIT);
-        for (int k = 0; k < samples && !stopped && good; ++k) {
-            const std::array<double, 2> offset = ir::sample_offset(k);
-            inputs.offset = {offset[0], offset[1] - bottom};
-            good = draw_sample(program, scene, target, passes, inputs, count, request.turns);
-            glFinish(); // so that progress is true, and no strip waits behind many others
-            const double done = (top + count * (k + 1.0) / samples) / height;
-            stopped = request.progress && !request.progress(std::min(done, 1.0));
+    // Draws samples `first` to `last` strip by strip, of the pixels in `only` (rows from the top) or
+    // of all, while progress goes from `begin` to `end`; `take` gets each pixel's sum.
+    const auto draw_samples = [&](int first, int last, std::span<const std::uint8_t> only,
+                                  double begin, double end, const auto &take) {
+        std::vector<std::uint8_t> marked;
+        for (int top = 0; top < height && !stopped && good; top += rows) {
+            const int count = std::min(rows, height - top), bottom = height - top - count;
+            const auto pixel = [&](int y, int x) {
+                return static_cast<std::size_t>(top + y) * static_cast<std::size_t>(width) +
+                       static_cast<std::size_t>(x);
+            };
+            if (!only.empty()) {
+                marked.clear();
+                for (int y = count - 1; y >= 0; --y)
+                    for (int x = 0; x < width; ++x) marked.push_back(only[pixel(y, x)] ? 255 : 0);
+                if (std::ranges::find(marked, 255) == marked.end()) continue;
+            }
+            target.bind();
+            glDisable(GL_SCISSOR_TEST);
+            glClearColor(0, 0, 0, 0);
+            glClear(GL_COLOR_BUFFER_BIT);
+            for (int k = first; k < last && !stopped && good; ++k) {
+                const std::array<double, 2> offset = ir::sample_offset(k);
+                inputs.offset = {offset[0], offset[1] - bottom};
+                good = draw_sample(program, scene, target, passes, inputs, count, request.turns,
+                                   marked);
+                glFinish(); // so that progress is true, and no strip waits behind many others
+                const double done = (top + count * (k - first + 1.0) / (last - first)) / height;
+                stopped = request.progress &&
+                          !request.progress(begin + std::min(done, 1.0) * (end - begin));
+            }
+            target.bind();
+            glReadPixels(0, 0, width, count, GL_RGBA, GL_FLOAT, upward.data());
+            for (int y = 0; y < count; ++y)
+                for (int x = 0; x < width; ++x)
+                    take(pixel(y, x), upward.data() +
+                                          row * static_cast<std::size_t>(count - 1 - y) +
+                                          4 * static_cast<std::size_t>(x));
         }
-        target.bind();
-        glReadPixels(0, 0, width, count, GL_RGBA, GL_FLOAT, upward.data());
-        for (int y = 0; y < count; ++y)
-            std::transform(upward.begin() + static_cast<std::ptrdiff_t>(row) * (count - 1 - y),
-                           upward.begin() + static_cast<std::ptrdiff_t>(row) * (count - y),
-                           pixels.rgba.begin() + static_cast<std::ptrdiff_t>(row) * (top + y),
-                           [&](float sum) { return sum / static_cast<float>(samples); });
+    };
+    const int samples = std::max(request.samples, 1);
+    draw_samples(0, samples, {}, 0, smooth ? 0.5 : 1, [&](std::size_t pixel, const float *sum) {
+        for (std::size_t c = 0; c < 4; ++c)
+            pixels.rgba[4 * pixel + c] = sum[c] / static_cast<float>(samples);
+        pixels.rays += static_cast<std::uint64_t>(samples);
+    });
+    if (smooth && !stopped && good) {
+        const std::vector<std::uint8_t> rough = rough_pixels(width, height, pixels.rgba);
+        constexpr int most = ir::shading::rough_samples;
+        draw_samples(1, most, rough, 0.5, 1, [&](std::size_t pixel, const float *sum) {
+            if (!rough[pixel]) return;
+            for (std::size_t c = 0; c < 4; ++c)
+                pixels.rgba[4 * pixel + c] = (pixels.rgba[4 * pixel + c] + sum[c]) / most;
+            pixels.rays += most - 1;
+        });
     }
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_BLEND);

@@ -14,7 +14,7 @@ namespace fathom::gl {
 // An off-screen picture: size, view, time and samples.
 struct Request {
     int width = 800, height = 600;
-    int samples = 1; // a pixel
+    int samples = 1; // a pixel; 0: one, and rough_samples where it is rough (base/picture.h)
     double time = 0;
     std::optional<ir::View> view{};         // else the scene's own
     std::function<bool(double)> progress{}; // called now and then with 0..1; false stops
@@ -26,8 +26,9 @@ struct Request {
 struct Pixels {
     int width = 0, height = 0;
     std::vector<float> rgba;
-    // Rays from the eye, and samples with rays from lights, that ended neither in a hit nor in a miss.
-    std::uint64_t undecided = 0, undecided_shadows = 0;
+    // Rays from the eye; of these, and of samples with rays from lights, those that ended neither in
+    // a hit nor in a miss.
+    std::uint64_t rays = 0, undecided = 0, undecided_shadows = 0;
 };
 
 // Waits until all commands given so far are done.

@@ -108,7 +108,10 @@ constexpr P lighting[] = {number("Ambient R", 0),
                           labelled(size("Epsilon", 5e-4)),
                           labelled(size("Far", 0)),
                           labelled(size("Time End", 3600)),
-                          labelled(flag("Orthographic"))};
+                          labelled(flag("Orthographic")),
+                          labelled({"Classic", K::Switch, 1, ""}),
+                          labelled(number("Fill", 0)),
+                          labelled(number("Occlusion Reach", 0))};
 
 constexpr NodeTypeRow rows[] = {
     {NodeType::Generic, "Generic", Arity::Many, generic},

@@ -204,9 +204,9 @@ void tell_unused_params(Interpreter &ev, SourceId root) {
         for (ir::NodeId id : {m.diffuse, m.specular, m.exponent, m.emission}) reads.node(id);
     for (const ir::Light &light : scene.lights) reads.node(light.position), reads.node(light.color);
     const ir::Lighting &l = scene.lighting;
-    for (ir::NodeId id :
-         {l.ambient, l.ambient_occlusion, l.shadow_darkness, l.soft_shadows, l.specular_intensity,
-          scene.camera.at, scene.camera.look_at, scene.camera.fov, scene.background})
+    for (ir::NodeId id : {l.ambient, l.ambient_occlusion, l.shadow_darkness, l.soft_shadows,
+                          l.specular_intensity, l.fill, l.occlusion_reach, scene.camera.at,
+                          scene.camera.look_at, scene.camera.fov, scene.background})
         reads.node(id);
     for (std::size_t i = 0; i < scene.params.size(); ++i) {
         const ir::Param &p = scene.params[i];

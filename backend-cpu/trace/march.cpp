@@ -13,10 +13,12 @@ Lengths::Lengths(const Stage &stage)
     : slack(static_cast<float>(stage.frame.slack)), pixel(static_cast<float>(stage.frame.pixel)),
       far(static_cast<float>(stage.frame.far)),
       base(static_cast<float>(stage.frame.tolerance_base)),
-      slope(static_cast<float>(stage.frame.tolerance_slope)), orthographic(stage.view.orthographic),
-      proves_unit(!stage.shaded_apart) {}
+      slope(static_cast<float>(stage.frame.tolerance_slope)), fades(!stage.frame.boxed),
+      orthographic(stage.view.orthographic), proves_unit(!stage.shaded_apart) {}
 
-float Lengths::arm(float t) const { return tolerance(t) + shading::normal_slack * slack; }
+float Lengths::arm(float t) const {
+    return shading::arm * tolerance(t) + shading::normal_slack * slack;
+}
 
 Inside box(const ir::Frame &frame, Vec origin, Vec direction) {
     auto safe = [](float d) { return std::fabs(d) < 1e-20f ? 1e-20f : d; };
@@ -97,23 +99,27 @@ void near(Worker &worker, const Vec *points, const float *g, const float *h, flo
 }
 
 int touches(Worker &worker, const RayState &ray, float t, float d, float along) {
-    const float slack = Lengths(worker.stage).slack_at(t);
+    const Lengths lengths(worker.stage);
+    const float slack = lengths.slack_at(t);
     const Vec way = ray.direction;
     const Vec u =
         glm::normalize(glm::cross(way, std::fabs(way.x) < 0.5f ? Vec{1, 0, 0} : Vec{0, 1, 0}));
     const Vec v = glm::cross(way, u);
-    constexpr int places = 8;
-    for (int k = 0; k < places; ++k) {
-        const float angle = 0.785398163f * static_cast<float>(k);
-        const Vec beside = std::cos(angle) * u + std::sin(angle) * v;
-        worker.taps.set(0, static_cast<std::size_t>(k), ray.origin + t * way + 4 * slack * beside);
-    }
-    std::array<float, places> values{};
-    distances(worker, worker.taps, values.data(), places);
-    const auto [least, greatest] = std::ranges::minmax(values);
+    const auto around = [&](float away) { // the least and the greatest of eight places
+        std::array<float, 8> values{};
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            const float angle = 0.785398163f * static_cast<float>(k);
+            const Vec beside = std::cos(angle) * u + std::sin(angle) * v;
+            worker.taps.set(0, k, ray.origin + t * way + away * beside);
+        }
+        distances(worker, worker.taps, values.data(), values.size());
+        return std::ranges::minmax(values);
+    };
+    const auto [least, greatest] = around(4 * slack);
     if (!(least > 0)) return -1;
     const float across = (greatest - least) / (8 * slack);
-    return d > 2 * slack * std::hypot(across, along) ? 0 : 1;
+    if (d > 2 * slack * std::hypot(across, along)) return 0;
+    return around(0.25f * lengths.tolerance(t)).min > 0 ? 1 : -1;
 }
 
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,

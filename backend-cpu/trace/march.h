@@ -54,6 +54,7 @@ struct Stage {
     struct Shading {
         float ambient[3] = {};
         float ambient_occlusion = 0, shadow_darkness = 0, soft_shadows = 0, specular_intensity = 0;
+        float fill = 0, occlusion_reach = 0;
     } shading;
 };
 Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int height, double time,
@@ -64,7 +65,7 @@ float shapes_of(const ir::Scene &scene);
 enum class PictureMode : std::uint8_t { Color, Steps };
 
 struct PictureOptions {
-    int samples = 1;
+    int samples = 1;   // a pixel; 0: one, and rough_samples where it is rough (base/picture.h)
     unsigned jobs = 0; // 0: as many as the machine has cores
     PictureMode mode = PictureMode::Color;
 };
@@ -77,7 +78,7 @@ struct Picture {
 };
 
 struct Tile {
-    int x = 0, y = 0, width = 0, height = 0; // of the picture, whose pixels there are now final
+    int x = 0, y = 0, width = 0, height = 0; // of the picture, whose pixels there were now drawn
 };
 
 // Called by one thread at a time, with the part that is done, 0 to 1, and the tile just finished;

@@ -1,8 +1,8 @@
 // A picture as tiles over threads: eye rays in, sRGB out. Each thread takes the next tile that no
 // one has; a finished one is reported under a lock, so that the caller's function runs once at a
 // time.
+#include "base/picture.h"
 #include "backend-cpu/trace/rays.h"
-#include "base/srgb.h"
 
 #include "ir/shading.h"
 
@@ -124,6 +124,10 @@ Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int heigh
     stage.shading.shadow_darkness = number_of(scene, lighting.shadow_darkness, time);
     stage.shading.soft_shadows = number_of(scene, lighting.soft_shadows, time);
     stage.shading.specular_intensity = number_of(scene, lighting.specular_intensity, time);
+    stage.shading.fill = number_of(scene, lighting.fill, time);
+    stage.shading.occlusion_reach = lighting.occlusion_reach
+                                        ? number_of(scene, lighting.occlusion_reach, time)
+                                        : static_cast<float>(ir::occlusion_reach(scene));
     return stage;
 }
 
@@ -155,8 +159,6 @@ RayState eye(const Stage &stage, float x, float y) {
     return clipped(stage, origin, direction);
 }
 
-float encoded(float linear) { return srgb_of_linear(clamp(linear, 0.0f, 1.0f)); }
-
 std::uint8_t byte(float x) {
     return static_cast<std::uint8_t>(clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);
 }
@@ -171,43 +173,70 @@ Vec heat(const Landing &landing) {
             clamp(1.0f - 2.2f * x, 0, 1)};
 }
 
-void draw(Worker &worker, const PictureOptions &options, const Tile &tile, Picture &picture) {
+// Places of the picture that a sample is taken of: all of a tile's, or the rough ones.
+struct Pixels {
+    std::vector<int> x, y;
+    std::size_t size() const { return x.size(); }
+    void add(int px, int py) { x.push_back(px), y.push_back(py); }
+};
+
+// Adds samples `first` to `last` of the pixels to `sums`, RGBA of the whole picture.
+void add_samples(Worker &worker, const Pixels &pixels, int first, int last, std::span<float> sums) {
     const Stage &stage = worker.stage;
-    const auto count = static_cast<std::size_t>(tile.width * tile.height);
-    std::vector<RayState> rays(count);
-    std::vector<Landing> landings(count);
-    std::vector<Vec> colors(count), sum(count);
-    const int samples = options.mode == PictureMode::Color ? std::max(options.samples, 1) : 1;
-    for (int sample = 0; sample < samples; ++sample) {
+    std::vector<RayState> rays(pixels.size());
+    std::vector<Landing> landings(pixels.size());
+    std::vector<Vec> colors(pixels.size());
+    for (int sample = first; sample < last; ++sample) {
         const auto offset = ir::sample_offset(sample);
-        for (std::size_t i = 0; i < count; ++i) {
-            const int x = tile.x + static_cast<int>(i) % tile.width,
-                      y = tile.y + static_cast<int>(i) / tile.width;
-            rays[i] =
-                eye(stage, static_cast<float>(x + offset[0]), static_cast<float>(y + offset[1]));
-        }
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            rays[i] = eye(stage, static_cast<float>(pixels.x[i] + offset[0]),
+                          static_cast<float>(pixels.y[i] + offset[1]));
         march(worker, rays, landings, false);
-        if (options.mode == PictureMode::Color) shade(worker, rays, landings, colors);
-        for (std::size_t i = 0; i < count; ++i) sum[i] = sum[i] + colors[i];
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        const int x = tile.x + static_cast<int>(i) % tile.width,
-                  y = tile.y + static_cast<int>(i) / tile.width;
-        std::uint8_t *pixel =
-            picture.rgba.data() +
-            4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                 static_cast<std::size_t>(x));
-        Vec c;
-        if (options.mode == PictureMode::Steps) {
-            c = heat(landings[i]);
-        } else {
-            c = sum[i] / static_cast<float>(samples);
-            c = {encoded(c.x), encoded(c.y), encoded(c.z)};
+        shade(worker, rays, landings, colors);
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            float *sum = sums.data() + 4 * (static_cast<std::size_t>(pixels.y[i]) *
+                                                static_cast<std::size_t>(stage.width) +
+                                            static_cast<std::size_t>(pixels.x[i]));
+            for (int c = 0; c < 3; ++c) sum[c] += colors[i][c];
+            sum[3] += 1; // samples
         }
-        pixel[0] = byte(c.x);
-        pixel[1] = byte(c.y);
-        pixel[2] = byte(c.z);
-        pixel[3] = 255;
+    }
+}
+
+Pixels all_of(const Tile &tile) {
+    Pixels pixels;
+    for (int y = tile.y; y < tile.y + tile.height; ++y)
+        for (int x = tile.x; x < tile.x + tile.width; ++x) pixels.add(x, y);
+    return pixels;
+}
+
+void write(const Tile &tile, std::span<const float> sums, Picture &picture) {
+    for (int y = tile.y; y < tile.y + tile.height; ++y)
+        for (int x = tile.x; x < tile.x + tile.width; ++x) {
+            const std::size_t at =
+                4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                     static_cast<std::size_t>(x));
+            for (std::size_t c = 0; c < 3; ++c)
+                picture.rgba[at + c] = srgb_byte(sums[at + c] / sums[at + 3], dither(x, y));
+            picture.rgba[at + 3] = 255;
+        }
+}
+
+void draw_steps(Worker &worker, const Tile &tile, Picture &picture) {
+    const Pixels pixels = all_of(tile);
+    std::vector<RayState> rays;
+    std::vector<Landing> landings(pixels.size());
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        rays.push_back(eye(worker.stage, static_cast<float>(pixels.x[i]) + 0.5f,
+                           static_cast<float>(pixels.y[i]) + 0.5f));
+    march(worker, rays, landings, false);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const std::size_t at =
+            4 * (static_cast<std::size_t>(pixels.y[i]) * static_cast<std::size_t>(picture.width) +
+                 static_cast<std::size_t>(pixels.x[i]));
+        const Vec c = heat(landings[i]);
+        for (int k = 0; k < 3; ++k) picture.rgba[at + static_cast<std::size_t>(k)] = byte(c[k]);
+        picture.rgba[at + 3] = 255;
     }
 }
 
@@ -249,40 +278,67 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
     picture.height = stage.height;
     picture.rgba.resize(4 * static_cast<std::size_t>(stage.width) *
                         static_cast<std::size_t>(stage.height));
+    const bool steps = options.mode == PictureMode::Steps, smooth = !steps && options.samples == 0;
+    std::vector<float> sums(steps ? 0 : picture.rgba.size()); // linear, and the samples
     const std::vector<Tile> tiles = tiles_of(stage.width, stage.height);
-    std::atomic<std::size_t> next{0};
-    std::atomic<bool> cancelled{false};
-    std::size_t finished = 0;
     std::mutex report;
 
-    auto work = [&] {
-        Worker worker(stage);
-        while (!cancelled) {
-            const std::size_t i = next++;
-            if (i >= tiles.size()) break;
-            draw(worker, options, tiles[i], picture); // tiles share no pixel
+    // Every tile once, by all threads. Whether the caller wants to go on.
+    const auto each_tile = [&](double begin, double end, const auto &draw) {
+        std::atomic<std::size_t> next{0};
+        std::atomic<bool> cancelled{false};
+        std::size_t finished = 0;
+        auto work = [&] {
+            Worker worker(stage);
+            while (!cancelled) {
+                const std::size_t i = next++;
+                if (i >= tiles.size()) break;
+                draw(worker, tiles[i]); // tiles share no pixel
+                const std::lock_guard lock(report);
+                ++finished;
+                const double done =
+                    static_cast<double>(finished) / static_cast<double>(tiles.size());
+                if (progress && !cancelled &&
+                    !progress(begin + done * (end - begin), tiles[i], picture))
+                    cancelled = true;
+            }
             const std::lock_guard lock(report);
-            ++finished;
-            const double done = static_cast<double>(finished) / static_cast<double>(tiles.size());
-            if (progress && !cancelled && !progress(done, tiles[i], picture)) cancelled = true;
-        }
-        const std::lock_guard lock(report);
-        if (worker.evaluator) {
-            const CellEvaluator::Tally &tally = worker.evaluator->tally;
-            worker.work.far = tally.far;
-            worker.work.near = tally.near;
-            worker.work.near_shapes = tally.shapes;
-        }
-        picture.work += worker.work;
+            if (worker.evaluator) {
+                const CellEvaluator::Tally &tally = worker.evaluator->tally;
+                worker.work.far = tally.far;
+                worker.work.near = tally.near;
+                worker.work.near_shapes = tally.shapes;
+            }
+            picture.work += worker.work;
+        };
+        const unsigned jobs =
+            options.jobs > 0 ? options.jobs : std::max(std::thread::hardware_concurrency(), 1u);
+        std::vector<std::thread> threads;
+        for (unsigned j = 1; j < std::min<std::size_t>(jobs, tiles.size()); ++j)
+            threads.emplace_back(work);
+        work();
+        for (std::thread &thread : threads) thread.join();
+        return finished == tiles.size() && !cancelled;
     };
-    const unsigned jobs =
-        options.jobs > 0 ? options.jobs : std::max(std::thread::hardware_concurrency(), 1u);
-    std::vector<std::thread> threads;
-    for (unsigned j = 1; j < std::min<std::size_t>(jobs, tiles.size()); ++j)
-        threads.emplace_back(work);
-    work();
-    for (std::thread &thread : threads) thread.join();
-    picture.complete = finished == tiles.size() && !cancelled;
+
+    picture.complete = each_tile(0, smooth ? 0.5 : 1, [&](Worker &worker, const Tile &tile) {
+        if (steps) return draw_steps(worker, tile, picture);
+        add_samples(worker, all_of(tile), 0, std::max(options.samples, 1), sums);
+        write(tile, sums, picture);
+    });
+    if (!smooth || !picture.complete) return picture;
+    const std::vector<std::uint8_t> rough = rough_pixels(stage.width, stage.height, sums);
+    picture.complete = each_tile(0.5, 1, [&](Worker &worker, const Tile &tile) {
+        Pixels pixels;
+        for (int y = tile.y; y < tile.y + tile.height; ++y)
+            for (int x = tile.x; x < tile.x + tile.width; ++x)
+                if (rough[static_cast<std::size_t>(y) * static_cast<std::size_t>(stage.width) +
+                          static_cast<std::size_t>(x)])
+                    pixels.add(x, y);
+        if (pixels.size() == 0) return;
+        add_samples(worker, pixels, 1, ir::shading::rough_samples, sums);
+        write(tile, sums, picture);
+    });
     return picture;
 }
 

@@ -16,6 +16,7 @@ namespace fathom::cpu {
 using Vec = glm::vec3;
 using glm::dot, glm::length;
 inline Vec vec(const glm::dvec3 &a) { return Vec(a); }
+inline Vec vec(const std::array<float, 3> &a) { return {a[0], a[1], a[2]}; }
 inline float clamp(float x, float lo, float hi) { return std::fmin(std::fmax(x, lo), hi); }
 
 // Rows of numbers, one column a point: what a Program takes and gives.
@@ -70,6 +71,7 @@ struct Worker {
 // Numbers of the frame in float32.
 struct Lengths {
     float slack, pixel, far, base, slope;
+    bool fades; // what lies far off, as rays have no box
     bool orthographic;
     bool proves_unit; // no bound is above 1
     explicit Lengths(const Stage &stage);

@@ -90,8 +90,7 @@ std::vector<float> find_occlusion(Worker &worker, const Points &at) {
     constexpr auto samples = static_cast<std::size_t>(shading::occlusion_samples);
     const std::size_t count = at.size();
     const bool apart = worker.stage.shaded_apart;
-    const float reach = shading::occlusion_reach * static_cast<float>(worker.stage.frame.radius) /
-                        static_cast<float>(samples);
+    const float reach = worker.stage.shading.occlusion_reach / static_cast<float>(samples);
     const auto away = [&](std::size_t i) { return reach * static_cast<float>(i + 1); };
     std::array<std::vector<float>, samples> g;
     std::vector<std::size_t> closest(count, 0);
@@ -182,28 +181,43 @@ void add_light(Worker &worker, std::span<const RayState> rays, const Points &at,
     }
 }
 
+// Whole where a ray misses; and what lies far off fades into it (shading.h, MISS, FADE).
 void see_background(Worker &worker, std::span<const RayState> rays,
                     std::span<const Landing> landings, std::span<Vec> colors) {
-    std::vector<std::size_t> missed;
+    const Lengths lengths(worker.stage);
+    const auto share = [&](float t) {
+        if (t < 0) return 1.0f;
+        if (!lengths.fades) return 0.0f;
+        const float x =
+            clamp((t / lengths.far - shading::fade_from) / (1 - shading::fade_from), 0, 1);
+        return x * x * (3 - 2 * x);
+    };
+    std::vector<std::size_t> seen;
     for (std::size_t i = 0; i < rays.size(); ++i)
-        if (landings[i].t < 0) missed.push_back(i);
-    if (!worker.stage.has_background) {
-        for (std::size_t i : missed)
-            colors[i] = {shading::background[0], shading::background[1], shading::background[2]};
-        return;
+        if (share(landings[i].t) > 0) seen.push_back(i);
+    for (std::size_t k = 0; k < seen.size(); ++k) worker.points.set(0, k, rays[seen[k]].direction);
+    if (worker.stage.has_background)
+        evaluate(worker.stage.background, worker.background, worker.points.pointers(),
+                 worker.taps.pointers(), seen.size());
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+        const Vec color =
+            worker.stage.has_background ? worker.taps.vec(0, k) : vec(shading::background);
+        const float part = share(landings[seen[k]].t);
+        Vec &to = colors[seen[k]];
+        to = part < 1 ? to + part * (color - to) : color;
     }
-    for (std::size_t k = 0; k < missed.size(); ++k)
-        worker.points.set(0, k, rays[missed[k]].direction);
-    evaluate(worker.stage.background, worker.background, worker.points.pointers(),
-             worker.taps.pointers(), missed.size());
-    for (std::size_t k = 0; k < missed.size(); ++k) colors[missed[k]] = worker.taps.vec(0, k);
 }
 
-} // namespace
+// Highlights that would be clamped bend instead (shading.h, SHADING).
+float soft(float c) {
+    constexpr float rest = 1 - shading::shoulder;
+    return c > shading::shoulder
+               ? shading::shoulder + rest * (1 - std::exp((shading::shoulder - c) / rest))
+               : c;
+}
 
-void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings,
-           std::span<Vec> colors) {
-    see_background(worker, rays, landings, colors);
+void shade_hits(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings,
+                std::span<Vec> colors) {
     const Stage &stage = worker.stage;
     const Lengths lengths(stage);
     Points at;
@@ -230,11 +244,28 @@ void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landi
             open[k] -= stage.shading.ambient_occlusion * occlusion[k];
     }
     const Vec ambient{stage.shading.ambient[0], stage.shading.ambient[1], stage.shading.ambient[2]};
+    const bool classic = stage.scene->lighting.classic;
+    const Vec soil = vec(shading::soil), sky = vec(shading::sky);
     for (std::size_t k = 0; k < at.size(); ++k) {
         const Material &m = at.material[k];
-        colors[at.ray[k]] = open[k] * m.diffuse * ambient + m.emission;
+        Vec around = ambient;
+        if (!classic) around = around * (soil + 0.5f * (1 + at.n[k].y) * (sky - soil));
+        const float facing = std::max(-dot(at.n[k], rays[at.ray[k]].direction), 0.0f);
+        colors[at.ray[k]] =
+            open[k] * m.diffuse * (around + Vec(stage.shading.fill * facing)) + m.emission;
     }
     for (const ir::LightValue &light : stage.lights) add_light(worker, rays, at, light, colors);
+    if (classic) return;
+    for (std::size_t ray : at.ray)
+        colors[ray] = {soft(colors[ray].x), soft(colors[ray].y), soft(colors[ray].z)};
+}
+
+} // namespace
+
+void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings,
+           std::span<Vec> colors) {
+    shade_hits(worker, rays, landings, colors);
+    see_background(worker, rays, landings, colors);
 }
 
 } // namespace fathom::cpu

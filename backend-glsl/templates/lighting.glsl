@@ -6,6 +6,8 @@ struct fathom_Lighting {
     float shadow_darkness;
     float soft_shadows;
     float specular_intensity;
+    float fill;
+    float occlusion_reach;
 };
 
 fathom_Lighting fathom_lighting() {

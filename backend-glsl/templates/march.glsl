@@ -51,7 +51,7 @@ float fathom_tolerance(float t) {
 }
 
 float fathom_arm(float t) {
-    return fathom_tolerance(t) + $NORMAL_SLACK * fathom_slack;
+    return $ARM * fathom_tolerance(t) + $NORMAL_SLACK * fathom_slack;
 }
 $if BOXED
 
@@ -202,24 +202,30 @@ $end
             continue;
         }
         if (phase == 2) {
-            least = min(least, d);
-            greatest = max(greatest, d);
+            float slack = fathom_slack_at(t);
+            float tolerance = fathom_tolerance(t);
+            if (count < 8) {
+                least = min(least, d);
+                greatest = max(greatest, d);
+            }
             bool solid = !(d > 0.0);
-            if (!solid && ++count < 8) {
+            bool farther = false;
+            if (!solid && ++count == 8) {
+                float across = (greatest - least) / (8.0 * slack);
+                float along = stride > 0.0 ? (before - touched) / stride : 0.0;
+                farther = touched > 2.0 * slack * length(vec2(across, along));
+            }
+            if (!solid && !farther && count < 16) {
                 vec3 turned = 0.707106781 * (u + v);
                 v = 0.707106781 * (v - u);
                 u = turned;
-                aside = 4.0 * fathom_slack_at(t) * u;
+                aside = (count < 8 ? 4.0 * slack : 0.25 * tolerance) * u;
                 continue;
             }
-            float slack = fathom_slack_at(t);
-            float across = (greatest - least) / (8.0 * slack);
-            float along = stride > 0.0 ? (before - touched) / stride : 0.0;
-            touches = solid ? -1 : touched > 2.0 * slack * length(vec2(across, along)) ? 0 : 1;
+            touches = solid ? -1 : farther ? 0 : 1;
             phase = 0;
             aside = vec3(0.0);
             d = touched;
-            float tolerance = fathom_tolerance(t);
 $if HAS_SAFE_RADIUS
             span = touched_span;
 $end

@@ -1,8 +1,12 @@
 $# The colour of a place in the picture, or what fathom_mode asks of it (marcher.h).
 
-vec3 fathom_encode(vec3 linear) {
+// sRGB, and what a slow gradient needs to show no bands: an ordered pattern that decides how a byte is rounded.
+vec3 fathom_encode(vec3 linear, ivec2 pixel) {
     vec3 c = clamp(linear, 0.0, 1.0);
-    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
+    int place = 0;
+    for (int bit = 0; bit < 3; ++bit) place = place * 4 + (((pixel.x ^ pixel.y) >> bit & 1) * 2 + (pixel.y >> bit & 1));
+    float dither = (0.02 + 0.96 / 63.0 * float(place) - 0.5) / 255.0;
+    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308))) + dither;
 }
 
 // Blue for few steps, through green and yellow to red for many; magenta for an undecided ray.
@@ -11,6 +15,15 @@ vec3 fathom_heat(int steps) {
     float x = log2(1.0 + float(steps)) / log2(1.0 + float($MANY_STEPS));
     return clamp(vec3(2.0 * x - 0.6, 1.6 - abs(3.2 * x - 1.6), 1.0 - 2.2 * x), 0.0, 1.0);
 }
+
+$if SOFT
+
+// Highlights that would be clamped bend instead.
+vec3 fathom_soft(vec3 c) {
+    float rest = 1.0 - $SHOULDER;
+    return mix(c, $SHOULDER + rest * (1.0 - exp(($SHOULDER - c) / rest)), greaterThan(c, vec3($SHOULDER)));
+}
+$end
 
 // `place`: in pixels from the top left of the picture.
 vec4 fathom_picture(vec2 place) {
@@ -27,7 +40,20 @@ $if PASSES
     fathom_left = fathom_end == 2 ? 0.25 : 0.0;
 $end
     if (fathom_mode == 1) return vec4(fathom_heat(fathom_steps), 1.0);
-    vec3 color = t < 0.0 ? fathom_background(direction) : fathom_shade(origin, direction, t);
+    vec3 color = vec3(0.0);
+    float fade = 1.0;
+    if (t >= 0.0) {
+        color = fathom_shade(origin, direction, t);
+$if SOFT
+        color = fathom_soft(color);
+$end
+$if BOXED
+        fade = 0.0;
+$else
+        fade = smoothstep($FADE_FROM * fathom_far, fathom_far, t);
+$end
+    }
+    if (fade > 0.0) color = mix(color, fathom_background(direction), fade);
 $if PASSES
     if (fathom_goes_on) {
         fathom_left = 1.0;
@@ -44,8 +70,8 @@ $if CACHED
     opaque = 1.0;
 #endif
 $end
-    return vec4(fathom_mode == 3 ? color : fathom_encode(color), opaque);
+    return vec4(fathom_mode == 3 ? color : fathom_encode(color, ivec2(place)), opaque);
 $else
-    return vec4(fathom_mode == 3 ? color : fathom_encode(color), 1.0);
+    return vec4(fathom_mode == 3 ? color : fathom_encode(color, ivec2(place)), 1.0);
 $end
 }

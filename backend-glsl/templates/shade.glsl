@@ -203,6 +203,7 @@ $if !SKIP_SHADING
     fathom_Lighting look = fathom_lighting();
     float open = 1.0;
     float weight = look.ambient_occlusion / $OCCLUSION_TOTAL;
+    float reach = look.occlusion_reach / $OCCLUSION_SAMPLES;
     if (look.ambient_occlusion > 0.0) taps = $ALL_TAPS;
 $if PASSES
     if (fathom_light_kept >= 0) taps = 4; // the colour is known
@@ -228,7 +229,7 @@ $if !SKIP_SHADING
     float g1 = 0.0, g2 = 0.0, g3 = 0.0, g4 = 0.0, g5 = 0.0; // over their distances from p
     for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
         bool outward = i > 3 && i < 9;
-        float away = outward ? $OCCLUSION_REACH * float(i - 3) : x;
+        float away = outward ? reach * float(i - 3) : x;
         vec3 place = p + away * n;
         vec3 e = fathom_corner(i < 4 ? i : i - 9);
         if (!outward) place += h * e;
@@ -306,7 +307,11 @@ $if SKIP_SHADING
     return m.diffuse + m.emission;
 }
 $else
-    vec3 color = open * m.diffuse * look.ambient + m.emission;
+    vec3 around = look.ambient;
+$if !CLASSIC
+    around *= mix($SOIL, $SKY, 0.5 + 0.5 * n.y);
+$end
+    vec3 color = open * m.diffuse * (around + look.fill * max(-dot(n, direction), 0.0)) + m.emission;
     float margin = $SHADOW_BIAS * fathom_tolerance(t);
     vec3 q = p + margin * n;
     float angle = max(look.soft_shadows, $MIN_ANGLE);

@@ -111,7 +111,8 @@ FATHOM_C_API const char *fathom_text_bytes(const fathom_text *text);
 FATHOM_C_API size_t fathom_text_length(const fathom_text *text);
 FATHOM_C_API void fathom_text_free(fathom_text *text);
 
-/** A picture, RGBA, 8 bits a channel, sRGB, rows from the top, into 4*width*height bytes. */
+/** A picture, RGBA, 8 bits a channel, sRGB, rows from the top, into 4*width*height bytes.
+ *  `samples`: rays a pixel; 0: one, and 4 where it differs from those beside it. */
 FATHOM_C_API int fathom_scene_draw(const fathom_scene *scene, int width, int height, int samples,
                                    double time, unsigned char *rgba);
 

@@ -27,9 +27,9 @@ namespace fathom::FATHOM_V1 {
 
 struct PictureOptions {
     int width = 640, height = 360; /**< pixels, 1 to 65,536 each */
-    int samples = 1;               /**< rays a pixel, at least 1 */
-    double time = 0;               /**< seconds, in [0, Facts::time_end] */
-    unsigned threads = 0;          /**< 0: as many as the machine has cores */
+    int samples = 0;      /**< rays a pixel; 0: one, and 4 where it differs from those beside it */
+    double time = 0;      /**< seconds, in [0, Facts::time_end] */
+    unsigned threads = 0; /**< 0: as many as the machine has cores */
     int max_steps = 0; /**< evaluations that a ray may take; 0: what the scene says, else 65,536 */
     /** Called now and then by one thread at a time, with the share that is done; false cancels. */
     std::function<bool(double done)> progress;

@@ -174,9 +174,16 @@ void add_surroundings(const ir::Scene &scene, Numbers &numbers, Value &propertie
         {"Ambient Occlusion", l.ambient_occlusion},
         {"Shadow Darkness", l.shadow_darkness},
         {"Soft Shadows", l.soft_shadows},
-        {"Specular Intensity", l.specular_intensity}};
+        {"Specular Intensity", l.specular_intensity},
+        {"Fill", l.fill},
+        {"Occlusion Reach", l.occlusion_reach}};
+    if (!l.classic) add("Classic", yaml_switch(false));
+    if (const auto fill = numbers.number(l.fill); fill && *fill != 0)
+        add("Fill", yaml_scalar(*fill));
+    if (l.occlusion_reach)
+        add("Occlusion Reach", yaml_scalar(numbers.number(l.occlusion_reach).value_or(0)));
     for (const auto &[key, value] : parts)
-        if (numbers.varies(value)) vary(key, value);
+        if (value && numbers.varies(value)) vary(key, value);
     const ir::Camera &camera = scene.camera;
     if (camera.given && (numbers.varies(camera.at) || numbers.varies(camera.look_at) ||
                          numbers.varies(camera.fov))) {

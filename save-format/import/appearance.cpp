@@ -374,6 +374,9 @@ void Importer::read_lighting(bool in_tree) {
         take_flow(reader, std::move(event), flow);
         rest_of_sequence(flow);
     }
+    const auto place = [&](const char *key) {
+        return static_cast<std::size_t>(find_property(row, key) - row.properties.data());
+    };
     const auto number = [&](std::size_t i) {
         return properties.values[i].given ? properties.values[i].number[0]
                                           : row.properties[i].fallback;
@@ -392,6 +395,11 @@ void Importer::read_lighting(bool in_tree) {
                        ", ambient_occlusion: " + text(3) + ", shadow_darkness: " + text(4) +
                        ", soft_shadows: " + text(5) + ", specular_intensity: " + text(6);
     if (number(8) != 0) call += ", skip: true";
+    // What says nothing of it was lit as the thesis has it.
+    if (number(place("Classic")) != 0) call += ", classic: true";
+    for (const auto &[key, argument] :
+         {std::pair("Fill", ", fill: "), std::pair("Occlusion Reach", ", occlusion_reach: ")})
+        if (properties.values[place(key)].given) call += argument + text(place(key));
     settings.insert(settings.begin() + static_cast<std::ptrdiff_t>(light_mark), call + ")");
     read_surroundings(properties, event.span);
     // What the statement does not say: the name, the place, the carried exponent and all that was

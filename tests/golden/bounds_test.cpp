@@ -106,6 +106,7 @@ TEST_CASE("no bound of an example or a library entry grows unnoticed") {
     for (const std::string &name : rests.rounding)
         std::printf("  rounding not bounded: %s\n", name.c_str());
     CHECK(rests.library.size() <= 162);
-    CHECK(rests.rounding.size() <= 35);
+    // 36: since its bound follows a param, rough_icosahedron is divided by less at small values.
+    CHECK(rests.rounding.size() <= 36);
     CHECK(rests.stated.size() <= 1);
 }

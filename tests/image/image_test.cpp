@@ -156,7 +156,7 @@ TEST_CASE("occlusion dims the ambient light alone") {
     const auto picture = [](const std::string &lighting) {
         const std::string text =
             "sphere(1).translate(y: 1)\nplane(Y)\nsun([1, 3, 1])\ncamera([0, 2, 6])\nlighting(" +
-            lighting + ", shadow_darkness: 0.5)";
+            lighting + ", shadow_darkness: 0.5, fill: 0)";
         const driver::Compilation made = driver::compile_text("contact.sdf", text, "", {});
         REQUIRE(made.good());
         const ir::View view = ir::view_of(made.scene, 0, static_cast<double>(width) / height);

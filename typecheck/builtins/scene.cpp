@@ -116,8 +116,13 @@ static Value sun_call(Interpreter &ev, const CallSite &site, std::vector<Value> 
 
 ir::Lighting default_lighting(Interpreter &ev) {
     ir::Graph &g = ev.scene.graph;
-    return {g.vec3(0.18, 0.18, 0.18), g.number(0.6), g.number(0.75),
-            g.number(0.02),           g.number(0.4), false};
+    return {.ambient = g.vec3(0.18, 0.18, 0.18),
+            .ambient_occlusion = g.number(0.6),
+            .shadow_darkness = g.number(0.75),
+            .soft_shadows = g.number(0.02),
+            .specular_intensity = g.number(0.4),
+            .fill = g.number(0.08),
+            .occlusion_reach = {}};
 }
 
 static Value lighting_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
@@ -138,11 +143,17 @@ static Value lighting_call(Interpreter &ev, const CallSite &site, std::vector<Va
     number_at(2, "`shadow_darkness`", s.lighting.shadow_darkness);
     number_at(3, "`soft_shadows`", s.lighting.soft_shadows);
     number_at(4, "`specular_intensity`", s.lighting.specular_intensity);
-    if (given(args[5])) {
-        auto skip = want_known_bool(ev, args[5], site.arg(5), "`skip`");
-        ok = ok && skip;
-        s.lighting.skip = skip.value_or(false);
-    }
+    const auto switch_at = [&](std::size_t i, const char *what, bool &out) {
+        if (!given(args[i])) return;
+        auto on = want_known_bool(ev, args[i], site.arg(i), what);
+        ok = ok && on;
+        out = on.value_or(false);
+    };
+    switch_at(5, "`skip`", s.lighting.skip);
+    switch_at(8, "`classic`", s.lighting.classic);
+    if (s.lighting.classic) s.lighting.fill = ev.scene.graph.number(0);
+    number_at(6, "`fill`", s.lighting.fill);
+    number_at(7, "`occlusion_reach`", s.lighting.occlusion_reach);
     return ok ? setting_value(ev, std::move(s)) : poison();
 }
 
@@ -226,8 +237,16 @@ void add_scene_builtins(std::vector<Builtin> &table) {
          {"shadow_darkness", true},
          {"soft_shadows", true},
          {"specular_intensity", true},
-         {"skip", true}},
-        lighting_call, "how the lights act");
+         {"skip", true},
+         {"fill", true},
+         {"occlusion_reach", true},
+         {"classic", true}},
+        lighting_call,
+        "how the lights act; `fill` is a light at the eye, `occlusion_reach` how far "
+        "`ambient_occlusion` "
+        "looks for what closes a place in, and `classic` turns off what the thesis's Phong "
+        "lighting has "
+        "not: the fill, ambient light that is cooler from above, and highlights that bend");
     add("background", {{"color"}}, background_call,
         "a colour, or a function of the ray's direction");
     add("render", {{"max_steps", true}, {"epsilon", true}, {"far", true}, {"time", true}},

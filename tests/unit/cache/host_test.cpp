@@ -296,7 +296,8 @@ TEST_CASE("a host that follows the page draws what ours draws") {
     CHECK(frames < 80);
     CHECK(frames > 3);
     warm(view, inputs, c.scene, 80);
-    CHECK(apart(view.read_pixels().rgba, host.colors()) < 1e-6);
+    // two texts, in which a driver computes `exp` a little differently
+    CHECK(apart(view.read_pixels().rgba, host.colors()) < 1e-5);
     CHECK(apart(exact_colors, host.colors()) > 1e-4); // it is the cached one
 }
 

@@ -21,7 +21,7 @@ const std::vector<std::string> flags{
     "TWICE",  "SKIP_SHADING", "LOCAL_NORMALS", "PICK",    "CACHED",     "FAR_CELLS",
     "AROUND", "ONE_LIGHT",    "BLENDED",       "PICTURE", "FIELD_ONLY", "TIME",
     "ES",     "LOCATIONS",    "MARKED",        "OWN",     "UNPAINTED",  "PAINTED",
-    "LIT"};
+    "LIT",    "CLASSIC",      "SOFT"};
 
 // What a flag decides beside its own `$if`, as the emitter has it.
 Values values_with(std::string_view name, const std::set<std::string> &on) {
@@ -58,7 +58,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
         {"SHADING",
          "fathom_Material fathom_material(Hit s, vec3 n) { return fathom_Material(n); }\n"},
         {"STATEMENTS", "    float x = 1.0;\n"},
-        {"LIST", "vec3(1.0), 1.0, x, 0.0, 0.0"},
+        {"LIST", "vec3(1.0), 1.0, x, 0.0, 0.0, 0.0, 1.0"},
         {"CASES", "    return fathom_Light(false, vec3(i), vec3(1.0));\n"},
         {"VARYING",
          "fathom_Material varying_one(vec3 p) { return fathom_Material(p, p, 1.0, p); }\n"},
@@ -73,7 +73,8 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
     };
     values["HIT"] =
         name == "field" ? "Hit fathom_hit(vec3 p) { return Hit(1.0); }\n" : "fathom_hit";
-    for (const char *vector : {"LO", "HI", "ORIGIN", "RIGHT", "UP", "FORWARD", "TARGET", "COLOR"})
+    for (const char *vector :
+         {"LO", "HI", "ORIGIN", "RIGHT", "UP", "FORWARD", "TARGET", "COLOR", "SOIL", "SKY"})
         values.emplace(vector, "vec3(1.0)");
     for (const char *number : {"FAR",
                                "EPSILON",
@@ -91,7 +92,10 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "NEARLY",
                                "GOLDEN",
                                "OCCLUSION_TOTAL",
-                               "OCCLUSION_REACH",
+                               "OCCLUSION_SAMPLES",
+                               "SHOULDER",
+                               "FADE_FROM",
+                               "ARM",
                                "SHADOW_BIAS",
                                "MIN_ANGLE",
                                "MIN_WAY",
@@ -132,14 +136,14 @@ uniform float fathom_extent, fathom_focus;
 uniform int fathom_orthographic, fathom_mode, fathom_zero;
 struct Hit { float distance; int paint; vec3 point; vec4 extra; };
 struct fathom_Material { vec3 diffuse, specular, emission; float exponent; };
-struct fathom_Lighting { vec3 ambient; float ambient_occlusion, soft_shadows, shadow_darkness, specular_intensity; };
+struct fathom_Lighting { vec3 ambient; float ambient_occlusion, soft_shadows, shadow_darkness, specular_intensity, fill, occlusion_reach; };
 struct fathom_Light { bool directional; vec3 position, color; };
 float sdf(vec3 p) { return length(p) - 1.0; }
 float fathom_shaded(vec3 p) { return 2.0 * sdf(p); }
 vec2 fathom_safe_radius(vec3 p) { return vec2(sdf(p)); }
 Hit fathom_hit(vec3 p) { return Hit(sdf(p), 0, p, vec4(0.0)); }
 fathom_Material fathom_material(Hit s, vec3 n) { return fathom_Material(n, n, n, 1.0); }
-fathom_Lighting fathom_lighting() { return fathom_Lighting(vec3(0.0), 0.0, 0.0, 0.0, 0.0); }
+fathom_Lighting fathom_lighting() { return fathom_Lighting(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 1.0); }
 fathom_Light fathom_light(int i) { return fathom_Light(true, vec3(1.0), vec3(1.0)); }
 vec3 fathom_background(vec3 d) { return d; }
 int fathom_part = 0;

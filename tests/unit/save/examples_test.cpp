@@ -37,8 +37,8 @@ Coordinates random_points(const ir::Scene &scene) {
     return made;
 }
 
-std::vector<float> marched(const ir::Scene &scene, const Coordinates &at, double time) {
-    const cpu::Program program = cpu::compile(scene, scene.distance);
+std::vector<float> shaded(const ir::Scene &scene, const Coordinates &at, double time) {
+    const cpu::Program program = cpu::compile(scene, scene.shaded);
     cpu::Scratch scratch = cpu::make_scratch(program, cpu::inputs_of(scene, time));
     std::vector<float> result(at[0].size());
     const float *in[] = {at[0].data(), at[1].data(), at[2].data()};
@@ -47,11 +47,12 @@ std::vector<float> marched(const ir::Scene &scene, const Coordinates &at, double
     return result;
 }
 
-// The largest difference of two scenes' marched distances; of those above 1, which are no more
+// The largest difference of two scenes' fields, which no bound divides (a bound as a formula of
+// params may be another one of another text); of those above 1, which are no more
 // exact than float32 has them, as a part of the distance.
 double field_difference(const ir::Scene &a, const ir::Scene &b, double time) {
     const Coordinates at = random_points(a);
-    const std::vector<float> x = marched(a, at, time), y = marched(b, at, time);
+    const std::vector<float> x = shaded(a, at, time), y = shaded(b, at, time);
     double worst = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
         const double off =

@@ -90,7 +90,7 @@ let sphere_1 = sphere(1).paint(standard)
 sphere_1
 
 camera(at: [19.93389, 10.2606, 19.93389], look_at: [0, 0, 0], fov: 50deg)
-lighting(ambient: 0, ambient_occlusion: 1, shadow_darkness: 0.5, soft_shadows: 0.03, specular_intensity: 0.4)
+lighting(ambient: 0, ambient_occlusion: 1, shadow_darkness: 0.5, soft_shadows: 0.03, specular_intensity: 0.4, classic: true)
 render(max_steps: 100)
 
 // What the language has no word for, kept for an export.

@@ -1,0 +1,108 @@
+// Bounds that follow params: at values all over the ranges, between and on the ends of pieces, the
+// marched field is nowhere steeper than 1, and where a param is harmless it costs nothing.
+#include "backend-cpu/tape.h"
+#include "driver/compile.h"
+#include "ir/passes/operations.h"
+#include "ir/view.h"
+#include "random_scenes.h"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace fathom;
+
+namespace {
+
+struct Case {
+    const char *name, *text;
+    double free; // a value of the param `a` at which the bound is at most `most`; below 0: of none
+    double most = 1.001;
+};
+const Case cases[] = {
+    {"displaced", "param a = 0.0 in 0..20\nsphere(6).displace(p => a * sin(p.x))\n", 0},
+    {"both signs",
+     "param a = 0.5 in -3..5\nsphere(2).displace(p => a * sin(2 * p.x) * cos(p.y) / 3)\n", 0},
+    {"a frequency", "param a = 1.0 in 0.5..9\nsphere(2).displace(p => 0.3 * sin(a * p.x))\n", 0.5,
+     1.5},
+    {"a field",
+     "param a = 0.1 in 0..4\n"
+     "implicit(p => length(p) - 1 + a * sin(3 * p.y) / 3, within: ball(2))\n",
+     0},
+    {"two params",
+     "param a = 0.1 in 0..4\nparam b = 1.0 in 0..3\n"
+     "sphere(2).displace(p => a * sin(b * p.x) * 0.5)\n",
+     0},
+    {"a whole number", "param a = 1 in 0..12\nsphere(2).displace(p => 0.2 * a * sin(p.x))\n", 0},
+    {"a power", "param a = 0.2 in 0..2\nsphere(2).displace(p => a ^ 3 * sin(p.x))\n", 0, 1.1},
+    {"an exponent of the point",
+     "param a = 0.5 in 0.1..3\n"
+     "implicit(p => length(p) + exp(a * p.x) * 0.1 - 1, within: ball(2))\n",
+     -1},
+    {"in a loop",
+     "param a = 0.2 in 0..2\nfn f(p: vec3) -> float {\n  var s = 0.0\n"
+     "  for i in 0..3 { s = s + a * sin(p.x * (i + 1)) / 3 }\n  s\n}\n"
+     "sphere(2).displace(p => f(p))\n",
+     0, 1.51},
+};
+
+// The steepest of many pairs of points, near and far, in and round the shape.
+double steepest(const ir::Scene &scene, test::Dice &dice) {
+    const cpu::Program program = cpu::compile(scene, scene.distance);
+    cpu::Scratch scratch = cpu::make_scratch(program, cpu::inputs_of(scene, 0));
+    constexpr std::size_t pairs = 4000;
+    std::array<std::vector<float>, 3> points;
+    const double size = 1.3 * ir::frame_of(scene, ir::view_of(scene, 0, 1), 100).radius;
+    for (std::size_t i = 0; i < pairs; ++i) {
+        const double apart = size * std::pow(10.0, -1 - 2 * dice.next());
+        for (auto &axis : points) {
+            const double x = dice.in(-size, size);
+            axis.push_back(float(x)), axis.push_back(float(x + apart * dice.in(-1, 1)));
+        }
+    }
+    std::vector<float> values(2 * pairs);
+    const float *in[] = {points[0].data(), points[1].data(), points[2].data()};
+    float *out[] = {values.data()};
+    cpu::evaluate(program, scratch, in, out, 2 * pairs);
+    double most = 0;
+    for (std::size_t i = 0; i < 2 * pairs; i += 2) {
+        double run = 0;
+        for (const auto &axis : points) run += std::pow(double(axis[i]) - double(axis[i + 1]), 2);
+        most =
+            std::max(most, (std::fabs(values[i] - values[i + 1]) - 4e-6 * size) / std::sqrt(run));
+    }
+    return most;
+}
+
+} // namespace
+
+TEST_CASE("bounds that follow params hold at every value, and cost nothing at a harmless one") {
+    test::Dice dice{5};
+    for (const Case &c : cases) {
+        INFO(c.name);
+        driver::Compilation made = driver::compile_text("params.sdf", c.text, {}, {});
+        REQUIRE(made.good());
+        ir::Scene &scene = made.scene;
+        bool follows = false;
+        for (const ir::ShapeFact &fact : scene.facts)
+            follows |= fact.lipschitz && scene.graph.reads(fact.lipschitz).params;
+        CHECK(follows);
+        for (int i = 0; i <= 48; ++i) {
+            for (ir::Param &param : scene.params) {
+                double value =
+                    param.lo[0] + (param.hi[0] - param.lo[0]) *
+                                      (&param == scene.params.data() ? i / 48.0 : dice.next());
+                if (param.type == ir::Type::Int) value = std::round(value);
+                param.value[0] = value;
+            }
+            INFO("at " << scene.params[0].value[0]);
+            CHECK(steepest(scene, dice) <= 1.0005);
+        }
+        if (c.free < 0) continue;
+        scene.params[0].value[0] = c.free;
+        double bound = 0;
+        for (const ir::ShapeFact &fact : scene.facts)
+            if (fact.lipschitz) bound = std::max(bound, ir::value_of(scene, fact.lipschitz, 0)[0]);
+        CHECK(bound <= c.most);
+    }
+}

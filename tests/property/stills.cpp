@@ -1,0 +1,175 @@
+// Pictures that were wrong, each by the smallest scene that showed it: what a ray, a shadow or a
+// pixel of such a scene has to be, whatever the bound and the example.
+#include "backend-cpu/trace/march.h"
+#include "base/picture.h"
+#include "driver/compile.h"
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+
+using namespace fathom;
+
+namespace {
+
+constexpr int width = 96, height = 72;
+
+cpu::Picture drawn(const std::string &text, int samples = 1) {
+    const driver::Compilation compilation = driver::compile_text("still.sdf", text, {}, {});
+    REQUIRE(compilation.good());
+    const ir::Scene &scene = compilation.scene;
+    const cpu::Stage stage = cpu::prepare(
+        scene, ir::view_of(scene, 0, static_cast<double>(width) / height), width, height, 0);
+    cpu::PictureOptions options;
+    options.samples = samples;
+    cpu::Picture picture = cpu::render(stage, options);
+    CHECK(picture.work.undecided == 0);
+    return picture;
+}
+
+int byte(const cpu::Picture &picture, int x, int y, int channel) {
+    return picture.rgba[static_cast<std::size_t>(4 * (y * picture.width + x) + channel)];
+}
+
+// Pixels that differ by more than 2 of 255 in some channel.
+int different(const cpu::Picture &a, const cpu::Picture &b) {
+    int count = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            int most = 0;
+            for (int c = 0; c < 3; ++c)
+                most = std::max(most, std::abs(byte(a, x, y, c) - byte(b, x, y, c)));
+            count += most > 2;
+        }
+    return count;
+}
+
+constexpr int few = width * height / 1000; // a thousandth
+
+const std::string camera = "camera(at: [3, 4, 9], look_at: [0, 0.3, 0], fov: 40deg)\n";
+
+} // namespace
+
+TEST_CASE("a slider at 0 whose range makes a shape steep draws the shape without it") {
+    const std::string from = "camera(at: [0, 4, 26], look_at: [0, 0, 0], fov: 40deg)\n";
+    const cpu::Picture steep =
+        drawn(from + "param a = 0 in 0..20\nsphere(6).displace(p => a * sin(p.x))\n");
+    CHECK(different(steep, drawn(from + "sphere(6)\n")) <= few);
+}
+
+TEST_CASE("a taper that is steep at its end keeps its neck") {
+    const cpu::Picture picture = drawn(camera + "cylinder(1, 4).taper(0.002)\nbackground(white)\n");
+    // the solid is a cone of 2 units to each side of the middle: a column of it without a gap
+    int first = height, last = 0, inside = 0;
+    for (int y = 0; y < height; ++y)
+        if (byte(picture, width / 2, y, 2) < 250) {
+            first = std::min(first, y), last = std::max(last, y);
+            ++inside;
+        }
+    CHECK(inside == last - first + 1);
+    CHECK(inside > height / 3);
+}
+
+TEST_CASE("a param's range in place of a constant changes no shadow") {
+    const std::string scene = "box([1, 2, 1]).twist(rate).translate(y: 1)\nplane(Y)\n"
+                              "sun(direction: [0.6, 0.8, 0.2])\nlighting(soft_shadows: 0.1)\n";
+    CHECK(different(drawn(camera + "let rate = 0.4\n" + scene),
+                    drawn(camera + "param rate = 0.4 in 0..1.5\n" + scene)) <= few);
+}
+
+TEST_CASE("a region of another size paints no ghosts") {
+    const auto scene = [](const char *within) {
+        return camera + "implicit(p => 0.4 * (length(p) - 1), within: " + within +
+               ").translate(y: 1)\nplane(Y)\nsun(direction: [0.6, 0.5, 0.2])\n";
+    };
+    CHECK(different(drawn(scene("ball(1.1)")), drawn(scene("ball(2.5)"))) <= few);
+}
+
+TEST_CASE("edges show the faces beside them, and nothing else") {
+    const std::string scene = "box([1, 0.2, 1]).translate(y: 0.1)\n"
+                              "camera(at: [1.2, 2.0, 3.2], look_at: [0, 0, 0], fov: 24deg)\n"
+                              "sun(direction: [0.4, 0.8, 0.6])\nbackground(black)\n"
+                              "lighting(ambient: 0.3, ambient_occlusion: 0, shadow_darkness: 0, "
+                              "specular_intensity: 0, classic: true)\n";
+    const cpu::Picture picture = drawn(scene);
+    // Of a body in parallel light only three faces show, each of one colour; a byte more or less by
+    // the dither.
+    std::array<int, 257> count{};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) ++count[static_cast<std::size_t>(byte(picture, x, y, 1))];
+    count[0] = 0; // the background
+    int faces = 0;
+    for (int face = 0; face < 3; ++face) {
+        const auto most = std::ranges::max_element(count) - count.begin();
+        for (auto c = std::max<std::ptrdiff_t>(most - 1, 0); c <= most + 1; ++c)
+            faces += std::exchange(count[static_cast<std::size_t>(c)], 0);
+    }
+    const int others = std::accumulate(count.begin(), count.end(), 0);
+    CHECK(faces > width * height / 8);
+    CHECK(others <= faces / 100);
+}
+
+TEST_CASE("a ground without an end fades into the background, without a step") {
+    const cpu::Picture picture = drawn("box(1)\nplane(Y, -0.5).paint(#6f7a63)\nbackground(white)\n"
+                                       "camera(at: [2, 1, 6], look_at: [0, 0.98, 0], fov: 1deg)\n");
+    const int x = width / 8;
+    int brightest = 0;
+    for (int y = 0; y + 1 < height; ++y)
+        brightest =
+            std::max(brightest, std::abs(byte(picture, x, y + 1, 1) - byte(picture, x, y, 1)));
+    CHECK(byte(picture, x, height - 1, 1) < 200);
+    CHECK(byte(picture, x, 0, 1) == 255);
+    CHECK(brightest < 60);
+}
+
+TEST_CASE("a lawn round a solid changes no groove of it") {
+    const std::string solid = "box([2, 1, 2]) - box([0.12, 1, 3]).translate(y: 0.3)\n";
+    const std::string light = "camera(at: [0.9, 5, 1.2], look_at: [0, 0.5, 0], fov: 22deg)\n"
+                              "lighting(ambient_occlusion: 1, shadow_darkness: 0)\n";
+    const cpu::Picture alone = drawn(light + solid),
+                       lawn = drawn(light + solid + "box([40, 0.1, 40]).translate(y: -0.55)\n");
+    int darker = 0;
+    for (int y = height / 3; y < 2 * height / 3; ++y) // the solid's top, far from the lawn
+        for (int x = width / 3; x < 2 * width / 3; ++x)
+            darker += std::abs(byte(alone, x, y, 1) - byte(lawn, x, y, 1)) > 16;
+    CHECK(darker <= few);
+}
+
+TEST_CASE("a sky without bands: bytes of a gradient average to its values") {
+    const cpu::Picture picture = drawn("sphere(0.01)\nbackground(d => vec3(0.3 + 0.02 * d.x))\n");
+    // Over a block of the pattern the mean of the bytes moves by less than a level from the next one.
+    double before = 0;
+    int same = 0;
+    for (int block = 0; block < width / 8; ++block) {
+        double sum = 0;
+        for (int y = 0; y < 8; ++y)
+            for (int x = 0; x < 8; ++x) sum += byte(picture, 8 * block + x, y, 1);
+        if (block > 0) {
+            CHECK(std::abs(sum / 64 - before) < 1);
+            same += sum / 64 == before;
+        }
+        before = sum / 64;
+    }
+    CHECK(same < 3);
+}
+
+TEST_CASE("a flat colour stays flat") {
+    const cpu::Picture picture = drawn("sphere(0.01)\nbackground(#6f7a63)\n");
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) {
+            CHECK(byte(picture, x, y, 0) == 0x6f);
+            CHECK(byte(picture, x, y, 1) == 0x7a);
+        }
+}
+
+TEST_CASE("where one sample does not do there are more, and nowhere else") {
+    const std::string scene = camera + "box(2)\nbackground(white)\n";
+    const cpu::Picture one = drawn(scene), smooth = drawn(scene, 0), all = drawn(scene, 4);
+    CHECK(smooth.work.rays < one.work.rays * 2);
+    CHECK(smooth.work.rays > one.work.rays);
+    CHECK(different(one, all) > 3 * different(smooth, all));
+}
