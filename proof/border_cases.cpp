@@ -30,6 +30,7 @@ bool Cases::hold(const Case &given, int depth) {
     if (answer && !*answer) {
         Case next = case_;
         if (!solve_equality(next)) return false;
+        follow_roots(next);
         next.way = given.way;
         return hold(next, depth + 1);
     }
@@ -61,6 +62,7 @@ std::optional<bool> Cases::attempt() {
         const Sum gap = add(*u, *v, -1);
         if (const auto c = as_constant(gap); c && std::fabs(*c) > 1e-9) return true; // nowhere
         solve(gap);
+        follow_roots(case_);
         case_.border_solved = true;
         done_.clear();
         if (impossible(case_, {})) return true;
@@ -238,10 +240,45 @@ void Cases::solve(const Sum &gap) {
     case_.at_least_0.push_back(add({}, gap, -1));
 }
 
+void Cases::follow_roots(Case &c) {
+    const auto is_solved = [&](std::uint32_t a) {
+        return std::ranges::any_of(c.solved, [&](const auto &one) { return one.first == a; });
+    };
+    // What was solved by a root is no help to write that root anew.
+    const auto holds_roots = [&](const Sum &sum) {
+        return std::ranges::any_of(sum, [&](const auto &term) {
+            return std::ranges::any_of(term.first,
+                                       [&](std::uint32_t a) { return bool(atoms_[a].below); });
+        });
+    };
+    const auto known = std::uint32_t(atoms_.size());
+    for (std::uint32_t a = 0; a < known; ++a) {
+        if (!atoms_[a].below || is_solved(a)) continue;
+        const Sum below = reduced(*atoms_[a].below, c);
+        if (below == *atoms_[a].below || holds_roots(below)) continue;
+        if (const auto number = as_constant(below))
+            c.solved.emplace_back(a, constant(std::sqrt(std::max(*number, 0.0))));
+        else if (const std::uint32_t is = root_atom(below, atoms_[a].square.has_value()); is != a)
+            c.solved.emplace_back(a, atom(is));
+    }
+}
+
 Sum Cases::reduced(const Sum &sum, const Case &c) const {
     Sum out = sum;
     for (const auto &[a, is] : c.solved) out = with_atom(out, a, is);
     return out;
+}
+
+bool is_count(const Graph &graph, NodeId id) {
+    constexpr ir::OpSet turning{Op::Sign, Op::Step},
+        made{Op::Less, Op::LessEqual, Op::Add, Op::Sub, Op::Mul, Op::Neg};
+    const ir::Node node = graph[id];
+    const auto of = [&](int i) { return is_count(graph, graph.arg(id, i)); };
+    if (graph.is_constant(id) || turning[node.op]) return true;
+    if (node.op == Op::ToFloat) return graph[graph.arg(id, 0)].type == ir::Type::Bool || of(0);
+    if (node.op == Op::Select) return of(1) && of(2);
+    if (!made[node.op]) return false;
+    return of(0) && (node.count < 2 || of(1));
 }
 
 bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {

@@ -75,7 +75,7 @@ bool Border::enter_turned(Canonical &into, NodeId border) {
     into.known[x] = into.scalar(graph.mul(radius, of_angle(into, Op::Cos, at)));
     into.known[y] = into.scalar(graph.mul(radius, of_angle(into, Op::Sin, at)));
     into.known[*angle] = at;
-    into.known[group.turning] = border;
+    into.known[group.turning] = with_component(graph, group.turning, group.component, border);
     return true;
 }
 

@@ -80,6 +80,8 @@ class Cases {
 
     // gap = 0: for an atom that stands in one term alone; else as two inequalities.
     void solve(const Sum &gap);
+    // Roots of what has been solved since, as roots of what it is now.
+    void follow_roots(Case &c);
     Sum reduced(const Sum &sum, const Case &c) const;
 
     std::uint32_t atom_of(AtomKey key, Atom about);
@@ -101,6 +103,7 @@ class Cases {
     // The square root of a node's value; 0 below 0.
     std::optional<Sum> root(NodeId at, NodeId below, int i);
     std::optional<Sum> root_of(NodeId at, const Sum &x, int i, bool of_squares);
+    std::uint32_t root_atom(const Sum &below, bool of_squares);
     bool is_square_sum(NodeId id) const;
     // x*x + y*y as r*r where r is a root of it that stands in the sum: so that r*r - 2r + 1 is seen.
     Sum squares_known(const Sum &x) const;

@@ -95,7 +95,11 @@ std::optional<Sum> Cases::root(NodeId at, NodeId below, int i) {
     if (node.op == Op::Min || node.op == Op::Max) {
         const auto a = root(graph_.arg(below, 0), graph_.arg(below, 0), i),
                    b = a ? root(graph_.arg(below, 1), graph_.arg(below, 1), i) : std::nullopt;
-        return b ? lesser(below, Roots + i, *a, *b, node.op == Op::Min) : std::nullopt;
+        if (!b) return {};
+        const auto x = times(*a, *a), y = x ? times(*b, *b) : std::nullopt;
+        if (y && is_sum_of_squares(add(*y, *x, -1))) return node.op == Op::Min ? a : b;
+        if (y && is_sum_of_squares(add(*x, *y, -1))) return node.op == Op::Min ? b : a;
+        return lesser(below, Roots + i, *a, *b, node.op == Op::Min);
     }
     if (node.op == Op::Swizzle)
         return root(at, graph_.arg(below, 0), ir::swizzle_component(node.payload, i));
@@ -112,13 +116,17 @@ std::optional<Sum> Cases::root_of(NodeId at, const Sum &x, int i, bool of_square
     if (const auto c = as_constant(x)) return constant(*c > 0 ? std::sqrt(*c) : 0);
     const Sum sum = squares_known(x);
     if (const auto s = root_of_square(sum)) return size_of(at, Lengths + i, *s);
+    return reduced(atom(root_atom(sum, of_squares)), case_);
+}
+
+std::uint32_t Cases::root_atom(const Sum &below, bool of_squares) {
     Atom about;
     about.never_negative = true;
-    about.below = sum;
-    if (of_squares) about.square = sum; // of less than 0 the root is 0
+    about.below = below;
+    if (of_squares) about.square = below; // of less than 0 the root is 0
     AtomKey key{-3.0, double(of_squares)};
-    add_to_key(key, sum);
-    return reduced(atom(atom_of(std::move(key), about)), case_);
+    add_to_key(key, below);
+    return atom_of(std::move(key), about);
 }
 
 bool Cases::is_square_sum(NodeId id) const {
@@ -147,7 +155,10 @@ Sum Cases::squares_known(const Sum &x) const {
 std::optional<Sum> Cases::lesser(NodeId id, int i, const Sum &a, const Sum &b, bool least) {
     const Sum gap = add(b, a, -1); // b - a
     if (const auto c = as_constant(gap)) return (*c >= 0) == least ? a : b;
-    const auto w = way(id, i, {{gap}, {add({}, gap, -1)}});
+    const Sum less = add({}, gap, -1);
+    if (is_sum_of_squares(gap)) return least ? a : b;
+    if (is_sum_of_squares(less)) return least ? b : a;
+    const auto w = way(id, i, {{gap}, {less}});
     if (!w) return {};
     return (*w == 0) == least ? a : b;
 }
@@ -258,11 +269,12 @@ std::optional<Sum> Cases::component(NodeId id, int i, Op op, const Sum &a, const
     }
     if (op == Op::Step) { // step(edge, x)
         const Sum gap = add(b, a, -1);
-        if (const auto d = as_constant(gap)) return constant(*d >= 0);
+        if (const auto d = as_constant(gap); d && *d != 0) return constant(*d > 0);
         const auto w = way(id, i, {{gap}, {add({}, gap, -1)}});
         return w ? std::optional(constant(*w == 0)) : std::nullopt;
     }
-    if (const auto d = as_constant(a)) return constant(*d > 0 ? 1 : *d < 0 ? -1 : 0); // Sign
+    // A sign of what is 0 on all of the border may turn with it, so either side is looked at.
+    if (const auto d = as_constant(a); d && *d != 0) return constant(*d > 0 ? 1 : -1);
     const Sum less = add({}, a, -1);
     const auto w = way(id, i, {{a}, {less}, {a, less}});
     return w ? std::optional(constant(*w == 0 ? 1 : *w == 1 ? -1 : 0)) : std::nullopt;
@@ -288,9 +300,9 @@ std::optional<bool> Cases::truth(NodeId id) {
         return t ? std::optional(!*t) : std::nullopt;
     }
     if (node.op == Op::And || node.op == Op::Or) {
-        const auto a = truth(graph_.arg(id, 0)), b = a ? truth(graph_.arg(id, 1)) : std::nullopt;
-        if (!b) return {};
-        return node.op == Op::And ? *a && *b : *a || *b;
+        const auto a = truth(graph_.arg(id, 0));
+        if (!a || *a == (node.op == Op::Or)) return a;
+        return truth(graph_.arg(id, 1));
     }
     if (node.op == Op::Select) {
         const auto t = truth(graph_.arg(id, 0));
@@ -302,6 +314,8 @@ std::optional<bool> Cases::truth(NodeId id) {
         const auto u = value(graph_.arg(id, 0)), v = u ? value(graph_.arg(id, 1)) : std::nullopt;
         if (!v) return {};
         when_true = {add(*v, *u, -1)}, when_false = {add(*u, *v, -1)};
+        if (const auto c = as_constant(when_true[0]); c && is_count(graph_, id))
+            return node.op == Op::Less ? *c > 0 : *c >= 0;
     }
     const auto w = way(id, 0, {when_false, when_true});
     return w ? std::optional(*w == 1) : std::nullopt;

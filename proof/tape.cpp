@@ -6,6 +6,7 @@
 #include "proof/flattener.h"
 #include "proof/forms.h"
 #include "proof/polar.h"
+#include "proof/roots.h"
 
 #include <algorithm>
 #include <cmath>
@@ -259,7 +260,9 @@ Tape flatten(Flattening &context, NodeId root) {
     const bool steps = has_steps(context.graph, root),
                choices = context.borders && has_choices(context.graph, root);
     if (steps || choices) {
-        NodeId whole = written_out(context.graph, root);
+        const NodeId written = written_out(context.graph, root);
+        NodeId whole = with_signed_roots(context.graph, written);
+        const bool has_signed_roots = whole != written;
         if (steps) {
             flattener.cancelling = cancelling_steps(context.graph, whole);
             const Turned turned = without_angles(context.graph, whole);
@@ -273,7 +276,7 @@ Tape flatten(Flattening &context, NodeId root) {
             flattener.cancelling.merge(meeting.choices);
             flattener.tape.near = meeting.near;
         }
-        if (!flattener.cancelling.empty()) root = whole;
+        if (!flattener.cancelling.empty() || has_signed_roots) root = whole;
     }
     Scope scope;
     scope.block = &flattener.tape.each;
