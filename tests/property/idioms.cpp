@@ -191,6 +191,10 @@ constexpr std::array near_misses = {
     "sign(p.x) * abs(sign(2 * p.x)) * p.y",
     "if sign(p.x) + sign(-p.x) < 0.5 { p.y } else { p.z }",
     "(if sign(p.x) + sign(2 * p.x) < 1 { -1 } else { 1 }) * p.y",
+    // truths that are chosen, as early returns make them: one border is not met
+    "if (if p.x < 0 { false } else { p.y > 0 }) { p.x } else { 0 }",
+    "if (if p.x < 0 { false } else { p.x > p.y }) { min(p.x, p.x - p.y) + 0.001 } else { 0 }",
+    "float(if p.x < 0 { false } else { p.y > 0 }) * p.x",
     // an angle in a vector that is rounded
     "length(vec3(atan(p.y, p.x), p.x, p.z) - round(vec3(atan(p.y, p.x), p.x, p.z)))",
     // vectors by component
