@@ -19,6 +19,10 @@ struct Looked {
     bool near = false; // a proof holds where no coordinate is above `near_enough` alone (on_line.h)
 };
 
+// A number, or a comparison of such, that is made of signs, steps, truths and constants alone: it
+// turns only where one of these does.
+bool is_count(const ir::Graph &graph, ir::NodeId id);
+
 // True is a proof; false is none.
 bool is_proved(ir::Graph &graph, const Claim &claim, Looked &looked);
 

@@ -54,7 +54,8 @@ void comparisons_of(const Graph &graph, NodeId condition, std::vector<NodeId> &o
     if (node.op == Op::Less || node.op == Op::LessEqual) {
         all = all && graph[graph.arg(condition, 0)].type == ir::Type::Float;
         out.push_back(condition);
-    } else if (node.op == Op::And || node.op == Op::Or || node.op == Op::Not) {
+    } else if (node.op == Op::And || node.op == Op::Or || node.op == Op::Not ||
+               node.op == Op::Select) { // of truths, as early returns make them
         for (NodeId a : graph.args(condition)) comparisons_of(graph, a, out, all);
     } else {
         all = false;
@@ -114,6 +115,29 @@ bool turns_unseen(Field &field, NodeId select, NodeId root,
     });
 }
 
+// A choice by comparisons of counts alone. Where no turning of what is counted is seen, neither is
+// the choice's: what all uses of a sign go through lies above the choice, or in the count, which
+// then does not change.
+bool turns_by_counts(const Graph &graph, NodeId choice) {
+    if (graph[choice].op != Op::Select) return false;
+    std::vector<NodeId> comparisons;
+    bool all = true;
+    comparisons_of(graph, graph.arg(choice, 0), comparisons, all);
+    return all && !comparisons.empty() &&
+           std::ranges::all_of(comparisons, [&](NodeId c) { return is_count(graph, c); });
+}
+std::vector<NodeId> counted(const Graph &graph, NodeId id) { // the choices in a condition of counts
+    const ir::Node node = graph[id];
+    if (is_choice[node.op]) return {id};
+    if (node.op == Op::ToFloat && graph[graph.arg(id, 0)].type == ir::Type::Bool) return {id};
+    std::vector<NodeId> out;
+    for (NodeId a : graph.args(id)) {
+        const std::vector<NodeId> more = counted(graph, a);
+        out.insert(out.end(), more.begin(), more.end());
+    }
+    return out;
+}
+
 bool is_open(const Graph &graph, NodeId id) { // turns with the point, and is a number
     const ir::Node node = graph[id];
     return is_choice[node.op] && graph.reads(id).point &&
@@ -145,7 +169,12 @@ Meeting find_choices(Flattening &context, NodeId root) {
     Meeting out;
     Looked looked;
     std::unordered_map<NodeId, bool> by_comparison;
+    std::vector<NodeId> by_counts; // turn only where the choices do that they count
     for (NodeId choice : choices) {
+        if (turns_by_counts(graph, choice)) {
+            by_counts.push_back(choice);
+            continue;
+        }
         NodeId of = graph[choice].op == Op::Select ? choice : field.through[choice];
         for (int climb = 0; climb < max_climb && looked.cases < max_cases_of_field; ++climb) {
             if (meets(graph, choice, of, looked)) {
@@ -159,6 +188,12 @@ Meeting find_choices(Flattening &context, NodeId root) {
             turns_unseen(field, choice, root, by_comparison, looked))
             out.choices.insert(choice);
     }
+    std::reverse(by_counts.begin(), by_counts.end()); // arguments first
+    for (NodeId choice : by_counts)
+        if (std::ranges::all_of(counted(graph, graph.arg(choice, 0)), [&](NodeId one) {
+                return !graph.reads(one).point || out.choices.contains(one);
+            }))
+            out.choices.insert(choice);
     out.near = looked.near;
     return out;
 }

@@ -126,6 +126,42 @@ std::optional<Sum> root_of_square(const Sum &a) {
     return {};
 }
 
+bool is_sum_of_squares(const Sum &a) {
+    Sum rest = a, sizes; // sizes: of all that was added up to each coefficient
+    for (const auto &[m, c] : a) sizes[m] = std::fabs(c);
+    const auto is_nothing = [&](const Product &m, double c) {
+        return std::fabs(c) <= granted * sizes[m];
+    };
+    for (;;) {
+        std::erase_if(rest, [&](const auto &term) { return is_nothing(term.first, term.second); });
+        if (rest.empty()) return true;
+        const Product lead = rest.begin()->first;
+        if (lead.empty()) return rest.begin()->second >= 0;
+        if (lead.size() > 2) return false;
+        // Some atom of the leading term has to stand as a square.
+        const std::uint32_t x = lead[0];
+        const auto square = rest.find({x, x});
+        if (square == rest.end() || square->second <= 0) return false;
+        const double by = square->second;
+        Sum root; // of the square to complete, times that of `by`
+        for (const auto &[m, c] : rest) {
+            if (std::find(m.begin(), m.end(), x) == m.end()) continue;
+            Product other = m;
+            other.erase(std::find(other.begin(), other.end(), x));
+            root[other] = other == Product{x} ? c : c / 2;
+        }
+        const auto whole = multiply(root, root);
+        if (!whole) return false;
+        for (const auto &[m, c] : *whole) {
+            rest[m] -= c / by;
+            sizes[m] += std::fabs(c / by);
+        }
+        std::erase_if(rest, [&](const auto &term) {
+            return std::find(term.first.begin(), term.first.end(), x) != term.first.end();
+        });
+    }
+}
+
 std::optional<std::pair<std::uint32_t, Sum>> solved_for_atom(const Sum &sum) {
     for (const auto &[m, c] : sum) {
         if (m.size() != 1 || is_small(Sum{{m, c}}, sum)) continue;

@@ -29,6 +29,9 @@ std::optional<double> as_constant(const Sum &a);
 // s with s*s = a, or nothing. Its sign is either.
 std::optional<Sum> root_of_square(const Sum &a);
 
+// Of degree 2 at most: is it a sum of squares, so that it is never below 0? (Cholesky's way.)
+bool is_sum_of_squares(const Sum &a);
+
 // An atom that stands in one term alone, and what it is where sum = 0.
 std::optional<std::pair<std::uint32_t, Sum>> solved_for_atom(const Sum &sum);
 Sum with_atom(const Sum &sum, std::uint32_t a, const Sum &is); // as it is where that gets too large

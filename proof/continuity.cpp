@@ -277,6 +277,15 @@ std::optional<Linear> linear_in(Graph &graph, NodeId scalar, NodeId atom) {
     return out;
 }
 
+std::optional<std::vector<Term>> terms_of(Graph &graph, NodeId scalar) {
+    const auto sum = polynomial(graph, scalar);
+    if (!sum) return {};
+    std::vector<Term> out;
+    for (const auto &[factors, c] : *sum)
+        if (c != 0) out.push_back({c, factors});
+    return out;
+}
+
 std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {
     auto p = polynomial(graph, a), q = polynomial(graph, b);
     if (!p || !q) return {};

@@ -55,6 +55,14 @@ struct Linear {
 };
 std::optional<Linear> linear_in(ir::Graph &graph, ir::NodeId scalar, ir::NodeId atom);
 
+// A scalar as a sum of products: each a number times its factors, which are sorted, and repeat. An
+// atom's size |a| stands for itself but in its square. Nothing where it is too large.
+struct Term {
+    double by = 0;
+    std::vector<ir::NodeId> factors;
+};
+std::optional<std::vector<Term>> terms_of(ir::Graph &graph, ir::NodeId scalar);
+
 // a - b as a sum in which equal terms have cancelled; nothing where the expressions are too large.
 std::optional<ir::NodeId> difference(ir::Graph &graph, ir::NodeId a, ir::NodeId b);
 

@@ -72,26 +72,6 @@ bool is_half(Graph &graph, NodeId half, NodeId whole) {
     return false;
 }
 
-// The parts whose squares the sum is made of; a constant c >= 0 is the square of its root.
-bool squares(Graph &graph, NodeId sum, std::vector<NodeId> &parts) {
-    const ir::Node node = graph[sum];
-    if (node.op == Op::Add)
-        return squares(graph, graph.arg(sum, 0), parts) && squares(graph, graph.arg(sum, 1), parts);
-    if ((node.op == Op::Mul || node.op == Op::Dot) && graph.arg(sum, 0) == graph.arg(sum, 1)) {
-        parts.push_back(graph.arg(sum, 0));
-        return true;
-    }
-    if (node.op == Op::Pow && number(graph, graph.arg(sum, 1)) == 2.0) {
-        parts.push_back(graph.arg(sum, 0));
-        return true;
-    }
-    if (auto c = graph.as_number(sum); c && *c >= 0) {
-        parts.push_back(graph.number(std::sqrt(*c)));
-        return true;
-    }
-    return false;
-}
-
 // q = x/m, which may have become x*(1/m)
 bool is_ratio(Graph &graph, NodeId q, NodeId x, NodeId m) {
     if (graph[q].op == Op::Div && graph.arg(q, 0) == x && graph.arg(q, 1) == m) return true;
@@ -116,60 +96,7 @@ bool all_whole(Graph &graph, NodeId id) {
     return true;
 }
 
-// The choice that a sum is made of, and the sum with either of its arms in its place.
-struct Arms {
-    NodeId choice, first, second;
-};
-std::optional<Arms> arms_of(Graph &graph, NodeId sum, int depth) {
-    if (depth > 8) return {};
-    const ir::Node node = graph[sum];
-    if (node.op == Op::Min || node.op == Op::Max)
-        return Arms{sum, graph.arg(sum, 0), graph.arg(sum, 1)};
-    if (node.op == Op::Select) return Arms{sum, graph.arg(sum, 1), graph.arg(sum, 2)};
-    if (node.op == Op::Swizzle && node.type == ir::Type::Float) {
-        const NodeId own = component_of(graph, sum, 0);
-        return own == sum ? std::nullopt : arms_of(graph, own, depth + 1);
-    }
-    const bool scales = node.op == Op::Mul || node.op == Op::Div;
-    if (node.op != Op::Add && node.op != Op::Sub && !scales) return {};
-    for (int i = 0; i < (node.op == Op::Add || node.op == Op::Mul ? 2 : 1); ++i) {
-        const NodeId other = graph.arg(sum, 1 - i);
-        const auto factor = scales ? number(graph, other) : std::optional(1.0);
-        if (!factor || !(*factor > 0)) continue;
-        const auto arms = arms_of(graph, graph.arg(sum, i), depth + 1);
-        if (!arms) continue;
-        const auto with = [&](NodeId arm) {
-            return i == 0 ? graph.make(node.op, {arm, other}) : graph.make(node.op, {other, arm});
-        };
-        return Arms{arms->choice, with(arms->first), with(arms->second)};
-    }
-    return {};
-}
-
-// Is a choice of sums of squares, so that no root of it is singular?
-bool chooses_squares(Graph &graph, NodeId sum, int depth) {
-    std::vector<NodeId> parts;
-    if (squares(graph, sum, parts)) return true;
-    if (depth > 8) return false;
-    const auto arms = arms_of(graph, sum, 0);
-    return arms && chooses_squares(graph, arms->first, depth + 1) &&
-           chooses_squares(graph, arms->second, depth + 1);
-}
-
 } // namespace
-
-std::optional<RootOfChoice> root_inward(Graph &graph, NodeId id) {
-    if (graph[id].op != Op::Sqrt || graph[id].type != ir::Type::Float) return {};
-    if (!chooses_squares(graph, graph.arg(id, 0), 0)) return {};
-    const auto arms = arms_of(graph, graph.arg(id, 0), 0);
-    if (!arms) return {};
-    const ir::Node choice = graph[arms->choice];
-    const NodeId a = graph.make(Op::Sqrt, {arms->first}), b = graph.make(Op::Sqrt, {arms->second});
-    const NodeId out = choice.op == Op::Select
-                           ? graph.make(Op::Select, {graph.arg(arms->choice, 0), a, b})
-                           : graph.make(choice.op, {a, b});
-    return RootOfChoice{out, arms->choice};
-}
 
 std::optional<WaveParts> wave(Graph &graph, NodeId id) {
     const ir::Node node = graph[id]; // a copy: nodes are added below
@@ -311,16 +238,6 @@ std::optional<PNormParts> p_norm(Graph &graph, NodeId id) {
     if (!(n > 2) || std::fabs(n * exponent - 1) > 2e-7) return {};
     out.power = graph.number(n);
     return out;
-}
-
-std::optional<std::vector<NodeId>> norm_parts(Graph &graph, NodeId id) {
-    const ir::Node node = graph[id];
-    if (node.type != ir::Type::Float) return {};
-    std::vector<NodeId> parts;
-    bool root =
-        node.op == Op::Sqrt || (node.op == Op::Pow && number(graph, graph.arg(id, 1)) == 0.5);
-    if (root && squares(graph, graph.arg(id, 0), parts)) return parts;
-    return {};
 }
 
 std::optional<NodeId> corner(Graph &graph, NodeId id) {

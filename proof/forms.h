@@ -22,17 +22,6 @@ struct WaveParts {
 };
 std::optional<WaveParts> wave(ir::Graph &graph, NodeId id);
 
-// sqrt of a choice of sums of squares as the choice of the roots, so that each is a length: of min,
-// max, `if`, plus what is the same for both, times a number.
-struct RootOfChoice {
-    NodeId choice; // of roots
-    NodeId from;   // the choice as it stood
-};
-std::optional<RootOfChoice> root_inward(ir::Graph &graph, NodeId id);
-
-// The parts of which the node is the length, a square root of a sum of squares.
-std::optional<std::vector<NodeId>> norm_parts(ir::Graph &graph, NodeId id);
-
 // x, m, lo and hi of x - m*clamp(round(x/m), lo, hi), lo and hi whole numbers.
 struct HeldWaveParts {
     NodeId x, m, lo, hi;

@@ -145,6 +145,9 @@ Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
       odd_(tape.components), norm_(tape.first.size()), bend_(bends ? tape.first.size() : 0),
       trouble_(tape.first.size(), Trouble::None), cause_(tape.first.size()) {
     in_reach_ = tape.grows;
+    made_by_.assign(tape_.first.size(), -1);
+    for (std::size_t i = 0; i < tape_.each.size(); ++i)
+        if (tape_.each[i].form != Form::Loop) made_by_[tape_.each[i].out] = std::int32_t(i);
     run(tape.once);
 }
 

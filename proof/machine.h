@@ -118,6 +118,7 @@ class Machine {
     int sign_of(Slot s, int c) const;
     void keep_sign(Slot s, int c, bool negative);
     std::uint32_t origin(Slot s, int component) const;
+    double component_norm(Slot s, int component) const;
     std::optional<std::pair<std::uint32_t, std::uint32_t>> difference(Slot s, int c) const;
 
     const Tape &tape_;

@@ -247,6 +247,7 @@ void Step::choose() {
     }
     if (c.lo > 0.5) return machine.copy(in.args[1], out);
     if (c.hi < 0.5) return machine.copy(in.args[2], out);
+    if (in.type == ir::Type::Bool) return truth(hull(value(1, 0), value(2, 0)));
     machine.copy(in.args[1], out);
     const bool joins = in.form == Form::Joined || in.form == Form::Opposite,
                meets = in.cancels ? cancels() : joins,

@@ -99,6 +99,32 @@ void Step::p_norm() {
     finish(norms, false);
 }
 
+// Of the scalar that a component of a vector is made of, but for numbers that are added: its norm,
+// which the box of its gradient need not keep.
+double Machine::component_norm(Slot s, int component) const {
+    for (;;) {
+        if (tape_.size[s] == 1) return norm_[s];
+        const std::int32_t i = made_by_[s];
+        if (i < 0) return norm_[s];
+        const Instruction &in = tape_.each[std::size_t(i)];
+        if (in.form != Form::Plain || in.args.empty()) return norm_[s];
+        std::size_t arg = 0;
+        if (in.op == Op::Swizzle)
+            component = ir::swizzle_component(in.payload, component);
+        else if (in.op == Op::Splat)
+            component = 0;
+        else if (in.op == Op::Make)
+            while (component >= int(tape_.size[in.args[arg]]))
+                component -= tape_.size[in.args[arg++]];
+        else if (in.op == Op::Add || in.op == Op::Sub) {
+            arg = norm_[in.args[0]] == 0 ? 1 : 0;
+            if (norm_[in.args[1 - arg]] != 0) return norm_[s];
+        } else if (in.op != Op::Neg)
+            return norm_[s];
+        s = in.args[arg];
+    }
+}
+
 void Step::corner() {
     const Interval zero_at(0.0);
     const int m = size(0);
@@ -106,7 +132,7 @@ void Step::corner() {
     for (int c = 0; c < m; ++c) greatest = std::max(greatest, value(0, c).lo);
     Interval outside, most(-infinity), squares[4];
     Row rows[4], g{};
-    int used = 0;
+    int used = 0, last = 0;
     for (int c = 0; c < m; ++c) {
         const Interval v = value(0, c);
         squares[c] = square(max(v, zero_at));
@@ -130,11 +156,14 @@ void Step::corner() {
             if (others.lo > 0) weight.hi = up(std::sqrt(own.hi / (own.hi + others.lo)), 8);
         }
         rows[used++] = grad(0, c);
+        last = c;
         g = sum(g, scaled(weight, grad(0, c)));
     }
     if (used == 1) g = rows[0];
     set(0, sqrt(outside) + min(most, zero_at), g);
-    finish(std::min(norm(0), spectral_norm(rows, used)), any_odd);
+    double norms = std::min(norm(0), spectral_norm(rows, used));
+    if (used == 1) norms = std::min(norms, machine.component_norm(in.args[0], last));
+    finish(norms, any_odd);
 }
 
 void Step::length() {

@@ -193,9 +193,6 @@ double Machine::norm_by_ways(const Cell &cell, double enough) {
         for (const Instruction &in : tape_.each) still_[in.out] = false;
         for (const Loop &loop : tape_.loops)
             for (const Instruction &in : loop.body) still_[in.out] = false;
-        made_by_.assign(tape_.first.size(), -1);
-        for (std::size_t i = 0; i < tape_.each.size(); ++i)
-            if (tape_.each[i].form != Form::Loop) made_by_[tape_.each[i].out] = std::int32_t(i);
     }
     Ways ways;
     ways.known.resize(tape_.components);

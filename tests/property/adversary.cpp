@@ -3,23 +3,14 @@
 // to them, at 0, over params' ends and inside, over time. FATHOM_SCENES and FATHOM_SEED in the
 // environment make it longer, or another; FATHOM_SHOW says what each scene came to.
 // Long: one generator and its table of hostile calls.
-#include "driver/compile.h"
-#include "ir/lower/lower.h"
-#include "tests/support/slopes.h"
+#include "judge.h"
 
 #include <catch2/catch.hpp>
-
-#include <cstdio>
-#include <cstdlib>
-#include <fmt/format.h>
-#include <map>
 
 using namespace fathom;
 using namespace fathom::test;
 
 namespace {
-
-constexpr double reach = 2;
 
 // Shapes of the library with an argument that its conditions are about.
 constexpr std::array library = {
@@ -119,9 +110,9 @@ constexpr std::array library = {
     "pseudonorm_blend(sphere(0.6).translate(x: -0.5), sphere(0.6).translate(x: 0.5), 1 + @)",
 };
 
-class Adversary {
+class Adversary : public Chance {
   public:
-    explicit Adversary(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u + 1) {}
+    using Chance::Chance;
 
     std::string scene(std::size_t kind) {
         static constexpr std::array makers = {
@@ -134,25 +125,7 @@ class Adversary {
     }
     static constexpr std::size_t kinds = 14;
 
-    double random() {
-        std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return double((z ^ (z >> 31)) >> 11) * 0x1p-53;
-    }
-
   private:
-    using Texts = std::initializer_list<const char *>;
-    std::size_t pick(std::size_t n) { return std::size_t(random() * double(n)); }
-    bool often() { return pick(2) == 0; }
-    std::string of(Texts texts) { return texts.begin()[pick(texts.size())]; }
-    static std::string number(double x) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.4g", x);
-        return text;
-    }
-    std::string between(double lo, double hi) { return number(lo + (hi - lo) * random()); }
-
     // A linear form whose borders others share.
     std::string linear() {
         return "(" +
@@ -405,104 +378,7 @@ class Adversary {
                    "))\n";
         }
     }
-
-    std::uint64_t state_;
 };
-
-// What may be said of a scene that is well formed.
-bool is_of_the_proof(Code code) {
-    return code == Code::LipschitzUnbounded || code == Code::FieldJump ||
-           code == Code::FieldSingular || code == Code::NeedsRegion || code == Code::BadArgument ||
-           code == Code::RepeatLimit || code == Code::StageMismatch || code == Code::NumberRange;
-}
-
-struct Verdict {
-    bool accepted = false;
-    std::string code, wrong;
-};
-
-// Points next to where things turn: coordinates are often a multiple of 1/8, or off by little, but
-// by more than single precision loses between two ways to write one number.
-Point3 near_borders(Adversary &random) {
-    Point3 p;
-    for (double &x : p) {
-        const double at = std::round(8 * reach * (random.random() - 0.5) * 2) / 8;
-        const double off = std::pow(10, -4.5 * random.random()) * (random.random() < 0.5 ? -1 : 1);
-        const double kind = random.random();
-        x = kind < 0.3 ? 2 * reach * (random.random() - 0.5) : kind < 0.55 ? at : at + 0.3 * off;
-        x = float(x);
-    }
-    return p;
-}
-
-std::string text_of(const Point3 &p) {
-    char text[128];
-    std::snprintf(text, sizeof text, "[%.9g, %.9g, %.9g]", p[0], p[1], p[2]);
-    return text;
-}
-
-// Pairs at all distances down to rounding; the marched field is 1-Lipschitz, and a number.
-std::string measured(const ir::Scene &scene, double time, Adversary &random, int pairs) {
-    Sampler sampler(scene, time);
-    std::vector<Point3> p, q;
-    for (int i = 0; i < pairs; ++i) {
-        p.push_back(near_borders(random));
-        Point3 to = p.back();
-        const double far = std::pow(10, -5 + 5 * random.random());
-        const bool along = random.random() < 0.6; // one coordinate alone, so across its borders
-        const auto axis = std::size_t(3 * random.random());
-        for (std::size_t k = 0; k < 3; ++k)
-            if (!along || k == axis) to[k] = float(to[k] + far * (random.random() * 2 - 1));
-        q.push_back(to);
-    }
-    const std::vector<float> a = sampler.values(p), b = sampler.values(q);
-    for (std::size_t i = 0; i < p.size(); ++i) {
-        if (!std::isfinite(a[i])) return fmt::format("it is {} at {}", a[i], text_of(p[i]));
-        double way = 0;
-        for (std::size_t k = 0; k < 3; ++k) way += (p[i][k] - q[i][k]) * (p[i][k] - q[i][k]);
-        way = std::sqrt(way);
-        const double rounding = 6e-5 + 2e-6 * std::fabs(double(a[i]));
-        if (std::fabs(double(a[i]) - double(b[i])) > way * 1.002 + rounding)
-            return fmt::format("it is {} at {} and {} at {}", a[i], text_of(p[i]), b[i],
-                               text_of(q[i]));
-    }
-    return {};
-}
-
-Verdict judge(const std::string &text, Adversary &random, int pairs) {
-    Verdict out;
-    driver::Compilation c = driver::compile_text("adversary.sdf", text, "", {});
-    if (!c.good()) {
-        for (const Diagnostic &d : c.diagnostics.items())
-            if (d.severity == Severity::Error) {
-                if (out.code.empty()) out.code = std::string(code_name(d.code)) + ": " + d.message;
-                if (!is_of_the_proof(d.code)) out.wrong = "no scene: " + d.message;
-            }
-        return out;
-    }
-    out.accepted = true;
-    // Steps by cells are as long as is safe, and no slope of anything.
-    for (ir::ShapeFact &fact : c.scene.facts) fact.cells = {};
-    ir::lower(c.scene);
-    for (const double part : {0.0, 1.0, 0.5, 0.37, 1.0 / 3}) {
-        for (ir::Param &k : c.scene.params) // those that decide what there is are compiled in
-            if (!k.structural) k.value[0] = k.lo[0] + (k.hi[0] - k.lo[0]) * part;
-        const double time = std::min(c.scene.render.time_end, 10.0) * part;
-        out.wrong = measured(c.scene, time, random, pairs);
-        if (!out.wrong.empty()) {
-            if (!c.scene.params.empty())
-                out.wrong += fmt::format(", k = {}", c.scene.params[0].value[0]);
-            out.wrong += fmt::format(", time = {}", time);
-            return out;
-        }
-    }
-    return out;
-}
-
-int number_from(const char *variable, int otherwise) {
-    const char *text = std::getenv(variable);
-    return text ? std::atoi(text) : otherwise;
-}
 
 } // namespace
 

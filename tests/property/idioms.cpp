@@ -175,6 +175,28 @@ constexpr std::array near_misses = {
     "length(p.xy - 0.1) * cos((atan(p.y, p.x) % (pi / 3)) - pi / 6) + p.z",
     "p.z + 0.1 * floor(atan(p.y, p.x) * 3 / pi)",
     "p.z * (1 + floor(atan(p.y, p.x) * 3 / pi) % 2)",
+    // squares that are not complete: less by a little, of a product, of a linear term
+    "sqrt(dot(p, p) + 0.809 - 1.8 * length(p.xy))",
+    "sqrt(p.x * p.x + 2.01 * p.x * p.y + p.y * p.y)",
+    "sqrt(p.x * p.x - 0.001 * p.x)",
+    "sqrt(p.x * p.x - length(p.yz) + 0.25)",
+    // signed roots: of what is no square, of squares that do not meet, by another's sign
+    "sign(p.x) * sqrt(abs(p.x))",
+    "sign(if p.x < 0 { -p.x * p.x } else { p.x * p.x + 0.0001 }) * "
+    "sqrt(abs(if p.x < 0 { -p.x * p.x } else { p.x * p.x + 0.0001 }))",
+    "sign(p.y) * sqrt(abs(if p.x < 0 { -p.x * p.x } else { p.x * p.x }))",
+    // counts: one border is not met, or another count
+    "if sign(p.x) + sign(p.y) < 1 { p.z } else { p.z + p.x }",
+    "if sign(p.x) + sign(p.y) < 1 { p.z } else { p.z + p.x * p.y + 0.001 }",
+    "sign(p.x) * abs(sign(2 * p.x)) * p.y",
+    "if sign(p.x) + sign(-p.x) < 0.5 { p.y } else { p.z }",
+    "(if sign(p.x) + sign(2 * p.x) < 1 { -1 } else { 1 }) * p.y",
+    // truths that are chosen, as early returns make them: one border is not met
+    "if (if p.x < 0 { false } else { p.y > 0 }) { p.x } else { 0 }",
+    "if (if p.x < 0 { false } else { p.x > p.y }) { min(p.x, p.x - p.y) + 0.001 } else { 0 }",
+    "float(if p.x < 0 { false } else { p.y > 0 }) * p.x",
+    // an angle in a vector that is rounded
+    "length(vec3(atan(p.y, p.x), p.x, p.z) - round(vec3(atan(p.y, p.x), p.x, p.z)))",
     // vectors by component
     "length(if p.x > 1 { vec2(p.x - 2.1, p.y) } else { p.xy })",
     "length((if p.x > 1 { vec2(p.x - 2, p.y) } else { p.xy }) - vec2(0.1, 0))",
@@ -211,6 +233,14 @@ constexpr std::array steep = {
     Steep{"abs(p.x - round(p.x)) + p.x", 2},
     Steep{"p.y - (if round(p.y) % 2 == 0 { p.y - round(p.y) } else { round(p.y) - p.y })", 2},
     Steep{"min(p.x, 0.3) - min(p.x, 0.4) + p.x", 1},
+    Steep{"sqrt(4 * p.x * p.x + 4 * p.x * p.y + p.y * p.y + p.z * p.z)", 2.236068},
+    Steep{"sign(if p.x < 0 { -4 * p.x * p.x } else { 4 * p.x * p.x }) * "
+          "sqrt(abs(if p.x < 0 { -4 * p.x * p.x } else { 4 * p.x * p.x }))",
+          2},
+    Steep{"if sign(p.x) + sign(p.y) < 1 { p.z } else { p.z + min(p.x, p.y) }", 1.4142136},
+    Steep{"length(max(vec2(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)) + "
+          "min(max(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)",
+          2},
 };
 
 } // namespace

@@ -4,6 +4,7 @@
 #include "build.h"
 #include "ir/lower/lower.h"
 #include "ir/passes/verify.h"
+#include "tests/support/second_check.h"
 #include "tests/support/slopes.h"
 #include "tests/support/spans.h"
 
@@ -29,19 +30,25 @@ struct Case {
     double x = 0;         // of the middle of what is sampled
 };
 
-Slopes run(const Case &test, double factor, double &proved) {
-    Scenery s;
+// The case as it is marched, with what the rule adds times `factor`; what is proved of it.
+double prove(const Case &test, double factor, Scenery &s) {
     ShapeId shape = test.build(s);
     Diagnostics diagnostics;
     proof::Options options;
     options.rules.factor[static_cast<std::size_t>(test.rule)] = factor;
     options.tighten = test.tighten;
-    proved = s.prove(shape, diagnostics, options).lipschitz_sup;
+    const double proved = s.prove(shape, diagnostics, options).lipschitz_sup;
     INFO(said(diagnostics));
     REQUIRE(!diagnostics.has_errors());
     for (ShapeFact &fact : s.scene.facts) fact.guard = false; // the rule alone
     lower(s.scene);
     REQUIRE(verify(s.scene).empty());
+    return proved;
+}
+
+Slopes run(const Case &test, double factor, double &proved) {
+    Scenery s;
+    proved = prove(test, factor, s);
     double r = test.reach;
     return measure(s.scene, {-r, -r, -r}, {r, r, r}, 100'000);
 }
@@ -210,6 +217,28 @@ TEST_CASE("no rule is exceeded, each is nearly attained, and none can be halved"
             CHECK(truth.steepest >= test.attained);
             Slopes broken = run(test, 0.5, weakened);
             CHECK((broken.unsafe > 0 || broken.steepest > 1 + 5e-3));
+        }
+    }
+}
+
+// What the second checker is good for: each rule that was weakened is found by it, too.
+TEST_CASE("a second checker finds each rule that is halved") {
+    constexpr long work = 150'000;
+    for (const Case &test : cases()) {
+        SECTION(test.name) {
+            for (const double factor : {1.0, 0.5}) {
+                Scenery s;
+                prove(test, factor, s);
+                const double r = test.reach;
+                const second::Result found =
+                    second::slopes(s.scene, s.scene.distance, 0, {-r, -r, -r}, {r, r, r}, work);
+                std::cout << test.name << ", rule times " << factor << ": seen " << found.seen
+                          << ", at most " << found.at_most << "\n";
+                INFO("at [" << found.where[0] << ", " << found.where[1] << ", " << found.where[2]
+                            << "]");
+                if (factor == 1) CHECK(found.seen <= 1 + 1e-6);
+                if (factor < 1) CHECK(found.seen > 1 + 5e-3);
+            }
         }
     }
 }

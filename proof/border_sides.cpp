@@ -1,0 +1,243 @@
+// What is known on one side of a border: the coordinates there, the angle and the distance from its
+// axis, and each step whose argument is K times a number, a number and an infinitesimal.
+#include "proof/border_sides.h"
+
+#include "proof/continuity.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <unordered_set>
+
+namespace fathom::proof {
+namespace {
+
+// A node with one component replaced; the node's type may be a scalar.
+NodeId with_component(Graph &graph, NodeId id, int component, NodeId value) {
+    const ir::Type type = graph[id].type;
+    if (!ir::is_vector(type)) return value;
+    std::vector<NodeId> parts;
+    for (int i = 0; i < ir::components(type); ++i)
+        parts.push_back(i == component ? value : component_of(graph, id, i));
+    return graph.make(Op::Make, type, parts);
+}
+
+} // namespace
+
+void Border::enter(Canonical &into, bool moves) {
+    // counting an angle up across its cut, y falls
+    NodeId border = group.is_angle ? graph.number(0)
+                    : half         ? graph.add(whole, graph.number(0.5))
+                                   : whole;
+    if (moves)
+        border = graph.add(
+            border,
+            graph.mul(graph.number(group.is_angle ? -sign_of(side) : sign_of(side)), little));
+    const auto put = [&](NodeId node, NodeId value) {
+        if (!graph.is_constant(node))
+            into.known[node] = with_component(graph, node, group.component, value);
+    };
+    if (!moves && enter_turned(into, border)) return;
+    if (auto at = solved(graph, component_of(graph, group.turning, group.component), border))
+        into.known[at->vector] = with_component(graph, at->vector, at->component, at->value);
+    put(group.turning, border);
+    for (NodeId step : group.steps)
+        if (graph[step].op == Op::Mod)
+            put(graph.arg(step, 0),
+                graph.mul(border, component_of(graph, graph.arg(step, 1), group.component)));
+}
+
+bool Border::enter_turned(Canonical &into, NodeId border) {
+    if (group.is_angle) return false;
+    const NodeId turning = component_of(graph, group.turning, group.component);
+    std::optional<NodeId> angle;
+    for (NodeId id : reached_below(graph, turning))
+        if (graph[id].op == Op::Atan2) {
+            if (angle) return false;
+            angle = id;
+        }
+    const auto linear = angle ? linear_in(graph, turning, *angle) : std::nullopt;
+    if (!linear || linear->by == 0 || !graph.is_constant(linear->rest)) return false;
+    const NodeId y = graph.arg(*angle, 0), x = graph.arg(*angle, 1);
+    if (graph[y].op != Op::Swizzle || graph[x].op != Op::Swizzle) return false;
+    const NodeId vector = graph.arg(y, 0);
+    if (graph.arg(x, 0) != vector || x == y) return false;
+    const NodeId at = in_one_form(
+        graph, graph.mul(graph.sub(border, linear->rest), graph.number(1 / linear->by)));
+    by_angle = true;
+    const auto with = [&](NodeId of, NodeId part, Op op) {
+        return with_component(graph, of, ir::swizzle_component(graph[part].payload, 0),
+                              graph.mul(radius, of_angle(into, op, at)));
+    };
+    into.known[vector] = with(with(vector, x, Op::Cos), y, Op::Sin);
+    into.known[x] = into.scalar(graph.mul(radius, of_angle(into, Op::Cos, at)));
+    into.known[y] = into.scalar(graph.mul(radius, of_angle(into, Op::Sin, at)));
+    into.known[*angle] = at;
+    into.known[group.turning] = with_component(graph, group.turning, group.component, border);
+    return true;
+}
+
+NodeId Border::of_angle(Canonical &into, Op op, NodeId angle) {
+    const auto sum = into.turned(op, angle);
+    return sum ? *sum : graph.make(op, {angle});
+}
+
+std::vector<NodeId> Border::reached_below(const Graph &graph, NodeId root) {
+    std::vector<NodeId> out, todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty() && out.size() < 200) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        out.push_back(id);
+        for (NodeId a : graph.args(id)) todo.push_back(a);
+    }
+    return out;
+}
+
+bool Border::is_own(NodeId step, int component) const {
+    return component == group.component &&
+           std::find(group.steps.begin(), group.steps.end(), step) != group.steps.end();
+}
+
+std::optional<Near> Border::near(NodeId step, int component, int depth) {
+    if (is_own(step, component)) return Near{1, half ? 0.5 : 0, sign_of(side)};
+    NodeId t = part(moving, step, 0, component, depth);
+    if (graph[step].op == Op::Mod) t = graph.div(t, part(moving, step, 1, component, depth));
+    const auto sum = combination(graph, t, std::array{whole, little, little_angle});
+    if (!sum) return {};
+    const auto &c = *sum;
+    // of two infinitesimals none is known to be the greater
+    if (std::floor(c[0]) != c[0] || c[1] * c[2] < 0) return {};
+    return Near{c[0], c[3], c[1] + c[2]};
+}
+
+NodeId Border::part(Canonical &of, NodeId step, int arg, int component, int depth) {
+    return component_of(graph, of.of(graph.arg(step, arg), depth + 1), component);
+}
+
+double Border::snapped(double x) const {
+    const double nearest = std::round(x), rounding = group.is_angle ? 1e-9 : 1e-13;
+    return std::fabs(x - nearest) > rounding ? x : nearest;
+}
+
+double Border::floor_of(double number, double slope) const {
+    const double x = snapped(number);
+    return std::floor(x) == x && slope < 0 && side != Side::At ? x - 1 : std::floor(x);
+}
+
+bool Border::turns_with(NodeId step, int component, const Near &t) const {
+    if (group.is_angle || is_own(step, component) || t.times == 0) return true;
+    const double at = t.number + (graph[step].op == Op::Round ? 0.5 : 0);
+    if (snapped(at) != std::floor(snapped(at))) return true; // not at its border
+    const auto base = [&](NodeId id) {
+        for (;;) {
+            const ir::Node &node = graph[id];
+            if (node.op == Op::Neg) {
+                id = graph.arg(id, 0);
+                continue;
+            }
+            if (node.op != Op::Mul) return id;
+            const bool first = is_power_of_two(graph.arg(id, 0));
+            if (!first && !is_power_of_two(graph.arg(id, 1))) return id;
+            id = graph.arg(id, first ? 1 : 0);
+        }
+    };
+    return base(graph.arg(step, 0)) == base(group.turning) ||
+           (graph[step].op == Op::Mod && graph[group.turning].op == Op::Div &&
+            graph.arg(step, 0) == graph.arg(group.turning, 0) &&
+            graph.arg(step, 1) == graph.arg(group.turning, 1));
+}
+
+bool Border::is_power_of_two(NodeId id) const {
+    if (graph[id].op == Op::Splat) id = graph.arg(id, 0);
+    if (!graph.is_constant(id)) return false;
+    const ir::Constant &c = graph.constant_of(id);
+    int exponent = 0;
+    for (int i = 0; i < ir::components(c.type); ++i)
+        if (std::fabs(std::frexp(c.value[static_cast<std::size_t>(i)], &exponent)) != 0.5)
+            return false;
+    return true;
+}
+
+NodeId Border::value(NodeId step, int component, bool moves, int depth) {
+    const Op op = graph[step].op;
+    if (op == Op::Atan2) return angle(step, component, moves, depth);
+    const auto t = near(step, component, depth);
+    if (!t || !turns_with(step, component, *t)) return unknown_of(step, component, depth);
+    const NodeId multiple = graph.mul(graph.number(t->times), whole);
+    const auto rest = [&] { // t - floor(t)
+        const NodeId left = graph.number(snapped(t->number) - floor_of(t->number, t->slope));
+        return moves ? graph.add(left, graph.mul(graph.number(t->slope), little)) : left;
+    };
+    const auto floored = [&](double number, double slope) {
+        return graph.number(floor_of(number, slope));
+    };
+    if (op == Op::Floor) return graph.add(multiple, floored(t->number, t->slope));
+    if (op == Op::Round) return graph.add(multiple, floored(t->number + 0.5, t->slope));
+    if (op == Op::Ceil) return graph.sub(multiple, floored(-t->number, -t->slope));
+    if (op == Op::Fract) return rest();
+    assert(op == Op::Mod); // the last that is_step knows
+    return graph.mul(rest(), part(moves ? moving : limit, step, 1, component, depth));
+}
+
+NodeId Border::angle(NodeId step, int component, bool moves, int depth) {
+    if (!group.is_angle || !is_own(step, component)) return unknown_of(step, component, depth);
+    const bool after = side == Side::After;
+    NodeId out = graph.number(after ? -std::numbers::pi : std::numbers::pi);
+    if (moves) out = graph.add(out, after ? little_angle : graph.neg(little_angle));
+    return out;
+}
+
+NodeId Border::unknown_of(NodeId step, int component, int depth) {
+    std::vector<NodeId> args;
+    std::vector<std::uint32_t> key{static_cast<std::uint32_t>(graph[step].op)};
+    bool moves = false;
+    for (int i = 0; i < int(graph[step].count); ++i) {
+        args.push_back(limit.scalar(part(limit, step, i, component, depth)));
+        key.push_back(args.back().index);
+        moves = moves || graph.reads(args.back()).point ||
+                reads_little(part(moving, step, i, component, depth));
+    }
+    if (!moves && graph[step].op == Op::Mod)
+        if (const auto parity = parity_of(args[0], args[1])) return *parity;
+    if (!moves) return graph.make(graph[step].op, ir::Type::Float, args, graph[step].payload);
+    const auto [it, fresh] = unknown.try_emplace(key);
+    if (fresh) it->second = graph.fresh_var(ir::Type::Float);
+    return it->second;
+}
+
+std::optional<NodeId> Border::parity_of(NodeId count, NodeId two) {
+    const auto sum = combination(graph, count, std::array{whole});
+    if (!sum || graph.as_number(two) != 2.0) return {};
+    const double j = (*sum)[0], n = (*sum)[1];
+    if (std::floor(j) != j || std::floor(n) != n) return {};
+    const bool odd = std::fmod(n, 2) != 0;
+    if (std::fmod(j, 2) == 0) return graph.number(odd ? 1 : 0);
+    met.parity = true;
+    if (counts.parity) return graph.number((*counts.parity + (odd ? 1 : 0)) % 2);
+    const NodeId rest = graph.make(Op::Mod, ir::Type::Float, std::array{whole, two});
+    return odd ? graph.sub(graph.number(1), rest) : rest;
+}
+
+std::optional<int> Border::sign_of_count(NodeId count) {
+    const auto sum = combination(graph, count, std::array{whole});
+    if (!sum) return {};
+    const double j = (*sum)[0], n = (*sum)[1];
+    const Interval all = Interval(j) * counts.range + Interval(n);
+    if (j == 0) return n > 0 ? 1 : n < 0 ? -1 : 0;
+    if (all.lo > 0) return 1;
+    if (all.hi < 0) return -1;
+    met.thresholds.push_back(-n / j);
+    return {};
+}
+
+bool Border::reads_little(NodeId id) const {
+    for (NodeId var : graph.free_vars(id))
+        if (var == little || var == little_angle) return true;
+    return false;
+}
+
+} // namespace fathom::proof

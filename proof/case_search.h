@@ -1,0 +1,128 @@
+// The search for a proof of a claim about a border: cases, each with the ways that choices go in it,
+// what is solved and what is at least 0 (border_cases.h). A number is a sum of products of atoms.
+#pragma once
+
+#include "proof/border_cases.h"
+#include "proof/cases.h"
+#include "proof/on_line.h"
+
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace fathom::proof {
+
+using ir::Graph;
+using ir::Interval;
+using ir::NodeId;
+using ir::Op;
+
+using Atom = LineAtom;
+using AtomKey = std::vector<double>;
+
+// How a choice that is met may go: each way with what has to be at least 0 for it.
+struct Fork {
+    std::pair<NodeId, int> at; // the node, and its component
+    std::vector<std::vector<Sum>> ways;
+};
+
+struct Case {
+    std::map<std::pair<NodeId, int>, int> way;
+    std::vector<std::pair<std::uint32_t, Sum>> solved;
+    std::vector<Sum> at_least_0;
+    bool border_solved = false;
+};
+
+class Cases {
+  public:
+    Cases(Graph &graph, bool split_sizes, Looked &looked)
+        : graph_(graph), split_sizes_(split_sizes), looked_(looked) {}
+
+    bool hold(const Claim &claim);
+    int count() const { return count_; }
+
+  private:
+    Graph &graph_;
+    const bool split_sizes_; // |x| of an atom by cases, too; else it is an atom
+    Looked &looked_;
+    Claim claim_;
+    Case case_;
+    std::optional<Fork> fork_;
+    std::optional<int> side_;                    // of the choice, while one is evaluated
+    std::optional<bool> turned_;                 // of the comparison
+    std::map<std::pair<NodeId, int>, Sum> done_; // values under side_
+    std::map<std::pair<NodeId, NodeId>, bool> reads_;
+    std::map<AtomKey, std::uint32_t> index_;
+    std::vector<Atom> atoms_;
+    int count_ = 0, depth_ = 0, squares_ = 0;
+
+    bool hold(const Case &given, int depth);
+
+    // true, false, or nothing where the case has to be split first (fork_) or is too large.
+    std::optional<bool> attempt();
+    std::optional<bool> vectors_agree(int sides);
+
+    bool are_equal(const Sum &a, const Sum &b);
+
+    // Where all that is left hangs on one number.
+    bool are_equal_on_line(const Sum &a, const Sum &b);
+    // With r*r for the leading term of what r is the root of, less the other terms.
+    static Sum with_square(const Sum &sum, std::uint32_t r, const Sum &square);
+    // Of the root of a sum of products of what has a range.
+    static std::optional<Interval> range_of_root(const Sum &below, const std::vector<Atom> &atoms);
+
+    bool impossible(const Case &c, const Inequality &more);
+    bool never_negative(const Product &m) const;
+
+    // Of s >= 0 and -s >= 0: s = 0, if that can be solved.
+    bool solve_equality(Case &c);
+
+    // gap = 0: for an atom that stands in one term alone; else as two inequalities.
+    void solve(const Sum &gap);
+    // Roots of what has been solved since, as roots of what it is now.
+    void follow_roots(Case &c);
+    Sum reduced(const Sum &sum, const Case &c) const;
+
+    std::uint32_t atom_of(AtomKey key, Atom about);
+    Sum leaf(NodeId id, int i);
+    // A function of which nothing is known but its arguments.
+    std::optional<Sum> unknown(NodeId id, int i);
+
+    bool reads(NodeId id, NodeId what);
+
+    // The way that this case has gone at a node, or a fork. What depends on the choice, or on the
+    // truth of its comparison, goes its own way on each side. `use`: which of a node's questions.
+    enum Use { Own = 0, Sizes = 100, Roots = 200, Upper = 300, Lengths = 400, PerSide = 1000 };
+    std::optional<int> way(NodeId id, int i, std::vector<std::vector<Sum>> ways);
+
+    std::optional<Sum> value(NodeId id, int i = 0);
+
+    std::optional<Sum> size_of(NodeId id, int i, const Sum &x); // |x|
+
+    // The square root of a node's value; 0 below 0.
+    std::optional<Sum> root(NodeId at, NodeId below, int i);
+    std::optional<Sum> root_of(NodeId at, const Sum &x, int i, bool of_squares);
+    std::uint32_t root_atom(const Sum &below, bool of_squares);
+    bool is_square_sum(NodeId id) const;
+    // x*x + y*y as r*r where r is a root of it that stands in the sum: so that r*r - 2r + 1 is seen.
+    Sum squares_known(const Sum &x) const;
+
+    std::optional<Sum> lesser(NodeId id, int i, const Sum &a, const Sum &b, bool least);
+
+    std::optional<Sum> times(const Sum &a, const Sum &b);
+    std::optional<Sum> dot(NodeId a, NodeId b);
+
+    std::optional<Sum> value_of(NodeId id, int i);
+    static constexpr ir::OpSet by_component_{Op::Neg, Op::Add, Op::Sub, Op::Mul,   Op::Div,
+                                             Op::Min, Op::Max, Op::Abs, Op::Clamp, Op::Sign,
+                                             Op::Mix, Op::Pow, Op::Step};
+
+    std::optional<Sum> component(NodeId id, int i, Op op, const Sum &a, const Sum &b, const Sum &c);
+
+    std::optional<Sum> cross(NodeId id, int i);
+
+    std::optional<bool> truth(NodeId id);
+};
+
+} // namespace fathom::proof

@@ -1,0 +1,324 @@
+// What nodes are in a case: sums of products, by component. A choice that is met has gone one way in
+// the case, or splits it.
+#include "proof/case_search.h"
+#include "proof/tape.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::proof {
+namespace {
+
+constexpr int max_depth_of_cases = 200, max_squares = 12;
+
+} // namespace
+
+std::uint32_t Cases::atom_of(AtomKey key, Atom about) {
+    const auto [it, fresh] = index_.try_emplace(std::move(key), std::uint32_t(atoms_.size()));
+    if (fresh) atoms_.push_back(std::move(about));
+    return it->second;
+}
+
+Sum Cases::leaf(NodeId id, int i) {
+    Atom about;
+    if (graph_[id].op == Op::Point) about.range = Interval(-near_enough, near_enough);
+    return reduced(atom(atom_of({-1.0, double(id.index), double(i)}, about)), case_);
+}
+
+std::optional<Sum> Cases::unknown(NodeId id, int i) {
+    const ir::Node node = graph_[id];
+    if (node.count == 0) return leaf(id, i);
+    AtomKey key{double(node.op), double(node.payload), double(node.type), double(i)};
+    for (int k = 0; k < int(node.count); ++k) {
+        const NodeId a = graph_.arg(id, k);
+        for (int c = 0; c < ir::components(graph_[a].type); ++c) {
+            const auto x = value(a, c);
+            if (!x) return {};
+            add_to_key(key, *x);
+        }
+    }
+    Atom about;
+    about.never_negative = node.op == Op::Exp || node.op == Op::Exp2 || node.op == Op::Hash;
+    return atom(atom_of(std::move(key), about));
+}
+
+bool Cases::reads(NodeId id, NodeId what) {
+    if (id == what) return true;
+    const auto it = reads_.find({id, what});
+    if (it != reads_.end()) return it->second;
+    bool out = false;
+    for (NodeId a : graph_.args(id)) out = out || reads(a, what);
+    return reads_[{id, what}] = out;
+}
+
+std::optional<int> Cases::way(NodeId id, int i, std::vector<std::vector<Sum>> ways) {
+    if (side_ && reads(id, claim_.choice)) i += PerSide * (1 + *side_);
+    if (turned_ && reads(id, claim_.comparison)) i += 10 * PerSide * (1 + *turned_);
+    if (const auto it = case_.way.find({id, i}); it != case_.way.end()) return it->second;
+    if (!fork_) fork_ = Fork{{id, i}, std::move(ways)};
+    return {};
+}
+
+std::optional<Sum> Cases::value(NodeId id, int i) {
+    if (const auto it = done_.find({id, i}); it != done_.end()) return it->second;
+    if (fork_ || depth_ > max_depth_of_cases) return {};
+    ++depth_;
+    std::optional<Sum> out = value_of(id, i);
+    --depth_;
+    if (out) done_[{id, i}] = *out;
+    return out;
+}
+
+std::optional<Sum> Cases::size_of(NodeId id, int i, const Sum &x) {
+    if (const auto c = as_constant(x)) return constant(std::fabs(*c));
+    const Product &lead = x.begin()->first;
+    if (x.size() == 1 && lead.size() == 1) {
+        const double c = x.begin()->second;
+        if (atoms_[lead[0]].never_negative) return c > 0 ? x : add({}, x, -1);
+        if (!split_sizes_) {
+            Atom about;
+            about.never_negative = true;
+            about.square = multiply(atom(lead[0]), atom(lead[0]));
+            const std::uint32_t a = atom_of({-2.0, double(lead[0])}, about);
+            return add({}, reduced(atom(a), case_), std::fabs(c));
+        }
+    }
+    const auto w = way(id, i, {{x}, {add({}, x, -1)}});
+    if (!w) return {};
+    return *w == 0 ? x : add({}, x, -1);
+}
+
+std::optional<Sum> Cases::root(NodeId at, NodeId below, int i) {
+    const ir::Node node = graph_[below];
+    if (below == claim_.choice && side_ && node.op == Op::Select)
+        return root(at, graph_.arg(below, 1 + *side_), i);
+    if (node.op == Op::Min || node.op == Op::Max) {
+        const auto a = root(graph_.arg(below, 0), graph_.arg(below, 0), i),
+                   b = a ? root(graph_.arg(below, 1), graph_.arg(below, 1), i) : std::nullopt;
+        if (!b) return {};
+        const auto x = times(*a, *a), y = x ? times(*b, *b) : std::nullopt;
+        if (y && is_sum_of_squares(add(*y, *x, -1))) return node.op == Op::Min ? a : b;
+        if (y && is_sum_of_squares(add(*x, *y, -1))) return node.op == Op::Min ? b : a;
+        return lesser(below, Roots + i, *a, *b, node.op == Op::Min);
+    }
+    if (node.op == Op::Swizzle)
+        return root(at, graph_.arg(below, 0), ir::swizzle_component(node.payload, i));
+    if (node.op == Op::Select) {
+        const auto t = truth(graph_.arg(below, 0));
+        if (!t) return {};
+        return root(at, graph_.arg(below, *t ? 1 : 2), i);
+    }
+    const auto x = node.op == Op::Make ? value(graph_.arg(below, i)) : value(below, i);
+    return x ? root_of(at, *x, i, is_square_sum(below)) : std::nullopt;
+}
+
+std::optional<Sum> Cases::root_of(NodeId at, const Sum &x, int i, bool of_squares) {
+    if (const auto c = as_constant(x)) return constant(*c > 0 ? std::sqrt(*c) : 0);
+    const Sum sum = squares_known(x);
+    if (const auto s = root_of_square(sum)) return size_of(at, Lengths + i, *s);
+    return reduced(atom(root_atom(sum, of_squares)), case_);
+}
+
+std::uint32_t Cases::root_atom(const Sum &below, bool of_squares) {
+    Atom about;
+    about.never_negative = true;
+    about.below = below;
+    if (of_squares) about.square = below; // of less than 0 the root is 0
+    AtomKey key{-3.0, double(of_squares)};
+    add_to_key(key, below);
+    return atom_of(std::move(key), about);
+}
+
+bool Cases::is_square_sum(NodeId id) const {
+    const ir::Node node = graph_[id];
+    if (node.op == Op::Mul || node.op == Op::Dot) return graph_.arg(id, 0) == graph_.arg(id, 1);
+    if (node.op == Op::Add)
+        return is_square_sum(graph_.arg(id, 0)) && is_square_sum(graph_.arg(id, 1));
+    return false;
+}
+
+Sum Cases::squares_known(const Sum &x) const {
+    Sum out = x;
+    for (std::uint32_t a = 0; a < atoms_.size(); ++a) {
+        if (!atoms_[a].square || !out.contains({a}) || atoms_[a].square->empty()) continue;
+        const auto &[lead, c] = *atoms_[a].square->begin();
+        const auto it = out.find(lead);
+        if (it == out.end()) continue;
+        const double times = it->second / c;
+        Sum next = add(out, *atoms_[a].square, -times);
+        next = add(next, Sum{{{a, a}, times}});
+        if (next.size() <= out.size()) out = next;
+    }
+    return out;
+}
+
+std::optional<Sum> Cases::lesser(NodeId id, int i, const Sum &a, const Sum &b, bool least) {
+    const Sum gap = add(b, a, -1); // b - a
+    if (const auto c = as_constant(gap)) return (*c >= 0) == least ? a : b;
+    const Sum less = add({}, gap, -1);
+    if (is_sum_of_squares(gap)) return least ? a : b;
+    if (is_sum_of_squares(less)) return least ? b : a;
+    const auto w = way(id, i, {{gap}, {less}});
+    if (!w) return {};
+    return (*w == 0) == least ? a : b;
+}
+
+std::optional<Sum> Cases::times(const Sum &a, const Sum &b) {
+    const auto out = multiply(a, b);
+    if (!out) return {};
+    Sum sum; // r*r is what is below the root r
+    for (const auto &[m, c] : *out) {
+        const auto twice = std::adjacent_find(
+            m.begin(), m.end(), [&](auto x, auto y) { return x == y && atoms_[x].square; });
+        if (twice == m.end()) {
+            sum = add(sum, Sum{{m, c}});
+            continue;
+        }
+        Product rest = m;
+        rest.erase(rest.begin() + (twice - m.begin()), rest.begin() + (twice - m.begin()) + 2);
+        // What a root's square is made of may have been solved by that root.
+        if (squares_ >= max_squares) return {};
+        ++squares_;
+        const auto whole = times(Sum{{rest, c}}, reduced(*atoms_[*twice].square, case_));
+        --squares_;
+        if (!whole) return {};
+        sum = add(sum, *whole);
+    }
+    return sum;
+}
+
+std::optional<Sum> Cases::dot(NodeId a, NodeId b) {
+    Sum sum;
+    for (int k = 0; k < ir::components(graph_[a].type); ++k) {
+        const auto x = value(a, k), y = x ? value(b, k) : std::nullopt;
+        const auto product = y ? times(*x, *y) : std::nullopt;
+        if (!product) return {};
+        sum = add(sum, *product);
+    }
+    return sum;
+}
+
+std::optional<Sum> Cases::value_of(NodeId id, int i) {
+    const ir::Node node = graph_[id];
+    const auto arg = [&](int k) { return value(graph_.arg(id, k), i); };
+    if (id == claim_.choice && side_) {
+        if (node.op == Op::Select) return value(graph_.arg(id, 1 + *side_), i);
+        return constant(node.op == Op::Step ? *side_ : *side_ - 1);
+    }
+    if (graph_.is_constant(id)) {
+        const double c = graph_.constant_of(id).value[static_cast<std::size_t>(i)];
+        return std::isfinite(c) ? std::optional(constant(c)) : std::nullopt;
+    }
+    if (node.type == ir::Type::Bool || ir::is_matrix(node.type)) return unknown(id, i);
+    if (node.op == Op::ToFloat && graph_[graph_.arg(id, 0)].type == ir::Type::Int)
+        return value(graph_.arg(id, 0));
+    if (node.op == Op::ToFloat) {
+        const auto t = truth(graph_.arg(id, 0));
+        return t ? std::optional(constant(*t)) : std::nullopt;
+    }
+    if (by_component_[node.op] && !(node.type == ir::Type::Int && node.op == Op::Div)) {
+        const auto a = arg(0), b = node.count > 1 && a ? arg(1) : std::nullopt,
+                   c = node.count > 2 && b ? arg(2) : std::nullopt;
+        if (!a || (node.count > 1 && !b) || (node.count > 2 && !c)) return {};
+        return component(id, i, node.op, *a, b.value_or(Sum{}), c.value_or(Sum{}));
+    }
+    if (node.op == Op::Make) return value(graph_.arg(id, i));
+    if (node.op == Op::Splat) return value(graph_.arg(id, 0));
+    if (node.op == Op::Swizzle)
+        return value(graph_.arg(id, 0), ir::swizzle_component(node.payload, i));
+    if (node.op == Op::Dot) return dot(graph_.arg(id, 0), graph_.arg(id, 1));
+    if (node.op == Op::Length) {
+        const auto sum = dot(graph_.arg(id, 0), graph_.arg(id, 0));
+        return sum ? root_of(id, *sum, 0, true) : std::nullopt;
+    }
+    if (node.op == Op::Sqrt) return root(id, graph_.arg(id, 0), i);
+    if (node.op == Op::Cross) return cross(id, i);
+    if (node.op == Op::Select) {
+        const auto t = truth(graph_.arg(id, 0));
+        if (!t) return {};
+        return value(graph_.arg(id, *t ? 1 : 2), i);
+    }
+    return unknown(id, i);
+}
+
+std::optional<Sum> Cases::component(NodeId id, int i, Op op, const Sum &a, const Sum &b,
+                                    const Sum &c) {
+    if (op == Op::Neg) return add({}, a, -1);
+    if (op == Op::Add || op == Op::Sub) return add(a, b, op == Op::Add ? 1 : -1);
+    if (op == Op::Mul) return times(a, b);
+    if (op == Op::Min || op == Op::Max) return lesser(id, i, a, b, op == Op::Min);
+    if (op == Op::Abs) return size_of(id, Sizes + i, a);
+    if (op == Op::Div) {
+        if (const auto d = as_constant(b); d && *d != 0) return add({}, a, 1 / *d);
+        return unknown(id, i);
+    }
+    if (op == Op::Clamp) { // min(max(x, lo), hi)
+        const auto low = lesser(id, i, a, b, false);
+        return low ? lesser(id, Upper + i, *low, c, true) : std::nullopt;
+    }
+    if (op == Op::Mix) {
+        const auto by = times(c, add(b, a, -1));
+        return by ? std::optional(add(a, *by)) : std::nullopt;
+    }
+    if (op == Op::Pow) {
+        const auto n = as_constant(b);
+        if (!n || *n != std::floor(*n) || *n < 1 || *n > 4) return unknown(id, i);
+        std::optional<Sum> out = a;
+        for (int k = 1; out && k < int(*n); ++k) out = times(*out, a);
+        return out;
+    }
+    if (op == Op::Step) { // step(edge, x)
+        const Sum gap = add(b, a, -1);
+        if (const auto d = as_constant(gap); d && *d != 0) return constant(*d > 0);
+        const auto w = way(id, i, {{gap}, {add({}, gap, -1)}});
+        return w ? std::optional(constant(*w == 0)) : std::nullopt;
+    }
+    // A sign of what is 0 on all of the border may turn with it, so either side is looked at.
+    if (const auto d = as_constant(a); d && *d != 0) return constant(*d > 0 ? 1 : -1);
+    const Sum less = add({}, a, -1);
+    const auto w = way(id, i, {{a}, {less}, {a, less}});
+    return w ? std::optional(constant(*w == 0 ? 1 : *w == 1 ? -1 : 0)) : std::nullopt;
+}
+
+std::optional<Sum> Cases::cross(NodeId id, int i) {
+    const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const auto aj = value(a, j), ak = value(a, k), bj = value(b, j), bk = value(b, k);
+    if (!aj || !ak || !bj || !bk) return {};
+    const auto x = times(*aj, *bk), y = times(*ak, *bj);
+    if (!x || !y) return {};
+    return add(*x, *y, -1);
+}
+
+std::optional<bool> Cases::truth(NodeId id) {
+    const ir::Node node = graph_[id];
+    if (turned_ && id == claim_.comparison) return *turned_;
+    if (side_ && id == claim_.choice) return *side_ == 1;
+    if (graph_.is_constant(id)) return graph_.constant_of(id).value[0] != 0;
+    if (node.op == Op::Not) {
+        const auto t = truth(graph_.arg(id, 0));
+        return t ? std::optional(!*t) : std::nullopt;
+    }
+    if (node.op == Op::And || node.op == Op::Or) {
+        const auto a = truth(graph_.arg(id, 0));
+        if (!a || *a == (node.op == Op::Or)) return a;
+        return truth(graph_.arg(id, 1));
+    }
+    if (node.op == Op::Select) {
+        const auto t = truth(graph_.arg(id, 0));
+        return t ? truth(graph_.arg(id, *t ? 1 : 2)) : std::nullopt;
+    }
+    std::vector<Sum> when_true, when_false;
+    if ((node.op == Op::Less || node.op == Op::LessEqual) &&
+        graph_[graph_.arg(id, 0)].type == ir::Type::Float) {
+        const auto u = value(graph_.arg(id, 0)), v = u ? value(graph_.arg(id, 1)) : std::nullopt;
+        if (!v) return {};
+        when_true = {add(*v, *u, -1)}, when_false = {add(*u, *v, -1)};
+        if (const auto c = as_constant(when_true[0]); c && is_count(graph_, id))
+            return node.op == Op::Less ? *c > 0 : *c >= 0;
+    }
+    const auto w = way(id, 0, {when_false, when_true});
+    return w ? std::optional(*w == 1) : std::nullopt;
+}
+
+} // namespace fathom::proof

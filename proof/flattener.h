@@ -1,0 +1,93 @@
+// What makes a tape of an expression: scopes, slots, and each node's instruction (tape.h).
+#pragma once
+
+#include "proof/supports.h"
+#include "proof/tape.h"
+
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+namespace fathom::proof {
+
+struct Scope {
+    Scope *outer = nullptr;                    // a loop's surroundings; none for a function's body
+    std::vector<Instruction> *block = nullptr; // where what depends on this scope's variables goes
+    std::unordered_map<NodeId, Slot> slots;
+    std::unordered_map<NodeId, bool> depends; // on the loop's variables
+    bool loop = false;
+};
+
+struct Flattener {
+    Flattening &context;
+    ir::Graph &graph;
+    Tape tape;
+    std::vector<bool> varies; // by slot
+    std::size_t count = 0;
+    std::unordered_set<NodeId> cancelling; // steps and choices
+    std::unordered_set<NodeId> stepped;    // angles that steps alone read
+    std::unordered_set<NodeId> known_linear;
+    int steps_of_pieces = 0;
+    Supports supports{tape};
+
+    explicit Flattener(Flattening &c) : context(c), graph(c.graph) {}
+
+    Slot fresh(ir::Type type, bool varying);
+
+    // Leaves single precision for arguments as scenes have them.
+    bool grows(const Instruction &instruction) const;
+
+    Slot emit(Scope &scope, Instruction instruction);
+
+    // Does the node read the variables of this loop?
+    bool depends(Scope &scope, NodeId id);
+
+    const Slot *find(Scope &scope, NodeId id);
+
+    // All of `roots`, arguments first. A loop's body is walked when its Loop is met.
+    void walk(Scope &scope, const std::vector<NodeId> &roots);
+
+    Slot slot(Scope &scope, NodeId id);
+
+    // Scalars, but those of one vector together: their norm is no more than the vector's.
+    std::vector<NodeId> by_vector(std::vector<NodeId> parts);
+    // What is affine by pieces, in what it is made of.
+    std::optional<Pieces> pieces_of(NodeId id, const std::vector<NodeId> &of);
+    Slot emit_by_pieces(Scope &scope, NodeId id, Instruction out, const std::vector<NodeId> &of);
+
+    // A vector that may be another one turned, or moved along a direction.
+    Slot emit_turned(Scope &scope, NodeId id, Instruction out);
+    std::vector<NodeId> args_of(NodeId id) const { // a copy: flattening may add nodes
+        return {graph.args(id).begin(), graph.args(id).end()};
+    }
+    Slot emit(Scope &scope, Instruction out, Form form, const std::vector<NodeId> &args);
+    Slot emit_plain(Scope &scope, NodeId id, Instruction out);
+
+    Slot flatten_node(Scope &scope, NodeId id);
+
+    // Does the step that a wave is made with? x - m*round(x/m), held or not, x % m - m/2, …
+    bool step_cancels(NodeId wave) const;
+    std::optional<NodeId> rounding_in(NodeId id) const;
+
+    Slot sum(Scope &scope, NodeId id, Instruction out);
+
+    Slot product(Scope &scope, NodeId id, Instruction out);
+
+    Slot quotient(Scope &scope, NodeId id, Instruction out);
+
+    Slot vector(Scope &scope, NodeId id, Instruction out);
+
+    // A choice of vectors as a vector of choices, where components differ.
+    NodeId by_component(const std::vector<NodeId> &choice);
+
+    Slot choice(Scope &scope, NodeId id, Instruction out);
+
+    Slot call(Scope &scope, NodeId id, ir::FunctionId which);
+
+    std::unordered_map<NodeId, std::vector<Slot>> loop_results;
+
+    Slot loop(Scope &scope, NodeId id);
+};
+
+} // namespace fathom::proof

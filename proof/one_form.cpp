@@ -1,0 +1,177 @@
+// Equal expressions as one node: sums of products, vectors by component, whole numbers as what they
+// are, `mix` at its ends, lengths as roots of sums, sines of counts by those of their parts.
+#include "proof/border_sides.h"
+#include "proof/continuity.h"
+
+#include <array>
+#include <cmath>
+
+namespace fathom::proof {
+
+constexpr int max_depth_of_form = 400;
+
+std::optional<double> Canonical::number(NodeId id) const {
+    if (graph[id].op == Op::Splat) return number(graph.arg(id, 0));
+    if (!graph.is_constant(id)) return {};
+    const ir::Constant &c = graph.constant_of(id);
+    for (int i = 1; i < ir::components(c.type); ++i)
+        if (c.value[static_cast<std::size_t>(i)] != c.value[0]) return {};
+    return c.value[0];
+}
+
+std::optional<NodeId> Canonical::whole(NodeId id) {
+    const ir::Node node = graph[id];
+    if (node.type != ir::Type::Float) return {};
+    if (auto c = graph.as_number(id))
+        return std::floor(*c) == *c && std::fabs(*c) < 1e9
+                   ? std::optional(graph.integer(static_cast<int>(*c)))
+                   : std::nullopt;
+    if (node.op == Op::ToFloat && graph[graph.arg(id, 0)].type == ir::Type::Int)
+        return graph.arg(id, 0);
+    if (node.op != Op::Add && node.op != Op::Sub && node.op != Op::Mul && node.op != Op::Neg)
+        return {};
+    std::vector<NodeId> parts;
+    for (int i = 0; i < int(node.count); ++i) {
+        auto part = whole(graph.arg(id, i));
+        if (!part) return {};
+        parts.push_back(*part);
+    }
+    return graph.make(node.op, ir::Type::Int, parts);
+}
+
+NodeId Canonical::as_float(NodeId id) {
+    const ir::Node node = graph[id];
+    if (auto c = graph.as_number(id)) return graph.number(*c);
+    if (node.op == Op::Add || node.op == Op::Sub || node.op == Op::Mul || node.op == Op::Neg) {
+        std::vector<NodeId> parts;
+        for (int i = 0; i < int(node.count); ++i) parts.push_back(as_float(graph.arg(id, i)));
+        return graph.make(node.op, ir::Type::Float, parts);
+    }
+    return graph.make(Op::ToFloat, ir::Type::Float, {id});
+}
+
+NodeId Canonical::of(NodeId id, int depth) {
+    if (auto it = known.find(id); it != known.end()) return it->second;
+    if (depth > max_depth_of_form || known.size() > 4 * max_nodes) failed = true;
+    if (failed) return id;
+    const ir::Node node = graph[id];
+    NodeId out = id;
+    if (is_step[node.op] && node.type != ir::Type::Int)
+        out = step(id, node, depth);
+    else if (node.count > 0)
+        out = rewritten(id, node, depth);
+    known[id] = out;
+    return out;
+}
+
+NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
+    std::vector<NodeId> args;
+    for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
+        args.push_back(of(a, depth + 1));
+    if (node.op == Op::Mix)
+        if (auto t = number(args[2]); t && (*t == 0 || *t == 1)) return args[*t == 0 ? 0 : 1];
+    if (const auto known_one = decided(node, args)) return *known_one;
+    if (node.op == Op::TableRead)
+        if (const auto read = read_of(node, args[0])) return *read;
+    if (node.op == Op::ToFloat && graph[args[0]].type == ir::Type::Int)
+        return scalar(as_float(args[0]));
+    if (node.op == Op::ToInt)
+        if (auto w = whole(args[0])) return *w;
+    if ((node.op == Op::Sin || node.op == Op::Cos) && node.type == ir::Type::Float) {
+        if (const auto sum = turned(node.op, args[0])) return *sum;
+        args[0] = without_iterations(graph, args[0]);
+    }
+    if (node.op == Op::Length) {
+        NodeId sum = graph.number(0);
+        for (int i = 0; i < ir::components(graph[args[0]].type); ++i) {
+            NodeId part = scalar(component_of(graph, args[0], i));
+            sum = graph.add(sum, graph.mul(part, part));
+        }
+        return graph.make(Op::Sqrt, ir::Type::Float, {scalar(sum)});
+    }
+    NodeId made = graph.make(node.op, node.type, args, node.payload);
+    if (node.type == ir::Type::Float) return scalar(made);
+    if (node.type == ir::Type::Int) {
+        auto w = whole(scalar(as_float(made)));
+        return w ? *w : made;
+    }
+    if (ir::is_vector(node.type)) {
+        std::vector<NodeId> parts;
+        for (int i = 0; i < ir::components(node.type); ++i) {
+            NodeId part = component_of(graph, made, i);
+            if (graph[part].op == Op::Swizzle && graph.arg(part, 0) == made)
+                return made; // not made of scalars
+            parts.push_back(scalar(part));
+        }
+        return graph.make(Op::Make, node.type, parts);
+    }
+    return made;
+}
+
+NodeId Canonical::step(NodeId id, const ir::Node &node, int depth) {
+    std::vector<NodeId> parts;
+    for (int i = 0; i < ir::components(node.type); ++i)
+        parts.push_back(border->value(id, i, moving, depth));
+    failed = failed || border->limit.failed || border->moving.failed;
+    return parts.size() == 1 ? scalar(parts[0]) : graph.make(Op::Make, node.type, parts);
+}
+
+NodeId Canonical::scalar(NodeId id) {
+    return border && border->by_angle ? without_rounding(graph, id) : in_one_form(graph, id);
+}
+
+// The sine or cosine of a K + b by those of a K and of b.
+std::optional<NodeId> Canonical::turned(Op op, NodeId angle) {
+    if (!border) return {};
+    const auto sum = combination(graph, angle, std::array{border->whole});
+    if (!sum || (*sum)[0] == 0) return {};
+    constexpr double grain = 0x1p32; // so that equal angles are one
+    const NodeId part =
+        graph.mul(graph.number(std::round((*sum)[0] * grain) / grain), border->whole);
+    const NodeId sine = graph.make(Op::Sin, {part}), cosine = graph.make(Op::Cos, {part});
+    const NodeId s = graph.number(std::sin((*sum)[1])), c = graph.number(std::cos((*sum)[1]));
+    if (op == Op::Cos) return scalar(graph.sub(graph.mul(cosine, c), graph.mul(sine, s)));
+    return scalar(graph.add(graph.mul(sine, c), graph.mul(cosine, s)));
+}
+
+// What compares and chooses by K, as far as that is known.
+std::optional<NodeId> Canonical::decided(const ir::Node &node, const std::vector<NodeId> &args) {
+    constexpr ir::OpSet compares{Op::Less, Op::LessEqual, Op::Equal, Op::NotEqual},
+        extremes{Op::Min, Op::Max};
+    if (node.op == Op::Select && graph.is_constant(args[0]))
+        return args[graph.constant_of(args[0]).value[0] != 0 ? 1 : 2];
+    if (!border || (!compares[node.op] && !extremes[node.op])) return {};
+    const ir::Type type = graph[args[0]].type;
+    if (type != ir::Type::Float && type != ir::Type::Int) return {};
+    const auto number = [&](NodeId id) { return type == ir::Type::Int ? as_float(id) : id; };
+    const auto sign = border->sign_of_count(graph.sub(number(args[0]), number(args[1])));
+    if (!sign) return {};
+    if (node.op == Op::Min) return args[*sign <= 0 ? 0 : 1];
+    if (node.op == Op::Max) return args[*sign >= 0 ? 0 : 1];
+    return graph.boolean(node.op == Op::Less        ? *sign < 0
+                         : node.op == Op::LessEqual ? *sign <= 0
+                         : node.op == Op::Equal     ? *sign == 0
+                                                    : *sign != 0);
+}
+
+// A list is read at its first entry below that, and at its last beyond: so limits of the index
+// that are no narrower say nothing.
+std::optional<NodeId> Canonical::read_of(const ir::Node &node, NodeId index) {
+    const int last = graph.table(ir::table_of(node.payload)).rows - 1;
+    NodeId inner = index;
+    for (bool again = true; again;) {
+        again = false;
+        const ir::Node limit = graph[inner];
+        if (limit.op != Op::Min && limit.op != Op::Max) break;
+        for (int i = 0; i < 2 && !again; ++i) {
+            const auto end = graph.as_number(graph.arg(inner, i));
+            if (!end || (limit.op == Op::Min ? *end < last : *end > 0)) continue;
+            inner = graph.arg(inner, 1 - i);
+            again = true;
+        }
+    }
+    if (inner == index) return {};
+    return graph.make(node.op, node.type, {inner}, node.payload);
+}
+
+} // namespace fathom::proof

@@ -1,0 +1,205 @@
+// The instructions of sums, products, quotients, vectors and choices: the forms that they are, what
+// they are turned from, and the pieces that they are affine in.
+#include "proof/flattener.h"
+
+#include "proof/continuity.h"
+#include "proof/forms.h"
+#include "proof/linear_maps.h"
+#include "proof/segments.h"
+#include "proof/smooth.h"
+
+#include <algorithm>
+
+namespace fathom::proof {
+
+std::vector<NodeId> Flattener::by_vector(std::vector<NodeId> parts) {
+    std::vector<NodeId> out;
+    while (!parts.empty()) {
+        const NodeId first = parts.front();
+        const NodeId vector = graph[first].op == Op::Swizzle ? graph.arg(first, 0) : NodeId();
+        std::vector<int> own;
+        std::erase_if(parts, [&](NodeId part) {
+            if (part != first &&
+                (!vector || graph[part].op != Op::Swizzle || graph.arg(part, 0) != vector))
+                return false;
+            if (vector) own.push_back(ir::swizzle_component(graph[part].payload, 0));
+            return true;
+        });
+        out.push_back(own.size() > 1 ? graph.swizzle(vector, own) : first);
+    }
+    return out;
+}
+
+std::optional<Pieces> Flattener::pieces_of(NodeId id, const std::vector<NodeId> &of) {
+    const auto [known, fresh] = context.pieces.try_emplace(id);
+    if (fresh) {
+        const int before = steps_of_pieces;
+        known->second = by_pieces(graph, of, steps_of_pieces);
+        context.work.take(std::size_t(steps_of_pieces - before));
+    }
+    return known->second;
+}
+
+Slot Flattener::emit_by_pieces(Scope &scope, NodeId id, Instruction out,
+                               const std::vector<NodeId> &of) {
+    const auto found = pieces_of(id, of);
+    if (!found) return emit(scope, std::move(out));
+    const Pieces &pieces = *found;
+    NodeId base = pieces.parts[0];
+    if (pieces.parts.size() > 1)
+        base = graph.make(Op::Make, ir::vector_type(int(pieces.parts.size())),
+                          by_vector(pieces.parts));
+    if (base != out.node) {
+        out.norm = pieces.norm;
+        out.turned = {slot(scope, base)};
+    }
+    return emit(scope, std::move(out));
+}
+
+Slot Flattener::emit_turned(Scope &scope, NodeId id, Instruction out) {
+    if (const auto way = moved_along(graph, id)) {
+        out.norm = way->norm;
+        out.turned = {slot(scope, way->v), slot(scope, way->b)};
+        return emit(scope, out);
+    }
+    const auto may_be = [&](NodeId v) { return varies[slot(scope, v)]; };
+    const bool is_matrix = out.op == Op::MatMul; // whose rule has the matrix' norm
+    const auto t = ir::is_vector(out.type) ? turned(graph, id, may_be, known_linear)
+                                           : std::optional<LinearMap>();
+    if (!t && is_matrix) return emit(scope, out);
+    if (!t) return emit_by_pieces(scope, id, std::move(out), {id});
+    bool still = true;
+    std::vector<Slot> constants;
+    for (NodeId c : t->constants) {
+        constants.push_back(slot(scope, c));
+        still = still && !varies[constants.back()];
+    }
+    const Slot of = slot(scope, t->of);
+    const bool may_stand_still = scope.loop || !cancelling.empty(); // as steps do
+    if (!still && (!may_stand_still || (!is_matrix && pieces_of(id, {id}))))
+        return emit_by_pieces(scope, id, std::move(out), {id});
+    if (!is_matrix) {
+        out.norm = t->norm;
+        out.turned = {of};
+        out.turned.insert(out.turned.end(), constants.begin(), constants.end());
+    }
+    known_linear.insert(id);
+    const Slot made = emit(scope, out);
+    if (still && t->whole && supports.is_base(of)) supports.make_base(made);
+    return made;
+}
+
+bool Flattener::step_cancels(NodeId wave) const {
+    if (const auto rounded = rounding_in(graph.arg(wave, 1))) return cancelling.contains(*rounded);
+    return std::ranges::any_of(graph.args(wave), [&](NodeId arg) {
+        return (graph[arg].op == Op::Mod || graph[arg].op == Op::Fract) && cancelling.contains(arg);
+    });
+}
+
+std::optional<NodeId> Flattener::rounding_in(NodeId id) const {
+    if (graph[id].op == Op::Round) return id;
+    if (graph[id].op == Op::Clamp) return rounding_in(graph.arg(id, 0));
+    if (graph[id].op != Op::Mul) return {};
+    for (NodeId factor : graph.args(id))
+        if (const auto found = rounding_in(factor)) return found;
+    return {};
+}
+
+Slot Flattener::sum(Scope &scope, NodeId id, Instruction out) {
+    if (const auto parts = wave(graph, id)) {
+        out.cancels = out.cancels || step_cancels(id);
+        return emit(scope, out, Form::Wave, {parts->x, parts->m});
+    }
+    if (const auto parts = held_wave(graph, id)) {
+        out.cancels = out.cancels || step_cancels(id);
+        return emit(scope, out, Form::HeldWave, {parts->x, parts->m, parts->lo, parts->hi});
+    }
+    if (const auto scaled = scaled_wave(graph, id); scaled && *scaled != id)
+        return slot(scope, *scaled);
+    if (const auto smooth = smooth_extremum(graph, id);
+        smooth && !varies[slot(scope, smooth->k)] && !varies[slot(scope, smooth->divisor)]) {
+        out.payload =
+            (smooth->greater ? 1u : 0u) + (smooth->divides ? 2u : 0u) + (smooth->clipped ? 4u : 0u);
+        return emit(scope, out, Form::Smooth, {smooth->x, smooth->y, smooth->k});
+    }
+    if (const auto logs = log_sum(graph, id)) {
+        out.op = logs->log;
+        return emit(scope, out, Form::LogSum, {logs->a, logs->b});
+    }
+    if (ir::is_vector(out.type)) {
+        for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
+        return emit_turned(scope, id, std::move(out));
+    }
+    if (const auto edge = round_edge(graph, id); edge && *edge != id) return slot(scope, *edge);
+    if (const auto v = corner(graph, id)) return emit(scope, out, Form::Corner, {*v});
+    for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
+    if (out.type != ir::Type::Float) return emit(scope, std::move(out));
+    return emit_by_pieces(scope, id, std::move(out), {id});
+}
+
+Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
+    if (const auto smooth = hermite(graph, id)) return slot(scope, *smooth);
+    if (graph.arg(id, 0) == graph.arg(id, 1))
+        return emit(scope, out, Form::Square, {graph.arg(id, 0)});
+    if (const auto parts = odd_power(graph, id))
+        return emit(scope, out, Form::OddPower, {parts->x, parts->exponent});
+    for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
+    if (out.type != ir::Type::Float && !ir::is_vector(out.type)) return emit(scope, std::move(out));
+    return emit_by_pieces(scope, id, std::move(out), {id});
+}
+
+Slot Flattener::quotient(Scope &scope, NodeId id, Instruction out) {
+    const NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
+    if (graph[a].op == Op::Sin && graph.arg(a, 0) == b) return emit(scope, out, Form::Sinc, {b});
+    if (graph[b].op == Op::Splat && graph[graph.arg(b, 0)].op == Op::Length &&
+        graph.arg(graph.arg(b, 0), 0) == a) {
+        out.op = Op::Normalize;
+        return emit(scope, out, Form::Plain, {a});
+    }
+    return emit_plain(scope, id, std::move(out));
+}
+
+Slot Flattener::vector(Scope &scope, NodeId id, Instruction out) {
+    if (out.op == Op::MatMul && ir::is_vector(out.type))
+        for (int i = 0; i < 2; ++i)
+            if (const NodeId m = graph.arg(id, i); ir::is_matrix(graph[m].type))
+                out.norm = matrix_norm(graph, m).value_or(out.norm);
+    for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
+    return emit_turned(scope, id, std::move(out));
+}
+
+NodeId Flattener::by_component(const std::vector<NodeId> &choice) {
+    std::vector<NodeId> parts;
+    const ir::Type type = graph[choice[1]].type;
+    for (int i = 0; i < ir::components(type); ++i) {
+        const NodeId a = graph.component(choice[1], i), b = graph.component(choice[2], i);
+        parts.push_back(same(graph, a, b) ? b : graph.make(Op::Select, {choice[0], a, b}));
+    }
+    return graph.make(Op::Make, type, parts);
+}
+
+Slot Flattener::choice(Scope &scope, NodeId id, Instruction out) {
+    const std::vector<NodeId> args = args_of(id);
+    for (NodeId a : args) out.args.push_back(slot(scope, a));
+    if (!varies[out.args[0]]) {
+        out.form = Form::Joined; // either arm, the same for all points
+    } else if (out.cancels) {
+        out.form = Form::Joined;
+    } else {
+        const auto [known, is_new] = context.joined.emplace(id, false);
+        if (is_new) {
+            const bool agree = arms_agree(graph, args[0], args[1], args[2], context.work);
+            context.joined[id] = agree;
+        }
+        if (context.joined[id])
+            out.form = Form::Joined;
+        else if (out.type == ir::Type::Float &&
+                 arms_agree(graph, args[0], args[1], graph.neg(args[2]), context.work))
+            out.form = Form::Opposite;
+        else if (ir::is_vector(out.type))
+            return slot(scope, by_component(args));
+    }
+    return emit(scope, std::move(out));
+}
+
+} // namespace fathom::proof
