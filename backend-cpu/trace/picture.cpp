@@ -171,43 +171,56 @@ Vec heat(const Landing &landing) {
             clamp(1.0f - 2.2f * x, 0, 1)};
 }
 
+void put_pixel(std::uint8_t *pixel, float r, float g, float b) {
+    pixel[0] = byte(r);
+    pixel[1] = byte(g);
+    pixel[2] = byte(b);
+    pixel[3] = 255;
+}
+
 void draw(Worker &worker, const PictureOptions &options, const Tile &tile, Picture &picture) {
     const Stage &stage = worker.stage;
     const auto count = static_cast<std::size_t>(tile.width * tile.height);
     std::vector<RayState> rays(count);
     std::vector<Landing> landings(count);
-    std::vector<Vec> colors(count), sum(count);
+    std::vector<Vec> colors(count);
+    std::vector<double> sums(3 * count);
+    const Tile region = options.region.value_or(Tile{});
     const int samples = options.mode == PictureMode::Color ? std::max(options.samples, 1) : 1;
     for (int sample = 0; sample < samples; ++sample) {
-        const auto offset = ir::sample_offset(sample);
+        const auto offset = ir::sample_offset(options.first_sample + sample);
         for (std::size_t i = 0; i < count; ++i) {
-            const int x = tile.x + static_cast<int>(i) % tile.width,
-                      y = tile.y + static_cast<int>(i) / tile.width;
+            const int x = region.x + tile.x + static_cast<int>(i) % tile.width,
+                      y = region.y + tile.y + static_cast<int>(i) / tile.width;
             rays[i] =
                 eye(stage, static_cast<float>(x + offset[0]), static_cast<float>(y + offset[1]));
         }
         march(worker, rays, landings, false);
         if (options.mode == PictureMode::Color) shade(worker, rays, landings, colors);
-        for (std::size_t i = 0; i < count; ++i) sum[i] = sum[i] + colors[i];
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        const int x = tile.x + static_cast<int>(i) % tile.width,
-                  y = tile.y + static_cast<int>(i) / tile.width;
-        std::uint8_t *pixel =
-            picture.rgba.data() +
-            4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                 static_cast<std::size_t>(x));
-        Vec c;
-        if (options.mode == PictureMode::Steps) {
-            c = heat(landings[i]);
-        } else {
-            c = sum[i] / static_cast<float>(samples);
-            c = {encoded(c.x), encoded(c.y), encoded(c.z)};
+        for (std::size_t i = 0; i < count; ++i) {
+            sums[3 * i] += summand(colors[i].x);
+            sums[3 * i + 1] += summand(colors[i].y);
+            sums[3 * i + 2] += summand(colors[i].z);
         }
-        pixel[0] = byte(c.x);
-        pixel[1] = byte(c.y);
-        pixel[2] = byte(c.z);
-        pixel[3] = 255;
+    }
+    for (int row = 0; row < tile.height; ++row) {
+        const auto from = static_cast<std::size_t>(row) * static_cast<std::size_t>(tile.width),
+                   to = static_cast<std::size_t>(tile.y + row) *
+                            static_cast<std::size_t>(picture.width) +
+                        static_cast<std::size_t>(tile.x),
+                   width = static_cast<std::size_t>(tile.width);
+        const std::span<const double> line = std::span(sums).subspan(3 * from, 3 * width);
+        const std::span<std::uint8_t> pixels = std::span(picture.rgba).subspan(4 * to, 4 * width);
+        if (options.sums)
+            std::ranges::copy(line, picture.sums.begin() + static_cast<std::ptrdiff_t>(3 * to));
+        if (options.mode == PictureMode::Color) {
+            encode_sums(line, samples, pixels);
+            continue;
+        }
+        for (std::size_t i = 0; i < width; ++i) {
+            const Vec c = heat(landings[from + i]);
+            put_pixel(pixels.data() + 4 * i, c.x, c.y, c.z);
+        }
     }
 }
 
@@ -243,13 +256,28 @@ std::vector<Landing> cast(const Stage &stage, std::span<const Ray> rays, bool br
     return landings;
 }
 
+double summand(float linear) {
+    const double limited = std::clamp(static_cast<double>(linear), -0x1p12, 0x1p12); // keeps a NaN
+    return std::nearbyint(limited * 0x1p32) * 0x1p-32;
+}
+
+void encode_sums(std::span<const double> sums, int samples, std::span<std::uint8_t> rgba) {
+    const auto channel = [&](std::size_t i) {
+        return encoded(static_cast<float>(sums[i] / samples));
+    };
+    for (std::size_t i = 0; 3 * i < sums.size(); ++i)
+        put_pixel(rgba.data() + 4 * i, channel(3 * i), channel(3 * i + 1), channel(3 * i + 2));
+}
+
 Picture render(const Stage &stage, const PictureOptions &options, const Progress &progress) {
     Picture picture;
-    picture.width = stage.width;
-    picture.height = stage.height;
-    picture.rgba.resize(4 * static_cast<std::size_t>(stage.width) *
-                        static_cast<std::size_t>(stage.height));
-    const std::vector<Tile> tiles = tiles_of(stage.width, stage.height);
+    picture.width = options.region ? options.region->width : stage.width;
+    picture.height = options.region ? options.region->height : stage.height;
+    const std::size_t pixels =
+        static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+    picture.rgba.resize(4 * pixels);
+    if (options.sums) picture.sums.resize(3 * pixels);
+    const std::vector<Tile> tiles = tiles_of(picture.width, picture.height);
     std::atomic<std::size_t> next{0};
     std::atomic<bool> cancelled{false};
     std::size_t finished = 0;

@@ -1,0 +1,455 @@
+// Films and their parts: frames, what moves over them, tiles, ranges of samples and what joins them.
+// All by the CPU, which gives the same bytes for any division.
+#include "shell.h"
+
+#include "base/picture.h"
+
+#include <catch2/catch.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <sstream>
+
+namespace {
+
+// A scene whose every part moves or has an edge, beside quiet ones.
+struct FilmScenes : ScratchFolder {
+    FilmScenes() {
+        write("ball.sdf",
+              "param size = 1.0 in 0.5..2.0\n"
+              "param count = 3 in 1..6\n"
+              "sphere(size).translate(y: keyframes([[0, 0], [2, 1.5]], time))\n"
+              "for i in 0..count { box(0.3).rotate(40deg, axis: Z).translate(x: i - 2) }\n"
+              "box([3, 0.4, 1]).twist(time, axis: X).translate(y: -1.5).paint(tomato)\n"
+              "camera(at: [0, 1, 6 + time], look_at: [0, 0, 0])\nrender(time: 10)\n");
+        write("still.sdf", "sphere(1)\ncamera(at: [0, 0, 5])\n");
+    }
+    Result render(const std::string &words) const {
+        return shell(*this, "fathom render ball.sdf --backend cpu " + words);
+    }
+};
+
+const std::string sized = " --size 40x31 ";
+
+std::string frames_there(const ScratchFolder &folder) {
+    std::string all;
+    for (int i = 0; i < 40; ++i) {
+        char name[32];
+        std::snprintf(name, sizeof name, "f%02d.png", i);
+        if (fs::exists(folder / name)) all += (all.empty() ? "" : " ") + std::to_string(i);
+    }
+    return all;
+}
+
+std::vector<nlohmann::json> events(const std::string &lines) {
+    std::vector<nlohmann::json> all;
+    std::istringstream in(lines);
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("{")) all.push_back(nlohmann::json::parse(line));
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("frames are ranges with steps, single ones, and lists of both") {
+    const std::pair<const char *, const char *> lists[] = {{"0..3", "0 1 2"},
+                                                           {"0..=3", "0 1 2 3"},
+                                                           {"0..=8:3", "0 3 6"},
+                                                           {"0..9:3", "0 3 6"},
+                                                           {"0..=9:3", "0 3 6 9"},
+                                                           {"7", "7"},
+                                                           {"9,0..2,5..=6", "0 1 5 6 9"}};
+    for (const auto &[word, made] : lists) {
+        INFO(word);
+        const FilmScenes folder;
+        CHECK(folder.render("--size 4x4 -o f##.png --frames " + std::string(word)).exit == 0);
+        CHECK(frames_there(folder) == made);
+    }
+    const FilmScenes folder;
+    for (const char *word : {"3..3", "1..0", "-1..2", "0..4:0", "0..4:", "0.5..2", "1,", ",1", "a",
+                             "0..3,2", "0..2000000", ""}) {
+        INFO(word);
+        const Result refused =
+            folder.render("--size 4x4 -o f##.png --frames '" + std::string(word) + "'");
+        CHECK(refused.exit == 2);
+    }
+    CHECK(frames_there(folder).empty());
+}
+
+TEST_CASE("a frame is the same however the film is divided") {
+    const FilmScenes folder;
+    // What is proved hangs on all of the film's times: also for one of its frames.
+    const std::string film = sized + "--frames 0..=6:2 --fps 3 --sweep size=0.6..1.4 -o ";
+    CHECK(folder.render(film + "w##.png").exit == 0);
+    CHECK(folder.render(film + "p##.png --only 2").exit == 0);
+    CHECK(folder.render(film + "p##.png --only 4..=6:2 --jobs 1").exit == 0);
+    CHECK_FALSE(fs::exists(folder / "p00.png"));
+    for (const char *number : {"02", "04", "06"}) {
+        INFO(number);
+        const std::string whole = folder.read("w" + std::string(number) + ".png");
+        CHECK(whole.starts_with("\x89PNG"));
+        CHECK(folder.read("p" + std::string(number) + ".png") == whole);
+    }
+    const Result none = folder.render(film + "p##.png --only 3");
+    CHECK(none.exit == 2);
+    CHECK(contains(none.err, "no frame 3"));
+}
+
+TEST_CASE("a swept param has its ends' values at the film's first frame and at or after its last") {
+    const FilmScenes folder;
+    const auto pixels = [&](const std::string &words) {
+        CHECK(folder.render(sized + "-o a.png " + words).exit == 0);
+        const std::string file = words.find("--frames") != words.npos ? "a_0004.png" : "a.png";
+        return fathom::decode_png(folder.read(file))->rgba;
+    };
+    // The time stands still: a rate of 1000 frames a second would move it by less than a float shows.
+    const std::string film = "--frames 0..=4:2 --fps 1000 --time 1 --only 4 ";
+    const auto at = [&](const std::string &value) { return pixels(film + "-D size=" + value); };
+    CHECK(pixels(film + "--sweep size=1..=1.8") == at("1.8"));
+    CHECK(pixels(film + "--sweep size=1..1.5") == at("1.4")); // of 5 steps, the 4th
+    CHECK(pixels(film + "--sweep size=1..=1.8") != at("1"));
+    CHECK(pixels(film + "--sweep count=1..=5") == pixels(film + "-D count=5")); // it decides shapes
+    const Result wrong = folder.render(sized + "-o a.png --frames 0..3 --sweep size=1..5");
+    CHECK(wrong.exit == 2);
+    CHECK(contains(wrong.err, "size"));
+    CHECK(folder.render(sized + "-o a.png --frames 0..3 --sweep none=1..2").exit == 2);
+    CHECK(folder.render(sized + "-o a.png --frames 0..3 --sweep size=1").exit == 2);
+}
+
+TEST_CASE("tiles, regions and ranges of samples join to the very picture") {
+    const FilmScenes folder;
+    const std::string same = sized + "--time 0.7 ";
+    CHECK(folder.render(same + "--samples 5 -o whole.png").exit == 0);
+    const std::string whole = folder.read("whole.png");
+    const auto merged = [&](const std::string &words) {
+        const Result result = shell(folder, "fathom merge " + words + " -o merged.png");
+        INFO(result.err);
+        CHECK(result.exit == 0);
+        return folder.read("merged.png");
+    };
+    for (const int n : {1, 2, 7, 31}) {
+        std::string parts;
+        for (int i = 0; i < n; ++i) {
+            const std::string tile = std::to_string(i) + "/" + std::to_string(n);
+            const std::string file = "t" + std::to_string(i) + ".png";
+            CHECK(
+                folder.render(same + "--samples 5 --jobs 1 --tile " + tile + " -o " + file).exit ==
+                0);
+            parts = file + " " + parts; // in any order
+        }
+        CHECK(merged(parts) == whole);
+    }
+    for (const char *region : {"0,0,17,31", "17,0,23,9", "17,9,5,22", "22,9,18,22"})
+        CHECK(folder
+                  .render(same + "--samples 5 --region " + region + " -o r" +
+                          std::string(region, 2) + std::string(region).substr(3, 1) + region[5] +
+                          ".png")
+                  .exit == 0);
+    CHECK(merged("r*.png") == whole);
+    for (const char *range : {"0..1", "1..3", "3..=4"})
+        CHECK(folder.render(same + "--samples " + range + " -o s" + range[0] + ".sums").exit == 0);
+    CHECK(merged("s3.sums s0.sums s1.sums") == whole);
+    CHECK(merged("--samples 5 s*.sums") == whole);
+    // Samples and tiles at once; the shutter too, whose samples have times of their own.
+    const std::string blurred = sized + "--frames 2..4 --only 2 --fps 4 --shutter 0.9 ";
+    CHECK(folder.render(blurred + "--samples 4 -o b#.png").exit == 0);
+    for (const char *tile : {"0/2", "1/2"})
+        for (const char *range : {"0..3", "3..4"})
+            CHECK(folder
+                      .render(blurred + "--samples " + range + " --tile " + tile + " -o b" +
+                              tile[0] + range[0] + "_#.sums")
+                      .exit == 0);
+    CHECK(merged("b0*.sums b1*.sums") == folder.read("b2.png"));
+    CHECK(folder.read("b2.png") != whole);
+}
+
+TEST_CASE("merge names what is missing, and joins nothing that does not belong together") {
+    const FilmScenes folder;
+    for (const char *tile : {"0/3", "1/3", "2/3"})
+        CHECK(folder.render(sized + "--tile " + tile + " -o t" + tile[0] + ".png").exit == 0);
+    for (const char *range : {"0..1", "2..4"})
+        CHECK(folder.render(sized + "--samples " + range + " -o s" + range[0] + ".sums").exit == 0);
+    CHECK(folder.render(sized + "--time 1 --tile 2/3 -o later.png").exit == 0);
+    CHECK(folder.render(sized + "-D size=1.5 --tile 2/3 -o larger.png").exit == 0);
+    CHECK(folder.render("--size 40x30 --tile 2/3 -o other.png").exit == 0);
+    const std::string cut = folder.read("t2.png");
+    folder.write("cut.png", cut.substr(0, cut.size() - 30));
+    std::string flipped = folder.read("s2.sums");
+    flipped[flipped.size() - 9] = static_cast<char>(flipped[flipped.size() - 9] ^ 1);
+    folder.write("flipped.sums", flipped);
+    const auto refused = [&](const std::string &words, const std::string &why) {
+        INFO(words);
+        const Result result = shell(folder, "fathom merge " + words + " -o merged.png");
+        CHECK(result.exit == 3);
+        CHECK_THAT(result.err, Catch::Contains(why));
+        CHECK_FALSE(fs::exists(folder / "merged.png"));
+    };
+    refused("t0.png t2.png", "x 0..40, y 10..20, samples 0..1");
+    refused("s0.sums s2.sums", "samples 1..2");
+    refused("--samples 4 s0.sums s2.sums", "samples 1..2");
+    refused("--samples 3 s0.sums s2.sums", "samples 2..4");
+    refused("s0.sums s0.sums", "overlap");
+    refused("t0.png t1.png t2.png t1.png", "overlap");
+    refused("t0.png t1.png later.png", "different scenes, options");
+    refused("t0.png t1.png larger.png", "different scenes, options");
+    refused("t0.png t1.png other.png", "different");
+    refused("t0.png t1.png cut.png", "not a whole PNG");
+    refused("s0.sums flipped.sums", "not whole");
+    refused("t0.png t1.png s0.sums", "finished pixels");
+    refused("t0.png t1.png none.png", "none.png");
+    refused("t0.png ball.sdf", "not a whole PNG");
+    CHECK(shell(folder, "fathom merge t0.png t1.png t2.png -o merged.png").exit == 0);
+}
+
+TEST_CASE("files are kept where they are whole and of this scene and these options") {
+    const FilmScenes folder;
+    const std::string film = "--frames 0..3 --skip-existing --progress json -o f##.png ";
+    const auto made = [&](const std::string &words) {
+        const Result result = folder.render(sized + film + words);
+        CHECK(result.exit == 0);
+        std::string list;
+        for (const auto &event : events(result.err))
+            if (event["event"] == "made") list += std::to_string(event["frame"].get<int>());
+        return list;
+    };
+    CHECK(made("") == "012");
+    CHECK(made("") == "");
+    const std::string file = folder.read("f01.png");
+    folder.write("f01.png", file.substr(0, file.size() - 1));
+    CHECK(made("") == "1");
+    folder.write("f01.png", folder.read("f02.png")); // another frame
+    CHECK(made("") == "1");
+    folder.write("f00.png", "");
+    CHECK(made("--jobs 2") == "0"); // threads change no pixel
+    CHECK(made("-D size=1.2") == "012");
+    CHECK(made("-D size=1.2 --samples 2") == "012");
+    CHECK(made("-D size=1.2 --samples 2 --fps 10") == "012");
+    folder.write("ball.sdf", folder.read("ball.sdf") + "// the same solid, another text\n");
+    CHECK(made("-D size=1.2 --samples 2 --fps 10") == "012");
+    CHECK(folder.render(sized + "--skip-existing -o a.jpg").exit == 2);
+}
+
+TEST_CASE("an imported file is part of what a picture is of, where the scene lies is not") {
+    const FilmScenes folder;
+    fs::create_directories(folder / "here/parts");
+    fs::create_directories(folder / "there/parts");
+    fs::create_directories(folder / "lib");
+    for (const char *place : {"here", "there"}) {
+        folder.write(std::string(place) + "/a.sdf",
+                     "import \"parts/b.sdf\"\nimport \"c.sdf\"\nsphere(r + s)\n");
+        folder.write(std::string(place) + "/parts/b.sdf", "let r = 0.5\n");
+    }
+    folder.write("lib/c.sdf", "let s = 0.5\n");
+    const auto render = [&](const std::string &scene) {
+        const Result result = shell(folder, "fathom render " + scene +
+                                                " -I lib --backend cpu --size 9x9 "
+                                                "--skip-existing --progress json -o a.png");
+        INFO(result.err);
+        CHECK(result.exit == 0);
+        return events(result.err).back()["event"] == "made";
+    };
+    CHECK(render("here/a.sdf"));
+    CHECK_FALSE(render("there/a.sdf"));
+    folder.write("there/parts/b.sdf", "let r = 0.50\n");
+    CHECK(render("there/a.sdf"));
+    folder.write("lib/c.sdf", "let s = 0.4\n");
+    CHECK(render("there/a.sdf"));
+    CHECK_FALSE(render("there/a.sdf"));
+}
+
+TEST_CASE("a turntable goes around, and its frames have one time") {
+    const FilmScenes folder;
+    CHECK(folder.render(sized + "--turntable 4 --time 0.5 -o t#.png").exit == 0);
+    CHECK(folder.render(sized + "--time 0.5 -o one.png").exit == 0);
+    const auto pixels = [&](const std::string &file) {
+        return fathom::decode_png(folder.read(file))->rgba;
+    };
+    CHECK(pixels("t0.png") == pixels("one.png"));
+    CHECK(pixels("t1.png") != pixels("t0.png"));
+    CHECK_FALSE(fs::exists(folder / "t4.png"));
+    // From behind: a mirror image of a scene that is one of itself.
+    folder.write("pair.sdf",
+                 "sphere(0.5).translate(x: 0.6).paint(red)\nsphere(0.3).translate(x: -0.6)\n"
+                 "camera(at: [0, 0, 5])\nlight(at: [0, 9, 0])\n");
+    CHECK(shell(folder, "fathom render pair.sdf --backend cpu --size 40x30 --turntable 2 -o p#.png")
+              .exit == 0);
+    const fathom::Picture front = *fathom::decode_png(folder.read("p0.png")),
+                          back = *fathom::decode_png(folder.read("p1.png"));
+    int differ = 0;
+    for (int y = 0; y < 30; ++y)
+        for (int x = 0; x < 40; ++x)
+            for (int c = 0; c < 3; ++c)
+                differ +=
+                    std::abs(front.rgba[static_cast<std::size_t>(4 * (40 * y + x) + c)] -
+                             back.rgba[static_cast<std::size_t>(4 * (40 * y + 39 - x) + c)]) > 4;
+    CHECK(differ < 12); // pixels of an edge, by rounding
+    CHECK(pixels("p0.png") != pixels("p1.png"));
+}
+
+TEST_CASE("an open shutter blurs what moves, and nothing else") {
+    const FilmScenes folder;
+    const auto picture = [&](const std::string &scene, const std::string &words) {
+        CHECK(shell(folder, "fathom render " + scene +
+                                " --backend cpu --size 32x24 --samples 8 "
+                                "--frames 1 --fps 2 -o a#.png " +
+                                words)
+                  .exit == 0);
+        return fathom::decode_png(folder.read("a1.png"))->rgba;
+    };
+    CHECK(picture("still.sdf", "--shutter 1") == picture("still.sdf", ""));
+    CHECK(picture("ball.sdf", "--shutter 1") != picture("ball.sdf", ""));
+    CHECK(folder.render(sized + "--shutter 0.5 -o a.png").exit == 2); // one sample
+    // What it sees has to be proved: the shutter closes after the last moment.
+    folder.write("short.sdf", "sphere(1).translate(x: time)\nrender(time: 1)\n");
+    const std::string last =
+        "fathom render short.sdf --backend cpu --size 8x8 --samples 2 --frames 0..=2 "
+        "--fps 2 -o a#.png ";
+    CHECK(shell(folder, last).exit == 0);
+    CHECK(shell(folder, last + "--shutter 0.5").exit == 2);
+}
+
+TEST_CASE("a contact sheet shows frames of the film, each as it is alone") {
+    const FilmScenes folder;
+    CHECK(folder.render("--size 8x6 --frames 0..10 --contact-sheet 2x3 -o sheet.png").exit == 0);
+    CHECK(folder.render("--size 8x6 --frames 0..10 -o f##.png").exit == 0);
+    const fathom::Picture sheet = *fathom::decode_png(folder.read("sheet.png"));
+    CHECK((sheet.width == 16 && sheet.height == 18));
+    int cell = 0;
+    for (const char *file : {"f00.png", "f01.png", "f03.png", "f05.png", "f06.png", "f08.png"}) {
+        const fathom::Picture frame = *fathom::decode_png(folder.read(file));
+        bool same = true;
+        for (int y = 0; y < 6; ++y)
+            for (int i = 0; i < 4 * 8; ++i)
+                same = same && frame.rgba[static_cast<std::size_t>(4 * 8 * y + i)] ==
+                                   sheet.rgba[static_cast<std::size_t>(
+                                       4 * (16 * (6 * (cell / 2) + y) + 8 * (cell % 2)) + i)];
+        INFO(file);
+        CHECK(same);
+        ++cell;
+    }
+    CHECK(folder.render("--size 8x6 --frames 0..3 --contact-sheet 4x4 -o few.png").exit == 0);
+    const fathom::Picture few = *fathom::decode_png(folder.read("few.png"));
+    CHECK((few.width == 24 && few.height == 6));
+}
+
+TEST_CASE("frames go to a pipe as PNG, PAM or raw bytes") {
+    const FilmScenes folder;
+    const std::string film = "--size 5x4 --frames 0..3 -o - --stream ";
+    CHECK(folder.render("--size 5x4 --frames 0..3 -o f#.png").exit == 0);
+    std::string rgb, pam, png;
+    for (const char *file : {"f0.png", "f1.png", "f2.png"}) {
+        png += folder.read(file);
+        std::string one;
+        const std::vector<std::uint8_t> rgba = fathom::decode_png(folder.read(file))->rgba;
+        for (std::size_t i = 0; i < rgba.size(); ++i)
+            if (i % 4 != 3) one += static_cast<char>(rgba[i]);
+        rgb += one;
+        pam += "P7\nWIDTH 5\nHEIGHT 4\nDEPTH 3\nMAXVAL 255\nTUPLTYPE RGB\nENDHDR\n" + one;
+    }
+    CHECK(folder.render(film + "png").out == png);
+    CHECK(folder.render(film + "pam").out == pam);
+    CHECK(folder.render(film + "raw").out == rgb);
+    CHECK(folder.render("--size 5x4 --frames 0..3 -o f#.png --stream raw").exit == 2);
+}
+
+TEST_CASE("options that a command cannot have together are refused with the way out") {
+    const FilmScenes folder;
+    const auto refused = [&](const std::string &words, const std::string &why) {
+        INFO(words);
+        const Result result = shell(folder, "fathom render ball.sdf " + words);
+        CHECK(result.exit == 2);
+        CHECK_THAT(result.err, Catch::Contains(why));
+    };
+    refused("-o a.mp4", "--frames");
+    refused("-o a.png --sweep size=1..2", "--frames");
+    refused("-o a.png --only 1", "--frames");
+    refused("-o a.png --contact-sheet 2x2", "--frames");
+    refused("-o a.png --samples 2..4", ".sums");
+    refused("-o a.png --samples 0", "1 to 256");
+    refused("-o a.png --samples 250..300", "256");
+    refused("-o a.png --tile 4/4", "0 to N - 1");
+    refused("-o a.png --tile 0/900", "720");
+    refused("-o a.png --region 0,0,1281,1", "not within");
+    refused("-o a.png --region 0,0,0,1", "WIDTH");
+    refused("-o a.png --tile 0/2 --backend gl", "--backend cpu");
+    refused("-o a.gif --frames 0..3 --only 1", "merge");
+    refused("-o a.png --frames 0..2 --region 0,0,1,1 --tile 0/1", "both say a part");
+    refused("-o a.txt", ".png");
+    CHECK(shell(folder, "fathom merge a.png b.png --frames 0..3 -o a.mp4").exit == 2);
+    CHECK(shell(folder, "fathom merge a.png -o a.mp4").exit == 2);
+}
+
+TEST_CASE("room for the frames is asked for before the first is made") {
+    const FilmScenes folder;
+    const Result full =
+        shell(folder, "timeout 20 '" FATHOM_PROGRAM "' render still.sdf --backend cpu "
+                      "--size 65536x65536 --frames 0..=1000000 -o f#.png");
+    CHECK(full.exit == 3);
+    CHECK(contains(full.err, "free"));
+}
+
+TEST_CASE("SIGTERM ends a picture at once, with its own status and nothing half written") {
+    const FilmScenes folder;
+    folder.write("f0.png", "what was there");
+    // It would take minutes.
+    const Result ended =
+        shell(folder, "timeout 60 sh -c \"'" FATHOM_PROGRAM
+                      "' render still.sdf --backend cpu --samples 256 "
+                      "--size 16000x16000 --progress json -o f0.png 2>words & p=\\$!; "
+                      "until grep -q progress words; do sleep 0.1; done; "
+                      "kill \\$p; wait \\$p; echo \\$?\"");
+    CHECK(ended.out == "4\n");
+    CHECK(folder.read("f0.png") == "what was there");
+    CHECK(contains(folder.read("words"), "ended by SIGTERM"));
+    for (const auto &entry : fs::directory_iterator(folder.path()))
+        CHECK_FALSE(contains(entry.path().filename().string(), "fathom-tmp"));
+}
+
+// Stands for ffmpeg: writes what it was told and how many bytes it got to its last word.
+const char *const stand_in = "#!/bin/sh\nfor last; do :; done\n"
+                             "{ echo \"$@\" | sed \"s, [^ ]*$,,\"; wc -c; } >\"$last\"\n";
+
+TEST_CASE("a film's frames go to ffmpeg, and its file appears when it is whole") {
+    const FilmScenes folder;
+    fs::create_directories(folder / "bin");
+    const auto with = [&](const std::string &ffmpeg, const std::string &words) {
+        folder.write("bin/ffmpeg", ffmpeg);
+        fs::permissions(folder / "bin/ffmpeg", fs::perms::owner_all);
+        return shell(folder, "PATH=\"$PWD/bin:$PATH\"; fathom " + words);
+    };
+    const std::string film =
+        "render still.sdf --backend cpu --size 16x12 --frames 0..=6:2 --fps 12 ";
+    for (const char *suffix : {"mp4", "webm", "gif", "apng", "GIF"}) {
+        INFO(suffix);
+        const std::string out = std::string("a.") + suffix;
+        CHECK(with(stand_in, film + "-o " + out).exit == 0);
+        const std::string told = folder.read(out);
+        CHECK(contains(told, "-f rawvideo -pix_fmt rgba -s 16x12 -r 12 -i -"));
+        CHECK(contains(told, "-f " + std::string(suffix == std::string("GIF") ? "gif" : suffix)));
+        CHECK(contains(told, "\n" + std::to_string(4 * 16 * 12 * 4)));
+    }
+    // Whatever goes wrong, the old film stays, and nothing is left beside it.
+    const std::string old = folder.read("a.mp4");
+    const Result failed =
+        with("#!/bin/sh\ncat >/dev/null; echo no such codec >&2; exit 1\n", film + "-o a.mp4");
+    CHECK(failed.exit == 3);
+    CHECK(contains(failed.err, "no such codec"));
+    const Result gone = with("#!/bin/sh\nexit 0\n", film + "--size 160x120 -o a.mp4");
+    CHECK(gone.exit == 3);
+    const Result none = shell(folder, "PATH=/nowhere; fathom " + film + "-o a.mp4");
+    CHECK(none.exit == 3);
+    CHECK(contains(none.err, "ffmpeg"));
+    CHECK(contains(none.err, "a_####.png"));
+    CHECK(with(stand_in, film + "--size 15x12 -o a.mp4").exit == 3); // an even side is wanted
+    CHECK(folder.read("a.mp4") == old);
+    CHECK(with(stand_in, film + "-o f#.png").exit == 0);
+    CHECK(with(stand_in, "merge 'f#.png' --frames 0..=6:2 --fps 12 -o c.gif").exit == 0);
+    CHECK(folder.read("c.gif") == folder.read("a.gif"));
+    fs::remove(folder / "f4.png");
+    const Result lacking = with(stand_in, "merge 'f#.png' --frames 0..=6:2 -o d.gif");
+    CHECK(lacking.exit == 3);
+    CHECK(contains(lacking.err, "frames 4"));
+    CHECK_FALSE(fs::exists(folder / "d.gif"));
+    for (const auto &entry : fs::directory_iterator(folder.path()))
+        CHECK_FALSE(contains(entry.path().filename().string(), "fathom-tmp"));
+}
