@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -17,10 +18,7 @@ using Json = nlohmann::ordered_json;
 
 // The path below the folder, or nothing where it is not in it.
 std::optional<std::string> below(const fs::path &folder, const fs::path &path) {
-    std::error_code error;
-    const fs::path root = fs::canonical(folder.empty() ? "." : folder, error);
-    if (error) return std::nullopt;
-    const fs::path relative = path.lexically_relative(root);
+    const fs::path relative = path.lexically_normal().lexically_relative(folder.lexically_normal());
     if (relative.empty() || *relative.begin() == "..") return std::nullopt;
     return relative.generic_string();
 }
@@ -45,17 +43,30 @@ std::string fingerprint(std::string_view bytes) {
 
 std::vector<SceneFile> files_of(const driver::Compilation &compilation,
                                 const SceneArguments &scene) {
+    // The scene's own folder, then those of -I.
+    std::vector<fs::path> folders{scene.file == "-" ? fs::path()
+                                                    : fs::path(scene.file).parent_path()};
+    folders.insert(folders.end(), scene.include_folders.begin(), scene.include_folders.end());
+    for (fs::path &folder : folders)
+        if (folder.empty()) folder = ".";
     std::vector<SceneFile> files;
+    const auto add = [&](const fs::path &file, const std::function<fs::path(fs::path)> &form) {
+        for (std::size_t i = 0; i < folders.size(); ++i)
+            if (const std::optional<std::string> name = below(form(folders[i]), form(file))) {
+                const std::optional<std::size_t> include =
+                    i > 0 ? std::optional(i - 1) : std::nullopt;
+                files.push_back({include, *name, fs::absolute(file)});
+                return true;
+            }
+        return false;
+    };
     for (const auto &[file, stamp] : compilation.files) {
         std::error_code error;
-        const fs::path path = fs::canonical(file, error);
-        if (error || !fs::is_regular_file(path, error)) continue;
-        const fs::path folder = scene.file == "-" ? fs::path() : fs::path(scene.file).parent_path();
-        std::optional<std::string> name = below(folder, path);
-        std::optional<std::size_t> include;
-        for (std::size_t i = 0; !name && i < scene.include_folders.size(); ++i)
-            if (name = below(scene.include_folders[i], path); name) include = i;
-        if (name) files.push_back({include, *name, path}); // none else is read
+        if (!fs::is_regular_file(file, error)) continue;
+        // By its name as it was looked up, so that symbolic links keep theirs; where that leads out of
+        // all folders and into one again, by where it is. None else is read (driver/scene_files).
+        if (!add(file, [](const fs::path &path) { return fs::absolute(path); }))
+            add(file, [](const fs::path &path) { return fs::weakly_canonical(path); });
     }
     std::ranges::sort(files, [](const SceneFile &a, const SceneFile &b) {
         return std::pair(a.include, a.name) < std::pair(b.include, b.name);

@@ -59,6 +59,7 @@ bool Interrupts::noticed() { return seen != 0; }
 
 void Interrupts::obey() {
     std::signal(SIGINT, SIG_DFL);
+    if (file_to_remove) ::unlink(file_to_remove);
     std::raise(SIGINT);
     std::_Exit(130);
 }

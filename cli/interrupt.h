@@ -17,8 +17,8 @@ class Interrupts {
     [[noreturn]] static void obey(); // ends as an interrupted program ends: by the signal
 };
 
-// From now on SIGTERM ends the program at once with the status `ended`, with a word, and removes the
-// file of remove_on_end. Results are written beside their targets and renamed, so nothing is half
+// From now on SIGTERM ends the program at once with the status `ended`, with a word. It and
+// Interrupts::obey remove the file of remove_on_end. Results are written beside their targets and renamed, so nothing is half
 // written; a result that is being written is finished first.
 void end_by_term();
 void remove_on_end(const std::string &file); // empty: none

@@ -22,11 +22,12 @@ mkdir "$disk" && mount -t tmpfs -o size=400m tmpfs "$disk" 2>/dev/null || { rm -
 [ -z "${no_disk:-}" ] || say "no disk of its own can be mounted here: it is not filled"
 started=""
 stop() {
-    [ -z "$started" ] || kill $started 2>/dev/null
+    [ -z "$started" ] || { kill $started; wait $started; } 2>/dev/null
     [ -n "${no_disk:-}" ] || umount -l "$disk"
     rm -rf "$work"
 }
 trap stop EXIT
+since() { echo "$1 $(date +%s.%N)" | awk '{ printf "%.1f", $2 - $1 }'; }
 fail() { say "FAILED: $*"; failed=1; }
 
 cat >"$work/film.sdf" <<'SDF'
@@ -35,7 +36,7 @@ box([3, 0.3, 1]).twist(0.02 * time, axis: X).translate(y: -1.2).paint(tomato)
 camera(at: [0, 1, 6], look_at: [0, 0, 0])
 render(time: 60)
 SDF
-options="--frames 0..$frames --fps 25 --size ${SIZE:-96x64} --chunk 10"
+options="--frames 0..$frames --fps 25 --size ${SIZE:-192x144} --samples 4 --chunk 10"
 
 # Slurm on one machine: the nodes are daemons with a port each.
 setup_slurm() {
@@ -95,18 +96,29 @@ until_done() { # until_done DIR SHARE: as many hundredths of the frames are ther
     fail "the farm stands still at $(done_frames "$1") frames"
 }
 
-# Kills a third of the workers of the job, with their shells: as a machine that goes away.
+below() { # below PID: it and all that it started
+    local child
+    echo "$1"
+    for child in $(pgrep -P "$1"); do below "$child"; done
+}
+
+# Kills a third of the workers of the job with all that they started, as a machine that goes away. A
+# worker is a shell that runs `run` and was not started by another.
 kill_third() {
-    local pids pid n=0
-    pids=$(pgrep -f "$1/run" | sort -R)
-    set -- $pids
-    local third=$((($# + 2) / 3))
+    local pid parent workers="" n=0 third
+    for pid in $(pgrep -f "^/bin/sh $1/run [0-9]" | sort -R); do
+        parent=$(ps -o ppid= -p "$pid") || continue
+        tr '\0' ' ' 2>/dev/null <"/proc/${parent// /}/cmdline" | grep -q "^/bin/sh $1/run" || workers="$workers $pid"
+    done
+    set -- $workers
+    third=$((($# + 2) / 3))
     for pid in "$@"; do
         [ $n -lt $third ] || break
-        kill -9 $(pgrep -P "$pid") "$pid" 2>/dev/null
+        kill -9 $(below "$pid") 2>/dev/null
         n=$((n + 1))
     done
     killed=$((killed + n))
+    [ $n -gt 0 ] || fail "there was no worker to kill"
     say "killed $n of $# workers, at $(done_frames "$job") frames"
 }
 
@@ -126,6 +138,7 @@ check() {
         cmp -s "$1/frames/frame_$number.png" "$work/whole/frame_$number.png" || fail "frame $number differs"
     done
     made=$(cat "$1"/logs/[0-9]* | grep -c '"made"')
+    say "$2: $(cat "$1"/state/[0-9]* | grep -c "^begin") begins of $(wc -l <"$1/units") units, $(cat "$1"/state/[0-9]* | grep -c "^end 3") ended with status 3"
     # A worker that is killed, or whose note of a frame the full disk took, repeats its unit at most.
     say "$2: $made frames made for $frames; $killed workers were killed, with units of 10 frames"
     [ "$made" -le $((frames + 10 * killed)) ] || fail "more was repeated than was killed"
@@ -134,8 +147,7 @@ check() {
 mkdir "$work/whole"
 begin=$(date +%s.%N)
 "$program" render "$work/film.sdf" ${options% --chunk*} --backend cpu --jobs 1 -o "$work/whole/frame_####.png" || exit 1
-single=$(echo "$(date +%s.%N) - $begin" | bc)
-say "one process takes $single s for $frames frames"
+say "one process takes $(since "$begin") s for $frames frames"
 
 for engine in "$@"; do
     job=$disk/$engine
@@ -169,7 +181,7 @@ for engine in "$@"; do
         "$program" farm status "$job" | head -1 | grep -q "^\([0-9]*\) of \1 " && break
         "$program" farm collect "$job" >/dev/null
     done
-    say "$engine: done after $(echo "$(date +%s.%N) - $begin" | bc) s"
+    say "$engine: done after $(since "$begin") s"
     "$program" farm status "$job" | head -1
     check "$job" "$engine"
     rm -rf "$job"

@@ -17,7 +17,9 @@ struct Farm : ScratchFolder {
                               "sphere(r).translate(x: 0.3 * time + s)\nrender(time: 100)\n"
                               "camera(at: [0, 1, 5])\n");
         write("scenes/parts/b.sdf", "let r = 1\n");
-        write("lib/c.sdf", "let s = 0.1\n");
+        write("lib/c_1.sdf", "let s = 0.1\n");
+        fs::create_symlink("c_1.sdf",
+                           path() / "lib/c.sdf"); // is copied by the name that is imported
         // Stands for GNU parallel: the units of the list, one after the other.
         program("parallel",
                 "#!/bin/sh\nwhile [ \"$1\" != -a ]; do shift; done\nlist=$2\n"

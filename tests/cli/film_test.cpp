@@ -163,6 +163,24 @@ TEST_CASE("tiles, regions and ranges of samples join to the very picture") {
     CHECK(folder.read("b2.png") != whole);
 }
 
+TEST_CASE("parts of the examples join, also where shapes are left out cell by cell") {
+    const FilmScenes folder;
+    for (const char *name : {"temple", "night_city", "orrery", "everything"}) {
+        INFO(name);
+        const std::string render = "fathom render '" FATHOM_SOURCE_DIR "/examples/" +
+                                   std::string(name) + ".sdf' --size 60x45 --backend cpu ";
+        CHECK(shell(folder, render + "--samples 2 -o whole.png").exit == 0);
+        for (const char *part : {"--region 0,0,33,45", "--region 33,0,27,7", "--region 33,7,27,38"})
+            for (const char *samples : {"0..1", "1..2"})
+                CHECK(shell(folder, render + part + " --jobs 1 --samples " + samples + " -o p" +
+                                        part[11] + samples[0] + part[9] + part[12] + ".sums")
+                          .exit == 0);
+        CHECK(shell(folder, "fathom merge p*.sums -o joined.png; rm p*.sums").exit == 0);
+        CHECK(folder.read("joined.png") == folder.read("whole.png"));
+        CHECK_FALSE(folder.read("whole.png").empty());
+    }
+}
+
 TEST_CASE("merge names what is missing, and joins nothing that does not belong together") {
     const FilmScenes folder;
     for (const char *tile : {"0/3", "1/3", "2/3"})
