@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -104,9 +105,9 @@ Exit probe(const RenderCommand &render, Job &job, Terminal &terminal) {
 
 std::string batch_script(const Job &job, const char *name, const std::string &line) {
     return fmt::format("#!/bin/sh\n#SBATCH --job-name={}\n#SBATCH --cpus-per-task={}\n"
-                       "#SBATCH --output={}/logs/slurm-%j\n#SBATCH --open-mode=append\n"
+                       "#SBATCH --output={}\n#SBATCH --open-mode=append\n"
                        "#SBATCH --requeue\n{}\n",
-                       name, job.threads, job.folder.string(), line);
+                       name, job.threads, quoted(job.folder.string() + "/logs/slurm-%j"), line);
 }
 
 std::string write_script(const fs::path &file, std::string_view text) {
@@ -155,10 +156,10 @@ std::string engine_words(const Job &job) {
     return words;
 }
 
-// Runs a line by the shell; its status, or 127.
+// Runs a line by the shell; its status, or 128 and the signal that ended it.
 int shell(const std::string &line) {
     const int status = std::system(line.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 127;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 bool is_there(const char *program) {
@@ -208,7 +209,7 @@ std::string slurm_join(const Job &job, const std::vector<std::string> &jobs) {
 }
 
 std::string parallel_line(const Job &job, bool wait) {
-    return fmt::format("{}parallel --will-cite -a {}{} {}", wait ? "FATHOM_FARM_WAIT=1 " : "",
+    return fmt::format("{}parallel --will-cite -q -a {}{} {}", wait ? "FATHOM_FARM_WAIT=1 " : "",
                        quoted((job.folder / "state" / "list").string()), engine_words(job),
                        quoted((job.folder / "run").string()));
 }
@@ -269,7 +270,10 @@ Exit run_parallel(const Job &job, Terminal &terminal) {
         const std::string error = driver::write_file(job.folder / "state" / "list", list);
         if (!error.empty())
             return refuse(terminal, device_error, "cannot write the list: " + error);
-        (void)shell(parallel_line(job, wait)); // how far the units are is read from their files
+        // How far the units are is read from their files; but who ends the engine means it.
+        const int status = shell(parallel_line(job, wait));
+        if (status == 255 || status == 128 + SIGINT || status == 128 + SIGTERM)
+            return refuse(terminal, device_error, fmt::format("parallel ended with {}", status));
     }
     return done;
 }

@@ -10,9 +10,9 @@ mkdir -p docs/gallery build/films
 failed=0
 [ $# -gt 0 ] || set -- orrery gears
 for name in "$@"; do
-    film="examples/$name.sdf --samples 4 --fps 12 --frames 0..120"
-    ./fathom render $film --size 240x180 -o "docs/gallery/$name.gif" || failed=1
+    how="--backend cpu --samples 3"
+    ./fathom render "examples/$name.sdf" $how --fps 12 --frames 0..120 --size 240x180 -o "docs/gallery/$name.gif" || failed=1
     [ "$(wc -c <"docs/gallery/$name.gif")" -lt 3000000 ] || { say "docs/gallery/$name.gif has 3 MB and more"; failed=1; }
-    ./fathom render "examples/$name.sdf" --samples 4 --fps 24 --frames 0..240 --size 480x360 -o "build/films/$name.mp4" || failed=1
+    ./fathom render "examples/$name.sdf" $how --fps 24 --frames 0..240 --size 320x240 -o "build/films/$name.mp4" || failed=1
 done
 exit $failed

@@ -132,6 +132,23 @@ TEST_CASE("a unit is made by one process at a time; another one waits or leaves 
     CHECK(contains(folder.farm("status job").out, "1 of 1 units are done"));
 }
 
+TEST_CASE("a controller ends where its engine was ended, and says so") {
+    const Farm folder;
+    folder.program("parallel", "#!/bin/sh\necho round >>rounds\nexit 255\n");
+    const Result ended = folder.farm("parallel " + job_film + "--out job --chunk 5");
+    CHECK(ended.exit == 3);
+    CHECK(contains(ended.err, "parallel ended with 255"));
+    CHECK(folder.read("rounds") == "round\n");
+    // One that comes to nothing is not run for ever.
+    folder.program("parallel", "#!/bin/sh\necho round >>rounds\n");
+    CHECK(folder.farm("collect job").exit == 3);
+    CHECK(folder.read("rounds").size() < 6 * 6);
+    fs::remove(folder / "bin/parallel");
+    const Result none = shell(folder, "PATH=/nowhere; fathom farm collect job");
+    CHECK(none.exit == 3);
+    CHECK(contains(none.err, "GNU parallel"));
+}
+
 TEST_CASE("tiles of frames are joined to the frames that one process makes") {
     const Farm folder;
     const Result made = folder.farm("parallel " + job_film + "--out job --chunk 5 --tiles 3");

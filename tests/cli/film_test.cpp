@@ -275,6 +275,41 @@ TEST_CASE("an imported file is part of what a picture is of, where the scene lie
     CHECK_FALSE(render("there/a.sdf"));
 }
 
+TEST_CASE("keyframes have their values at the keys' times, and easings theirs at the ends") {
+    const ScratchFolder folder;
+    // How far [0, 9, 0] is from a ball of radius 1 at height y: 8 - y.
+    const auto height = [&](const std::string &y, const std::string &time) {
+        folder.write("a.sdf", "sphere(1).translate(y: " + y + ")\nrender(time: 10)\n");
+        return 8 - std::stod(shell(folder, "fathom eval a.sdf --at 0,9,0 --time " + time).out);
+    };
+    const std::string keys = "[[1, 0.5], [2, 1.5], [4, -1]]";
+    const std::pair<const char *, double> moments[] = {{"0", 0.5},  {"1", 0.5},    {"1.5", 1},
+                                                       {"2", 1.5},  {"3", 0.25},   {"4", -1},
+                                                       {"9.5", -1}, {"2.5", 0.875}};
+    for (const auto &[time, value] : moments) {
+        INFO(time);
+        CHECK(height("keyframes(" + keys + ", time)", time) == Approx(value).margin(1e-6));
+    }
+    CHECK(height("keyframes(" + keys + ", time, ease_in)", "1.5") == Approx(0.75));
+    CHECK(height("keyframes(" + keys + ", time, t => ease_out(t, 3))", "3") ==
+          Approx(1.5 - 2.5 * 0.875));
+    CHECK(height("keyframes([[0, 9, 1, 9], [2, 9, 3, 9]], time).y", "1") == Approx(2));
+    CHECK(height("keyframes([[3, 7]], time)", "0") == Approx(7));
+    for (const char *ease :
+         {"ease_in(time / 2)", "ease_out(time / 2)", "ease_in_out(time / 2)", "ease_back(time / 2)",
+          "ease_bounce(time / 2)", "ease_in(time / 2, 1)"}) {
+        INFO(ease);
+        CHECK(height(ease, "0") == Approx(0).margin(1e-6));
+        CHECK(height(ease, "2") == Approx(1));
+        CHECK(height(ease, "5") == Approx(1));
+    }
+    // What is proved knows that nothing outside of the keys' values is taken: a radius is above 0.
+    folder.write("b.sdf", "sphere(keyframes([[0, 1], [2, 0.1], [3, 2], [4, 0.1]], time))\n");
+    CHECK(shell(folder, "fathom check b.sdf").exit == 0);
+    folder.write("c.sdf", "sphere(keyframes([[0, 1], [2, -0.1], [3, 2]], time))\n");
+    CHECK(shell(folder, "fathom check c.sdf").exit == 1);
+}
+
 TEST_CASE("a turntable goes around, and its frames have one time") {
     const FilmScenes folder;
     CHECK(folder.render(sized + "--turntable 4 --time 0.5 -o t#.png").exit == 0);
