@@ -36,7 +36,7 @@ box([3, 0.3, 1]).twist(0.02 * time, axis: X).translate(y: -1.2).paint(tomato)
 camera(at: [0, 1, 6], look_at: [0, 0, 0])
 render(time: 60)
 SDF
-options="--frames 0..$frames --fps 25 --size ${SIZE:-192x144} --samples 12 --chunk 10"
+options="--frames 0..$frames --fps 25 --size ${SIZE:-192x144} --samples 6 --chunk 10"
 
 # Slurm on one machine: the nodes are daemons with a port each.
 setup_slurm() {
@@ -70,6 +70,7 @@ MpiDefault=none
 ReturnToService=2
 SlurmdParameters=config_overrides
 JobRequeue=1
+SchedulerParameters=batch_sched_delay=0,sched_min_interval=0
 NodeName=n[1-2] NodeHostname=$host NodeAddr=127.0.0.1 Port=[17001-17002] CPUs=3 State=UNKNOWN
 PartitionName=all Nodes=n[1-2] Default=YES MaxTime=INFINITE State=UP
 CONF
@@ -104,13 +105,23 @@ below() { # below PID: it and all that it started
 
 # Kills a third of the workers of the job with all that they started, as a machine that goes away. A
 # worker is a shell that runs `run` and was not started by another.
-kill_third() {
-    local pid parent workers="" n=0 third
+workers_of() { # workers_of DIR
+    local pid parent
     for pid in $(pgrep -f "^/bin/sh $1/run [0-9]" | sort -R); do
         parent=$(ps -o ppid= -p "$pid") || continue
-        tr '\0' ' ' 2>/dev/null <"/proc/${parent// /}/cmdline" | grep -q "^/bin/sh $1/run" || workers="$workers $pid"
+        tr '\0' ' ' 2>/dev/null <"/proc/${parent// /}/cmdline" | grep -q "^/bin/sh $1/run" || echo "$pid"
     done
-    set -- $workers
+}
+kill_third() {
+    local pid n=0 third try workers=""
+    # Between two units there may be few: a moment with three is waited for, then one with any.
+    for try in $(seq 200); do
+        workers=$(workers_of "$1")
+        set -- "$1" $workers
+        [ $# -le $((try < 100 ? 3 : 1)) ] || break
+        sleep 0.05
+    done
+    shift
     third=$((($# + 2) / 3))
     for pid in "$@"; do
         [ $n -lt $third ] || break
