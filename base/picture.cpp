@@ -2,6 +2,7 @@
 #include "base/srgb.h"
 
 #include <png.h>
+#include <zlib.h>
 
 #include <cmath>
 
@@ -53,7 +54,71 @@ std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const fl
     return rough;
 }
 
-std::string encode_png(const Picture &picture) {
+namespace {
+
+// A PNG is a signature of 8 bytes, then chunks: the length of its data, its type, the data and a
+// checksum of type and data, each number of 4 bytes, the highest first. PNG 1.2, 3.2.
+constexpr std::string_view signature = "\x89PNG\r\n\x1a\n";
+constexpr std::size_t header_end = 8 + 4 + 4 + 13 + 4; // of IHDR, which comes first
+constexpr std::string_view note_keyword("fathom\0", 7);
+
+std::string four_bytes(std::uint32_t number) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8)
+        bytes += static_cast<char>(static_cast<unsigned char>(number >> shift));
+    return bytes;
+}
+
+std::uint32_t number_at(std::string_view bytes, std::size_t at) {
+    std::uint32_t number = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        number = number << 8 | static_cast<unsigned char>(bytes[at + i]);
+    return number;
+}
+
+std::uint32_t checksum(std::string_view bytes) {
+    return static_cast<std::uint32_t>(
+        ::crc32_z(0, reinterpret_cast<const unsigned char *>(bytes.data()), bytes.size()));
+}
+
+std::string text_chunk(std::string_view note) {
+    const std::string body = "tEXt" + std::string(note_keyword) + std::string(note);
+    return four_bytes(static_cast<std::uint32_t>(body.size() - 4)) + body +
+           four_bytes(checksum(body));
+}
+
+} // namespace
+
+std::optional<std::string> note_of_png(std::string_view bytes) {
+    if (!bytes.starts_with(signature)) return std::nullopt;
+    std::string note;
+    for (std::size_t at = signature.size(); bytes.size() - at >= 12;) {
+        const std::uint32_t length = number_at(bytes, at);
+        if (length > bytes.size() - at - 12) return std::nullopt;
+        const std::string_view body = bytes.substr(at + 4, 4 + std::size_t{length});
+        if (number_at(bytes, at + 8 + length) != checksum(body)) return std::nullopt;
+        const std::string_view type = body.substr(0, 4), data = body.substr(4);
+        if (type == "tEXt" && data.starts_with(note_keyword))
+            note = data.substr(note_keyword.size());
+        at += 12 + std::size_t{length};
+        if (type == "IEND") return at == bytes.size() ? std::optional(note) : std::nullopt;
+    }
+    return std::nullopt;
+}
+
+std::optional<Picture> decode_png(std::string_view bytes) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())) return std::nullopt;
+    image.format = PNG_FORMAT_RGBA;
+    Picture picture{static_cast<int>(image.width), static_cast<int>(image.height), {}};
+    picture.rgba.resize(4 * static_cast<std::size_t>(image.width) * image.height);
+    if (!png_image_finish_read(&image, nullptr, picture.rgba.data(), 0, nullptr))
+        return std::nullopt;
+    return picture;
+}
+
+std::string encode_png(const Picture &picture, std::string_view note) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     image.width = static_cast<png_uint_32>(picture.width);
@@ -67,6 +132,7 @@ std::string encode_png(const Picture &picture) {
     if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.rgba.data(), 0, nullptr))
         return {};
     bytes.resize(size);
+    if (!note.empty()) bytes.insert(header_end, text_chunk(note));
     return bytes;
 }
 

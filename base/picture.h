@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fathom {
@@ -31,7 +33,15 @@ Picture picture_of_linear(int width, int height, std::span<const float> rgba);
 inline constexpr float rough_contrast = 0.08f;
 std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const float> rgba);
 
-// A whole PNG file; empty where the picture has no pixels or is larger than PNG allows.
-std::string encode_png(const Picture &picture);
+// A whole PNG file; empty where the picture has no pixels or is larger than PNG allows. A `note` that
+// is not empty is kept in the file as a text of the keyword `fathom`; it is ASCII.
+std::string encode_png(const Picture &picture, std::string_view note = {});
+
+// The note of a PNG file that is whole: every chunk is there with its checksum, from the signature to
+// the end. Nothing where it is not; empty where it has no note.
+std::optional<std::string> note_of_png(std::string_view bytes);
+
+// The pixels of a PNG file as encode_png writes them, or nothing.
+std::optional<Picture> decode_png(std::string_view bytes);
 
 } // namespace fathom

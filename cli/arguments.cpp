@@ -3,6 +3,8 @@
 #include "base/single.h"
 #include "base/suggest.h"
 #include "base/text.h"
+#include "cli/contradiction.h"
+#include "cli/option_rows.h"
 #include "cli/outputs.h"
 #include "cli/words.h"
 
@@ -69,7 +71,11 @@ void add_scene(CLI::App *app, SceneArguments &scene, Read read = Read::Once) {
         "set a param of the scene")
         ->type_name("NAME=VALUE");
     option(
-        app, "--limit", [&](const std::string &word) { return set_limit(scene.limits, word); },
+        app, "--limit",
+        [&](const std::string &word) {
+            scene.limit_words.push_back(word);
+            return set_limit(scene.limits, word);
+        },
         "allow more of what a scene may cost, or less (docs/limits.md)")
         ->type_name("NAME=VALUE");
     app->add_option("-I", scene.include_folders, "look here too for imports, images and grids")
@@ -124,6 +130,8 @@ struct Reader {
     CheckCommand check;
     CompileCommand compile;
     RenderCommand render;
+    MergeCommand merge;
+    FarmCommand farm;
     MeshCommand mesh;
     EvalCommand eval;
     ViewCommand view;
@@ -168,12 +176,15 @@ struct Reader {
         app.footer(
             "`fathom help COMMAND` shows a command's options. Exit status: 0 done, 1 the scene has "
             "an error,\n"
-            "2 the command line is wrong, 3 a file named on it or the device cannot be used.");
+            "2 the command line is wrong, 3 a file named on it or the device cannot be used, 4 "
+            "ended by SIGTERM.");
 
         add_view();
         add_check();
         add_compile();
         add_render();
+        add_merge();
+        add_farm();
         add_mesh();
         add_eval();
         add_import();
@@ -228,52 +239,73 @@ struct Reader {
         sub->add_flag("--watch", compile.watch, "compile again after every save");
     }
 
+    void add_row(CLI::App *sub, const OptionRow &row) {
+        if (row.flag)
+            sub->add_flag(row.name, *row.flag, row.help);
+        else
+            option(sub, row.name, row.read, row.help)->type_name(row.type);
+    }
+
     void add_render() {
-        CLI::App *sub = command("render", "make a picture, without a window", render);
+        CLI::App *sub = command("render", "make a picture or a film, without a window", render);
         add_proved_scene(sub, render.scene);
         add_out(sub, render.out,
-                "the picture, a PNG or JPEG by its suffix (`-`: a PNG to standard output); for "
-                "--frames, `#`s stand for the frame's number")
+                "a .png, a .jpg, a film (.mp4, .webm, .gif, .apng) or .sums; `-`: standard output; "
+                "`#`s stand for the frame's number")
             ->type_name("OUT.png")
             ->required();
-        add_size(sub, render.width, render.height);
-        choice<Backend>(sub, "--backend", render.backend,
-                        {{"auto", Backend::Auto}, {"gl", Backend::Gl}, {"cpu", Backend::Cpu}},
-                        "gl, cpu, or auto: gl where a context can be had")
-            ->type_name("WHICH");
-        add_time(sub, render.time, "seconds; with --frames, when frame 0 is");
+        for (const auto &rows : {picture_rows(render), film_rows(render), part_rows(render)})
+            for (const OptionRow &row : rows) add_row(sub, row);
+    }
+
+    void add_merge() {
+        CLI::App *sub = command("merge", "join parts of a picture, or frames into a film", merge);
+        sub->add_option("PART", merge.parts,
+                        "tiles, or .sums files; with --frames, the frames' name with `#`s")
+            ->type_name("")
+            ->required();
+        add_out(sub, merge.out, "the picture or the film, by its suffix")
+            ->type_name("OUT.png")
+            ->required();
         option(
             sub, "--frames",
-            [this](const std::string &word) {
-                std::pair<int, int> frames;
-                std::string error = read_frames(word, frames);
-                if (error.empty()) render.frames = frames;
-                return error;
-            },
-            "a picture for each of these frames; B is left out, A..=B takes it too")
-            ->type_name("A..B");
-        sub->add_option("--fps", render.frame_rate, "frames in a second, 30 unless said")
-            ->check(quiet(CLI::Range(0.001, 1000.0)))
-            ->type_name("N");
-        sub->add_option(
-               "--samples", render.samples,
-               "rays a pixel, 1 to 256; unless said, one, and 4 where it differs from those "
-               "beside it")
+            [this](const std::string &word) { return read_frames(word, merge.frames); },
+            "join these frames into a film")
+            ->type_name("FRAMES");
+        add_row(sub, frame_rate_row(merge.frame_rate));
+        sub->add_option("--samples", merge.samples,
+                        "of the whole picture; up to the last that a part has unless said")
             ->check(quiet(CLI::Range(1, 256)))
             ->type_name("N");
-        sub->add_option(
-               "--max-steps", render.max_steps,
-               "evaluations that a ray may take, whatever the scene says; 65536 unless said")
-            ->check(quiet(CLI::Range(1, 100'000'000)))
+        add_row(sub, quality_row(merge.quality));
+    }
+
+    void add_farm() {
+        CLI::App *sub = command("farm", "make a film on many machines or workers", farm);
+        sub->add_option("ACTION", farm.action,
+                        "slurm or parallel: make a job folder and start it; status, collect")
+            ->type_name("")
+            ->required()
+            ->check(quiet(CLI::IsMember({"slurm", "parallel", "status", "collect"})));
+        add_proved_scene(sub, farm.render.scene);
+        sub->add_option("OPTIONS", farm.options, "behind `--`: options of the engine")
+            ->type_name("");
+        sub->add_option("--out", farm.folder, "the job folder, which is made")
+            ->type_name("DIR")
+            ->check(named());
+        for (const auto &rows : {picture_rows(farm.render), film_rows(farm.render)})
+            for (const OptionRow &row : rows) add_row(sub, row);
+        sub->add_option("--film", farm.film, "join the frames into this film, in the job folder")
+            ->type_name("NAME")
+            ->check(named());
+        sub->add_option("--tiles", farm.tiles, "units of one frame, 1 unless said")
+            ->check(quiet(CLI::Range(1, 65536)))
             ->type_name("N");
-        sub->add_flag("--strict", render.strict,
-                      "no picture, and status 1, where a ray stays undecided");
-        sub->add_option("--quality", render.quality,
-                        fmt::format("of a JPEG, 1 to 100, {} unless said", render.quality))
-            ->check(quiet(CLI::Range(1, 100)))
+        sub->add_option("--chunk", farm.chunk,
+                        "frames of a unit; unless said, as many as take a minute, by a probe")
+            ->check(quiet(CLI::Range(1, 1'000'000)))
             ->type_name("N");
-        sub->add_flag("--cache", render.cache,
-                      "read cached fields through the noise cache, as a moving view does");
+        sub->add_flag("--dry-run", farm.dry_run, "make the folder, print the units, start nothing");
     }
 
     void add_mesh() {
@@ -402,50 +434,6 @@ CLI::App *find_command(CLI::App &app, const std::string &name) {
     return found.empty() ? nullptr : found.front();
 }
 
-// Options that do not go together, or that nothing would read; empty where there are none.
-std::string contradiction(const Reader &reader) {
-    const CLI::App &app = reader.app;
-    const CLI::App &command = *app.get_subcommands().front();
-    const auto is = [&](const char *name) { return command.get_name() == name; };
-    const auto given = [&](const char *option) { return command.count(option) > 0; };
-    const bool watches =
-        (is("check") && reader.check.watch) || (is("compile") && reader.compile.watch);
-    const std::string &watched = is("check") ? reader.check.scene.file : reader.compile.scene.file;
-    if (watches && watched == "-") return "--watch follows a file, and standard input is none";
-    if (is("check") && reader.check.json && reader.check.explain)
-        return "--explain is for people, --json for programs: give one of them";
-    const glsl::TargetTraits &target = glsl::traits_of(reader.compile.target);
-    if (is("compile") && reader.compile.field_only && *target.field_by)
-        return fmt::format("--field-only leaves out the picture that a page shows; `--target {} "
-                           "--field-only` writes the text that a page of your own can use",
-                           target.field_by);
-    if (is("compile") && reader.compile.noise_cache) {
-        if (!target.noise_cache || reader.compile.field_only)
-            return fmt::format("--noise-cache is for whole pictures by `--target {}`",
-                               targets_with(&glsl::TargetTraits::noise_cache));
-        if (reader.compile.out.empty() || reader.compile.out == "-")
-            return "--noise-cache writes several files: name the first by -o";
-    }
-    if (is("render") && reader.render.cache && reader.render.backend == Backend::Cpu)
-        return "--cache needs GL, which --backend cpu leaves out";
-    if (is("render") && reader.render.frames && reader.render.out == "-")
-        return "--frames writes several files: name them by -o, as frame_###.png";
-    if (is("render") && given("--quality") &&
-        picture_format(reader.render.out) != PictureFormat::Jpeg)
-        return "--quality is of a JPEG: -o OUT.jpg writes one";
-    if (is("render") && given("--fps") && !reader.render.frames)
-        return "--fps is for --frames: one picture has no rate";
-    if (is("mesh") && reader.mesh.json && reader.mesh.out == "-")
-        return "--json and the mesh cannot both go to standard output: name a file by -o";
-    if (is("mesh") && given("--tolerance") && given("--resolution"))
-        return "--tolerance and --resolution both say how fine a mesh is: give one of them";
-    if (is("eval") && reader.eval.at.empty() && !reader.eval.points)
-        return "eval wants points: --at X,Y,Z or --points -";
-    if (is("eval") && reader.eval.points && reader.eval.scene.file == "-")
-        return "the scene and the points cannot both come from standard input";
-    return "";
-}
-
 Answer unknown_command(CLI::App &app, const std::string &word) {
     std::string words = fmt::format("there is no command `{}`", word);
     std::string near = nearest_name(word, command_names(app));
@@ -483,7 +471,10 @@ std::variant<Invocation, Answer> read_arguments(int count, const char *const *ar
         return Answer{done, about->help("fathom"), ""};
     }
     if (app.get_subcommands().empty()) return Answer{usage_error, "", app.help()};
-    if (const std::string why = contradiction(reader); !why.empty()) return wrong(why);
+    const CLI::App &command = *app.get_subcommands().front();
+    const std::string why = contradiction(
+        reader.invocation.command, [&](const char *option) { return command.count(option) > 0; });
+    if (!why.empty()) return wrong(why);
     return reader.invocation;
 }
 

@@ -17,9 +17,10 @@ namespace fathom::cli {
 // The exit statuses of every command.
 enum Exit {
     done = 0,
-    scene_error = 1, // the scene (or the save file) has an error; diagnostics are printed
-    usage_error = 2, // the command line is wrong
-    device_error = 3 // a file named on it, or the device, cannot be used
+    scene_error = 1,  // the scene (or the save file) has an error; diagnostics are printed
+    usage_error = 2,  // the command line is wrong
+    device_error = 3, // a file named on it, or the device, cannot be used
+    ended = 4         // ended by SIGTERM; what was finished before is kept
 };
 
 // Whether diagnostics are coloured: where a terminal is, always, or never.
@@ -31,6 +32,7 @@ struct SceneArguments {
     std::vector<typecheck::Override> overrides;         // -D
     std::vector<std::filesystem::path> include_folders; // -I
     Limits limits;                                      // --limit
+    std::vector<std::string> limit_words;               // --limit, as written
     bool strict_proof = false;                          // of check, compile and render
 };
 
@@ -49,6 +51,22 @@ struct CompileCommand {
 };
 // What draws a picture: GL where it works, GL, or the CPU.
 enum class Backend { Auto, Gl, Cpu };
+// A param that moves over the frames of a film: `from` at the first, `to` at the last or, without
+// `to_last`, where one frame more would be.
+struct Sweep {
+    std::string name;
+    double from = 0, to = 0;
+    bool to_last = false;
+};
+// Frames' numbers, ascending, each once; and the word that said them.
+struct FrameList {
+    std::string word;
+    std::vector<int> numbers;
+};
+// How pictures go to standard output.
+enum class StreamFormat { Png, Pam, Raw };
+// How the progress is told on standard error.
+enum class ProgressFormat { Bar, Json };
 // `fathom render`.
 struct RenderCommand {
     SceneArguments scene;
@@ -56,13 +74,46 @@ struct RenderCommand {
     int width = 1280, height = 720;
     Backend backend = Backend::Auto;
     double time = 0;
-    std::optional<std::pair<int, int>> frames; // first, one past the last
+    FrameList frames; // of the film; empty: one picture
+    FrameList only;   // those of them that are made; empty: all
     double frame_rate = 30;
-    int samples = 0;     // a pixel; 0: one, and more where it is rough
-    int max_steps = 0;   // evaluations of a ray; 0: what the scene says
-    bool strict = false; // a ray left undecided is an error
-    int quality = 90;    // of a JPEG
-    bool cache = false;  // through the noise cache
+    std::vector<Sweep> sweeps;
+    int turntable = 0;                        // frames of one turn of the camera; 0: it stays
+    std::pair<int, int> sheet;                // columns and rows of a contact sheet; 0: none
+    double shutter = 0;                       // how much of a frame's length it is open, 0 to 1
+    int first_sample = 0, samples = 0;        // 0 samples: one, and more where a pixel is rough
+    bool part_of_samples = false;             // they were given as a range
+    std::optional<std::array<int, 4>> region; // x, y, width, height
+    std::optional<std::pair<int, int>> tile;  // which of how many bands of rows
+    int jobs = 0;                             // threads of the CPU; 0: as many as it has cores
+    int max_steps = 0;                        // evaluations of a ray; 0: what the scene says
+    bool strict = false;                      // a ray left undecided is an error
+    int quality = 90;                         // of a JPEG
+    bool cache = false;                       // through the noise cache
+    bool skip_existing = false;               // files that are whole and the same are kept
+    StreamFormat stream = StreamFormat::Png;  // of `-o -`
+    ProgressFormat progress = ProgressFormat::Bar;
+};
+// `fathom merge`.
+struct MergeCommand {
+    std::vector<std::string> parts; // files; with `frames`, one name with `#`s
+    std::string out;
+    FrameList frames; // of a film; empty: the parts are of one picture
+    double frame_rate = 30;
+    int samples = 0; // of the whole picture; 0: up to the last that a part has
+    int quality = 90;
+};
+// `fathom farm`.
+enum class Engine { Slurm, Parallel };
+struct FarmCommand {
+    std::string action;   // slurm, parallel, status or collect
+    RenderCommand render; // scene.file: the scene; of status and collect, the job folder
+    std::string folder;   // the job folder
+    std::string film;     // a film's name in it; empty: frames alone
+    int tiles = 1;        // units of one frame
+    int chunk = 0;        // frames of a unit; 0: as many as take a minute
+    bool dry_run = false; // prints what would be done
+    std::vector<std::string> options; // of the engine
 };
 // `fathom mesh`.
 struct MeshCommand {
@@ -119,9 +170,9 @@ struct BenchCommand {
     int width = 400, height = 400;
 };
 
-using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, MeshCommand, EvalCommand,
-                             ViewCommand, ImportCommand, ExportCommand, FmtCommand, DocCommand,
-                             ExplainCommand, LspCommand, BenchCommand>;
+using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, MergeCommand, FarmCommand,
+                             MeshCommand, EvalCommand, ViewCommand, ImportCommand, ExportCommand,
+                             FmtCommand, DocCommand, ExplainCommand, LspCommand, BenchCommand>;
 
 // A command with the options that all commands share.
 struct Invocation {
@@ -143,6 +194,8 @@ class Terminal;
 Exit run(const CheckCommand &, Terminal &);
 Exit run(const CompileCommand &, Terminal &);
 Exit run(const RenderCommand &, Terminal &);
+Exit run(const MergeCommand &, Terminal &);
+Exit run(const FarmCommand &, Terminal &);
 Exit run(const MeshCommand &, Terminal &);
 Exit run(const EvalCommand &, Terminal &);
 Exit run(const ViewCommand &, Terminal &);

@@ -15,21 +15,14 @@ struct Suffix {
 };
 
 // The suffixes that promise what a file holds. Others promise nothing and are free.
-constexpr std::array<Suffix, 15> suffixes{{{".png", Content::Picture},
-                                           {".jpg", Content::Picture},
-                                           {".jpeg", Content::Picture},
-                                           {".glsl", Content::Shader},
-                                           {".frag", Content::Shader},
-                                           {".spv", Content::SpirV},
-                                           {".html", Content::Page},
-                                           {".htm", Content::Page},
-                                           {".stl", Content::Mesh},
-                                           {".obj", Content::Mesh},
-                                           {".ply", Content::Mesh},
-                                           {".glb", Content::Mesh},
-                                           {".sdf", Content::Scene},
-                                           {".yaml", Content::SaveFile},
-                                           {".yml", Content::SaveFile}}};
+constexpr std::array<Suffix, 20> suffixes{
+    {{".png", Content::Picture},   {".jpg", Content::Picture}, {".jpeg", Content::Picture},
+     {".mp4", Content::Film},      {".webm", Content::Film},   {".gif", Content::Film},
+     {".apng", Content::Film},     {".sums", Content::Sums},   {".glsl", Content::Shader},
+     {".frag", Content::Shader},   {".spv", Content::SpirV},   {".html", Content::Page},
+     {".htm", Content::Page},      {".stl", Content::Mesh},    {".obj", Content::Mesh},
+     {".ply", Content::Mesh},      {".glb", Content::Mesh},    {".sdf", Content::Scene},
+     {".yaml", Content::SaveFile}, {".yml", Content::SaveFile}}};
 
 const Suffix *known_suffix(std::string_view suffix) {
     const auto *known = std::find_if(suffixes.begin(), suffixes.end(),
@@ -40,6 +33,8 @@ const Suffix *known_suffix(std::string_view suffix) {
 std::string_view name_of(Content content) {
     switch (content) {
     case Content::Picture: return "a picture";
+    case Content::Film: return "a film";
+    case Content::Sums: return "a file of sums";
     case Content::Shader: return "a GLSL text";
     case Content::SpirV: return "a SPIR-V file";
     case Content::Page: return "a web page";
@@ -63,6 +58,8 @@ std::string compiler_of(Content content) {
 std::string writer_of(Content content) {
     switch (content) {
     case Content::Picture: return "`fathom render`";
+    case Content::Film: return "`fathom render --frames A..B`";
+    case Content::Sums: return "`fathom render --samples A..B`";
     case Content::Shader:
     case Content::SpirV:
     case Content::Page: return compiler_of(content);
@@ -71,13 +68,6 @@ std::string writer_of(Content content) {
     case Content::SaveFile: return "`fathom export`";
     }
     return "";
-}
-
-std::string suffix_of(const std::string &out) {
-    std::string suffix = fs::path(out).extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-    return suffix;
 }
 
 bool is_stream(const std::string &out) {
@@ -92,6 +82,13 @@ bool refuse_overwriting(const std::string &out, Terminal &terminal) {
 }
 
 } // namespace
+
+std::string suffix_of(const std::string &out) {
+    std::string suffix = fs::path(out).extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return suffix;
+}
 
 std::string listed(const std::vector<std::string> &names) {
     std::string all;
@@ -120,6 +117,8 @@ std::optional<PictureFormat> picture_format(const std::string &out) {
     return std::nullopt;
 }
 
+bool is_sums_name(const std::string &out) { return suffix_of(out) == ".sums"; }
+
 bool misnamed(const std::string &out, Content content, Terminal &terminal) {
     if (is_stream(out)) return false;
     const std::string suffix = suffix_of(out);
@@ -128,6 +127,11 @@ bool misnamed(const std::string &out, Content content, Terminal &terminal) {
         terminal.say(fmt::format("fathom: -o {}: `{}` is {}, and this writes {}; {} writes {}", out,
                                  suffix, name_of(known->content), name_of(content),
                                  writer_of(known->content), name_of(known->content)));
+        return true;
+    }
+    if (content == Content::Film && !known) {
+        terminal.say(
+            fmt::format("fathom: -o {}: films are written as .mp4, .webm, .gif or .apng", out));
         return true;
     }
     if (content == Content::Picture && !picture_format(out)) {

@@ -8,7 +8,7 @@
 namespace fathom::cli {
 
 // What a command writes.
-enum class Content { Picture, Shader, SpirV, Page, Mesh, Scene, SaveFile };
+enum class Content { Picture, Film, Sums, Shader, SpirV, Page, Mesh, Scene, SaveFile };
 
 Content content_of(glsl::Target target); // by its suffix
 
@@ -22,6 +22,9 @@ enum class PictureFormat { Png, Jpeg };
 // By the suffix of `out`. Standard output, devices and pipes take PNGs. None: the suffix is of no
 // picture that can be written.
 std::optional<PictureFormat> picture_format(const std::string &out);
+
+std::string suffix_of(const std::string &out); // with its dot, in lower case
+bool is_sums_name(const std::string &out);     // by its suffix, .sums
 
 // Whether `out` has the suffix of something else than the command writes, and so would lie about
 // what it holds; says so, with the way to what the suffix promises.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
@@ -80,7 +81,14 @@ void Terminal::say_text(std::string_view text) {
                             line); // where words cannot be said, nothing can be said about it
 }
 
-void Terminal::progress(std::string_view what, double share) {
+std::string duration_words(double seconds) {
+    const long long s = std::llround(std::min(std::max(seconds, 0.0), 1e15));
+    if (s < 60) return fmt::format("{} s", s);
+    if (s < 3600) return fmt::format("{} min {} s", s / 60, s % 60);
+    return fmt::format("{} h {} min", s / 3600, s / 60 % 60);
+}
+
+void Terminal::progress(std::string_view what, double share, double left) {
     if (!interactive_) return;
     long long now = milliseconds_now();
     if (now < next_bar_) return;
@@ -88,8 +96,9 @@ void Terminal::progress(std::string_view what, double share) {
     constexpr int width = 30;
     int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * width);
     (void)driver::write_all(STDERR_FILENO,
-                            fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %", for_terminal(what),
-                                        "", full, "", width - full, 100 * share));
+                            fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %{}",
+                                        for_terminal(what), "", full, "", width - full, 100 * share,
+                                        left < 0 ? "" : ", " + duration_words(left) + " left"));
     bar_shown_ = true;
 }
 

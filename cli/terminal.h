@@ -28,8 +28,8 @@ class Terminal {
     bool reader_gone() const { return gone_; }        // nobody reads the results any more
 
     // A bar on standard error, when that is a terminal; redrawn at most 20 times a second. `finish`
-    // wipes it.
-    void progress(std::string_view what, double share);
+    // wipes it. `left`: seconds until the end; below 0: not known yet.
+    void progress(std::string_view what, double share, double left = -1);
     void finish_progress();
 
     // A picture as it comes above the bar (preview.h), where the terminal can; at most five times a
@@ -43,6 +43,8 @@ class Terminal {
     long long next_bar_ = 0, next_preview_ = 0;
     int preview_rows_ = 0; // shown
 };
+
+std::string duration_words(double seconds); // "3 min 20 s"
 
 driver::CompileOptions compile_options(const SceneArguments &scene);
 // Proved for what is drawn: the params' values as given, and these times, in seconds.

@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
@@ -17,10 +18,10 @@ std::string read_pair(const std::string &word, int &first, int &second) {
     std::optional<double> h =
         x == word.npos ? std::nullopt : parse_number(std::string_view(word).substr(x + 1));
     auto good = [](std::optional<double> n) {
-        return n && *n >= 1 && *n <= 16384 && *n == static_cast<int>(*n);
+        return n && *n >= 1 && *n <= 65536 && *n == static_cast<int>(*n);
     };
     if (!good(w) || !good(h))
-        return fmt::format("a size is WIDTHxHEIGHT, each 1 to 16384, as 1280x720, not `{}`", word);
+        return fmt::format("a size is WIDTHxHEIGHT, each 1 to 65536, as 1280x720, not `{}`", word);
     first = static_cast<int>(*w);
     second = static_cast<int>(*h);
     return "";
@@ -54,22 +55,132 @@ std::string read_box(const std::string &word, std::array<std::array<double, 3>, 
                               word);
 }
 
-std::string read_frames(const std::string &word, std::pair<int, int> &frames) {
-    std::size_t dots = word.find("..");
-    bool inclusive = dots != word.npos && word.compare(dots, 3, "..=") == 0;
-    auto whole = [&](std::string_view text) -> std::optional<int> {
-        std::optional<double> n = parse_number(text);
-        if (!n || *n < 0 || *n > 1e6 || *n != static_cast<int>(*n)) return std::nullopt;
-        return static_cast<int>(*n);
-    };
-    std::optional<int> first, last;
-    if (dots != word.npos) {
-        first = whole(std::string_view(word).substr(0, dots));
-        last = whole(std::string_view(word).substr(dots + (inclusive ? 3 : 2)));
+namespace {
+
+std::optional<int> whole_number(std::string_view text, double most) {
+    const std::optional<double> n = parse_number(text);
+    if (!n || !(*n >= 0 && *n <= most) || *n != std::floor(*n)) return std::nullopt;
+    return static_cast<int>(*n);
+}
+
+// `A..B`, which leaves B out, and `A..=B`, which takes it in: both words, and whether it does.
+struct Range {
+    std::string_view first, last;
+    bool inclusive = false;
+};
+std::optional<Range> range_of(std::string_view word) {
+    const std::size_t dots = word.find("..");
+    if (dots == word.npos) return std::nullopt;
+    const bool inclusive = word.substr(dots).starts_with("..=");
+    return Range{word.substr(0, dots), word.substr(dots + (inclusive ? 3 : 2)), inclusive};
+}
+
+constexpr int last_frame = 1'000'000;
+
+// Adds one part of a list of frames. Whether it is one.
+bool add_frames(std::string_view part, std::vector<int> &numbers) {
+    const std::optional<Range> range = range_of(part);
+    if (!range) {
+        const std::optional<int> one = whole_number(part, last_frame);
+        if (one) numbers.push_back(*one);
+        return one.has_value();
     }
-    if (!first || !last || *first >= *last + (inclusive ? 1 : 0))
-        return fmt::format("frames are A..B (B left out) or A..=B, as 0..48, not `{}`", word);
-    frames = {*first, *last + (inclusive ? 1 : 0)};
+    const std::size_t colon = range->last.find(':');
+    const std::optional<int> first = whole_number(range->first, last_frame),
+                             last = whole_number(range->last.substr(0, colon), last_frame),
+                             step = colon == range->last.npos
+                                        ? std::optional(1)
+                                        : whole_number(range->last.substr(colon + 1), last_frame);
+    if (!first || !last || !step || *step < 1) return false;
+    const int end = *last + (range->inclusive ? 1 : 0);
+    for (int frame = *first; frame < end; frame += *step) numbers.push_back(frame);
+    return *first < end;
+}
+
+} // namespace
+
+std::string read_frames(const std::string &word, FrameList &frames) {
+    frames = {word, {}};
+    std::string_view rest = word;
+    bool good = true;
+    for (bool more = true; more && good;) {
+        const std::size_t comma = rest.find(',');
+        good = add_frames(rest.substr(0, comma), frames.numbers);
+        more = comma != rest.npos;
+        if (more) rest.remove_prefix(comma + 1);
+    }
+    if (!good)
+        return fmt::format(
+            "frames are A..B (B left out), A..=B, with a step as 0..=240:2, a number, "
+            "or a list of these as 0..48,60, not `{}`",
+            word);
+    std::ranges::sort(frames.numbers);
+    const auto twice = std::ranges::adjacent_find(frames.numbers);
+    if (twice != frames.numbers.end())
+        return fmt::format("frame {} is there twice in `{}`", *twice, word);
+    return "";
+}
+
+std::string read_sweep(const std::string &word, std::vector<Sweep> &sweeps) {
+    const std::size_t equals = word.find('=');
+    const std::optional<Range> range =
+        equals == word.npos ? std::nullopt : range_of(std::string_view(word).substr(equals + 1));
+    const std::optional<double> from = range ? parse_number(range->first) : std::nullopt,
+                                to = range ? parse_number(range->last) : std::nullopt;
+    if (!from || !to || equals == 0 || !std::isfinite(*from) || !std::isfinite(*to))
+        return fmt::format(
+            "a sweep is NAME=A..B (B left out) or NAME=A..=B, as height=1..=2.5, not "
+            "`{}`",
+            word);
+    sweeps.push_back({word.substr(0, equals), *from, *to, range->inclusive});
+    return "";
+}
+
+std::string read_samples(const std::string &word, RenderCommand &command) {
+    constexpr int most = 256;
+    const std::optional<Range> range = range_of(word);
+    const std::optional<int> first = range ? whole_number(range->first, most) : std::optional(0),
+                             last =
+                                 whole_number(range ? range->last : std::string_view(word), most);
+    const int count = first && last ? *last + (range && range->inclusive ? 1 : 0) - *first : 0;
+    if (count < 1 || *first + count > most)
+        return fmt::format(
+            "samples are a number from 1 to {0}, or a range of them up to {0} as 4..8, "
+            "not `{1}`",
+            most, word);
+    command.first_sample = *first;
+    command.samples = count;
+    command.part_of_samples = range.has_value();
+    return "";
+}
+
+std::string read_tile(const std::string &word, std::optional<std::pair<int, int>> &tile) {
+    const std::size_t slash = word.find('/');
+    const std::string_view text = word;
+    const std::optional<int> i = slash == word.npos ? std::nullopt
+                                                    : whole_number(text.substr(0, slash), 65536),
+                             n = slash == word.npos ? std::nullopt
+                                                    : whole_number(text.substr(slash + 1), 65536);
+    if (!i || !n || *i >= *n)
+        return fmt::format("a tile is I/N with I from 0 to N - 1, as 0/4, not `{}`", word);
+    tile = {*i, *n};
+    return "";
+}
+
+std::string read_region(const std::string &word, std::optional<std::array<int, 4>> &region) {
+    std::array<int, 4> numbers{};
+    std::string_view rest = word;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t comma = i < 3 ? rest.find(',') : rest.size();
+        const std::optional<int> number =
+            comma == rest.npos ? std::nullopt : whole_number(rest.substr(0, comma), 65536);
+        if (!number || (i >= 2 && *number < 1))
+            return fmt::format("a region is X,Y,WIDTH,HEIGHT in pixels, as 0,100,640,20, not `{}`",
+                               word);
+        numbers[i] = *number;
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+    region = numbers;
     return "";
 }
 

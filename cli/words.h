@@ -11,12 +11,19 @@
 
 namespace fathom::cli {
 
-std::string read_pair(const std::string &word, int &first, int &second); // 1280x720: 1 to 16384
+std::string read_pair(const std::string &word, int &first, int &second); // 1280x720: 1 to 65536
 std::string read_point(const std::string &word, std::array<double, 3> &point); // 0,1.5,-2: finite
 // -1,-1,0,1,1,2: the least corner of a box, then the greatest.
 std::string read_box(const std::string &word, std::array<std::array<double, 3>, 2> &box);
-// 0..48 and 0..=47: the first, and one past the last.
-std::string read_frames(const std::string &word, std::pair<int, int> &frames);
+// 0..48, 0..=47, 0..=240:2, 7, and lists of them by commas: frames from 0 to 1,000,000.
+std::string read_frames(const std::string &word, FrameList &frames);
+// name=0..1 and name=0..=1: two finite numbers.
+std::string read_sweep(const std::string &word, std::vector<Sweep> &sweeps);
+// 16, or 4..8 and 4..=7: samples of a pixel, 0 to 256.
+std::string read_samples(const std::string &word, RenderCommand &command);
+std::string read_tile(const std::string &word, std::optional<std::pair<int, int>> &tile); // 0/4
+// 0,100,640,20: x and y of the upper left pixel, width and height.
+std::string read_region(const std::string &word, std::optional<std::array<int, 4>> &region);
 // name=value, of `-D`; the value is an expression of the language, which is not read here.
 std::string read_override(const std::string &word, std::vector<typecheck::Override> &overrides);
 

@@ -16,7 +16,7 @@ root = pathlib.Path(__file__).resolve().parent.parent
 files = [
     ("solids", "Solids"), ("polyhedra", "Polyhedra and generalised distances"), ("fractals", "Blobs, sheets, fractals"),
     ("flat", "Flat shapes"), ("combining", "Combining"), ("transforms", "Transforms"), ("fields", "Fields and numbers"),
-    ("looks", "Looks"), ("dfmodel", "The thesis's own forms: module `dfmodel`"),
+    ("looks", "Looks"), ("motion", "Motion"), ("dfmodel", "The thesis's own forms: module `dfmodel`"),
 ]
 # Two tops in one plane, blended with a post: as written first, and by the recipe.
 coplanar = """let a = box([1, 0.6, 1.4]).translate(x: -0.5)

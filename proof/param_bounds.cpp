@@ -46,9 +46,9 @@ std::unordered_map<std::uint32_t, std::vector<NodeId>> params_of(const ir::Graph
 
 // Whether an expression is g + a h with a param a, and g and h that do not read it. Its slope in the
 // point is then |grad g + a grad h|, whose supremum is a convex function of a.
-class Affine {
+class AffineIn {
   public:
-    Affine(const ir::Graph &graph, std::uint32_t param) : graph_(graph), param_(param) {}
+    AffineIn(const ir::Graph &graph, std::uint32_t param) : graph_(graph), param_(param) {}
     bool operator()(NodeId id) { return degree(id) <= 1; }
 
   private:
@@ -129,8 +129,8 @@ class ParamBounds {
         const Interval range = ranges_.params[index][0];
         const NodeId value =
             graph_[param].type == ir::Type::Int ? graph_.make(Op::ToFloat, {param}) : param;
-        return Affine(graph_, index)(field_) ? by_lines(index, value, range)
-                                             : by_pieces(index, value, range);
+        return AffineIn(graph_, index)(field_) ? by_lines(index, value, range)
+                                               : by_pieces(index, value, range);
     }
 
     // Chords of a convex function lie above it between their ends; the greatest of several, everywhere

@@ -52,8 +52,9 @@ const std::unordered_set<std::string_view> &known_words() {
         "clamp", "mix", "step", "smoothstep", "length", "distance", "dot", "cross", "normalize",
         "transpose", "inverse", "determinant", "any", "all",
         // looks
-        "image", "paint", "repaint", "hsv", "rgb", "palette", "sun", "lighting", "camera",
-        "background", "render", "orient",
+        "image", "paint", "repaint", "hsv", "rgb", "palette", "ease_in", "ease_out", "ease_in_out",
+        "ease_back", "ease_bounce", "keyframes", "sun", "lighting", "camera", "background",
+        "render", "orient",
         // CSS colours
         "aliceblue", "antiquewhite", "aqua", "aquamarine", "azure", "beige", "bisque", "black",
         "blanchedalmond", "blue", "blueviolet", "brown", "burlywood", "cadetblue", "chartreuse",

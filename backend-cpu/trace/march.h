@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace fathom::cpu {
@@ -64,28 +65,48 @@ float shapes_of(const ir::Scene &scene);
 
 enum class PictureMode : std::uint8_t { Color, Steps };
 
+// A rectangle of pixels; x and y of its upper left one, from the top left.
+struct Tile {
+    int x = 0, y = 0, width = 0, height = 0;
+    friend bool operator==(const Tile &, const Tile &) = default;
+};
+
+// The most samples of a pixel whose sum is exact (summand).
+inline constexpr int max_samples = 256;
+
 struct PictureOptions {
-    int samples = 1;   // a pixel; 0: one, and rough_samples where it is rough (base/picture.h)
-    unsigned jobs = 0; // 0: as many as the machine has cores
+    int samples = 1;            // of each pixel: 1 to max_samples; 0: one, and
+                                // rough_samples where it is rough (base/picture.h)
+    int first_sample = 0;       // of a pixel's sequence of them (ir::sample_offset)
+    std::optional<Tile> region; // what is drawn of the picture; none: all of it
+    bool sums = false;          // also Picture::sums; not with 0 samples
+    unsigned jobs = 0;          // threads; 0: as many as the machine has cores
     PictureMode mode = PictureMode::Color;
 };
 
+// Of the region, which has its size.
 struct Picture {
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgba; // sRGB, from the top left
+    std::vector<double> sums;       // three a pixel, where they are wanted (summand)
     Work work;
     bool complete = false; // false: cancelled
 };
 
-struct Tile {
-    int x = 0, y = 0, width = 0, height = 0; // of the picture, whose pixels there were now drawn
-};
-
-// Called by one thread at a time, with the part that is done, 0 to 1, and the tile just finished;
-// false cancels.
+// Called by one thread at a time, with the part that is done, 0 to 1, and the tile just finished, a
+// part of `so_far` whose pixels are now drawn; false cancels.
 using Progress = std::function<bool(double done, const Tile &tile, const Picture &so_far)>;
 
 Picture render(const Stage &stage, const PictureOptions &options, const Progress &progress = {});
+
+// What a sample of a linear colour adds to its pixel's sum: the colour, rounded to a multiple of
+// 2^-32 and limited to 2^12 either way, which no picture shows. So max_samples of them are added
+// without rounding, in any order and in any groups: pictures can be divided by their samples.
+double summand(float linear);
+// Pixels of a row, RGBA, of sums of so many samples: three numbers a pixel. x and y: the place of the
+// first one in the whole picture.
+void encode_sums(std::span<const double> sums, int samples, int x, int y,
+                 std::span<std::uint8_t> rgba);
 
 // How a ray ends (shading.h, MARCH).
 enum class RayEnd : std::uint8_t { Miss, Hit, Undecided };

@@ -173,35 +173,12 @@ Vec heat(const Landing &landing) {
             clamp(1.0f - 2.2f * x, 0, 1)};
 }
 
-// Places of the picture that a sample is taken of: all of a tile's, or the rough ones.
+// Places of the picture that a sample is taken of.
 struct Pixels {
     std::vector<int> x, y;
     std::size_t size() const { return x.size(); }
     void add(int px, int py) { x.push_back(px), y.push_back(py); }
 };
-
-// Adds samples `first` to `last` of the pixels to `sums`, RGBA of the whole picture.
-void add_samples(Worker &worker, const Pixels &pixels, int first, int last, std::span<float> sums) {
-    const Stage &stage = worker.stage;
-    std::vector<RayState> rays(pixels.size());
-    std::vector<Landing> landings(pixels.size());
-    std::vector<Vec> colors(pixels.size());
-    for (int sample = first; sample < last; ++sample) {
-        const auto offset = ir::sample_offset(sample);
-        for (std::size_t i = 0; i < pixels.size(); ++i)
-            rays[i] = eye(stage, static_cast<float>(pixels.x[i] + offset[0]),
-                          static_cast<float>(pixels.y[i] + offset[1]));
-        march(worker, rays, landings, false);
-        shade(worker, rays, landings, colors);
-        for (std::size_t i = 0; i < pixels.size(); ++i) {
-            float *sum = sums.data() + 4 * (static_cast<std::size_t>(pixels.y[i]) *
-                                                static_cast<std::size_t>(stage.width) +
-                                            static_cast<std::size_t>(pixels.x[i]));
-            for (int c = 0; c < 3; ++c) sum[c] += colors[i][c];
-            sum[3] += 1; // samples
-        }
-    }
-}
 
 Pixels all_of(const Tile &tile) {
     Pixels pixels;
@@ -210,43 +187,147 @@ Pixels all_of(const Tile &tile) {
     return pixels;
 }
 
-void write(const Tile &tile, std::span<const float> sums, Picture &picture) {
-    for (int y = tile.y; y < tile.y + tile.height; ++y)
-        for (int x = tile.x; x < tile.x + tile.width; ++x) {
-            const std::size_t at =
-                4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                     static_cast<std::size_t>(x));
-            for (std::size_t c = 0; c < 3; ++c)
-                picture.rgba[at + c] = srgb_byte(sums[at + c] / sums[at + 3], dither(x, y));
-            picture.rgba[at + 3] = 255;
-        }
+// Where one sample of each pixel lands, and in colour what it sees there.
+struct Seen {
+    std::vector<Landing> landings;
+    std::vector<Vec> colors;
+};
+Seen look(Worker &worker, const Pixels &pixels, int sample, PictureMode mode) {
+    const Stage &stage = worker.stage;
+    std::vector<RayState> rays;
+    const auto offset = ir::sample_offset(sample);
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        rays.push_back(eye(stage, static_cast<float>(pixels.x[i] + offset[0]),
+                           static_cast<float>(pixels.y[i] + offset[1])));
+    Seen seen{std::vector<Landing>(pixels.size()), std::vector<Vec>(pixels.size())};
+    march(worker, rays, seen.landings, false);
+    if (mode == PictureMode::Color) shade(worker, rays, seen.landings, seen.colors);
+    return seen;
 }
 
-void draw_steps(Worker &worker, const Tile &tile, Picture &picture) {
+// The picture that is being made of a part of the whole one.
+struct Canvas {
+    Tile region;
+    bool sums = false;
+    Picture &picture;
+    std::size_t place(int x, int y) const { // of a pixel of the whole picture
+        return static_cast<std::size_t>(y - region.y) * static_cast<std::size_t>(region.width) +
+               static_cast<std::size_t>(x - region.x);
+    }
+    std::uint8_t *pixel(int x, int y) { return picture.rgba.data() + 4 * place(x, y); }
+};
+
+// All samples of a tile, which lies in the region.
+void draw(Worker &worker, const PictureOptions &options, const Tile &tile, Canvas &canvas) {
     const Pixels pixels = all_of(tile);
-    std::vector<RayState> rays;
-    std::vector<Landing> landings(pixels.size());
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        rays.push_back(eye(worker.stage, static_cast<float>(pixels.x[i]) + 0.5f,
-                           static_cast<float>(pixels.y[i]) + 0.5f));
-    march(worker, rays, landings, false);
+    if (options.mode == PictureMode::Steps) {
+        const Seen seen = look(worker, pixels, 0, options.mode);
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            std::uint8_t *pixel = canvas.pixel(pixels.x[i], pixels.y[i]);
+            const Vec c = heat(seen.landings[i]);
+            for (int k = 0; k < 3; ++k) pixel[k] = byte(c[k]);
+            pixel[3] = 255;
+        }
+        return;
+    }
+    std::vector<double> sums(3 * pixels.size());
+    const int samples = std::max(options.samples, 1);
+    for (int sample = 0; sample < samples; ++sample) {
+        const Seen seen = look(worker, pixels, options.first_sample + sample, options.mode);
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                sums[3 * i + static_cast<std::size_t>(c)] += summand(seen.colors[i][c]);
+    }
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const std::size_t at =
-            4 * (static_cast<std::size_t>(pixels.y[i]) * static_cast<std::size_t>(picture.width) +
-                 static_cast<std::size_t>(pixels.x[i]));
-        const Vec c = heat(landings[i]);
-        for (int k = 0; k < 3; ++k) picture.rgba[at + static_cast<std::size_t>(k)] = byte(c[k]);
-        picture.rgba[at + 3] = 255;
+        const int x = pixels.x[i], y = pixels.y[i];
+        const std::span<const double> sum = std::span(sums).subspan(3 * i, 3);
+        encode_sums(sum, samples, x, y, {canvas.pixel(x, y), 4});
+        if (canvas.sums)
+            std::ranges::copy(sum, canvas.picture.sums.begin() +
+                                       static_cast<std::ptrdiff_t>(3 * canvas.place(x, y)));
     }
 }
 
-std::vector<Tile> tiles_of(int width, int height) {
+// One sample of each pixel, and where it is rough more.
+class Smooth {
+  public:
+    Smooth(const Stage &stage, Canvas &canvas) : canvas_(canvas), area_(canvas.region) {
+        // Whether a pixel at the edge of the region is rough is told by its neighbour outside.
+        const int left = std::max(area_.x - 1, 0), top = std::max(area_.y - 1, 0),
+                  right = std::min(area_.x + area_.width + 1, stage.width),
+                  bottom = std::min(area_.y + area_.height + 1, stage.height);
+        area_ = {left, top, right - left, bottom - top};
+        first_.resize(4 * static_cast<std::size_t>(area_.width) *
+                      static_cast<std::size_t>(area_.height));
+    }
+    const Tile &area() const { return area_; } // what has to be drawn once
+    void draw_first(Worker &worker, const Tile &tile) {
+        const Pixels pixels = all_of(tile);
+        const Seen seen = look(worker, pixels, 0, PictureMode::Color);
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            const int x = pixels.x[i], y = pixels.y[i];
+            float *color = first_.data() + 4 * place(x, y);
+            for (int c = 0; c < 3; ++c) color[c] = seen.colors[i][c];
+            if (is_inside(x, y)) put(x, y, seen.colors[i], {}, 1);
+        }
+    }
+    void find_rough() { rough_ = rough_pixels(area_.width, area_.height, first_); }
+    void draw_more(Worker &worker, const Tile &tile) {
+        Pixels pixels;
+        for (int y = tile.y; y < tile.y + tile.height; ++y)
+            for (int x = tile.x; x < tile.x + tile.width; ++x)
+                if (is_inside(x, y) && rough_[place(x, y)]) pixels.add(x, y);
+        if (pixels.size() == 0) return;
+        std::vector<std::array<double, 3>> sums(pixels.size());
+        for (int sample = 1; sample < ir::shading::rough_samples; ++sample) {
+            const Seen seen = look(worker, pixels, sample, PictureMode::Color);
+            for (std::size_t i = 0; i < pixels.size(); ++i)
+                for (std::size_t c = 0; c < 3; ++c)
+                    sums[i][c] += summand(seen.colors[i][static_cast<int>(c)]);
+        }
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            const float *first = first_.data() + 4 * place(pixels.x[i], pixels.y[i]);
+            put(pixels.x[i], pixels.y[i], {first[0], first[1], first[2]}, sums[i],
+                ir::shading::rough_samples);
+        }
+    }
+
+  private:
+    std::size_t place(int x, int y) const {
+        return static_cast<std::size_t>(y - area_.y) * static_cast<std::size_t>(area_.width) +
+               static_cast<std::size_t>(x - area_.x);
+    }
+    bool is_inside(int x, int y) const {
+        const Tile &r = canvas_.region;
+        return x >= r.x && x < r.x + r.width && y >= r.y && y < r.y + r.height;
+    }
+    void put(int x, int y, Vec first, std::array<double, 3> sum, int samples) {
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += summand(first[static_cast<int>(c)]);
+        encode_sums(sum, samples, x, y, {canvas_.pixel(x, y), 4});
+    }
+
+    Canvas &canvas_;
+    Tile area_;
+    std::vector<float> first_; // linear, four a pixel of the area
+    std::vector<std::uint8_t> rough_;
+};
+
+std::vector<Tile> tiles_of(const Tile &area) {
     std::vector<Tile> tiles;
-    for (int y = 0; y < height; y += tile_side)
-        for (int x = 0; x < width; x += tile_side)
+    const int right = area.x + area.width, bottom = area.y + area.height;
+    for (int y = area.y; y < bottom; y += tile_side)
+        for (int x = area.x; x < right; x += tile_side)
             tiles.push_back(
-                {x, y, std::min(tile_side, width - x), std::min(tile_side, height - y)});
+                {x, y, std::min(tile_side, right - x), std::min(tile_side, bottom - y)});
     return tiles;
+}
+
+// What of a tile lies in the region, from the region's corner.
+Tile within(const Tile &tile, const Tile &region) {
+    const int left = std::max(tile.x, region.x), top = std::max(tile.y, region.y),
+              right = std::min(tile.x + tile.width, region.x + region.width),
+              bottom = std::min(tile.y + tile.height, region.y + region.height);
+    return {left - region.x, top - region.y, std::max(right - left, 0), std::max(bottom - top, 0)};
 }
 
 } // namespace
@@ -272,19 +353,36 @@ std::vector<Landing> cast(const Stage &stage, std::span<const Ray> rays, bool br
     return landings;
 }
 
+double summand(float linear) {
+    const double limited = std::clamp(static_cast<double>(linear), -0x1p12, 0x1p12); // keeps a NaN
+    return std::nearbyint(limited * 0x1p32) * 0x1p-32;
+}
+
+void encode_sums(std::span<const double> sums, int samples, int x, int y,
+                 std::span<std::uint8_t> rgba) {
+    for (std::size_t i = 0; 3 * i < sums.size(); ++i, ++x) {
+        const float add = dither(x, y);
+        for (std::size_t c = 0; c < 3; ++c)
+            rgba[4 * i + c] = srgb_byte(static_cast<float>(sums[3 * i + c] / samples), add);
+        rgba[4 * i + 3] = 255;
+    }
+}
+
 Picture render(const Stage &stage, const PictureOptions &options, const Progress &progress) {
     Picture picture;
-    picture.width = stage.width;
-    picture.height = stage.height;
-    picture.rgba.resize(4 * static_cast<std::size_t>(stage.width) *
-                        static_cast<std::size_t>(stage.height));
-    const bool steps = options.mode == PictureMode::Steps, smooth = !steps && options.samples == 0;
-    std::vector<float> sums(steps ? 0 : picture.rgba.size()); // linear, and the samples
-    const std::vector<Tile> tiles = tiles_of(stage.width, stage.height);
+    const Tile region = options.region.value_or(Tile{0, 0, stage.width, stage.height});
+    picture.width = region.width;
+    picture.height = region.height;
+    const std::size_t pixels =
+        static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+    picture.rgba.resize(4 * pixels);
+    if (options.sums) picture.sums.resize(3 * pixels);
+    Canvas canvas{region, options.sums, picture};
     std::mutex report;
 
-    // Every tile once, by all threads. Whether the caller wants to go on.
-    const auto each_tile = [&](double begin, double end, const auto &draw) {
+    // Every tile of an area once, by all threads. Whether the caller wants to go on.
+    const auto each_tile = [&](const Tile &area, double begin, double end, const auto &draw_tile) {
+        const std::vector<Tile> tiles = tiles_of(area);
         std::atomic<std::size_t> next{0};
         std::atomic<bool> cancelled{false};
         std::size_t finished = 0;
@@ -293,13 +391,13 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
             while (!cancelled) {
                 const std::size_t i = next++;
                 if (i >= tiles.size()) break;
-                draw(worker, tiles[i]); // tiles share no pixel
+                draw_tile(worker, tiles[i]); // tiles share no pixel
                 const std::lock_guard lock(report);
                 ++finished;
                 const double done =
                     static_cast<double>(finished) / static_cast<double>(tiles.size());
                 if (progress && !cancelled &&
-                    !progress(begin + done * (end - begin), tiles[i], picture))
+                    !progress(begin + done * (end - begin), within(tiles[i], region), picture))
                     cancelled = true;
             }
             const std::lock_guard lock(report);
@@ -318,27 +416,22 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
             threads.emplace_back(work);
         work();
         for (std::thread &thread : threads) thread.join();
-        return finished == tiles.size() && !cancelled;
+        picture.complete = finished == tiles.size() && !cancelled;
+        return picture.complete;
     };
 
-    picture.complete = each_tile(0, smooth ? 0.5 : 1, [&](Worker &worker, const Tile &tile) {
-        if (steps) return draw_steps(worker, tile, picture);
-        add_samples(worker, all_of(tile), 0, std::max(options.samples, 1), sums);
-        write(tile, sums, picture);
-    });
-    if (!smooth || !picture.complete) return picture;
-    const std::vector<std::uint8_t> rough = rough_pixels(stage.width, stage.height, sums);
-    picture.complete = each_tile(0.5, 1, [&](Worker &worker, const Tile &tile) {
-        Pixels pixels;
-        for (int y = tile.y; y < tile.y + tile.height; ++y)
-            for (int x = tile.x; x < tile.x + tile.width; ++x)
-                if (rough[static_cast<std::size_t>(y) * static_cast<std::size_t>(stage.width) +
-                          static_cast<std::size_t>(x)])
-                    pixels.add(x, y);
-        if (pixels.size() == 0) return;
-        add_samples(worker, pixels, 1, ir::shading::rough_samples, sums);
-        write(tile, sums, picture);
-    });
+    if (options.samples > 0 || options.mode == PictureMode::Steps) {
+        each_tile(region, 0, 1,
+                  [&](Worker &worker, const Tile &tile) { draw(worker, options, tile, canvas); });
+        return picture;
+    }
+    Smooth smooth(stage, canvas);
+    if (!each_tile(smooth.area(), 0, 0.5,
+                   [&](Worker &worker, const Tile &tile) { smooth.draw_first(worker, tile); }))
+        return picture;
+    smooth.find_rough();
+    each_tile(region, 0.5, 1,
+              [&](Worker &worker, const Tile &tile) { smooth.draw_more(worker, tile); });
     return picture;
 }
 

@@ -136,7 +136,6 @@ TEST_CASE("what cannot be written is refused, with what to write") {
         CHECK(result.out.empty());
         CHECK_THAT(result.err, Catch::Contains(remedy));
     };
-    refused("fathom render good.sdf" + small + "--frames 0..2 -o -", "frame_###.png");
     refused("fathom render good.sdf" + small + "--frames 0..2 -o /dev/null", ".png");
     refused("fathom render good.sdf" + small + "-o ''", "wants a name");
     refused("fathom compile good.sdf -o ''", "wants a name");

@@ -66,7 +66,7 @@ double most(const std::string &name) {
                                                      {"menger_ruin", 0.0054},
                                                      {"minimal_surfaces", 0.016},
                                                      {"night_city", 0.0056},
-                                                     {"rough_icosahedron", 0.0076},
+                                                     {"rough_icosahedron", 0.0125},
                                                      {"scaled_boxes", 0.002},
                                                      {"soft_well", 0.0046},
                                                      {"temple", 0.003},

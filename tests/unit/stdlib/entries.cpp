@@ -135,6 +135,12 @@ std::vector<std::string> wrong_calls() {
         "sphere(1).repeat_mirror([0, 0, 0])",
         "sphere(1).displace(p => fbm(p, octaves: 0))",
         "sphere(1).paint(palette(0.5, []))",
+        "sphere(1).translate(y: ease_in(time, 0.5))",
+        "sphere(1).translate(y: ease_out(time, 0.5))",
+        "sphere(1).translate(y: ease_back(time, -1))",
+        "sphere(1).translate(y: ease_bounce(time, 0))",
+        "sphere(1).translate(y: keyframes([[1, 0], [1, 2]], time))",
+        "sphere(1).translate(keyframes([[1, 0, 0, 0], [0.5, 1, 1, 1]], time))",
         "rounded_rectangle([1, 1], 0.6).extrude(1)",
         "engrave(sphere(1), box(1), 0)",
         "tongue(sphere(1), box(1), 0, 1)",
@@ -170,12 +176,12 @@ std::vector<std::string> wrong_calls() {
 // Entries whose every argument of the right type makes something: no list is too short, no number
 // degenerate. Those whose errors are of files are tested with the images.
 const std::set<std::string> always_right{
-    "empty",        "union",        "xor",          "complement", "blend",       "translate",
-    "rotate_euler", "offset",       "displace",     "distort",    "within",      "paint",
-    "repaint",      "hsv",          "noise",        "simplex",    "value_noise", "worley",
-    "saturate",     "smin",         "smax",         "rotate2",    "distance",    "radians",
-    "degrees",      "faceforward",  "refract",      "asinh",      "acosh",       "atanh",
-    "determinant",  "outerProduct", "distance_grid"};
+    "empty",        "union",        "xor",           "complement", "blend",       "translate",
+    "rotate_euler", "offset",       "displace",      "distort",    "within",      "paint",
+    "repaint",      "hsv",          "noise",         "simplex",    "value_noise", "worley",
+    "saturate",     "smin",         "smax",          "rotate2",    "distance",    "radians",
+    "degrees",      "faceforward",  "refract",       "asinh",      "acosh",       "atanh",
+    "determinant",  "outerProduct", "distance_grid", "ease_in_out"};
 
 } // namespace
 

@@ -1,0 +1,170 @@
+#include "cli/contradiction.h"
+
+#include "cli/film.h"
+#include "cli/outputs.h"
+
+#include <fmt/format.h>
+
+namespace fathom::cli {
+namespace {
+
+const char *const watches_nothing = "--watch follows a file, and standard input is none";
+
+std::string of(const CheckCommand &check, const Given &) {
+    if (check.watch && check.scene.file == "-") return watches_nothing;
+    if (check.json && check.explain)
+        return "--explain is for people, --json for programs: give one of them";
+    return "";
+}
+
+std::string of(const CompileCommand &compile, const Given &) {
+    if (compile.watch && compile.scene.file == "-") return watches_nothing;
+    const glsl::TargetTraits &target = glsl::traits_of(compile.target);
+    if (compile.field_only && *target.field_by)
+        return fmt::format("--field-only leaves out the picture that a page shows; `--target {} "
+                           "--field-only` writes the text that a page of your own can use",
+                           target.field_by);
+    if (!compile.noise_cache) return "";
+    if (!target.noise_cache || compile.field_only)
+        return fmt::format("--noise-cache is for whole pictures by `--target {}`",
+                           targets_with(&glsl::TargetTraits::noise_cache));
+    if (compile.out.empty() || compile.out == "-")
+        return "--noise-cache writes several files: name the first by -o";
+    return "";
+}
+
+// What only a film has, given where there is none.
+std::string of_no_film(const RenderCommand &render, const Given &given) {
+    if (!render.frames.numbers.empty() || render.turntable > 0) return "";
+    if (is_film(render.out)) return "a film has frames: --frames A..B or --turntable N says which";
+    if (given("--fps") && render.shutter == 0)
+        return "--fps is for --frames: one picture has no rate";
+    if (!render.sweeps.empty()) return "--sweep is for --frames: -D sets a param of one picture";
+    if (!render.only.numbers.empty()) return "--only is for --frames, of which it takes some";
+    if (render.sheet.first > 0) return "--contact-sheet is for --frames, of which it shows some";
+    return "";
+}
+
+std::string of_moving(const RenderCommand &render) {
+    if (render.shutter > 0 && render.samples <= 1 && render.first_sample == 0 &&
+        !render.part_of_samples)
+        return "--shutter spreads the samples of a pixel over its opening: --samples 16 gives it "
+               "some";
+    if (render.turntable > 0 && render.shutter > 0)
+        return "--turntable stops the time, which --shutter blurs: give one of them";
+    return "";
+}
+
+std::string of_parts(const RenderCommand &render) {
+    if (render.tile && render.region)
+        return "--tile and --region both say a part: give one of them";
+    const bool sums = is_sums_name(render.out);
+    if (render.part_of_samples && !sums)
+        return "--samples A..B makes a part of a picture, which is a file of sums: -o OUT.sums";
+    const bool cpu = render.tile || render.region || sums || render.shutter > 0;
+    if (render.backend == Backend::Gl && cpu)
+        return "--tile, --region, --shutter and .sums are for the CPU, which gives the same bits "
+               "for any division: --backend cpu";
+    if (render.cache && (render.backend == Backend::Cpu || cpu))
+        return "--cache needs GL, which --backend cpu leaves out, and so do --tile, --region, "
+               "--shutter and .sums";
+    return "";
+}
+
+// What a film's file, a sheet or a stream cannot take.
+std::string of_outputs(const RenderCommand &render, const Given &given) {
+    const bool film = is_film(render.out), sheet = render.sheet.first > 0,
+               stream = render.out == "-",
+               part = render.tile || render.region || is_sums_name(render.out);
+    if (film && sheet) return "--contact-sheet makes one picture, and -o names a film";
+    if (film && (part || !render.only.numbers.empty()))
+        return "a film holds whole frames, all of them: write parts as frames, -o frame_####.png, "
+               "and join them by `fathom merge`";
+    if (sheet && (part || !render.only.numbers.empty()))
+        return "--contact-sheet chooses the frames itself, and shows whole ones";
+    if (given("--stream") && !stream) return "--stream is for standard output: -o -";
+    if (render.skip_existing &&
+        (film || sheet || stream || picture_format(render.out) == PictureFormat::Jpeg))
+        return "--skip-existing is for PNG and .sums files, which say of what they are";
+    if (given("--quality") && picture_format(render.out) != PictureFormat::Jpeg)
+        return "--quality is of a JPEG: -o OUT.jpg writes one";
+    return "";
+}
+
+std::string of(const RenderCommand &render, const Given &given) {
+    for (const std::string &why : {of_no_film(render, given), of_moving(render), of_parts(render),
+                                   of_outputs(render, given)})
+        if (!why.empty()) return why;
+    return "";
+}
+
+std::string of(const MergeCommand &merge, const Given &given) {
+    const bool film = !merge.frames.numbers.empty();
+    if (film && merge.parts.size() != 1)
+        return "--frames wants one name of frames, with `#`s for the number: 'frame_####.png'";
+    if (given("--fps") && !film) return "--fps is for --frames: one picture has no rate";
+    if (given("--samples") && film) return "--samples is of a picture, and --frames joins a film";
+    if (given("--quality") && picture_format(merge.out) != PictureFormat::Jpeg)
+        return "--quality is of a JPEG: -o OUT.jpg writes one";
+    return "";
+}
+
+std::string of(const FarmCommand &farm, const Given &given) {
+    if (farm.action == "status" || farm.action == "collect") {
+        for (const char *option : {"--out", "--frames", "--turntable", "--tiles", "--chunk",
+                                   "--film", "--size", "--samples", "--dry-run"})
+            if (given(option))
+                return fmt::format("`fathom farm {}` reads the job folder, and takes no {}",
+                                   farm.action, option);
+        return "";
+    }
+    if (farm.folder.empty()) return "a job folder is made: --out DIR says where";
+    if (farm.render.scene.file == "-")
+        return "a farm's scene is a file, and standard input is none";
+    if (farm.render.part_of_samples)
+        return "a farm divides by frames and --tiles: --samples is one number";
+    if (!farm.film.empty() && (!is_film(farm.film) || farm.film.find('/') != farm.film.npos))
+        return "--film is a name in the job folder that ends in .mp4, .webm, .gif or .apng";
+    const bool frames = !farm.render.frames.numbers.empty() || farm.render.turntable > 0;
+    if (!farm.film.empty() && !frames)
+        return "a film has frames: --frames A..B or --turntable N says which";
+    if (farm.tiles > 1 && farm.render.backend == Backend::Gl)
+        return "--tiles are for the CPU, which gives the same bits for any division: --backend cpu";
+    RenderCommand render = farm.render;
+    render.out = farm.tiles > 1 ? "tile.png" : "frame.png";
+    return of(render, [&](const char *option) {
+        return std::string_view(option) == "--fps" && given(option);
+    });
+}
+
+std::string of(const MeshCommand &mesh, const Given &given) {
+    if (mesh.json && mesh.out == "-")
+        return "--json and the mesh cannot both go to standard output: name a file by -o";
+    if (given("--tolerance") && given("--resolution"))
+        return "--tolerance and --resolution both say how fine a mesh is: give one of them";
+    return "";
+}
+
+std::string of(const EvalCommand &eval, const Given &) {
+    if (eval.at.empty() && !eval.points) return "eval wants points: --at X,Y,Z or --points -";
+    if (eval.points && eval.scene.file == "-")
+        return "the scene and the points cannot both come from standard input";
+    return "";
+}
+
+std::string of(const ViewCommand &, const Given &) { return ""; }
+std::string of(const ImportCommand &, const Given &) { return ""; }
+std::string of(const ExportCommand &, const Given &) { return ""; }
+std::string of(const FmtCommand &, const Given &) { return ""; }
+std::string of(const DocCommand &, const Given &) { return ""; }
+std::string of(const ExplainCommand &, const Given &) { return ""; }
+std::string of(const LspCommand &, const Given &) { return ""; }
+std::string of(const BenchCommand &, const Given &) { return ""; }
+
+} // namespace
+
+std::string contradiction(const Command &command, const Given &given) {
+    return std::visit([&](const auto &one) { return of(one, given); }, command);
+}
+
+} // namespace fathom::cli
