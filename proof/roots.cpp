@@ -17,7 +17,9 @@ using ir::Graph;
 namespace {
 
 constexpr std::size_t max_atoms_of_squares = 12;
-constexpr double granted_to_squares = 5e-7; // of the terms, as in all that float32 evaluates
+// Of the terms: what numbers in double precision lose. More would not do: where a sum of squares is
+// 0, its root turns an error e into sqrt(e).
+constexpr double granted_to_squares = 1e-12;
 
 // A sum of products of at most two atoms each; the number is that of the empty product.
 struct Quadratic {

@@ -177,6 +177,8 @@ constexpr std::array near_misses = {
     "p.z * (1 + floor(atan(p.y, p.x) * 3 / pi) % 2)",
     // squares that are not complete: less by a little, of a product, of a linear term
     "sqrt(dot(p, p) + 0.809 - 1.8 * length(p.xy))",
+    "sqrt(dot(p, p) + 0.80999990 - 1.8 * length(p.xy))",
+    "sqrt(p.x * p.x - 1.9999999 * p.x * p.y + 0.9999998 * p.y * p.y)",
     "sqrt(p.x * p.x + 2.01 * p.x * p.y + p.y * p.y)",
     "sqrt(p.x * p.x - 0.001 * p.x)",
     "sqrt(p.x * p.x - length(p.yz) + 0.25)",

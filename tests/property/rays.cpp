@@ -3,7 +3,6 @@
 // has to end in a hit at the first such place, and in a miss where there is none.
 #include "backend-cpu/trace/march.h"
 #include "driver/compile.h"
-#include "ir/shading.h"
 #include "random_scenes.h"
 
 #include <algorithm>
