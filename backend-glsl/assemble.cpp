@@ -3,7 +3,6 @@
 #include "backend-glsl/helpers.h"
 #include "backend-glsl/template.h"
 #include "ir/shading.h"
-#include "ir/view.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -227,13 +226,8 @@ class Assembler {
         const std::vector<NodeId> all{l.ambient,        l.ambient_occlusion,  l.shadow_darkness,
                                       l.soft_shadows,   l.specular_intensity, l.fill,
                                       l.occlusion_reach};
-        const std::array<std::string, 7> absent{"vec3(0.25)",
-                                                "1.0",
-                                                "0.5",
-                                                "0.03",
-                                                "0.4",
-                                                "0.0",
-                                                float_literal(ir::occlusion_reach(scene_))};
+        const std::array<const char *, 7> absent{"vec3(0.25)", "1.0", "0.5", "0.03",
+                                                 "0.4",        "0.0", "0.0"};
         std::vector<NodeId> given;
         std::ranges::copy_if(all, std::back_inserter(given),
                              [](NodeId id) { return static_cast<bool>(id); });
@@ -241,7 +235,7 @@ class Assembler {
         const Body values = body(module_, none, given);
         std::string list;
         for (std::size_t i = 0, k = 0; i < all.size(); ++i)
-            list += (i ? ", " : "") + (all[i] ? values.values[k++] : absent[i]);
+            list += (i ? ", " : "") + (all[i] ? values.values[k++] : std::string(absent[i]));
         return expand("lighting", {{"STATEMENTS", values.statements}, {"LIST", list}});
     }
 

@@ -76,6 +76,7 @@ Values values_of(const MarcherOptions &options) {
         {"SEARCHES", fmt::to_string(2 + shading::penumbra_turns)},
         {"ALL_TAPS", fmt::to_string((options.unit_slope ? 4 : 8) + shading::occlusion_samples)},
         {"OCCLUSION_TOTAL", float_literal(1 - std::ldexp(1.0, -shading::occlusion_samples))},
+        {"OCCLUSION_REACH", float_literal(shading::occlusion_reach)},
         {"OCCLUSION_SAMPLES", float_literal(float{shading::occlusion_samples})},
         {"SOIL", vec3_of(shading::soil)},
         {"SKY", vec3_of(shading::sky)},

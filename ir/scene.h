@@ -99,7 +99,7 @@ struct Lighting {
     NodeId soft_shadows;      // half the light's angular size, radians; 0 is hard
     NodeId specular_intensity;
     NodeId fill;            // of a light at the eye that casts no shadow; 0 none
-    NodeId occlusion_reach; // how far occlusion looks, in units; none: view.h says
+    NodeId occlusion_reach; // how far occlusion looks, in units; none or 0: view.h, Frame
     bool skip = false;      // `Skip Shadows & Shading`
     bool classic = false;   // plain Phong: ambient light alike from everywhere, highlights clamped
 };

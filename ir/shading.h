@@ -111,7 +111,7 @@
 //   both).
 //
 // OCCLUSION (thesis, 4.2.1: five samples along the normal)
-//   for i = 1..5, x_i = reach*i/5 (view.h, occlusion_reach), g_i = g(p + x_i*n); k is the i with the least
+//   for i = 1..5, x_i = reach*i/5 (Lighting's, else Frame's), g_i = g(p + x_i*n); k is the i with the least
 //   g_i/x_i, the first of equals. slope = 1 where `Frame::unit_slope`, or where no bound is above 1
 //   (so that no slope is) and g_k >= nearly*x_k; else max(|gradient(p + x_k*n, h)|, min(slope at
 //   p, 1), min_slope): where the samples of a gradient lie across a crease, it is too small.
@@ -161,7 +161,7 @@ inline constexpr float flattest = 1e-3f;
 inline constexpr float bent_relaxation = 0.7f; // measured on displaced spheres, as these
 inline constexpr float nearer = 0.9f;
 inline constexpr int occlusion_samples = 5;
-inline constexpr float occlusion_reach = 0.07f; // of the least side of what has an end
+inline constexpr float occlusion_reach = 0.075f; // of half the height that is seen at the focus
 inline constexpr float nearly = 0.98f;
 inline constexpr int penumbra_turns = 7;
 inline constexpr float quiet = 0.25f;           // of a distance near a shadow ray

@@ -182,18 +182,13 @@ std::array<double, 2> sample_offset(int k) {
     return {x - std::floor(x), y - std::floor(y)};
 }
 
-double occlusion_reach(const Scene &scene) {
-    if (!scene.bounds.finite()) return shading::occlusion_reach;
-    const glm::dvec3 sides = vec_of(scene.bounds.hi) - vec_of(scene.bounds.lo);
-    const double least = std::min({sides.x, sides.y, sides.z});
-    return shading::occlusion_reach * std::max(least, 1e-3 * sphere_of(scene.bounds).second);
-}
-
 Frame frame_of(const Scene &scene, const View &view, int height) {
     Frame frame;
     const auto [center, radius] = sphere_of(scene.bounds);
     frame.center = center;
     frame.radius = radius;
+    frame.occlusion_reach =
+        shading::occlusion_reach * view.extent * (view.orthographic ? 1 : view.focus);
     frame.slack = shading::float_slack * (glm::length(view.origin) + radius);
     frame.pixel = 2 * view.extent / height;
     const double sharp =

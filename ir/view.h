@@ -48,6 +48,10 @@ struct Frame {
     double tolerance_base = 0, tolerance_slope = 0; // tolerance(t) = base + slope*t
     double far = 0;    // render.far, or 100 * max(radius, distance from origin to centre)
     double radius = 1; // of the finite parts' bounding sphere; 1 when there are none
+    // How far occlusion looks where Lighting does not say: shading.h's part of half the height that
+    // is seen at the focus. So it follows what one looks at, and neither how the solid is written nor
+    // a lawn around it matters.
+    double occlusion_reach = 0;
     glm::dvec3 center{};
     bool boxed = false; // every part is finite: rays live between `lo` and `hi` alone (a little
                         // larger than the bounds)
@@ -55,10 +59,6 @@ struct Frame {
     bool unit_slope = false; // Scene::unit_slope
 };
 Frame frame_of(const Scene &scene, const View &view, int height);
-
-// How far occlusion looks where Lighting does not say: shading.h's part of the least side of the
-// finite parts' box, so that a lawn round a house changes nothing in its corners.
-double occlusion_reach(const Scene &scene);
 
 // How many evaluations a ray may take: render.max_steps, where it is set.
 int budget_of(const Scene &scene);

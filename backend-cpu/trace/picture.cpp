@@ -125,9 +125,10 @@ Stage prepare(const ir::Scene &scene, const ir::View &view, int width, int heigh
     stage.shading.soft_shadows = number_of(scene, lighting.soft_shadows, time);
     stage.shading.specular_intensity = number_of(scene, lighting.specular_intensity, time);
     stage.shading.fill = number_of(scene, lighting.fill, time);
-    stage.shading.occlusion_reach = lighting.occlusion_reach
-                                        ? number_of(scene, lighting.occlusion_reach, time)
-                                        : static_cast<float>(ir::occlusion_reach(scene));
+    if (lighting.occlusion_reach)
+        stage.shading.occlusion_reach = number_of(scene, lighting.occlusion_reach, time);
+    if (!(stage.shading.occlusion_reach > 0))
+        stage.shading.occlusion_reach = static_cast<float>(stage.frame.occlusion_reach);
     return stage;
 }
 

@@ -203,7 +203,9 @@ $if !SKIP_SHADING
     fathom_Lighting look = fathom_lighting();
     float open = 1.0;
     float weight = look.ambient_occlusion / $OCCLUSION_TOTAL;
-    float reach = look.occlusion_reach / $OCCLUSION_SAMPLES;
+    float reach = look.occlusion_reach;
+    if (!(reach > 0.0)) reach = $OCCLUSION_REACH * fathom_extent * (fathom_orthographic != 0 ? 1.0 : fathom_focus);
+    reach /= $OCCLUSION_SAMPLES;
     if (look.ambient_occlusion > 0.0) taps = $ALL_TAPS;
 $if PASSES
     if (fathom_light_kept >= 0) taps = 4; // the colour is known

@@ -31,7 +31,8 @@ void Lowering::find_shaded() {
             shaded_apart_[i] = std::ranges::any_of(s.children, apart);
             unit_slope_[i] = std::ranges::all_of(s.children, unit);
         } else if (s.kind == ShapeKind::Within) {
-            shaded_apart_[i] = has_slope_above_one(s.children.front()) ||
+            shaded_apart_[i] = shapes_.regions[s.payload].kind != RegionKind::Everywhere ||
+                               has_slope_above_one(s.children.front()) ||
                                fact(id).detour > 1 + rounding || !fact(id).cells.lipschitz.empty();
         } else if (s.kind == ShapeKind::Offset || s.kind == ShapeKind::Shell) {
             shaded_apart_[i] = has_slope_above_one(id);

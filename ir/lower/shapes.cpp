@@ -374,7 +374,8 @@ Where Lowering::point_of(Where frame, NodeId p) {
 // The field is evaluated where its bound L holds: at q, the point of the region R nearest to p;
 // inside of what R leaves out, at the way out of it. With g the value there: in R max(g, sd_R);
 // outside sqrt(|p-q|^2 + max(g, 0)^2). Both are |(max(sd_R,0), max(g,0))| + min(max(sd_R, g), 0).
-// What is left out cuts with -sd.
+// What is left out cuts with -sd. What is shaded has |p-q| + max(g, 0) outside, the way by q: a
+// region that ends near a surface is then no nearer to what lies before it than the surface is.
 NodeId Lowering::within(Reading reading, ShapeId id, Where frame) {
     Graph &g = graph_;
     const Region region = region_of(id, frame);
@@ -408,8 +409,14 @@ NodeId Lowering::within(Reading reading, ShapeId id, Where frame) {
     Region convex = region;
     convex.less.clear();
     NodeId distance = field;
-    if (region.kind != RegionKind::Everywhere)
-        distance = joined_distance(g, std::array{region_distance(g, convex, p), field});
+    if (region.kind != RegionKind::Everywhere) {
+        const NodeId wall = region_distance(g, convex, p), zero = g.number(0);
+        if (reading == Reading::Shaded)
+            distance = g.add(g.add(g.make(Op::Max, {wall, zero}), g.make(Op::Max, {field, zero})),
+                             g.make(Op::Min, {g.make(Op::Max, {wall, field}), zero}));
+        else
+            distance = joined_distance(g, std::array{wall, field});
+    }
     for (const Region &less : region.less)
         distance = g.make(Op::Max, {distance, g.neg(region_distance(g, less, p))});
     return distance;

@@ -93,6 +93,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "GOLDEN",
                                "OCCLUSION_TOTAL",
                                "OCCLUSION_SAMPLES",
+                               "OCCLUSION_REACH",
                                "SHOULDER",
                                "FADE_FROM",
                                "ARM",
