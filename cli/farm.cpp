@@ -96,8 +96,10 @@ Exit probe(const RenderCommand &render, Job &job, Terminal &terminal) {
         [&] { exit = run(command_of(render, job, job.folder, frames, tile), terminal); });
     if (exit != done) return exit;
     const double each = std::max(seconds / static_cast<double>(frames.size()), 1e-3);
-    job.chunk =
-        static_cast<int>(std::clamp(std::ceil(unit_seconds / each), 1.0, static_cast<double>(n)));
+    // As many units as have unit_seconds each, of equal length but for the last.
+    const auto frames_in = static_cast<double>(n);
+    const double units = std::clamp(std::floor(frames_in * each / unit_seconds), 1.0, frames_in);
+    job.chunk = static_cast<int>(std::ceil(frames_in / units));
     terminal.say(fmt::format("fathom: a {} takes {:.2f} s by a probe of {}: {} a unit",
                              job.tiles > 1 ? "tile" : "frame", each, frames.size(), job.chunk));
     return done;
@@ -347,6 +349,19 @@ Exit collect(const Job &job, Terminal &terminal) {
     return exit;
 }
 
+// Why a folder cannot hold a job: its name has what the engine reads as its own. Empty: it can.
+std::string refused_folder(const fs::path &folder, Engine engine) {
+    const std::string name = folder.string(), special = engine == Engine::Slurm ? "%'\"\\" : "{}";
+    for (const char c : name)
+        if (special.find(c) != special.npos || static_cast<unsigned char>(c) < ' ')
+            return fmt::format(
+                "{} reads some characters of `{}` as its own: a job folder's path is "
+                "without {} and line breaks",
+                engine == Engine::Slurm ? "Slurm" : "GNU parallel", name,
+                engine == Engine::Slurm ? "% ' \" \\" : "{ }");
+    return "";
+}
+
 // The job folder of a scene, whole. The probe's frames are in it.
 Exit make(const FarmCommand &command, Job &job, Terminal &terminal) {
     std::error_code error;
@@ -359,6 +374,8 @@ Exit make(const FarmCommand &command, Job &job, Terminal &terminal) {
     if (render.backend == Backend::Auto) render.backend = Backend::Cpu; // the same on every machine
     render.jobs = std::max(render.jobs, 1);
     job.engine = command.action == "slurm" ? Engine::Slurm : Engine::Parallel;
+    if (const std::string why = refused_folder(job.folder, job.engine); !why.empty())
+        return refuse(terminal, usage_error, why);
     job.options = command.options;
     job.frames = frames_of_film(render);
     job.single = render.frames.numbers.empty() && render.turntable == 0;

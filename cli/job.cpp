@@ -1,10 +1,13 @@
 #include "cli/job.h"
 
+#include "cli/film.h"
+#include "cli/words.h"
 #include "driver/files.h"
 
 #include <algorithm>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <sys/file.h>
@@ -23,18 +26,31 @@ constexpr int most_tries = 20;
 
 // Whether a process has the lock of a unit.
 bool is_locked(const fs::path &file) {
-    const int lock = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    const int lock = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (lock < 0) return false;
     const bool locked = ::flock(lock, LOCK_SH | LOCK_NB) != 0;
     ::close(lock);
     return locked;
 }
 
-std::vector<int> ints_of(const Json &list) {
-    std::vector<int> numbers;
-    for (const Json &number : list) numbers.push_back(number.get<int>());
-    return numbers;
-}
+// What a manifest says, in the ranges of the options that `farm` takes: it may come from anywhere.
+struct Reader {
+    const Json &json;
+    std::string wrong = ""; // the first entry that is none
+
+    double number(const char *name, double least, double most) {
+        const double value = json.at(name).get<double>();
+        if (!(value >= least && value <= most)) refuse(name);
+        return value;
+    }
+    int whole(const char *name, int least, int most) {
+        return static_cast<int>(std::clamp<double>(number(name, least, most), least, most));
+    }
+    std::string text(const char *name) { return json.at(name).get<std::string>(); }
+    void refuse(const char *name) {
+        if (wrong.empty()) wrong = name;
+    }
+};
 
 } // namespace
 
@@ -91,12 +107,12 @@ std::string manifest_of(const Job &job) {
                     {"options", job.options},
                     {"identity", job.identity},
                     {"units", unit_count(job)},
-                    {"frames", job.frames},
+                    {"frames", words_of_frames(job.frames)},
                     {"single", job.single},
                     {"tiles", job.tiles},
                     {"chunk", job.chunk},
                     {"threads", job.threads},
-                    {"size", {job.width, job.height}},
+                    {"size", fmt::format("{}x{}", job.width, job.height)},
                     {"samples", job.samples},
                     {"fps", job.frame_rate},
                     {"film", job.film}};
@@ -110,23 +126,27 @@ std::optional<Job> read_job(const fs::path &folder, std::string &error) {
     try {
         const Json json = Json::parse(*text);
         std::error_code none;
+        Reader read{json};
         Job job;
         job.folder = fs::canonical(folder, none);
         job.engine = json.at("engine") == "slurm" ? Engine::Slurm : Engine::Parallel;
         job.options = json.at("options").get<std::vector<std::string>>();
-        job.identity = json.at("identity").get<std::string>();
-        job.frames = ints_of(json.at("frames"));
+        job.identity = read.text("identity");
+        FrameList frames;
+        if (!read_frames(read.text("frames"), frames).empty()) read.refuse("frames");
+        job.frames = std::move(frames.numbers);
         job.single = json.at("single").get<bool>();
-        job.tiles = json.at("tiles").get<int>();
-        job.chunk = json.at("chunk").get<int>();
-        job.threads = json.at("threads").get<int>();
-        job.width = json.at("size").at(0).get<int>();
-        job.height = json.at("size").at(1).get<int>();
-        job.samples = json.at("samples").get<int>();
-        job.frame_rate = json.at("fps").get<double>();
-        job.film = json.at("film").get<std::string>();
-        if (job.tiles >= 1 && job.chunk >= 1 && !job.frames.empty()) return job;
-        error = "manifest.json says of no frames or units";
+        if (!read_pair(read.text("size"), job.width, job.height).empty()) read.refuse("size");
+        job.tiles = read.whole("tiles", 1, std::max(job.height, 1));
+        job.chunk = read.whole("chunk", 1, std::numeric_limits<int>::max());
+        job.threads = read.whole("threads", 1, 1024);
+        job.samples = read.whole("samples", 0, 256);
+        job.frame_rate = read.number("fps", 0.001, 1000);
+        job.film = read.text("film");
+        if (!job.film.empty() && (!is_film(job.film) || job.film.find('/') != job.film.npos))
+            read.refuse("film");
+        if (read.wrong.empty()) return job;
+        error = fmt::format("`{}` of manifest.json is none that `fathom farm` writes", read.wrong);
     } catch (const Json::exception &wrong) {
         error = fmt::format("manifest.json is none: {}", wrong.what());
     }

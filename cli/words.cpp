@@ -106,7 +106,8 @@ std::string read_frames(const std::string &word, FrameList &frames) {
     for (bool more = true; more && good;) {
         const std::size_t comma = rest.find(',');
         good = add_frames(rest.substr(0, comma), frames.numbers);
-        more = comma != rest.npos;
+        // More numbers than there are have one twice, which is told below.
+        more = comma != rest.npos && frames.numbers.size() <= last_frame + 1;
         if (more) rest.remove_prefix(comma + 1);
     }
     if (!good)

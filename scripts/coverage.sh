@@ -5,11 +5,13 @@ root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
 . "$root/scripts/setup.sh"
 install_packages "$build_packages" "$test_packages" llvm || exit 3
 use_ccache
-cd "$root" && cmake --preset coverage >&2 && cmake --build --preset coverage >&2 || exit 1
+tests='lang ir check proof stdlib golden conformance'
+cd "$root" && cmake --preset coverage >&2 &&
+    cmake --build --preset coverage --target $(printf 'test_%s ' $tests) >&2 || exit 1
 profiles=$root/build-coverage/profiles
 rm -rf "$profiles"
 LLVM_PROFILE_FILE="$profiles/%p.profraw" ctest --preset coverage \
-    -R '^(unit_lang|unit_ir|unit_check|unit_proof|unit_stdlib|golden|conformance)$' >&2 || exit 1
+    -R "^(unit_)?($(echo $tests | tr ' ' '|'))\$" >&2 || exit 1
 llvm-profdata merge -sparse "$profiles"/*.profraw -o "$profiles/all.profdata" || exit 1
 objects=""
 for program in "$root"/build-coverage/test_*; do

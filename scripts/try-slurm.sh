@@ -6,6 +6,7 @@
 # is the one that a single process makes, to the byte, and no more work was repeated than was killed.
 # Needs root, and installs Debian's slurm-wlm, munge and parallel. Takes about ten minutes.
 #   scripts/try-slurm.sh [slurm|parallel]…   both unless said
+#   scripts/try-slurm.sh overhead            what Slurm adds to frames of a second, on an idle machine
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
 . "$root/scripts/setup.sh"
 [ "$(id -u)" = 0 ] || { say "Slurm's daemons and a small disk want root"; exit 3; }
@@ -38,7 +39,7 @@ render(time: 60)
 SDF
 options="--frames 0..$frames --fps 25 --size ${SIZE:-192x144} --samples 6 --chunk 10"
 
-# Slurm on one machine: the nodes are daemons with a port each.
+# setup_slurm CPUS: Slurm on one machine. The nodes are daemons with a port and CPUS processors each.
 setup_slurm() {
     local host; host=$(hostname -s)
     pgrep -x munged >/dev/null || {
@@ -71,7 +72,7 @@ ReturnToService=2
 SlurmdParameters=config_overrides
 JobRequeue=1
 SchedulerParameters=batch_sched_delay=0,sched_min_interval=0
-NodeName=n[1-2] NodeHostname=$host NodeAddr=127.0.0.1 Port=[17001-17002] CPUs=3 State=UNKNOWN
+NodeName=n[1-2] NodeHostname=$host NodeAddr=127.0.0.1 Port=[17001-17002] CPUs=$1 State=UNKNOWN
 PartitionName=all Nodes=n[1-2] Default=YES MaxTime=INFINITE State=UP
 CONF
     export SLURM_CONF=$work/slurm.conf
@@ -155,6 +156,30 @@ check() {
     [ "$made" -le $((frames + 10 * killed)) ] || fail "more was repeated than was killed"
 }
 
+# A film of 96 frames of a second or more on one core, less the three that the farm makes as a probe:
+# by two processes that get half of them each, then by two nodes of a processor each.
+overhead() {
+    local scene=$root/examples/temple.sdf film="--turntable 96 --size 400x300 --samples 1 --backend cpu --jobs 1"
+    local begin hand farm
+    setup_slurm 1 || { fail "Slurm does not start"; return; }
+    begin=$(date +%s.%N)
+    "$program" render "$scene" $film --only 1..48 -o "$work/hand/f_####.png" & local first=$!
+    "$program" render "$scene" $film --only 49..95 -o "$work/hand/f_####.png"
+    wait $first
+    hand=$(since "$begin")
+    "$program" farm slurm "$scene" $film --out "$work/farm" || { fail "not submitted"; return; }
+    begin=$(date +%s.%N)
+    until [ "$(done_frames "$work/farm")" = 96 ]; do sleep 0.2; done
+    farm=$(since "$begin")
+    say "93 frames: $hand s by hand, $farm s by Slurm, in units of $(wc -l <"$work/farm/units")"
+    while [ -n "$(squeue -h)" ]; do sleep 1; done
+}
+if [ "$1" = overhead ]; then
+    mkdir "$work/hand"
+    overhead
+    exit ${failed:-0}
+fi
+
 mkdir "$work/whole"
 begin=$(date +%s.%N)
 "$program" render "$work/film.sdf" ${options% --chunk*} --backend cpu -o "$work/whole/frame_####.png" || exit 1
@@ -163,7 +188,7 @@ say "one process with all cores takes $(since "$begin") s for $frames frames"
 for engine in "$@"; do
     job=$disk/$engine
     killed=0
-    [ "$engine" != slurm ] || setup_slurm || { fail "Slurm does not start"; continue; }
+    [ "$engine" != slurm ] || setup_slurm 3 || { fail "Slurm does not start"; continue; }
     begin=$(date +%s.%N)
     if [ "$engine" = slurm ]; then
         "$program" farm slurm "$work/film.sdf" $options --out "$job" || { fail "not submitted"; continue; }

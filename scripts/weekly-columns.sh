@@ -1,11 +1,14 @@
 #!/bin/sh
 # Empties or changes one entry of each column of ir/ops.def in turn, in a copy of the tree in
 # build-ops/, and demands that a test fails or the build does. A column whose entries nobody misses
-# has no reader: it has to go. Arguments name the columns to try; without any, all are tried.
+# has no reader: it has to go. Arguments name the columns to try; without any, all are tried. Without
+# optimisation: twelve builds are made, and the tests that are run are short. JOBS in the environment says how many compilers
+# run at once.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
 cd "$root" && rm -rf build-ops && mkdir -p build-ops/tree || exit 3
 git ls-files -coz --exclude-standard | tar --null -T - -cf - | tar -xf - -C build-ops/tree || exit 3
-cmake -G Ninja -S build-ops/tree -B build-ops -DCMAKE_UNITY_BUILD=ON >/dev/null || exit 3
+cmake -G Ninja -S build-ops/tree -B build-ops -DCMAKE_UNITY_BUILD=ON -DCMAKE_BUILD_TYPE=Debug \
+    -DCMAKE_CXX_FLAGS_DEBUG=-O0 >/dev/null || exit 3
 table=build-ops/tree/ir/ops.def
 tests='conformance golden docs ir proof glsl cpu check save stdlib'
 missed=0
@@ -14,9 +17,9 @@ try() { # COLUMN PATTERN REPLACEMENT: of one row of the table
     cp ir/ops.def "$table" && sed -i "s/$2/$3/" "$table"
     if cmp -s ir/ops.def "$table"; then
         result="NO SUCH ROW" missed=1
-    elif ! ninja -C build-ops fathom $(printf 'test_%s ' $tests) >build-ops/log 2>&1; then
+    elif ! ninja ${JOBS:+-j$JOBS} -C build-ops fathom $(printf 'test_%s ' $tests) >build-ops/log 2>&1; then
         result="does not compile: $(grep -m1 'error:' build-ops/log)"
-    elif ctest --test-dir build-ops >build-ops/log 2>&1 \
+    elif ctest --test-dir build-ops --stop-on-failure >build-ops/log 2>&1 \
         -R "^(unit_)?($(echo $tests | tr ' ' '|'))\$"; then
         result="NOT NOTICED" missed=1
     else

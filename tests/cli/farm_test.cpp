@@ -203,8 +203,63 @@ TEST_CASE("a farm says what it cannot do before it makes a folder") {
     refused("parallel " + job_film + "--out job --tiles 2 --backend gl", 2, "--backend cpu");
     refused("parallel scenes/none.sdf --frames 0..3 --out job", 3, "none.sdf");
     refused("parallel " + job_film + "--out job --film a.png", 2, ".mp4");
+    refused("parallel " + job_film + "--out 'job {}'", 2, "without { }");
+    refused("slurm " + job_film + "--out 'job %j'", 2, "without %");
     refused("parallel " + job_film + "--out job -D nothing=1", 2, "nothing");
     refused("night " + job_film + "--out job", 2, "night");
     refused("status job", 3, "no job folder");
     refused("collect " + std::string("job --tiles 2"), 2, "--tiles");
+}
+
+TEST_CASE("a folder's name may have what a shell reads otherwise") {
+    const Farm folder;
+    const std::string name = "'a job; $x \"%j\"'";
+    const Result made = folder.farm("parallel " + job_film + "--out " + name + " --chunk 5 && cd " +
+                                    name + " && ls frames | wc -l");
+    INFO(made.err);
+    CHECK(made.exit == 0);
+    CHECK(contains(made.out, "10\n"));
+}
+
+TEST_CASE("a manifest that farm did not write is refused, with the entry that is wrong") {
+    const Farm folder;
+    REQUIRE(folder.farm("parallel " + job_film + "--out job --chunk 4 --dry-run").exit == 0);
+    const auto manifest = nlohmann::json::parse(folder.read("job/manifest.json"));
+    const auto refused = [&](const char *entry, const nlohmann::json &value) {
+        INFO(entry << ": " << value.dump());
+        auto other = manifest;
+        other[entry] = value;
+        folder.write("job/manifest.json", other.dump());
+        for (const char *action : {"status", "collect"}) {
+            const Result result = folder.farm(std::string(action) + " job");
+            CHECK(result.exit == 3);
+            CHECK_THAT(result.err, Catch::Contains(entry) || Catch::Contains("type must be"));
+        }
+    };
+    refused("tiles", 2147483647);
+    refused("tiles", 0);
+    refused("chunk", 0);
+    refused("chunk", 1e99);
+    refused("frames", "");
+    refused("frames", "-5..3");
+    refused("frames", "0..4294967296");
+    refused("frames", nlohmann::json::array({1}));
+    refused("size", "2000000000x2000000000");
+    refused("samples", -7);
+    refused("fps", -1);
+    refused("fps", nullptr);
+    refused("film", "../a.mp4");
+    refused("film", "/a.mp4");
+    refused("film", "a.png");
+    std::string many = "0..1000001";
+    for (int i = 0; i < 1000; ++i) many += ",0..1000001";
+    refused("frames", many);
+    for (const char *text : {"", "[", "{}", "7"}) {
+        folder.write("job/manifest.json", text);
+        CHECK(folder.farm("status job").exit == 3);
+    }
+    // What no process can wait for is not waited for.
+    folder.write("job/manifest.json", manifest.dump());
+    CHECK(folder.run("mkfifo job/state/0.lock job/state/1 job/frames/frame_0009.png").exit == 0);
+    CHECK(contains(folder.farm("status job").out, "3 missing"));
 }
