@@ -1,9 +1,9 @@
 #!/bin/sh
 # Empties or changes one entry of each column of ir/ops.def in turn, in a copy of the tree in
 # build-ops/, and demands that a test fails or the build does. A column whose entries nobody misses
-# has no reader: it has to go. Arguments name the columns to try; without any, all are tried. Without
-# optimisation: twelve builds are made, and the tests that are run are short. JOBS in the environment says how many compilers
-# run at once.
+# has no reader: it has to go. Arguments name the columns to try; without any, all are tried. The
+# builds are not optimised: twelve are made, and the tests are short. JOBS in the environment says
+# how many compilers run at once.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
 cd "$root" && rm -rf build-ops && mkdir -p build-ops/tree || exit 3
 git ls-files -coz --exclude-standard | tar --null -T - -cf - | tar -xf - -C build-ops/tree || exit 3
