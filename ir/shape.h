@@ -9,6 +9,7 @@
 
 #include "ir/graph.h"
 
+#include <initializer_list>
 #include <limits>
 #include <string>
 #include <vector>
@@ -50,6 +51,13 @@ enum class ShapeKind : std::uint8_t {
     Contract // f; payload: index into Shapes::contracts: `shape<L>` demanded here
 };
 const char *shape_kind_name(ShapeKind kind);
+// Whether the kind is listed. A new kind is none of any list: where that would be wrong, a switch
+// over all kinds has to name it.
+constexpr bool is_one_of(ShapeKind kind, std::initializer_list<ShapeKind> kinds) {
+    for (const ShapeKind one : kinds)
+        if (kind == one) return true;
+    return false;
+}
 
 // The profiles that stand along the line where two surfaces meet.
 enum class SeamKind : std::uint8_t { Pipe, Engrave, Groove, Tongue };

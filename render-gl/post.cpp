@@ -1,5 +1,6 @@
 #include "render-gl/post.h"
 
+#include "backend-glsl/template.h"
 #include "render-gl/fxaa.h"
 #include "render-gl/program.h"
 #include "render-gl/shaders.h"
@@ -13,8 +14,8 @@ namespace fathom::gl {
 
 namespace {
 
-// The colours of a ramp are those of the marcher's heat map: blue, green, yellow, red.
-constexpr const char *resolve_text = R"(#version 330 core
+// Behind the template `encode`, which has the colours (backend-glsl/template.h).
+constexpr const char *resolve_text = R"(
 uniform sampler2D sums;
 uniform sampler2D picks;
 uniform sampler2D probes;
@@ -23,22 +24,6 @@ uniform float share;      // one over the samples
 uniform float max_steps;
 uniform float isolines;
 out vec4 color;
-
-vec3 encode(vec3 linear) {
-    vec3 c = clamp(linear, 0.0, 1.0);
-    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
-}
-
-// What decides how a byte is rounded (base/picture.h, `dither`).
-float dither(ivec2 at) {
-    int place = 0;
-    for (int bit = 0; bit < 3; ++bit) place = place * 4 + (((at.x ^ at.y) >> bit & 1) * 2 + (at.y >> bit & 1));
-    return (0.02 + 0.96 / 63.0 * float(place) - 0.5) / 255.0;
-}
-
-vec3 ramp(float x) {
-    return clamp(vec3(2.0 * x - 0.6, 1.6 - abs(3.2 * x - 1.6), 1.0 - 2.2 * x), 0.0, 1.0);
-}
 
 // The distance a pixel away, at most: how thick a line of one pixel is.
 float change(ivec2 at) {
@@ -51,14 +36,14 @@ float change(ivec2 at) {
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    vec3 picture = encode(share * texelFetch(sums, at, 0).rgb);
-    if (look == 0) picture += dither(ivec2(at.x, textureSize(sums, 0).y - 1 - at.y));
+    vec3 picture = fathom_srgb(share * texelFetch(sums, at, 0).rgb);
+    if (look == 0) picture += fathom_dither(ivec2(at.x, textureSize(sums, 0).y - 1 - at.y));
     vec3 gray = vec3(0.35 * dot(picture, vec3(0.299, 0.587, 0.114)) + 0.12);
     vec4 pick = texelFetch(picks, at, 0);   // part, t, steps, slope
-    if (look == 1) picture = ramp(log2(1.0 + pick.z) / log2(1.0 + max_steps));
+    if (look == 1) picture = fathom_ramp(log2(1.0 + pick.z) / log2(1.0 + max_steps));
     if (look == 2) {
         // A field that rises by s a unit makes rays step 1/s times too often: blue is 1, red 32.
-        picture = pick.y < 0.0 ? gray : ramp(clamp(-0.2 * log2(max(pick.w, 1e-6)), 0.0, 1.0)) * (0.55 + 0.45 * picture);
+        picture = pick.y < 0.0 ? gray : fathom_ramp(clamp(-0.2 * log2(max(pick.w, 1e-6)), 0.0, 1.0)) * (0.55 + 0.45 * picture);
     }
     if (look == 3) {
         vec4 probe = texelFetch(probes, at, 0);   // distance, t, -, there is one
@@ -153,7 +138,8 @@ Post::~Post() {
 }
 
 bool Post::prepare(int width, int height) {
-    if (!resolve_) resolve_ = linked(resolve_text);
+    if (!resolve_)
+        resolve_ = linked("#version 330 core\n" + glsl::expand("encode", {}) + resolve_text);
     if (!finish_) finish_ = linked(std::string(finish_head) + fxaa_text + finish_main);
     if (size_ == std::array{width, height}) return true;
     if (!texture_) glGenTextures(1, &texture_);

@@ -175,17 +175,17 @@ Vec heat(const Landing &landing) {
 }
 
 // Places of the picture that a sample is taken of.
-struct Pixels {
+struct Places {
     std::vector<int> x, y;
     std::size_t size() const { return x.size(); }
     void add(int px, int py) { x.push_back(px), y.push_back(py); }
 };
 
-Pixels all_of(const Tile &tile) {
-    Pixels pixels;
+Places all_of(const Tile &tile) {
+    Places places;
     for (int y = tile.y; y < tile.y + tile.height; ++y)
-        for (int x = tile.x; x < tile.x + tile.width; ++x) pixels.add(x, y);
-    return pixels;
+        for (int x = tile.x; x < tile.x + tile.width; ++x) places.add(x, y);
+    return places;
 }
 
 // Where one sample of each pixel lands, and in colour what it sees there.
@@ -193,21 +193,21 @@ struct Seen {
     std::vector<Landing> landings;
     std::vector<Vec> colors;
 };
-Seen look(Worker &worker, const Pixels &pixels, int sample, PictureMode mode) {
+Seen look(Worker &worker, const Places &places, int sample, PictureMode mode) {
     const Stage &stage = worker.stage;
     std::vector<RayState> rays;
     const auto offset = ir::sample_offset(sample);
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        rays.push_back(eye(stage, static_cast<float>(pixels.x[i] + offset[0]),
-                           static_cast<float>(pixels.y[i] + offset[1])));
-    Seen seen{std::vector<Landing>(pixels.size()), std::vector<Vec>(pixels.size())};
+    for (std::size_t i = 0; i < places.size(); ++i)
+        rays.push_back(eye(stage, static_cast<float>(places.x[i] + offset[0]),
+                           static_cast<float>(places.y[i] + offset[1])));
+    Seen seen{std::vector<Landing>(places.size()), std::vector<Vec>(places.size())};
     march(worker, rays, seen.landings, false);
     if (mode == PictureMode::Color) shade(worker, rays, seen.landings, seen.colors);
     return seen;
 }
 
 // The picture that is being made of a part of the whole one.
-struct Canvas {
+struct PartPicture {
     Tile region;
     bool sums = false;
     Picture &picture;
@@ -219,40 +219,40 @@ struct Canvas {
 };
 
 // All samples of a tile, which lies in the region.
-void draw(Worker &worker, const PictureOptions &options, const Tile &tile, Canvas &canvas) {
-    const Pixels pixels = all_of(tile);
+void draw(Worker &worker, const PictureOptions &options, const Tile &tile, PartPicture &part) {
+    const Places places = all_of(tile);
     if (options.mode == PictureMode::Steps) {
-        const Seen seen = look(worker, pixels, 0, options.mode);
-        for (std::size_t i = 0; i < pixels.size(); ++i) {
-            std::uint8_t *pixel = canvas.pixel(pixels.x[i], pixels.y[i]);
+        const Seen seen = look(worker, places, 0, options.mode);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            std::uint8_t *pixel = part.pixel(places.x[i], places.y[i]);
             const Vec c = heat(seen.landings[i]);
             for (int k = 0; k < 3; ++k) pixel[k] = byte(c[k]);
             pixel[3] = 255;
         }
         return;
     }
-    std::vector<double> sums(3 * pixels.size());
+    std::vector<double> sums(3 * places.size());
     const int samples = std::max(options.samples, 1);
     for (int sample = 0; sample < samples; ++sample) {
-        const Seen seen = look(worker, pixels, options.first_sample + sample, options.mode);
-        for (std::size_t i = 0; i < pixels.size(); ++i)
+        const Seen seen = look(worker, places, options.first_sample + sample, options.mode);
+        for (std::size_t i = 0; i < places.size(); ++i)
             for (int c = 0; c < 3; ++c)
                 sums[3 * i + static_cast<std::size_t>(c)] += summand(seen.colors[i][c]);
     }
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const int x = pixels.x[i], y = pixels.y[i];
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const int x = places.x[i], y = places.y[i];
         const std::span<const double> sum = std::span(sums).subspan(3 * i, 3);
-        encode_sums(sum, samples, x, y, {canvas.pixel(x, y), 4});
-        if (canvas.sums)
-            std::ranges::copy(sum, canvas.picture.sums.begin() +
-                                       static_cast<std::ptrdiff_t>(3 * canvas.place(x, y)));
+        encode_sums(sum, samples, x, y, {part.pixel(x, y), 4});
+        if (part.sums)
+            std::ranges::copy(sum, part.picture.sums.begin() +
+                                       static_cast<std::ptrdiff_t>(3 * part.place(x, y)));
     }
 }
 
 // One sample of each pixel, and where it is rough more.
 class Smooth {
   public:
-    Smooth(const Stage &stage, Canvas &canvas) : canvas_(canvas), area_(canvas.region) {
+    Smooth(const Stage &stage, PartPicture &part) : part_(part), area_(part.region) {
         // Whether a pixel at the edge of the region is rough is told by its neighbour outside.
         const int left = std::max(area_.x - 1, 0), top = std::max(area_.y - 1, 0),
                   right = std::min(area_.x + area_.width + 1, stage.width),
@@ -263,10 +263,10 @@ class Smooth {
     }
     const Tile &area() const { return area_; } // what has to be drawn once
     void draw_first(Worker &worker, const Tile &tile) {
-        const Pixels pixels = all_of(tile);
-        const Seen seen = look(worker, pixels, 0, PictureMode::Color);
-        for (std::size_t i = 0; i < pixels.size(); ++i) {
-            const int x = pixels.x[i], y = pixels.y[i];
+        const Places places = all_of(tile);
+        const Seen seen = look(worker, places, 0, PictureMode::Color);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const int x = places.x[i], y = places.y[i];
             float *color = first_.data() + 4 * place(x, y);
             for (int c = 0; c < 3; ++c) color[c] = seen.colors[i][c];
             if (is_inside(x, y)) put(x, y, seen.colors[i], {}, 1);
@@ -274,21 +274,21 @@ class Smooth {
     }
     void find_rough() { rough_ = rough_pixels(area_.width, area_.height, first_); }
     void draw_more(Worker &worker, const Tile &tile) {
-        Pixels pixels;
+        Places places;
         for (int y = tile.y; y < tile.y + tile.height; ++y)
             for (int x = tile.x; x < tile.x + tile.width; ++x)
-                if (is_inside(x, y) && rough_[place(x, y)]) pixels.add(x, y);
-        if (pixels.size() == 0) return;
-        std::vector<std::array<double, 3>> sums(pixels.size());
+                if (is_inside(x, y) && rough_[place(x, y)]) places.add(x, y);
+        if (places.size() == 0) return;
+        std::vector<std::array<double, 3>> sums(places.size());
         for (int sample = 1; sample < ir::shading::rough_samples; ++sample) {
-            const Seen seen = look(worker, pixels, sample, PictureMode::Color);
-            for (std::size_t i = 0; i < pixels.size(); ++i)
+            const Seen seen = look(worker, places, sample, PictureMode::Color);
+            for (std::size_t i = 0; i < places.size(); ++i)
                 for (std::size_t c = 0; c < 3; ++c)
                     sums[i][c] += summand(seen.colors[i][static_cast<int>(c)]);
         }
-        for (std::size_t i = 0; i < pixels.size(); ++i) {
-            const float *first = first_.data() + 4 * place(pixels.x[i], pixels.y[i]);
-            put(pixels.x[i], pixels.y[i], {first[0], first[1], first[2]}, sums[i],
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const float *first = first_.data() + 4 * place(places.x[i], places.y[i]);
+            put(places.x[i], places.y[i], {first[0], first[1], first[2]}, sums[i],
                 ir::shading::rough_samples);
         }
     }
@@ -299,15 +299,15 @@ class Smooth {
                static_cast<std::size_t>(x - area_.x);
     }
     bool is_inside(int x, int y) const {
-        const Tile &r = canvas_.region;
+        const Tile &r = part_.region;
         return x >= r.x && x < r.x + r.width && y >= r.y && y < r.y + r.height;
     }
     void put(int x, int y, Vec first, std::array<double, 3> sum, int samples) {
         for (std::size_t c = 0; c < 3; ++c) sum[c] += summand(first[static_cast<int>(c)]);
-        encode_sums(sum, samples, x, y, {canvas_.pixel(x, y), 4});
+        encode_sums(sum, samples, x, y, {part_.pixel(x, y), 4});
     }
 
-    Canvas &canvas_;
+    PartPicture &part_;
     Tile area_;
     std::vector<float> first_; // linear, four a pixel of the area
     std::vector<std::uint8_t> rough_;
@@ -378,7 +378,7 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
         static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
     picture.rgba.resize(4 * pixels);
     if (options.sums) picture.sums.resize(3 * pixels);
-    Canvas canvas{region, options.sums, picture};
+    PartPicture part{region, options.sums, picture};
     std::mutex report;
 
     // Every tile of an area once, by all threads. Whether the caller wants to go on.
@@ -423,10 +423,10 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
 
     if (options.samples > 0 || options.mode == PictureMode::Steps) {
         each_tile(region, 0, 1,
-                  [&](Worker &worker, const Tile &tile) { draw(worker, options, tile, canvas); });
+                  [&](Worker &worker, const Tile &tile) { draw(worker, options, tile, part); });
         return picture;
     }
-    Smooth smooth(stage, canvas);
+    Smooth smooth(stage, part);
     if (!each_tile(smooth.area(), 0, 0.5,
                    [&](Worker &worker, const Tile &tile) { smooth.draw_first(worker, tile); }))
         return picture;

@@ -1,19 +1,16 @@
 $# The colour of a place in the picture, or what fathom_mode asks of it (marcher.h).
 
-// sRGB, and what a slow gradient needs to show no bands: an ordered pattern that decides how a byte is rounded.
+$include encode
+
 vec3 fathom_encode(vec3 linear, ivec2 pixel) {
-    vec3 c = clamp(linear, 0.0, 1.0);
-    int place = 0;
-    for (int bit = 0; bit < 3; ++bit) place = place * 4 + (((pixel.x ^ pixel.y) >> bit & 1) * 2 + (pixel.y >> bit & 1));
-    float dither = (0.02 + 0.96 / 63.0 * float(place) - 0.5) / 255.0;
-    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308))) + dither;
+    return fathom_srgb(linear) + fathom_dither(pixel);
 }
 
 // Blue for few steps, through green and yellow to red for many; magenta for an undecided ray.
 vec3 fathom_heat(int steps) {
     if (fathom_end == 2) return vec3(1.0, 0.0, 1.0);
     float x = log2(1.0 + float(steps)) / log2(1.0 + float($MANY_STEPS));
-    return clamp(vec3(2.0 * x - 0.6, 1.6 - abs(3.2 * x - 1.6), 1.0 - 2.2 * x), 0.0, 1.0);
+    return fathom_ramp(x);
 }
 
 $if SOFT

@@ -49,32 +49,9 @@ double operations_below(const Graph &graph, std::span<const NodeId> roots) {
 } // namespace
 
 bool is_transparent(const Shape &shape, const Shapes &shapes) {
-    switch (shape.kind) {
-    case ShapeKind::Paint:
-    case ShapeKind::Repaint:
-    case ShapeKind::Mixed:
-    case ShapeKind::Contract: return true;
-    case ShapeKind::Library: return !shapes.libraries[shape.payload].has_claims;
-    case ShapeKind::Empty:
-    case ShapeKind::Leaf:
-    case ShapeKind::Union:
-    case ShapeKind::Intersection:
-    case ShapeKind::Complement:
-    case ShapeKind::Xor:
-    case ShapeKind::Blend:
-    case ShapeKind::Seam:
-    case ShapeKind::Lerp:
-    case ShapeKind::PseudoNorm:
-    case ShapeKind::Map:
-    case ShapeKind::Offset:
-    case ShapeKind::Shell:
-    case ShapeKind::Displace:
-    case ShapeKind::Extrude:
-    case ShapeKind::Repeat:
-    case ShapeKind::Within:
-    case ShapeKind::Instances: return false;
-    }
-    return false;
+    if (shape.kind == ShapeKind::Library) return !shapes.libraries[shape.payload].has_claims;
+    return is_one_of(shape.kind,
+                     {ShapeKind::Paint, ShapeKind::Repaint, ShapeKind::Mixed, ShapeKind::Contract});
 }
 
 namespace {

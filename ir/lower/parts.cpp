@@ -9,32 +9,9 @@ namespace fathom::ir {
 namespace {
 
 bool combines(ShapeKind kind) {
-    switch (kind) {
-    case ShapeKind::Union:
-    case ShapeKind::Intersection:
-    case ShapeKind::Xor:
-    case ShapeKind::Blend:
-    case ShapeKind::Seam:
-    case ShapeKind::Lerp:
-    case ShapeKind::PseudoNorm: return true;
-    case ShapeKind::Empty:
-    case ShapeKind::Leaf:
-    case ShapeKind::Complement:
-    case ShapeKind::Map:
-    case ShapeKind::Offset:
-    case ShapeKind::Shell:
-    case ShapeKind::Displace:
-    case ShapeKind::Extrude:
-    case ShapeKind::Repeat:
-    case ShapeKind::Within:
-    case ShapeKind::Paint:
-    case ShapeKind::Repaint:
-    case ShapeKind::Mixed:
-    case ShapeKind::Instances:
-    case ShapeKind::Library:
-    case ShapeKind::Contract: return false;
-    }
-    return false;
+    return is_one_of(kind,
+                     {ShapeKind::Union, ShapeKind::Intersection, ShapeKind::Xor, ShapeKind::Blend,
+                      ShapeKind::Seam, ShapeKind::Lerp, ShapeKind::PseudoNorm});
 }
 
 } // namespace

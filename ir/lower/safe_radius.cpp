@@ -11,32 +11,8 @@ namespace fathom::ir {
 // Whether the shape's own combination hands its children's safe radius on. Folds do not: a mirror
 // may bend a field upward sharply. Intersections would need more than the smaller radius.
 bool Lowering::passes_safe_radius_on(const Shape &s) const {
-    switch (s.kind) {
-    case ShapeKind::Union:
-    case ShapeKind::Paint:
-    case ShapeKind::Repaint:
-    case ShapeKind::Mixed:
-    case ShapeKind::Contract: return true;
-    case ShapeKind::Library: return !shapes_.libraries[s.payload].has_claims;
-    case ShapeKind::Map: return s.map == MapKind::Translate || s.map == MapKind::Rotate;
-    case ShapeKind::Empty:
-    case ShapeKind::Leaf:
-    case ShapeKind::Intersection:
-    case ShapeKind::Complement:
-    case ShapeKind::Xor:
-    case ShapeKind::Blend:
-    case ShapeKind::Seam:
-    case ShapeKind::Lerp:
-    case ShapeKind::PseudoNorm:
-    case ShapeKind::Offset:
-    case ShapeKind::Shell:
-    case ShapeKind::Displace:
-    case ShapeKind::Extrude:
-    case ShapeKind::Repeat:
-    case ShapeKind::Within:
-    case ShapeKind::Instances: return false;
-    }
-    return false;
+    if (s.kind == ShapeKind::Map) return s.map == MapKind::Translate || s.map == MapKind::Rotate;
+    return s.kind == ShapeKind::Union || is_transparent(s, shapes_);
 }
 
 void Lowering::find_curved() {

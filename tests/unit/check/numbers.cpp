@@ -44,7 +44,7 @@ std::vector<Entry> examples() {
         const std::string import = e.module.empty() ? "" : "import \"dfmodel\" as dfmodel\n";
         out.push_back({e.name, import + e.doc.substr(begin, e.doc.find('`', begin) - begin)});
         // each parameter that the example leaves out, once
-        const std::string &text = out.back().text;
+        const std::string text = out.back().text;
         const std::size_t call = text.find(e.name + "(");
         if (call == std::string::npos) continue;
         for (std::size_t p = e.signature.find(" = "); p != std::string::npos;

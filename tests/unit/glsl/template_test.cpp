@@ -200,7 +200,7 @@ Frame frame_of(std::string_view name, const Values &values) {
     const std::string scene = version + inputs + cells + cache;
     const auto expanded = [&](const char *other) { return glsl::expand(other, values); };
     if (name == "march") return {scene, end};
-    if (name == "corner") return {version, end};
+    if (name == "corner" || name == "encode") return {version, end};
     if (name == "ray") return {scene + expanded("march") + "void ray(vec2 place) {\n", "}\n" + end};
     const std::string marched = scene + pick + expanded("march") + expanded("corner");
     if (name == "march_ahead")
