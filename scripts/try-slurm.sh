@@ -167,7 +167,7 @@ overhead() {
     "$program" render "$scene" $film --only 49..95 -o "$work/hand/f_####.png"
     wait $first
     hand=$(since "$begin")
-    "$program" farm slurm "$scene" $film --out "$work/farm" || { fail "not submitted"; return; }
+    "$program" farm slurm "$scene" $film --chunk 24 --out "$work/farm" || { fail "not submitted"; return; }
     begin=$(date +%s.%N)
     until [ "$(done_frames "$work/farm")" = 96 ]; do sleep 0.2; done
     farm=$(since "$begin")
