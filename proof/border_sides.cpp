@@ -167,6 +167,9 @@ NodeId Border::value(NodeId step, int component, bool moves, int depth) {
     if (op == Op::Atan2) return angle(step, component, moves, depth);
     const auto t = near(step, component, depth);
     if (!t || !turns_with(step, component, *t)) return unknown_of(step, component, depth);
+    // What moves along has to do so in all of its uses.
+    if ((t->times != 0 || t->slope != 0) && !is_own(step, component) && !seen.all_uses_of(step))
+        limit.failed = true;
     const NodeId multiple = graph.mul(graph.number(t->times), whole);
     const auto rest = [&] { // t - floor(t)
         const NodeId left = graph.number(snapped(t->number) - floor_of(t->number, t->slope));
@@ -204,9 +207,34 @@ NodeId Border::unknown_of(NodeId step, int component, int depth) {
     if (!moves && graph[step].op == Op::Mod)
         if (const auto parity = parity_of(args[0], args[1])) return *parity;
     if (!moves) return graph.make(graph[step].op, ir::Type::Float, args, graph[step].payload);
+    const double offset = group.is_angle ? whole_offset(step, args) : 0;
+    if (group.is_angle) key[1] = args[0].index;
     const auto [it, fresh] = unknown.try_emplace(key);
     if (fresh) it->second = graph.fresh_var(ir::Type::Float);
-    return it->second;
+    return offset != 0 ? graph.add(it->second, graph.number(offset)) : it->second;
+}
+
+double Border::whole_offset(NodeId step, std::vector<NodeId> &args) {
+    const Op op = graph[step].op;
+    const auto width = op == Op::Mod ? graph.as_number(args[1]) : std::optional(1.0);
+    if (op == Op::Atan2 || !width || *width == 0) return 0;
+    const auto terms = terms_of(graph, args[0]);
+    if (!terms) return 0;
+    double number = 0;
+    NodeId rest = graph.number(0);
+    for (const Term &term : *terms) {
+        if (term.factors.empty()) {
+            number = term.by / *width;
+            continue;
+        }
+        NodeId product = graph.number(term.by);
+        for (NodeId factor : term.factors) product = graph.mul(product, factor);
+        rest = graph.add(rest, product);
+    }
+    constexpr double grain = 0x1p30; // pi may have been written with few digits
+    const double near = std::round(number * grain) / grain, whole_part = std::floor(near);
+    args[0] = graph.add(rest, graph.number((near - whole_part) * *width));
+    return op == Op::Mod || op == Op::Fract ? 0 : whole_part;
 }
 
 std::optional<NodeId> Border::parity_of(NodeId count, NodeId two) {

@@ -7,6 +7,7 @@
 
 #include <map>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 namespace fathom::proof {
@@ -39,6 +40,8 @@ struct Canonical {
     NodeId as_float(NodeId id); // of an Int: sums and products outside of the conversion
 
     NodeId scalar(NodeId id);
+    std::optional<NodeId> entry(NodeId matrix, int row, int column);
+    std::optional<NodeId> written_product(NodeId a, NodeId b);
     std::optional<NodeId> turned(Op op, NodeId angle);
 
     NodeId of(NodeId id, int depth = 0);
@@ -57,6 +60,14 @@ struct Group {
     std::vector<NodeId> steps;
     bool is_angle = false;
 };
+
+// What is written for each side: an expression that all uses of a group's steps go through.
+struct Seen {
+    NodeId through;
+    const std::unordered_map<NodeId, NodeId> &next_through; // of each node: the next one
+    bool all_uses_of(NodeId step) const;                    // go through it, too
+};
+NodeId common_through(const std::unordered_map<NodeId, NodeId> &through, NodeId a, NodeId b);
 
 enum class Side { Before, At, After };
 constexpr double sign_of(Side side) { return side == Side::Before ? -1.0 : 1.0; }
@@ -81,6 +92,7 @@ struct Met {
 struct Border {
     Graph &graph;
     const Group &group;
+    const Seen &seen;
     const NodeId whole, little, little_angle, radius;      // K; how far from the border; by which
                                                            // angle; how far from an axis
     std::map<std::vector<std::uint32_t>, NodeId> &unknown; // by op and arguments, of all sides
@@ -124,6 +136,9 @@ struct Border {
     // Of steps that hang on other steps alone, the value is what it says; else anything, one for
     // equal arguments.
     NodeId unknown_of(NodeId step, int component, int depth);
+    // Takes whole numbers out of a step's argument: by how much its value is more with them. Where
+    // an angle is cut, arguments go on by whole numbers of turns.
+    double whole_offset(NodeId step, std::vector<NodeId> &args);
     // (j K + n) % 2, j and n whole, by K % 2.
     std::optional<NodeId> parity_of(NodeId count, NodeId two);
     // The sign of j K + n, where that is known of K.

@@ -84,6 +84,12 @@ bool by_component(Op op) {
            op != Op::Transpose;
 }
 
+// Is the first coefficient negative? Of a sum and its negative one is, and equal ones are alike.
+bool leads_below_zero(const Polynomial &sum) {
+    const auto lead = std::ranges::find_if(sum, [](const auto &term) { return term.second != 0; });
+    return lead != sum.end() && lead->second < 0;
+}
+
 std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
     const ir::Node node = graph[id];
     if (auto c = graph.as_number(id)) return Polynomial{{{}, *c}};
@@ -141,12 +147,20 @@ std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
             if (inner != id) return polynomial(graph, inner, depth + 1);
         }
         if (by_component(node.op) && node.count > 0) { // the same function of arguments in one form
+            constexpr ir::OpSet mirrored{Op::Abs, Op::Cos, Op::Sin}; // f(-x) is f(x) or -f(x)
             std::vector<NodeId> args;
+            double sign = 1;
             for (int i = 0; i < int(node.count); ++i) {
                 auto a = sub(i);
+                if (a && !a->empty() && mirrored[node.op] && leads_below_zero(*a)) {
+                    for (auto &[m, x] : *a) x = -x;
+                    sign = node.op == Op::Sin ? -sign : sign;
+                }
                 args.push_back(a ? rebuilt(graph, *a) : graph.arg(id, i));
             }
-            return Polynomial{{{graph.make(node.op, node.type, args, node.payload)}, 1.0}};
+            const NodeId made = graph.make(node.op, node.type, args, node.payload);
+            if (const auto c = graph.as_number(made)) return Polynomial{{{}, sign * *c}};
+            return Polynomial{{{made}, sign}};
         }
     }
     return Polynomial{{{id}, 1.0}};
@@ -263,6 +277,8 @@ std::optional<Linear> linear_in(Graph &graph, NodeId scalar, NodeId atom) {
     const auto sum = polynomial(graph, scalar), alone = polynomial(graph, atom);
     if (!sum || !alone || alone->size() != 1 || alone->begin()->first.size() != 1) return {};
     const NodeId own = alone->begin()->first[0];
+    const double one = alone->begin()->second;
+    if (one != 1) return {};
     Linear out;
     Polynomial rest;
     for (const auto &[factors, c] : *sum) {
@@ -284,6 +300,23 @@ std::optional<std::vector<Term>> terms_of(Graph &graph, NodeId scalar) {
     for (const auto &[factors, c] : *sum)
         if (c != 0) out.push_back({c, factors});
     return out;
+}
+
+bool same_with_mixes_as_sums(Graph &graph, NodeId a, NodeId b) {
+    std::unordered_map<NodeId, NodeId> known;
+    const auto written = [&](auto &&self, NodeId id) -> NodeId {
+        if (const auto it = known.find(id); it != known.end()) return it->second;
+        const ir::Node node = graph[id];
+        std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
+        for (NodeId &arg : args) arg = self(self, arg);
+        NodeId out = id;
+        if (node.op == Op::Mix)
+            out = graph.add({args[0], graph.mul(args[2], graph.sub(args[1], args[0]))});
+        else if (node.count > 0)
+            out = graph.make(node.op, node.type, args, node.payload);
+        return known[id] = out;
+    };
+    return same(graph, written(written, a), written(written, b));
 }
 
 std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {
@@ -388,6 +421,11 @@ bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b, Work &work) 
         return true;
     }
     if (node.op == Op::Not) return arms_agree(graph, graph.arg(condition, 0), b, a, work);
+    if (node.op == Op::Equal || node.op == Op::NotEqual) { // one arm is met on the border alone
+        const NodeId u = graph.arg(condition, 0), v = graph.arg(condition, 1);
+        return graph[u].type == ir::Type::Float && ir::components(graph[a].type) == 1 &&
+               agree_where_equal(graph, u, v, a, b, work);
+    }
     if (node.op == Op::And || node.op == Op::Or) { // the border is part of the two together
         NodeId left = graph.arg(condition, 0), right = graph.arg(condition, 1);
         return arms_agree(graph, left, a, b, work) && arms_agree(graph, right, a, b, work);

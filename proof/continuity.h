@@ -63,6 +63,9 @@ struct Term {
 };
 std::optional<std::vector<Term>> terms_of(ir::Graph &graph, ir::NodeId scalar);
 
+// Are two scalars the same (same(), above), with each mix(a, b, t) as a + t (b - a)?
+bool same_with_mixes_as_sums(ir::Graph &graph, ir::NodeId a, ir::NodeId b);
+
 // a - b as a sum in which equal terms have cancelled; nothing where the expressions are too large.
 std::optional<ir::NodeId> difference(ir::Graph &graph, ir::NodeId a, ir::NodeId b);
 

@@ -6,7 +6,8 @@
 // unknown: one variable for equal arguments. Where a sum of products makes all three equal
 // (continuity.h), the field does not see the jump, whatever the unknown steps are; so where steps
 // turn together without our knowing, their jumps can be taken one after another
-// (docs/lipschitz.md, 2).
+// (docs/lipschitz.md, 2). The expression that is written three times is the least that all uses of
+// the group's steps go through, or a larger one (2.12).
 #include "proof/discontinuities.h"
 
 #include "ir/passes/inline.h"
@@ -19,10 +20,27 @@
 #include <vector>
 
 namespace fathom::proof {
+
+NodeId common_through(const std::unordered_map<NodeId, NodeId> &through, NodeId a, NodeId b) {
+    while (a != b) (a < b ? a : b) = through.at(a < b ? a : b);
+    return a;
+}
+
+bool Seen::all_uses_of(NodeId step) const {
+    for (NodeId id = step;;) {
+        if (id == through) return true;
+        const NodeId next = next_through.at(id);
+        if (next == id) return false;
+        id = next;
+    }
+}
+
 namespace {
 
+constexpr std::size_t max_groups = 48;
+
 // Is the field the same on all sides of the borders with these K?
-bool cancels(Graph &graph, NodeId root, const Group &group, bool half, const Counts &counts,
+bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, const Counts &counts,
              Met &met) {
     const bool one = counts.range.is_point();
     const NodeId whole = one ? graph.number(counts.range.lo)
@@ -35,20 +53,22 @@ bool cancels(Graph &graph, NodeId root, const Group &group, bool half, const Cou
     std::vector<NodeId> sides;
     bool same_for_all = true;
     for (const Side side : {Side::Before, Side::At, Side::After}) {
-        Border border{graph,   group, whole, little, little_angle, radius,
-                      unknown, half,  side,  counts, met};
+        Border border{graph,  group,   seen, whole, little, little_angle,
+                      radius, unknown, half, side,  counts, met};
         border.enter(border.limit, false);
         border.enter(border.moving, true);
-        sides.push_back(border.limit.of(root));
+        sides.push_back(border.limit.of(seen.through));
         if (border.limit.failed || border.moving.failed) return false;
-        same_for_all = same_for_all && same(graph, sides.front(), sides.back());
+        same_for_all =
+            same_for_all && (same(graph, sides.front(), sides.back()) ||
+                             same_with_mixes_as_sums(graph, sides.front(), sides.back()));
         if (!same_for_all && met.thresholds.empty() && !met.parity) return false;
     }
     return same_for_all;
 }
 
 // By cases for K: even and odd, and beside each number that it is compared with.
-bool cancels_by_cases(Graph &graph, NodeId root, const Group &group, bool half, Met met) {
+bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool half, Met met) {
     constexpr std::size_t most_thresholds = 8;
     if (met.thresholds.empty() && !met.parity) return false;
     std::vector<double> whole;
@@ -70,19 +90,19 @@ bool cancels_by_cases(Graph &graph, NodeId root, const Group &group, bool half, 
             const bool odd = std::fmod(std::fabs(range.lo), 2) == 1;
             if (range.is_point() && odd != (parity == 1)) continue;
             Met more;
-            if (!cancels(graph, root, group, half, {parity, range}, more)) return false;
+            if (!cancels(graph, seen, group, half, {parity, range}, more)) return false;
         }
     return true;
 }
 
-bool cancels(Graph &graph, NodeId root, const Group &group) {
+bool cancels(Graph &graph, const Seen &seen, const Group &group) {
     bool halves = false, wholes = false;
     for (NodeId step : group.steps) (graph[step].op == Op::Round ? halves : wholes) = true;
     for (const bool half : {false, true}) {
         if (half ? !halves : !wholes) continue;
         Met met;
-        if (!cancels(graph, root, group, half, {}, met) &&
-            !cancels_by_cases(graph, root, group, half, met))
+        if (!cancels(graph, seen, group, half, {}, met) &&
+            !cancels_by_cases(graph, seen, group, half, met))
             return false;
     }
     return true;
@@ -132,6 +152,53 @@ NodeId written_out(Graph &graph, NodeId root) {
     return out.all ? out.root : root;
 }
 
+namespace {
+
+// Does it change with the point where no step turns?
+bool reads_point_bare(const Graph &graph, NodeId root) {
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!graph.reads(id).point || !seen.insert(id).second) continue;
+        const ir::Node node = graph[id];
+        constexpr ir::OpSet rounds{Op::Floor, Op::Ceil, Op::Round};
+        if (rounds[node.op]) continue;
+        if (node.count == 0 || node.op == Op::Loop) return true;
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    return false;
+}
+
+// Of each node of a field the next that all its uses go through; users come before arguments.
+std::unordered_map<NodeId, NodeId> throughs(const Graph &graph, NodeId root,
+                                            std::vector<NodeId> nodes) {
+    std::sort(nodes.begin(), nodes.end(), [](NodeId a, NodeId b) { return b < a; });
+    std::unordered_map<NodeId, NodeId> out{{root, root}};
+    for (NodeId user : nodes)
+        for (NodeId a : graph.args(user)) {
+            const auto [it, fresh] = out.try_emplace(a, user);
+            if (!fresh) it->second = common_through(out, it->second, user);
+        }
+    return out;
+}
+
+// The least expression that all uses of a group's steps go through, then larger ones, up to the
+// whole field.
+bool cancels_somewhere(Graph &graph, NodeId root, const Group &group,
+                       const std::unordered_map<NodeId, NodeId> &through) {
+    NodeId of = through.at(group.steps.front());
+    for (NodeId step : group.steps) of = common_through(through, of, through.at(step));
+    for (int climb = 1;; climb *= 2) {
+        if (cancels(graph, {of, through}, group)) return true;
+        if (of == root) return false;
+        for (int i = 0; i < climb; ++i) of = through.at(of);
+    }
+}
+
+} // namespace
+
 std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
     const std::vector<NodeId> nodes = reached(graph, root, false);
     if (nodes.size() > max_nodes) return {};
@@ -141,6 +208,10 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
         const ir::Node node = graph[id];
         if (!is_step[node.op] || !graph.reads(id).point || graph.reads(id).free_vars) continue;
         if (node.type != ir::Type::Float && !ir::is_vector(node.type)) continue;
+        // Of steps alone: its jumps are theirs.
+        if (!reads_point_bare(graph, graph.arg(id, 0)) &&
+            (node.count < 2 || !reads_point_bare(graph, graph.arg(id, 1))))
+            continue;
         NodeId turning = graph.arg(id, 0);
         if (node.op == Op::Mod) turning = graph.div(turning, graph.arg(id, 1));
         steps.insert(id);
@@ -153,9 +224,10 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
             group.steps.push_back(id);
         }
     }
-    if (groups.size() > 24) return {};
+    if (groups.size() > max_groups) return {};
+    const std::unordered_map<NodeId, NodeId> through = throughs(graph, root, nodes);
     for (const auto &[key, group] : groups)
-        if (!cancels(graph, root, group))
+        if (!cancels_somewhere(graph, root, group, through))
             for (NodeId step : group.steps) steps.erase(step);
     for (NodeId id : nodes) // in a loop's body no border is entered
         if (graph[id].op == Op::Loop)

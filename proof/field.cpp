@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 #include <queue>
 
 namespace fathom::proof {
@@ -159,6 +161,36 @@ bool misses(const Zone &zone, const Cell &cell) {
 
 namespace {
 
+// Along each axis that the domain is longer than a period, one period; says along which.
+std::array<bool, 3> to_one_period(const Periods &periods, Cell &whole) {
+    std::array<bool, 3> shifted{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double period = periods.period[i];
+        if (periods.reads[i] && period > 0 && whole.p[i].width() > period) {
+            whole.p[i] = Interval(-period / 2, period / 2 * (1 + 1e-9));
+            shifted[i] = true;
+        }
+        if (!periods.reads[i] && !whole.p[i].finite()) whole.p[i] = 0.0;
+    }
+    return shifted;
+}
+
+// What of a zone is the same for a copy that is shifted along these axes: tubes along the only one.
+std::optional<Zone> zone_along(const Zone &zone, const std::array<bool, 3> &shifted) {
+    const auto stays = [&](const Zone &tube) {
+        if (tube.kind != ir::RegionKind::Tube) return false;
+        for (std::size_t i = 0; i < 3; ++i)
+            if (shifted[i] && int(i) != tube.axis) return false;
+        return true;
+    };
+    Zone out;
+    if (stays(zone)) out = zone;
+    out.less.clear();
+    std::ranges::copy_if(zone.less, std::back_inserter(out.less), stays);
+    if (out.kind == ir::RegionKind::Everywhere && out.less.empty()) return {};
+    return out;
+}
+
 // A domain that is its own mirror image is cut down to the part where coordinates are not below 0,
 // as far as the field is as steep on both sides; true where its values there are the others
 // negated.
@@ -199,16 +231,11 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
     Machine machine(tape, ranges);
     Periods periods = periods_of(tape, context.graph);
     Cell whole = domain.box;
-    bool reduced = false;
-    for (std::size_t i = 0; i < 3; ++i) {
-        double period = periods.period[i];
-        if (periods.reads[i] && period > 0 && whole.p[i].width() > period) {
-            whole.p[i] = Interval(-period / 2, period / 2 * (1 + 1e-9));
-            reduced = true;
-        }
-        if (!periods.reads[i] && !whole.p[i].finite()) whole.p[i] = 0.0;
-    }
-    const Zone *zone = reduced ? nullptr : domain.zone; // a shifted copy need not lie in the zone
+    const std::array<bool, 3> shifted = to_one_period(periods, whole);
+    const bool reduced = shifted[0] || shifted[1] || shifted[2];
+    const std::optional<Zone> along =
+        reduced && domain.zone ? zone_along(*domain.zone, shifted) : std::nullopt;
+    const Zone *zone = !reduced ? domain.zone : along ? &*along : nullptr;
     const bool negated = keep_half(tape, whole, zone);
 
     auto outside = [&](const Cell &cell) { return zone && misses(*zone, cell); };

@@ -101,13 +101,11 @@ FieldBound Prover::bound_once(NodeId field, const Place &here) {
     const Scaled parts = split(graph, field);
     const double by = std::fabs(parts.by);
     if (here.zone || !parts.rest || !(by > 0) || !std::isfinite(by))
-        return bound_field(flattening, ranges, field, {to_cell(here.box), here.zone}, budget);
+        return bound_written(field, {to_cell(here.box), here.zone}, budget);
     const auto key = std::tuple(parts.rest, here.box.lo, here.box.hi);
     auto found = bounds.find(key);
     if (found == bounds.end())
-        found = bounds
-                    .emplace(key, bound_field(flattening, ranges, parts.rest,
-                                              {to_cell(here.box), nullptr}, budget))
+        found = bounds.emplace(key, bound_written(parts.rest, {to_cell(here.box), nullptr}, budget))
                     .first;
     FieldBound out = found->second;
     out.lipschitz = ir::rounding::up(out.lipschitz * by, 4);

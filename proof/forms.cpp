@@ -185,10 +185,15 @@ PowerOf power_of(Graph &graph, NodeId id) {
         const PowerOf inner = power_of(graph, graph.arg(id, 0));
         return {inner.base, 2 * inner.exponent};
     }
+    if (node.op == Op::Mul) {
+        const PowerOf a = power_of(graph, graph.arg(id, 0)), b = power_of(graph, graph.arg(id, 1));
+        if (a.base == b.base) return {a.base, a.exponent + b.exponent};
+    }
     if (node.op == Op::Pow)
-        if (const auto n = number(graph, graph.arg(id, 1)); n && *n > 0 && *n == std::floor(*n)) {
+        if (const auto n = number(graph, graph.arg(id, 1)); n && *n > 0) {
             const PowerOf inner = power_of(graph, graph.arg(id, 0));
-            return {inner.base, *n * inner.exponent};
+            if (*n == std::floor(*n) || graph[inner.base].op == Op::Abs)
+                return {inner.base, *n * inner.exponent};
         }
     if (node.op == Op::Swizzle && node.type == ir::Type::Float)
         if (const NodeId own = component_of(graph, id, 0); own != id) return power_of(graph, own);

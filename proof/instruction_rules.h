@@ -105,6 +105,10 @@ struct Step {
 
     // -- what mixes components (machine_vectors.cpp)
     double together() const;
+    // Do two arguments depend on coordinates that are at right angles (supports.h)?
+    bool in_other_group(int a, int b) const {
+        return (in.groups >> (2 * a) & 3) != (in.groups >> (2 * b) & 3);
+    }
     void splat();
     void make();
     void swizzle();

@@ -21,10 +21,10 @@ void Step::add() {
     Interval sign = in.op == Op::Add ? 1.0 : -1.0;
     for (int c = 0; c < n; ++c)
         set(c, value(0, c) + sign * value(1, c), sum(grad(0, c), scaled(sign, grad(1, c))));
-    finish(norm(0) == 0               ? norm(1)
-           : norm(1) == 0             ? norm(0)
-           : (axes(0) & axes(1)) == 0 ? up(std::hypot(norm(0), norm(1)), 4)
-                                      : up(norm(0) + norm(1)),
+    finish(norm(0) == 0                                       ? norm(1)
+           : norm(1) == 0                                     ? norm(0)
+           : (axes(0) & axes(1)) == 0 || in_other_group(1, 0) ? up(std::hypot(norm(0), norm(1)), 4)
+                                                              : up(norm(0) + norm(1)),
            any_odd);
 }
 

@@ -127,7 +127,11 @@ void Step::mixed() {
     double m = convex && n == 1 ? std::max(norm(0), norm(1))
                                 : up(times(s_most, norm(0)) + times(t_most, norm(1)));
     if (convex && n > 1 && same && value(2, 0).is_point()) m = std::max(norm(0), norm(1));
-    finish(up(m * (1 + 4 * rounded) + times(gap, norm(2))), any_odd);
+    m = up(m * (1 + 4 * rounded));
+    const double turning = times(gap, norm(2));
+    // the weight's gradient is at right angles to both others (supports.h)
+    const bool apart = n == 1 && in_other_group(2, 0) && in_other_group(2, 1);
+    finish(apart ? up(std::hypot(m, turning), 4) : up(m + turning), any_odd);
 }
 
 void Step::step_at() {

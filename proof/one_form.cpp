@@ -80,6 +80,10 @@ NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
     if ((node.op == Op::Sin || node.op == Op::Cos) && node.type == ir::Type::Float) {
         if (const auto sum = turned(node.op, args[0])) return *sum;
         args[0] = without_iterations(graph, args[0]);
+        constexpr double nothing = 1e-9; // where an angle is cut, pi may have few digits
+        if (const auto a = graph.as_number(args[0]); a && border && border->group.is_angle)
+            if (std::fabs(node.op == Op::Sin ? std::sin(*a) : std::cos(*a)) < nothing)
+                return graph.number(0);
     }
     if (node.op == Op::Length) {
         NodeId sum = graph.number(0);
@@ -89,6 +93,8 @@ NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
         }
         return graph.make(Op::Sqrt, ir::Type::Float, {scalar(sum)});
     }
+    if (node.op == Op::MatMul && ir::is_vector(node.type))
+        if (const auto product = written_product(args[0], args[1])) return *product;
     NodeId made = graph.make(node.op, node.type, args, node.payload);
     if (node.type == ir::Type::Float) return scalar(made);
     if (node.type == ir::Type::Int) {
@@ -120,6 +126,35 @@ NodeId Canonical::scalar(NodeId id) {
     return border && border->by_angle ? without_rounding(graph, id) : in_one_form(graph, id);
 }
 
+// The entry of a matrix that is a constant, or made of scalars or of columns.
+std::optional<NodeId> Canonical::entry(NodeId matrix, int row, int column) {
+    const ir::Node node = graph[matrix];
+    const int side = node.type == ir::Type::Mat2 ? 2 : node.type == ir::Type::Mat3 ? 3 : 4;
+    const int at = column * side + row;
+    if (graph.is_constant(matrix))
+        return graph.number(graph.constant_of(matrix).value[static_cast<std::size_t>(at)]);
+    if (node.op != Op::Make) return {};
+    if (int(node.count) == side * side) return graph.arg(matrix, at);
+    if (int(node.count) == side) return component_of(graph, graph.arg(matrix, column), row);
+    return {};
+}
+std::optional<NodeId> Canonical::written_product(NodeId a, NodeId b) {
+    const bool first = ir::is_matrix(graph[a].type);
+    const NodeId matrix = first ? a : b, vector = first ? b : a;
+    const int n = ir::components(graph[vector].type);
+    std::vector<NodeId> parts;
+    for (int i = 0; i < n; ++i) {
+        NodeId sum = graph.number(0);
+        for (int k = 0; k < n; ++k) {
+            const auto factor = first ? entry(matrix, i, k) : entry(matrix, k, i);
+            if (!factor) return {};
+            sum = graph.add(sum, graph.mul(*factor, component_of(graph, vector, k)));
+        }
+        parts.push_back(scalar(sum));
+    }
+    return graph.make(Op::Make, graph[vector].type, parts);
+}
+
 // The sine or cosine of a K + b by those of a K and of b.
 std::optional<NodeId> Canonical::turned(Op op, NodeId angle) {
     if (!border) return {};
@@ -128,7 +163,12 @@ std::optional<NodeId> Canonical::turned(Op op, NodeId angle) {
     constexpr double grain = 0x1p32; // so that equal angles are one
     const NodeId part =
         graph.mul(graph.number(std::round((*sum)[0] * grain) / grain), border->whole);
-    const NodeId sine = graph.make(Op::Sin, {part}), cosine = graph.make(Op::Cos, {part});
+    const bool negative = (*sum)[0] < 0; // sin(-a K) as -sin(a K)
+    const NodeId size =
+        negative ? graph.mul(graph.number(std::round(-(*sum)[0] * grain) / grain), border->whole)
+                 : part;
+    const NodeId positive = graph.make(Op::Sin, {size}), cosine = graph.make(Op::Cos, {size});
+    const NodeId sine = negative ? graph.neg(positive) : positive;
     const NodeId s = graph.number(std::sin((*sum)[1])), c = graph.number(std::cos((*sum)[1]));
     if (op == Op::Cos) return scalar(graph.sub(graph.mul(cosine, c), graph.mul(sine, s)));
     return scalar(graph.add(graph.mul(sine, c), graph.mul(cosine, s)));

@@ -18,6 +18,7 @@ namespace {
 using ir::Graph;
 
 constexpr std::size_t max_nodes_of_angles = 1500;
+constexpr ir::OpSet is_rounding{Op::Floor, Op::Ceil, Op::Round};
 
 std::vector<NodeId> all_below(const Graph &graph, NodeId root) {
     std::vector<NodeId> out, todo{root};
@@ -51,8 +52,11 @@ struct Angles {
         ir::Substitution map;
         for (NodeId id : all_below(graph, angle)) {
             const ir::Node node = graph[id];
-            if (node.op != Op::Mod || node.type != ir::Type::Float || !angle_in(id)) continue;
-            const NodeId x = graph.arg(id, 0), m = graph.arg(id, 1);
+            if ((node.op != Op::Mod && node.op != Op::Fract) || node.type != ir::Type::Float ||
+                !angle_in(id))
+                continue;
+            const NodeId x = graph.arg(id, 0),
+                         m = node.op == Op::Mod ? graph.arg(id, 1) : graph.number(1);
             if (!graph.as_number(m)) continue;
             map[id] = graph.sub(x, graph.mul(m, graph.make(Op::Floor, {graph.div(x, m)})));
             waves.push_back(id);
@@ -77,9 +81,16 @@ struct Angles {
             !(same(graph, q0, y) && same(graph, q1, x)))
             return {};
         std::vector<NodeId> waves;
-        const auto linear = linear_in(graph, by_steps(angle, waves), *whole);
+        ir::Substitution steps, back; // a step stays the node that it is
+        const NodeId stepped = by_steps(angle, waves);
+        for (NodeId id : all_below(graph, stepped))
+            if (is_rounding[graph[id].op] && graph[id].type == ir::Type::Float) {
+                const NodeId var = graph.fresh_var(ir::Type::Float);
+                steps[id] = var, back[var] = id;
+            }
+        const auto linear = linear_in(graph, ir::substitute(graph, stepped, steps), *whole);
         if (!linear || std::fabs(linear->by) != 1 || waves.size() > 1) return {};
-        const NodeId c = linear->rest;
+        const NodeId c = ir::substitute(graph, linear->rest, back);
         for (NodeId id : all_below(graph, c))
             if (graph[id].op == Op::Floor && !waves.empty() && angle_in(id))
                 out.steps.emplace_back(waves[0], id);
@@ -165,7 +176,7 @@ std::unordered_set<NodeId> stepped_angles(const Graph &graph, NodeId root,
         std::unordered_set<NodeId> all;
         for (NodeId a : graph.args(id)) all.insert(reads[a].begin(), reads[a].end());
         constexpr ir::OpSet linear{Op::Add, Op::Sub, Op::Neg, Op::Mul, Op::Div},
-            rounds{Op::Floor, Op::Ceil, Op::Round};
+            rounds = is_rounding;
         if (rounds[node.op] && steps.contains(id)) continue; // a step
         if (linear[node.op] && node.type == ir::Type::Float && id != root) {
             reads[id] = std::move(all);

@@ -146,6 +146,8 @@ struct Prover {
     std::optional<ir::NodeId> expression(ir::ShapeId id, int depth = 0);
 
     FieldBound bound_once(ir::NodeId field, const Place &here);
+    FieldBound bound_written(ir::NodeId field, const Domain &domain, const Budget &budget);
+    FieldBound bound_by_values(ir::NodeId field, const Domain &domain, const Budget &budget);
     // The bound that was found as a number, or, where that is worth it, as a formula of params.
     ir::NodeId by_params(ir::ShapeId id, ir::NodeId field, double whole);
     std::map<std::tuple<ir::NodeId, std::array<double, 3>, std::array<double, 3>>, FieldBound>

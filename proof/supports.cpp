@@ -43,7 +43,9 @@ void Supports::make_base(Slot s) {
 }
 void Supports::follow(const Instruction &in) {
     const int n = tape_.size[in.out];
-    if (!in.varies) {
+    constexpr ir::OpSet rounds{Op::Floor, Op::Ceil, Op::Round, Op::Trunc};
+    if (!in.varies ||
+        (rounds[in.op] && in.form == Form::Plain)) { // of no slope where it does not jump
         for (int c = 0; c < n; ++c) set(in.out, c, {});
         return;
     }

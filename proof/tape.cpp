@@ -77,8 +77,8 @@ Slot Flattener::emit(Scope &scope, Instruction instruction) {
     for (Slot s : instruction.args) instruction.varies = instruction.varies || varies[s];
     instruction.out = fresh(instruction.type, instruction.varies);
     Slot out = instruction.out;
-    if (instruction.op == Op::Make || instruction.form == Form::Norm ||
-        instruction.form == Form::PNorm)
+    constexpr ir::OpSet sums{Op::Make, Op::Add, Op::Sub, Op::Mix};
+    if (sums[instruction.op] || instruction.form == Form::Norm || instruction.form == Form::PNorm)
         instruction.groups = supports.groups(instruction.args);
     supports.follow(instruction);
     tape.grows = tape.grows || grows(instruction);
@@ -257,6 +257,7 @@ std::size_t Tape::length() const {
 
 Tape flatten(Flattening &context, NodeId root) {
     Flattener flattener(context);
+    if (const auto it = context.written.find(root); it != context.written.end()) root = it->second;
     const bool steps = has_steps(context.graph, root),
                choices = context.borders && has_choices(context.graph, root);
     if (steps || choices) {

@@ -48,7 +48,7 @@ struct Instruction {
     Slot out = 0;
     std::vector<Slot> args;
     std::uint32_t payload = 0; // the op's; of a Loop: index into Tape::loops
-    std::uint32_t groups = 0;  // of a Make or Norm: Supports::groups of its arguments
+    std::uint32_t groups = 0;  // of a Make, Norm, Mix or sum: Supports::groups of its arguments
     // Of a vector that is M v + c (linear_maps.h, segments.h): v, then what M and c are made of.
     std::vector<Slot> turned;
     // … and of a matrix product: a bound of the matrix' norm, whatever its numbers are.
@@ -96,6 +96,8 @@ struct Flattening {
     // By field: the choices at which it does not change (borders.h), found once a field.
     std::unordered_map<NodeId, Meeting> meeting{};
     std::unordered_map<NodeId, std::optional<Pieces>> pieces{}; // by node, remembered over fields
+    // By field: the same with its loops written out, where borders in their bodies have to be seen.
+    std::unordered_map<NodeId, NodeId> written{};
     std::vector<bool> cached{}; // by cached field: known by its bounds alone (Ranges::caches)
 };
 

@@ -1,13 +1,57 @@
 #include "ir/passes/inline.h"
 
+#include <optional>
+
 namespace fathom::ir {
 namespace {
 
 struct Writer {
     Graph &graph;
     std::size_t left; // nodes that may still be looked at
+    bool loops = false;
     bool all = true;
     std::unordered_map<NodeId, NodeId> done{};
+    std::unordered_map<NodeId, std::vector<NodeId>>
+        ends{}; // by loop: its results; none if it stays
+
+    // A loop's results by its arguments and constants alone.
+    const std::vector<NodeId> &written(NodeId id) {
+        if (const auto known = ends.find(id); known != ends.end()) return known->second;
+        const Loop loop = graph.loop(LoopId{graph[id].payload});
+        std::vector<NodeId> values(graph.args(id).begin(), graph.args(id).end());
+        for (NodeId &value : values) value = of(value);
+        const NodeId count = of(loop.count);
+        std::vector<NodeId> &out = ends[id];
+        if (!graph.is_constant(count)) return out;
+        const int iterations = static_cast<int>(graph.constant_of(count).value[0]);
+        NodeId goes_on; // all conditions so far
+        for (int i = 0; i < iterations; ++i) {
+            if (left == 0) {
+                all = false;
+                return ends[id] = {};
+            }
+            std::vector<NodeId> next = after_iteration(graph, loop, i, values);
+            if (loop.condition) {
+                const NodeId here = of(in_iteration(graph, loop, i, values, loop.condition));
+                goes_on = goes_on ? graph.make(Op::And, Type::Bool, {goes_on, here}) : here;
+            }
+            for (std::size_t k = 0; k < next.size(); ++k) {
+                next[k] = of(next[k]);
+                if (goes_on)
+                    next[k] =
+                        graph.make(Op::Select, graph[next[k]].type, {goes_on, next[k], values[k]});
+            }
+            values = std::move(next);
+        }
+        return ends[id] = std::move(values);
+    }
+    std::optional<NodeId> result_of_loop(NodeId id, const Node &node) {
+        if (!loops || (node.op != Op::Loop && node.op != Op::LoopResult)) return {};
+        const NodeId loop = node.op == Op::Loop ? id : graph.arg(id, 0);
+        const std::vector<NodeId> &values = written(loop);
+        if (values.empty()) return {};
+        return values[node.op == Op::Loop ? 0 : node.payload];
+    }
 
     NodeId of(NodeId id) {
         if (const auto known = done.find(id); known != done.end()) return known->second;
@@ -17,6 +61,7 @@ struct Writer {
         }
         --left;
         const Node node = graph[id];
+        if (const auto result = result_of_loop(id, node)) return done[id] = *result;
         std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
         for (NodeId &arg : args) arg = of(arg);
         NodeId out = id;
@@ -67,6 +112,12 @@ std::vector<NodeId> after_iteration(Graph &graph, const Loop &loop, int iteratio
 
 WithoutCalls without_calls(Graph &graph, NodeId root, std::size_t max_nodes) {
     Writer writer{graph, max_nodes};
+    const NodeId out = writer.of(root);
+    return {out, writer.all};
+}
+
+WithoutCalls without_loops(Graph &graph, NodeId root, std::size_t max_nodes) {
+    Writer writer{graph, max_nodes, true};
     const NodeId out = writer.of(root);
     return {out, writer.all};
 }

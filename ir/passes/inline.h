@@ -30,5 +30,7 @@ struct WithoutCalls {
     bool all = true;
 };
 WithoutCalls without_calls(Graph &graph, NodeId root, std::size_t max_nodes);
+// … and every loop whose count is a constant, outermost bodies first; others stay.
+WithoutCalls without_loops(Graph &graph, NodeId root, std::size_t max_nodes);
 
 } // namespace fathom::ir

@@ -102,6 +102,90 @@ NodeId sine_ratio(Graph &graph, NodeId u) {
     return graph.make(Op::Div, type, {graph.make(Op::Sin, type, {off}), off});
 }
 
+// A number times something else; of a scalar.
+struct Multiple {
+    double by = 1;
+    NodeId of;
+};
+Multiple multiple(const Graph &graph, NodeId id) {
+    const Node &node = graph[id];
+    if (node.type != Type::Float) return {1, id};
+    if (node.op == Op::Neg) {
+        const Multiple inner = multiple(graph, graph.arg(id, 0));
+        return {-inner.by, inner.of};
+    }
+    if (node.op == Op::Mul)
+        for (int i = 0; i < 2; ++i)
+            if (const auto by = graph.as_number(graph.arg(id, i))) {
+                const Multiple inner = multiple(graph, graph.arg(id, 1 - i));
+                return {*by * inner.by, inner.of};
+            }
+    return {1, id};
+}
+// k sin(u)/v where v is a multiple of u.
+NodeId scaled_sine_ratio(Graph &graph, NodeId above, NodeId below) {
+    const Multiple sine = multiple(graph, above);
+    if (graph[sine.of].op != Op::Sin || graph[sine.of].type != Type::Float) return {};
+    const NodeId u = graph.arg(sine.of, 0);
+    const Multiple mine = multiple(graph, u), other = multiple(graph, below);
+    if (mine.of != other.of || mine.by == 0 || other.by == 0) return {};
+    const NodeId ratio = sine_ratio(graph, u);
+    return ratio ? graph.mul(graph.number(sine.by * mine.by / other.by), ratio) : NodeId{};
+}
+
+// A condition that holds, or fails, where x is no further from 0 than `within` alone.
+struct NearZero {
+    NodeId x;
+    double within = 0;
+    bool holds = true;
+};
+std::optional<NearZero> near_zero(const Graph &graph, NodeId condition) {
+    const Node &node = graph[condition];
+    if (node.op == Op::Not) {
+        auto inner = near_zero(graph, graph.arg(condition, 0));
+        if (inner) inner->holds = !inner->holds;
+        return inner;
+    }
+    constexpr OpSet compares{Op::Equal, Op::NotEqual, Op::Less, Op::LessEqual};
+    if (!compares[node.op]) return {};
+    for (int i = 0; i < 2; ++i) {
+        const NodeId x = graph.arg(condition, i);
+        const auto number = graph.as_number(graph.arg(condition, 1 - i));
+        if (!number || graph[x].type != Type::Float) continue;
+        if (node.op == Op::Equal || node.op == Op::NotEqual)
+            return *number == 0 ? std::optional(NearZero{x, 0, node.op == Op::Equal})
+                                : std::nullopt;
+        if (graph[x].op == Op::Abs) return NearZero{graph.arg(x, 0), *number, i == 0};
+        if (multiple(graph, x).by > 0 && graph[multiple(graph, x).of].op == Op::Length)
+            return NearZero{x, *number, i == 0};
+    }
+    return {};
+}
+// `if x == 0 { k } else { k sin(u)/u }`, u a multiple of x: the ratio is the k itself there.
+NodeId sine_ratio_by_cases(Graph &graph, NodeId condition, NodeId yes, NodeId no) {
+    const auto near = near_zero(graph, condition);
+    if (!near) return {};
+    const auto at_zero = graph.as_number(near->holds ? yes : no);
+    const NodeId elsewhere = near->holds ? no : yes;
+    const Multiple ratio = multiple(graph, elsewhere);
+    if (!at_zero || graph[ratio.of].op != Op::Div) return {};
+    const NodeId off = graph.arg(ratio.of, 1), sine = graph.arg(ratio.of, 0);
+    if (graph[off].op != Op::Max || graph[sine].op != Op::Sin || graph.arg(sine, 0) != off)
+        return {};
+    constexpr double minimum = 1e-3, rounded = 1e-6;
+    for (int i = 0; i < 2; ++i) {
+        const NodeId size = graph.arg(off, i);
+        const auto least = graph.as_number(graph.arg(off, 1 - i));
+        if (!least || *least > minimum * (1 + rounded) || graph[size].op != Op::Abs) continue;
+        const Multiple u = multiple(graph, graph.arg(size, 0)), x = multiple(graph, near->x);
+        if (u.of != x.of || x.by == 0 ||
+            near->within * std::abs(u.by / x.by) > minimum * (1 + rounded))
+            continue;
+        if (std::abs(*at_zero - ratio.by) <= rounded * std::abs(ratio.by)) return elsewhere;
+    }
+    return {};
+}
+
 bool exponents_of(const Graph &graph, NodeId sum, Op exponential, std::vector<NodeId> &out) {
     if (graph[sum].op == exponential)
         out.push_back(graph.arg(sum, 0));
@@ -203,6 +287,7 @@ NodeId simple_mul(const Made &n) {
 NodeId simple_div(const Made &n) {
     if (n.is(1, 1)) return n.args[0];
     if (n.op_of(0) == Op::Sin && n.inside(0) == n.args[1]) return sine_ratio(n.graph, n.args[1]);
+    if (const NodeId ratio = scaled_sine_ratio(n.graph, n.args[0], n.args[1])) return ratio;
     if (n.is(1, -1)) return n.make(Op::Neg, {n.args[0]});
     if (n.whole() || !n.graph.is_constant(n.args[1]) || n.graph.is_constant(n.args[0])) return {};
     // By a power of two exactly, else division stays: it rounds once.
@@ -293,6 +378,9 @@ NodeId simple_select(const Made &n) {
     if (n.is(0, 0)) return n.args[2];
     if (n.type == Type::Bool && n.is(1, 1) && n.is(2, 0)) return n.args[0];
     if (n.type == Type::Bool && n.is(1, 0) && n.is(2, 1)) return n.make(Op::Not, {n.args[0]});
+    if (n.type == Type::Float)
+        if (const NodeId ratio = sine_ratio_by_cases(n.graph, n.args[0], n.args[1], n.args[2]))
+            return ratio;
     return n.args[1] == n.args[2] ? n.args[1] : NodeId{};
 }
 

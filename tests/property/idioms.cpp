@@ -199,6 +199,31 @@ constexpr std::array near_misses = {
     "float(if p.x < 0 { false } else { p.y > 0 }) * p.x",
     // an angle in a vector that is rounded
     "length(vec3(atan(p.y, p.x), p.x, p.z) - round(vec3(atan(p.y, p.x), p.x, p.z)))",
+    // what all uses of a step go through: another corner, a use beside it, a step that moves along
+    "mix(fract(sin(floor(p.x)) * 437.5), fract(sin(floor(p.x) + 2) * 437.5), fract(p.x))",
+    "mix(fract(sin(floor(p.x)) * 437.5), fract(sin(floor(p.x) + 1) * 437.6), fract(p.x))",
+    "abs(fract(p.x) - 0.5) + 0.01 * floor(p.x)",
+    "abs(floor(2 * p.x) - 2 * floor(p.x) - 0.5) + 0.1 * floor(2 * p.x)",
+    "abs(floor(2 * p.x) - 2 * floor(p.x) - 0.5) + 0.1 * floor(p.x)",
+    "abs(floor(2 * p.x) - 2 * floor(p.x) - 0.4) + abs(fract(2 * p.x) - 0.5)",
+    // mixes as sums: another sign, another corner
+    "mix(hash(floor(p.x)), hash(floor(p.x) + 1), fract(p.x)) + "
+    "(hash(floor(p.x)) - hash(floor(p.x) + 1)) * fract(p.x)",
+    // the middle by cases: another value, too wide, another number of waves, another place
+    "if p.x == 0 { 1.01 } else { sin(p.x) / p.x }",
+    "if abs(p.x) < 0.1 { 1 } else { sin(p.x) / p.x }",
+    "if p.x == 0 { 1 } else { sin(2 * p.x) / p.x }",
+    "if p.x == 0.001 { 1 } else { sin(p.x) / p.x + 0.01 }",
+    "if p.x == 0 { p.y } else { p.y + p.x + 0.001 }",
+    "if p.x == 0 { p.y } else { 2 * p.y }",
+    // a fold that turns the other way, by a matrix
+    "length(mat2([cos(round(atan(p.z, p.x) * 6 / tau)), sin(round(atan(p.z, p.x) * 6 / tau))], "
+    "[-sin(round(atan(p.z, p.x) * 6 / tau)), cos(round(atan(p.z, p.x) * 6 / tau))]) * p.xz - 1)",
+    "length(rotate2(p.xz, round(atan(p.z, p.x) * 6 / tau) * tau / 6) - vec2(1, 0))",
+    "length(rotate2(p.xz, -round(atan(p.z, p.x) * 6 / tau) * tau / 6) - vec2(1, 0.01))",
+    // norms of powers: two powers, no size
+    "pow(pow(abs(p.x), 2.5) + pow(abs(p.y), 2.4), 1 / 2.5)",
+    "pow(pow(p.x, 2.5) + pow(p.y, 2.5), 1 / 2.5)",
     // vectors by component
     "length(if p.x > 1 { vec2(p.x - 2.1, p.y) } else { p.xy })",
     "length((if p.x > 1 { vec2(p.x - 2, p.y) } else { p.xy }) - vec2(0.1, 0))",
@@ -235,6 +260,13 @@ constexpr std::array steep = {
     Steep{"abs(p.x - round(p.x)) + p.x", 2},
     Steep{"p.y - (if round(p.y) % 2 == 0 { p.y - round(p.y) } else { round(p.y) - p.y })", 2},
     Steep{"min(p.x, 0.3) - min(p.x, 0.4) + p.x", 1},
+    Steep{"if p.x == 0 { p.y } else { p.y + p.x }", 1.4142136},
+    // weights at right angles to what they mix, and not
+    Steep{"mix(p.x, -p.x, saturate(p.y))", 4.1231056},
+    Steep{"mix(p.x, -p.x, saturate(p.x))", 3},
+    Steep{"mix(0.6 * p.x + 0.8 * p.y, -0.6 * p.x - 0.8 * p.y, saturate(0.8 * p.x - 0.6 * p.y))",
+          4.1231056},
+    Steep{"(0.6 * p.x + 0.8 * p.y) + 2 * (0.8 * p.x - 0.6 * p.y)", 2.236068},
     Steep{"sqrt(4 * p.x * p.x + 4 * p.x * p.y + p.y * p.y + p.z * p.z)", 2.236068},
     Steep{"sign(if p.x < 0 { -4 * p.x * p.x } else { 4 * p.x * p.x }) * "
           "sqrt(abs(if p.x < 0 { -4 * p.x * p.x } else { 4 * p.x * p.x }))",
@@ -253,6 +285,39 @@ TEST_CASE("what only nearly meets is refused") {
         const std::optional<double> bound = proved(idiom);
         INFO(field << ": " << bound.value_or(0));
         CHECK(!bound);
+    }
+}
+
+// In a region less a tube, about whose axis an angle turns.
+TEST_CASE("an angle's cut is met by whole turns alone") {
+    const auto bound_of = [](const std::string &field) -> std::optional<double> {
+        const driver::Compilation c = driver::compile_text(
+            "turns.sdf", "implicit(p => " + field + ", within: ball(2) - tube(Y, 0.3))\n", "", {});
+        if (!c.good()) return {};
+        return c.scene.facts[c.scene.root.index].lipschitz_sup;
+    };
+    for (const char *met :
+         {"length(vec2(length(p.xz) - 1, (p.y - atan(p.z, p.x) / tau + 0.5) % 1 - 0.5))",
+          "length(vec2(length(p.xz) - 1, (p.y - atan(p.z, p.x) / pi) % 0.5 - 0.25))",
+          "length(p.xz) - 1 - 0.1 * sin(4 * atan(p.z, p.x) + 6 * p.y)",
+          "max(length(p.xz) - 1, 0.2 * cos(atan(p.z, p.x) - 4 * p.y))",
+          "abs(cos(1.5 * atan(p.z, p.x))) + p.y",
+          "abs(fract(2 * p.y + atan(p.z, p.x) / tau) - 0.5) + p.y"}) {
+        INFO(met);
+        const std::optional<double> bound = bound_of(met);
+        CHECK(bound.value_or(100) < 14); // a way round the tube is longer: 2.12 times the slope
+    }
+    for (const char *jumps :
+         {"length(vec2(length(p.xz) - 1, (p.y - atan(p.z, p.x) / 6 + 0.5) % 1 - 0.5))",
+          "length(vec2(length(p.xz) - 1, (p.y - 1.5 * atan(p.z, p.x) / tau + 0.5) % 1 - 0.5))",
+          "length(vec2(length(p.xz) - 1, (p.y - atan(p.z, p.x) / tau) % 0.7 - 0.35))",
+          "length(p.xz) - 1 - 0.1 * sin(4.5 * atan(p.z, p.x) + 6 * p.y)",
+          "0.1 * cos(1.5 * atan(p.z, p.x)) + 0.1 * sin(1.5 * atan(p.z, p.x)) + p.y",
+          "0.1 * floor(p.y - atan(p.z, p.x) / tau) + p.y",
+          "abs(fract(2 * p.y + atan(p.z, p.x) / tau) - 0.4) + p.y",
+          "abs(fract(2 * p.y + 1.1 * atan(p.z, p.x) / tau) - 0.5) + p.y"}) {
+        INFO(jumps);
+        CHECK(!bound_of(jumps));
     }
 }
 
