@@ -19,11 +19,21 @@ $if PASSES
 uniform int fathom_turns, fathom_budget;
 uniform bool fathom_resumed; // rays go on, else they begin
 uniform sampler2D fathom_kept_0, fathom_kept_1, fathom_kept_2, fathom_kept_3;
+$if FOUR_OUTPUTS
+$# WebGL 2 promises no more outputs than four. Of a ray that goes on the colour is what lacks the light; 2 as its
+$# alpha says that it does.
+float fathom_left;
+vec4 fathom_keep_2;
+layout(location = 1) out vec4 fathom_keep_0;
+layout(location = 2) out vec4 fathom_keep_1;
+layout(location = 3) out vec4 fathom_keep_3;
+$else
 layout(location = 2) out float fathom_left; // 1 the ray goes on; else 0.25 it is undecided, 0.5 a ray from a light is
 layout(location = 3) out vec4 fathom_keep_0;
 layout(location = 4) out vec4 fathom_keep_1;
 layout(location = 5) out vec4 fathom_keep_2;
 layout(location = 6) out vec4 fathom_keep_3;
+$end
 
 int fathom_taken = 0;       // steps of this draw
 int fathom_light_kept = -1; // whose ray goes on
