@@ -35,7 +35,6 @@ Level level_of(Op op) {
     if (op == Op::Equal || op == Op::NotEqual) return Equality;
     if (op == Op::And) return Conjunction;
     if (op == Op::Or) return Disjunction;
-    if (op == Op::Select) return Choice;
     if (op == Op::Neg || op == Op::Not) return Unary;
     return Primary;
 }
@@ -104,7 +103,7 @@ class Writer {
         if (auto arms = plan_.arms.find(id); arms != plan_.arms.end()) {
             const std::string name = names_.numbered(prefix_of(node.type));
             line(indent, type + " " + name + ";");
-            choice(id, name, indent, "if (");
+            choice(id, name, indent);
             name_[id] = name;
             return;
         }
@@ -155,21 +154,36 @@ class Writer {
         return text + ")";
     }
 
-    void choice(NodeId id, const std::string &target, int indent, const std::string &opening) {
-        const auto [yes, no] = plan_.arms.at(id);
-        line(indent, opening + value(graph_.arg(id, 0)) + ") {");
-        block(yes, indent + 1);
-        assign(indent + 1, target, graph_.arg(id, 1));
-        const NodeId other = graph_.arg(id, 2);
-        const auto &rest = plan_.blocks[static_cast<std::size_t>(no)].statements;
-        if (rest.size() == 1 && rest.front() == other && plan_.arms.contains(other)) {
-            choice(other, target, indent, "} else if (");
+    // Of the arms that follow each other the first is taken whose condition holds. None is an
+    // `else`: why, helpers/arithmetic.glsl says.
+    void choice(NodeId id, const std::string &target, int indent) {
+        const std::string open = names_.numbered(prefix_of(Type::Bool));
+        line(indent, "bool " + open + " = true;");
+        std::string before = "if (";
+        while (true) {
+            const auto [yes, no] = plan_.arms.at(id);
+            const Text condition = expression(graph_.arg(id, 0));
+            line(indent,
+                 before +
+                     (before.ends_with('(') ? condition.text : at_least(condition, Conjunction)) +
+                     ") {");
+            block(yes, indent + 1);
+            assign(indent + 1, target, graph_.arg(id, 1));
+            line(indent + 1, open + " = false;");
+            line(indent, "}");
+            const NodeId other = graph_.arg(id, 2);
+            const auto &rest = plan_.blocks[static_cast<std::size_t>(no)].statements;
+            if (rest.size() == 1 && rest.front() == other && plan_.arms.contains(other)) {
+                before = "if (" + open + " && ";
+                id = other;
+                continue;
+            }
+            line(indent, "if (" + open + ") {");
+            block(no, indent + 1);
+            assign(indent + 1, target, other);
+            line(indent, "}");
             return;
         }
-        line(indent, "} else {");
-        block(no, indent + 1);
-        assign(indent + 1, target, other);
-        line(indent, "}");
     }
 
     void assign(int indent, const std::string &target, NodeId id) {
@@ -378,11 +392,7 @@ class Writer {
         case Op::NotEqual: return infix(id, " != ");
         case Op::And: return infix(id, " && ");
         case Op::Or: return infix(id, " || ");
-        case Op::Select:
-            return {at_least(expression(arg(0)), Disjunction) + " ? " +
-                        at_least(expression(arg(1)), Disjunction) + " : " +
-                        at_least(expression(arg(2)), Choice),
-                    Choice};
+        case Op::Select: return select(id);
         case Op::ToFloat: return {"float(" + value(arg(0)) + ")", Primary};
         case Op::ToInt:
             if (graph_[arg(0)].type == Type::Float)
@@ -484,6 +494,21 @@ class Writer {
         case Op::SpotNoise: return by_table(id);
         }
         return {};
+    }
+
+    // One of two values that are both computed.
+    Text select(NodeId id) {
+        const Type type = graph_[id].type;
+        const std::string condition = value(graph_.arg(id, 0)), yes = value(graph_.arg(id, 1)),
+                          no = value(graph_.arg(id, 2));
+        if (type != Type::Float && !ir::is_vector(type))
+            return {helper("fathom_either", glsl_type(type)) + "(" + condition + ", " + yes + ", " +
+                        no + ")",
+                    Primary};
+        const std::string by = type == Type::Float
+                                   ? condition
+                                   : fmt::format("bvec{}({})", ir::components(type), condition);
+        return {"mix(" + no + ", " + yes + ", " + by + ")", Primary};
     }
 
     Text saturating(NodeId id, const char *name) {

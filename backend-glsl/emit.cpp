@@ -104,7 +104,7 @@ class Emitter {
             (!check(with_cache(text), output) || !check(with_cache(text, cache_learns), output)))
             return {};
         if (target.form == Form::Page && !options_.field_only)
-            output.text = html_page(scene_, options_, output.uniforms, text);
+            output.text = html_page(scene_, options_, output, text);
         else if (target.form != Form::SpirV)
             output.text = std::move(text);
         return output;
@@ -208,6 +208,11 @@ std::vector<int> prunable_rows(const ir::Scene &scene) {
 }
 
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics) {
+    if (traits_of(options.target).form == Form::Page && !options.passes) {
+        Options by_passes = options; // the page is a host of ours
+        by_passes.passes = true;
+        return emit(scene, by_passes, diagnostics);
+    }
     std::optional<Rerolled> loops = rerolled(scene);
     if (loops) loops->scene.safe_radius = {}; // it would have the lists in full
     const std::map<std::uint32_t, ir::NodeId> results =

@@ -1,12 +1,13 @@
-// One self-contained WebGL 2 page around a GLSL ES 3.00 text: orbit, zoom, sliders for the params.
-// Loads nothing.
+// One self-contained WebGL 2 page around a GLSL ES 3.00 text by passes: controls for the params, the
+// camera and the time (docs/web.md). Loads nothing: its policy forbids it.
 #pragma once
 
 #include "backend-glsl/emit.h"
 
 namespace fathom::glsl {
 
-std::string html_page(const ir::Scene &scene, const Options &options,
-                      const std::vector<Uniform> &uniforms, const std::string &fragment);
+// `output`: what the text reads.
+std::string html_page(const ir::Scene &scene, const Options &options, const Output &output,
+                      const std::string &fragment);
 
 } // namespace fathom::glsl

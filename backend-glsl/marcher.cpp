@@ -32,6 +32,7 @@ Values values_of(const MarcherOptions &options) {
         {"SHADED_APART", flag(options.shaded_apart)},
         {"SHADED", options.shaded_apart ? "fathom_shaded" : "sdf"},
         {"PASSES", flag(options.passes)},
+        {"FOUR_OUTPUTS", flag(options.four_outputs)},
         {"HAS_SAFE_RADIUS", flag(options.has_safe_radius)},
         // Of a field that costs little, two copies are quicker than the loop round one.
         {"TWICE", flag(options.cheap && !options.cached)},

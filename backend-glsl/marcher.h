@@ -34,6 +34,7 @@ struct MarcherOptions {
     bool shaded_apart = false;    // Scene::shaded is not the distance
     bool has_safe_radius = false; // the field says how far it has_safe_radius
     bool passes = false;          // a picture is drawn by passes
+    bool four_outputs = false;    // … whose host has no more outputs than four
     bool cheap = false;           // the field is a few operations
     bool skip_shading = false;
     bool classic = false;       // Lighting::classic

@@ -108,6 +108,7 @@ MarcherOptions marcher_options(const Module &module, const SceneText &text, cons
     marcher.pick = module.options.instruments == Instruments::Pick;
     marcher.cached = !module.cached.empty();
     marcher.passes = module.options.passes && !marcher.cached;
+    marcher.four_outputs = traits_of(module.options.target).form == Form::Page;
     marcher.far_cells = module.far_cells;
     marcher.around = module.around;
     return marcher;

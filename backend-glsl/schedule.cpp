@@ -176,10 +176,7 @@ class Scheduler {
                 (node.op == Op::Union || node.op == Op::Intersection || node.op == Op::NearestHit ||
                  node.op == Op::FarthestHit || node.op == Op::Blend) &&
                 node.count > (node.op == Op::Blend ? 4u : 2u);
-            bool branches = false; // an arm with statements of its own makes the choice a statement
-            if (auto arms = result_.arms.find(id); arms != result_.arms.end())
-                branches =
-                    busy_.contains(arms->second.first) || busy_.contains(arms->second.second);
+            const bool branches = result_.arms.contains(id);
             bool part = node.count == 1; // chains of these must end, too
             bool named = !is_trivial(graph_, id) && (uses_[id] > 1 || hoisted_.contains(id));
             named |= text > long_text && (part || !is_trivial(graph_, id)) &&
@@ -196,13 +193,10 @@ class Scheduler {
     // What a function hands back needs no name only for being long.
     bool is_root(NodeId id) const { return roots_.size() == 1 && roots_[0] == id; }
 
-    void set_named(NodeId id) {
-        result_.named_.insert(id);
-        for (BlockId b = result_.home[id]; b != 0; b = block(b).parent) busy_.insert(b);
-    }
+    void set_named(NodeId id) { result_.named_.insert(id); }
 
-    // Marks the choices whose named arms are cheap enough to be computed beforehand. Says whether
-    // there are any.
+    // Marks the choices whose arms are cheap enough to be computed beforehand: they are expressions,
+    // all others statements. Says whether there are any.
     bool dissolve() {
         std::unordered_map<BlockId, int> cost;
         for (NodeId id : nodes_)
@@ -211,21 +205,14 @@ class Scheduler {
         bool any = false;
         for (const auto &[id, arms] : result_.arms) {
             auto [yes, no] = arms;
-            if (!busy_.contains(yes) && !busy_.contains(no)) continue;
             if (cost[yes] + cost[no] <= cheap_arm) any |= flat_.insert(id).second;
         }
-        busy_.clear();
         return any;
     }
 
     void order() {
-        // A choice without statements in its arms is an expression.
         for (NodeId id : nodes_)
             if (result_.named(id)) block(result_.home[id]).statements.push_back(id);
-        std::erase_if(result_.arms, [&](const auto &entry) {
-            return block(entry.second.first).statements.empty() &&
-                   block(entry.second.second).statements.empty();
-        });
     }
 
     const ir::Graph &graph_;
@@ -234,7 +221,6 @@ class Scheduler {
     std::unordered_map<NodeId, std::vector<NodeId>> free_;
     std::unordered_map<NodeId, int> uses_;
     std::unordered_set<NodeId> hoisted_, flat_;
-    std::unordered_set<BlockId> busy_;
     Schedule result_;
 };
 

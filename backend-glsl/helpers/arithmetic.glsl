@@ -1,17 +1,26 @@
-$# Arithmetic made total (ir/semantics.h).
+$# Arithmetic made total (ir/semantics.h). Here, as in all texts, no branch has two arms: SwiftShader, which
+$# browsers draw with where there is no graphics card, takes time that doubles with each such branch
+$# in a loop. A choice is `mix`, which takes one of two values by a bool, or an `if` without `else`.
+
+$helper fathom_either:T
+$T fathom_either(bool choice, $T yes, $T no) {
+    $T taken = no;
+    if (choice) taken = yes;
+    return taken;
+}
 
 $helper fathom_mod:each
 float fathom_mod(float x, float y) {
-    return y == 0.0 ? x : x - y * floor(x / y);
+    return mix(x - y * floor(x / y), x, y == 0.0);
 }
 
 $helper fathom_pow:each
 float fathom_pow(float x, float y) {
     float size = abs(x);
-    float power = size > 0.0 ? pow(size, y) : (y == 0.0 ? 1.0 : (y > 0.0 ? 0.0 : uintBitsToFloat(0x7f800000u)));
-    if (x >= 0.0) return power;
-    if (floor(y) != y) return 0.0;
-    return floor(0.5 * y) == 0.5 * y ? power : -power;
+    float of_zero = mix(mix(uintBitsToFloat(0x7f800000u), 0.0, y > 0.0), 1.0, y == 0.0);
+    float power = mix(of_zero, pow(size, y), size > 0.0);
+    float below = mix(-power, power, floor(0.5 * y) == 0.5 * y);
+    return mix(mix(below, 0.0, floor(y) != y), power, x >= 0.0);
 }
 
 $helper fathom_square:T
@@ -26,14 +35,13 @@ $T fathom_cube($T x) {
 
 $helper fathom_smoothstep:each
 float fathom_smoothstep(float lo, float hi, float x) {
-    if (lo == hi) return step(lo, x);
     float t = clamp((x - lo) / (hi - lo), 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
+    return mix(t * t * (3.0 - 2.0 * t), step(lo, x), lo == hi);
 }
 
 $helper fathom_atan2:each
 float fathom_atan2(float y, float x) {
-    return y == 0.0 ? (x < 0.0 ? 3.14159274 : 0.0) : atan(y, x);
+    return mix(atan(y, x), mix(0.0, 3.14159274, x < 0.0), y == 0.0);
 }
 
 $helper fathom_sqrt:T
@@ -63,5 +71,7 @@ $T fathom_tanh($T x) {
 $helper fathom_normalize:T
 $T fathom_normalize($T x) {
     float squared = dot(x, x);
-    return squared > 0.0 ? x * (1.0 / sqrt(squared)) : $T(0.0);
+    $T unit = $T(0.0);
+    if (squared > 0.0) unit = x * (1.0 / sqrt(squared));
+    return unit;
 }

@@ -2,16 +2,18 @@ $# Hits: the nearest, the farthest, and what they are painted with.
 
 $helper fathom_nearest
 Hit fathom_nearest(Hit a, Hit b) {
-    if (b.distance < a.distance) return b;
-    return a;
+    Hit nearest = a;
+    if (b.distance < a.distance) nearest = b;
+    return nearest;
 }
 
 $helper fathom_farthest_of
 // Of hits that are evaluated in a row: an unpainted one shows the first one's paint.
 Hit fathom_farthest_of(Hit first, Hit best, Hit next) {
-    if (next.distance <= best.distance) return best;
-    if (next.paint >= 0) return next;
-    return Hit(next.distance, first.paint, first.point, first.extra);
+    Hit farthest = next;
+    if (next.paint < 0) farthest = Hit(next.distance, first.paint, first.point, first.extra);
+    if (next.distance <= best.distance) farthest = best;
+    return farthest;
 }
 
 $helper fathom_farthest needs fathom_farthest_of
@@ -26,6 +28,7 @@ Hit fathom_hit_with(Hit hit, float distance) {
 
 $helper fathom_fill_paint
 Hit fathom_fill_paint(Hit hit, int paint, vec3 point, vec4 extra) {
-    if (hit.paint >= 0) return hit;
-    return Hit(hit.distance, paint, point, extra);
+    Hit filled = hit;
+    if (hit.paint < 0) filled = Hit(hit.distance, paint, point, extra);
+    return filled;
 }

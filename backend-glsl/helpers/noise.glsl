@@ -30,34 +30,34 @@ float fathom_hash(int x) {
 $helper fathom_hash:float needs fathom_hash_more
 float fathom_hash(float x) {
     uint h = 1u;
-    h = fathom_hash_more(h, x == 0.0 ? 0u : floatBitsToUint(x));
+    h = fathom_hash_more(h, floatBitsToUint(x) * uint(x != 0.0));
     return fathom_unit(h);
 }
 
 $helper fathom_hash:vec2 needs fathom_hash_more
 float fathom_hash(vec2 x) {
     uint h = 2u;
-    h = fathom_hash_more(h, x.x == 0.0 ? 0u : floatBitsToUint(x.x));
-    h = fathom_hash_more(h, x.y == 0.0 ? 0u : floatBitsToUint(x.y));
+    h = fathom_hash_more(h, floatBitsToUint(x.x) * uint(x.x != 0.0));
+    h = fathom_hash_more(h, floatBitsToUint(x.y) * uint(x.y != 0.0));
     return fathom_unit(h);
 }
 
 $helper fathom_hash:vec3 needs fathom_hash_more
 float fathom_hash(vec3 x) {
     uint h = 3u;
-    h = fathom_hash_more(h, x.x == 0.0 ? 0u : floatBitsToUint(x.x));
-    h = fathom_hash_more(h, x.y == 0.0 ? 0u : floatBitsToUint(x.y));
-    h = fathom_hash_more(h, x.z == 0.0 ? 0u : floatBitsToUint(x.z));
+    h = fathom_hash_more(h, floatBitsToUint(x.x) * uint(x.x != 0.0));
+    h = fathom_hash_more(h, floatBitsToUint(x.y) * uint(x.y != 0.0));
+    h = fathom_hash_more(h, floatBitsToUint(x.z) * uint(x.z != 0.0));
     return fathom_unit(h);
 }
 
 $helper fathom_hash:vec4 needs fathom_hash_more
 float fathom_hash(vec4 x) {
     uint h = 4u;
-    h = fathom_hash_more(h, x.x == 0.0 ? 0u : floatBitsToUint(x.x));
-    h = fathom_hash_more(h, x.y == 0.0 ? 0u : floatBitsToUint(x.y));
-    h = fathom_hash_more(h, x.z == 0.0 ? 0u : floatBitsToUint(x.z));
-    h = fathom_hash_more(h, x.w == 0.0 ? 0u : floatBitsToUint(x.w));
+    h = fathom_hash_more(h, floatBitsToUint(x.x) * uint(x.x != 0.0));
+    h = fathom_hash_more(h, floatBitsToUint(x.y) * uint(x.y != 0.0));
+    h = fathom_hash_more(h, floatBitsToUint(x.z) * uint(x.z != 0.0));
+    h = fathom_hash_more(h, floatBitsToUint(x.w) * uint(x.w != 0.0));
     return fathom_unit(h);
 }
 
@@ -70,9 +70,7 @@ uint fathom_hash_lattice(uvec3 p, uint salt) {
 }
 
 uvec3 fathom_lattice(vec3 whole) {
-    return uvec3(uint(int(abs(whole.x) <= 1073741824.0 ? whole.x : 0.0)),
-                 uint(int(abs(whole.y) <= 1073741824.0 ? whole.y : 0.0)),
-                 uint(int(abs(whole.z) <= 1073741824.0 ? whole.z : 0.0)));
+    return uvec3(ivec3(mix(vec3(0.0), whole, lessThanEqual(abs(whole), vec3(1073741824.0)))));
 }
 
 vec3 fathom_fade(vec3 t) {
@@ -82,9 +80,9 @@ vec3 fathom_fade(vec3 t) {
 $helper fathom_edge_gradient needs fathom_lattice
 float fathom_edge_gradient(uint h, vec3 p) {
     uint k = h >> 28u;
-    float u = k < 8u ? p.x : p.y;
-    float v = k < 4u ? p.y : ((k | 2u) == 14u ? p.x : p.z);
-    return ((k & 1u) == 0u ? u : -u) + ((k & 2u) == 0u ? v : -v);
+    float u = mix(p.y, p.x, k < 8u);
+    float v = mix(mix(p.z, p.x, (k | 2u) == 14u), p.y, k < 4u);
+    return mix(-u, u, (k & 1u) == 0u) + mix(-v, v, (k & 2u) == 0u);
 }
 
 $helper fathom_perlin needs fathom_edge_gradient
@@ -172,7 +170,7 @@ float fathom_spot(vec3 x, vec3 corner, inout uint h, bool there) {
     vec3 d = x - (corner + fathom_worley_point(h));
     float t = max(1.0 - (d.x * d.x + d.y * d.y + d.z * d.z), 0.0);
     h = fathom_hash_more(h, 2u);
-    return there ? (fathom_unit(h) * 2.0 - 1.0) * (t * t * t) : 0.0;
+    return mix(0.0, (fathom_unit(h) * 2.0 - 1.0) * (t * t * t), there);
 }
 
 float fathom_spot_noise(vec3 p, float radius, float density) {

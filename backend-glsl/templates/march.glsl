@@ -19,11 +19,21 @@ $if PASSES
 uniform int fathom_turns, fathom_budget;
 uniform bool fathom_resumed; // rays go on, else they begin
 uniform sampler2D fathom_kept_0, fathom_kept_1, fathom_kept_2, fathom_kept_3;
+$if FOUR_OUTPUTS
+$# WebGL 2 promises no more outputs than four. Of a ray that goes on the colour is what lacks the light; 2 as its
+$# alpha says that it does.
+float fathom_left;
+vec4 fathom_keep_2;
+layout(location = 1) out vec4 fathom_keep_0;
+layout(location = 2) out vec4 fathom_keep_1;
+layout(location = 3) out vec4 fathom_keep_3;
+$else
 layout(location = 2) out float fathom_left; // 1 the ray goes on; else 0.25 it is undecided, 0.5 a ray from a light is
 layout(location = 3) out vec4 fathom_keep_0;
 layout(location = 4) out vec4 fathom_keep_1;
 layout(location = 5) out vec4 fathom_keep_2;
 layout(location = 6) out vec4 fathom_keep_3;
+$end
 
 int fathom_taken = 0;       // steps of this draw
 int fathom_light_kept = -1; // whose ray goes on
@@ -178,7 +188,9 @@ $end
             bool touch = d < 0.25 * fathom_slack_at(t);
             found = d <= 0.0 || (touch && touches == 0);
             if (found) break;
-            if (touches > 0) touches = touch ? touches + 1 : $MAX_TOUCHES + 1;
+            bool sheet = touches > 0;
+            if (sheet) ++touches;
+            if (sheet && !touch) touches = $MAX_TOUCHES + 1;
             if (touches > $MAX_TOUCHES) {
                 fathom_end = 2;
                 break;
@@ -212,17 +224,18 @@ $end
             bool farther = false;
             if (!solid && ++count == 8) {
                 float across = (greatest - least) / (8.0 * slack);
-                float along = stride > 0.0 ? (before - touched) / stride : 0.0;
+                float along = mix(0.0, (before - touched) / stride, stride > 0.0);
                 farther = touched > 2.0 * slack * length(vec2(across, along));
             }
             if (!solid && !farther && count < 16) {
                 vec3 turned = 0.707106781 * (u + v);
                 v = 0.707106781 * (v - u);
                 u = turned;
-                aside = (count < 8 ? 4.0 * slack : 0.25 * tolerance) * u;
+                aside = mix(0.25 * tolerance, 4.0 * slack, count < 8) * u;
                 continue;
             }
-            touches = solid ? -1 : farther ? 0 : 1;
+            touches = int(!farther);
+            if (solid) touches = -1;
             phase = 0;
             aside = vec3(0.0);
             d = touched;
@@ -233,20 +246,23 @@ $end
 $include march_ahead
             continue;
         }
-        if (phase == 0) {
+        bool begins = phase == 0;
+        if (begins) {
             phase = 1;
             count = 0;
             a = t - stride;
             b = t;
             at_a = before;
             at_b = d;
-        } else {
+        }
+        if (!begins) {
             bool inside = !(d > 0.0);
             if (inside) {
                 b = t;
                 at_b = d;
                 if (stays == 1) at_a *= 0.5;
-            } else {
+            }
+            if (!inside) {
                 a = t;
                 at_a = d;
                 if (stays == 2) at_b *= 0.5;
@@ -255,10 +271,11 @@ $include march_ahead
             ++count;
             ++steps;
         }
-        float x = b > a ? a + (b - a) * (at_a / (at_a - at_b)) : b;
-        float tolerance = fathom_tolerance(count > 0 ? t : x);
+        float x = mix(b, a + (b - a) * (at_a / (at_a - at_b)), b > a);
+        float tolerance = fathom_tolerance(mix(x, t, count > 0));
         float near = $REFINED * tolerance;
-        bool there = count > 0 ? count == $REFINEMENTS || abs(x - t) <= near : aims && abs(x - b + 0.25 * tolerance) <= near;
+        bool there = count > 0 && (count == $REFINEMENTS || abs(x - t) <= near) ||
+                     count == 0 && aims && abs(x - b + 0.25 * tolerance) <= near;
         t = x;
         if (there || !(b - a > $REFINED * fathom_tolerance(x))) {
             fathom_end = 1;

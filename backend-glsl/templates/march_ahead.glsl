@@ -1,19 +1,21 @@
 $# Statements: the next step of a ray that found d at t.
-            float ahead = max(d, touches < 0 ? tolerance : 0.25 * fathom_slack_at(t));
+            float ahead = max(d, mix(0.25 * fathom_slack_at(t), tolerance, touches < 0));
             float next = ahead;
+            bool straight = stride > 0.0;
 $if HAS_SAFE_RADIUS
             float reach = max(span, ahead);
             if (reach > ahead) {
                 next = reach;
+                straight = false;
                 if (stride > 0.0) {
                     float change = (reach * reach - reached * reached) / stride;
-                    next = change < -reach ? reach * reach / -change - 0.5 * tolerance
-                                           : reach + $BENT_RELAXATION * (reach + change);
+                    next = mix(reach + $BENT_RELAXATION * (reach + change), reach * reach / -change - 0.5 * tolerance,
+                               change < -reach);
                     next = max(next, ahead);
                 }
-            } else
+            }
 $end
-            if (stride > 0.0)
+            if (straight)
                 next += $RELAXATION * ahead * max(stride + ahead - before, 0.0) /
                         max(stride - ahead + before, $FLATTEST * stride);
             aims = false;

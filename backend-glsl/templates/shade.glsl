@@ -127,7 +127,7 @@ $end
         }
         if (tap < 0) { // golden sections
             if (left) at_a = f;
-            else at_b = f;
+            if (!left) at_b = f;
             ++search;
             if (search == 1) {
                 left = false;
@@ -141,17 +141,18 @@ $end
                     b = a;
                     at_b = at_a;
                     a = hi - $GOLDEN * (hi - lo);
-                } else {
+                }
+                if (!left) {
                     lo = a;
                     a = b;
                     at_a = at_b;
                     b = lo + $GOLDEN * (hi - lo);
                 }
-                x = left ? a : b;
+                x = mix(b, a, left);
                 continue;
             }
-            x = left ? a : b;
-            f = left ? at_a : at_b;
+            x = mix(b, a, left);
+            f = mix(at_b, at_a, left);
             tap = 0;
         }
         if (tap == 0) value = f;
@@ -159,7 +160,7 @@ $if UNIT_SLOPE
         float near = value;
 $else
         if (tap == 0) sum = vec3(0.0);
-        else sum += f * fathom_corner(tap - 1);
+        if (tap > 0) sum += f * fathom_corner(tap - 1);
         if (tap < 4) {
             ++tap;
             continue;
@@ -231,9 +232,9 @@ $if !SKIP_SHADING
     float g1 = 0.0, g2 = 0.0, g3 = 0.0, g4 = 0.0, g5 = 0.0; // over their distances from p
     for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
         bool outward = i > 3 && i < 9;
-        float away = outward ? reach * float(i - 3) : x;
+        float away = mix(x, reach * float(i - 3), outward);
         vec3 place = p + away * n;
-        vec3 e = fathom_corner(i < 4 ? i : i - 9);
+        vec3 e = fathom_corner(i - 9 * int(i > 3));
         if (!outward) place += h * e;
         float f = $SHADED(place);
         if (outward) {
@@ -331,14 +332,16 @@ $else
         fathom_Light light = fathom_light(i);
 $end
 $end
-        vec3 way = light.directional ? light.position : light.position - q;
+        vec3 way = light.position;
+        if (!light.directional) way -= q;
         float away = length(way);
-        vec3 l = away > 0.0 ? way / away : n;
+        vec3 l = n;
+        if (away > 0.0) l = way / away;
         float facing = dot(n, l);
         if (facing <= 0.0) $UNLIT;
         float seen = 1.0;
         if (look.shadow_darkness > 0.0) {
-            float reach = light.directional ? $SUN_REACH : away;
+            float reach = mix(away, $SUN_REACH, light.directional);
             seen -= look.shadow_darkness * (1.0 - fathom_shadow(q, l, reach, angle, margin, h));
 $if PASSES
             if (fathom_goes_on) {
@@ -352,7 +355,7 @@ $end
         }
         vec3 r = 2.0 * facing * n - l;
         float gleam = max(-dot(r, direction), 0.0);
-        gleam = gleam > 0.0 ? look.specular_intensity * pow(gleam, m.exponent) : 0.0;
+        if (gleam > 0.0) gleam = look.specular_intensity * pow(gleam, m.exponent);
         color += seen * light.color * (facing * m.diffuse + gleam * m.specular);
     }
     return color;

@@ -9,7 +9,8 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 using namespace fathom;
@@ -148,15 +149,20 @@ TEST_CASE("an arm with work of its own is a block, and a chain of them stays fla
     });
     CHECK(sdf_of(scene) == R"(float sdf(vec3 p) {
     float d1;
+    bool b2 = true;
     if (p.x < 1.0) {
-        float d2 = sin(p.y * 5.0);
-        d1 = d2 * d2 + exp(d2);
-    } else if (p.x < 2.0) {
-        float d3 = sin(p.y * 2.0);
+        float d3 = sin(p.y * 5.0);
         d1 = d3 * d3 + exp(d3);
-    } else {
-        float d4 = sin(p.y * 3.0);
+        b2 = false;
+    }
+    if (b2 && p.x < 2.0) {
+        float d4 = sin(p.y * 2.0);
         d1 = d4 * d4 + exp(d4);
+        b2 = false;
+    }
+    if (b2) {
+        float d5 = sin(p.y * 3.0);
+        d1 = d5 * d5 + exp(d5);
     }
     return d1;
 }
@@ -170,9 +176,31 @@ TEST_CASE("a cheap choice is an expression") {
                       {g.make(Op::Less, {x, g.number(0)}), g.neg(x), g.mul(x, g.number(2))});
     });
     CHECK(sdf_of(scene) == R"(float sdf(vec3 p) {
-    return p.x < 0.0 ? -p.x : p.x * 2.0;
+    return mix(p.x * 2.0, -p.x, p.x < 0.0);
 }
 )");
+}
+
+// SwiftShader takes time that doubles with each such branch in a loop (helpers/arithmetic.glsl).
+TEST_CASE("no branch in a loop has two arms") {
+    std::vector<std::string> names;
+    const std::string folder = FATHOM_SOURCE_DIR "/backend-glsl/";
+    for (const auto &file : std::filesystem::directory_iterator(folder + "helpers"))
+        names.push_back(file.path().string());
+    for (const char *name : {"march", "march_ahead", "shadow_ahead", "shade"})
+        names.push_back(folder + "templates/" + name + ".glsl");
+    CHECK(names.size() > 8);
+    for (const std::string &name : names) {
+        INFO(name);
+        std::ifstream file(name);
+        REQUIRE(file);
+        for (std::string line; std::getline(file, line);) {
+            if (line.starts_with("$")) continue;
+            INFO(line);
+            line = line.substr(0, line.find("//"));
+            CHECK(line.find("else") == line.npos);
+        }
+    }
 }
 
 TEST_CASE("a loop stays a loop, and what does not change in it stands before") {
