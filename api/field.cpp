@@ -3,6 +3,7 @@
 #include "backend-cpu/prune/shorten.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <mutex>
 
@@ -97,6 +98,32 @@ void gradients_of(const Field::Impl &impl, std::span<const Point> points,
     distances_of(impl, points.first(count), distances.first(count)); // the same bits as alone
 }
 
+void volume_of(const Field::Impl &impl, const Box &box, const std::array<std::size_t, 3> &counts,
+               std::span<float> distances) {
+    const auto place = [&](std::size_t axis, std::size_t i) {
+        const double share = static_cast<double>(i) / static_cast<double>(counts[axis] - 1);
+        return static_cast<float>((1 - share) * box.lo[axis] + share * box.hi[axis]);
+    };
+    std::vector<Point> row(counts[0]);
+    for (std::size_t i = 0; i < counts[0]; ++i) row[i][0] = place(0, i);
+    for (std::size_t z = 0; z < counts[2]; ++z)
+        for (std::size_t y = 0; y < counts[1]; ++y) {
+            for (Point &point : row) point[1] = place(1, y), point[2] = place(2, z);
+            distances_of(impl, row, distances.subspan((z * counts[1] + y) * counts[0], counts[0]));
+        }
+}
+
+bool is_lattice(const Box &box, const std::array<std::size_t, 3> &counts, std::size_t room) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (counts[axis] < 2 || counts[axis] > room) return false;
+        room /= counts[axis];
+        if (!std::isfinite(box.lo[axis]) || !std::isfinite(box.hi[axis]) ||
+            !(box.lo[axis] < box.hi[axis]))
+            return false;
+    }
+    return true;
+}
+
 void intervals_of(const Field::Impl &impl, std::span<const Box> boxes,
                   std::span<Interval> intervals) {
     const std::size_t count = std::min(boxes.size(), intervals.size());
@@ -135,6 +162,12 @@ bool Field::gradients(std::span<const Point> points, std::span<float> distances,
 
 bool Field::intervals(std::span<const Box> boxes, std::span<Interval> intervals) const noexcept {
     return done([&] { intervals_of(*impl_, boxes, intervals); });
+}
+
+bool Field::volume(const Box &box, const std::array<std::size_t, 3> &counts,
+                   std::span<float> distances) const noexcept {
+    if (!is_lattice(box, counts, distances.size())) return false;
+    return done([&] { volume_of(*impl_, box, counts, distances); });
 }
 
 std::optional<Field> make_field(const Scene &scene, double time) noexcept {

@@ -69,6 +69,7 @@ Facts facts_of(const driver::Compilation &compilation) {
     facts.exact = verdict.exact;
     if (scene.bounds.finite()) facts.bounds = outward(scene.bounds);
     facts.time_end = scene.render.time_end;
+    for (const ir::Axiom &axiom : scene.axioms) facts.axioms.push_back(axiom.says);
     for (const ir::TopLevel &top : scene.top_level) {
         const ir::ShapeFact &fact = scene.facts[top.shape.index];
         facts.shapes.push_back({place_of(top.span, compilation.sources), fact.lipschitz_sup,

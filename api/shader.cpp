@@ -1,6 +1,6 @@
 #include "api/impl.h"
 
-#include "backend-glsl/emit.h"
+#include "backend-glsl/reflection.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -51,6 +51,7 @@ std::optional<Shader> shader_of(const Scene &scene, const ShaderOptions &options
         said.push_back(std::move(diagnostic));
     if (diagnostics.has_errors()) return std::nullopt;
     Shader shader;
+    shader.reflection = glsl::reflection_json(ir_scene, to, output);
     shader.text = std::move(output.text);
     shader.words = std::move(output.words);
     shader.tables = std::move(output.tables);
@@ -58,6 +59,17 @@ std::optional<Shader> shader_of(const Scene &scene, const ShaderOptions &options
     for (const glsl::Uniform &uniform : output.uniforms) {
         const Param &param = scene.params()[uniform.param];
         shader.uniforms.push_back({uniform.name, param.name, param.type, uniform.location});
+    }
+    for (glsl::Input &input : output.inputs) {
+        ShaderInput to{std::move(input.type),
+                       std::move(input.name),
+                       std::move(input.value),
+                       std::move(input.meaning),
+                       "",
+                       input.place};
+        for (const Uniform &uniform : shader.uniforms)
+            if (uniform.name == to.name) to.param = uniform.param;
+        shader.inputs.push_back(std::move(to));
     }
     for (const glsl::Sampler &sampler : output.images)
         shader.textures.push_back(texture_of(ir_scene.images[sampler.index], sampler.name));

@@ -97,8 +97,11 @@ class Emitter {
             return {};
         }
 
-        std::string text =
-            options_.field_only ? field_text(module_, scene) : picture_text(module_, scene);
+        std::string text = options_.field_only ? field_text(module_, scene, output.inputs)
+                                               : picture_text(module_, scene, output.inputs);
+        for (Uniform &uniform : output.uniforms)
+            for (const Input &input : output.inputs)
+                if (input.name == uniform.name) uniform.location = input.place;
         if (!check(text, output)) return {};
         if (!module_.cached.empty() &&
             (!check(with_cache(text), output) || !check(with_cache(text, cache_learns), output)))

@@ -52,7 +52,15 @@ struct Uniform {
     std::string name;
     ir::Type type = ir::Type::Float;
     std::uint32_t param = 0; // index into Scene::params
-    int location = -1;       // spirv only
+    int location = -1;       // -1 where the text gives none
+};
+
+// A uniform as the text declares it: an input of the frame, a param or a sampler.
+struct Input {
+    std::string type, name;
+    std::vector<double> value; // for the scene's first view; of a sampler none
+    std::string meaning;       // of an input of the frame: what it is, with its unit
+    int place = -1;            // its location, a sampler's binding; -1 where the text gives none
 };
 
 struct Sampler {
@@ -90,6 +98,7 @@ struct Output {
     std::string text;                 // empty where an error was reported
     std::vector<std::uint32_t> words; // spirv
     std::vector<Uniform> uniforms;    // the params that the text reads
+    std::vector<Input> inputs;        // all uniforms, in the text's order
     std::vector<float>
         tables; // RGBA32F texels of `fathom_tables`; empty where the text holds the data
     std::vector<Sampler> images, grids;

@@ -13,9 +13,13 @@ enum class Held { Constant, Global, Nowhere };
 
 struct FrameInput {
     const char *type, *name;
-    std::string value; // for the first view
+    std::string value;           // for the first view
+    std::vector<double> numbers; // the same
     Held held;
+    const char *meaning; // with its unit
 };
+
+std::vector<double> numbers_of(const glm::dvec3 &v) { return {v.x, v.y, v.z}; }
 
 std::string param_value(const ir::Param &param) {
     return literal({param.type, {param.value[0], param.value[1], param.value[2], param.value[3]}});
@@ -33,18 +37,21 @@ std::string Inputs::defaults() const {
                : "";
 }
 
-std::string Inputs::uniform(const std::string &type, const std::string &name,
-                            const std::string &value, const std::string &range) {
-    declared_.push_back({type, name, value, range});
+std::string Inputs::uniform(Input input, const std::string &value, const std::string &range) {
+    const std::string declaration = "uniform " + input.type + " " + input.name;
+    declared_.push_back({input.type, input.name, value, range});
+    if (target_.locations) input.place = location_++;
+    uniforms_.push_back(std::move(input));
     if (target_.locations)
-        return fmt::format("layout(location = {}) uniform {} {};\n", location_++, type, name);
+        return fmt::format("layout(location = {}) {};\n", location_ - 1, declaration);
     const bool bare = target_.es || options_.instruments != Instruments::None || value.empty();
-    return "uniform " + type + " " + name + (bare ? "" : " = " + value) + ";\n";
+    return declaration + (bare ? "" : " = " + value) + ";\n";
 }
 
 std::string Inputs::sampler(const std::string &type, const std::string &name) {
     const std::string place =
-        target_.locations ? fmt::format("layout(binding = {}) ", binding_++) : "";
+        target_.locations ? fmt::format("layout(binding = {}) ", binding_) : "";
+    uniforms_.push_back({type, name, {}, "", target_.locations ? binding_++ : -1});
     return place + "uniform " + type + " " + name + ";\n";
 }
 
@@ -58,7 +65,8 @@ std::string Inputs::time() {
     if (!target_.hosted)
         return module_.reads_time ? std::string("#define fathom_time ") + target_.time + "\n" : "";
     if (!module_.reads_time && options_.field_only) return "";
-    return uniform("float", "fathom_time", float_literal(options_.time));
+    return uniform({"float", "fathom_time", {options_.time}, "the time, in seconds"},
+                   float_literal(options_.time));
 }
 
 std::string Inputs::of_scene() {
@@ -69,7 +77,12 @@ std::string Inputs::of_scene() {
         if (!param.label.empty() && options_.instruments == Instruments::None)
             text += comment(param.label);
         if (target_.hosted && !is_fixed(param, options_))
-            text += uniform(type, name, value, range_text(param));
+            text +=
+                uniform({type,
+                         name,
+                         {param.value.begin(), param.value.begin() + ir::components(param.type)},
+                         ""},
+                        value, range_text(param));
         else
             text += "const " + type + " " + name + " = " + value + ";\n";
     }
@@ -88,21 +101,57 @@ std::string Inputs::of_picture(const ir::View &view) {
                                ? ir::lights_of(scene_, options_.time, view)[0].position
                                : glm::dvec3{0, 1, 0};
     const FrameInput all[] = {
-        {"vec2", "fathom_resolution", "vec2(1280.0, 720.0)", Held::Global},
-        {"vec2", "fathom_offset", "vec2(0.5)", Held::Nowhere},
-        {"vec3", "fathom_origin", vec3_literal(view.origin), Held::Global},
-        {"vec3", "fathom_right", vec3_literal(view.right), Held::Global},
-        {"vec3", "fathom_up", vec3_literal(view.up), Held::Global},
-        {"vec3", "fathom_forward", vec3_literal(view.forward), Held::Global},
-        {"float", "fathom_extent", float_literal(view.extent), Held::Constant},
-        {"float", "fathom_focus", float_literal(view.focus), Held::Constant},
-        {"int", "fathom_orthographic", view.orthographic ? "1" : "0", Held::Constant},
-        {"vec3", "fathom_sun", vec3_literal(sun), Held::Constant},
-        {"int", "fathom_mode", "0", Held::Constant}};
+        {"vec2",
+         "fathom_resolution",
+         "vec2(1280.0, 720.0)",
+         {1280, 720},
+         Held::Global,
+         "the picture's size, in pixels"},
+        {"vec2",
+         "fathom_offset",
+         "vec2(0.5)",
+         {0.5, 0.5},
+         Held::Nowhere,
+         "the sample's place in its pixel, 0 to 1"},
+        {"vec3", "fathom_origin", vec3_literal(view.origin), numbers_of(view.origin), Held::Global,
+         "the eye, in the scene's units"},
+        {"vec3", "fathom_right", vec3_literal(view.right), numbers_of(view.right), Held::Global,
+         "the view's axis to the right, of length 1"},
+        {"vec3", "fathom_up", vec3_literal(view.up), numbers_of(view.up), Held::Global,
+         "the view's axis upwards, of length 1"},
+        {"vec3", "fathom_forward", vec3_literal(view.forward), numbers_of(view.forward),
+         Held::Global, "the direction of view, of length 1"},
+        {"float",
+         "fathom_extent",
+         float_literal(view.extent),
+         {view.extent},
+         Held::Constant,
+         "half the picture's height: at distance 1 from the eye, or in units where orthographic"},
+        {"float",
+         "fathom_focus",
+         float_literal(view.focus),
+         {view.focus},
+         Held::Constant,
+         "the distance of what is looked at, in the scene's units"},
+        {"int",
+         "fathom_orthographic",
+         view.orthographic ? "1" : "0",
+         {view.orthographic ? 1.0 : 0.0},
+         Held::Constant,
+         "1: rays are parallel"},
+        {"vec3", "fathom_sun", vec3_literal(sun), numbers_of(sun), Held::Constant,
+         "the direction towards the sun of a scene without lights, of length 1"},
+        {"int",
+         "fathom_mode",
+         "0",
+         {0},
+         Held::Constant,
+         "what is drawn: 0 the picture, 1 steps as colours, 2 (steps, t, paint, end), 3 linear "
+         "colours"}};
     std::string text = "\n" + own_inputs(true);
     for (const FrameInput &i : all) {
         if (target_.hosted)
-            text += uniform(i.type, i.name, i.value);
+            text += uniform({i.type, i.name, i.numbers, i.meaning}, i.value);
         else if (i.held == Held::Constant)
             text += std::string("const ") + i.type + " " + i.name + " = " + i.value + ";\n";
         else if (i.held == Held::Global)

@@ -21,9 +21,10 @@ class Inputs {
     // Of the uniforms declared so far, for a target that lists them.
     std::string defaults() const;
 
+    const std::vector<Input> &uniforms() const { return uniforms_; } // declared so far, in order
+
   private:
-    std::string uniform(const std::string &type, const std::string &name, const std::string &value,
-                        const std::string &range = "");
+    std::string uniform(Input input, const std::string &value, const std::string &range = "");
     std::string sampler(const std::string &type, const std::string &name);
     std::string own_inputs(bool picture) const;
     std::string time();
@@ -34,6 +35,7 @@ class Inputs {
     const Options &options_;
     const TargetTraits &target_;
     std::vector<Default> declared_; // uniforms, in order
+    std::vector<Input> uniforms_;   // and samplers
     int location_ = 0, binding_ = 0;
 };
 

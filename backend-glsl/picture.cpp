@@ -139,11 +139,12 @@ std::string written_by(const Options &options) {
     return comment(options.title + ": written by fathom.");
 }
 
-std::string picture_text(const Module &module, const SceneText &scene) {
+std::string picture_text(const Module &module, const SceneText &scene, std::vector<Input> &all) {
     const ir::View view = ir::view_of(module.scene, module.options.time, 16.0 / 9.0);
     const MarcherOptions marcher = marcher_options(module, scene, view);
     Inputs inputs(module);
     const std::string declared = inputs.of_picture(view);
+    all = inputs.uniforms();
     std::string before = head(module) + inputs.defaults() + declared;
     if (!module.pruned.empty()) before += prune_look_up(module.scene.bounds);
     before += scene.tables + scene.functions;
@@ -153,13 +154,14 @@ std::string picture_text(const Module &module, const SceneText &scene) {
            entry(module, view);
 }
 
-std::string field_text(const Module &module, const SceneText &scene) {
+std::string field_text(const Module &module, const SceneText &scene, std::vector<Input> &all) {
     double bound = 0;
     for (const ir::TopLevel &top : module.scene.top_level)
         if (top.shape.index < module.scene.facts.size())
             bound = std::max(bound, module.scene.facts[top.shape.index].lipschitz_sup);
     Inputs inputs(module);
     const std::string declared = inputs.of_field();
+    all = inputs.uniforms();
     return expand("field", {{"BEGIN", head(module) + inputs.defaults()},
                             {"INPUTS", declared},
                             {"BOUND", float_literal(bound > 0 ? bound : 1)},

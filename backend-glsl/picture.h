@@ -6,8 +6,9 @@
 
 namespace fathom::glsl {
 
-std::string picture_text(const Module &module, const SceneText &scene);
-std::string field_text(const Module &module, const SceneText &scene);
+// `inputs`: the uniforms that the text declares.
+std::string picture_text(const Module &module, const SceneText &scene, std::vector<Input> &inputs);
+std::string field_text(const Module &module, const SceneText &scene, std::vector<Input> &inputs);
 
 // The comment that says what a text is of.
 std::string written_by(const Options &options);

@@ -38,6 +38,7 @@ struct TargetTraits {
                                  // a PICTURE, or of a field that reads the TIME
     const char *entry = "entry"; // template: the entry point of a picture, which sets a camera
                                  // where it is not hosted (values: picture.cpp)
+    const char *main = "main";   // the entry point's name
     const char *host = "";       // template: what the host puts around TEXT, for the check
     const char *reserved = "";   // names that the host declares, with blanks between
 };

@@ -1,16 +1,19 @@
-// The command line, read with CLI11, which no other file includes.
+// The command line, read with CLI11, which no other file includes. Long: so that none has to.
 #include "base/encode.h"
 #include "base/single.h"
 #include "base/suggest.h"
 #include "base/text.h"
 #include "cli/contradiction.h"
+#include "cli/help_forms.h"
 #include "cli/option_rows.h"
 #include "cli/outputs.h"
 #include "cli/words.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 
 namespace fathom::cli {
 namespace {
@@ -35,37 +38,13 @@ CLI::Option *option(CLI::App *app, const std::string &name, Read read, const std
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-// An option that takes one of a few words.
-template <class T> CLI::Option *choice(CLI::App *app, const std::string &name, T &value,
-                                       std::vector<std::pair<std::string, T>> words,
-                                       const std::string &help) {
-    return option(
-        app, name,
-        [&value, words](const std::string &word) {
-            std::vector<std::string> names;
-            for (const auto &[known, meaning] : words) {
-                if (known == word) {
-                    value = meaning;
-                    return std::string();
-                }
-                names.push_back(known);
-            }
-            return fmt::format("wants {}, not `{}`", listed(names), word);
-        },
-        help);
-}
-
 // The help says in words what is allowed, so that CLI11 need not add it in its own.
 CLI::Validator quiet(CLI::Validator validator) { return validator.description(""); }
 
 // Some commands read their file more than once, which standard input does not bear.
 enum class Read { Once, Again };
 
-void add_scene(CLI::App *app, SceneArguments &scene, Read read = Read::Once) {
-    app->add_option("FILE", scene.file,
-                    read == Read::Once ? "the scene, `-` for standard input" : "the scene")
-        ->type_name("")
-        ->required();
+void add_scene_options(CLI::App *app, SceneArguments &scene) {
     option(
         app, "-D", [&](const std::string &word) { return read_override(word, scene.overrides); },
         "set a param of the scene")
@@ -86,9 +65,21 @@ void add_scene(CLI::App *app, SceneArguments &scene, Read read = Read::Once) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+void add_scene(CLI::App *app, SceneArguments &scene, Read read = Read::Once) {
+    app->add_option("FILE", scene.file,
+                    read == Read::Once ? "the scene, `-` for standard input" : "the scene")
+        ->type_name("")
+        ->required();
+    add_scene_options(app, scene);
+}
+
+void add_strict_proof(CLI::App *app, SceneArguments &scene) {
+    app->add_flag("--strict-proof", scene.strict_proof, "refuse what is not proved");
+}
+
 void add_proved_scene(CLI::App *app, SceneArguments &scene) {
     add_scene(app, scene);
-    app->add_flag("--strict-proof", scene.strict_proof, "refuse what is not proved");
+    add_strict_proof(app, scene);
 }
 
 // An empty name is a script's variable that was never set.
@@ -142,7 +133,9 @@ struct Reader {
     ExplainCommand explain;
     LspCommand lsp;
     BenchCommand bench;
+    std::map<const CLI::Option *, std::vector<std::string>> choices; // the words that it takes
     std::string help_about;
+    HelpForm help_form = HelpForm::Text;
     CLI::App *help = nullptr;
 
     void add_target(CLI::App *sub) {
@@ -156,6 +149,25 @@ struct Reader {
             ->type_name("TARGET");
     }
 
+    // An option that takes one of a few words.
+    template <class T> CLI::Option *choice(CLI::App *to, const std::string &name, T &value,
+                                           std::vector<std::pair<std::string, T>> words,
+                                           const std::string &what) {
+        std::vector<std::string> names;
+        for (const auto &[word, meaning] : words) names.push_back(word);
+        const auto read = [&value, words, names](const std::string &word) {
+            for (const auto &[known, meaning] : words) {
+                if (known != word) continue;
+                value = meaning;
+                return std::string();
+            }
+            return fmt::format("wants {}, not `{}`", listed(names), word);
+        };
+        CLI::Option *made = option(to, name, read, what);
+        choices[made] = names;
+        return made;
+    }
+
     template <class T> CLI::App *command(const char *name, const char *what, T &value) {
         CLI::App *sub = app.add_subcommand(name, what);
         sub->callback([this, &value] { invocation.command = value; });
@@ -166,7 +178,7 @@ struct Reader {
         app.require_subcommand(0, 1);
         app.fallthrough();
         app.set_help_flag("-h,--help", "print this");
-        app.add_flag("--version", version, "print the version");
+        app.add_flag("-V,--version", version, "print the version");
         choice<ColorChoice>(&app, "--color", invocation.color,
                             {{"auto", ColorChoice::Auto},
                              {"always", ColorChoice::Always},
@@ -196,6 +208,14 @@ struct Reader {
         add_bench();
         help = app.add_subcommand("help", "show this, or a command's options");
         help->add_option("COMMAND", help_about, "left out: list the commands")->type_name("");
+        choice<HelpForm>(help, "--as", help_form,
+                         {{"text", HelpForm::Text},
+                          {"man", HelpForm::Man},
+                          {"bash", HelpForm::Bash},
+                          {"zsh", HelpForm::Zsh},
+                          {"fish", HelpForm::Fish}},
+                         "all of it as a manual page, or as a shell's completion")
+            ->type_name("FORM");
     }
 
     void add_view() {
@@ -215,9 +235,13 @@ struct Reader {
     }
 
     void add_check() {
-        CLI::App *sub = command("check", "parse, type and prove a scene", check);
-        add_proved_scene(sub, check.scene);
-        sub->add_flag("--json", check.json, "one JSON document on standard output");
+        CLI::App *sub = command("check", "parse, type and prove scenes", check);
+        sub->add_option("FILE", check.files, "the scenes, `-` for standard input")
+            ->type_name("")
+            ->required();
+        add_scene_options(sub, check.scene);
+        add_strict_proof(sub, check.scene);
+        sub->add_flag("--json", check.json, "one JSON document a scene on standard output");
         sub->add_flag("--explain", check.explain, "show where the bound comes from, as a tree");
         sub->add_flag("--watch", check.watch, "check again after every save");
     }
@@ -231,6 +255,10 @@ struct Reader {
                         targets_with(&glsl::TargetTraits::buffer_file)))
             ->type_name("OUT");
         add_target(sub);
+        sub->add_option("--reflect", compile.reflect,
+                        "write here as JSON what a host has to bind: uniforms, textures, buffers")
+            ->type_name("OUT.json")
+            ->check(named());
         sub->add_flag("--field-only", compile.field_only,
                       "the field functions alone, for a renderer of your own");
         sub->add_flag(
@@ -346,6 +374,7 @@ struct Reader {
     void add_eval() {
         CLI::App *sub = command("eval", "print the field at points: distance gx gy gz", eval);
         add_scene(sub, eval.scene);
+        sub->add_option("X Y Z", eval.coordinates, "points, as three numbers each")->type_name("");
         option(
             sub, "--at",
             [this](const std::string &word) { return read_point(word, eval.at.emplace_back()); },
@@ -389,11 +418,19 @@ struct Reader {
             ->required();
         sub->add_flag("--check", fmt.check,
                       "change nothing; name the files that are not formatted, and exit with 1");
+        sub->add_flag("--diff", fmt.diff,
+                      "change nothing; print what would change, and exit with 1 if anything would");
     }
 
     void add_doc() {
         CLI::App *sub = command("doc", "print the library's entry of a name", doc);
-        sub->add_option("NAME", doc.name, "left out: list all names")->type_name("");
+        sub->add_option("NAME", doc.name, "left out: list all names, in groups")->type_name("");
+        sub->add_option("--search", doc.search,
+                        "list the names whose entry holds this; may be given again")
+            ->type_name("WORD")
+            ->expected(1)
+            ->allow_extra_args(false)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     }
 
     void add_explain() {
@@ -407,6 +444,11 @@ struct Reader {
         CLI::App *sub = command("bench", "measure the phases and a frame of a scene", bench);
         add_scene(sub, bench.scene, Read::Again);
         add_size(sub, bench.width, bench.height);
+        sub->add_flag("--json", bench.json, "one JSON document on standard output");
+        sub->add_option("--compare", bench.compare,
+                        "beside each number the one of an earlier run, which --json wrote")
+            ->type_name("OLD.json")
+            ->check(named());
     }
 };
 
@@ -419,6 +461,47 @@ std::string help_hint(const CLI::App &app) {
     return chosen.empty()
                ? "`fathom help` lists the commands"
                : fmt::format("`fathom help {}` shows its options", chosen.front()->get_name());
+}
+
+// What help knows of an app's options; positional ones have no names.
+std::vector<HelpOption> options_of(const Reader &reader, CLI::App &app) {
+    std::vector<HelpOption> options;
+    for (const CLI::Option *from : app.get_options([](CLI::Option *) { return true; })) {
+        HelpOption to;
+        for (const std::string &name : from->get_snames()) to.names.push_back("-" + name);
+        for (const std::string &name : from->get_lnames()) to.names.push_back("--" + name);
+        to.type = to.names.empty() ? from->get_name(true) : from->get_type_name();
+        if (from->get_items_expected_max() == 0) to.type.clear();
+        to.what = from->get_description();
+        if (const auto found = reader.choices.find(from); found != reader.choices.end())
+            to.choices = found->second;
+        options.push_back(std::move(to));
+    }
+    return options;
+}
+
+HelpTable table_of(Reader &reader) {
+    HelpTable table{
+        reader.app.get_description(), reader.app.get_footer(), options_of(reader, reader.app), {}};
+    for (CLI::App *sub : reader.app.get_subcommands([](CLI::App *) { return true; })) {
+        HelpCommand command{sub->get_name(), sub->get_description(), {}};
+        for (HelpOption &one : options_of(reader, *sub))
+            if (std::ranges::find(one.names, "--help") == one.names.end())
+                command.options.push_back(std::move(one)); // it stands among those of everywhere
+        table.commands.push_back(std::move(command));
+    }
+    return table;
+}
+
+std::string in_form(const HelpTable &table, HelpForm form) {
+    switch (form) {
+    case HelpForm::Text: return "";
+    case HelpForm::Man: return man_page(table);
+    case HelpForm::Bash: return bash_completion(table);
+    case HelpForm::Zsh: return zsh_completion(table);
+    case HelpForm::Fish: return fish_completion(table);
+    }
+    return "";
 }
 
 std::vector<std::string> command_names(CLI::App &app) {
@@ -453,8 +536,14 @@ std::variant<Invocation, Answer> read_arguments(int count, const char *const *ar
     CLI::App &app = reader.app;
     if (count > 1 && arguments[1][0] != '-' && !find_command(app, arguments[1]))
         return unknown_command(app, arguments[1]);
+    std::vector<std::string> words; // backwards, as CLI11 takes them
+    for (int i = count; i-- > 1;) {
+        words.emplace_back(arguments[i]);
+        if (words.back().starts_with("-.") && parse_number(words.back()))
+            words.back().insert(1, "0"); // `-.5` would be taken for an option
+    }
     try {
-        app.parse(count, const_cast<char **>(arguments));
+        app.parse(std::move(words));
     } catch (const CLI::CallForHelp &) {
         std::vector<CLI::App *> chosen = app.get_subcommands();
         return Answer{done, chosen.empty() ? app.help() : chosen.front()->help("fathom"), ""};
@@ -465,6 +554,12 @@ std::variant<Invocation, Answer> read_arguments(int count, const char *const *ar
     if (reader.help->parsed()) {
         // CLI11 gives the help of a command that was read, `help` itself here; a fresh reader has
         // read none.
+        if (reader.help_form != HelpForm::Text) {
+            if (!reader.help_about.empty())
+                return wrong("--as has all commands: leave out COMMAND");
+            Reader fresh;
+            return Answer{done, in_form(table_of(fresh), reader.help_form), ""};
+        }
         if (reader.help_about.empty()) return Answer{done, Reader().app.help(), ""};
         const CLI::App *about = find_command(app, reader.help_about);
         if (!about) return unknown_command(app, reader.help_about);

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <map>
+#include <nlohmann/json.hpp>
 
 namespace fathom::cli {
 
@@ -40,8 +41,48 @@ double measure(const std::function<void()> &work) {
     return median(times);
 }
 
-void row(Terminal &terminal, std::string_view what, double value, std::string_view unit) {
-    terminal.put(fmt::format("{:<26} {:>10.4g} {}\n", what, value, unit));
+using Json = nlohmann::ordered_json;
+
+// What is measured, as it comes: a line each, beside an earlier run's number where there is one, or
+// all as one document.
+struct Measures {
+    Terminal &terminal;
+    bool json = false;
+    Json rows = Json::array();
+    std::map<std::string, double> earlier; // by name
+};
+
+void row(Measures &measures, std::string_view what, double value, std::string_view unit) {
+    const std::string name(what.substr(what.find_first_not_of(' ')));
+    measures.rows.push_back({{"name", name}, {"value", value}, {"unit", unit}});
+    if (measures.json) return;
+    std::string line = fmt::format("{:<26} {:>10.4g} {:<3}", what, value, unit);
+    if (const auto old = measures.earlier.find(name); old != measures.earlier.end())
+        line += fmt::format(" was {:>10.4g}{}", old->second,
+                            old->second > 0 ? fmt::format(", x {:.3g}", value / old->second) : "");
+    line.erase(line.find_last_not_of(' ') + 1);
+    measures.terminal.put(line + "\n");
+}
+
+// What an earlier run wrote by --json; says what is wrong with it.
+Exit read_earlier(const std::string &file, Measures &measures) {
+    std::string error;
+    const std::optional<std::string> text =
+        driver::read_file(file, driver::max_source_bytes, error);
+    if (!text) {
+        measures.terminal.say(fmt::format("fathom: cannot read `{}`: {}", file, error));
+        return device_error;
+    }
+    const Json json = Json::parse(*text, nullptr, false);
+    const bool rows = json.is_object() && json.contains("rows") && json["rows"].is_array();
+    for (const Json &one : rows ? json["rows"] : Json::array())
+        if (one.is_object() && one.contains("name") && one["name"].is_string() &&
+            one.contains("value") && one["value"].is_number())
+            measures.earlier[one["name"].get<std::string>()] = one["value"].get<double>();
+    if (!measures.earlier.empty()) return done;
+    measures.terminal.say(
+        fmt::format("fathom: `{}` is not what `fathom bench --json` writes", file));
+    return device_error;
 }
 
 std::string_view phase_name(driver::Phase phase) {
@@ -55,7 +96,7 @@ std::string_view phase_name(driver::Phase phase) {
     return "";
 }
 
-void bench_front_end(const BenchCommand &command, Terminal &terminal) {
+void bench_front_end(const BenchCommand &command, Measures &measures) {
     std::map<driver::Phase, std::vector<double>> times;
     driver::CompileOptions options = compile_options(command.scene);
     std::optional<driver::Phase> current;
@@ -66,11 +107,11 @@ void bench_front_end(const BenchCommand &command, Terminal &terminal) {
         entered = Clock::now();
     };
     double whole = measure([&] { driver::compile_file(command.scene.file, options); });
-    for (const auto &[phase, each] : times) row(terminal, phase_name(phase), median(each), "ms");
-    row(terminal, "front end, all", whole, "ms");
+    for (const auto &[phase, each] : times) row(measures, phase_name(phase), median(each), "ms");
+    row(measures, "front end, all", whole, "ms");
 }
 
-void bench_gl(const BenchCommand &command, const ir::Scene &scene, Terminal &terminal) {
+void bench_gl(const BenchCommand &command, const ir::Scene &scene, Measures &measures) {
     auto context = gl::Context::make();
     Diagnostics diagnostics;
     glsl::Options options;
@@ -80,17 +121,19 @@ void bench_gl(const BenchCommand &command, const ir::Scene &scene, Terminal &ter
     options.pruning = std::holds_alternative<gl::Context>(context) && gl::can_prune();
     glsl::Output output;
     double emitting = measure([&] { output = glsl::emit(scene, options, diagnostics); });
-    row(terminal, "emit and validate", emitting, "ms");
-    row(terminal, "shader", static_cast<double>(output.text.size()) / 1024, "KB");
+    row(measures, "emit and validate", emitting, "ms");
+    row(measures, "shader", static_cast<double>(output.text.size()) / 1024, "KB");
     if (diagnostics.has_errors()) return;
     if (const std::string *why = std::get_if<std::string>(&context)) {
-        terminal.say(fmt::format("fathom: nothing is measured by GL: {}", *why));
+        measures.terminal.say(fmt::format("fathom: nothing is measured by GL: {}", *why));
         return;
     }
-    terminal.put(fmt::format("{:<26} {}\n", "GL", std::get<gl::Context>(context).describe()));
+    if (!measures.json)
+        measures.terminal.put(
+            fmt::format("{:<26} {}\n", "GL", std::get<gl::Context>(context).describe()));
     Clock::time_point start = Clock::now();
     auto program = gl::Program::build(output, scene);
-    row(terminal, "driver: compile and link", milliseconds_since(start),
+    row(measures, "driver: compile and link", milliseconds_since(start),
         "ms"); // once: drivers keep what they compiled
     if (!std::holds_alternative<gl::Program>(program)) return;
     gl::Request request;
@@ -99,21 +142,21 @@ void bench_gl(const BenchCommand &command, const ir::Scene &scene, Terminal &ter
     auto draw = [&] { gl::draw(std::get<gl::Program>(program), scene, request, gl::Mode::Linear); };
     start = Clock::now();
     draw();
-    row(terminal, "first frame", milliseconds_since(start), "ms");
-    row(terminal, "frame", measure(draw), "ms");
+    row(measures, "first frame", milliseconds_since(start), "ms");
+    row(measures, "frame", measure(draw), "ms");
     gl::Pruning *pruning = std::get<gl::Program>(program).pruning();
     if (!pruning) return;
-    row(terminal, "  rows in a cell, mean", pruning->tally().rows, "");
-    row(terminal, "  rows in all", pruning->tally().all, "");
-    row(terminal, "  cells along an axis", pruning->tally().side, "");
-    row(terminal, "  making the lists", measure([&] {
+    row(measures, "  rows in a cell, mean", pruning->tally().rows, "");
+    row(measures, "  rows in all", pruning->tally().all, "");
+    row(measures, "  cells along an axis", pruning->tally().side, "");
+    row(measures, "  making the lists", measure([&] {
             pruning->remake(scene.params, 0);
             gl::finish();
         }),
         "ms");
 }
 
-void bench_cpu(const BenchCommand &command, const ir::Scene &scene, Terminal &terminal) {
+void bench_cpu(const BenchCommand &command, const ir::Scene &scene, Measures &measures) {
     double aspect = static_cast<double>(command.width) / command.height;
     cpu::Work work;
     double time = measure([&] {
@@ -121,12 +164,12 @@ void bench_cpu(const BenchCommand &command, const ir::Scene &scene, Terminal &te
             cpu::prepare(scene, ir::view_of(scene, 0, aspect), command.width, command.height, 0);
         work = cpu::render(stage, {}).work;
     });
-    row(terminal, "CPU frame", time, "ms");
-    row(terminal, "steps a ray",
+    row(measures, "CPU frame", time, "ms");
+    row(measures, "steps a ray",
         static_cast<double>(work.steps) /
             static_cast<double>(std::max<std::uint64_t>(work.rays, 1)),
         "");
-    row(terminal, "evaluations a pixel",
+    row(measures, "evaluations a pixel",
         static_cast<double>(work.evaluations) /
             static_cast<double>(std::max<std::uint64_t>(work.rays, 1)),
         "");
@@ -139,14 +182,25 @@ Exit run(const BenchCommand &command, Terminal &terminal) {
         terminal.say("fathom: bench reads its file many times; standard input can be read once");
         return usage_error;
     }
+    Measures measures{terminal, command.json, Json::array(), {}};
+    if (!command.compare.empty())
+        if (const Exit exit = read_earlier(command.compare, measures); exit != done) return exit;
     driver::Compilation compilation =
         driver::compile_file(command.scene.file, compile_options(command.scene, 0, 0));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
-    terminal.put(fmt::format("{} at {}x{}\n", command.scene.file, command.width, command.height));
-    bench_front_end(command, terminal);
-    bench_gl(command, compilation.scene, terminal);
-    bench_cpu(command, compilation.scene, terminal);
+    if (!command.json)
+        terminal.put(
+            fmt::format("{} at {}x{}\n", command.scene.file, command.width, command.height));
+    bench_front_end(command, measures);
+    bench_gl(command, compilation.scene, measures);
+    bench_cpu(command, compilation.scene, measures);
+    if (command.json)
+        terminal.put(Json{{"file", command.scene.file},
+                          {"size", {command.width, command.height}},
+                          {"rows", std::move(measures.rows)}}
+                         .dump(2, ' ', false, Json::error_handler_t::replace) +
+                     "\n");
     return done;
 }
 

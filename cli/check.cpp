@@ -6,6 +6,7 @@
 #include "driver/verdict.h"
 #include "proof/prove.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -69,9 +70,10 @@ void explain_pruning(const ir::Scene &scene, Terminal &terminal) {
                     shapes));
 }
 
-Exit say(const CheckCommand &command, const driver::Compilation &compilation, Terminal &terminal) {
+Exit say(const CheckCommand &command, const SceneArguments &scene,
+         const driver::Compilation &compilation, Terminal &terminal) {
     if (!command.json || !compilation.unreadable.empty() || !compilation.usage_errors.empty()) {
-        Exit exit = report(compilation, command.scene, terminal);
+        Exit exit = report(compilation, scene, terminal);
         if (exit != done) return exit;
         if (command.explain) {
             explain(proof::explain(compilation.scene), compilation.sources, "", "", terminal);
@@ -84,7 +86,7 @@ Exit say(const CheckCommand &command, const driver::Compilation &compilation, Te
                                          "one number if none is near\n",
                                          rows));
         }
-        if (!command.json) terminal.say(verdict_line(compilation, command.scene.file));
+        if (!command.json) terminal.say(verdict_line(compilation, scene.file));
     }
     if (command.json) terminal.put(driver::verdict_json(compilation));
     return compilation.good() ? done : scene_error;
@@ -93,11 +95,18 @@ Exit say(const CheckCommand &command, const driver::Compilation &compilation, Te
 } // namespace
 
 Exit run(const CheckCommand &command, Terminal &terminal) {
-    auto act = [&](const driver::Compilation &compilation) {
-        return say(command, compilation, terminal);
-    };
-    if (command.watch) return watch_scene(command.scene, terminal, act);
-    return act(driver::compile_file(command.scene.file, compile_options(command.scene)));
+    Exit worst = done;
+    for (const std::string &file : command.files) {
+        SceneArguments scene = command.scene;
+        scene.file = file;
+        const auto act = [&](const driver::Compilation &compilation) {
+            return say(command, scene, compilation, terminal);
+        };
+        worst = std::max(worst, command.watch
+                                    ? watch_scene(scene, terminal, act)
+                                    : act(driver::compile_file(file, compile_options(scene))));
+    }
+    return worst;
 }
 
 } // namespace fathom::cli

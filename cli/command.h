@@ -38,13 +38,15 @@ struct SceneArguments {
 
 // `fathom check`.
 struct CheckCommand {
-    SceneArguments scene;
+    SceneArguments scene; // its file is each of these in turn
+    std::vector<std::string> files;
     bool json = false, explain = false, watch = false;
 };
 // `fathom compile`.
 struct CompileCommand {
     SceneArguments scene;
     std::string out;       // empty: standard output
+    std::string reflect;   // where what a host has to bind is written; empty: nowhere
     glsl::Target target{}; // the table's first
     bool field_only = false, watch = false;
     bool noise_cache = false; // with the cache's hooks, and its passes beside `out`
@@ -129,7 +131,8 @@ struct MeshCommand {
 struct EvalCommand {
     SceneArguments scene;
     std::vector<std::array<double, 3>> at;
-    bool points = false; // more on standard input
+    std::vector<double> coordinates; // more, three each
+    bool points = false;             // more on standard input
     double time = 0;
 };
 // `fathom view`.
@@ -152,12 +155,13 @@ struct ExportCommand {
 // `fathom fmt`.
 struct FmtCommand {
     std::vector<std::string> files;
-    bool check = false;
+    bool check = false, diff = false;
 };
 // `fathom doc`.
 struct DocCommand {
-    std::string name;
-}; // empty: the list of all
+    std::string name;                // empty: the list of all
+    std::vector<std::string> search; // the list of the entries that hold these words
+};
 // `fathom explain`.
 struct ExplainCommand {
     std::string code;
@@ -168,6 +172,8 @@ struct LspCommand {};
 struct BenchCommand {
     SceneArguments scene;
     int width = 400, height = 400;
+    bool json = false;
+    std::string compare; // a file that --json wrote; empty: none
 };
 
 using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, MergeCommand, FarmCommand,

@@ -1,6 +1,6 @@
 // fathom compile: a scene's shader, for one of the targets, and the data of its buffer. Nothing is
 // written unless all went well.
-#include "backend-glsl/emit.h"
+#include "backend-glsl/reflection.h"
 #include "cli/outputs.h"
 
 #include <fmt/format.h>
@@ -36,7 +36,9 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
           Terminal &terminal) {
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
-    if (overwrites(compilation, command.out, terminal)) return usage_error;
+    if (overwrites(compilation, command.out, terminal) ||
+        overwrites(compilation, command.reflect, terminal))
+        return usage_error;
     glsl::Options options;
     options.target = command.target;
     options.field_only = command.field_only;
@@ -57,6 +59,10 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
     glsl::Output output = glsl::emit(compilation.scene, options, diagnostics);
     print_diagnostics(diagnostics, compilation.sources, terminal);
     if (diagnostics.has_errors()) return scene_error;
+    if (!command.reflect.empty())
+        exit = write_result(command.reflect,
+                            glsl::reflection_json(compilation.scene, options, output), terminal);
+    if (exit != done) return exit;
     if (target.form == glsl::Form::SpirV) {
         std::string_view bytes(reinterpret_cast<const char *>(output.words.data()),
                                output.words.size() * sizeof(std::uint32_t));

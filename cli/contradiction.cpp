@@ -3,6 +3,7 @@
 #include "cli/film.h"
 #include "cli/outputs.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace fathom::cli {
@@ -11,7 +12,10 @@ namespace {
 const char *const watches_nothing = "--watch follows a file, and standard input is none";
 
 std::string of(const CheckCommand &check, const Given &) {
-    if (check.watch && check.scene.file == "-") return watches_nothing;
+    const auto streams = std::ranges::count(check.files, "-");
+    if (check.watch && check.files.size() > 1) return "--watch follows one file";
+    if (check.watch && streams > 0) return watches_nothing;
+    if (streams > 1) return "standard input can be read once";
     if (check.json && check.explain)
         return "--explain is for people, --json for programs: give one of them";
     return "";
@@ -24,6 +28,10 @@ std::string of(const CompileCommand &compile, const Given &) {
         return fmt::format("--field-only leaves out the picture that a page shows; `--target {} "
                            "--field-only` writes the text that a page of your own can use",
                            target.field_by);
+    const auto to_file = [](const std::string &out) { return !out.empty() && out != "-"; };
+    if (!compile.reflect.empty() &&
+        (compile.reflect == compile.out || (!to_file(compile.reflect) && !to_file(compile.out))))
+        return "--reflect and -o want a place each: `--reflect OUT.json` names a file";
     if (!compile.noise_cache) return "";
     if (!target.noise_cache || compile.field_only)
         return fmt::format("--noise-cache is for whole pictures by `--target {}`",
@@ -146,7 +154,11 @@ std::string of(const MeshCommand &mesh, const Given &given) {
 }
 
 std::string of(const EvalCommand &eval, const Given &) {
-    if (eval.at.empty() && !eval.points) return "eval wants points: --at X,Y,Z or --points -";
+    if (eval.coordinates.size() % 3 != 0)
+        return fmt::format("points are three numbers each, and these are {}",
+                           eval.coordinates.size());
+    if (eval.at.empty() && eval.coordinates.empty() && !eval.points)
+        return "eval wants points: X Y Z, --at X,Y,Z or --points -";
     if (eval.points && eval.scene.file == "-")
         return "the scene and the points cannot both come from standard input";
     return "";
@@ -155,11 +167,20 @@ std::string of(const EvalCommand &eval, const Given &) {
 std::string of(const ViewCommand &, const Given &) { return ""; }
 std::string of(const ImportCommand &, const Given &) { return ""; }
 std::string of(const ExportCommand &, const Given &) { return ""; }
-std::string of(const FmtCommand &, const Given &) { return ""; }
-std::string of(const DocCommand &, const Given &) { return ""; }
+std::string of(const FmtCommand &fmt, const Given &) {
+    return fmt.check && fmt.diff ? "--check names files, --diff prints changes: give one of them"
+                                 : "";
+}
+std::string of(const DocCommand &doc, const Given &) {
+    return !doc.name.empty() && !doc.search.empty() ? "--search lists names: leave out NAME" : "";
+}
 std::string of(const ExplainCommand &, const Given &) { return ""; }
 std::string of(const LspCommand &, const Given &) { return ""; }
-std::string of(const BenchCommand &, const Given &) { return ""; }
+std::string of(const BenchCommand &bench, const Given &) {
+    return bench.json && !bench.compare.empty()
+               ? "--compare is for people, --json for programs: give one of them"
+               : "";
+}
 
 } // namespace
 

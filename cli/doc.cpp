@@ -1,39 +1,84 @@
 // fathom doc: the library's entry of a name, as its doc comment says it; without a name the list of
-// all.
+// all by groups, or of those that hold the words that are searched for.
 #include "base/suggest.h"
 #include "cli/terminal.h"
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace fathom::cli {
 namespace {
 
+using typecheck::LibraryEntry;
+
 std::string first_line(std::string_view doc) { return std::string(doc.substr(0, doc.find('\n'))); }
+
+std::string whole_name(const LibraryEntry &entry) {
+    return (entry.module.empty() ? "" : entry.module + ".") + entry.name;
+}
+
+std::string lower(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+bool holds(const LibraryEntry &entry, const std::vector<std::string> &words) {
+    const std::string text = lower(whole_name(entry) + "\n" + entry.doc);
+    return std::ranges::all_of(
+        words, [&](const std::string &word) { return text.find(lower(word)) != text.npos; });
+}
+
+// An entry's group is the file of the library that defines it.
+std::string group_of(const LibraryEntry &entry) {
+    const std::string group = std::filesystem::path(entry.file).stem().string();
+    return group.empty() ? "built in" : group;
+}
+
+bool list(const std::vector<LibraryEntry> &entries, const std::vector<std::string> &words,
+          Terminal &terminal) {
+    std::string group, last;
+    for (const LibraryEntry &entry : entries) {
+        if (!holds(entry, words)) continue;
+        if (group != group_of(entry)) {
+            terminal.put((group.empty() ? "" : "\n") + group_of(entry) + ":\n");
+            group = group_of(entry);
+        }
+        if (whole_name(entry) == last) continue; // another form of the same
+        last = whole_name(entry);
+        terminal.put(fmt::format("  {:<26} {}\n", last, first_line(entry.doc)));
+    }
+    return !group.empty();
+}
 
 } // namespace
 
 Exit run(const DocCommand &command, Terminal &terminal) {
-    std::vector<typecheck::LibraryEntry> entries =
+    const std::vector<LibraryEntry> entries =
         typecheck::library_entries(driver::standard_library());
+    if (command.name.empty()) {
+        if (list(entries, command.search, terminal)) return done;
+        terminal.say("fathom: no entry of the library holds these words; `fathom doc` lists all");
+        return usage_error;
+    }
     std::vector<std::string> names;
     bool found = false;
-    for (const typecheck::LibraryEntry &entry : entries) {
-        const std::string module = entry.module.empty() ? "" : entry.module + ".";
-        const std::string name = module + entry.name;
-        if (command.name.empty()) {
-            terminal.put(fmt::format("{:<28} {}\n", name, first_line(entry.doc)));
-        } else if (name == command.name || entry.name == command.name) {
-            terminal.put(fmt::format("{}{}{}\n\n{}\n", found ? "\n" : "", module, entry.signature,
-                                     entry.doc));
-            found = true;
-        }
+    for (const LibraryEntry &entry : entries) {
+        const std::string name = whole_name(entry);
         names.push_back(name);
+        if (name != command.name && entry.name != command.name) continue;
+        const std::string module = entry.module.empty() ? "" : entry.module + ".";
+        terminal.put(
+            fmt::format("{}{}{}\n\n{}\n", found ? "\n" : "", module, entry.signature, entry.doc));
+        found = true;
     }
-    if (command.name.empty() || found) return done;
-    std::string near = nearest_name(command.name, names);
-    terminal.say(fmt::format("fathom: the library has no `{}`{}", command.name,
-                             near.empty() ? "; `fathom doc` lists its names"
-                                          : fmt::format("; did you mean `{}`?", near)));
+    if (found) return done;
+    const std::string near = nearest_name(command.name, names);
+    terminal.say(fmt::format(
+        "fathom: the library has no `{}`; {}`fathom doc` lists its names, "
+        "`fathom doc --search {}` looks in their texts",
+        command.name, near.empty() ? "" : fmt::format("did you mean `{}`? ", near), command.name));
     return usage_error;
 }
 

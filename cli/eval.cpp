@@ -115,6 +115,9 @@ Exit run(const EvalCommand &command, Terminal &terminal) {
     if (!in_proved_time(compilation.scene, command.time, command.time, terminal))
         return usage_error;
     PointPrinter evaluator(compilation.scene, command.time);
+    for (std::size_t i = 0; i + 2 < command.coordinates.size(); i += 3)
+        evaluator.add(
+            {command.coordinates[i], command.coordinates[i + 1], command.coordinates[i + 2]});
     for (const std::array<double, 3> &point : command.at) evaluator.add(point);
     evaluator.print(terminal);
     return command.points ? answer_standard_input(evaluator, terminal) : done;

@@ -1,4 +1,5 @@
 // fathom fmt: the one style. Writes only what changes; a file with a syntax error is left alone.
+#include "cli/diff.h"
 #include "cli/outputs.h"
 #include "lang/format.h"
 #include "lang/parse.h"
@@ -9,7 +10,7 @@
 namespace fathom::cli {
 namespace {
 
-Exit format_file(const std::string &file, bool check, Terminal &terminal) {
+Exit format_file(const std::string &file, const FmtCommand &command, Terminal &terminal) {
     bool standard_input = file == "-";
     std::string error;
     std::optional<std::string> text =
@@ -28,9 +29,9 @@ Exit format_file(const std::string &file, bool check, Terminal &terminal) {
         return scene_error;
     }
     std::string formatted = lang::format(sources, ast);
-    if (check) {
+    if (command.check || command.diff) {
         if (formatted == *text) return done;
-        terminal.put(file + "\n");
+        terminal.put(command.check ? file + "\n" : unified_diff(file, *text, formatted));
         return scene_error;
     }
     if (standard_input) {
@@ -45,7 +46,7 @@ Exit format_file(const std::string &file, bool check, Terminal &terminal) {
 Exit run(const FmtCommand &command, Terminal &terminal) {
     Exit worst = done;
     for (const std::string &file : command.files)
-        worst = std::max(worst, format_file(file, command.check, terminal));
+        worst = std::max(worst, format_file(file, command, terminal));
     return worst;
 }
 

@@ -27,6 +27,7 @@
 #define FATHOM_C_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #if defined(_WIN32)
 #define FATHOM_C_API
@@ -40,20 +41,58 @@ extern "C" {
 
 /** The version of this interface. It grows by one with each change that adds functions; functions
  *  that are there keep their meaning. */
-#define FATHOM_C_VERSION 1
+#define FATHOM_C_VERSION 2
 FATHOM_C_API int fathom_c_version(void);
+/** The library's own: "0.1.0" */
+FATHOM_C_API const char *fathom_version(void);
 
 /** What a call comes to: FATHOM_OK is 0. */
-enum fathom_status { FATHOM_OK = 0, FATHOM_NO_MEMORY = 1, FATHOM_BAD_ARGUMENT = 2 };
+enum fathom_status {
+    FATHOM_OK = 0,
+    FATHOM_NO_MEMORY = 1,
+    FATHOM_BAD_ARGUMENT = 2,
+    FATHOM_CANCELLED = 3
+};
+
+/** Called now and then by one thread at a time, with the share that is done, 0 to 1, and with the
+ *  caller's own word; 0 cancels the work. */
+typedef int (*fathom_progress)(double done, void *own);
 
 typedef struct fathom_result fathom_result; /**< of a compilation: a scene or errors */
 typedef struct fathom_scene fathom_scene;
 typedef struct fathom_field fathom_field;
 typedef struct fathom_text fathom_text; /**< bytes that a call made */
+typedef struct fathom_mesh fathom_mesh;
+typedef struct fathom_options fathom_options;
+
+/** How scenes are compiled: without a call of these, as if there were no options. The options are
+ *  copied by a compilation, and may be freed or changed after it. Calls for one handle come from
+ *  one thread at a time. */
+FATHOM_C_API fathom_options *fathom_options_make(void);
+FATHOM_C_API void fathom_options_free(fathom_options *options);
+/** Sets a param by an expression of the language, as `-D name=text` does. */
+FATHOM_C_API int fathom_options_define(fathom_options *options, const char *name, const char *text);
+/** One more folder where imports are looked for. */
+FATHOM_C_API int fathom_options_include(fathom_options *options, const char *folder);
+/** What a scene may cost (docs/limits.md). */
+FATHOM_C_API int fathom_options_limit(fathom_options *options, const char *name, const char *value);
+/** The bytes of a file that a scene names, as fathom_text_make copies them, or null where there is no
+ *  such file. The library frees the text. `path` is relative to the scene's text, with `/`. Called
+ *  by the compiling thread, also by fathom_scene_with where it compiles again: `own` has to live as
+ *  long as the scene. */
+typedef fathom_text *(*fathom_file_provider)(const char *path, void *own);
+/** Files come from the provider alone. */
+FATHOM_C_API int fathom_options_files(fathom_options *options, fathom_file_provider provider,
+                                      void *own);
 
 /** `length`: bytes of `text`. Null only where there is no memory. */
 FATHOM_C_API fathom_result *fathom_compile_text(const char *name, const char *text, size_t length);
 FATHOM_C_API fathom_result *fathom_compile_file(const char *path);
+/** The same with options, which may be null. */
+FATHOM_C_API fathom_result *fathom_compile_text_with(const char *name, const char *text,
+                                                     size_t length, const fathom_options *options);
+FATHOM_C_API fathom_result *fathom_compile_file_with(const char *path,
+                                                     const fathom_options *options);
 FATHOM_C_API void fathom_result_free(fathom_result *result);
 
 /** The scene, or null where there were errors. It belongs to the result. */
@@ -79,12 +118,24 @@ FATHOM_C_API int fathom_scene_exact(const fathom_scene *scene);
 /** 1, and the box of all solids, or 0 where one has no end. */
 FATHOM_C_API int fathom_scene_bounds(const fathom_scene *scene, float lo[3], float hi[3]);
 
+/** What the bound rests on beside the proof, 0 to count - 1: "sphere: exact" (docs/trusted.md). */
+FATHOM_C_API size_t fathom_scene_axiom_count(const fathom_scene *scene);
+FATHOM_C_API const char *fathom_scene_axiom(const fathom_scene *scene, size_t index);
+/** The end of the times that the facts hold for, in seconds; they begin at 0. */
+FATHOM_C_API double fathom_scene_time_end(const fathom_scene *scene);
+
 /** The params, 0 to count - 1. `values`: 4 numbers, those beyond `components` 0. */
 FATHOM_C_API size_t fathom_scene_param_count(const fathom_scene *scene);
 FATHOM_C_API const char *fathom_scene_param_name(const fathom_scene *scene, size_t index);
+FATHOM_C_API const char *fathom_scene_param_label(const fathom_scene *scene, size_t index);
+/** 0: a truth, 1: a whole number, 2: a number, 3 to 5: 2 to 4 numbers. */
+FATHOM_C_API int fathom_scene_param_type(const fathom_scene *scene, size_t index);
+/** 1 where setting it compiles the scene again, since it decides what shapes there are. */
+FATHOM_C_API int fathom_scene_param_structural(const fathom_scene *scene, size_t index);
 FATHOM_C_API int fathom_scene_param_components(const fathom_scene *scene, size_t index);
 FATHOM_C_API void fathom_scene_param_value(const fathom_scene *scene, size_t index,
                                            double value[4]);
+/** Infinite ends where the param has no range. */
 FATHOM_C_API void fathom_scene_param_range(const fathom_scene *scene, size_t index, double lo[4],
                                            double hi[4]);
 /** The scene with another value of one param, as a result of its own. */
@@ -103,10 +154,20 @@ FATHOM_C_API int fathom_field_gradients(const fathom_field *field, const float *
 FATHOM_C_API int fathom_field_intervals(const fathom_field *field, const float *boxes, size_t count,
                                         float *intervals);
 
+/** The distances at the points of a lattice that fills the box, its faces among them, x the fastest:
+ *  `counts[0] * counts[1] * counts[2]` numbers. A count is 2 or more. */
+FATHOM_C_API int fathom_field_volume(const fathom_field *field, const float lo[3],
+                                     const float hi[3], const size_t counts[3], float *distances);
+
 /** A shader's text for a target, or null where the scene cannot be said in it. */
 FATHOM_C_API fathom_text *fathom_scene_shader(const fathom_scene *scene, const char *target);
+/** What a host has to bind to run that shader, as JSON (docs/shaders.md). */
+FATHOM_C_API fathom_text *fathom_scene_reflection(const fathom_scene *scene, const char *target);
 /** The scene in the YAML save format. */
 FATHOM_C_API fathom_text *fathom_scene_yaml(const fathom_scene *scene);
+/** A text of one's own, for a fathom_file_provider. */
+FATHOM_C_API fathom_text *fathom_text_make(const char *bytes, size_t length);
+/** A zero follows the last byte. */
 FATHOM_C_API const char *fathom_text_bytes(const fathom_text *text);
 FATHOM_C_API size_t fathom_text_length(const fathom_text *text);
 FATHOM_C_API void fathom_text_free(fathom_text *text);
@@ -115,6 +176,34 @@ FATHOM_C_API void fathom_text_free(fathom_text *text);
  *  `samples`: rays a pixel; 0: one, and 4 where it differs from those beside it. */
 FATHOM_C_API int fathom_scene_draw(const fathom_scene *scene, int width, int height, int samples,
                                    double time, unsigned char *rgba);
+
+/** The same, which tells how far it is and can be given up; `progress` may be null. */
+FATHOM_C_API int fathom_scene_draw_with(const fathom_scene *scene, int width, int height,
+                                        int samples, double time, fathom_progress progress,
+                                        void *own, unsigned char *rgba);
+
+/** The surface as triangles (fathom/mesh.h). `tolerance`: the side of the cells that it is drawn by,
+ *  in the scene's units; 0: `resolution` cells along the longest side, 1 to 8,000. Null only without
+ *  memory or a scene; else the status says whether there is a mesh. `progress` may be null. */
+FATHOM_C_API fathom_mesh *fathom_scene_mesh(const fathom_scene *scene, double tolerance,
+                                            int resolution, double time, fathom_progress progress,
+                                            void *own);
+FATHOM_C_API void fathom_mesh_free(fathom_mesh *mesh);
+/** 0: done, 1: cancelled, 2: no point lies in the solid, 3: no box holds it, 4: too fine, 5: too large,
+ *  6: the field contradicts what was stated of it. */
+FATHOM_C_API int fathom_mesh_status(const fathom_mesh *mesh);
+FATHOM_C_API const char *fathom_mesh_message(const fathom_mesh *mesh);
+/** Three numbers a vertex, three vertices a triangle, counterclockwise from outside. They belong to
+ *  the mesh. */
+FATHOM_C_API size_t fathom_mesh_vertex_count(const fathom_mesh *mesh);
+FATHOM_C_API const float *fathom_mesh_vertices(const fathom_mesh *mesh);
+FATHOM_C_API const float *fathom_mesh_normals(const fathom_mesh *mesh);
+FATHOM_C_API size_t fathom_mesh_triangle_count(const fathom_mesh *mesh);
+FATHOM_C_API const uint32_t *fathom_mesh_triangles(const fathom_mesh *mesh);
+/** Cells that may hold surface that the mesh does not show. */
+FATHOM_C_API size_t fathom_mesh_undecided(const fathom_mesh *mesh);
+/** The bytes of a file; `suffix`: ".stl", ".obj", ".ply" or ".glb". */
+FATHOM_C_API fathom_text *fathom_mesh_file(const fathom_mesh *mesh, const char *suffix);
 
 #ifdef __cplusplus
 }

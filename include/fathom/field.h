@@ -37,7 +37,7 @@ struct Interval {
  *
  *  Values are those of single precision and the same on every machine. A Field is a value; any
  *  number of threads may evaluate one. As many values are computed as the shortest of a call's spans
- *  holds. A call gives false, and leaves the values as they are, only where there is no memory. */
+ *  holds. A call gives false only where there is no memory; the values then mean nothing. */
 class FATHOM_API Field {
   public:
     bool distances(std::span<const Point> points, std::span<float> distances) const noexcept;
@@ -49,6 +49,12 @@ class FATHOM_API Field {
     /** What the distance lies within over each box: an enclosure, not the least one. It holds every
      *  value that `distances` gives at points of the box. The boxes are finite. */
     bool intervals(std::span<const Box> boxes, std::span<Interval> intervals) const noexcept;
+
+    /** The distances at the points of a lattice that fills the box, its faces among them: `counts`
+     *  points along x, y and z, x the fastest. False, too, where a count is below 2, a side of the box
+     *  is no finite number above 0, or the span is shorter than the lattice. */
+    bool volume(const Box &box, const std::array<std::size_t, 3> &counts,
+                std::span<float> distances) const noexcept;
 
     struct Impl;
     explicit Field(std::shared_ptr<const Impl> impl); // of the library's own use

@@ -88,6 +88,8 @@ struct Facts {
     std::optional<Box> bounds;       /**< holds all solids; none where one has no end */
     double time_end = 0;             /**< the facts hold for times in [0, time_end], in seconds */
     std::vector<ShapeFacts> shapes;
+    /** What the bound rests on beside the proof: "sphere: exact" (docs/trusted.md). */
+    std::vector<std::string> axioms;
 };
 
 /** The bytes of the file that a scene names (by import, image or grid), or nothing. `path` is

@@ -54,15 +54,26 @@ struct Texture {
     std::vector<float> values; /**< 4 a pixel, 1 a sample of a grid */
 };
 
+/** Any uniform of the text, in its order: what the host sets for a frame, a param or a sampler. */
+struct ShaderInput {
+    std::string type, name;    /**< GLSL's type, as `vec3` or `sampler2D` */
+    std::vector<double> value; /**< for the scene's first view; empty of a sampler */
+    std::string meaning;       /**< of the frame's: what it is, with its unit; else empty */
+    std::string param;         /**< the param's name; else empty */
+    int place = -1; /**< its location, or a sampler's binding; -1 where the text has none */
+};
+
 /** A checked shader. `text` is what docs/shaders.md describes; `words` is SPIR-V, for the target
  *  that is binary. */
 struct Shader {
     std::string text;
     std::vector<std::uint32_t> words;
     std::vector<Uniform> uniforms;
+    std::vector<ShaderInput> inputs;
     std::vector<Texture> textures;
     std::vector<float> tables; /**< RGBA32F texels of `fathom_tables`, where buffers were allowed */
     bool reads_time = false;
+    std::string reflection; /**< all of this but data and text, as JSON (docs/shaders.md) */
 };
 
 /** Nothing where the scene cannot be said in the target, or there is no such target; `diagnostics`,

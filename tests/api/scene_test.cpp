@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <thread>
 
@@ -212,6 +213,60 @@ TEST_CASE("every target makes a shader, and tells its uniforms") {
     CHECK_FALSE(fathom::make_shader(scene, options, &said));
     REQUIRE(said.size() == 1);
     CHECK(said[0].code == "usage");
+}
+
+TEST_CASE("a shader's inputs are its uniforms, with the first view's values") {
+    const fathom::Scene scene = compiled("param r = 1 in 0.5..2 \"Radius\"\n"
+                                         "param n = 2 in 1..5\n"
+                                         "for i in 0..n { sphere(r).translate(x: 3 * i) }");
+    for (const std::string &target : fathom::shader_targets()) {
+        INFO(target);
+        fathom::ShaderOptions options;
+        options.target = target;
+        const auto shader = fathom::make_shader(scene, options);
+        REQUIRE(shader);
+        for (const fathom::ShaderInput &input : shader->inputs) {
+            INFO(input.name);
+            CHECK(input.meaning.empty() != input.param.empty()); // no sampler here
+            CHECK_FALSE(input.value.empty());
+            CHECK((input.place >= 0) == !shader->words.empty());
+            if (shader->words.empty())
+                CHECK(shader->text.find("uniform " + input.type + " " + input.name) !=
+                      std::string::npos);
+        }
+        const auto r = std::ranges::find(shader->inputs, "r", &fathom::ShaderInput::param);
+        const bool hosted = target != "shadertoy" && target != "glslviewer";
+        CHECK((r != shader->inputs.end()) == hosted);
+        CHECK((shader->reflection.find("\"param\": \"n\"") >
+               shader->reflection.find("\"constants\"")));
+        if (!hosted) continue;
+        CHECK((r->value == std::vector<double>{1} && r->type == "float"));
+        REQUIRE(shader->uniforms.size() == 1);
+        CHECK(shader->uniforms[0].location == r->place);
+    }
+}
+
+TEST_CASE("a volume is the distances at its lattice") {
+    const fathom::Field field = field_of(compiled("sphere(1).translate(x: 1)"));
+    const fathom::Box box{{-1, -2, -3}, {1, 2, 3}};
+    std::vector<float> values(3 * 5 * 4);
+    REQUIRE(field.volume(box, {3, 5, 4}, values));
+    for (std::size_t z = 0; z < 4; ++z)
+        for (std::size_t y = 0; y < 5; ++y)
+            for (std::size_t x = 0; x < 3; ++x)
+                CHECK(values[(z * 5 + y) * 3 + x] ==
+                      at(field, {static_cast<float>(x) - 1, static_cast<float>(y) - 2,
+                                 2 * static_cast<float>(z) - 3}));
+    CHECK_FALSE(field.volume(box, {1, 5, 4}, values));
+    CHECK_FALSE(field.volume(box, {3, 5, 5}, values));
+    CHECK_FALSE(field.volume({{1, 0, 0}, {1, 1, 1}}, {3, 5, 4}, values));
+    const std::size_t huge = std::numeric_limits<std::size_t>::max() / 2;
+    CHECK_FALSE(field.volume(box, {huge, huge, 4}, values));
+}
+
+TEST_CASE("facts name what they rest on") {
+    const fathom::Scene scene = compiled("sphere(1)");
+    CHECK(std::ranges::count(scene.facts().axioms, "sphere: exact") == 1);
 }
 
 TEST_CASE("a picture is drawn, and can be given up") {

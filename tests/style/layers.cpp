@@ -32,7 +32,8 @@ const std::map<std::string, Names> sees{
       "save-format", "driver"}},
     {"render-gl", {"base", "ir", "backend-glsl"}},
     {"viewer", {"base", "ir", "backend-glsl", "save-format", "driver", "render-gl"}},
-    {"lsp", {}}, // the library's public headers alone
+    {"lsp", {}},      // the library's public headers alone
+    {"bindings", {}}, // the same
     {"cli",
      {"base", "lang", "ir", "proof", "typecheck", "backend-glsl", "backend-cpu", "save-format",
       "driver", "render-gl", "viewer", "lsp"}},
@@ -40,10 +41,11 @@ const std::map<std::string, Names> sees{
 
 // Foreign headers, by how their names begin, and the only folder (or file) that may see them.
 const std::map<std::string, std::string> owners{
-    {"tao/", "lang/"},      {"yaml.h", "save-format/"},    {"GLFW/", "viewer/"},
-    {"imgui", "viewer/"},   {"epoxy/", "render-gl/"},      {"GL/", "render-gl/"},
-    {"EGL/", "render-gl/"}, {"glslang/", "backend-glsl/"}, {"spirv", "backend-glsl/"},
-    {"CLI/", "cli/"},       {"jpeglib.h", "driver/"},      {"sys/inotify.h", "driver/"},
+    {"tao/", "lang/"},          {"yaml.h", "save-format/"},    {"GLFW/", "viewer/"},
+    {"imgui", "viewer/"},       {"epoxy/", "render-gl/"},      {"GL/", "render-gl/"},
+    {"EGL/", "render-gl/"},     {"glslang/", "backend-glsl/"}, {"spirv", "backend-glsl/"},
+    {"CLI/", "cli/"},           {"jpeglib.h", "driver/"},      {"sys/inotify.h", "driver/"},
+    {"pybind11/", "bindings/"},
 };
 // Seen by one file alone.
 const Names lonely{"tao/", "CLI/", "sys/inotify.h"};

@@ -1,0 +1,411 @@
+// The Python module fathom._core, over the public headers alone. Arrays go in and out without a copy where they are
+// C-contiguous float32; the interpreter's lock is released while anything is computed.
+#include "data.h"
+
+#include <fathom/fathom.h>
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+namespace py = pybind11;
+using namespace pybind11::literals;
+
+namespace {
+
+using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+// A scene with the field of the time that was asked for last.
+struct PyScene {
+    fathom::Scene scene;
+    std::vector<fathom::Diagnostic> diagnostics;
+    std::vector<std::filesystem::path> files;
+    std::shared_ptr<std::mutex> mutex = std::make_shared<std::mutex>();
+    std::optional<std::pair<double, fathom::Field>> field{};
+
+    fathom::Field field_at(double time) {
+        const std::lock_guard lock(*mutex);
+        if (!field || field->first != time) {
+            std::optional<fathom::Field> made = fathom::make_field(scene, time);
+            if (!made) throw std::bad_alloc();
+            field.emplace(time, std::move(*made));
+        }
+        return field->second;
+    }
+};
+
+// Raises fathom.Error with the diagnostics, or gives the scene.
+PyScene scene_of(fathom::CompileResult result) {
+    if (result.scene)
+        return {std::move(*result.scene), std::move(result.diagnostics), std::move(result.files)};
+    const py::object error = py::module_::import("fathom").attr("Error");
+    PyErr_SetObject(error.ptr(), error(py::cast(std::move(result.diagnostics))).ptr());
+    throw py::error_already_set();
+}
+
+using Words = std::map<std::string, py::object>;
+
+fathom::CompileOptions options_of(const std::vector<std::filesystem::path> &include,
+                                  const Words &definitions, const Words &limits,
+                                  const py::object &files) {
+    fathom::CompileOptions options;
+    options.include_folders = include;
+    const auto word = [](const py::object &value) {
+        return py::isinstance<py::bool_>(value) ? std::string(value.cast<bool>() ? "true" : "false")
+                                                : std::string(py::str(value));
+    };
+    for (const auto &[name, value] : definitions) options.definitions[name] = word(value);
+    for (const auto &[name, value] : limits) options.limits[name] = word(value);
+    if (files.is_none()) return options;
+    // Scenes are freed by any thread: the callable is, too, with the lock held.
+    const std::shared_ptr<py::object> provider(new py::object(files), [](py::object *held) {
+        const py::gil_scoped_acquire lock;
+        delete held;
+    });
+    options.files = [provider](const std::string &path) -> std::optional<std::string> {
+        const py::gil_scoped_acquire lock;
+        const py::object bytes = (*provider)(path);
+        if (bytes.is_none()) return std::nullopt;
+        return bytes.cast<std::string>(); // of str or bytes
+    };
+    return options;
+}
+
+// A callback of Python as one of the library's. What it raises cancels the work and is raised after it; so does Ctrl-C.
+class Progress {
+  public:
+    explicit Progress(const py::object &function) : function_(function) {}
+    std::function<bool(double)> callback() {
+        return [this](double done) {
+            if (raised_) return false;
+            const py::gil_scoped_acquire lock;
+            try {
+                if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+                if (function_.is_none()) return true;
+                const py::object answer = function_(done);
+                cancelled_ = !answer.is_none() && !answer.cast<bool>();
+                return !cancelled_;
+            } catch (py::error_already_set &error) {
+                raised_ = std::make_unique<py::error_already_set>(std::move(error));
+                return false;
+            } catch (const py::cast_error &) {
+                cancelled_ = true;
+                return false;
+            }
+        };
+    }
+    void raise() {
+        if (raised_) throw py::error_already_set(std::move(*raised_));
+        if (!cancelled_) return;
+        PyErr_SetString(py::module_::import("fathom").attr("Cancelled").ptr(),
+                        "given up by `progress`");
+        throw py::error_already_set();
+    }
+
+  private:
+    py::object function_;
+    std::unique_ptr<py::error_already_set> raised_;
+    bool cancelled_ = false;
+};
+
+// The last axis has `width` numbers; gives the shape without it.
+std::vector<py::ssize_t> shape_of(const Floats &array, py::ssize_t width, const char *what) {
+    if (array.ndim() < 1 || array.shape(array.ndim() - 1) != width)
+        throw py::value_error(std::string(what) + ": the last axis has to have " +
+                              std::to_string(width) + " numbers");
+    return {array.shape(), array.shape() + array.ndim() - 1};
+}
+
+template <class Item, class Array> std::span<const Item> items_of(const Array &array) {
+    return {reinterpret_cast<const Item *>(array.data()),
+            static_cast<std::size_t>(array.size()) * sizeof(float) / sizeof(Item)};
+}
+
+// Where results go: the caller's `out`, or an array of ours.
+Floats target_of(const py::object &out, const std::vector<py::ssize_t> &shape) {
+    if (out.is_none()) return Floats(shape);
+    if (!py::isinstance<Floats>(out) || !py::array(out).writeable())
+        throw py::type_error("out: wants a writeable C-contiguous array of float32");
+    const Floats array = py::reinterpret_borrow<Floats>(out);
+    if (!std::equal(shape.begin(), shape.end(), array.shape(), array.shape() + array.ndim()))
+        throw py::value_error("out: has another shape than the points");
+    return array;
+}
+
+void check_time(const PyScene &scene, double time) {
+    const double end = scene.scene.facts().time_end;
+    if (!(time >= 0 && time <= end))
+        throw py::value_error("time: the scene is proved from 0 to " +
+                              std::string(py::str(py::float_(end))) + " seconds");
+}
+
+Floats distance(PyScene &scene, const Floats &points, double time, const py::object &out) {
+    check_time(scene, time);
+    Floats distances = target_of(out, shape_of(points, 3, "points"));
+    const auto in = items_of<fathom::Point>(points);
+    const std::span<float> to(distances.mutable_data(), in.size());
+    const py::gil_scoped_release release;
+    if (!scene.field_at(time).distances(in, to)) throw std::bad_alloc();
+    return distances;
+}
+
+py::tuple gradient(PyScene &scene, const Floats &points, double time) {
+    check_time(scene, time);
+    std::vector<py::ssize_t> shape = shape_of(points, 3, "points");
+    Floats distances(shape);
+    shape.push_back(3);
+    Floats gradients(shape);
+    const auto in = items_of<fathom::Point>(points);
+    const std::span<float> to(distances.mutable_data(), in.size());
+    const std::span<fathom::Point> along(
+        reinterpret_cast<fathom::Point *>(gradients.mutable_data()), in.size());
+    {
+        const py::gil_scoped_release release;
+        if (!scene.field_at(time).gradients(in, to, along)) throw std::bad_alloc();
+    }
+    return py::make_tuple(distances, gradients);
+}
+
+Floats interval(PyScene &scene, const Floats &boxes, double time) {
+    check_time(scene, time);
+    if (boxes.ndim() < 2 || boxes.shape(boxes.ndim() - 2) != 2 ||
+        boxes.shape(boxes.ndim() - 1) != 3)
+        throw py::value_error(
+            "boxes: the last axes have to be 2 and 3, of the lower and the upper corner");
+    Floats intervals(std::vector<py::ssize_t>(boxes.shape(), boxes.shape() + boxes.ndim() - 1));
+    const auto in = items_of<fathom::Box>(boxes);
+    const std::span<fathom::Interval> to(
+        reinterpret_cast<fathom::Interval *>(intervals.mutable_data()), in.size());
+    const py::gil_scoped_release release;
+    if (!scene.field_at(time).intervals(in, to)) throw std::bad_alloc();
+    return intervals;
+}
+
+// Numbers of a box and of a lattice, as sequences or one number for all axes.
+template <class Number> std::array<Number, 3> three(const py::object &value, const char *what) {
+    if (py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value)) {
+        const auto number = value.cast<Number>();
+        return {number, number, number};
+    }
+    try {
+        return value.cast<std::array<Number, 3>>();
+    } catch (const py::cast_error &) {
+        throw py::type_error(std::string(what) + ": wants three numbers, or one for all axes");
+    }
+}
+
+py::array volume(PyScene &scene, const py::object &counts, const py::object &lo,
+                 const py::object &hi, double time) {
+    check_time(scene, time);
+    const std::array<py::ssize_t, 3> n = three<py::ssize_t>(counts, "counts");
+    fathom::Box box;
+    if (lo.is_none() != hi.is_none()) throw py::value_error("lo and hi: give both, or none");
+    if (!lo.is_none()) {
+        box = {three<float>(lo, "lo"), three<float>(hi, "hi")};
+    } else {
+        if (!scene.scene.facts().bounds)
+            throw py::value_error("the scene has no end: give lo and hi");
+        box = *scene.scene.facts().bounds;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (n[axis] < 2 || !(box.lo[axis] < box.hi[axis]))
+            throw py::value_error("counts: 2 or more along each axis; lo: below hi");
+    // Indexed by [x, y, z]; in memory x is the fastest, as in files of grids.
+    const auto float_size = static_cast<py::ssize_t>(sizeof(float));
+    py::array_t<float> made(
+        std::vector<py::ssize_t>{n[0], n[1], n[2]},
+        std::vector<py::ssize_t>{float_size, float_size * n[0], float_size * n[0] * n[1]});
+    const std::span<float> to(made.mutable_data(), static_cast<std::size_t>(n[0] * n[1] * n[2]));
+    {
+        const py::gil_scoped_release release;
+        const std::array<std::size_t, 3> count{static_cast<std::size_t>(n[0]),
+                                               static_cast<std::size_t>(n[1]),
+                                               static_cast<std::size_t>(n[2])};
+        if (!scene.field_at(time).volume(box, count, to)) throw std::bad_alloc();
+    }
+    return made;
+}
+
+py::array render(PyScene &scene, int width, int height, int samples, double time, unsigned threads,
+                 int max_steps, const py::object &progress) {
+    check_time(scene, time);
+    if (width < 1 || height < 1 || width > 65536 || height > 65536 || samples < 0)
+        throw py::value_error("width and height: 1 to 65536; samples: 0 or more");
+    Progress told(progress);
+    fathom::PictureOptions options;
+    options.width = width;
+    options.height = height;
+    options.samples = samples;
+    options.time = time;
+    options.threads = threads;
+    options.max_steps = max_steps;
+    options.progress = told.callback();
+    std::unique_ptr<fathom::Picture> picture;
+    {
+        const py::gil_scoped_release release;
+        picture = std::make_unique<fathom::Picture>(fathom::draw(scene.scene, options));
+    }
+    told.raise();
+    if (!picture->complete) throw std::bad_alloc();
+    if (picture->undecided > 0) {
+        const std::string words =
+            std::to_string(picture->undecided) +
+            " rays are undecided; they show what they are nearest to (max_steps: allows more)";
+        if (PyErr_WarnEx(PyExc_RuntimeWarning, words.c_str(), 1) != 0)
+            throw py::error_already_set();
+    }
+    const std::uint8_t *bytes = picture->rgba.data();
+    const py::capsule owner(picture.release(),
+                            [](void *held) { delete static_cast<fathom::Picture *>(held); });
+    return py::array_t<std::uint8_t>(std::vector<py::ssize_t>{height, width, 4}, bytes, owner);
+}
+
+fathom::Mesh mesh(PyScene &scene, int resolution, double tolerance, double time,
+                  const py::object &lo, const py::object &hi, bool certify, unsigned threads,
+                  const py::object &progress) {
+    check_time(scene, time);
+    if (lo.is_none() != hi.is_none()) throw py::value_error("lo and hi: give both, or none");
+    Progress told(progress);
+    fathom::MeshOptions options;
+    options.resolution = resolution;
+    options.tolerance = tolerance;
+    options.time = time;
+    options.certify = certify;
+    options.threads = threads;
+    options.progress = told.callback();
+    if (!lo.is_none()) options.bounds = fathom::Box{three<float>(lo, "lo"), three<float>(hi, "hi")};
+    fathom::Mesh made;
+    {
+        const py::gil_scoped_release release;
+        made = fathom::make_mesh(scene.scene, options);
+    }
+    told.raise();
+    if (!made) throw py::value_error("no mesh: " + made.message);
+    return made;
+}
+
+fathom::Shader shader(const PyScene &scene, const std::string &target, bool field_only,
+                      bool buffers, double time, const std::string &title) {
+    fathom::ShaderOptions options{target, field_only, buffers, time, title};
+    std::vector<fathom::Diagnostic> said;
+    std::optional<fathom::Shader> made;
+    {
+        const py::gil_scoped_release release;
+        made = fathom::make_shader(scene.scene, options, &said);
+    }
+    if (made) return std::move(*made);
+    const py::object error = py::module_::import("fathom").attr("Error");
+    PyErr_SetObject(error.ptr(), error(py::cast(std::move(said))).ptr());
+    throw py::error_already_set();
+}
+
+PyScene with_params(const PyScene &scene, const py::kwargs &values) {
+    std::map<std::string, std::vector<double>> numbers;
+    for (const auto &[name, value] : values)
+        numbers[name.cast<std::string>()] = py::isinstance<py::sequence>(value)
+                                                ? value.cast<std::vector<double>>()
+                                                : std::vector<double>{value.cast<double>()};
+    fathom::CompileResult result;
+    {
+        const py::gil_scoped_release release;
+        result = scene.scene.with(numbers);
+    }
+    return scene_of(std::move(result));
+}
+
+void add_scene(py::module_ &m) {
+    py::class_<PyScene>(m, "Scene",
+                        "A scene that compiled. It never changes; threads may share it.")
+        .def_property_readonly(
+            "params", [](const PyScene &s) { return s.scene.params(); }, "the params, in order")
+        .def_property_readonly(
+            "facts", [](const PyScene &s) { return s.scene.facts(); }, "what was proved")
+        .def_readonly("diagnostics", &PyScene::diagnostics, "warnings and notes")
+        .def_readonly("files", &PyScene::files, "what was read or looked for")
+        .def("with_params", &with_params,
+             "The scene with other values of params: `scene.with_params(radius=1.5)`. Raises Error "
+             "for a name that there "
+             "is not or a value out of its range.")
+        .def("distance", &distance, "points"_a, "time"_a = 0.0, "out"_a = py::none(),
+             "The marched distance at points: (..., 3) to (...) float32. Negative inside, and "
+             "never more than the "
+             "distance to the surface. C-contiguous float32 is read where it lies; other arrays "
+             "are converted.")
+        .def("gradient", &gradient, "points"_a, "time"_a = 0.0,
+             "Distances (...) and gradients (..., 3); at a kink, one side's.")
+        .def("interval", &interval, "boxes"_a, "time"_a = 0.0,
+             "What the distance lies within over boxes: (..., 2, 3) to (..., 2).")
+        .def("volume", &volume, "counts"_a, "lo"_a = py::none(), "hi"_a = py::none(),
+             "time"_a = 0.0,
+             "Distances at a lattice that fills a box, its faces among them, indexed by [x, y, z]. "
+             "The box is that of "
+             "the solids unless said.")
+        .def("render", &render, "width"_a = 640, "height"_a = 360, "samples"_a = 0, "time"_a = 0.0,
+             "threads"_a = 0, "max_steps"_a = 0, "progress"_a = py::none(),
+             "A picture: (height, width, 4) uint8, sRGB, rows from the top. `progress` is called "
+             "with the share that "
+             "is done; False gives up (Cancelled).")
+        .def("mesh", &mesh, "resolution"_a = 128, "tolerance"_a = 0.0, "time"_a = 0.0,
+             "lo"_a = py::none(), "hi"_a = py::none(), "certify"_a = false, "threads"_a = 0,
+             "progress"_a = py::none(),
+             "The surface as triangles. Raises ValueError where there is none, and says why.")
+        .def("shader", &shader, "target"_a = "glsl330", "field_only"_a = false, "buffers"_a = false,
+             "time"_a = 0.0, "title"_a = "scene", "The scene as a shader for a target.")
+        .def(
+            "yaml", [](const PyScene &s) { return fathom::export_yaml(s.scene); },
+            "The scene in the YAML save format.");
+}
+
+} // namespace
+
+PYBIND11_MODULE(_core, m) {
+    m.doc() = "Fathom's library; `import fathom` is the way in.";
+    fathom_python::add_data(m);
+    fathom_python::add_mesh(m);
+    add_scene(m);
+    m.def(
+        "compile",
+        [](const std::string &text, const std::string &name,
+           const std::vector<std::filesystem::path> &include, const Words &definitions,
+           const Words &limits, const py::object &files) {
+            const fathom::CompileOptions options = options_of(include, definitions, limits, files);
+            fathom::CompileResult result;
+            {
+                const py::gil_scoped_release release;
+                result = fathom::compile_text(name, text, options);
+            }
+            return scene_of(std::move(result));
+        },
+        "text"_a, "name"_a = "scene.sdf", "include"_a = std::vector<std::filesystem::path>(),
+        "definitions"_a = Words(), "limits"_a = Words(), "files"_a = py::none(),
+        "Compiles text; raises Error where it has an error. `files` gives the bytes of a path or "
+        "None; without it "
+        "imports are files. `definitions` sets params by expressions, `limits` what a scene may "
+        "cost.");
+    m.def(
+        "load",
+        [](const std::filesystem::path &path, const std::vector<std::filesystem::path> &include,
+           const Words &definitions, const Words &limits) {
+            const fathom::CompileOptions options =
+                options_of(include, definitions, limits, py::none());
+            fathom::CompileResult result;
+            {
+                const py::gil_scoped_release release;
+                result = fathom::compile_file(path, options);
+            }
+            return scene_of(std::move(result));
+        },
+        "path"_a, "include"_a = std::vector<std::filesystem::path>(), "definitions"_a = Words(),
+        "limits"_a = Words(),
+        "Compiles a .sdf file or a save file (.yaml); raises Error where it has an error.");
+    m.def("format_text", &fathom::format_text, "text"_a,
+          "The text in its one form, or None where it cannot be parsed.");
+    m.def("library_entries", &fathom::library_entries, "The functions of the standard library.");
+    m.def("shader_targets", &fathom::shader_targets, "What `Scene.shader` can write.");
+    m.attr("__version__") = std::string(fathom::version());
+}
