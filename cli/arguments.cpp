@@ -394,6 +394,8 @@ struct Reader {
     void add_doc() {
         CLI::App *sub = command("doc", "print the library's entry of a name", doc);
         sub->add_option("NAME", doc.name, "left out: list all names")->type_name("");
+        sub->add_flag("--json", doc.json,
+                      "keywords, types, signs, constants and functions: one JSON document");
     }
 
     void add_explain() {

@@ -157,7 +157,8 @@ struct FmtCommand {
 // `fathom doc`.
 struct DocCommand {
     std::string name;
-}; // empty: the list of all
+    bool json = false; // all that the language and its library name, for editors
+};                     // empty: the list of all
 // `fathom explain`.
 struct ExplainCommand {
     std::string code;
