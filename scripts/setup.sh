@@ -4,8 +4,9 @@
 # To build and to run. Mesa draws without a graphics card and without a display.
 build_packages="g++ cmake ninja-build ccache pkg-config libfmt-dev tao-pegtl-dev libcli11-dev libglfw3-dev libimgui-dev
 libepoxy-dev libegl-dev libyaml-dev glslang-dev libglm-dev nlohmann-json3-dev spirv-tools libpng-dev libjpeg-dev catch2 libegl1 libgl1-mesa-dri"
-# To test: a display of our own for the viewer, a second compiler for the fuzzers and for .ci/run.
-test_packages="xvfb xauth xdotool clang"
+# To test: a display of our own for the viewer, a second compiler for the fuzzers and for .ci/run, and
+# what writes the editors' words.
+test_packages="xvfb xauth xdotool clang python3"
 
 say() { printf '%s\n' "fathom: $*" >&2; }
 

@@ -284,7 +284,7 @@ TEST_CASE("actions are offered where they compile, and their edits keep the fiel
     CHECK(offered(0, 11, 15).empty());    // no whole expression
     CHECK(offered(1, 38, 38, 2).empty()); // a cursor that passes by
     CHECK(offered(2, 0, 5).empty());      // what is called
-    client.open("torus(1, 0.1\n"); // nothing of a text with errors but their fixes
+    client.open("torus(1, 0.1\n");        // nothing of a text with errors but their fixes
     CHECK(offered(0, 6, 7).empty());
 }
 
@@ -325,7 +325,8 @@ TEST_CASE("completion fits what stands before it, and half-typed calls have thei
     CHECK(help.at("signatures")[0].at("label").get<std::string>().starts_with("rounded_box("));
     CHECK(help.at("activeParameter") == 1);
     client.open(head + "ball.translate(y: ");
-    CHECK(client.result("textDocument/signatureHelp", Client::at(2, 18)).at("activeParameter") == 3);
+    CHECK(client.result("textDocument/signatureHelp", Client::at(2, 18)).at("activeParameter") ==
+          3);
     CHECK(client.result("textDocument/signatureHelp", Client::at(1, 4)).is_null());
 }
 

@@ -31,8 +31,8 @@ struct Tally {
 
 // `same`: what has to hold of the values before and now.
 template <class Same> void try_out(Workspace &workspace, const SceneText &scene,
-                                   const Values &values,
-                                   const std::optional<Refactoring> &one, Tally &tally, Same same) {
+                                   const Values &values, const std::optional<Refactoring> &one,
+                                   Tally &tally, Same same) {
     if (!one) return;
     const std::string after = edited(scene.text, one->edits);
     const auto now = values_of(workspace, scene.path, after);
