@@ -431,6 +431,8 @@ struct Reader {
             ->expected(1)
             ->allow_extra_args(false)
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        sub->add_flag("--json", doc.json,
+                      "keywords, types, signs, constants and functions: one JSON document");
     }
 
     void add_explain() {

@@ -161,6 +161,7 @@ struct FmtCommand {
 struct DocCommand {
     std::string name;                // empty: the list of all
     std::vector<std::string> search; // the list of the entries that hold these words
+    bool json = false;               // all that the language and its library name, for editors
 };
 // `fathom explain`.
 struct ExplainCommand {

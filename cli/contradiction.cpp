@@ -172,6 +172,7 @@ std::string of(const FmtCommand &fmt, const Given &) {
                                  : "";
 }
 std::string of(const DocCommand &doc, const Given &) {
+    if (doc.json && !doc.search.empty()) return "--json gives all, or NAME: leave out --search";
     return !doc.name.empty() && !doc.search.empty() ? "--search lists names: leave out NAME" : "";
 }
 std::string of(const ExplainCommand &, const Given &) { return ""; }

@@ -1,12 +1,15 @@
 // fathom doc: the library's entry of a name, as its doc comment says it; without a name the list of
-// all by groups, or of those that hold the words that are searched for.
+// all by groups, or of those that hold the words that are searched for. With --json the whole
+// vocabulary, which the grammars of editors are made from.
 #include "base/suggest.h"
 #include "cli/terminal.h"
+#include "lang/vocabulary.h"
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace fathom::cli {
 namespace {
@@ -52,11 +55,46 @@ bool list(const std::vector<LibraryEntry> &entries, const std::vector<std::strin
     return !group.empty();
 }
 
+using Json = nlohmann::ordered_json;
+
+Json constants() {
+    Json all = Json::array();
+    for (const typecheck::LibraryConstant &constant : typecheck::library_constants()) {
+        Json entry{{"name", constant.name}, {"type", constant.type}};
+        if (constant.rgb) entry["color"] = fmt::format("#{:06x}", *constant.rgb);
+        all.push_back(std::move(entry));
+    }
+    return all;
+}
+
+// Of one name, or of all where it is empty; false where there is none.
+bool put_json(const std::vector<LibraryEntry> &entries, const std::string &name,
+              Terminal &terminal) {
+    Json functions = Json::array(), whole = Json::object();
+    for (const LibraryEntry &entry : entries)
+        if (name.empty() || name == entry.name || name == whole_name(entry))
+            functions.push_back({{"name", entry.name},
+                                 {"module", entry.module},
+                                 {"signature", entry.signature},
+                                 {"doc", entry.doc}});
+    if (name.empty()) {
+        const lang::Vocabulary words = lang::vocabulary();
+        whole = {{"keywords", words.keywords}, {"keywords_in_place", words.keywords_in_place},
+                 {"types", words.types},       {"units", words.units},
+                 {"signs", words.signs},       {"constants", constants()}};
+    } else if (functions.empty())
+        return false;
+    whole["functions"] = std::move(functions);
+    terminal.put(whole.dump(2) + "\n");
+    return true;
+}
+
 } // namespace
 
 Exit run(const DocCommand &command, Terminal &terminal) {
     const std::vector<LibraryEntry> entries =
         typecheck::library_entries(driver::standard_library());
+    if (command.json && put_json(entries, command.name, terminal)) return done;
     if (command.name.empty()) {
         if (list(entries, command.search, terminal)) return done;
         terminal.say("fathom: no entry of the library holds these words; `fathom doc` lists all");

@@ -54,6 +54,7 @@ enum class TypeName : std::uint8_t {
     Any
 };
 TypeName type_named(std::string_view text); // builder.cpp
+std::vector<std::string_view> type_names(); // all that have one, sorted
 
 // `float`, `shape<1.5>`, `[vec3]`, `(vec3, int) -> float`.
 struct TypeExpr {

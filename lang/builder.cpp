@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <map>
 #include <utility>
 
 namespace fathom::lang {
@@ -73,8 +74,8 @@ void Builder::some_value() { maybe_items_.emplace_back(pop_item()); }
 
 // -- types ---------------------------------------------------------------------------------------
 
-TypeName type_named(std::string_view text) {
-    static const std::unordered_map<std::string_view, TypeName> names = {
+static const std::map<std::string_view, TypeName> &table_of_types() {
+    static const std::map<std::string_view, TypeName> names = {
         {"float", TypeName::Float},     {"int", TypeName::Int},
         {"bool", TypeName::Bool},       {"string", TypeName::String},
         {"vec2", TypeName::Vec2},       {"vec3", TypeName::Vec3},
@@ -86,8 +87,18 @@ TypeName type_named(std::string_view text) {
         {"_shape", TypeName::AnyShape}, {"_field", TypeName::AnyField},
         {"_any", TypeName::Any},        {"angle", TypeName::Float},
         {"angles", TypeName::Vec3}};
-    const auto it = names.find(text);
-    return it == names.end() ? TypeName::Unknown : it->second;
+    return names;
+}
+
+TypeName type_named(std::string_view text) {
+    const auto it = table_of_types().find(text);
+    return it == table_of_types().end() ? TypeName::Unknown : it->second;
+}
+
+std::vector<std::string_view> type_names() {
+    std::vector<std::string_view> all;
+    for (const auto &[name, type] : table_of_types()) all.push_back(name);
+    return all;
 }
 
 void Builder::type_name(Index at) {

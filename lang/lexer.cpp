@@ -1,6 +1,9 @@
 // Kinds of words, and the answers to words of other languages.
 #include "lang/lexer.h"
 
+#include "lang/ast.h"
+#include "lang/vocabulary.h"
+
 #include "base/single.h"
 #include "base/text.h"
 #include "lang/parse.h"
@@ -28,6 +31,12 @@ constexpr std::array keyword_table = {
     Keyword{"let", Tok::Let},     Keyword{"not", Tok::Not},       Keyword{"or", Tok::Or},
     Keyword{"param", Tok::Param}, Keyword{"return", Tok::Return}, Keyword{"true", Tok::True},
     Keyword{"var", Tok::Var},     Keyword{"while", Tok::While}};
+
+// Longer ones first, as they are read.
+constexpr std::string_view sign_table[] = {"..=", "->", "=>", "..", "==", "!=", "<=", ">=", "+=",
+                                           "-=",  "*=", "/=", "(",  ")",  "[",  "]",  "{",  "}",
+                                           ",",   ":",  ".",  ";",  "=",  "|",  "&",  "<",  ">",
+                                           "+",   "-",  "*",  "/",  "%",  "^"};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_hex(char c) { return is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
@@ -429,6 +438,15 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
                first.value < 0x20 ? "a control character stands here"
                                   : "the language does not use " + quoted_code(text));
     }
+}
+
+Vocabulary vocabulary() {
+    Vocabulary all{{}, {"as", "limit"}, {}, {"deg", "rad", "turn"}, {}};
+    for (const Keyword &keyword : keyword_table) all.keywords.push_back(keyword.text);
+    for (std::string_view name : type_names())
+        if (name[0] != '_') all.types.push_back(name);
+    all.signs.assign(std::begin(sign_table), std::end(sign_table));
+    return all;
 }
 
 } // namespace fathom::lang

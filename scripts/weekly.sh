@@ -20,6 +20,7 @@ try argument_order scripts/argument_order.sh
 try same_text scripts/same_text.sh build/fathom build-clang/fathom
 for target in parse_fuzz compile_fuzz yaml_fuzz image_fuzz; do try $target scripts/fuzz.sh $target 600; done
 try coverage scripts/coverage.sh
+try editors scripts/editors.sh
 try ops scripts/weekly-ops.sh
 try columns scripts/weekly-columns.sh
 exit $failed

@@ -7,6 +7,7 @@
 #include "base/limits.h"
 #include "ir/scene.h"
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -111,5 +112,12 @@ Checked check(Sources &sources, SourceId root, const std::string &root_identity,
 
 // The public names of the library with their documentation.
 std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &library);
+
+// A value that every text sees without an import: `pi`, `X`, `tomato`.
+struct LibraryConstant {
+    std::string name, type;           // "float", "vec3", "color", …
+    std::optional<std::uint32_t> rgb; // of a named colour: 0xrrggbb, sRGB
+};
+std::vector<LibraryConstant> library_constants(); // sorted by name
 
 } // namespace fathom::typecheck

@@ -172,4 +172,23 @@ void declare_colors(Interpreter &ev) {
         declare(ev, ev.prelude_frame, intern(ev, c.name), css_color(c.rgb), false, {});
 }
 
+std::vector<LibraryConstant> library_constants() {
+    Sources sources;
+    Diagnostics diagnostics;
+    const std::vector<LibraryFile> no_files;
+    const Loader loader;
+    const Options options;
+    Interpreter ev{sources, diagnostics, no_files, loader, options};
+    load_prelude(ev);
+    std::map<std::string, LibraryConstant> all;
+    for (const Binding &binding : ev.frames[ev.prelude_frame].bindings) {
+        const std::string &name = ev.symbol_names[binding.name];
+        all[name] = {name, type_of(ev, binding.value), {}};
+    }
+    for (const auto &c : css_colors) all[c.name].rgb = c.rgb;
+    std::vector<LibraryConstant> sorted;
+    for (auto &[name, constant] : all) sorted.push_back(std::move(constant));
+    return sorted;
+}
+
 } // namespace fathom::typecheck

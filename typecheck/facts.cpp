@@ -24,14 +24,6 @@ std::string signature(const lang::Function &f) {
     return text + ")" + (f.result ? " -> " + type_text(*f.result) : "");
 }
 
-std::string type_of(const Interpreter &ev, const Value &v) {
-    if (v.kind == ValueKind::Closure) {
-        const Closure &c = ev.closures[v.id];
-        return signature(c.ast->functions[c.function]);
-    }
-    return without_article(describe(ev, v));
-}
-
 Stage later(Stage a, Stage b) { return std::max(a, b); }
 
 Stage stage_of_node(const ir::Scene &scene, ir::NodeId id) {
@@ -85,6 +77,14 @@ Stage stage_of(const Interpreter &ev, const Value &v, Known &known) {
 }
 
 } // namespace
+
+std::string type_of(const Interpreter &ev, const Value &v) {
+    if (v.kind == ValueKind::Closure) {
+        const Closure &c = ev.closures[v.id];
+        return signature(c.ast->functions[c.function]);
+    }
+    return without_article(describe(ev, v));
+}
 
 const char *stage_name(Stage stage) {
     switch (stage) {

@@ -313,6 +313,8 @@ void require(Interpreter &ev, ir::NodeId condition, Span place, std::string want
 bool is_library_place(const Interpreter &ev, Span span); // or no place at all
 std::string describe(const Interpreter &ev,
                      const Value &value); // "a float", "a list of 3", "a shape"
+std::string type_of(const Interpreter &ev,
+                    const Value &value); // facts.cpp: "float", "(x) -> shape"
 std::string print_value(const Interpreter &ev, const Value &value); // for print(…)
 // Counts steps of work; false once they or the memory are gone, which is reported once.
 bool spend(Interpreter &ev, Span place, std::size_t amount = 1);

@@ -32,8 +32,8 @@ const std::map<std::string, Names> sees{
       "save-format", "driver"}},
     {"render-gl", {"base", "ir", "backend-glsl"}},
     {"viewer", {"base", "ir", "backend-glsl", "save-format", "driver", "render-gl"}},
-    {"lsp", {}},      // the library's public headers alone
-    {"bindings", {}}, // the same
+    {"lsp", {"base", "lang", "proof", "typecheck", "driver", "api"}}, // and the public headers
+    {"bindings", {}}, // the library's public headers alone
     {"cli",
      {"base", "lang", "ir", "proof", "typecheck", "backend-glsl", "backend-cpu", "save-format",
       "driver", "render-gl", "viewer", "lsp"}},

@@ -17,10 +17,10 @@ using glsl::Values;
 namespace {
 
 const std::vector<std::string> flags{
-    "BOXED",  "UNIT_SLOPE",   "SHADED_APART",  "PASSES",  "COUNTED",    "HAS_SAFE_RADIUS",
-    "TWICE",  "SKIP_SHADING", "LOCAL_NORMALS", "PICK",    "CACHED",     "FAR_CELLS",
-    "AROUND", "ONE_LIGHT",    "BLENDED",       "PICTURE", "FIELD_ONLY", "TIME",
-    "ES",     "LOCATIONS",    "MARKED",        "OWN",     "UNPAINTED",  "PAINTED",
+    "BOXED",  "UNIT_SLOPE",   "SHADED_APART",  "PASSES",      "COUNTED",    "HAS_SAFE_RADIUS",
+    "TWICE",  "SKIP_SHADING", "LOCAL_NORMALS", "PICK",        "CACHED",     "FAR_CELLS",
+    "AROUND", "ONE_LIGHT",    "BLENDED",       "PICTURE",     "FIELD_ONLY", "TIME",
+    "ES",     "LOCATIONS",    "MARKED",        "OWN",         "UNPAINTED",  "PAINTED",
     "LIT",    "CLASSIC",      "SOFT",          "FOUR_OUTPUTS"};
 
 // What a flag decides beside its own `$if`, as the emitter has it.

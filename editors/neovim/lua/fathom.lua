@@ -1,0 +1,69 @@
+-- Fathom in Neovim 0.7 and later: starts the server for texts of the file type `fathom`, and shows
+-- the hints (bounds, names of arguments) as virtual text. The syntax, the indentation and the file
+-- type are those of editors/vim.
+--
+--   require("fathom").setup({ cmd = { "fathom", "lsp" } })
+
+local M = {}
+local hints = vim.api.nvim_create_namespace("fathom_hints")
+
+-- Asks for the hints of a whole buffer and draws them at the ends of their lines.
+function M.show_hints(buffer, client)
+  local last = vim.api.nvim_buf_line_count(buffer)
+  local params = {
+    textDocument = { uri = vim.uri_from_bufnr(buffer) },
+    range = { start = { line = 0, character = 0 }, ["end"] = { line = last, character = 0 } },
+  }
+  client.request("textDocument/inlayHint", params, function(failed, found)
+    if failed or not found or not vim.api.nvim_buf_is_valid(buffer) then return end
+    vim.api.nvim_buf_clear_namespace(buffer, hints, 0, -1)
+    local lines = {}
+    for _, hint in ipairs(found) do
+      local line = hint.position.line
+      lines[line] = (lines[line] and lines[line] .. "  " or "") .. hint.label
+    end
+    for line, text in pairs(lines) do
+      if line < vim.api.nvim_buf_line_count(buffer) then
+        vim.api.nvim_buf_set_extmark(buffer, hints, line, 0, { virt_text = { { text, "Comment" } } })
+      end
+    end
+  end, buffer)
+end
+
+local clients = {} -- by root and command, one server for all texts below it
+
+local function attach(buffer, options)
+  local file = vim.api.nvim_buf_get_name(buffer)
+  local root = options.root_dir or vim.fn.fnamemodify(file, ":p:h")
+  local key = root .. "\0" .. table.concat(options.cmd, "\0")
+  if not clients[key] or not vim.lsp.get_client_by_id(clients[key]) then
+    clients[key] = vim.lsp.start_client({
+      name = "fathom",
+      cmd = options.cmd,
+      root_dir = root,
+      workspace_folders = { { uri = vim.uri_from_fname(root), name = root } },
+      on_attach = options.on_attach,
+      handlers = options.handlers,
+    })
+  end
+  if not clients[key] then return end
+  vim.lsp.buf_attach_client(buffer, clients[key])
+  if options.hints == false then return end
+  local client = vim.lsp.get_client_by_id(clients[key])
+  vim.api.nvim_create_autocmd({ "InsertLeave", "TextChanged", "BufWritePost" }, {
+    buffer = buffer,
+    callback = function() M.show_hints(buffer, client) end,
+  })
+end
+
+-- `cmd`: the server; `root_dir`: the folder of the scenes, that of the file unless said; `hints`:
+-- false for none; `on_attach`, `handlers`: as for vim.lsp.start_client.
+function M.setup(options)
+  options = vim.tbl_extend("force", { cmd = { "fathom", "lsp" } }, options or {})
+  vim.api.nvim_create_autocmd("FileType", {
+    pattern = "fathom",
+    callback = function(event) attach(event.buf, options) end,
+  })
+end
+
+return M

@@ -1,0 +1,87 @@
+// Fathom in VS Code: starts the language server, offers the program's commands as tasks, and shows
+// the picture of a text beside it as the page that `fathom compile --target html` writes.
+"use strict";
+const vscode = require("vscode");
+const path = require("path");
+const {spawn} = require("child_process");
+const {LanguageClient} = require("vscode-languageclient/node");
+
+let client;
+
+const program = () => vscode.workspace.getConfiguration("fathom").get("program");
+
+// The page for a text, or what the compiler says against it.
+function page(document) {
+  return new Promise((resolve) => {
+    const folder = document.uri.scheme === "file" ? path.dirname(document.uri.fsPath) : undefined;
+    const child = spawn(program(), ["compile", "-", "--target", "html"], {cwd: folder});
+    let out = "", said = "";
+    child.stdout.on("data", (bytes) => (out += bytes));
+    child.stderr.on("data", (bytes) => (said += bytes));
+    child.on("error", (error) => resolve({said: String(error)}));
+    child.on("close", (status) => resolve(status === 0 ? {html: out} : {said}));
+    child.stdin.on("error", () => {}); // it ended before it read all: `close` tells
+    child.stdin.end(document.getText());
+  });
+}
+
+// A panel that follows a text. An error leaves the last good picture; the editor shows the error.
+function showPicture(editor) {
+  const document = editor.document;
+  const panel = vscode.window.createWebviewPanel("fathom.picture", path.basename(document.fileName),
+    {viewColumn: vscode.ViewColumn.Beside, preserveFocus: true}, {enableScripts: true});
+  let newest = 0, timer;
+  const draw = async () => {
+    const mine = ++newest;
+    const made = await page(document);
+    if (mine !== newest) return;
+    if (made.html) panel.webview.html = made.html;
+    else if (!panel.webview.html) {
+      const text = made.said.replace(/&/g, "&amp;").replace(/</g, "&lt;");
+      panel.webview.html = `<!doctype html><pre>${text}</pre>`;
+    }
+  };
+  const changes = vscode.workspace.onDidChangeTextDocument((event) => {
+    if (event.document !== document) return;
+    clearTimeout(timer);
+    timer = setTimeout(draw, 200);
+  });
+  panel.onDidDispose(() => {
+    ++newest;
+    clearTimeout(timer);
+    changes.dispose();
+  });
+  draw();
+}
+
+function task(definition, file) {
+  return new vscode.Task(definition, vscode.TaskScope.Workspace, definition.command, "fathom",
+    new vscode.ProcessExecution(program(), [definition.command, file]), "$fathom");
+}
+
+const tasks = {
+  provideTasks: () => ["check"].map((command) => task({type: "fathom", command}, "${file}")),
+  resolveTask: (given) => task(given.definition, given.definition.file || "${file}"),
+};
+
+function activate(context) {
+  client = new LanguageClient("fathom", "Fathom", {command: program(), args: ["lsp"]},
+    {documentSelector: [{language: "fathom"}]});
+  const withEditor = (work) => () => {
+    const editor = vscode.window.activeTextEditor;
+    if (editor && editor.document.languageId === "fathom") work(editor);
+  };
+  context.subscriptions.push(
+    vscode.commands.registerCommand("fathom.picture", withEditor(showPicture)),
+    vscode.commands.registerCommand("fathom.view", withEditor((editor) => {
+      const terminal = vscode.window.createTerminal({name: "fathom", shellPath: program(),
+        shellArgs: ["view", editor.document.fileName]});
+      terminal.show(true);
+    })),
+    vscode.tasks.registerTaskProvider("fathom", tasks));
+  return client.start();
+}
+
+const deactivate = () => client && client.stop();
+
+module.exports = {activate, deactivate};

@@ -1,0 +1,19 @@
+// The fixed words of the language, for programs that colour texts: what the reader of words itself
+// goes by. The library's names are not among them (typecheck/check.h).
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace fathom::lang {
+
+struct Vocabulary {
+    std::vector<std::string_view> keywords;          // "and", …: never a name
+    std::vector<std::string_view> keywords_in_place; // "as", "limit": names elsewhere
+    std::vector<std::string_view> types;             // "float", …; the library's own left out
+    std::vector<std::string_view> units;             // "deg", …: behind a number
+    std::vector<std::string_view> signs;             // "=>", …; no sign before one that begins it
+};
+Vocabulary vocabulary();
+
+} // namespace fathom::lang

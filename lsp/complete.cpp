@@ -1,0 +1,389 @@
+// Completion and signature help: what may stand at a place, in whole and in half-typed texts.
+#include "lsp/requests.h"
+
+#include "lsp/calls.h"
+
+#include "lang/vocabulary.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <set>
+
+namespace fathom::lsp {
+namespace {
+
+using lang::Tok;
+
+// In the protocol's numbers.
+constexpr int item_method = 2, item_function = 3, item_field = 5, item_variable = 6,
+              item_module = 9, item_unit = 11, item_keyword = 14, item_color = 16, item_file = 17,
+              item_folder = 19, item_constant = 21, item_type = 25;
+
+// What may stand before a dot, as far as methods care.
+enum class Kind { Unknown, Shape, Number, List, Module };
+
+Kind kind_of_type(std::string_view type) {
+    if (type.find("shape") != type.npos) return Kind::Shape;
+    if (type.starts_with("list") || type.starts_with('[')) return Kind::List;
+    for (std::string_view number : {"float", "int", "vec", "mat", "color", "angle", "_field"})
+        if (type.starts_with(number)) return Kind::Number;
+    return Kind::Unknown;
+}
+
+// Of a function's first parameter. The built-in functions name theirs by what they are.
+Kind kind_of_first(const Signature &signature) {
+    if (signature.parameters.empty()) return Kind::Unknown;
+    const std::string &first = signature.parameters[0];
+    const std::size_t colon = first.find(": ");
+    if (colon != first.npos) return kind_of_type(std::string_view(first).substr(colon + 2));
+    const std::string &name = signature.names[0];
+    if (name == "s") return Kind::Shape;
+    if (name == "list") return Kind::List;
+    return Kind::Number;
+}
+
+struct Place {
+    Workspace &workspace;
+    Document &document;
+    const Reading &read;
+    File file;
+    std::size_t offset;
+    Word word;
+    std::size_t before; // how many words end at or before the word's begin
+
+    const std::vector<lang::Token> &tokens() const { return read.syntax.words.tokens; }
+    std::string text(const lang::Token &token) const {
+        return std::string(read.syntax.text().substr(token.begin, token.end - token.begin));
+    }
+};
+
+Place place_of(Workspace &workspace, const Json &params) {
+    Document &document = document_of(workspace, params);
+    const Reading &read = reading(document);
+    const std::size_t offset = offset_of(document, params);
+    Place place{workspace, document,
+                read,      {document.path, document.text, document.reading},
+                offset,    word_at(document.text, offset),
+                0};
+    while (place.before < place.tokens().size() &&
+           place.tokens()[place.before].end <= place.word.begin)
+        ++place.before;
+    return place;
+}
+
+Kind kind_of_name(const Place &place, const std::string &name) {
+    for (const fathom::v1::Name &known : compiled(place.workspace, place.document).scene
+                                             ? place.document.compiled->names
+                                             : place.document.last_names)
+        if (known.name == name) return kind_of_type(known.type);
+    for (const Declaration &declared : place.read.names.declarations) {
+        if (declared.name != name) continue;
+        if (declared.by == DeclaredBy::Import) return Kind::Module;
+    }
+    if (const Constant *constant = constant_named(place.workspace, name))
+        return kind_of_type(constant->type);
+    return Kind::Unknown;
+}
+
+// Of what ends before the word number `end`.
+Kind kind_before(const Place &place, std::size_t end) {
+    if (end == 0) return Kind::Unknown;
+    const lang::Token &last = place.tokens()[end - 1];
+    if (last.kind == Tok::Number) return Kind::Number;
+    if (last.kind == Tok::Name) return kind_of_name(place, place.text(last));
+    const std::string sign = place.text(last);
+    if (sign == "]") return Kind::Number; // a vector, or an element
+    if (sign != ")" && sign != "}") return Kind::Unknown;
+    int depth = 0;
+    std::size_t open = end;
+    while (open-- > 0) {
+        const std::string at = place.text(place.tokens()[open]);
+        if (at == ")" || at == "}" || at == "]") ++depth;
+        if ((at == "(" || at == "{" || at == "[") && --depth == 0) break;
+    }
+    if (open == std::size_t(-1) || open == 0) return Kind::Unknown;
+    const lang::Token &callee = place.tokens()[open - 1];
+    if (callee.kind != Tok::Name) // `union(…) { … }`, `(a | b)`
+        return sign == "}" ? kind_before(place, open) : Kind::Unknown;
+    for (const Form &form : forms_named(place.workspace, place.file, place.text(callee))) {
+        if (!form.read.result.empty()) return kind_of_type(form.read.result);
+        if (kind_of_first(form.read) == Kind::Shape) return Kind::Shape;
+    }
+    return Kind::Unknown;
+}
+
+bool snippet(const Place &place) { return place.workspace.snippets; }
+
+void add_function(const Place &place, Json &items, const std::string &name, const Form &form,
+                  int kind) {
+    Json item{{"label", name}, {"kind", kind}, {"detail", form.signature}};
+    if (!form.doc.empty()) item["documentation"] = markdown(form.doc);
+    if (snippet(place)) {
+        item["insertText"] =
+            name + (form.read.names.size() <= (kind == item_method ? 1u : 0u) ? "()" : "($0)");
+        item["insertTextFormat"] = 2;
+    }
+    items.push_back(std::move(item));
+}
+
+void add_library(const Place &place, Json &items, bool method, Kind kind) {
+    std::set<std::string> seen;
+    for (const fathom::v1::LibraryEntry &entry : place.workspace.library) {
+        if (!entry.module.empty() || entry.signature.find('(') == std::string::npos) continue;
+        const Form form{entry.signature, entry.doc, read_signature(entry.signature)};
+        const Kind first = kind_of_first(form.read);
+        if (method && form.read.names.empty()) continue;
+        if (method && kind != Kind::Unknown && first != Kind::Unknown && first != kind) continue;
+        if (seen.insert(entry.name).second)
+            add_function(place, items, entry.name, form, method ? item_method : item_function);
+    }
+}
+
+Json members(const Place &place) {
+    Json items = Json::array();
+    const std::size_t dot = place.before - 1;
+    const lang::Token *object = dot > 0 ? &place.tokens()[dot - 1] : nullptr;
+    const Kind kind = kind_before(place, dot);
+    if (kind == Kind::Module && object) {
+        for (const Declaration &import : place.read.names.declarations) {
+            if (import.by != DeclaredBy::Import || import.name != place.text(*object)) continue;
+            for (const fathom::v1::LibraryEntry &entry : place.workspace.library)
+                if (entry.module == import.path)
+                    add_function(place, items, entry.name,
+                                 {entry.signature, entry.doc, read_signature(entry.signature)},
+                                 item_function);
+            const auto file = file_at(place.workspace, imported_path(place.file.path, import.path));
+            if (!file) continue;
+            for (const Declaration &declared : file->reading->names.declarations)
+                if (declared.top_level && !declared.name.empty() && declared.name[0] != '_')
+                    items.push_back({{"label", declared.name},
+                                     {"kind", declared.function ? item_function : item_constant}});
+        }
+        return items;
+    }
+    if (kind == Kind::Number || kind == Kind::Unknown)
+        for (const char *component : {"x", "y", "z", "w"})
+            items.push_back({{"label", component}, {"kind", item_field}});
+    for (const Declaration &declared : place.read.names.declarations)
+        if (declared.function && declared.top_level)
+            for (const Form &form : forms_named(place.workspace, place.file, declared.name)) {
+                const Kind first = form.read.parameters.empty() ||
+                                           form.read.parameters[0].find(": ") == std::string::npos
+                                       ? Kind::Unknown
+                                       : kind_of_first(form.read);
+                if (!form.read.names.empty() &&
+                    (kind == Kind::Unknown || first == Kind::Unknown || first == kind))
+                    add_function(place, items, declared.name, form, item_method);
+            }
+    add_library(place, items, true, kind);
+    return items;
+}
+
+// Names of the text that may be meant here.
+void add_own(const Place &place, Json &items) {
+    const auto &names = compiled(place.workspace, place.document).scene
+                            ? place.document.compiled->names
+                            : place.document.last_names;
+    std::set<std::string> seen;
+    const auto at = static_cast<std::uint32_t>(place.offset);
+    const std::vector<Step> path = path_to(place.read.syntax.ast, at, at);
+    const auto visible = [&](const Declaration &declared) {
+        if (declared.top_level) return true;
+        return std::ranges::any_of(path, [&](const Step &step) {
+            if (declared.by == DeclaredBy::Parameter)
+                return step.function && step.function->span == declared.statement;
+            if (!step.block) return false;
+            if (step.stmt->span == declared.statement) return declared.by == DeclaredBy::Loop;
+            return declared.at.end <= place.offset &&
+                   std::ranges::any_of(step.block->stmts, [&](const lang::Stmt &stmt) {
+                       return stmt.span == declared.statement;
+                   });
+        });
+    };
+    const std::vector<Declaration> &all = place.read.names.declarations;
+    for (std::size_t i = all.size(); i-- > 0;) { // the innermost last declared first
+        const Declaration &declared = all[i];
+        if (declared.name.empty() || !visible(declared) || !seen.insert(declared.name).second)
+            continue;
+        if (declared.at.begin <= place.offset && place.offset <= declared.at.end) continue;
+        if (declared.function) {
+            for (const Form &form : forms_named(place.workspace, place.file, declared.name))
+                add_function(place, items, declared.name, form, item_function);
+            continue;
+        }
+        const auto known = std::ranges::find(names, declared.name, &fathom::v1::Name::name);
+        items.push_back({{"label", declared.name},
+                         {"kind", declared.by == DeclaredBy::Import ? item_module : item_variable},
+                         {"detail", known == names.end() ? "" : known->type}});
+    }
+    for (std::size_t import : place.read.names.open_imports)
+        if (const auto file =
+                file_at(place.workspace, imported_path(place.file.path, all[import].path)))
+            for (const Declaration &declared : file->reading->names.declarations)
+                if (declared.top_level && !declared.name.empty() && declared.name[0] != '_' &&
+                    seen.insert(declared.name).second)
+                    items.push_back({{"label", declared.name},
+                                     {"kind", declared.function ? item_function : item_constant},
+                                     {"detail", all[import].path}});
+}
+
+void add_arguments(const Place &place, Json &items) {
+    const auto call = call_around(place.read.syntax, place.word.begin);
+    if (!call || !call->argument_name.empty()) return;
+    std::set<std::string> seen(call->named.begin(), call->named.end());
+    for (const Form &form : forms_named(place.workspace, place.file, call->name))
+        for (std::size_t i = call->method ? 1 : 0; i < form.read.names.size(); ++i)
+            if (form.read.parameters[i].find("[_") == std::string::npos &&
+                seen.insert(form.read.names[i]).second)
+                items.push_back({{"label", form.read.names[i] + ":"},
+                                 {"kind", item_field},
+                                 {"detail", form.read.parameters[i]},
+                                 {"insertText", form.read.names[i] + ": "},
+                                 {"sortText", "0" + form.read.names[i]}});
+}
+
+// Files that the string at the place may name: beside the text, in the folder begun so far.
+Json files_here(const Place &place, const lang::Token &string) {
+    Json items = Json::array();
+    const std::size_t begin = string.begin + 1;
+    if (place.offset < begin) return items;
+    const std::string_view before =
+        std::string_view(place.document.text).substr(begin, place.offset - begin);
+    std::size_t at = 0;
+    while (at < place.tokens().size() && place.tokens()[at].begin != string.begin) ++at;
+    const bool import = at > 0 && place.tokens()[at - 1].kind == Tok::Import;
+    const auto call = call_around(place.read.syntax, string.begin);
+    if (!import && !(call && (call->name == "image" || call->name == "grid"))) return items;
+    const std::size_t slash = before.rfind('/');
+    const std::string folder(slash == before.npos ? "" : before.substr(0, slash + 1));
+    std::error_code error;
+    const std::filesystem::path home =
+        std::filesystem::path(place.document.path).parent_path() / folder;
+    if (import && folder.empty())
+        for (const fathom::v1::LibraryEntry &entry : place.workspace.library)
+            if (!entry.module.empty() && (items.empty() || items.back()["label"] != entry.module))
+                items.push_back({{"label", entry.module}, {"kind", item_module}});
+    for (const auto &entry : std::filesystem::directory_iterator(home, error)) {
+        const std::string name = entry.path().filename().string();
+        const std::string extension = entry.path().extension().string();
+        if (name.starts_with('.') || items.size() > 500) continue;
+        const bool fits = import ? extension == ".sdf"
+                                 : extension == ".png" || extension == ".jpg" ||
+                                       extension == ".jpeg" || extension == ".grid";
+        if (entry.is_directory(error))
+            items.push_back({{"label", name + "/"}, {"kind", item_folder}});
+        else if (fits && entry.path() != place.document.path)
+            items.push_back({{"label", name}, {"kind", item_file}});
+    }
+    return items;
+}
+
+void add_words(const Place &place, Json &items) {
+    const std::pair<const char *, const char *> snippets[] = {
+        {"let", "let ${1:name} = $0"},
+        {"fn", "fn ${1:name}(${2:x}) = $0"},
+        {"for", "for ${1:i} in ${2:0..8} {\n  $0\n}"},
+        {"if", "if ${1:condition} {\n  $2\n} else {\n  $0\n}"},
+        {"param", "param ${1:name} = ${2:1} in ${3:0..2}"},
+        {"while", "while ${1:condition} limit ${2:8} {\n  $0\n}"},
+        {"import", "import \"$0\""}};
+    for (std::string_view keyword : lang::vocabulary().keywords) {
+        Json item{{"label", keyword}, {"kind", item_keyword}};
+        for (const auto &[name, text] : snippets)
+            if (keyword == name && snippet(place))
+                item["insertText"] = text, item["insertTextFormat"] = 2;
+        items.push_back(std::move(item));
+    }
+    for (const Constant &constant : place.workspace.constants) {
+        Json item{{"label", constant.name},
+                  {"kind", constant.rgb ? item_color : item_constant},
+                  {"detail", constant.type}};
+        if (constant.rgb) item["documentation"] = fmt::format("#{:06x}", *constant.rgb);
+        items.push_back(std::move(item));
+    }
+}
+
+bool wants_type(const Place &place) {
+    if (place.before == 0) return false;
+    const Tok last = place.tokens()[place.before - 1].kind;
+    if (last == Tok::Arrow) return true;
+    return last == Tok::Colon && !call_around(place.read.syntax, place.word.begin);
+}
+
+} // namespace
+
+Json completion(Workspace &workspace, const Json &params) {
+    const Place place = place_of(workspace, params);
+    Json items = Json::array();
+    for (const lang::Token &token : place.tokens()) { // also one that is not closed yet
+        const bool string = token.kind == Tok::String ||
+                            (token.kind == Tok::Bad && place.text(token).starts_with('"'));
+        if (string && token.begin < place.offset &&
+            (place.offset < token.end || (token.kind == Tok::Bad && place.offset == token.end)))
+            return files_here(place, token);
+    }
+    if (in_comment_or_string(place.read.syntax, place.offset)) return items;
+    const char first =
+        place.word.begin < place.document.text.size() ? place.document.text[place.word.begin] : ' ';
+    if (first >= '0' && first <= '9') { // a number: its units
+        const std::string digits =
+            place.document.text.substr(place.word.begin, place.word.end - place.word.begin);
+        for (std::string_view unit : lang::vocabulary().units)
+            items.push_back({{"label", digits.substr(0, digits.find_first_not_of("0123456789")) +
+                                           std::string(unit)},
+                             {"kind", item_unit}});
+        return items;
+    }
+    if (place.word.begin > 0 && place.document.text[place.word.begin - 1] == '#') return items;
+    if (place.word.method && place.before > 0 && place.tokens()[place.before - 1].kind == Tok::Dot)
+        return members(place);
+    if (wants_type(place)) {
+        for (std::string_view type : lang::vocabulary().types)
+            items.push_back({{"label", type}, {"kind", item_type}});
+        return items;
+    }
+    add_arguments(place, items);
+    add_own(place, items);
+    add_library(place, items, false, Kind::Unknown);
+    add_words(place, items);
+    return items;
+}
+
+Json signature_help(Workspace &workspace, const Json &params) {
+    const Place place = place_of(workspace, params);
+    const auto call = call_around(place.read.syntax, place.offset);
+    if (!call) return nullptr;
+    std::vector<Form> forms;
+    if (const Use *use = place.read.names.use_at(call->name_begin);
+        use && use->at.begin == call->name_begin)
+        forms = forms_of(workspace, place.file, *use);
+    if (forms.empty()) forms = forms_named(workspace, place.file, call->name);
+    if (forms.empty()) return nullptr;
+    const std::size_t first = call->method ? 1 : 0, wanted = first + call->argument;
+    Json all = Json::array();
+    std::size_t active = 0;
+    bool found = false;
+    for (std::size_t i = 0; i < forms.size(); ++i) {
+        const Form &form = forms[i];
+        Json parameters = Json::array();
+        for (const std::string &parameter : form.read.parameters)
+            parameters.push_back({{"label", parameter}});
+        std::size_t at = std::min(wanted, form.read.names.empty() ? 0 : form.read.names.size() - 1);
+        const auto named = std::ranges::find(form.read.names, call->argument_name);
+        if (named != form.read.names.end())
+            at = static_cast<std::size_t>(named - form.read.names.begin());
+        const bool fits = call->argument_name.empty() ? wanted < form.read.names.size()
+                                                      : named != form.read.names.end();
+        if (fits && !found) active = i, found = true;
+        all.push_back({{"label", form.signature},
+                       {"documentation", markdown(form.doc)},
+                       {"parameters", std::move(parameters)},
+                       {"activeParameter", at}});
+    }
+    const Json active_parameter = all[active]["activeParameter"];
+    return {{"signatures", std::move(all)},
+            {"activeSignature", active},
+            {"activeParameter", active_parameter}};
+}
+
+} // namespace fathom::lsp

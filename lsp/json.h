@@ -1,0 +1,28 @@
+// The protocol's small objects. Knows nothing of requests.
+#pragma once
+
+#include "lsp/document.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace fathom::lsp {
+
+using Json = nlohmann::json;
+
+// A string of ours may hold bytes that are no UTF-8: they become U+FFFD.
+inline std::string written(const Json &json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+inline Json json_of(const Range &range) {
+    return {{"start", {{"line", range.start.line}, {"character", range.start.character}}},
+            {"end", {{"line", range.end.line}, {"character", range.end.character}}}};
+}
+inline Position position_of(const Json &json) {
+    return {json.at("line").get<int>(), json.at("character").get<int>()};
+}
+inline Json markdown(std::string text) {
+    return {{"kind", "markdown"}, {"value", std::move(text)}};
+}
+
+} // namespace fathom::lsp

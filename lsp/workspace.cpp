@@ -1,0 +1,173 @@
+#include "lsp/workspace.h"
+
+#include "driver/compile.h"
+#include "typecheck/check.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+namespace fathom::lsp {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<std::string> read_whole(const fs::path &file, std::uintmax_t most) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > most || error)
+        return std::nullopt;
+    std::ifstream in(file, std::ios::binary);
+    if (!in) return std::nullopt;
+    return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+// The compiler has its own limits of a file's size; this one is above them.
+constexpr std::uintmax_t any_size = std::uintmax_t{1} << 40, most_of_a_text = 1 << 20;
+
+std::shared_ptr<const Reading> read_text(const std::string &text) {
+    auto made = std::make_shared<Reading>();
+    made->syntax = read_syntax(text);
+    made->names = names_of(made->syntax.ast);
+    return made;
+}
+
+} // namespace
+
+Document &document_at(Workspace &workspace, const std::string &uri) {
+    const auto found = workspace.documents.find(uri);
+    if (found == workspace.documents.end()) throw UnknownDocument();
+    return found->second;
+}
+
+fathom::v1::CompileResult compile_as(Workspace &workspace, const std::string &path,
+                                     const std::string &text,
+                                     const std::map<std::string, std::string> &instead,
+                                     std::set<std::string> *asked_for) {
+    const fs::path folder = fs::path(path).parent_path();
+    fathom::v1::CompileOptions options;
+    options.files = [&workspace, &instead, asked_for,
+                     folder](const std::string &name) -> std::optional<std::string> {
+        const fs::path file = folder / name;
+        if (asked_for) asked_for->insert(file.string());
+        if (const auto found = instead.find(file.string()); found != instead.end())
+            return found->second;
+        for (const auto &[uri, open] : workspace.documents)
+            if (open.path == file.string()) return open.text;
+        std::error_code error; // a link that leads out of the folder is not followed
+        const fs::path real = fs::weakly_canonical(file, error),
+                       root = fs::weakly_canonical(folder, error);
+        const fs::path way = real.lexically_relative(root);
+        if (error || way.empty() || *way.begin() == "..") return std::nullopt;
+        return read_whole(file, any_size);
+    };
+    return fathom::v1::compile_text(path, text, options);
+}
+
+const fathom::v1::CompileResult &compiled(Workspace &workspace, Document &document) {
+    if (!document.compiled) {
+        document.asked_for.clear();
+        document.compiled =
+            compile_as(workspace, document.path, document.text, {}, &document.asked_for);
+        if (document.compiled->scene) document.last_names = document.compiled->names;
+    }
+    return *document.compiled;
+}
+
+const Reading &reading(Document &document) {
+    if (!document.reading) document.reading = read_text(document.text);
+    return *document.reading;
+}
+
+std::optional<File> file_at(Workspace &workspace, const std::string &path) {
+    for (auto &[uri, open] : workspace.documents) {
+        if (open.path != path) continue;
+        (void)reading(open);
+        return File{path, open.text, open.reading};
+    }
+    std::error_code error;
+    const fs::file_time_type time = fs::last_write_time(path, error);
+    if (error) return std::nullopt;
+    const auto cached = workspace.closed.find(path);
+    if (cached != workspace.closed.end() && cached->second.time == time) return cached->second.file;
+    std::optional<std::string> text = read_whole(path, most_of_a_text);
+    if (!text) return std::nullopt;
+    File file{path, *text, read_text(*text)};
+    workspace.closed[path] = {time, file};
+    return file;
+}
+
+std::string imported_path(const std::string &from, const std::string &path) {
+    return (fs::path(from).parent_path() / path).lexically_normal().string();
+}
+
+std::vector<File> all_files(Workspace &workspace) {
+    constexpr std::size_t most_files = 2000;
+    std::set<std::string> paths;
+    std::set<fs::path> folders(workspace.roots.begin(), workspace.roots.end());
+    for (const auto &[uri, document] : workspace.documents) {
+        paths.insert(document.path);
+        if (workspace.roots.empty()) folders.insert(fs::path(document.path).parent_path());
+    }
+    for (const fs::path &folder : folders) {
+        std::error_code error;
+        fs::recursive_directory_iterator entry(
+            folder, fs::directory_options::skip_permission_denied, error);
+        for (std::size_t seen = 0; !error && entry != fs::recursive_directory_iterator() &&
+                                   paths.size() < most_files && seen < 20 * most_files;
+             entry.increment(error), ++seen) {
+            const fs::path &path = entry->path();
+            const bool hidden = path.filename().string().starts_with('.');
+            if (hidden && entry->is_directory(error)) entry.disable_recursion_pending();
+            if (!hidden && path.extension() == ".sdf") paths.insert(path.string());
+        }
+    }
+    std::vector<File> files;
+    for (const std::string &path : paths)
+        if (std::optional<File> file = file_at(workspace, path)) files.push_back(std::move(*file));
+    return files;
+}
+
+std::vector<const fathom::v1::LibraryEntry *>
+library_forms(const Workspace &workspace, const std::string &name, const std::string &module) {
+    std::vector<const fathom::v1::LibraryEntry *> forms;
+    for (const fathom::v1::LibraryEntry &entry : workspace.library)
+        if (entry.name == name && entry.module == module) forms.push_back(&entry);
+    return forms;
+}
+
+const Constant *constant_named(const Workspace &workspace, std::string_view name) {
+    const auto found = std::ranges::find(workspace.constants, name, &Constant::name);
+    return found == workspace.constants.end() ? nullptr : &*found;
+}
+
+Signature read_signature(const std::string &signature) {
+    Signature read;
+    const std::size_t open = signature.find('(');
+    if (open == signature.npos) return read;
+    int depth = 0;
+    std::size_t begin = open + 1, close = signature.size();
+    const auto take = [&](std::size_t end) {
+        std::string part = signature.substr(begin, end - begin);
+        part.erase(0, part.find_first_not_of(' '));
+        if (!part.empty()) {
+            read.names.push_back(part.substr(0, part.find_first_of(": =")));
+            read.parameters.push_back(std::move(part));
+        }
+        begin = end + 1;
+    };
+    for (std::size_t i = open; i < close; ++i) {
+        const char c = signature[i];
+        if (c == '(' || c == '[') ++depth;
+        if (c == ',' && depth == 1) take(i);
+        if ((c == ')' || c == ']') && --depth == 0) {
+            take(i);
+            close = i;
+        }
+    }
+    if (const std::size_t arrow = signature.find("-> ", close); arrow != signature.npos)
+        read.result = signature.substr(arrow + 3);
+    return read;
+}
+
+} // namespace fathom::lsp

@@ -1,0 +1,99 @@
+// What the server knows: the open texts, the files beside them, the library. A text is read and
+// compiled when that is first wanted, and again after it changed.
+#pragma once
+
+#include "lsp/names.h"
+
+#include <fathom/fathom.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace fathom::lsp {
+
+// A text's tree, its names, and where its lines begin.
+struct Reading {
+    Syntax syntax;
+    Names names;
+};
+
+// A text that a client has open.
+struct Document {
+    std::string uri, path, text;
+    int version = 0;
+    std::optional<fathom::v1::CompileResult> compiled; // of the text as it is
+    std::shared_ptr<const Reading> reading;            // of the text as it is
+    bool published = false;                            // its diagnostics were sent
+    std::set<std::string> asked_for;                   // paths that compiling it wanted to read
+    // What was known when the text last compiled: half-typed texts go on having types.
+    std::vector<fathom::v1::Name> last_names;
+};
+
+// A text of the workspace, open or not.
+struct File {
+    std::string path, text;
+    std::shared_ptr<const Reading> reading;
+};
+
+// A value of the library that is no function.
+struct Constant {
+    std::string name, type;
+    std::optional<std::uint32_t> rgb; // of a named colour
+};
+
+struct Workspace {
+    std::map<std::string, Document> documents; // by address
+    std::vector<std::string> roots;            // folders that the client opened
+    std::vector<fathom::v1::LibraryEntry> library;
+    std::vector<Constant> constants;
+    bool snippets = false; // the client takes snippets from completion
+
+    struct Cached {
+        std::filesystem::file_time_type time;
+        File file;
+    };
+    std::map<std::string, Cached> closed; // files that were read, by path
+};
+
+// Throws `UnknownDocument` where the address is of no open text.
+struct UnknownDocument : std::exception {
+    const char *what() const noexcept override { return "this text is not open"; }
+};
+Document &document_at(Workspace &workspace, const std::string &uri);
+
+const fathom::v1::CompileResult &compiled(Workspace &workspace, Document &document);
+const Reading &reading(Document &document);
+
+// Compiles a text as the file `path`, with texts in place of files, by path; the rest as it stands.
+// `asked_for` gets the paths that it wanted to read.
+fathom::v1::CompileResult compile_as(Workspace &workspace, const std::string &path,
+                                     const std::string &text,
+                                     const std::map<std::string, std::string> &instead = {},
+                                     std::set<std::string> *asked_for = nullptr);
+
+// The text at a path: the open one, else the file's, of at most 1 MiB.
+std::optional<File> file_at(Workspace &workspace, const std::string &path);
+// What a text imports as `path`, seen from the file that says so.
+std::string imported_path(const std::string &from, const std::string &path);
+// All scenes of the workspace: what is open, and at most 2,000 `.sdf` files of the client's folders
+// (without one, of the folder of each open text). Hidden folders are left out.
+std::vector<File> all_files(Workspace &workspace);
+
+std::vector<const fathom::v1::LibraryEntry *>
+library_forms(const Workspace &workspace, const std::string &name, const std::string &module = "");
+const Constant *constant_named(const Workspace &workspace, std::string_view name);
+
+// A function's parameters as its signature says them: "radius: float = 1".
+struct Signature {
+    std::vector<std::string> parameters;
+    std::vector<std::string> names; // of the parameters
+    std::string result;             // "shape"; empty where none is said
+};
+Signature read_signature(const std::string &signature);
+
+} // namespace fathom::lsp
