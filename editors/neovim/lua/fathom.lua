@@ -42,7 +42,10 @@ local function attach(buffer, options)
       cmd = options.cmd,
       root_dir = root,
       workspace_folders = { { uri = vim.uri_from_fname(root), name = root } },
-      on_attach = options.on_attach,
+      on_attach = function(client, attached)
+        if options.hints ~= false then M.show_hints(attached, client) end
+        if options.on_attach then options.on_attach(client, attached) end
+      end,
       handlers = options.handlers,
     })
   end
