@@ -47,6 +47,13 @@ std::string anchor_of(const std::string &heading) {
     return anchor;
 }
 
+// As .gitignore has it, so that one is left out also while it is being configured; and any other.
+bool is_build_tree(const std::filesystem::path &folder) {
+    const std::string name = folder.filename().string();
+    return name == "build" || name.starts_with("build-") || name == "node_modules" ||
+           std::filesystem::exists(folder / "CMakeCache.txt");
+}
+
 } // namespace
 
 std::set<std::string> files_below(const std::filesystem::path &root) {
@@ -56,7 +63,7 @@ std::set<std::string> files_below(const std::filesystem::path &root) {
          entry != fs::recursive_directory_iterator(); ++entry) {
         const bool hidden = entry->path().filename().string().starts_with(".");
         if (entry->is_directory()) {
-            if (hidden || fs::exists(entry->path() / "CMakeCache.txt"))
+            if (hidden || is_build_tree(entry->path()))
                 entry.disable_recursion_pending();
         } else if (!hidden) {
             files.insert(fs::relative(entry->path(), root).generic_string());
