@@ -47,10 +47,10 @@ std::string controls(const ir::Scene &scene, const std::vector<Uniform> &uniform
         const std::size_t size = static_cast<std::size_t>(ir::components(p.type));
         list.add("{\"name\": " + for_script(u.name) + ", \"label\": " + for_script(label_of(p)) +
                  ", \"type\": \"" + ir::type_name(p.type) +
-                 "\", \"color\": " + (p.is_color ? "true" : "false") +
-                 ", \"range\": " + (p.has_range ? "true" : "false") +
-                 ", \"value\": " + array(p.value.data(), size) + ", \"lo\": " +
-                 array(p.lo.data(), size) + ", \"hi\": " + array(p.hi.data(), size) + "}");
+                 "\", \"color\": " + (p.is_color ? "true" : "false") + ", \"range\": " +
+                 (p.has_range ? "true" : "false") + ", \"value\": " + array(p.value.data(), size) +
+                 ", \"lo\": " + array(p.lo.data(), size) + ", \"hi\": " + array(p.hi.data(), size) +
+                 "}");
     }
     return list.take();
 }
@@ -122,8 +122,8 @@ std::string html_page(const ir::Scene &scene, const Options &options, const Outp
                       const std::string &fragment) {
     const ir::View view = ir::view_of(scene, options.time, 16.0 / 9.0);
     const glm::dvec3 sun = ir::lights_of(scene, options.time, view)[0].position;
-    const bool animated = fragment.find("fathom_time", fragment.find("fathom_time;") + 1) !=
-                          std::string::npos;
+    const bool animated =
+        fragment.find("fathom_time", fragment.find("fathom_time;") + 1) != std::string::npos;
     const std::string style = "\n" + expand("page_style", {}),
                       script = "\n" + expand("page_shaders", {}) + expand("page_draw", {}) +
                                expand("page_controls", {});

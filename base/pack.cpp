@@ -20,10 +20,9 @@ template <std::size_t N> std::array<std::uint32_t, N> of_primes(bool cube) {
         bool prime = true;
         for (std::uint64_t d = 2; d * d <= n; ++d) prime &= n % d != 0;
         if (!prime) continue;
-        const long double root = cube ? std::cbrt(static_cast<long double>(n))
-                                      : std::sqrt(static_cast<long double>(n));
-        words[found++] =
-            static_cast<std::uint32_t>((root - std::floor(root)) * 4294967296.0L);
+        const long double root =
+            cube ? std::cbrt(static_cast<long double>(n)) : std::sqrt(static_cast<long double>(n));
+        words[found++] = static_cast<std::uint32_t>((root - std::floor(root)) * 4294967296.0L);
     }
     return words;
 }
@@ -34,8 +33,8 @@ std::string compressed(std::string_view bytes) {
     uLongf size = compressBound(static_cast<uLong>(bytes.size()));
     std::string out(size, '\0');
     if (compress2(reinterpret_cast<Bytef *>(out.data()), &size,
-                  reinterpret_cast<const Bytef *>(bytes.data()),
-                  static_cast<uLong>(bytes.size()), Z_BEST_COMPRESSION) != Z_OK)
+                  reinterpret_cast<const Bytef *>(bytes.data()), static_cast<uLong>(bytes.size()),
+                  Z_BEST_COMPRESSION) != Z_OK)
         throw std::bad_alloc(); // the one reason that zlib has here
     out.resize(size);
     return out;
@@ -49,8 +48,8 @@ std::string base64(std::string_view bytes) {
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         std::uint32_t group = 0;
         for (std::size_t k = 0; k < 3; ++k)
-            group = group << 8 |
-                    (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+            group =
+                group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
         for (std::size_t k = 0; k < 4; ++k)
             out += k <= bytes.size() - i ? letters[group >> (18 - 6 * k) & 63] : '=';
     }
@@ -75,11 +74,11 @@ std::string sha256(std::string_view bytes) {
                    (std::rotr(w[i - 2], 17) ^ std::rotr(w[i - 2], 19) ^ w[i - 2] >> 10);
         auto [a, b, c, d, e, f, g, h] = state;
         for (std::size_t i = 0; i < 64; ++i) {
-            const std::uint32_t first = h + (std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25)) +
+            const std::uint32_t first = h +
+                                        (std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25)) +
                                         ((e & f) ^ (~e & g)) + rounds[i] + w[i];
-            const std::uint32_t second =
-                (std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22)) +
-                ((a & b) ^ (a & c) ^ (b & c));
+            const std::uint32_t second = (std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22)) +
+                                         ((a & b) ^ (a & c) ^ (b & c));
             h = g, g = f, f = e, e = d + first, d = c, c = b, b = a, a = first + second;
         }
         const std::array<std::uint32_t, 8> now{a, b, c, d, e, f, g, h};

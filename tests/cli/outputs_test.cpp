@@ -227,10 +227,10 @@ TEST_CASE("a param that a shader holds as a constant is said, with its place and
         // One value everywhere: the count, and the size that reads it.
         CHECK(contains(written.out, "const int param_n = 3;"));
         CHECK_FALSE(contains(written.out, "uniform int param_n"));
-        CHECK_FALSE(contains(written.out, "name: \"param_n\""));
+        CHECK_FALSE(contains(written.out, "\"name\": \"param_n\""));
     }
     CHECK(contains(shell(folder, "fathom compile counted.sdf --target html").out,
-                   "name: \"param_size\""));
+                   "\"name\": \"param_size\""));
     const Result other = shell(folder, "fathom compile counted.sdf --target es300 -D n=5");
     CHECK(contains(other.out, "n = 5 in 1..6"));
     CHECK(contains(other.out, "const int param_n = 5;"));
@@ -244,8 +244,8 @@ TEST_CASE("a cell that cannot vanish stays a slider, one that can decides what t
     folder.write("cells.sdf", "param gap = 1 in 0.5..2.0\nparam row = 0 in 0.0..2.0\n"
                               "sphere(0.2).repeat([gap, 0, row])\n");
     const Result page = shell(folder, "fathom compile cells.sdf --target html");
-    CHECK(contains(page.out, "name: \"param_gap\""));
-    CHECK_FALSE(contains(page.out, "name: \"param_row\""));
+    CHECK(contains(page.out, "\"name\": \"param_gap\""));
+    CHECK_FALSE(contains(page.out, "\"name\": \"param_row\""));
     CHECK(contains(page.err, "cells.sdf:2:7: note[fixed-param]"));
 }
 

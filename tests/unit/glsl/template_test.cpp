@@ -17,17 +17,19 @@ using glsl::Values;
 namespace {
 
 const std::vector<std::string> flags{
-    "BOXED",  "UNIT_SLOPE",   "SHADED_APART",  "PASSES",  "COUNTED",    "HAS_SAFE_RADIUS",
-    "TWICE",  "SKIP_SHADING", "LOCAL_NORMALS", "PICK",    "CACHED",     "FAR_CELLS",
-    "AROUND", "ONE_LIGHT",    "BLENDED",       "PICTURE", "FIELD_ONLY", "TIME",
-    "ES",     "LOCATIONS",    "MARKED",        "OWN",     "UNPAINTED",  "PAINTED",
-    "LIT",    "CLASSIC",      "SOFT"};
+    "BOXED",  "UNIT_SLOPE",   "SHADED_APART",  "PASSES",      "COUNTED",    "HAS_SAFE_RADIUS",
+    "TWICE",  "SKIP_SHADING", "LOCAL_NORMALS", "PICK",        "CACHED",     "FAR_CELLS",
+    "AROUND", "ONE_LIGHT",    "BLENDED",       "PICTURE",     "FIELD_ONLY", "TIME",
+    "ES",     "LOCATIONS",    "MARKED",        "OWN",         "UNPAINTED",  "PAINTED",
+    "LIT",    "CLASSIC",      "SOFT",          "FOUR_OUTPUTS"};
 
 // What a flag decides beside its own `$if`, as the emitter has it.
 Values values_with(std::string_view name, const std::set<std::string> &on) {
     const auto is = [&](const char *flag) { return on.contains(flag); };
     Values values{
         {"SHADED", is("SHADED_APART") ? "fathom_shaded" : "sdf"},
+        {"FOUR_OUTPUTS",
+         is("FOUR_OUTPUTS") && name == "march" ? "1" : ""}, // others stand beside a pick
         {"FLAT", is("SHADED_APART") ? "false" : "least >= 0.5"},
         {"AND_PRESENT", is("CACHED") ? " && !fathom_absent" : ""},
         {"UNLIT", is("ONE_LIGHT") && !is("PASSES") ? "return color" : "continue"},
@@ -177,6 +179,14 @@ vec3 fathom_origin, fathom_right, fathom_up, fathom_forward;
 const float fathom_focus = 1.0;
 )";
 const std::string drawn = "vec4 fathom_picture(vec2 place) { return place.xyxy; }\n";
+// Of a march by passes, what the page's entry reads.
+const std::string kept = R"(
+uniform bool fathom_resumed;
+uniform sampler2D fathom_kept_2;
+bool fathom_goes_on = false;
+vec4 fathom_keep_2;
+vec4 fathom_kept(sampler2D kept) { return texelFetch(kept, ivec2(gl_FragCoord.xy), 0); }
+)";
 const std::string sampling = R"(
 uniform int fathom_cache_bits = 0, fathom_cache_ages = 4;
 uniform usampler3D fathom_cache_index;
@@ -189,6 +199,7 @@ std::string with_entry(const glsl::TargetTraits &target, Values values) {
     text += (target.hosted ? inputs.substr(inputs.find("uniform")) : camera) + drawn;
     if (!values.at("CACHED").empty())
         text += glsl::expand("cache_look_up", values) + "int fathom_steps = 0;\n";
+    if (target.form == glsl::Form::Page) text += kept;
     text += glsl::expand(target.entry, values);
     if (!*target.host) return version + text;
     values["TEXT"] = text;
