@@ -28,7 +28,8 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
     const auto is = [&](const char *flag) { return on.contains(flag); };
     Values values{
         {"SHADED", is("SHADED_APART") ? "fathom_shaded" : "sdf"},
-        {"FOUR_OUTPUTS", is("FOUR_OUTPUTS") && !is("PICK") ? "1" : ""}, // no page picks
+        {"FOUR_OUTPUTS",
+         is("FOUR_OUTPUTS") && name == "march" ? "1" : ""}, // others stand beside a pick
         {"FLAT", is("SHADED_APART") ? "false" : "least >= 0.5"},
         {"AND_PRESENT", is("CACHED") ? " && !fathom_absent" : ""},
         {"UNLIT", is("ONE_LIGHT") && !is("PASSES") ? "return color" : "continue"},
