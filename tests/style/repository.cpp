@@ -56,7 +56,8 @@ std::set<std::string> files_below(const std::filesystem::path &root) {
          entry != fs::recursive_directory_iterator(); ++entry) {
         const bool hidden = entry->path().filename().string().starts_with(".");
         if (entry->is_directory()) {
-            if (hidden || fs::exists(entry->path() / "CMakeCache.txt"))
+            if (hidden || entry->path().filename() == "node_modules" ||
+                fs::exists(entry->path() / "CMakeCache.txt"))
                 entry.disable_recursion_pending();
         } else if (!hidden) {
             files.insert(fs::relative(entry->path(), root).generic_string());
