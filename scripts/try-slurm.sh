@@ -156,10 +156,10 @@ check() {
     [ "$made" -le $((frames + 10 * killed)) ] || fail "more was repeated than was killed"
 }
 
-# A film of 96 frames of a second or more on one core, less the three that the farm makes as a probe:
+# A film of 96 equal frames of a second or more on one core, less the three that the farm makes as a probe:
 # by two processes that get half of them each, then by two nodes of a processor each.
 overhead() {
-    local scene=$root/examples/temple.sdf film="--turntable 96 --size 400x300 --samples 1 --backend cpu --jobs 1"
+    local scene=$root/examples/temple.sdf film="--frames 0..96 --size 400x300 --samples 1 --backend cpu --jobs 1"
     local begin hand farm
     setup_slurm 1 || { fail "Slurm does not start"; return; }
     begin=$(date +%s.%N)
