@@ -1,5 +1,5 @@
-// Bytes as text that a page can carry, and the fingerprint that a page's policy asks for. Knows nothing
-// of what the bytes are.
+// Bytes as text that a page can carry, and the fingerprint that a page's policy asks for. Knows
+// nothing of what the bytes are.
 #pragma once
 
 #include <string>

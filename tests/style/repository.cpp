@@ -63,8 +63,7 @@ std::set<std::string> files_below(const std::filesystem::path &root) {
          entry != fs::recursive_directory_iterator(); ++entry) {
         const bool hidden = entry->path().filename().string().starts_with(".");
         if (entry->is_directory()) {
-            if (hidden || is_build_tree(entry->path()))
-                entry.disable_recursion_pending();
+            if (hidden || is_build_tree(entry->path())) entry.disable_recursion_pending();
         } else if (!hidden) {
             files.insert(fs::relative(entry->path(), root).generic_string());
         }
