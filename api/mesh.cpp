@@ -1,6 +1,7 @@
 #include "api/impl.h"
 
 #include "mesh/certify.h"
+#include "mesh/colors.h"
 #include "mesh/write.h"
 
 #include <fmt/format.h>
@@ -92,6 +93,32 @@ bool good(const MeshOptions &options) {
     return true;
 }
 
+fathom::mesh::Format inner(MeshFormat format) {
+    using fathom::mesh::Format;
+    switch (format) {
+    case MeshFormat::Stl: return Format::Stl;
+    case MeshFormat::Obj: return Format::Obj;
+    case MeshFormat::Ply: return Format::Ply;
+    case MeshFormat::Glb: return Format::Glb;
+    case MeshFormat::ThreeMf: return Format::ThreeMf;
+    }
+    return Format::Stl;
+}
+
+fathom::mesh::Unit inner(MeshUnit unit) {
+    using fathom::mesh::Unit;
+    switch (unit) {
+    case MeshUnit::Unsaid: return Unit::Unsaid;
+    case MeshUnit::Micron: return Unit::Micron;
+    case MeshUnit::Millimetre: return Unit::Millimetre;
+    case MeshUnit::Centimetre: return Unit::Centimetre;
+    case MeshUnit::Metre: return Unit::Metre;
+    case MeshUnit::Inch: return Unit::Inch;
+    case MeshUnit::Foot: return Unit::Foot;
+    }
+    return Unit::Unsaid;
+}
+
 } // namespace
 
 Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
@@ -130,6 +157,10 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
             } else {
                 list_undecided(made.octree, made.octree.undecided, mesh);
             }
+            if (options.colors) {
+                const fathom::mesh::Lattice &lattice = made.octree.lattice;
+                mesh.colors = colors_of(ir_of(scene), options.time, made.mesh, lattice.unit);
+            }
             mesh.vertices = std::move(made.mesh.vertices);
             mesh.normals = std::move(made.mesh.normals);
             mesh.triangles = std::move(made.mesh.triangles);
@@ -146,7 +177,8 @@ std::optional<MeshFormat> mesh_format(std::string_view file_name) noexcept {
     constexpr Suffix suffixes[] = {{".stl", MeshFormat::Stl},
                                    {".obj", MeshFormat::Obj},
                                    {".ply", MeshFormat::Ply},
-                                   {".glb", MeshFormat::Glb}};
+                                   {".glb", MeshFormat::Glb},
+                                   {".3mf", MeshFormat::ThreeMf}};
     for (const auto &[text, format] : suffixes) {
         if (file_name.size() <= text.size()) continue;
         const std::string_view end = file_name.substr(file_name.size() - text.size());
@@ -160,17 +192,13 @@ std::optional<MeshFormat> mesh_format(std::string_view file_name) noexcept {
     return std::nullopt;
 }
 
-std::string mesh_file(const Mesh &mesh, MeshFormat format, std::string_view name) noexcept {
+std::string mesh_file(const Mesh &mesh, MeshFormat format, std::string_view name,
+                      MeshUnit unit) noexcept {
     return guarded(
         [&] {
-            const fathom::mesh::Surface surface{mesh.vertices, mesh.normals, mesh.triangles};
-            switch (format) {
-            case MeshFormat::Stl: return file_of(surface, fathom::mesh::Format::Stl, name);
-            case MeshFormat::Obj: return file_of(surface, fathom::mesh::Format::Obj, name);
-            case MeshFormat::Ply: return file_of(surface, fathom::mesh::Format::Ply, name);
-            case MeshFormat::Glb: return file_of(surface, fathom::mesh::Format::Glb, name);
-            }
-            return std::string();
+            const fathom::mesh::Surface surface{mesh.vertices, mesh.normals, mesh.triangles,
+                                                mesh.colors};
+            return file_of(surface, inner(format), name, inner(unit));
         },
         [](const Diagnostic &) { return std::string(); });
 }

@@ -339,9 +339,9 @@ struct Reader {
     void add_mesh() {
         CLI::App *sub = command("mesh", "write the scene's surface as triangles", mesh);
         add_scene(sub, mesh.scene);
-        add_out(
-            sub, mesh.out,
-            "the mesh, by its suffix: .stl, .obj, .ply or .glb (`-`: an STL to standard output)")
+        add_out(sub, mesh.out,
+                "the mesh, by its suffix: .stl, .obj, .ply, .glb or .3mf (`-`: an STL to standard "
+                "output)")
             ->type_name("OUT.stl")
             ->required();
         option(
@@ -367,6 +367,10 @@ struct Reader {
             "cut the solid off at a box: its least corner, then its greatest")
             ->type_name("X,Y,Z,X,Y,Z");
         add_time(sub, mesh.time, "seconds");
+        sub->add_option("--units", mesh.units,
+                        "what a length of 1 is, for .3mf (mm unless said) and .glb (m unless said)")
+            ->check(quiet(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"})))
+            ->type_name("UNIT");
         sub->add_flag("--json", mesh.json,
                       "prove what can be proved of the mesh: one JSON document on standard output");
     }

@@ -125,6 +125,7 @@ struct MeshCommand {
     int resolution = 128;
     std::optional<std::array<std::array<double, 3>, 2>> bounds;
     double time = 0;
+    std::string units; // a word of unit_words(); empty: unsaid
     bool json = false; // the certificate
 };
 // `fathom eval`.

@@ -63,6 +63,17 @@ Exit exit_of(v1::MeshStatus status) {
     return done;
 }
 
+v1::MeshUnit unit_of(std::string_view word) {
+    using enum v1::MeshUnit;
+    return word == "um"   ? Micron
+           : word == "mm" ? Millimetre
+           : word == "cm" ? Centimetre
+           : word == "m"  ? Metre
+           : word == "in" ? Inch
+           : word == "ft" ? Foot
+                          : Unsaid;
+}
+
 v1::MeshOptions mesh_options(const MeshCommand &command) {
     v1::MeshOptions options;
     options.tolerance = command.tolerance;
@@ -123,6 +134,14 @@ Exit run(const MeshCommand &command, Terminal &terminal) {
     if (overwrites(command.scene.file, command.out, terminal) ||
         misnamed(command.out, Content::Mesh, terminal))
         return usage_error;
+    const v1::MeshFormat format =
+        v1::mesh_format(command.out).value_or(v1::MeshFormat::Stl); // a stream has no suffix
+    if (!command.units.empty() && format != v1::MeshFormat::ThreeMf &&
+        format != v1::MeshFormat::Glb) {
+        terminal.say(fmt::format("fathom: --units: `{}` says nothing of units; .3mf and .glb do",
+                                 command.out));
+        return usage_error;
+    }
     if (unwritable(command.out, terminal)) return device_error;
     const v1::CompileResult result =
         v1::compile_file(command.scene.file, library_options(command.scene));
@@ -135,6 +154,7 @@ Exit run(const MeshCommand &command, Terminal &terminal) {
         return usage_error;
     }
     v1::MeshOptions options = mesh_options(command);
+    options.colors = format != v1::MeshFormat::Stl;
     const Interrupts interrupts;
     options.progress = [&](double share) {
         terminal.progress(command.out, share);
@@ -153,10 +173,9 @@ Exit run(const MeshCommand &command, Terminal &terminal) {
         return exit_of(mesh.status);
     }
     say_undecided(mesh, command, terminal);
-    const v1::MeshFormat format =
-        v1::mesh_format(command.out).value_or(v1::MeshFormat::Stl); // a stream has no suffix
     const std::string name = std::filesystem::path(command.scene.file).stem().string();
-    const std::string bytes = v1::mesh_file(mesh, format, name == "-" ? "scene" : name);
+    const std::string bytes =
+        v1::mesh_file(mesh, format, name == "-" ? "scene" : name, unit_of(command.units));
     if (bytes.empty()) {
         terminal.say(fmt::format("fathom: {} triangles are more than `{}` can hold, or than there "
                                  "is memory for",

@@ -15,14 +15,14 @@ struct Suffix {
 };
 
 // The suffixes that promise what a file holds. Others promise nothing and are free.
-constexpr std::array<Suffix, 20> suffixes{
-    {{".png", Content::Picture},   {".jpg", Content::Picture}, {".jpeg", Content::Picture},
-     {".mp4", Content::Film},      {".webm", Content::Film},   {".gif", Content::Film},
-     {".apng", Content::Film},     {".sums", Content::Sums},   {".glsl", Content::Shader},
-     {".frag", Content::Shader},   {".spv", Content::SpirV},   {".html", Content::Page},
-     {".htm", Content::Page},      {".stl", Content::Mesh},    {".obj", Content::Mesh},
-     {".ply", Content::Mesh},      {".glb", Content::Mesh},    {".sdf", Content::Scene},
-     {".yaml", Content::SaveFile}, {".yml", Content::SaveFile}}};
+constexpr std::array<Suffix, 21> suffixes{
+    {{".png", Content::Picture}, {".jpg", Content::Picture},   {".jpeg", Content::Picture},
+     {".mp4", Content::Film},    {".webm", Content::Film},     {".gif", Content::Film},
+     {".apng", Content::Film},   {".sums", Content::Sums},     {".glsl", Content::Shader},
+     {".frag", Content::Shader}, {".spv", Content::SpirV},     {".html", Content::Page},
+     {".htm", Content::Page},    {".stl", Content::Mesh},      {".obj", Content::Mesh},
+     {".ply", Content::Mesh},    {".glb", Content::Mesh},      {".3mf", Content::Mesh},
+     {".sdf", Content::Scene},   {".yaml", Content::SaveFile}, {".yml", Content::SaveFile}}};
 
 const Suffix *known_suffix(std::string_view suffix) {
     const auto *known = std::find_if(suffixes.begin(), suffixes.end(),
@@ -140,8 +140,8 @@ bool misnamed(const std::string &out, Content content, Terminal &terminal) {
         return true;
     }
     if (content == Content::Mesh && !known) {
-        terminal.say(
-            fmt::format("fathom: -o {}: meshes are written as .stl, .obj, .ply or .glb", out));
+        terminal.say(fmt::format(
+            "fathom: -o {}: meshes are written as .stl, .obj, .ply, .glb or .3mf", out));
         return true;
     }
     return false;

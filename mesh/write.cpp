@@ -1,5 +1,8 @@
 #include "mesh/write.h"
 
+#include "base/picture.h"
+#include "base/srgb.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -108,7 +111,13 @@ std::string obj_of(const Surface &mesh, std::string_view name) {
     fmt::memory_buffer text;
     const auto to = std::back_inserter(text);
     fmt::format_to(to, "# by Fathom\no {}\n", word_of(name));
-    for (const Point &p : mesh.vertices) fmt::format_to(to, "v {} {} {}\n", p[0], p[1], p[2]);
+    for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
+        const Point &p = mesh.vertices[k];
+        fmt::format_to(to, "v {} {} {}", p[0], p[1], p[2]);
+        if (!mesh.colors.empty()) // as most readers take them: after the place, sRGB
+            for (const float c : mesh.colors[k]) fmt::format_to(to, " {:.4g}", srgb_of_linear(c));
+        fmt::format_to(to, "\n");
+    }
     const Corners corners = corners_of(mesh);
     for (const Point &n : corners.normals)
         fmt::format_to(to, "vn {:.4g} {:.4g} {:.4g}\n", n[0], n[1], n[2]);
@@ -121,13 +130,20 @@ std::string obj_of(const Surface &mesh, std::string_view name) {
 }
 
 std::string ply_of(const Surface &mesh) {
-    std::string bytes =
-        fmt::format("ply\nformat binary_little_endian 1.0\ncomment by Fathom\n"
-                    "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-                    "element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
-                    mesh.vertices.size(), mesh.triangles.size());
-    bytes.reserve(bytes.size() + 12 * mesh.vertices.size() + 13 * mesh.triangles.size());
-    for (const Point &p : mesh.vertices) put(bytes, p);
+    std::string bytes = fmt::format(
+        "ply\nformat binary_little_endian 1.0\ncomment by Fathom\n"
+        "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n{}"
+        "element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+        mesh.vertices.size(),
+        mesh.colors.empty() ? ""
+                            : "property uchar red\nproperty uchar green\nproperty uchar blue\n",
+        mesh.triangles.size());
+    bytes.reserve(bytes.size() + 15 * mesh.vertices.size() + 13 * mesh.triangles.size());
+    for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
+        put(bytes, mesh.vertices[k]);
+        if (!mesh.colors.empty())
+            for (const float c : mesh.colors[k]) put(bytes, srgb_byte(c));
+    }
     for (const Triangle &t : mesh.triangles) {
         put(bytes, std::uint8_t{3});
         for (const std::uint32_t v : t) put(bytes, v);
@@ -136,9 +152,14 @@ std::string ply_of(const Surface &mesh) {
 }
 
 // A mesh whose vertices have one normal each: those with several stand there several times.
-Mesh split(const Surface &mesh) {
+struct Split {
+    std::vector<Point> vertices, normals, colors;
+    std::vector<Triangle> triangles;
+};
+Split split(const Surface &mesh) {
     const Corners corners = corners_of(mesh);
-    Mesh made;
+    Split made;
+    made.colors.assign(mesh.colors.begin(), mesh.colors.end());
     made.vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
     made.normals.assign(mesh.normals.begin(), mesh.normals.end());
     std::map<std::pair<std::uint32_t, Point>, std::uint32_t> copies;
@@ -152,6 +173,7 @@ Mesh split(const Surface &mesh) {
             if (fresh) {
                 made.vertices.push_back(mesh.vertices[t[c]]);
                 made.normals.push_back(normal);
+                if (!mesh.colors.empty()) made.colors.push_back(mesh.colors[t[c]]);
             }
             t[c] = at->second;
         }
@@ -160,93 +182,144 @@ Mesh split(const Surface &mesh) {
     return made;
 }
 
-std::string glb_of(const Surface &mesh, std::string_view name) {
-    using Json = nlohmann::ordered_json;
-    constexpr int array_buffer = 34962, element_buffer = 34963, float_type = 5126,
-                  unsigned_type = 5125;
-    const Mesh parts = split(mesh);
-    std::string data;
-    data.reserve(24 * parts.vertices.size() + 12 * parts.triangles.size());
+using Json = nlohmann::ordered_json;
+
+// The parts of a GLB's buffer.
+struct Buffer {
+    std::string bytes;
+    Json views = Json::array(), accessors = Json::array();
+};
+// What was put into the buffer since `begin`, a multiple of 4, is numbers of glTF's kind `component`,
+// `count` times `type`. Its accessor.
+Json &close_view(Buffer &to, std::size_t begin, int target, int component, std::size_t count,
+                 const char *type) {
+    to.accessors.push_back({{"bufferView", to.views.size()},
+                            {"componentType", component},
+                            {"count", count},
+                            {"type", type}});
+    to.views.push_back({{"buffer", 0},
+                        {"byteOffset", begin},
+                        {"byteLength", to.bytes.size() - begin},
+                        {"target", target}});
+    return to.accessors.back();
+}
+
+// Metres of a unit.
+double metres_of(Unit unit) {
+    switch (unit) {
+    case Unit::Micron: return 1e-6;
+    case Unit::Millimetre: return 1e-3;
+    case Unit::Centimetre: return 1e-2;
+    case Unit::Unsaid:
+    case Unit::Metre: return 1;
+    case Unit::Inch: return 0.0254;
+    case Unit::Foot: return 0.3048;
+    }
+    return 1;
+}
+
+void put_vertices(Buffer &to, const Split &parts, Json &attributes) {
+    constexpr int array_buffer = 34962, short_type = 5123, float_type = 5126;
+    const std::size_t count = parts.vertices.size();
     Point lo{}, hi{};
     lo.fill(std::numeric_limits<float>::infinity());
     hi.fill(-std::numeric_limits<float>::infinity());
     for (const Point &p : parts.vertices) {
-        put(data, p);
+        put(to.bytes, p);
         for (std::size_t i = 0; i < 3; ++i)
             lo[i] = std::min(lo[i], p[i]), hi[i] = std::max(hi[i], p[i]);
     }
-    const std::size_t normals = data.size();
+    const auto numbers = [](const Point &p) {
+        return Json{double(p[0]), double(p[1]), double(p[2])};
+    };
+    Json &places = close_view(to, 0, array_buffer, float_type, count, "VEC3");
+    places["min"] = numbers(lo);
+    places["max"] = numbers(hi);
+    attributes["POSITION"] = 0;
+    std::size_t begin = to.bytes.size();
     for (const Point &n : parts.normals) { // of length 1 to a float's precision
         const double length =
             std::sqrt(double(n[0]) * n[0] + double(n[1]) * n[1] + double(n[2]) * n[2]);
-        for (const float x : n) put(data, static_cast<float>(x / length));
+        for (const float x : n) put(to.bytes, static_cast<float>(x / length));
     }
-    const std::size_t indices = data.size();
+    close_view(to, begin, array_buffer, float_type, count, "VEC3");
+    attributes["NORMAL"] = 1;
+    if (parts.colors.empty()) return;
+    begin = to.bytes.size();
+    for (const Point &color : parts.colors) { // linear, and opaque
+        for (const float c : color) put(to.bytes, static_cast<std::uint16_t>(c * 65535 + 0.5f));
+        put(to.bytes, std::uint16_t{65535});
+    }
+    close_view(to, begin, array_buffer, short_type, count, "VEC4")["normalized"] = true;
+    attributes["COLOR_0"] = 2;
+}
+
+std::string glb_of(const Surface &mesh, std::string_view name, Unit unit) {
+    constexpr int element_buffer = 34963, unsigned_type = 5125;
+    const std::optional<Point> color = only_color(mesh);
+    Surface shown = mesh;
+    if (color) shown.colors = {}; // the material says it
+    const Split parts = split(shown);
+    Buffer data;
+    Json attributes;
+    put_vertices(data, parts, attributes);
+    const std::size_t begin = data.bytes.size(), indices = data.accessors.size();
     for (const Triangle &t : parts.triangles)
-        for (const std::uint32_t v : t) put(data, v);
+        for (const std::uint32_t v : t) put(data.bytes, v);
+    close_view(data, begin, element_buffer, unsigned_type, 3 * parts.triangles.size(), "SCALAR");
+    constexpr float grey = 0.8f;
+    const Point base = color                 ? *color
+                       : mesh.colors.empty() ? Point{grey, grey, grey}
+                                             : Point{1, 1, 1};
     Json json;
     json["asset"] = {{"version", "2.0"}, {"generator", "Fathom"}};
     json["scene"] = 0;
     json["scenes"] = Json::array({{{"nodes", {0}}}});
-    json["nodes"] = Json::array({{{"mesh", 0}, {"name", name}}});
-    json["meshes"] =
-        Json::array({{{"name", name},
-                      {"primitives", Json::array({{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}},
-                                                   {"indices", 2},
-                                                   {"material", 0}}})}}});
+    Json node = {{"mesh", 0}, {"name", name}};
+    if (const double size = metres_of(unit); size != 1) node["scale"] = {size, size, size};
+    json["nodes"] = Json::array({node});
+    json["meshes"] = Json::array(
+        {{{"name", name},
+          {"primitives",
+           Json::array({{{"attributes", attributes}, {"indices", indices}, {"material", 0}}})}}});
     json["materials"] = Json::array({{{"pbrMetallicRoughness",
-                                       {{"baseColorFactor", {0.8, 0.8, 0.8, 1.0}},
+                                       {{"baseColorFactor", {base[0], base[1], base[2], 1.0}},
                                         {"metallicFactor", 0.0},
                                         {"roughnessFactor", 0.6}}}}});
-    json["buffers"] = Json::array({{{"byteLength", data.size()}}});
-    json["bufferViews"] =
-        Json::array({{{"buffer", 0}, {"byteLength", normals}, {"target", array_buffer}},
-                     {{"buffer", 0},
-                      {"byteOffset", normals},
-                      {"byteLength", indices - normals},
-                      {"target", array_buffer}},
-                     {{"buffer", 0},
-                      {"byteOffset", indices},
-                      {"byteLength", data.size() - indices},
-                      {"target", element_buffer}}});
-    const auto number = [](float x) { return static_cast<double>(x); };
-    json["accessors"] = Json::array({{{"bufferView", 0},
-                                      {"componentType", float_type},
-                                      {"count", parts.vertices.size()},
-                                      {"type", "VEC3"},
-                                      {"min", {number(lo[0]), number(lo[1]), number(lo[2])}},
-                                      {"max", {number(hi[0]), number(hi[1]), number(hi[2])}}},
-                                     {{"bufferView", 1},
-                                      {"componentType", float_type},
-                                      {"count", parts.normals.size()},
-                                      {"type", "VEC3"}},
-                                     {{"bufferView", 2},
-                                      {"componentType", unsigned_type},
-                                      {"count", 3 * parts.triangles.size()},
-                                      {"type", "SCALAR"}}});
+    json["buffers"] = Json::array({{{"byteLength", data.bytes.size()}}});
+    json["bufferViews"] = data.views;
+    json["accessors"] = data.accessors;
     constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() - 65536;
-    if (data.size() > most) return "";
+    if (data.bytes.size() > most) return "";
     std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
     text.resize((text.size() + 3) / 4 * 4, ' ');
     constexpr std::uint32_t head = 12, chunk = 8;
     std::string bytes = "glTF";
     put(bytes, std::uint32_t{2});
-    put(bytes, static_cast<std::uint32_t>(head + chunk + text.size() + chunk + data.size()));
+    put(bytes, static_cast<std::uint32_t>(head + chunk + text.size() + chunk + data.bytes.size()));
     put(bytes, static_cast<std::uint32_t>(text.size()));
     bytes += "JSON" + text;
-    put(bytes, static_cast<std::uint32_t>(data.size())); // a multiple of 4
+    put(bytes, static_cast<std::uint32_t>(data.bytes.size())); // a multiple of 4
     bytes.append("BIN\0", 4);
-    return bytes + data;
+    return bytes + data.bytes;
 }
 
 } // namespace
 
-std::string file_of(const Surface &mesh, Format format, std::string_view name) {
+std::optional<Point> only_color(const Surface &mesh) {
+    if (mesh.colors.empty()) return std::nullopt;
+    for (const Point &color : mesh.colors)
+        if (color != mesh.colors[0]) return std::nullopt;
+    return mesh.colors[0];
+}
+
+std::string file_of(const Surface &mesh, Format format, std::string_view name, Unit unit) {
     switch (format) {
     case Format::Stl: return stl_of(mesh);
     case Format::Obj: return obj_of(mesh, name);
     case Format::Ply: return ply_of(mesh);
-    case Format::Glb: return glb_of(mesh, name);
+    case Format::Glb: return glb_of(mesh, name, unit);
+    case Format::ThreeMf: return three_mf_of(mesh, name, unit);
     }
     return "";
 }

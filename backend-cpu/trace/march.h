@@ -108,6 +108,14 @@ double summand(float linear);
 void encode_sums(std::span<const double> sums, int samples, int x, int y,
                  std::span<std::uint8_t> rgba);
 
+// The diffuse colours, linear, of the scene's surface at points on it or near it; `normals` of length 1
+// there. `arm` is a length that is small for the surface: where paint reads the normal, it is turned
+// into the paint's space by a point that far from the surface.
+std::vector<std::array<float, 3>> diffuse_colors(const Stage &stage,
+                                                 std::span<const std::array<float, 3>> points,
+                                                 std::span<const std::array<float, 3>> normals,
+                                                 float arm);
+
 // How a ray ends (shading.h, MARCH).
 enum class RayEnd : std::uint8_t { Miss, Hit, Undecided };
 

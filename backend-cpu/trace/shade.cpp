@@ -268,4 +268,25 @@ void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landi
     see_background(worker, rays, landings, colors);
 }
 
+std::vector<std::array<float, 3>> diffuse_colors(const Stage &stage,
+                                                 std::span<const std::array<float, 3>> points,
+                                                 std::span<const std::array<float, 3>> normals,
+                                                 float arm) {
+    Worker worker(stage);
+    std::vector<std::array<float, 3>> colors;
+    colors.reserve(points.size());
+    for (std::size_t first = 0; first < points.size(); first += max_rays) {
+        const std::size_t end = std::min(points.size(), first + max_rays);
+        Points at;
+        for (std::size_t k = first; k < end; ++k) {
+            at.ray.push_back(k), at.h.push_back(arm);
+            at.p.push_back(vec(points[k])), at.n.push_back(vec(normals[k]));
+        }
+        find_materials(worker, at);
+        for (const Material &m : at.material)
+            colors.push_back({m.diffuse.x, m.diffuse.y, m.diffuse.z});
+    }
+    return colors;
+}
+
 } // namespace fathom::cpu

@@ -161,6 +161,13 @@ void add_mesh(py::module_ &m) {
                     self.cast<const fathom::Mesh &>().triangles, self);
             },
             "(m, 3) uint32, counterclockwise from outside")
+        .def_property_readonly(
+            "colors",
+            [](const py::object &self) {
+                return rows<std::array<float, 3>, float>(self.cast<const fathom::Mesh &>().colors,
+                                                         self);
+            },
+            "(n, 3) float32, linear, 0..1: the surface's own colour at each vertex")
         .def_readonly("undecided_cells", &fathom::Mesh::undecided_cells,
                       "cells that may hold surface that the mesh does not show")
         .def_readonly("certificate", &fathom::Mesh::certificate)
@@ -169,13 +176,13 @@ void add_mesh(py::module_ &m) {
             [](const fathom::Mesh &self, const std::string &suffix, const std::string &name) {
                 const std::optional<fathom::MeshFormat> format =
                     fathom::mesh_format("mesh" + suffix);
-                if (!format) throw py::value_error("suffix: .stl, .obj, .ply or .glb");
+                if (!format) throw py::value_error("suffix: .stl, .obj, .ply, .glb or .3mf");
                 const std::string bytes = fathom::mesh_file(self, *format, name);
                 if (bytes.empty()) throw py::value_error("the mesh is more than the format holds");
                 return py::bytes(bytes);
             },
             "suffix"_a, "name"_a = "scene",
-            "The bytes of a file: `suffix` is .stl, .obj, .ply or .glb.");
+            "The bytes of a file: `suffix` is .stl, .obj, .ply, .glb or .3mf.");
 }
 
 } // namespace fathom_python

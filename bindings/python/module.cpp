@@ -266,8 +266,8 @@ py::array render(PyScene &scene, int width, int height, int samples, double time
 }
 
 fathom::Mesh mesh(PyScene &scene, int resolution, double tolerance, double time,
-                  const py::object &lo, const py::object &hi, bool certify, unsigned threads,
-                  const py::object &progress) {
+                  const py::object &lo, const py::object &hi, bool certify, bool colors,
+                  unsigned threads, const py::object &progress) {
     check_time(scene, time);
     if (lo.is_none() != hi.is_none()) throw py::value_error("lo and hi: give both, or none");
     Progress told(progress);
@@ -276,6 +276,7 @@ fathom::Mesh mesh(PyScene &scene, int resolution, double tolerance, double time,
     options.tolerance = tolerance;
     options.time = time;
     options.certify = certify;
+    options.colors = colors;
     options.threads = threads;
     options.progress = told.callback();
     if (!lo.is_none()) options.bounds = fathom::Box{three<float>(lo, "lo"), three<float>(hi, "hi")};
@@ -351,8 +352,8 @@ void add_scene(py::module_ &m) {
              "with the share that "
              "is done; False gives up (Cancelled).")
         .def("mesh", &mesh, "resolution"_a = 128, "tolerance"_a = 0.0, "time"_a = 0.0,
-             "lo"_a = py::none(), "hi"_a = py::none(), "certify"_a = false, "threads"_a = 0,
-             "progress"_a = py::none(),
+             "lo"_a = py::none(), "hi"_a = py::none(), "certify"_a = false, "colors"_a = false,
+             "threads"_a = 0, "progress"_a = py::none(),
              "The surface as triangles. Raises ValueError where there is none, and says why.")
         .def("shader", &shader, "target"_a = "glsl330", "field_only"_a = false, "buffers"_a = false,
              "time"_a = 0.0, "title"_a = "scene", "The scene as a shader for a target.")

@@ -202,7 +202,7 @@ FATHOM_C_API size_t fathom_mesh_triangle_count(const fathom_mesh *mesh);
 FATHOM_C_API const uint32_t *fathom_mesh_triangles(const fathom_mesh *mesh);
 /** Cells that may hold surface that the mesh does not show. */
 FATHOM_C_API size_t fathom_mesh_undecided(const fathom_mesh *mesh);
-/** The bytes of a file; `suffix`: ".stl", ".obj", ".ply" or ".glb". */
+/** The bytes of a file; `suffix`: ".stl", ".obj", ".ply", ".glb" or ".3mf". */
 FATHOM_C_API fathom_text *fathom_mesh_file(const fathom_mesh *mesh, const char *suffix);
 
 #ifdef __cplusplus

@@ -38,6 +38,7 @@ struct MeshOptions {
     double time = 0;           /**< seconds, in [0, Facts::time_end] */
     unsigned threads = 0;      /**< 0: as many as the machine has cores */
     bool certify = false;      /**< prove what `Mesh::certificate` says; takes longer */
+    bool colors = false;       /**< also `Mesh::colors` */
     /** Called now and then by one thread at a time, with the share that is done; false cancels. */
     std::function<bool(double done)> progress;
 };
@@ -81,6 +82,10 @@ struct Mesh {
     std::string message; /**< why there is none, and what to do: a sentence in lower case */
     std::vector<Point> vertices, normals;
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    /** With MeshOptions::colors: the surface's own colour at each vertex, linear, 0..1, without light
+     *  and highlights. A vertex has one colour: where two paints meet, they run into each other over
+     *  a triangle. */
+    std::vector<std::array<float, 3>> colors;
     /** Cells in which there may be surface that the mesh does not show, since the bound is too loose
      *  to tell, or since what is there is thinner than the finest cells; the first 1,000 of them.
      *  With a certificate those in which surface may be farther from the mesh than a cell's side. */
@@ -93,16 +98,22 @@ struct Mesh {
 /** Never throws. Takes some 400 bytes of memory a triangle meanwhile. */
 FATHOM_API Mesh make_mesh(const Scene &scene, const MeshOptions &options = {}) noexcept;
 
-/** The formats of mesh files: binary STL, Wavefront OBJ, binary PLY, binary glTF 2.0. Only OBJ and
- *  GLB hold normals: each corner's, with creases of 30 degrees and more sharp. */
-enum class MeshFormat { Stl, Obj, Ply, Glb };
+/** The formats of mesh files: binary STL, Wavefront OBJ, binary PLY, binary glTF 2.0, 3D Manufacturing
+ *  Format. Only OBJ and GLB hold normals: each corner's, with creases of 30 degrees and more sharp.
+ *  All but STL hold colours. A 3MF has z up, as printers do: (x, y, z) stands there as (x, -z, y). */
+enum class MeshFormat { Stl, Obj, Ply, Glb, ThreeMf };
 
-/** By a file name's suffix, `.stl`, `.obj`, `.ply` or `.glb` in either case; or nothing. */
+/** What a length of 1 is, for the formats that say it: 3MF (Unsaid: millimetres), and GLB (Unsaid:
+ *  metres, in which it counts; else its object is scaled). */
+enum class MeshUnit { Unsaid, Micron, Millimetre, Centimetre, Metre, Inch, Foot };
+
+/** By a file name's suffix, `.stl`, `.obj`, `.ply`, `.glb` or `.3mf` in either case; or nothing. */
 FATHOM_API std::optional<MeshFormat> mesh_format(std::string_view file_name) noexcept;
 
 /** The bytes of a file. `name`: the object's, where the format has one. Empty where there is no memory
  *  for it, or more than the format holds (a GLB: 4 GiB). */
 FATHOM_API std::string mesh_file(const Mesh &mesh, MeshFormat format,
-                                 std::string_view name = "scene") noexcept;
+                                 std::string_view name = "scene",
+                                 MeshUnit unit = MeshUnit::Unsaid) noexcept;
 
 } // namespace fathom::FATHOM_V1

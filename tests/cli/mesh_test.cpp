@@ -8,7 +8,7 @@
 TEST_CASE("a mesh is written in the format of its suffix") {
     ScratchFolder folder;
     folder.write("ring.sdf", "param r = 1 in 0.5..2\ntorus(r, 0.3)\n");
-    for (const char *name : {"a.stl", "a.obj", "a.ply", "a.glb", "a.STL"}) {
+    for (const char *name : {"a.stl", "a.obj", "a.ply", "a.glb", "a.3mf", "a.STL"}) {
         INFO(name);
         const Result made =
             shell(folder, std::string("fathom mesh ring.sdf --resolution 12 -o ") + name);
@@ -19,6 +19,7 @@ TEST_CASE("a mesh is written in the format of its suffix") {
     CHECK(folder.read("a.obj").starts_with("# by Fathom\no ring\nv "));
     CHECK(folder.read("a.ply").starts_with("ply\n"));
     CHECK(folder.read("a.glb").starts_with("glTF"));
+    CHECK(folder.read("a.3mf").starts_with("PK"));
     const std::string stl = folder.read("a.stl");
     CHECK(stl == folder.read("a.STL"));
     std::uint32_t triangles = 0;
@@ -72,6 +73,8 @@ TEST_CASE("what has no mesh says why, and writes nothing") {
     fails("none.sdf -o a.stl", 3, "none.sdf");
     fails("ball.sdf -o a.stl -D r=1", 2, "r");
     fails("ball.sdf -o a.stl --tolerance 1e-9", 2, "too fine");
+    fails("ball.sdf -o a.stl --units mm", 2, "says nothing of units");
+    fails("ball.sdf -o a.3mf --units furlong", 2, "--units");
     fails("ball.sdf -o a.stl --tolerance -1", 2, "above 0");
     fails("ball.sdf -o a.stl --tolerance 1 --resolution 5", 2, "one of them");
     fails("ball.sdf -o a.stl --resolution 0", 2, "--resolution");
@@ -80,7 +83,7 @@ TEST_CASE("what has no mesh says why, and writes nothing") {
     fails("ball.sdf -o a.stl --time -1", 2, "--time");
     fails("ball.sdf", 2, "-o");
     fails("ball.sdf -o a.png", 2, "`fathom render`");
-    fails("ball.sdf -o a.txt", 2, ".stl, .obj, .ply or .glb");
+    fails("ball.sdf -o a.txt", 2, ".glb or .3mf");
     fails("ball.sdf -o none/a.stl", 3, "none");
     CHECK(shell(folder, "fathom mesh ground.sdf --bounds=-1,-1,-1,1,1,1 -o a.stl").exit == 0);
     CHECK(fs::exists(folder / "a.stl"));

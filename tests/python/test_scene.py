@@ -134,6 +134,14 @@ def test_giving_up():
         scene.mesh(progress=lambda done: False)
 
 
+def test_a_mesh_has_colours_where_they_are_wanted():
+    scene = fathom.compile("sphere(1).paint(p => if p.y > 0 { #f00 } else { #00f })")
+    assert scene.mesh(resolution=8).colors.shape == (0, 3)
+    mesh = scene.mesh(resolution=8, colors=True)
+    above = mesh.vertices[:, 1] > 0
+    assert np.all(mesh.colors[above] == [1, 0, 0]) and np.all(mesh.colors[~above] == [0, 0, 1])
+
+
 def test_a_mesh_is_closed():
     mesh = fathom.compile("torus(1, 0.3)").mesh(resolution=24, certify=True)
     edges = np.concatenate([mesh.triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])

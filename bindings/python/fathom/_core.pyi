@@ -73,6 +73,7 @@ class Mesh:
     vertices: NDArray[np.float32]
     normals: NDArray[np.float32]
     triangles: NDArray[np.uint32]
+    colors: NDArray[np.float32]
     undecided_cells: int
     certificate: MeshCertificate | None
     def file(self, suffix: str, name: str = "scene") -> bytes: ...
@@ -118,6 +119,7 @@ class Scene:
         lo: _Corner | None = None,
         hi: _Corner | None = None,
         certify: bool = False,
+        colors: bool = False,
         threads: int = 0,
         progress: _Progress | None = None,
     ) -> Mesh: ...

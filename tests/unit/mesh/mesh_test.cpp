@@ -1,5 +1,6 @@
 // Meshes of scenes whose topology, volume and corners are known.
 #include "driver/compile.h"
+#include "mesh/colors.h"
 #include "mesh/mesh.h"
 #include "tests/support/mesh_checks.h"
 
@@ -177,4 +178,29 @@ TEST_CASE("a mesh can be cancelled") {
     settings.progress = [&](double) { return ++calls < 3; };
     CHECK(mesh_of("sphere(1)", settings).failure == mesh::Failure::Cancelled);
     CHECK(calls == 3);
+}
+
+TEST_CASE("vertices have the colour of the paint where they are, whatever space it stands in") {
+    const auto colored = [](const std::string &text) {
+        const driver::Compilation c = driver::compile_text("mesh.sdf", text, "", {});
+        INFO(text);
+        REQUIRE(c.good());
+        mesh::Settings settings;
+        settings.resolution = 16;
+        const mesh::Made made = mesh::make_mesh(c.scene, settings);
+        REQUIRE(made.failure == mesh::Failure::None);
+        return std::pair(made.mesh,
+                         mesh::colors_of(c.scene, 0, made.mesh, made.octree.lattice.unit));
+    };
+    const auto [pair, of_pair] =
+        colored("sphere(1).paint(#f00) | sphere(1).translate(x: 3).paint(#00f)");
+    REQUIRE(of_pair.size() == pair.vertices.size());
+    for (std::size_t k = 0; k < of_pair.size(); ++k)
+        CHECK(of_pair[k] ==
+              (pair.vertices[k][0] < 1.5f ? mesh::Point{1, 0, 0} : mesh::Point{0, 0, 1}));
+    // A field of the point and the normal, turned with the shape: its upper half looks to +x.
+    const auto [turned, of_turned] = colored(
+        "sphere(1).paint((p, n) => [saturate(n.y), 0, 0]).rotate(-90deg, axis: Z).translate(x: 2)");
+    for (std::size_t k = 0; k < of_turned.size(); ++k)
+        CHECK(of_turned[k][0] == Approx(std::max(turned.vertices[k][0] - 2, 0.0f)).margin(0.05));
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <zip.h>
 
 using namespace fathom;
 using namespace fathom::mesh;
@@ -22,7 +23,47 @@ Mesh corner_of_a_cube() {
 }
 
 std::string bytes_of(const Mesh &mesh, Format format, std::string_view name = "a") {
-    return file_of({mesh.vertices, mesh.normals, mesh.triangles}, format, name);
+    return file_of({mesh.vertices, mesh.normals, mesh.triangles, {}}, format, name);
+}
+
+// Of that tetrahedron: a colour by vertex, or one for all.
+const std::vector<Point> colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.2158605f, 0, 0}};
+std::string bytes_of(const Mesh &mesh, Format format, const std::vector<Point> &colored,
+                     Unit unit = Unit::Unsaid) {
+    return file_of({mesh.vertices, mesh.normals, mesh.triangles, colored}, format, "a", unit);
+}
+
+// The document of a GLB.
+nlohmann::json document_of(const std::string &glb) {
+    std::uint32_t size = 0;
+    REQUIRE(glb.size() > 20);
+    std::memcpy(&size, glb.data() + 12, 4);
+    return nlohmann::json::parse(glb.substr(20, size));
+}
+
+// A file of a ZIP archive.
+std::string unzipped(const std::string &bytes, const char *name) {
+    zip_error_t error;
+    zip_error_init(&error);
+    zip_source_t *source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
+    REQUIRE(source);
+    zip_t *archive = zip_open_from_source(source, ZIP_RDONLY | ZIP_CHECKCONS, &error);
+    REQUIRE(archive);
+    zip_stat_t stat;
+    REQUIRE(zip_stat(archive, name, 0, &stat) == 0);
+    std::string text(stat.size, ' ');
+    zip_file_t *file = zip_fopen(archive, name, 0);
+    REQUIRE(file);
+    CHECK(zip_fread(file, text.data(), text.size()) == static_cast<zip_int64_t>(text.size()));
+    zip_fclose(file);
+    zip_discard(archive);
+    return text;
+}
+
+std::size_t count_of(const std::string &text, std::string_view part) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+    return count;
 }
 
 template <class Number> Number read(const std::string &bytes, std::size_t at) {
@@ -127,4 +168,62 @@ TEST_CASE("a GLB: chunks, views and accessors fit their data") {
     }
     for (std::size_t k = 0; k < corners; ++k)
         CHECK(read<std::uint32_t>(bytes, data + 24 * vertices + 4 * k) < vertices);
+}
+
+TEST_CASE("colours are bytes in a PLY, sRGB numbers in an OBJ, and none where there are none") {
+    const Mesh mesh = corner_of_a_cube();
+    const std::string plain = bytes_of(mesh, Format::Ply),
+                      ply = bytes_of(mesh, Format::Ply, colors);
+    CHECK(plain.find("red") == plain.npos);
+    const std::size_t body = ply.find("end_header\n") + 11;
+    CHECK(ply.size() - body == 4 * 15 + 4 * 13);
+    CHECK(ply.substr(body + 12, 3) == std::string("\xff\0\0", 3));
+    CHECK(static_cast<unsigned char>(ply[body + 3 * 15 + 12]) == 128); // half of 255, encoded
+    CHECK(bytes_of(mesh, Format::Obj, colors).find("v 0 0 0.1 0.502 0 0\n") != std::string::npos);
+    CHECK(bytes_of(mesh, Format::Stl, colors) == bytes_of(mesh, Format::Stl));
+}
+
+TEST_CASE("a GLB has a colour by vertex, linear, or one in its material; its node has the unit") {
+    const Mesh mesh = corner_of_a_cube();
+    const nlohmann::json many = document_of(bytes_of(mesh, Format::Glb, colors));
+    const nlohmann::json &attributes = many["meshes"][0]["primitives"][0]["attributes"];
+    REQUIRE(attributes.contains("COLOR_0"));
+    const nlohmann::json &accessor = many["accessors"][attributes["COLOR_0"].get<std::size_t>()];
+    CHECK(accessor["componentType"] == 5123);
+    CHECK(accessor["normalized"] == true);
+    CHECK(accessor["count"] == many["accessors"][0]["count"]);
+    CHECK_FALSE(many["nodes"][0].contains("scale"));
+    const nlohmann::json one =
+        document_of(bytes_of(mesh, Format::Glb, {4, Point{0.5f, 0.25f, 0}}, Unit::Millimetre));
+    CHECK_FALSE(one["meshes"][0]["primitives"][0]["attributes"].contains("COLOR_0"));
+    const nlohmann::json wanted = {0.5, 0.25, 0.0, 1.0};
+    CHECK(one["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] == wanted);
+    CHECK(one["nodes"][0]["scale"] == nlohmann::json({0.001, 0.001, 0.001}));
+}
+
+TEST_CASE("a 3MF is an archive of a model with z up, its unit, and colours by corner") {
+    const Mesh mesh = corner_of_a_cube();
+    const std::string bytes = bytes_of(mesh, Format::ThreeMf, colors, Unit::Inch);
+    CHECK(bytes == bytes_of(mesh, Format::ThreeMf, colors, Unit::Inch)); // no date
+    CHECK(unzipped(bytes, "_rels/.rels").find("/3D/3dmodel.model") != std::string::npos);
+    CHECK(unzipped(bytes, "[Content_Types].xml").find("\"model\"") != std::string::npos);
+    const std::string model = unzipped(bytes, "3D/3dmodel.model");
+    CHECK(count_of(model, "unit=\"inch\"") == 1);
+    CHECK(count_of(model, "<vertex ") == 4);
+    CHECK(count_of(model, "<vertex x=\"0\" y=\"0\" z=\"1\"/>") == 1); // y of the scene is up
+    CHECK(count_of(model, "<triangle ") == 4);
+    CHECK(count_of(model, "<m:color ") == 4);
+    CHECK(count_of(model, "<m:color color=\"#800000\"/>") == 1);
+    CHECK(count_of(model, "v1=\"0\" v2=\"2\" v3=\"1\" pid=\"2\" p1=\"0\" p2=\"2\" p3=\"1\"") == 1);
+    const std::string plain = unzipped(bytes_of(mesh, Format::ThreeMf), "3D/3dmodel.model");
+    CHECK(count_of(plain, "color") == 0);
+    CHECK(count_of(plain, "unit=\"millimeter\"") == 1);
+}
+
+TEST_CASE("a name is text in a 3MF, whatever it holds") {
+    const Mesh mesh = corner_of_a_cube();
+    const std::string model = unzipped(file_of({mesh.vertices, mesh.normals, mesh.triangles, {}},
+                                               Format::ThreeMf, "a\"><evil & \n"),
+                                       "3D/3dmodel.model");
+    CHECK(count_of(model, "name=\"a&quot;>&lt;evil &amp;  \"") == 1);
 }
