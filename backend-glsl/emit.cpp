@@ -226,7 +226,7 @@ static Output emit_page(const ir::Scene &scene, const Options &options, Diagnost
         if (first) own = output;
         if (output.text.empty())
             diagnostics.add(Code::FixedParam, scene.params.front().origin,
-                            "the page has no picture for" + words_of(values) +
+                            "the page has no picture for " + words_of(scene, values) +
                                 ": the scene does not compile for that");
         else
             variants.push_back(page_variant(other ? *other : scene, by_passes, output, values));

@@ -1,5 +1,6 @@
 #include "backend-glsl/html.h"
 
+#include "backend-glsl/params.h"
 #include "backend-glsl/reflection.h"
 #include "backend-glsl/template.h"
 #include "base/encode.h"
@@ -95,10 +96,14 @@ std::vector<std::map<std::string, double>> page_values(const ir::Scene &scene) {
     return all;
 }
 
-std::string words_of(const std::map<std::string, double> &values) {
+std::string words_of(const ir::Scene &scene, const std::map<std::string, double> &values) {
     std::string text;
-    for (const auto &[name, value] : values)
-        text += (text.empty() ? " `" : ", `") + name + "` = " + format_shortest(value);
+    for (ir::Param param : scene.params) {
+        const auto value = values.find(param.name);
+        if (value == values.end()) continue;
+        param.value[0] = value->second;
+        text += (text.empty() ? "`" : ", `") + param.name + "` = " + value_text(param);
+    }
     return text;
 }
 

@@ -10,7 +10,9 @@ namespace fathom::glsl {
 // what the scene has. A param counts whose values are few (a bool, a range of whole numbers), as long
 // as the texts are 8 at most; params are taken in the scene's order.
 std::vector<std::map<std::string, double>> page_values(const ir::Scene &scene);
-std::string words_of(const std::map<std::string, double> &values); // " `a` = 1, `b` = 2"
+
+// "`a` = 1, `b` = true"
+std::string words_of(const ir::Scene &scene, const std::map<std::string, double> &values);
 
 // What the page holds of a text: JSON, and the bytes of its textures.
 struct PageVariant {

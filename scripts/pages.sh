@@ -16,7 +16,7 @@ node pages.mjs "$program" "$work" "$root"/examples/*.sdf $entries >"$work/table"
 failed=$?
 {
     printf '%s\n' "# Pages beside \`fathom render\`" "" \
-        "Written by \`scripts/pages.sh\` ([web.md](web.md)): $(cat "$work/browser" | tail -n 1) with SwiftShader, 320x180," \
+        "Written by \`scripts/pages.sh\` ([web.md](web.md)): $(tail -n 1 "$work/browser") with SwiftShader, 320x180," \
         "one sample a pixel, on two cores that other work may have used at the same time. A pixel differs" \
         "where some channel does by more than 8 of 255. The names behind the examples are library entries," \
         "whose examples \`fathom doc NAME\` prints." ""

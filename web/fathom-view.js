@@ -8,6 +8,7 @@ const decode = x => x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const clamp = (x, low, high) => Math.max(low, Math.min(high, x));
 const short = x => String(Number(x.toPrecision(4)));
+const tell = (view, kind, detail) => view.dispatchEvent(new CustomEvent(kind, {detail}));
 const wait = (ms = 0) => new Promise(r => setTimeout(r, ms));
 
 // ---- scenes ----
@@ -20,7 +21,7 @@ export async function loadScene(address, shader) {
     return answer.text();
   };
   const text = await get(address);
-  if (shader) return {title: "scene", variants: [{reflection: JSON.parse(text), text: await get(shader)}]};
+  if (shader) return {title: shader.split("/").pop().replace(/\..*/, ""), variants: [{reflection: JSON.parse(text), text: await get(shader)}]};
   const data = new DOMParser().parseFromString(text, "text/html").getElementById("fathom-scene");
   if (!data) throw new Error(address + " is no page of fathom compile --target html");
   return JSON.parse(data.textContent);
@@ -135,8 +136,8 @@ void main() {
 // Draws a scene into a canvas until it is stopped: a coarse picture at once, then the whole one tile by tile and sample
 // by sample. A tile is drawn by passes, each of so few steps and pixels that it is short; a fence says when it is done.
 // `state`: {camera, params (arrays by name), time, speed, playing, samples, drawn}; it may change at any time, and
-// `changed()` says so. `say(text, failed)` is told what goes on, `tell(event)` of draw and rest, `tick()` of the time.
-function drawing(canvas, scene, state, {say, tell, tick}) {
+// `changed()` says so. `say(text, failed)` is told what goes on, `happened(event)` of draw and rest, `tick()` of the time.
+function drawing(canvas, scene, state, {say, happened, tick}) {
   const gl = canvas.getContext("webgl2", {antialias: false, alpha: false});
   const side = 512, unit = 25; // of a tile, pixels; what a draw should take, milliseconds
   let made = null;             // programs and textures; null where there are none
@@ -415,12 +416,12 @@ function drawing(canvas, scene, state, {say, tell, tick}) {
         const mine = job = {}, v = viewNow(), pixels = made.width * made.height, affordable = cost ? Math.max(40 / cost, 400) : 400;
         for (let some = affordable;; some *= 8) {
           await roughPicture(kit, some, v);
-          if (made === kit && made.rough && some === affordable) tell("draw");
+          if (made === kit && made.rough && some === affordable) happened("draw");
           if (made !== kit || job !== mine || state.playing || 8 * some >= pixels / 2) break;
         }
       } else if (state.drawn < state.samples) {
         const mine = job;
-        if (await sample(kit, mine, state.drawn, viewNow()) && job === mine && ++state.drawn >= state.samples) tell("rest");
+        if (await sample(kit, mine, state.drawn, viewNow()) && job === mine && ++state.drawn >= state.samples) happened("rest");
       }
       await new Promise(r => document.hidden ? setTimeout(r, 200) : requestAnimationFrame(r));
     }
@@ -469,7 +470,7 @@ const make = (kind, text, parent) => { const e = document.createElement(kind); e
 
 // A control for each param, the time and the buttons, in `panel`. Returns what shows the present state in them.
 function controls(view, panel, state, inputs, animated, end) {
-  const refresh = [], pick = (name, value) => { view.params = {[name]: value.length > 1 ? value : value[0]}; view.tell("change", {what: "param", name}); };
+  const refresh = [], pick = (name, value) => { view.params = {[name]: value.length > 1 ? value : value[0]}; tell(view, "change", {what: "param", name}); };
 
   function control(label, type, place) {
     const input = make("input", "", label);
@@ -537,10 +538,10 @@ function controls(view, panel, state, inputs, animated, end) {
   if (animated) {
     const label = make("label", "", panel), last = Math.min(end, 60);
     make("span", "Time", label);
-    const value = make("output", "", label), scrub = control(label, "range", e => { view.playing = false; view.time = Math.min(Number(e.value), last * 0.999999); view.tell("change", {what: "time"}); });
+    const value = make("output", "", label), scrub = control(label, "range", e => { view.playing = false; view.time = Math.min(Number(e.value), last * 0.999999); tell(view, "change", {what: "time"}); });
     Object.assign(scrub, {min: 0, max: last, step: "any"});
     scrub.setAttribute("aria-label", "Time, seconds");
-    const play = button("", () => { view.playing = !view.playing; view.tell("change", {what: "time"}); }), rate = make("label", "", panel);
+    const play = button("", () => { view.playing = !view.playing; tell(view, "change", {what: "time"}); }), rate = make("label", "", panel);
     make("span", "Speed", rate);
     const speed = control(rate, "number", e => { const s = Number(e.value); if (e.value !== "" && s >= 0 && s <= 100) view.speed = s; });
     Object.assign(speed, {min: 0, max: 100, step: 0.1});
@@ -552,7 +553,7 @@ function controls(view, panel, state, inputs, animated, end) {
       play.textContent = state.playing ? "Pause" : "Play";
     });
   }
-  button("First view", () => { view.home(); view.tell("change", {what: "camera"}); });
+  button("First view", () => { view.home(); tell(view, "change", {what: "camera"}); });
   button("Save picture", async () => {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(await view.picture());
@@ -576,7 +577,7 @@ function gestures(view, canvas, state) {
     const size = 2 * v.fathom_extent[0] * (defaultsOf(reflection).fathom_orthographic[0] ? 1 : v.fathom_focus[0]) / canvas.clientHeight;
     ["x", "y", "z"].forEach((k, i) => { camera[k] += size * (y * v.fathom_up[i] - x * v.fathom_right[i]); });
   };
-  const moved = () => { view.camera = camera; view.tell("change", {what: "camera"}); };
+  const moved = () => { view.camera = camera; tell(view, "change", {what: "camera"}); };
   take(false);
   canvas.addEventListener("blur", () => take(false));
   canvas.addEventListener("pointerdown", e => { canvas.focus(); take(true); canvas.setPointerCapture(e.pointerId); pointers.set(e.pointerId, [e.clientX, e.clientY]); });
@@ -604,7 +605,7 @@ function gestures(view, canvas, state) {
   canvas.addEventListener("keydown", e => {
     if (e.key === " " && view.animated) {
       view.playing = !view.playing;
-      view.tell("change", {what: "time"});
+      tell(view, "change", {what: "time"});
       return e.preventDefault();
     }
     const act = {ArrowLeft: () => turn(0.1, 0), ArrowRight: () => turn(-0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
@@ -666,7 +667,10 @@ export class FathomView extends HTMLElement {
   get inputs() { return this.#inputs; }
   get animated() { return Boolean(this.#scene && this.#scene.variants.some(v => v.reflection.reads_time)); }
 
-  get params() { return Object.fromEntries(this.#inputs.map(p => [p.name, this.#given(p, this.#there().params[p.name])])); }
+  get params() {
+    const {params} = this.#there();
+    return Object.fromEntries(this.#inputs.map(p => [p.name, this.#given(p, params[p.name])]));
+  }
   set params(values) {
     const state = this.#there(), next = {};
     for (const [name, value] of Object.entries(values)) {
@@ -725,7 +729,6 @@ export class FathomView extends HTMLElement {
     if (!this.#drawing || !this.#drawing.show()) return Promise.reject(new Error("There is no picture yet."));
     return new Promise(resolve => this.#canvas.toBlob(resolve));
   }
-  tell(kind, detail) { this.dispatchEvent(new CustomEvent(kind, {detail})); }
 
   #there() {
     if (!this.#state) throw new Error("The view has no scene yet; its event `load` says when.");
@@ -752,7 +755,7 @@ export class FathomView extends HTMLElement {
     const old = this.#root.querySelector("[role=status]"), word = old || make("div", "", this.#root);
     word.setAttribute("role", "status");
     if (word.textContent !== text) word.textContent = text;
-    if (failed) this.tell("error", {message: text});
+    if (failed) tell(this, "error", {message: text});
   }
   #end() {
     if (this.#drawing) this.#drawing.stop();
@@ -772,9 +775,9 @@ export class FathomView extends HTMLElement {
     this.#status("");
     this.#panel();
     gestures(this, this.#canvas, this.#state);
-    this.tell("load");
+    tell(this, "load");
     this.#drawing = drawing(this.#canvas, this.#scene, this.#state,
-      {say: (text, failed) => this.#status(text, failed), tell: kind => this.tell(kind), tick: () => this.#refresh()});
+      {say: (text, failed) => this.#status(text, failed), happened: kind => tell(this, kind), tick: () => this.#refresh()});
   }
   #panel() {
     const old = this.#root.querySelector("details");

@@ -1,10 +1,10 @@
 // The pages of some small scenes in Chromium, as people use them: part of ./fathom-test.
 //   node short.mjs FATHOM MODULE.js [NAME…]      the tests of these names alone
 // Prints a line a test; exit status 1 where one fails.
-import {execFileSync} from "node:child_process";
+import {execFileSync, spawnSync} from "node:child_process";
 import {copyFileSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync} from "node:fs";
 import {tmpdir} from "node:os";
-import {join, resolve} from "node:path";
+import {dirname, join, resolve} from "node:path";
 import {difference, launch, picture, serve} from "./chromium.mjs";
 
 const [fathom, module, ...wanted] = process.argv.slice(2).map((word, i) => i < 2 ? resolve(word) : word);
@@ -66,6 +66,26 @@ const tests = {
     await apart(await picture(page), first, "three with a torus look like the first");
     const fixed = await view(page, v => [...v.shadowRoot.querySelectorAll("details p")].map(p => p.textContent));
     same(fixed, ["far = 0 (fixed here: it decides what there is)"], "what is fixed");
+    quiet(page);
+    await page.close();
+  },
+  async "values that do not compile are left out, and said"() {
+    write("broken.sdf", "param n = 2 in 1..3\nparam on = false\nif n == 3 { sphere(-1) } else { sphere(n) }\nif on and n == 1 { box(-1) } else { box(n) }\ncamera(at: [0, 2, 9], look_at: [0, 0, 0])\n");
+    const said = spawnSync(fathom, ["compile", "broken.sdf", "--target", "html", "-o", "broken.html"], {cwd: folder});
+    same(said.status, 0, "the exit status");
+    for (const words of ["`n` = 3, `on` = false", "`n` = 3, `on` = true", "`n` = 1, `on` = true"]) must(said.stderr.toString().includes(words), words + " is not said: " + said.stderr);
+    must(!said.stderr.toString().includes("`n` = 2"), "what compiles is said to fail");
+    const page = await fresh("broken.html#samples=1");
+    same(await view(page, v => v.inputs.map(p => p.values.flat())), [[1, 2], [0, 1]], "the values");
+    await view(page, v => { v.params = {n: 1}; });
+    await rest(page);
+    await near(await picture(page), bytes(rendered("broken", "-D", "n=1")), "n = 1");
+    await view(page, v => { v.params = {on: true}; });
+    await page.until(() => document.querySelector("fathom-view").shadowRoot.querySelector("[role=status]").textContent.includes("does not compile"), 5);
+    await view(page, v => { v.params = {n: 2}; });
+    await rest(page);
+    await near(await picture(page), bytes(rendered("broken", "-D", "n=2", "-D", "on=true")), "n = 2, on");
+    must(await words(page) === "", "it still says " + await words(page));
     quiet(page);
     await page.close();
   },
@@ -147,6 +167,11 @@ const tests = {
     must((await view(page, v => v.camera)).zoom < 0.7 * turned.zoom, "two fingers do not come nearer");
     must(await page.run(() => document.documentElement.scrollWidth <= 390), "it is wider than 390 pixels");
     must(!await view(page, v => v.shadowRoot.querySelector("details").open), "the panel covers a phone's picture");
+    const ink = async scheme => {
+      await page.ask("Emulation.setEmulatedMedia", {features: [{name: "prefers-color-scheme", value: scheme}]});
+      return view(page, v => getComputedStyle(v).color);
+    };
+    same([await ink("light"), await ink("dark")], ["rgb(17, 17, 17)", "rgb(238, 238, 238)"], "the ink of the two themes");
     quiet(page);
     await page.close();
   },
@@ -215,11 +240,12 @@ const tests = {
   },
   async "in a notebook's frame, which has no address, it works"() {
     compiled("scene", scene);
-    write("notebook.html", "<!doctype html><iframe sandbox='allow-scripts' width=300 height=150></iframe><script>addEventListener('message', e => { window.told = e.data; })</script>");
+    write("notebook.html", "<!doctype html><iframe sandbox='allow-scripts' width=300 height=150></iframe>");
     const page = await fresh("notebook.html");
     const text = bytes(join(folder, "scene.html")).toString();
+    const empty = await page.shot();
     await page.run(text => { document.querySelector("iframe").srcdoc = text; }, text);
-    await new Promise(r => setTimeout(r, 1500));
+    for (const end = Date.now() + 20000; await difference(blank, await page.shot(), empty) < 5;) must(Date.now() < end, "the frame stays empty");
     await page.mouse("mousePressed", 250, 75);
     await page.mouse("mouseMoved", 230, 75, {buttons: 1});
     await page.mouse("mouseReleased", 230, 75);
@@ -238,7 +264,7 @@ const tests = {
       image.src = "/scene.png";
       document.body.setAttribute("onclick", "window.ran = true");
       document.body.click();
-      return [Boolean(window.ran), await fetch("/scene.html").then(() => true, () => false) || await loaded, (() => { try { return setTimeout("window.evaluated = true"), Boolean(window.evaluated); } catch { return false; } })()];
+      return [Boolean(window.ran), await fetch("/scene.html").then(() => true, () => false) || await loaded, (() => { try { return new Function("return true")(); } catch { return false; } })()];
     });
     same([ran, sent, evaluated], [false, false, false], "a script ran, something was fetched, text was evaluated");
     must(page.said.length > 0 && page.said.every(s => s.includes("Content Security Policy")), "the console: " + page.said.join("; "));
@@ -307,6 +333,47 @@ const tests = {
       must((await words(page)).includes(word), "what is missing is not said");
       await page.close();
     }
+  },
+  async "an element made by a script, given another scene, and given two at once"() {
+    write("one.sdf", "box(1)\n"), write("two.sdf", "sphere(1)\n");
+    for (const name of ["one", "two"]) run("compile", name + ".sdf", "--target", "html", "-o", name + ".html");
+    copyFileSync(module, join(folder, "fathom-view.js"));
+    write("empty.html", "<!doctype html><style>fathom-view { width: 320px; height: 180px; aspect-ratio: auto }</style><script type=module>import * as module from './fathom-view.js'; window.module = module;</script>");
+    const page = await fresh("empty.html");
+    await page.run(async () => {
+      const v = document.createElement("fathom-view");
+      try { v.params; } catch (e) { window.early = e.message; }
+      v.scene = await module.loadScene("one.html");
+      document.body.append(v);
+      v.samples = 1;
+    });
+    must(await page.run(() => early.includes("load")), "before there is a scene it says " + await page.run(() => window.early));
+    await rest(page);
+    await near(await picture(page), bytes(rendered("one")), "the first scene");
+    await view(page, v => { v.src = "nothing.html"; v.src = "two.html"; v.addEventListener("load", () => { v.samples = 1; }); });
+    await page.until(() => document.querySelector("fathom-view").scene?.title === "two", 10);
+    await rest(page);
+    await near(await picture(page), bytes(rendered("two")), "the second scene");
+    await view(page, v => { v.src = "one.html"; v.remove(); });
+    await new Promise(r => setTimeout(r, 300));
+    same(page.said.filter(s => !s.includes("404")), [], "the console");
+    await page.close();
+  },
+  async "a site shows the scene that is clicked, and a lost link is an error"() {
+    const script = join(dirname(module), "../scripts/website.py"), out = join(folder, "site");
+    write("one.sdf", "box(1)\n"), write("two.sdf", "sphere(1)\n");
+    const made = () => spawnSync("python3", [script, fathom, out, "one.sdf", "two.sdf"], {cwd: folder});
+    same(made().status, 0, "the exit status");
+    const page = await fresh("site/index.html");
+    must(await view(page, v => v.hidden && !v.scene), "a scene is loaded before it is wanted");
+    await page.run(() => document.querySelector("a[href='two.html']").click());
+    await rest(page);
+    same(await view(page, v => [v.scene.title, v.hidden]), ["two", false], "what is shown");
+    quiet(page);
+    await page.close();
+    writeFileSync(join(out, "more.html"), "<!doctype html><a href='one.html'>there</a> <a href='nowhere.html'>lost</a>");
+    const lost = made();
+    same([lost.status, lost.stderr.toString().trim()], [1, "more.html: nowhere.html leads nowhere"], "a lost link");
   },
   async "on Shadertoy a click does not move the picture, and a drag does"() {
     write("toy.sdf", "param radius = 1 in 0.5..1.5 \"Radius\"\nbox(radius).paint(tomato)\nplane(Y, -1)\ncamera(at: [2, 5, 4], look_at: [0, 0, 0])\n");

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A static site of scenes: scripts/site.py FATHOM OUT SCENE.sdf…
+"""A static site of scenes: scripts/website.py FATHOM OUT SCENE.sdf…
 
 Writes into the folder OUT a page a scene (`fathom compile --target html`), a picture of each (320x240), the
 module web/fathom-view.js, and index.html, which loads a scene into itself where its picture is clicked. Exit status 1
