@@ -47,7 +47,7 @@ export interface Reflection {
 /** A texture that the text reads. A page has its numbers packed in Scene.data; a host gives `values`. */
 export interface Texture {
   name: string;
-  /** RGBA of an image, linear, or one number a cell of a grid; rows from the bottom, as WebGL takes them. */
+  /** RGBA of an image, linear, or one number a sample of a grid, in the order of fathom::Texture (fathom/shader.h). */
   values?: Float32Array;
   data?: number;
   bytes?: boolean;

@@ -440,7 +440,7 @@ function drawing(canvas, scene, state, {say, happened, tick}) {
     e.preventDefault();
     made = building = null;
     if (stopped) return;
-    if (++lost < 4) say("The graphics driver stopped this picture. It begins again by itself.");
+    if (++lost < 4) say("The browser or its graphics driver stopped this picture. It begins again as soon as it may.");
     else say("The graphics driver stops this picture each time it is drawn. Reload the page to try again.", true);
   });
   canvas.addEventListener("webglcontextrestored", () => {
