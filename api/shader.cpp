@@ -44,8 +44,14 @@ std::optional<Shader> shader_of(const Scene &scene, const ShaderOptions &options
         const Source &source = sources[span.source];
         return fmt::format("{}:{}", source.name, position(source, span.begin).line);
     };
+    to.rebuild = [&](const std::map<std::string, double> &values) -> std::optional<ir::Scene> {
+        std::map<std::string, std::vector<double>> lists;
+        for (const auto &[name, value] : values) lists[name] = {value};
+        const CompileResult other = scene.with(lists);
+        return other.scene ? std::optional(ir_of(*other.scene)) : std::nullopt;
+    };
     Diagnostics diagnostics;
-    glsl::note_fixed_params(ir_scene, *target, diagnostics);
+    glsl::note_fixed_params(ir_scene, to, diagnostics);
     glsl::Output output = glsl::emit(ir_scene, to, diagnostics);
     for (Diagnostic &diagnostic : translated(diagnostics, sources))
         said.push_back(std::move(diagnostic));

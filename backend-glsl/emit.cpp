@@ -106,10 +106,7 @@ class Emitter {
         if (!module_.cached.empty() &&
             (!check(with_cache(text), output) || !check(with_cache(text, cache_learns), output)))
             return {};
-        if (target.form == Form::Page && !options_.field_only)
-            output.text = html_page(scene_, options_, output, text);
-        else if (target.form != Form::SpirV)
-            output.text = std::move(text);
+        if (target.form != Form::SpirV) output.text = std::move(text);
         return output;
     }
 
@@ -210,12 +207,37 @@ std::vector<int> prunable_rows(const ir::Scene &scene) {
     return rows;
 }
 
-Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics) {
-    if (traits_of(options.target).form == Form::Page && !options.passes) {
-        Options by_passes = options; // the page is a host of ours
-        by_passes.passes = true;
-        return emit(scene, by_passes, diagnostics);
+// A page around the text of the scene, and the texts for other values of its structural params.
+static Output emit_page(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics) {
+    Options by_passes = options; // the page is a host of ours
+    by_passes.passes = true;
+    std::vector<PageVariant> variants;
+    const std::vector<std::map<std::string, double>> all =
+        options.rebuild ? page_values(scene) : std::vector<std::map<std::string, double>>(1);
+    Output own;
+    for (const std::map<std::string, double> &values : all) {
+        const bool first = variants.empty();
+        std::optional<ir::Scene> other = first ? std::nullopt : options.rebuild(values);
+        Diagnostics said;
+        Output output;
+        if (first || other)
+            output = emit(first ? scene : *other, by_passes, first ? diagnostics : said);
+        if (output.text.empty() && first) return output;
+        if (first) own = output;
+        if (output.text.empty())
+            diagnostics.add(Code::FixedParam, scene.params.front().origin,
+                            "the page has no picture for " + words_of(scene, values) +
+                                ": the scene does not compile for that");
+        else
+            variants.push_back(page_variant(other ? *other : scene, by_passes, output, values));
     }
+    own.text = html_page(options, variants);
+    return own;
+}
+
+Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics) {
+    if (traits_of(options.target).form == Form::Page && !options.passes && !options.field_only)
+        return emit_page(scene, options, diagnostics);
     std::optional<Rerolled> loops = rerolled(scene);
     if (loops) loops->scene.safe_radius = {}; // it would have the lists in full
     const std::map<std::uint32_t, ir::NodeId> results =

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,7 +44,10 @@ struct Options {
     bool far_cells = true; // … and rays evaluate no rows where those are known to be far
     double time = 0; // where a target has no host that sets a camera: the moment whose camera is
                      // the first view
-    std::string title = "scene";              // html: the page's title
+    std::string title = "scene"; // html: the page's title
+    // html: the scene for other values of its structural params, by name; none where it does not
+    // compile. Empty: the page has the scene for its own values alone.
+    std::function<std::optional<ir::Scene>(const std::map<std::string, double> &)> rebuild{};
     std::function<std::string(Span)> place{}; // "arch.sdf:12", or an empty text
 };
 
@@ -112,8 +116,9 @@ struct Output {
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics);
 
 // Notes each param that decides what there is. A text can hold it only as a constant: it has no
-// uniform, no slider, no line to edit that would rebuild the scene.
-void note_fixed_params(const ir::Scene &scene, Target target, Diagnostics &diagnostics);
+// uniform, no slider, no line to edit that would rebuild the scene. Of a page whose scene can be
+// rebuilt, not those that it has all values of (page_values).
+void note_fixed_params(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics);
 
 // By loop that `pruning` would make lists for: its rows.
 std::vector<int> prunable_rows(const ir::Scene &scene);

@@ -1,17 +1,17 @@
 #include "backend-glsl/html.h"
 
 #include "backend-glsl/params.h"
+#include "backend-glsl/reflection.h"
 #include "backend-glsl/template.h"
 #include "base/encode.h"
 #include "base/pack.h"
 #include "base/srgb.h"
 #include "base/text.h"
-#include "ir/view.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
+#include <fmt/format.h>
 
 static_assert(std::endian::native == std::endian::little); // as the page reads floats
 
@@ -19,50 +19,17 @@ namespace fathom::glsl {
 
 namespace {
 
-std::string array(const double *values, std::size_t count) {
-    std::string text = "[";
-    for (std::size_t i = 0; i < count; ++i) text += (i ? ", " : "") + format_shortest(values[i]);
-    return text + "]";
-}
+constexpr std::size_t most_texts = 8;
 
-std::string array(const glm::dvec3 &v) { return array(&v.x, 3); }
-
-const std::string &label_of(const ir::Param &p) { return p.label.empty() ? p.name : p.label; }
-
-// Objects of JSON with a comma between them.
-class List {
-  public:
-    void add(const std::string &object) { text_ += (text_.empty() ? "" : ",\n  ") + object; }
-    std::string take() const { return "[" + text_ + "]"; }
-
-  private:
-    std::string text_;
-};
-
-// {name, label, type, color, range, value, lo, hi}: what the page makes a control of.
-std::string controls(const ir::Scene &scene, const std::vector<Uniform> &uniforms) {
-    List list;
-    for (const Uniform &u : uniforms) {
-        const ir::Param &p = scene.params[u.param];
-        const std::size_t size = static_cast<std::size_t>(ir::components(p.type));
-        list.add("{\"name\": " + for_script(u.name) + ", \"label\": " + for_script(label_of(p)) +
-                 ", \"type\": \"" + ir::type_name(p.type) +
-                 "\", \"color\": " + (p.is_color ? "true" : "false") + ", \"range\": " +
-                 (p.has_range ? "true" : "false") + ", \"value\": " + array(p.value.data(), size) +
-                 ", \"lo\": " + array(p.lo.data(), size) + ", \"hi\": " + array(p.hi.data(), size) +
-                 "}");
-    }
-    return list.take();
-}
-
-// {label, value}: what the page shows as fixed.
-std::string fixed_params(const ir::Scene &scene) {
-    List list;
-    for (const ir::Param &p : scene.params)
-        if (p.structural)
-            list.add("{\"label\": " + for_script(label_of(p)) +
-                     ", \"value\": " + for_script(value_text(p)) + "}");
-    return list.take();
+// JSON within a script element: no `<`, so no `</script` and no `<!--`. It stands in strings alone.
+std::string in_script(const std::string &json) {
+    std::string out;
+    for (const char c : json)
+        if (c == '<')
+            out += "\\u003c";
+        else
+            out += c;
+    return out;
 }
 
 std::string packed(const void *data, std::size_t size) {
@@ -84,70 +51,113 @@ std::string bytes_of(const ir::ImageData &image) {
     return bytes;
 }
 
-// {name, size, bytes, data}: RGBA of bytes or floats, compressed; grids are floats.
-std::string samplers(const ir::Scene &scene, const Output &output) {
-    List list;
-    for (const Sampler &s : output.images) {
-        const ir::ImageData &image = scene.images[s.index];
-        const std::string bytes = bytes_of(image);
-        const double size[] = {static_cast<double>(image.width), static_cast<double>(image.height)};
-        list.add("{\"name\": " + for_script(s.name) + ", \"size\": " + array(size, 2) +
-                 ", \"bytes\": " + (bytes.empty() ? "false" : "true") + ", \"data\": " +
-                 (bytes.empty() ? packed(image.rgba.data(), image.rgba.size() * sizeof(float))
-                                : packed(bytes.data(), bytes.size())) +
-                 "}");
-    }
-    for (const Sampler &s : output.grids) {
-        const ir::GridData &grid = scene.grids[s.index];
-        const double size[] = {static_cast<double>(grid.size[0]), static_cast<double>(grid.size[1]),
-                               static_cast<double>(grid.size[2])};
-        list.add("{\"name\": " + for_script(s.name) + ", \"size\": " + array(size, 3) +
-                 ", \"bytes\": false, \"data\": " +
-                 packed(grid.values.data(), grid.values.size() * sizeof(float)) + "}");
-    }
-    return list.take();
-}
-
 // Steps that a draw gives a ray: few, so that no draw is long, and fewer where a step runs long
 // loops (turns.h).
 int steps_a_draw(const Output &output) {
     return static_cast<int>(std::clamp(50000 / (1 + output.turns) - 128, 16.0, 256.0));
 }
 
-std::string fingerprint(const std::string &text) { return "sha256-" + base64(sha256(text)); }
+// The bytes that hexadecimal digits stand for.
+std::string bytes_of_hex(std::string_view digits) {
+    const auto value = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
+    std::string bytes;
+    for (std::size_t i = 0; i + 1 < digits.size(); i += 2)
+        bytes += static_cast<char>(value(digits[i]) * 16 + value(digits[i + 1]));
+    return bytes;
+}
+
+// All that a param can be; empty where that is not few numbers.
+std::vector<double> few_values(const ir::Param &param) {
+    if (param.type == ir::Type::Bool) return {0, 1};
+    std::vector<double> values;
+    if (param.type != ir::Type::Int || !(param.hi[0] - param.lo[0] < most_texts)) return values;
+    for (double value = param.lo[0]; value <= param.hi[0]; ++value) values.push_back(value);
+    return values;
+}
 
 } // namespace
 
-std::string html_page(const ir::Scene &scene, const Options &options, const Output &output,
-                      const std::string &fragment) {
-    const ir::View view = ir::view_of(scene, options.time, 16.0 / 9.0);
-    const glm::dvec3 sun = ir::lights_of(scene, options.time, view)[0].position;
-    const bool animated =
-        fragment.find("fathom_time", fragment.find("fathom_time;") + 1) != std::string::npos;
-    const std::string style = "\n" + expand("page_style", {}),
-                      script = "\n" + expand("page_shaders", {}) + expand("page_draw", {}) +
-                               expand("page_controls", {});
+std::vector<std::map<std::string, double>> page_values(const ir::Scene &scene) {
+    std::vector<std::map<std::string, double>> all(1);
+    for (const ir::Param &param : scene.params) {
+        if (!param.structural) continue;
+        std::vector<double> values = few_values(param);
+        if (values.empty() || values.size() * all.size() > most_texts) continue;
+        const auto own = std::ranges::find(values, param.value[0]);
+        if (own != values.end()) std::rotate(values.begin(), own, own + 1);
+        std::vector<std::map<std::string, double>> more;
+        for (const double value : values)
+            for (std::map<std::string, double> one : all) {
+                one[param.name] = value;
+                more.push_back(std::move(one));
+            }
+        all = std::move(more);
+    }
+    return all;
+}
+
+std::string words_of(const ir::Scene &scene, const std::map<std::string, double> &values) {
+    std::string text;
+    for (ir::Param param : scene.params) {
+        const auto value = values.find(param.name);
+        if (value == values.end()) continue;
+        param.value[0] = value->second;
+        text += (text.empty() ? "`" : ", `") + param.name + "` = " + value_text(param);
+    }
+    return text;
+}
+
+PageVariant page_variant(const ir::Scene &scene, const Options &options, const Output &output,
+                         const std::map<std::string, double> &values) {
+    PageVariant variant;
+    for (const Sampler &s : output.images) {
+        const ir::ImageData &image = scene.images[s.index];
+        const std::string bytes = bytes_of(image);
+        variant.textures.push_back(
+            fmt::format("{{\"name\": {}, \"bytes\": {}", for_json(s.name), !bytes.empty()));
+        variant.data.push_back(bytes.empty()
+                                   ? packed(image.rgba.data(), image.rgba.size() * sizeof(float))
+                                   : packed(bytes.data(), bytes.size()));
+    }
+    for (const Sampler &s : output.grids) {
+        const ir::GridData &grid = scene.grids[s.index];
+        variant.textures.push_back(
+            fmt::format("{{\"name\": {}, \"bytes\": false", for_json(s.name)));
+        variant.data.push_back(packed(grid.values.data(), grid.values.size() * sizeof(float)));
+    }
+    std::string chosen;
+    for (const auto &[name, value] : values)
+        chosen += fmt::format("{}{}: [{}]", chosen.empty() ? "" : ", ", for_json(name),
+                              format_shortest(value));
+    variant.json = fmt::format(
+        "\"values\": {{{}}}, \"passes\": {{\"budget\": {}, \"steps\": {}}},\n\"reflection\": "
+        "{}, \"packed\": {}",
+        chosen, output.budget, steps_a_draw(output), reflection_json(scene, options, output),
+        packed(output.text.data(), output.text.size()));
+    return variant;
+}
+
+std::string html_page(const Options &options, const std::vector<PageVariant> &variants) {
+    std::vector<std::string> data; // what several variants have stands once
+    std::string all;
+    for (const PageVariant &variant : variants) {
+        std::string textures;
+        for (std::size_t i = 0; i < variant.data.size(); ++i) {
+            const auto at = std::ranges::find(data, variant.data[i]);
+            textures += fmt::format("{}{}, \"data\": {}}}", i ? ", " : "", variant.textures[i],
+                                    at - data.begin());
+            if (at == data.end()) data.push_back(variant.data[i]);
+        }
+        all += fmt::format("{}{{{}, \"textures\": [{}]}}", all.empty() ? "" : ",\n", variant.json,
+                           textures);
+    }
+    const std::string scene =
+        fmt::format("\n{{\"title\": {},\n\"variants\": [{}],\n\"data\": [{}]}}\n",
+                    for_json(options.title), all, fmt::join(data, ",\n"));
     return expand("page", {{"TITLE", for_html(options.title)},
-                           {"NAME", for_script(options.title)},
-                           {"STYLE", style},
-                           {"SCRIPT", script},
-                           {"STYLE_HASH", fingerprint(style)},
-                           {"SCRIPT_HASH", fingerprint(script)},
-                           {"FIXED", fixed_params(scene)},
-                           {"PARAMS", controls(scene, output.uniforms)},
-                           {"SAMPLERS", samplers(scene, output)},
-                           {"TARGET", array(view.origin + view.focus * view.forward)},
-                           {"BACK", array(-view.forward)},
-                           {"FOCUS", format_shortest(view.focus)},
-                           {"EXTENT", format_shortest(view.extent)},
-                           {"ORTHOGRAPHIC", view.orthographic ? "true" : "false"},
-                           {"SUN", array(sun)},
-                           {"ANIMATED", animated ? "true" : "false"},
-                           {"START", format_shortest(options.time)},
-                           {"SECONDS", format_shortest(scene.render.time_end)},
-                           {"BUDGET", format_shortest(static_cast<double>(output.budget))},
-                           {"STEPS", format_shortest(static_cast<double>(steps_a_draw(output)))},
-                           {"FRAGMENT", for_script(fragment)}});
+                           {"SCRIPT_HASH", base64(bytes_of_hex(expand("page_hash", {})))},
+                           {"SCRIPT", expand("page_script", {})},
+                           {"SCENE", in_script(scene)}});
 }
 
 } // namespace fathom::glsl

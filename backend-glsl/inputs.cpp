@@ -69,23 +69,38 @@ std::string Inputs::time() {
                    float_literal(options_.time));
 }
 
-std::string Inputs::of_scene() {
-    std::string text = time();
+std::string Inputs::params() {
+    std::string text, constants;
     for (const auto &[index, name] : module_.params) {
         const ir::Param &param = scene_.params[index];
-        const std::string value = param_value(param), type = glsl_type(param.type);
+        const std::string value = param_value(param), type = glsl_type(param.type),
+                          constant = "const " + type + " " + name + " = " + value + ";";
+        if (!target_.hosted && !is_fixed(param, options_)) {
+            std::string words = range_text(param);
+            if (!param.label.empty() && param.label != param.name)
+                words += (words.empty() ? "" : "  ") + param.label;
+            constants += words.empty() ? constant + "\n" : constant + " " + comment(words);
+            continue;
+        }
         if (!param.label.empty() && options_.instruments == Instruments::None)
             text += comment(param.label);
-        if (target_.hosted && !is_fixed(param, options_))
+        if (is_fixed(param, options_))
+            text += constant + "\n";
+        else
             text +=
                 uniform({type,
                          name,
                          {param.value.begin(), param.value.begin() + ir::components(param.type)},
                          ""},
                         value, range_text(param));
-        else
-            text += "const " + type + " " + name + " = " + value + ";\n";
     }
+    if (constants.empty()) return text;
+    return "\n// The params, with their ranges: any other number of the range may stand here.\n" +
+           constants + text;
+}
+
+std::string Inputs::samplers() {
+    std::string text;
     if (!module_.texels.empty())
         text += "// A texture buffer of RGBA32F texels: the file written beside this text.\n" +
                 sampler("samplerBuffer", "fathom_tables");
@@ -94,7 +109,14 @@ std::string Inputs::of_scene() {
     return text;
 }
 
-std::string Inputs::of_field() { return own_inputs(false) + of_scene(); }
+// What a reader may change stands first.
+std::string Inputs::of_field() {
+    std::string text = target_.hosted ? "" : params();
+    text += own_inputs(false);
+    text += time();
+    if (target_.hosted) text += params();
+    return text + samplers();
+}
 
 std::string Inputs::of_picture(const ir::View &view) {
     const glm::dvec3 sun = scene_.lights.empty()
@@ -148,7 +170,7 @@ std::string Inputs::of_picture(const ir::View &view) {
          Held::Constant,
          "what is drawn: 0 the picture, 1 steps as colours, 2 (steps, t, paint, end), 3 linear "
          "colours"}};
-    std::string text = "\n" + own_inputs(true);
+    std::string text = (target_.hosted ? "" : params()) + "\n" + own_inputs(true);
     for (const FrameInput &i : all) {
         if (target_.hosted)
             text += uniform({i.type, i.name, i.numbers, i.meaning}, i.value);
@@ -157,7 +179,9 @@ std::string Inputs::of_picture(const ir::View &view) {
         else if (i.held == Held::Global)
             text += std::string(i.type) + " " + i.name + ";\n";
     }
-    return text + of_scene();
+    text += time();
+    if (target_.hosted) text += params();
+    return text + samplers();
 }
 
 } // namespace fathom::glsl

@@ -28,7 +28,8 @@ class Inputs {
     std::string sampler(const std::string &type, const std::string &name);
     std::string own_inputs(bool picture) const;
     std::string time();
-    std::string of_scene();
+    std::string params();
+    std::string samplers(); // and the buffer
 
     const Module &module_;
     const ir::Scene &scene_;

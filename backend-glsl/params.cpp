@@ -1,5 +1,6 @@
 #include "backend-glsl/params.h"
 
+#include "backend-glsl/html.h"
 #include "base/text.h"
 
 #include <algorithm>
@@ -68,12 +69,15 @@ std::string defaults_comment(const std::vector<Default> &defaults) {
     return text;
 }
 
-void note_fixed_params(const ir::Scene &scene, Target target, Diagnostics &diagnostics) {
+void note_fixed_params(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics) {
+    const TargetTraits &target = traits_of(options.target);
+    std::map<std::string, double> chosen; // by the page's reader
+    if (target.form == Form::Page && options.rebuild) chosen = page_values(scene).front();
     for (const ir::Param &param : scene.params) {
-        if (!param.structural) continue;
+        if (!param.structural || chosen.contains(param.name)) continue;
         diagnostics
             .add(Code::FixedParam, param.origin,
-                 "`" + param.name + "` decides what there is, so the `" + traits_of(target).name +
+                 "`" + param.name + "` decides what there is, so the `" + target.name +
                      "` text holds it as a constant, " + value_text(param))
             .help("`-D " + param.name + "=…` writes the text for another value" +
                   (param.has_range ? " of " + range_text(param) : ""));

@@ -127,8 +127,8 @@ std::string entry(const Module &module, const ir::View &view) {
                    {"RIGHT", vec3_literal(view.right)},
                    {"UP", vec3_literal(view.up)},
                    {"FORWARD", vec3_literal(view.forward)},
-                   {"BACK_X", float_literal(-view.forward[0])},
-                   {"BACK_Z", float_literal(-view.forward[2])},
+                   {"AROUND", float_literal(std::atan2(-view.forward[0], -view.forward[2]))},
+                   {"ABOVE", float_literal(std::asin(std::clamp(-view.forward[1], -1.0, 1.0)))},
                    {"TARGET", vec3_literal(looked_at)}});
     return expand(target.entry, values);
 }

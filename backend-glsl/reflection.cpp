@@ -1,5 +1,6 @@
 #include "backend-glsl/reflection.h"
 
+#include "backend-glsl/module.h"
 #include "base/encode.h"
 #include "base/text.h"
 
@@ -21,6 +22,7 @@ std::size_t components_of(const ir::Param &param) {
 std::string param_json(const ir::Param &param) {
     std::string text = fmt::format(", \"param\": {}, \"label\": {}, \"color\": {}",
                                    for_json(param.name), for_json(param.label), param.is_color);
+    if (!param.unit.empty()) text += fmt::format(", \"unit\": {}", for_json(param.unit));
     if (param.has_range)
         text += fmt::format(", \"range\": [{}, {}]", list(param.lo, components_of(param)),
                             list(param.hi, components_of(param)));
@@ -68,8 +70,9 @@ std::string reflection_json(const ir::Scene &scene, const Options &options, cons
     for (const Input &input : output.inputs) uniforms.push_back(input_json(scene, output, input));
     for (const ir::Param &param : scene.params)
         if (param.structural || !target.hosted)
-            constants.push_back(fmt::format(
-                "{{\"value\": {}{}}}", list(param.value, components_of(param)), param_json(param)));
+            constants.push_back(fmt::format("{{\"value\": {}, \"type\": \"{}\"{}}}",
+                                            list(param.value, components_of(param)),
+                                            glsl_type(param.type), param_json(param)));
     return fmt::format(
         "{{\n  \"version\": 1,\n  \"target\": {},\n  \"entry\": {},\n"
         "  \"reads_time\": {},\n  \"time_end\": {},\n  \"uniforms\": {},\n"

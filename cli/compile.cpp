@@ -1,6 +1,7 @@
 // fathom compile: a scene's shader, for one of the targets, and the data of its buffer. Nothing is
 // written unless all went well.
 #include "backend-glsl/reflection.h"
+#include "base/text.h"
 #include "cli/outputs.h"
 
 #include <fmt/format.h>
@@ -32,6 +33,31 @@ Exit write_passes(const std::string &out, const ir::Scene &scene, const glsl::Op
     return done;
 }
 
+// The scene with other values of its params; none where it does not compile with them.
+std::optional<ir::Scene> rebuilt(const SceneArguments &scene,
+                                 const driver::Compilation &compilation,
+                                 const std::map<std::string, double> &values) {
+    driver::CompileOptions options = compile_options(scene);
+    for (const ir::Param &param : compilation.scene.params) {
+        const auto value = values.find(param.name);
+        if (value == values.end()) continue;
+        const bool truth = param.type == ir::Type::Bool;
+        std::erase_if(options.overrides,
+                      [&](const driver::Override &o) { return o.name == param.name; });
+        options.overrides.push_back({param.name, truth ? (value->second != 0 ? "true" : "false")
+                                                       : format_shortest(value->second)});
+    }
+    const auto again = [&] {
+        if (scene.file != "-") return driver::compile_file(scene.file, options);
+        std::uint32_t at = 0; // standard input was read to its end, so its text is taken from there
+        while (compilation.sources[SourceId{at}].name != "<stdin>") ++at;
+        return driver::compile_text("<stdin>", compilation.sources[SourceId{at}].text, "", options);
+    };
+    driver::Compilation other = again();
+    if (!other.good()) return std::nullopt;
+    return std::move(other.scene);
+}
+
 Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
           Terminal &terminal) {
     Exit exit = report(compilation, command.scene, terminal);
@@ -54,8 +80,11 @@ Exit emit(const CompileCommand &command, const driver::Compilation &compilation,
         return fmt::format("{}:{}", source.name, position(source, span.begin).line);
     };
     options.noise_cache = command.noise_cache;
+    options.rebuild = [&](const std::map<std::string, double> &values) {
+        return rebuilt(command.scene, compilation, values);
+    };
     Diagnostics diagnostics;
-    glsl::note_fixed_params(compilation.scene, options.target, diagnostics);
+    glsl::note_fixed_params(compilation.scene, options, diagnostics);
     glsl::Output output = glsl::emit(compilation.scene, options, diagnostics);
     print_diagnostics(diagnostics, compilation.sources, terminal);
     if (diagnostics.has_errors()) return scene_error;

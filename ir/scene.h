@@ -76,6 +76,7 @@ struct CacheFact {
 // A number or colour that a user may change: its value, its range, where it is declared.
 struct Param {
     std::string name, label;
+    std::string unit; // "deg", "turn" or "rad", as the range's upper end is written, else empty
     Type type = Type::Float; // Bool, Int, Float, Vec2..Vec4; a colour is a Vec3 with is_color
     bool is_color = false;
     bool has_range = false;

@@ -365,6 +365,8 @@ void declare_param(Interpreter &ev, const File &ast, const lang::Param &param,
         if (!lo || !hi) return fail();
         p.lo = fill(*lo), p.hi = fill(*hi);
         p.has_range = true;
+        if (const auto *high = std::get_if<lang::Number>(&ast.exprs[*param.high].kind))
+            p.unit = high->unit;
         for (int i = 0; i < ir::components(p.type); ++i) {
             auto k = static_cast<std::size_t>(i);
             if (p.lo[k] > p.hi[k]) {

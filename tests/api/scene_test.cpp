@@ -230,7 +230,7 @@ TEST_CASE("a shader's inputs are its uniforms, with the first view's values") {
             CHECK(input.meaning.empty() != input.param.empty()); // no sampler here
             CHECK_FALSE(input.value.empty());
             CHECK((input.place >= 0) == !shader->words.empty());
-            if (shader->words.empty())
+            if (shader->words.empty() && target != "html") // whose page has its text packed
                 CHECK(shader->text.find("uniform " + input.type + " " + input.name) !=
                       std::string::npos);
         }

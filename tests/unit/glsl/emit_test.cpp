@@ -264,16 +264,23 @@ TEST_CASE("params are uniforms where there is a host, constants where there is n
     });
     Param radius;
     radius.name = "radius";
+    radius.label = "How large";
+    radius.has_range = true;
     radius.value[0] = 1.25;
+    radius.lo[0] = 0.5;
+    radius.hi[0] = 2;
     scene.params.push_back(radius);
     const glsl::Output hosted = emitted(scene);
     REQUIRE(hosted.uniforms.size() == 1);
     CHECK(hosted.uniforms[0].name == "param_radius");
     CHECK(hosted.reads_time);
     CHECK(count(hosted.text, "uniform float param_radius = 1.25;") == 1);
-    CHECK(count(emitted(scene, {.target = glsl::Target::Shadertoy}).text,
-                "const float param_radius = 1.25;") == 1);
-    CHECK(count(emitted(scene, {.target = glsl::Target::Html}).text, "param_radius") > 1);
+    const std::string toy = emitted(scene, {.target = glsl::Target::Shadertoy}).text;
+    CHECK(count(toy, "const float param_radius = 1.25; // 0.5..2  How large\n") == 1);
+    CHECK(toy.find("const float param_radius") < toy.find("fathom_resolution"));
+    CHECK(toy.find("const float param_radius") < 400); // what may be changed stands at the top
+    CHECK(count(emitted(scene, {.target = glsl::Target::Html}).text,
+                "\"name\": \"param_radius\"") == 1);
 }
 
 TEST_CASE("what a target's row reserves is no name in any text") {

@@ -106,8 +106,8 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "RADIUS",
                                "SLOPE",
                                "BOUND",
-                               "BACK_X",
-                               "BACK_Z",
+                               "AROUND",
+                               "ABOVE",
                                "CELL"})
         values.emplace(number, "0.5");
     for (const char *count :
