@@ -96,6 +96,12 @@ std::string_view phase_name(driver::Phase phase) {
     return "";
 }
 
+driver::CompileOptions options_of_picture(const BenchCommand &command) {
+    driver::CompileOptions options = compile_options(command.scene, 0, 0);
+    options.cells = driver::cells_of_pictures;
+    return options;
+}
+
 void bench_front_end(const BenchCommand &command, Measures &measures) {
     std::map<driver::Phase, std::vector<double>> times;
     driver::CompileOptions options = compile_options(command.scene);
@@ -109,6 +115,9 @@ void bench_front_end(const BenchCommand &command, Measures &measures) {
     double whole = measure([&] { driver::compile_file(command.scene.file, options); });
     for (const auto &[phase, each] : times) row(measures, phase_name(phase), median(each), "ms");
     row(measures, "front end, all", whole, "ms");
+    const driver::CompileOptions for_pictures = options_of_picture(command);
+    row(measures, "front end, for a picture",
+        measure([&] { driver::compile_file(command.scene.file, for_pictures); }), "ms");
 }
 
 void bench_gl(const BenchCommand &command, const ir::Scene &scene, Measures &measures) {
@@ -186,7 +195,7 @@ Exit run(const BenchCommand &command, Terminal &terminal) {
     if (!command.compare.empty())
         if (const Exit exit = read_earlier(command.compare, measures); exit != done) return exit;
     driver::Compilation compilation =
-        driver::compile_file(command.scene.file, compile_options(command.scene, 0, 0));
+        driver::compile_file(command.scene.file, options_of_picture(command));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     if (!command.json)
