@@ -98,7 +98,7 @@ std::string_view phase_name(driver::Phase phase) {
 
 driver::CompileOptions options_of_picture(const BenchCommand &command) {
     driver::CompileOptions options = compile_options(command.scene, 0, 0);
-    options.cells = driver::cells_of_pictures;
+    if (!command.one_bound) options.cells = driver::cells_of_pictures;
     return options;
 }
 
@@ -165,6 +165,23 @@ void bench_gl(const BenchCommand &command, const ir::Scene &scene, Measures &mea
         "ms");
 }
 
+// What all but one ray in a hundred take at most.
+double steps_of_most(const ir::Scene &scene, const BenchCommand &command) {
+    const double aspect = static_cast<double>(command.width) / command.height;
+    const cpu::Stage stage =
+        cpu::prepare(scene, ir::view_of(scene, 0, aspect), command.width, command.height, 0);
+    std::vector<cpu::Ray> rays;
+    for (int y = 0; y < command.height; ++y)
+        for (int x = 0; x < command.width; ++x)
+            rays.push_back(
+                cpu::eye_ray(stage, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
+    std::vector<int> steps;
+    for (const cpu::Landing &landing : cpu::cast(stage, rays)) steps.push_back(landing.steps);
+    const auto at = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() * 99 / 100);
+    std::nth_element(steps.begin(), at, steps.end());
+    return *at;
+}
+
 void bench_cpu(const BenchCommand &command, const ir::Scene &scene, Measures &measures) {
     double aspect = static_cast<double>(command.width) / command.height;
     cpu::Work work;
@@ -178,6 +195,8 @@ void bench_cpu(const BenchCommand &command, const ir::Scene &scene, Measures &me
         static_cast<double>(work.steps) /
             static_cast<double>(std::max<std::uint64_t>(work.rays, 1)),
         "");
+    row(measures, "steps, 99 of 100 rays", steps_of_most(scene, command), "");
+    row(measures, "undecided rays", static_cast<double>(work.undecided), "");
     row(measures, "evaluations a pixel",
         static_cast<double>(work.evaluations) /
             static_cast<double>(std::max<std::uint64_t>(work.rays, 1)),
