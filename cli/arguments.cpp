@@ -451,6 +451,8 @@ struct Reader {
         add_scene(sub, bench.scene, Read::Again);
         add_size(sub, bench.width, bench.height);
         sub->add_flag("--json", bench.json, "one JSON document on standard output");
+        sub->add_flag("--one-bound", bench.one_bound,
+                      "each shape by its one bound, without bounds by cells, to compare");
         sub->add_option("--compare", bench.compare,
                         "beside each number the one of an earlier run, which --json wrote")
             ->type_name("OLD.json")

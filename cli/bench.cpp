@@ -96,6 +96,12 @@ std::string_view phase_name(driver::Phase phase) {
     return "";
 }
 
+driver::CompileOptions options_of_picture(const BenchCommand &command) {
+    driver::CompileOptions options = compile_options(command.scene, 0, 0);
+    if (!command.one_bound) options.cells = driver::cells_of_pictures;
+    return options;
+}
+
 void bench_front_end(const BenchCommand &command, Measures &measures) {
     std::map<driver::Phase, std::vector<double>> times;
     driver::CompileOptions options = compile_options(command.scene);
@@ -109,6 +115,9 @@ void bench_front_end(const BenchCommand &command, Measures &measures) {
     double whole = measure([&] { driver::compile_file(command.scene.file, options); });
     for (const auto &[phase, each] : times) row(measures, phase_name(phase), median(each), "ms");
     row(measures, "front end, all", whole, "ms");
+    const driver::CompileOptions for_pictures = options_of_picture(command);
+    row(measures, "front end, for a picture",
+        measure([&] { driver::compile_file(command.scene.file, for_pictures); }), "ms");
 }
 
 void bench_gl(const BenchCommand &command, const ir::Scene &scene, Measures &measures) {
@@ -156,6 +165,23 @@ void bench_gl(const BenchCommand &command, const ir::Scene &scene, Measures &mea
         "ms");
 }
 
+// What all but one ray in a hundred take at most.
+double steps_of_most(const ir::Scene &scene, const BenchCommand &command) {
+    const double aspect = static_cast<double>(command.width) / command.height;
+    const cpu::Stage stage =
+        cpu::prepare(scene, ir::view_of(scene, 0, aspect), command.width, command.height, 0);
+    std::vector<cpu::Ray> rays;
+    for (int y = 0; y < command.height; ++y)
+        for (int x = 0; x < command.width; ++x)
+            rays.push_back(
+                cpu::eye_ray(stage, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
+    std::vector<int> steps;
+    for (const cpu::Landing &landing : cpu::cast(stage, rays)) steps.push_back(landing.steps);
+    const auto at = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() * 99 / 100);
+    std::nth_element(steps.begin(), at, steps.end());
+    return *at;
+}
+
 void bench_cpu(const BenchCommand &command, const ir::Scene &scene, Measures &measures) {
     double aspect = static_cast<double>(command.width) / command.height;
     cpu::Work work;
@@ -169,6 +195,8 @@ void bench_cpu(const BenchCommand &command, const ir::Scene &scene, Measures &me
         static_cast<double>(work.steps) /
             static_cast<double>(std::max<std::uint64_t>(work.rays, 1)),
         "");
+    row(measures, "steps, 99 of 100 rays", steps_of_most(scene, command), "");
+    row(measures, "undecided rays", static_cast<double>(work.undecided), "");
     row(measures, "evaluations a pixel",
         static_cast<double>(work.evaluations) /
             static_cast<double>(std::max<std::uint64_t>(work.rays, 1)),
@@ -186,7 +214,7 @@ Exit run(const BenchCommand &command, Terminal &terminal) {
     if (!command.compare.empty())
         if (const Exit exit = read_earlier(command.compare, measures); exit != done) return exit;
     driver::Compilation compilation =
-        driver::compile_file(command.scene.file, compile_options(command.scene, 0, 0));
+        driver::compile_file(command.scene.file, options_of_picture(command));
     Exit exit = report(compilation, command.scene, terminal);
     if (exit != done) return exit;
     if (!command.json)

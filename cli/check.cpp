@@ -103,7 +103,7 @@ Exit run(const CheckCommand &command, Terminal &terminal) {
             return say(command, scene, compilation, terminal);
         };
         worst = std::max(worst, command.watch
-                                    ? watch_scene(scene, terminal, act)
+                                    ? watch_scene(scene, compile_options(scene), terminal, act)
                                     : act(driver::compile_file(file, compile_options(scene))));
     }
     return worst;

@@ -175,7 +175,8 @@ struct BenchCommand {
     SceneArguments scene;
     int width = 400, height = 400;
     bool json = false;
-    std::string compare; // a file that --json wrote; empty: none
+    bool one_bound = false; // without bounds by cells, to compare
+    std::string compare;    // a file that --json wrote; empty: none
 };
 
 using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, MergeCommand, FarmCommand,

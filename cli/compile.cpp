@@ -115,8 +115,10 @@ Exit run(const CompileCommand &command, Terminal &terminal) {
     auto act = [&](const driver::Compilation &compilation) {
         return emit(command, compilation, terminal);
     };
-    if (command.watch) return watch_scene(command.scene, terminal, act);
-    return act(driver::compile_file(command.scene.file, compile_options(command.scene)));
+    driver::CompileOptions options = compile_options(command.scene);
+    options.cells = driver::cells_of_text;
+    if (command.watch) return watch_scene(command.scene, options, terminal, act);
+    return act(driver::compile_file(command.scene.file, options));
 }
 
 } // namespace fathom::cli

@@ -86,6 +86,7 @@ Exit compile(Work &work, const std::vector<int> &frames) {
     const double first = moment_of(command, frames.front()).time,
                  last = latest_time(command, frames);
     driver::CompileOptions options = compile_options(command.scene, first, last);
+    options.cells = driver::cells_of_pictures;
     if (!command.sweeps.empty())
         for (const typecheck::Override &value : swept(command, frames.front()))
             options.overrides.push_back(value);

@@ -168,14 +168,13 @@ bool in_proved_time(const ir::Scene &scene, double first, double last, Terminal 
     return false;
 }
 
-Exit watch_scene(const SceneArguments &scene, Terminal &terminal,
-                 const std::function<Exit(const driver::Compilation &)> &act) {
+Exit watch_scene(const SceneArguments &scene, const driver::CompileOptions &options,
+                 Terminal &terminal, const std::function<Exit(const driver::Compilation &)> &act) {
     driver::Watcher watcher;
     std::string told;
     for (;;) {
         {
-            driver::Compilation compilation =
-                driver::compile_file(scene.file, compile_options(scene));
+            driver::Compilation compilation = driver::compile_file(scene.file, options);
             Exit exit = act(compilation);
             if (terminal.flush() != done || terminal.reader_gone()) return exit;
             watcher.watch(compilation.files);

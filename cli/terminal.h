@@ -61,7 +61,7 @@ void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, T
 
 // Compiles, acts, and does both again after every save of a file that the scene read; ends by an
 // interrupt alone.
-Exit watch_scene(const SceneArguments &scene, Terminal &terminal,
-                 const std::function<Exit(const driver::Compilation &)> &act);
+Exit watch_scene(const SceneArguments &scene, const driver::CompileOptions &options,
+                 Terminal &terminal, const std::function<Exit(const driver::Compilation &)> &act);
 
 } // namespace fathom::cli

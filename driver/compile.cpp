@@ -128,6 +128,7 @@ void run_phases(Compilation &out, const typecheck::Loader &loader, const std::st
     proof_options.work = work;
     proof_options.limit_note = limit_note(options.limits, &Limits::proof);
     proof_options.limit_help = limit_help(options.limits, &Limits::proof);
+    proof_options.cells = options.cells;
     if (options.times)
         proof_options.times = ir::Interval(options.times->first, options.times->second);
     out.proof_steps =

@@ -22,6 +22,10 @@ using typecheck::Override;
 // The phases of a compilation, in their order.
 enum class Phase { Read, Check, Prove, Lower, Done };
 
+// Cells along a side for what is drawn often (CompileOptions::cells): pictures of files; what is
+// seen at once after each change; text of shaders, which holds them as constants.
+constexpr int cells_of_pictures = 16, cells_of_views = 12, cells_of_text = 8;
+
 // What a compilation is told besides the text.
 struct CompileOptions {
     std::vector<std::filesystem::path> include_folders; // -I
@@ -32,6 +36,9 @@ struct CompileOptions {
     // Proved for the params' present values and from the first to the last of these times alone, in
     // seconds: for what is drawn once. None: for all that the scene allows.
     std::optional<std::pair<double, double>> times;
+    // Bounds by cells of what is marched and steep, so many along a side at most (proof/prove.h):
+    // for what is drawn. 0: none but those of fields in a region.
+    int cells = 0;
     bool parts =
         false; // lower so that hits tell their parts (ir::lower_with_parts): for the viewer alone
 };

@@ -18,14 +18,16 @@ struct RepeatPlan {
     Box copy;           // the child's bounds, for both
 };
 
-// A field's bound by cells of a box: one number a corner, x first, the largest of the cells that
-// meet there. A mean of a cell's corners holds within the cell grown by `margin`.
+// What is known of a field in each cell of a box, x first. A cell's slope and bend hold in it grown
+// by `margin`.
 struct CellBounds {
     Box box;
     std::array<int, 3> count{};
     double margin = 0;
     std::vector<double> lipschitz; // empty: none
-    std::vector<double> bend;      // of second derivatives along lines; empty: known of no cell
+    std::vector<double> way;  // from any point of the cell to the surface, at least; 0 where the
+                              // cell may hold surface or lies in the solid
+    std::vector<double> bend; // of second derivatives along lines; empty: known of no cell
 };
 
 // Of a displacement that is a sum: what its first terms say before the others are evaluated.
@@ -63,7 +65,9 @@ struct ShapeFact {
     RepeatPlan repeat;
     double detour =
         1; // Within: the ways round what its region leaves out, over the straight ones, at most
-    CellBounds cells; // Within: its child's bounds cell by cell, where they differ much
+    CellBounds
+        cells; // the marched field's bounds cell by cell, where they differ much: of a Within
+               // its child's in the region, of what has a guard its own in `bounds`
 };
 
 // What was proved of a cached field (Graph::caches) everywhere, for all params.

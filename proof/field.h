@@ -45,11 +45,6 @@ struct FieldBound {
 FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
                        const Domain &domain, const Budget &budget);
 
-// Bounds by cells of a bounded region, where the field is mostly far less steep than `whole`, its
-// bound over all of it; else empty. By counted work.
-ir::CellBounds bound_cells(Flattening &context, const Ranges &ranges, NodeId field,
-                           const Zone &zone, double whole, const Budget &budget);
-
 // An upper bound of |value| over the domain.
 double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
                        const Domain &domain, const Budget &budget);

@@ -166,6 +166,10 @@ void Machine::run(const Cell &cell) {
     reach(cell);
     run(tape_.each);
     ranges_.work->take(work_ - before);
+    conclude();
+}
+
+void Machine::conclude() {
     Slot s = tape_.result;
     result_norm_ = norm_[s];
     for (std::uint32_t i = 0; i < tape_.size[s]; ++i)

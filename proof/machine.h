@@ -62,6 +62,15 @@ class Machine {
     Machine(const Tape &tape, const Ranges &ranges, bool bends = false);
     void run(const Cell &cell); // without work left: nothing is known of any value
 
+    // A run of some of Tape::each, by their places. Values that are not computed anew stay what they
+    // were, so they have to be those of a cell that holds this one: then they hold here, too.
+    using Steps = std::vector<std::uint32_t>;
+    Steps all_steps() const;
+    void run(const Cell &cell, const Steps &steps);
+    // Of the steps just run, those that a part of the cell may need anew. What is the same at all of
+    // its points and what no choice takes stays as it is (machine_needed.cpp).
+    Steps needed(const Steps &steps) const;
+
     int size() const { return tape_.size[tape_.result]; }
     Interval value(int i) const {
         return value_[tape_.first[tape_.result] + static_cast<std::uint32_t>(i)];
@@ -98,6 +107,9 @@ class Machine {
     static constexpr double infinity_ = ir::rounding::infinity;
     friend struct Step; // the rules of one instruction (instruction_rules.h)
     void run(const std::vector<Instruction> &block);
+    void conclude();
+    bool is_one_value(Slot s) const;
+    void need_args(const Instruction &instruction, std::vector<bool> &wanted) const;
     void know_nothing();
     void run_loop(const Instruction &instruction);
     void step(const Instruction &instruction);

@@ -22,6 +22,11 @@ struct Options {
     std::optional<ir::Interval> times;
     Rules rules;                              // tests weaken one to see it caught
     std::size_t field_instructions = 250'000; // work per field: interval instructions, never time
+    // Also bounds by cells of what is marched and steep, at most so many cells along a side, 4 or
+    // more; 0: none but those of fields in a region. Worth their work where many rays are cast.
+    int cells = 0;
+    std::size_t cell_instructions = 4'000'000; // for all of them, and once more for
+                                               // those near surfaces
     bool tighten = true; // deformed shapes by their own expressions, too; tests ask for rules alone
     bool test_assumptions = true;           // sample `lipschitz:` and `estimate:`
     std::size_t work = Limits{}.proof;      // steps in all

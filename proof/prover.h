@@ -2,6 +2,7 @@
 // shapes.cpp, maps.cpp, repeat.cpp, fields.cpp).
 #pragma once
 
+#include "proof/cells.h"
 #include "proof/prove.h"
 #include "proof/shape_facts.h"
 
@@ -102,6 +103,9 @@ struct Prover {
                           const Derived &motif, Derived &k);
     Derived know_repeat(ir::ShapeId id);
     Derived know_within(ir::ShapeId id);
+    void know_cells(); // after all facts: cells.cpp
+    ir::CellBounds cells_of(ir::NodeId field, const Domain &domain, double whole,
+                            const CellAim &aim);
     Derived know_instances(ir::ShapeId id);
     Derived know_library(ir::ShapeId id);
     Derived know_contract(ir::ShapeId id);

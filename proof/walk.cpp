@@ -111,6 +111,7 @@ void Prover::run() {
     }
     scene.far = scene.render.far > 0 ? scene.render.far : 100 * std::max({radius, distance, 1e-6});
     if (scene.bounds.empty() && scene.render.far <= 0) scene.far = std::max(scene.far, 100.0);
+    know_cells();
 }
 
 // A leaf, and what is only written round it.

@@ -147,12 +147,10 @@ Derived Prover::know_within(ShapeId id) {
     const Derived &inner = child(shape);
     if (inner.leaf && zone.less.empty() && shape.dims == 3 && place(id).reported &&
         graph.is_constant(inner.fact.lipschitz) && inner.fact.status == ProofStatus::Proved) {
-        Budget budget;
-        budget.instructions = options.field_instructions;
+        CellAim aim;
+        aim.instructions = options.field_instructions;
         k.fact.cells =
-            bound_cells(flattening, ranges, inner.leaf, zone, inner.fact.lipschitz_sup, budget);
-        for (double &bound : k.fact.cells.lipschitz) bound *= options.rules[Rule::Field];
-        for (double &bend : k.fact.cells.bend) bend *= options.rules[Rule::Curvature];
+            cells_of(inner.leaf, {outer_box(zone), &zone}, inner.fact.lipschitz_sup, aim);
     }
     const double across = 1 + (slope_in_holes(zone) - 1) * options.rules[Rule::Holes];
     NodeId formula =

@@ -135,6 +135,7 @@ std::unique_ptr<Build> Worker::build() {
     auto result = std::make_unique<Build>();
     driver::CompileOptions options = options_;
     options.parts = true;
+    options.cells = driver::cells_of_views;
     options.entered = [this](driver::Phase phase) { enter(stage_of(phase)); };
     {
         std::lock_guard lock(mutex_);

@@ -1,6 +1,6 @@
-// Fields that are steep in places: their bounds cell by cell of a region (semantics.md, 13), as a
-// table with a row a corner. A mean of a cell's corners is no less than the cell's own bound, and
-// it is continuous; it holds in the cell grown by its margin.
+// Fields that are steep in places: what is known of them cell by cell of a region or of the box of a
+// guard (semantics.md, 13), as a table with a row a cell. It holds in the cell grown by its margin.
+// So a step's length may jump from cell to cell; no sign does.
 #include "ir/lower/lowering.h"
 
 #include <algorithm>
@@ -8,17 +8,21 @@
 
 namespace fathom::ir {
 
-// Slope and, where it is known, bend.
-static Table corner_table(const CellBounds &cells) {
+// Of each cell its slope, the way to the surface (far below 0 where none is known) and, where it is
+// known, the bend.
+static Table cell_table(const CellBounds &cells) {
     constexpr double maximum = 1e30; // of a float, squared in no shader
     const auto above = [&](double x) {
         return std::nextafter(static_cast<float>(std::min(x, maximum)), INFINITY);
     };
     Table table;
     table.rows = static_cast<int>(cells.lipschitz.size());
-    table.stride = cells.bend.empty() ? 1 : 2;
+    table.stride = cells.bend.empty() ? 2 : 3;
     for (std::size_t i = 0; i < cells.lipschitz.size(); ++i) {
+        const double way = cells.way[i];
         table.data.push_back(above(cells.lipschitz[i]));
+        table.data.push_back(way > 0 ? std::nextafter(static_cast<float>(way), 0.0f)
+                                     : -static_cast<float>(nowhere));
         if (!cells.bend.empty()) table.data.push_back(above(cells.bend[i]));
     }
     return table;
@@ -27,58 +31,102 @@ static Table corner_table(const CellBounds &cells) {
 Lowering::InCell Lowering::in_cell(ShapeId id, NodeId q) {
     Graph &g = graph_;
     const CellBounds &cells = fact(id).cells;
-    std::array<double, 3> size{}, lo = cells.box.lo, last{};
+    std::array<double, 3> size{}, often{}, lo = cells.box.lo, last{};
     for (std::size_t i = 0; i < 3; ++i) {
         size[i] = (cells.box.hi[i] - lo[i]) / cells.count[i];
+        often[i] = 1 / size[i];
         last[i] = cells.count[i] - 1;
     }
-    const NodeId u = g.div({g.sub(q, g.vec(lo)), g.vec(size)}); // in cells
+    const NodeId u = g.mul(g.sub(q, g.vec(lo)), g.vec(often)); // in cells
     const NodeId cell =
         g.make(Op::Clamp, {g.make(Op::Floor, {u}), g.vec(std::array<double, 3>{}), g.vec(last)});
-    const std::array<double, 3> strides{1, cells.count[0] + 1.0,
-                                        (cells.count[0] + 1.0) * (cells.count[1] + 1.0)};
-    const NodeId first = g.make(Op::ToInt, Type::Int,
-                                {g.add({g.make(Op::Dot, {cell, g.vec(strides)}), g.number(0.5)})});
+    const std::array<double, 3> strides{1, static_cast<double>(cells.count[0]),
+                                        static_cast<double>(cells.count[0]) * cells.count[1]};
+    const NodeId row = g.make(Op::ToInt, Type::Int,
+                              {g.add({g.make(Op::Dot, {cell, g.vec(strides)}), g.number(0.5)})});
     const auto found = cell_tables_.try_emplace(id);
-    if (found.second) found.first->second = g.add_table(corner_table(cells));
-    const NodeId part = g.make(Op::Clamp, {g.sub(u, cell), g.vec(std::array<double, 3>{}),
-                                           g.vec(std::array{1.0, 1.0, 1.0})});
-    const Type type = cells.bend.empty() ? Type::Float : Type::Vec2;
-    std::vector<NodeId> bounds;
-    for (int corner = 0; corner < 8; ++corner) {
-        const double row = corner % 2 + corner / 2 % 2 * strides[1] + corner / 4 * strides[2];
-        bounds.push_back(
-            g.make(Op::TableRead, type,
-                   {g.make(Op::Add, Type::Int, {first, g.integer(static_cast<int>(row))})},
-                   table_slot(found.first->second, 0)));
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-        NodeId by = g.component(part, axis);
-        if (type == Type::Vec2) by = g.make(Op::Splat, type, {by});
-        std::vector<NodeId> mixed;
-        for (std::size_t i = 0; i < bounds.size(); i += 2)
-            mixed.push_back(g.make(Op::Mix, {bounds[i], bounds[i + 1], by}));
-        bounds = std::move(mixed);
-    }
+    if (found.second) found.first->second = g.add_table(cell_table(cells));
+    const bool bends = !cells.bend.empty();
+    const NodeId known = g.make(Op::TableRead, bends ? Type::Vec3 : Type::Vec2, {row},
+                                table_slot(found.first->second, 0));
     // |u - middle| cells from the middle; the walls are half a cell from there.
-    const NodeId from_middle =
-        g.make(Op::Abs, {g.sub(u, g.add(cell, g.vec(std::array{0.5, 0.5, 0.5})))});
-    const NodeId left = g.mul({g.sub(g.vec(std::array{0.5, 0.5, 0.5}), from_middle), g.vec(size)});
+    const std::array halves{0.5, 0.5, 0.5};
+    const NodeId from_middle = g.make(Op::Abs, {g.sub(u, g.add(cell, g.vec(halves)))});
+    const NodeId left = g.mul({g.sub(g.vec(halves), from_middle), g.vec(size)});
     const NodeId wall =
         g.make(Op::Min, {g.component(left, 0),
                          g.make(Op::Min, {g.component(left, 1), g.component(left, 2)})});
-    const bool both = type == Type::Vec2;
-    return {both ? g.component(bounds.front(), 0) : bounds.front(),
-            both ? g.component(bounds.front(), 1) : NodeId{}, g.add(wall, g.number(cells.margin))};
+    return {g.component(known, 0), g.component(known, 1), bends ? g.component(known, 2) : NodeId{},
+            g.add(wall, g.number(cells.margin))};
 }
 
-// The step ends with the cell, if it is longer than what the bound for all of the region gives.
-NodeId Lowering::divided_by_cells(ShapeId id, NodeId field, NodeId q) {
+// The raw field of `of` at q, divided. The step ends with the cell, if it is longer than what the
+// bound for all of the region gives. Outside, it goes as far at least as no cell has surface.
+NodeId Lowering::divided_by_cells(ShapeId id, ShapeId of, NodeId field, NodeId q) {
     Graph &g = graph_;
     const InCell here = in_cell(id, q);
-    const NodeId whole = divided(shape(id).children.front(), field);
+    NodeId slope = here.slope;
+    if (const NodeId formula = fact(of).lipschitz; formula && !g.is_constant(formula))
+        slope = g.make(Op::Min, {slope, g.make(Op::Max, {formula, g.number(1e-6)})});
+    const NodeId whole = divided(of, field);
     const NodeId reach = g.make(Op::Max, {here.wall, g.make(Op::Abs, {whole})});
-    return g.make(Op::Clamp, {g.div(field, here.slope), g.neg(reach), reach});
+    return g.make(Op::Max,
+                  {g.make(Op::Clamp, {g.div(field, slope), g.neg(reach), reach}), here.way});
+}
+
+// What has a guard, by cells of the guard's box: as what is confined to that region (shapes.cpp,
+// within).
+NodeId Lowering::marched_in_box(ShapeId id, Where frame) {
+    const Box &box = fact(id).cells.box;
+    const NodeId q = graph_.make(Op::Clamp, {frame.p, graph_.vec(box.lo), graph_.vec(box.hi)});
+    const Where inside = at(frame, q);
+    const NodeId here = shape(id).kind == ShapeKind::Displace
+                            ? displaced(Reading::Marched, id, inside)
+                            : divided_by_cells(id, id, expression_of(Reading::Raw, id, inside), q);
+    return joined_distance(graph_, std::array{box_distance(graph_, box, frame.p), here});
+}
+
+bool Lowering::may_have_cells(ShapeId id, double steeper_than) const {
+    const Shape &s = shape(id);
+    const bool region = s.kind == ShapeKind::Within;
+    if (s.dims != 3 || !free_vars_[id.index].empty()) return false;
+    if (region) {
+        const Region &where = shapes_.regions[s.payload];
+        if (where.kind == RegionKind::Everywhere || !where.less.empty()) return false;
+        if (where.kind == RegionKind::Tube) return false; // without an end
+    } else {
+        // Rays go by the safe radius where it is known, which knows no cells.
+        const bool bent = s.kind == ShapeKind::Displace && curved_[id.index];
+        if (!fact(id).guard || bent) return false;
+    }
+    const ShapeFact &divided = fact(region ? s.children.front() : id);
+    return divided.status == ProofStatus::Proved && std::isfinite(divided.lipschitz_sup) &&
+           divided.lipschitz_sup > steeper_than;
+}
+
+std::vector<DividedField> Lowering::divided_fields(double steeper_than) {
+    look_over();
+    std::vector<DividedField> out;
+    std::vector<char> marched(shapes_.size(), 0);
+    marched[scene_.root.index] = 1;
+    for (std::size_t i = scene_.root.index + 1; i-- > 0;) {
+        const ShapeId id{i};
+        if (!marched[i]) continue;
+        if (passes_through(id)) {
+            for (const ShapeId child : shape(id).children) marched[child.index] = 1;
+        } else if (may_have_cells(id, steeper_than)) {
+            const ShapeId of =
+                shape(id).kind == ShapeKind::Within ? shape(id).children.front() : id;
+            const NodeId p = graph_.point();
+            out.push_back({id, expression_of(Reading::Raw, of, {p, 0})});
+        }
+    }
+    return out;
+}
+
+std::vector<DividedField> divided_fields(Scene &scene, double steeper_than) {
+    if (!scene.root) return {};
+    return Lowering(scene).divided_fields(steeper_than);
 }
 
 // Its safe radius by curvature: sqrt(2 f/M), as far as the cell's M holds and the field is the

@@ -72,14 +72,18 @@ Lowering::Lowering(Scene &scene) : scene_(scene), graph_(scene.graph), shapes_(s
     p3_ = graph_.fresh_var(Type::Vec3);
 }
 
-void Lowering::run() {
-    scene_.surfaces.clear();
+void Lowering::look_over() {
     find_parts();
     count_uses();
     find_names();
     find_free_vars();
     find_curved();
     find_shaded();
+}
+
+void Lowering::run() {
+    scene_.surfaces.clear();
+    look_over();
     const Where frame{p3_, 0};
     const NodeId distance = expression_of(Reading::Marched, scene_.root, frame);
     scene_.distance = graph_.add_function({"scene_distance", {}, {p3_}, distance});

@@ -37,6 +37,15 @@ struct Parts {
 };
 Parts lower_with_parts(Scene &scene);
 
+// The shapes that marching divides by bounds above `steeper_than`, each once, and what it divides:
+// the raw field at Point, of a region that of what is in it. Only those for which bounds by cells
+// (CellBounds) may be found: proved, with an end, and the same for all that uses them.
+struct DividedField {
+    ShapeId shape;
+    NodeId field;
+};
+std::vector<DividedField> divided_fields(Scene &scene, double steeper_than);
+
 // Signed distance of a region, exact, negative inside; and the point of the convex part nearest to
 // p (p itself inside).
 NodeId region_distance(Graph &graph, const Region &region, NodeId p);

@@ -39,6 +39,7 @@ class Lowering {
     explicit Lowering(Scene &scene);
     void run();
     Parts run_with_parts();
+    std::vector<DividedField> divided_fields(double steeper_than);
 
   private:
     // -- evaluating shapes
@@ -76,10 +77,13 @@ class Lowering {
 
     // -- bounds by cells (cells.cpp)
     struct InCell {
-        NodeId slope, bend, wall; // bend: invalid where it is not known; wall: how far both hold
+        NodeId slope, way, bend; // bend: invalid where it is not known
+        NodeId wall;             // how far slope and bend hold
     };
     InCell in_cell(ShapeId id, NodeId q);
-    NodeId divided_by_cells(ShapeId id, NodeId field, NodeId q);
+    NodeId divided_by_cells(ShapeId id, ShapeId of, NodeId field, NodeId q);
+    NodeId marched_in_box(ShapeId id, Where frame);
+    bool may_have_cells(ShapeId id, double steeper_than) const;
     NodeId bent_by_cells(ShapeId id, Where frame);
     NodeId blend(const Shape &shape, Where frame);
     NodeId seam(const Shape &shape, Where frame);
@@ -103,6 +107,8 @@ class Lowering {
     // with `index` the iteration's number.
     template <class F>
     NodeId minimum_of(Reading reading, NodeId count, int max_count, NodeId index, F each);
+
+    void look_over(); // what is known before shapes are evaluated
 
     // -- frames
     NodeId read(NodeId expression, Where frame);

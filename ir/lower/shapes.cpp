@@ -118,6 +118,7 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Where frame) {
                            {colored(id, frame), expression_of(Reading::Marched, id, frame)});
     if (reading == Reading::Shaded)
         return guarded(reading, id, frame, shaded(id, expression_of(Reading::Raw, id, frame)));
+    if (!fact(id).cells.lipschitz.empty()) return marched_in_box(id, frame);
     if (shape(id).kind == ShapeKind::Displace)
         return guarded(reading, id, frame, displaced(reading, id, frame));
     return guarded(reading, id, frame, divided(id, expression_of(Reading::Raw, id, frame)));
@@ -134,7 +135,11 @@ NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     const ShapeFact &known = fact(id);
     const bool reaches = reading == Reading::SafeRadius;
     NodeId raw = expression_of(Reading::Raw, id, frame);
-    if (!std::isfinite(known.outward)) return divided(id, raw);
+    const auto whole_of = [&] {
+        return known.cells.lipschitz.empty() ? divided(id, raw)
+                                             : divided_by_cells(id, id, raw, frame.p);
+    };
+    if (!std::isfinite(known.outward)) return whole_of();
     const ShapeId child = shape(id).children.front();
     const NodeId base = expression_of(Reading::Raw, child, frame), amount = shape(id).args.front();
     struct Known {
@@ -150,7 +155,7 @@ NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     };
     const std::size_t nested = known.partial.empty() ? 0 : known.partial.size() - 1;
     if (nested > 0) raw = graph_.sub(base, read(known.partial.back().terms, frame));
-    const NodeId whole = divided(id, raw);
+    const NodeId whole = whole_of();
     for (std::size_t i = 0; i < nested; ++i) {
         const PartialSum &partial = known.partial[i];
         const NodeId field = graph_.sub(base, read(partial.terms, frame));
@@ -390,7 +395,7 @@ NodeId Lowering::within(Reading reading, ShapeId id, Where frame) {
             field = shaded(child, field);
         else
             field = fact(id).cells.lipschitz.empty() ? divided(child, field, fact(id).detour)
-                                                     : divided_by_cells(id, field, q);
+                                                     : divided_by_cells(id, child, field, q);
         NodeId out = q;
         for (const Region &less : region.less) out = region_way_out(g, less, out).point;
         if (out != nearest) field = g.sub(field, g.make(Op::Length, {g.sub(nearest, out)}));

@@ -122,4 +122,67 @@ WithoutCalls without_loops(Graph &graph, NodeId root, std::size_t max_nodes) {
     return {out, writer.all};
 }
 
+namespace {
+
+struct Balancer {
+    Graph &graph;
+    std::unordered_map<NodeId, int> uses{};
+    std::unordered_map<NodeId, NodeId> done{};
+
+    void count(NodeId root) {
+        std::vector<NodeId> todo{root};
+        while (!todo.empty()) {
+            const NodeId id = todo.back();
+            todo.pop_back();
+            if (++uses[id] > 1) continue;
+            todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+        }
+    }
+    bool chains(NodeId id) const {
+        constexpr OpSet ops{Op::Add, Op::Min, Op::Max};
+        return ops[graph[id].op] && graph[id].type == Type::Float;
+    }
+    // The terms of a chain, in order: what is used elsewhere is a term of its own.
+    void terms(NodeId id, Op op, bool first, std::vector<NodeId> &out) {
+        if (!chains(id) || graph[id].op != op || (!first && uses[id] > 1)) {
+            out.push_back(of(id));
+            return;
+        }
+        const NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
+        terms(a, op, false, out);
+        terms(b, op, false, out);
+    }
+    NodeId tree(Op op, std::span<const NodeId> parts) {
+        if (parts.size() == 1) return parts[0];
+        const std::size_t half = parts.size() / 2;
+        const NodeId left = tree(op, parts.first(half)), right = tree(op, parts.subspan(half));
+        return graph.make(op, {left, right});
+    }
+    NodeId of(NodeId id) {
+        if (const auto known = done.find(id); known != done.end()) return known->second;
+        const Node node = graph[id];
+        NodeId out = id;
+        if (chains(id)) {
+            std::vector<NodeId> parts;
+            terms(id, node.op, true, parts);
+            constexpr std::size_t few = 4;
+            if (parts.size() > few) return done[id] = tree(node.op, parts);
+        }
+        if (node.count > 0) {
+            std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
+            for (NodeId &arg : args) arg = of(arg);
+            out = graph.make(node.op, node.type, args, node.payload);
+        }
+        return done[id] = out;
+    }
+};
+
+} // namespace
+
+NodeId balanced(Graph &graph, NodeId root) {
+    Balancer balancer{graph};
+    balancer.count(root);
+    return balancer.of(root);
+}
+
 } // namespace fathom::ir

@@ -33,4 +33,8 @@ WithoutCalls without_calls(Graph &graph, NodeId root, std::size_t max_nodes);
 // … and every loop whose count is a constant, outermost bodies first; others stay.
 WithoutCalls without_loops(Graph &graph, NodeId root, std::size_t max_nodes);
 
+// Long chains of sums, minima and maxima of numbers as trees, so that a part of the terms is a part
+// of the tree. The same numbers but for rounding. `root` without calls and loops.
+NodeId balanced(Graph &graph, NodeId root);
+
 } // namespace fathom::ir

@@ -176,8 +176,11 @@ TEST_CASE("a field that is steep in its corners keeps its bound cell by cell") {
     REQUIRE(!cells.lipschitz.empty());
     CHECK(s.scene.facts[steep.index].lipschitz_sup > 6 * 32); // 6 x^5 at x = 2
     // In the middle, where the surface is, not much above 2.
-    const std::size_t nx = std::size_t(cells.count[0]) + 1, ny = std::size_t(cells.count[1]) + 1;
+    const std::size_t nx = std::size_t(cells.count[0]), ny = std::size_t(cells.count[1]);
     CHECK(cells.lipschitz[(nx / 2) + nx * ((ny / 2) + ny * (std::size_t(cells.count[2]) / 2))] < 3);
+    // In the corner nothing is near: how far is known there, and of the middle it is not.
+    CHECK(cells.way.front() > 1);
+    CHECK(cells.way[(nx / 2) + nx * ((ny / 2) + ny * (std::size_t(cells.count[2]) / 2))] == 0);
     // About as steep everywhere: one bound for all.
     ShapeId wave = s.within(s.leaf(s.sin(s.g.mul(s.x, s.n(3)))), s.ball(2));
     CHECK(s.prove(wave).cells.lipschitz.empty());
