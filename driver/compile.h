@@ -32,6 +32,9 @@ struct CompileOptions {
     // Proved for the params' present values and from the first to the last of these times alone, in
     // seconds: for what is drawn once. None: for all that the scene allows.
     std::optional<std::pair<double, double>> times;
+    // The scene's own text where it is being typed and not saved yet; compile_file reads it in place
+    // of the file's.
+    std::optional<std::string> unsaved{};
     bool parts =
         false; // lower so that hits tell their parts (ir::lower_with_parts): for the viewer alone
 };
