@@ -31,6 +31,7 @@ vim.opt.runtimepath:append(vim.env.FATHOM_ROOT .. "/editors/vim")
 vim.opt.runtimepath:append(vim.env.FATHOM_ROOT .. "/editors/neovim")
 vim.opt.termguicolors, vim.opt.background, vim.opt.signcolumn = true, "dark", "yes"
 vim.cmd("colorscheme slate | filetype plugin indent on | syntax on")
+vim.cmd("highlight NormalFloat guifg=#d4d4d4 guibg=#33334a")
 require("fathom").setup({ cmd = { vim.env.FATHOM_PROGRAM, "lsp" } })
 vim.defer_fn(function()
   vim.fn.search("taper")
