@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -159,13 +160,14 @@ std::string Previews::open(const std::string &uri, const std::string &text) {
     return "";
 }
 
-// A record for the window; a window that is not there yet gets the newest text when it comes.
-static void tell(int connected, const std::string &record) {
+// A record for the window; a window that is not there yet gets the newest text when it comes. One
+// that does not read for seconds is given up: the editor does not wait for it.
+static void tell(int &connected, const std::string &record) {
     for (std::size_t done = 0; connected >= 0 && done < record.size();) {
         const ssize_t count =
             ::send(connected, record.data() + done, record.size() - done, MSG_NOSIGNAL);
         if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) return;
+        if (count <= 0) return shut(connected);
         done += static_cast<std::size_t>(count);
     }
 }
@@ -277,15 +279,20 @@ std::vector<std::string> Previews::heard() {
                 shut(connected);
             if (connected >= 0) {
                 here->connected = connected;
-                tell(connected, fmt::format("text {}\n{}", here->shown.size(), here->shown));
+                const timeval patience{3, 0};
+                ::setsockopt(connected, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+                tell(here->connected, fmt::format("text {}\n{}", here->shown.size(), here->shown));
             }
         }
         if (ready(here->connected) && !read_some(here->connected, here->received))
             shut(here->connected);
         hear(*here, messages);
         if (!ready(here->errors) || read_some(here->errors, here->said)) continue;
-        // The window's process has ended.
-        if (!here->said.empty()) {
+        // The window's process has ended; what a driver said of itself meanwhile is nobody's.
+        int status = 0;
+        ::waitpid(here->process, &status, 0);
+        here->process = 0;
+        if (!here->said.empty() && !(WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
             constexpr int warning = 2;
             messages.push_back(written({{"jsonrpc", "2.0"},
                                         {"method", "window/showMessage"},

@@ -153,6 +153,32 @@ TEST_CASE("a window follows a text, and a click comes back as a place") {
     ::close(window);
 }
 
+TEST_CASE("a window that is closed says nothing, and one that does not read is given up") {
+    const Script script("echo 'a driver warns' >&2; echo \"$4\" > \"$0.started\"; exec sleep 1");
+    Previews previews(script.file);
+    std::map<std::string, Json> texts = texts_with(std::string(1 << 20, ' ') + "\n");
+    std::vector<std::string> out;
+    REQUIRE(previews.handle(request(1), texts, out));
+    std::string socket;
+    for (int i = 0; i < 500 && socket.empty(); ++i) {
+        std::ifstream(script.file.string() + ".started") >> socket;
+        if (socket.empty()) ::usleep(10000);
+    }
+    REQUIRE_FALSE(socket.empty());
+    const int window = connected_to(socket); // which never reads
+    for (int i = 0; i < 200; ++i) {
+        std::vector<pollfd> waited;
+        previews.wait_for(waited);
+        if (waited.empty()) break;
+        ::poll(waited.data(), waited.size(), 100);
+        CHECK(previews.heard().empty());
+    }
+    std::vector<pollfd> waited;
+    previews.wait_for(waited);
+    CHECK(waited.empty());
+    ::close(window);
+}
+
 TEST_CASE("a window that does not open says why") {
     const Script script("echo 'fathom: there is no display' >&2; exit 4");
     Previews previews(script.file);
