@@ -29,6 +29,8 @@ struct Scene::Impl {
 
 inline const ir::Scene &ir_of(const Scene &scene) { return scene.impl().scene; }
 
+// What a scene names, from the provider alone.
+typecheck::Loader loader_of(const FileProvider &provider);
 Place place_of(Span span, const Sources &sources);
 Diagnostic translated(const fathom::Diagnostic &diagnostic, const Sources &sources);
 std::vector<Diagnostic> translated(const Diagnostics &diagnostics, const Sources &sources);

@@ -111,47 +111,6 @@ std::optional<std::string> inside(const std::string &path, const std::string &fr
     return whole.generic_string();
 }
 
-// What the scene names, from the provider alone.
-typecheck::Loader loader_of(const FileProvider &provider) {
-    using typecheck::LoadError;
-    const auto identity = [](const std::string &path,
-                             const std::string &from) -> std::variant<std::string, LoadError> {
-        std::optional<std::string> found = inside(path, from);
-        if (!found) return LoadError{LoadError::Reason::Outside, "leads out of the scene's folder"};
-        return std::move(*found);
-    };
-    const auto bytes_of =
-        [provider](const std::string &file) -> std::variant<std::string, LoadError> {
-        std::optional<std::string> bytes = provider(file);
-        if (!bytes) return LoadError{LoadError::Reason::NotFound, "no such file"};
-        return std::move(*bytes);
-    };
-    const auto text =
-        [=](const std::string &path,
-            const std::string &from) -> std::variant<typecheck::LoadedText, LoadError> {
-        const auto file = identity(path, from);
-        if (auto *error = std::get_if<LoadError>(&file)) return *error;
-        const std::string &name = std::get<std::string>(file);
-        auto bytes = bytes_of(name);
-        if (auto *error = std::get_if<LoadError>(&bytes)) return *error;
-        return typecheck::LoadedText{name, name, std::move(std::get<std::string>(bytes))};
-    };
-    const auto asset = [=]<class Data>(std::variant<Data, LoadError> (*decode)(std::string_view,
-                                                                               typecheck::Room &)) {
-        return [=](const std::string &path, const std::string &from,
-                   typecheck::Room &room) -> std::variant<Data, LoadError> {
-            const auto file = identity(path, from);
-            if (auto *error = std::get_if<LoadError>(&file)) return *error;
-            const auto bytes = bytes_of(std::get<std::string>(file));
-            if (auto *error = std::get_if<LoadError>(&bytes)) return *error;
-            std::variant<Data, LoadError> data = decode(std::get<std::string>(bytes), room);
-            if (auto *made = std::get_if<Data>(&data)) made->name = path;
-            return data;
-        };
-    };
-    return {identity, text, asset(driver::decode_image), asset(driver::decode_grid)};
-}
-
 driver::CompileOptions driver_options(const CompileOptions &options) {
     driver::CompileOptions to;
     to.include_folders = options.include_folders;
@@ -207,6 +166,46 @@ std::string refusal(const Param &param, const std::vector<double> &value) {
 }
 
 } // namespace
+
+typecheck::Loader loader_of(const FileProvider &provider) {
+    using typecheck::LoadError;
+    const auto identity = [](const std::string &path,
+                             const std::string &from) -> std::variant<std::string, LoadError> {
+        std::optional<std::string> found = inside(path, from);
+        if (!found) return LoadError{LoadError::Reason::Outside, "leads out of the scene's folder"};
+        return std::move(*found);
+    };
+    const auto bytes_of =
+        [provider](const std::string &file) -> std::variant<std::string, LoadError> {
+        std::optional<std::string> bytes = provider(file);
+        if (!bytes) return LoadError{LoadError::Reason::NotFound, "no such file"};
+        return std::move(*bytes);
+    };
+    const auto text =
+        [=](const std::string &path,
+            const std::string &from) -> std::variant<typecheck::LoadedText, LoadError> {
+        const auto file = identity(path, from);
+        if (auto *error = std::get_if<LoadError>(&file)) return *error;
+        const std::string &name = std::get<std::string>(file);
+        auto bytes = bytes_of(name);
+        if (auto *error = std::get_if<LoadError>(&bytes)) return *error;
+        return typecheck::LoadedText{name, name, std::move(std::get<std::string>(bytes))};
+    };
+    const auto asset = [=]<class Data>(std::variant<Data, LoadError> (*decode)(std::string_view,
+                                                                               typecheck::Room &)) {
+        return [=](const std::string &path, const std::string &from,
+                   typecheck::Room &room) -> std::variant<Data, LoadError> {
+            const auto file = identity(path, from);
+            if (auto *error = std::get_if<LoadError>(&file)) return *error;
+            const auto bytes = bytes_of(std::get<std::string>(file));
+            if (auto *error = std::get_if<LoadError>(&bytes)) return *error;
+            std::variant<Data, LoadError> data = decode(std::get<std::string>(bytes), room);
+            if (auto *made = std::get_if<Data>(&data)) made->name = path;
+            return data;
+        };
+    };
+    return {identity, text, asset(driver::decode_image), asset(driver::decode_grid)};
+}
 
 Scene::Scene(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 const std::vector<Param> &Scene::params() const { return impl_->params; }

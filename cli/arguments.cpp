@@ -226,6 +226,9 @@ struct Reader {
                         "save a picture of the window here after every reload")
             ->check(named())
             ->type_name("DIR");
+        sub->add_option("--editor", view.editor,
+                        "show the text that an editor has, by its socket, as it is typed")
+            ->type_name("SOCKET");
         sub->add_flag("--save-view", view.save_view, "write the view into FILE at the end");
         sub->add_flag("--times", view.times, "say of each reload what took how long");
         sub->add_flag("--still", view.still, "begin with the time stopped");

@@ -141,6 +141,7 @@ struct ViewCommand {
     SceneArguments scene;
     int width = 1280, height = 800;
     std::string record; // a folder for a picture after every reload
+    std::string editor; // a socket
     bool save_view = false, times = false, still = false, one_context = false;
 };
 // `fathom import`.

@@ -1,15 +1,11 @@
-// fathom explain: a diagnostic's page, embedded at build from docs/diagnostics; without a code the
-// list of all.
+// fathom explain: a diagnostic's page; without a code the list of all.
 #include "base/suggest.h"
 #include "cli/terminal.h"
+#include "driver/pages.h"
 
 #include <fmt/format.h>
-#include <utility>
 
 namespace fathom::cli {
-
-// Made at build time (cmake/embed.cmake): ("unknown-name.md", its text).
-const std::vector<std::pair<std::string_view, std::string_view>> &diagnostic_pages();
 
 Exit run(const ExplainCommand &command, Terminal &terminal) {
     if (command.code.empty()) {
@@ -17,7 +13,7 @@ Exit run(const ExplainCommand &command, Terminal &terminal) {
             terminal.put(fmt::format("{:<22} {}\n", code_name(code), code_summary(code)));
         return done;
     }
-    for (auto [file, text] : diagnostic_pages()) {
+    for (auto [file, text] : driver::diagnostic_pages()) {
         if (file != command.code + ".md") continue;
         terminal.put(text);
         return done;

@@ -42,6 +42,7 @@ Exit run(const ViewCommand &command, Terminal &terminal) {
     settings.width = command.width;
     settings.height = command.height;
     settings.record = command.record;
+    settings.editor = command.editor;
     settings.save_view = command.save_view;
     settings.still = command.still;
     settings.one_context = command.one_context;

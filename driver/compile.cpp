@@ -270,8 +270,9 @@ Compilation compile_file(const std::filesystem::path &file, const CompileOptions
     SceneFiles files(file.parent_path(), options.include_folders, options.limits);
     if (!standard_input) files.touch(file);
     const std::size_t most = options.limits.source * mebibyte;
-    std::optional<std::string> text =
-        standard_input ? read_standard_input(most, error) : read_file(file, most, error);
+    std::optional<std::string> text = options.unsaved  ? options.unsaved
+                                      : standard_input ? read_standard_input(most, error)
+                                                       : read_file(file, most, error);
     if (!text) {
         out.unreadable = error;
     } else if (standard_input) {

@@ -39,6 +39,9 @@ struct CompileOptions {
     // Bounds by cells of what is marched and steep, so many along a side at most (proof/prove.h):
     // for what is drawn. 0: none but those of fields in a region.
     int cells = 0;
+    // The scene's own text where it is being typed and not saved yet; compile_file reads it in place
+    // of the file's.
+    std::optional<std::string> unsaved{};
     bool parts =
         false; // lower so that hits tell their parts (ir::lower_with_parts): for the viewer alone
 };

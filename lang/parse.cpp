@@ -481,16 +481,12 @@ Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics) {
                       std::size_t(-1));
 }
 
-Ast parse(const Sources &sources, SourceId id, Diagnostics &diagnostics, std::size_t most_words) {
-    return parse_part(sources, id, 0, static_cast<std::uint32_t>(sources[id].text.size()),
-                      diagnostics, most_words);
-}
-
 Ast parse_part(const Sources &sources, SourceId id, std::uint32_t begin, std::uint32_t end,
-               Diagnostics &diagnostics, std::size_t most_words) {
+               Diagnostics &diagnostics, std::size_t most_words, Words *words) {
     const Source &source = sources[id];
-    const Words words = read_words(source, id, begin, end, diagnostics, most_words);
-    const Tokens tokens = lay_out(source, id, words, diagnostics);
+    Words read = read_words(source, id, begin, end, diagnostics, most_words);
+    const Tokens tokens = lay_out(source, id, read, diagnostics);
+    if (words) *words = std::move(read);
     Builder builder(source, id, tokens, diagnostics);
     grammar::Input in(tokens.kinds);
     pegtl::parse<grammar::file, grammar::action, grammar::control>(in, builder);

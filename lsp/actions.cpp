@@ -10,11 +10,11 @@
 namespace fathom::lsp {
 namespace {
 
-Json edits_json(std::string_view text, const std::vector<TextEdit> &edits) {
+Json edits_json(const Lines &lines, const std::vector<TextEdit> &edits) {
     Json all = Json::array();
     for (const TextEdit &edit : edits)
         all.push_back(
-            {{"range", json_of(range_of(text, edit.begin, edit.end))}, {"newText", edit.text}});
+            {{"range", json_of(range_of(lines, edit.begin, edit.end))}, {"newText", edit.text}});
     return all;
 }
 
@@ -80,7 +80,7 @@ Json code_actions(Workspace &workspace, const Json &params) {
     if (wanted("quickfix")) add_fixes(workspace, document, begin, end, actions);
     // each costs a compilation, so a cursor that only passes by gets none
     constexpr int automatic = 2;
-    if (context.value("triggerKind", 1) == automatic || !compiled(workspace, document).scene)
+    if (context.value("triggerKind", 1) == automatic || !compiled(workspace, document).good())
         return actions;
     for (const Refactoring &one : all_refactorings(workspace, document, begin, end)) {
         if (!wanted(one.kind)) continue;
@@ -89,7 +89,8 @@ Json code_actions(Workspace &workspace, const Json &params) {
         actions.push_back(
             {{"title", one.title},
              {"kind", one.kind},
-             {"edit", {{"changes", {{document.uri, edits_json(document.text, one.edits)}}}}}});
+             {"edit",
+              {{"changes", {{document.uri, edits_json(reading(document).lines, one.edits)}}}}}});
     }
     return actions;
 }

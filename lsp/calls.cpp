@@ -20,15 +20,6 @@ std::string one_line(std::string_view text) {
     return line;
 }
 
-Form form_of(const File &home, const Declaration &declared) {
-    const lang::Function &function = home.reading->syntax.ast.functions[declared.function];
-    std::string head =
-        one_line(home.text.substr(function.head.begin, function.head.end - function.head.begin));
-    if (head.starts_with("fn ")) return form_of(head.substr(3), function.doc);
-    if (!head.starts_with('(')) head = "(" + head + ")"; // `x => …`
-    return form_of(declared.name + head, function.doc);
-}
-
 std::vector<Form> library(const Workspace &workspace, const std::string &name,
                           const std::string &module) {
     std::vector<Form> forms;
@@ -39,6 +30,15 @@ std::vector<Form> library(const Workspace &workspace, const std::string &name,
 }
 
 } // namespace
+
+Form form_of(const File &home, const Declaration &declared) {
+    const lang::Function &function = home.reading->syntax.ast.functions[declared.function];
+    std::string head =
+        one_line(home.text.substr(function.head.begin, function.head.end - function.head.begin));
+    if (head.starts_with("fn ")) return form_of(head.substr(3), function.doc);
+    if (!head.starts_with('(')) head = "(" + head + ")"; // `x => …`
+    return form_of(declared.name + head, function.doc);
+}
 
 std::vector<Form> forms_of(Workspace &workspace, const File &file, const Use &use) {
     if (const auto target = target_of(workspace, file, use)) {

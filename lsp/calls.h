@@ -10,6 +10,7 @@ struct Form {
     std::string signature, doc;
     Signature read;
 };
+Form form_of(const File &home, const Declaration &function);
 // All forms; none where it is no function that is known.
 std::vector<Form> forms_of(Workspace &workspace, const File &file, const Use &use);
 // Of a name that was never finished: the text's own declaration of it, else the library's.

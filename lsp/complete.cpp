@@ -71,40 +71,80 @@ Place place_of(Workspace &workspace, const Json &params) {
     return place;
 }
 
-Kind kind_of_name(const Place &place, const std::string &name) {
-    for (const fathom::v1::Name &known : compiled(place.workspace, place.document).scene
-                                             ? place.document.compiled->names
-                                             : place.document.last_names)
-        if (known.name == name) return kind_of_type(known.type);
+// Of a name of the text, as the last compilation knew it: completion is asked for at every letter,
+// and waits for another only where the name was not there then. Nothing where it has none.
+const std::string *type_of_name(const Place &place, const std::string &name) {
+    const auto &types = place.document.types;
+    if (!types || (!types->contains(name) && !place.document.compiled))
+        (void)compiled(place.workspace, place.document);
+    const auto found = types->find(name);
+    return found == types->end() ? nullptr : &found->second;
+}
+
+Kind kind_of_parameter(const lang::Ast &ast, const Declaration &declared) {
+    for (const lang::Function &function : ast.functions)
+        for (const lang::Parameter &parameter : function.parameters)
+            if (parameter.name.span == declared.at && parameter.type)
+                return parameter.type->kind == lang::TypeExpr::Kind::List
+                           ? Kind::List
+                           : kind_of_type(parameter.type->name);
+    return Kind::Unknown;
+}
+
+constexpr int most_names = 8; // that stand for each other
+
+Kind kind_before(const Place &place, std::size_t end, int depth = 0);
+
+// Of the nearest declaration of a name: parameters and names of blocks before those of the text.
+Kind kind_of_name(const Place &place, const std::string &name, int depth) {
+    const Declaration *nearest = nullptr;
     for (const Declaration &declared : place.read.names.declarations) {
         if (declared.name != name) continue;
-        if (declared.by == DeclaredBy::Import) return Kind::Module;
+        const bool around =
+            declared.statement.begin <= place.offset && place.offset <= declared.statement.end;
+        if (declared.by == DeclaredBy::Parameter ? around
+            : declared.top_level                 ? !nearest
+                                                 : declared.at.end <= place.offset && !around)
+            nearest = &declared;
     }
+    if (nearest && nearest->by == DeclaredBy::Import) return Kind::Module;
+    if (nearest && nearest->by == DeclaredBy::Parameter)
+        return kind_of_parameter(place.read.syntax.ast, *nearest);
+    if (nearest && nearest->top_level)
+        if (const std::string *type = type_of_name(place, name)) return kind_of_type(*type);
+    if (nearest && !nearest->top_level && nearest->value && depth < most_names) {
+        const Span value = place.read.syntax.ast.exprs[nearest->value].span;
+        std::size_t end = 0;
+        while (end < place.tokens().size() && place.tokens()[end].end <= value.end) ++end;
+        return kind_before(place, end, depth + 1);
+    }
+    if (nearest) return Kind::Unknown;
     if (const Constant *constant = constant_named(place.workspace, name))
         return kind_of_type(constant->type);
     return Kind::Unknown;
 }
 
 // Of what ends before the word number `end`.
-Kind kind_before(const Place &place, std::size_t end) {
+Kind kind_before(const Place &place, std::size_t end, int depth) {
     if (end == 0) return Kind::Unknown;
     const lang::Token &last = place.tokens()[end - 1];
     if (last.kind == Tok::Number) return Kind::Number;
-    if (last.kind == Tok::Name) return kind_of_name(place, place.text(last));
+    if (last.kind == Tok::Name) return kind_of_name(place, place.text(last), depth);
     const std::string sign = place.text(last);
     if (sign == "]") return Kind::Number; // a vector, or an element
     if (sign != ")" && sign != "}") return Kind::Unknown;
-    int depth = 0;
+    int nesting = 0;
     std::size_t open = end;
     while (open-- > 0) {
         const std::string at = place.text(place.tokens()[open]);
-        if (at == ")" || at == "}" || at == "]") ++depth;
-        if ((at == "(" || at == "{" || at == "[") && --depth == 0) break;
+        if (at == ")" || at == "}" || at == "]") ++nesting;
+        if ((at == "(" || at == "{" || at == "[") && --nesting == 0) break;
     }
     if (open == std::size_t(-1) || open == 0) return Kind::Unknown;
     const lang::Token &callee = place.tokens()[open - 1];
     if (callee.kind != Tok::Name) // `union(…) { … }`, `(a | b)`
-        return sign == "}" ? kind_before(place, open) : Kind::Unknown;
+        return sign == "}" && depth < most_names ? kind_before(place, open, depth + 1)
+                                                 : Kind::Unknown;
     for (const Form &form : forms_named(place.workspace, place.file, place.text(callee))) {
         if (!form.read.result.empty()) return kind_of_type(form.read.result);
         if (kind_of_first(form.read) == Kind::Shape) return Kind::Shape;
@@ -164,41 +204,39 @@ Json members(const Place &place) {
     if (kind == Kind::Number || kind == Kind::Unknown)
         for (const char *component : {"x", "y", "z", "w"})
             items.push_back({{"label", component}, {"kind", item_field}});
-    for (const Declaration &declared : place.read.names.declarations)
-        if (declared.function && declared.top_level)
-            for (const Form &form : forms_named(place.workspace, place.file, declared.name)) {
-                const Kind first = form.read.parameters.empty() ||
-                                           form.read.parameters[0].find(": ") == std::string::npos
-                                       ? Kind::Unknown
-                                       : kind_of_first(form.read);
-                if (!form.read.names.empty() &&
-                    (kind == Kind::Unknown || first == Kind::Unknown || first == kind))
-                    add_function(place, items, declared.name, form, item_method);
-            }
+    for (const Declaration &declared : place.read.names.declarations) {
+        if (!declared.function || !declared.top_level) continue;
+        const Form form = form_of(place.file, declared);
+        if (form.read.names.empty()) continue;
+        const Kind first = form.read.parameters[0].find(": ") == std::string::npos
+                               ? Kind::Unknown
+                               : kind_of_first(form.read);
+        if (kind == Kind::Unknown || first == Kind::Unknown || first == kind)
+            add_function(place, items, declared.name, form, item_method);
+    }
     add_library(place, items, true, kind);
     return items;
 }
 
 // Names of the text that may be meant here.
 void add_own(const Place &place, Json &items) {
-    const auto &names = compiled(place.workspace, place.document).scene
-                            ? place.document.compiled->names
-                            : place.document.last_names;
+    if (!place.document.types) (void)compiled(place.workspace, place.document);
     std::set<std::string> seen;
     const auto at = static_cast<std::uint32_t>(place.offset);
-    const std::vector<Step> path = path_to(place.read.syntax.ast, at, at);
+    // Where statements begin that hold the place, that stand beside one of these, and the functions.
+    std::set<std::uint32_t> around, beside, functions;
+    for (const Step &step : path_to(place.read.syntax.ast, at, at)) {
+        if (step.function) functions.insert(step.function->span.begin);
+        if (!step.block) continue;
+        around.insert(step.stmt->span.begin);
+        for (const lang::Stmt &stmt : step.block->stmts) beside.insert(stmt.span.begin);
+    }
     const auto visible = [&](const Declaration &declared) {
         if (declared.top_level) return true;
-        return std::ranges::any_of(path, [&](const Step &step) {
-            if (declared.by == DeclaredBy::Parameter)
-                return step.function && step.function->span == declared.statement;
-            if (!step.block) return false;
-            if (step.stmt->span == declared.statement) return declared.by == DeclaredBy::Loop;
-            return declared.at.end <= place.offset &&
-                   std::ranges::any_of(step.block->stmts, [&](const lang::Stmt &stmt) {
-                       return stmt.span == declared.statement;
-                   });
-        });
+        const std::uint32_t begin = declared.statement.begin;
+        if (declared.by == DeclaredBy::Parameter) return functions.contains(begin);
+        if (around.contains(begin)) return declared.by == DeclaredBy::Loop;
+        return declared.at.end <= place.offset && beside.contains(begin);
     };
     const std::vector<Declaration> &all = place.read.names.declarations;
     for (std::size_t i = all.size(); i-- > 0;) { // the innermost last declared first
@@ -207,14 +245,13 @@ void add_own(const Place &place, Json &items) {
             continue;
         if (declared.at.begin <= place.offset && place.offset <= declared.at.end) continue;
         if (declared.function) {
-            for (const Form &form : forms_named(place.workspace, place.file, declared.name))
-                add_function(place, items, declared.name, form, item_function);
+            add_function(place, items, declared.name, form_of(place.file, declared), item_function);
             continue;
         }
-        const auto known = std::ranges::find(names, declared.name, &fathom::v1::Name::name);
+        const auto known = place.document.types->find(declared.name);
         items.push_back({{"label", declared.name},
                          {"kind", declared.by == DeclaredBy::Import ? item_module : item_variable},
-                         {"detail", known == names.end() ? "" : known->type}});
+                         {"detail", known == place.document.types->end() ? "" : known->second}});
     }
     for (std::size_t import : place.read.names.open_imports)
         if (const auto file =

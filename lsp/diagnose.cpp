@@ -1,5 +1,8 @@
 // What is wrong with a text, and the places of requests.
+#include "lsp/kept.h"
 #include "lsp/requests.h"
+
+#include "driver/pages.h"
 
 namespace fathom::lsp {
 
@@ -26,18 +29,18 @@ std::size_t offset_of(const Document &document, const Json &params) {
     return offset_at(document.text, position_of(params.at("position")));
 }
 
-Json range_json(std::string_view text, Span span) {
-    return json_of(range_of(text, span.begin, span.end));
+Json range_json(const Lines &lines, Span span) {
+    return json_of(range_of(lines, span.begin, span.end));
 }
 
-Json place_of(const Document &document, const fathom::v1::Place &place) {
+Json place_of(Document &document, const fathom::v1::Place &place) {
     if (place.line == 0) return json_of(Range{});
     if (place.file == document.path)
-        return json_of(range_of(document.text, place.begin, place.end));
+        return json_of(range_of(reading(document).lines, place.begin, place.end));
     return json_of(range_of(place));
 }
 
-Json diagnostic_json(const Document &document, const Diagnostic &diagnostic) {
+Json diagnostic_json(Document &document, const Diagnostic &diagnostic) {
     std::string message = diagnostic.message;
     for (const std::string &note : diagnostic.notes) message += "\nnote: " + note;
     if (!diagnostic.help.empty()) message += "\nhelp: " + diagnostic.help;
@@ -51,12 +54,17 @@ Json diagnostic_json(const Document &document, const Diagnostic &diagnostic) {
             {{"location", {{"uri", uri_of(file)}, {"range", place_of(document, label.at)}}},
              {"message", label.message}});
     }
-    return {{"range", place_of(document, diagnostic.at)},
-            {"severity", severity_of(diagnostic.severity)},
-            {"code", diagnostic.code},
-            {"source", "fathom"},
-            {"message", message},
-            {"relatedInformation", std::move(related)}};
+    Json said{{"range", place_of(document, diagnostic.at)},
+              {"severity", severity_of(diagnostic.severity)},
+              {"code", diagnostic.code},
+              {"source", "fathom"},
+              {"message", message},
+              {"relatedInformation", std::move(related)}};
+    for (const auto &[file, text] : driver::diagnostic_pages())
+        if (file == diagnostic.code + ".md")
+            if (const auto page = kept_file("diagnostics/" + std::string(file), text))
+                said["codeDescription"] = {{"href", uri_of(page->string())}};
+    return said;
 }
 
 Json diagnostics_of(Workspace &workspace, Document &document) {

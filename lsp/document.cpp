@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 
 namespace fathom::lsp {
 namespace {
@@ -37,22 +38,27 @@ std::size_t offset_at(std::string_view text, Position position) {
     return at;
 }
 
-Position position_at(std::string_view text, std::size_t offset) {
-    offset = std::min(offset, text.size());
-    const std::string_view before = text.substr(0, offset);
-    Position position;
-    position.line = static_cast<int>(std::ranges::count(before, '\n'));
-    const std::size_t line_end = before.rfind('\n');
-    for (std::size_t at = line_end == before.npos ? 0 : line_end + 1; at < offset;) {
-        const std::size_t length = length_at(text, at);
+Lines lines_of(std::string_view text) {
+    Lines lines{text};
+    for (std::size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + 1))
+        lines.begins.push_back(at + 1);
+    return lines;
+}
+
+Position position_at(const Lines &lines, std::size_t offset) {
+    offset = std::min(offset, lines.text.size());
+    const auto next = std::ranges::upper_bound(lines.begins, offset);
+    Position position{static_cast<int>(next - lines.begins.begin()) - 1, 0};
+    for (std::size_t at = *std::prev(next); at < offset;) {
+        const std::size_t length = length_at(lines.text, at);
         position.character += units(length);
         at += length;
     }
     return position;
 }
 
-Range range_of(std::string_view text, std::size_t begin, std::size_t end) {
-    return {position_at(text, begin), position_at(text, end)};
+Range range_of(const Lines &lines, std::size_t begin, std::size_t end) {
+    return {position_at(lines, begin), position_at(lines, end)};
 }
 
 Range range_of(const fathom::v1::Place &place) {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace fathom::lsp {
 
@@ -20,9 +21,16 @@ struct Range {
 
 // The byte of a position; positions beyond a line's end are its end, beyond the text's its end.
 std::size_t offset_at(std::string_view text, Position position);
+
+// Where the lines of a text begin. The text has to outlive it.
+struct Lines {
+    std::string_view text;
+    std::vector<std::size_t> begins{0};
+};
+Lines lines_of(std::string_view text);
 // The position of a byte, which may be the text's end.
-Position position_at(std::string_view text, std::size_t offset);
-Range range_of(std::string_view text, std::size_t begin, std::size_t end);
+Position position_at(const Lines &lines, std::size_t offset);
+Range range_of(const Lines &lines, std::size_t begin, std::size_t end);
 // A stretch of a text that is not at hand: exact where its lines hold no character beyond U+FFFF.
 Range range_of(const fathom::v1::Place &place);
 

@@ -2,9 +2,9 @@
 #include "lsp/requests.h"
 
 #include "lsp/calls.h"
+#include "lsp/kept.h"
 
-#include "api/impl.h"
-#include "proof/prove.h"
+#include "driver/verdict.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,20 +13,113 @@
 namespace fathom::lsp {
 namespace {
 
-using fathom::v1::ShapeFacts;
+// What a stretch of the text makes at its top level: the steepest shape, and how many there are.
+struct Made {
+    Span span;
+    ir::ShapeId shape;
+    int count = 0;
+};
 
-const char *word_of(fathom::v1::Status status) {
-    switch (status) {
-    case fathom::v1::Status::Proved: return "proved";
-    case fathom::v1::Status::Assumed: return "assumed";
-    case fathom::v1::Status::Estimated: return "estimated";
+// By place. Only what a bound is proved of; also where other statements are wrong.
+std::vector<Made> shapes_of(const Document &document, const Compiled &result) {
+    const ir::Scene &scene = result.compilation.scene;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Made> made;
+    for (const ir::TopLevel &top : scene.top_level) {
+        if (top.shape.index >= scene.facts.size() || !top.span.source ||
+            result.compilation.sources[top.span.source].name != document.path)
+            continue;
+        const double bound = scene.facts[top.shape.index].lipschitz_sup;
+        if (!std::isfinite(bound)) continue;
+        Made &here = made[{top.span.begin, top.span.end}];
+        if (here.count++ == 0 || bound > scene.facts[here.shape.index].lipschitz_sup)
+            here.span = top.span, here.shape = top.shape;
     }
-    return "";
+    std::vector<Made> shapes;
+    for (const auto &[span, here] : made) shapes.push_back(here);
+    return shapes;
 }
 
-std::string facts_in_words(const ShapeFacts &facts) {
-    return fmt::format("bound {:.4g}, {}, {}", facts.lipschitz, word_of(facts.status),
-                       facts.exact ? "exact" : "a lower bound of the distance");
+// The call whose function's name holds or touches a byte; an empty stretch where there is none.
+Span call_named_at(Document &document, std::size_t offset) {
+    const lang::Ast &ast = reading(document).syntax.ast;
+    const auto at = static_cast<std::uint32_t>(offset);
+    Span call{};
+    for (const Step &step : path_to(ast, at, at)) {
+        const auto *made =
+            step.expr ? std::get_if<lang::Call>(&ast.exprs[step.expr].kind) : nullptr;
+        if (!made) continue;
+        const lang::Expr &callee = ast.exprs[made->callee];
+        const auto *member = std::get_if<lang::Member>(&callee.kind);
+        const Span name = member ? member->name.span : callee.span;
+        if (name.begin <= at && at <= name.end) call = step.span(ast);
+    }
+    return call;
+}
+
+// Of the shapes of the scene that a call made, the steepest; none where it made none that is seen,
+// or one without a bound.
+ir::ShapeId steepest_made_by(const Document &document, const Compiled &result, Span call) {
+    const ir::Scene &scene = result.compilation.scene;
+    ir::ShapeId steepest;
+    if (call.begin == call.end) return steepest;
+    std::vector<bool> seen(scene.facts.size());
+    std::vector<ir::ShapeId> todo;
+    for (const ir::TopLevel &top : scene.top_level) todo.push_back(top.shape);
+    while (!todo.empty()) {
+        const ir::ShapeId id = todo.back();
+        todo.pop_back();
+        if (id.index >= seen.size() || seen[id.index]) continue;
+        seen[id.index] = true;
+        const ir::Shape &shape = scene.shapes[id];
+        todo.insert(todo.end(), shape.children.begin(), shape.children.end());
+        const double bound = scene.facts[id.index].lipschitz_sup;
+        if (shape.origin.source && shape.origin.begin == call.begin &&
+            shape.origin.end == call.end && std::isfinite(bound) &&
+            result.compilation.sources[shape.origin.source].name == document.path &&
+            (!steepest || bound > scene.facts[steepest.index].lipschitz_sup))
+            steepest = id;
+    }
+    return steepest;
+}
+
+// Of what is cut to a region (`within:`) that of the field inside.
+std::optional<std::string> region_of(const proof::Explanation &node, ir::ShapeId shape) {
+    if (node.shape == shape)
+        return node.operation == "within" && !node.children.empty() ? node.children[0].region
+                                                                    : node.region;
+    for (const proof::Explanation &child : node.children)
+        if (auto found = region_of(child, shape)) return found;
+    return std::nullopt;
+}
+
+std::string numbers(double number) { return fmt::format("{:.4g}", number); }
+
+std::string facts_in_words(const ir::ShapeFact &fact) {
+    return fmt::format(
+        "bound {}, {}, {}", numbers(fact.lipschitz_sup), driver::status_name(fact.status),
+        fact.kind == ir::FieldKind::Exact ? "exact" : "a lower bound of the distance");
+}
+
+// The region that a bound was proved over, what it costs a ray, and where the solid lies.
+std::string more_in_words(Workspace &workspace, Document &document, ir::ShapeId shape) {
+    const ir::Scene &scene = compiled(workspace, document).compilation.scene;
+    const ir::ShapeFact &fact = scene.facts[shape.index];
+    std::string text;
+    if (const auto region = fact.kind == ir::FieldKind::Exact
+                                ? std::optional<std::string>("everywhere")
+                                : region_of(explanation(workspace, document), shape))
+        text += *region == "everywhere" ? "; proved at all points" : "; proved in " + *region;
+    if (fact.lipschitz_sup > 1)
+        text += fmt::format("; a ray takes up to {} times the steps of a distance",
+                            numbers(fact.lipschitz_sup));
+    if (fact.bounds.finite() && !fact.bounds.empty()) {
+        const auto point = [](const std::array<double, 3> &p) {
+            return fmt::format("[{:.3g}, {:.3g}, {:.3g}]", p[0], p[1], p[2]);
+        };
+        text += fmt::format("; the solid lies in aabb({}, {})", point(fact.bounds.lo),
+                            point(fact.bounds.hi));
+    }
+    return text;
 }
 
 std::string code(const std::string &text) { return fmt::format("```fathom\n{}\n```", text); }
@@ -51,9 +144,10 @@ std::string declared_text(const File &home, const Declaration &declared, const s
     return code(text.substr(0, text.find('\n')));
 }
 
-std::string type_of_name(const std::vector<fathom::v1::Name> &names, const Declaration &declared) {
-    for (const fathom::v1::Name &name : names)
-        if (name.name == declared.name && name.at.begin == declared.at.begin) return name.type;
+std::string type_of_name(const Compiled &compiled, const Declaration &declared) {
+    for (const typecheck::NameFact &name : compiled.compilation.names)
+        if (name.name == declared.name && name.declared.begin == declared.at.begin)
+            return name.type;
     return "";
 }
 
@@ -64,7 +158,7 @@ std::string name_text(Workspace &workspace, Document &document, std::size_t offs
         const Declaration &declared = home->reading->names.declarations[target->declaration];
         const bool own = home->path == document.path;
         return declared_text(*home, declared,
-                             own ? type_of_name(compiled(workspace, document).names, declared)
+                             own ? type_of_name(compiled(workspace, document), declared)
                                  : std::string());
     }
     const Use *use = file.reading->names.use_at(offset);
@@ -75,6 +169,11 @@ std::string name_text(Workspace &workspace, Document &document, std::size_t offs
     for (const fathom::v1::LibraryEntry *entry : library_forms(workspace, use->name, module))
         text += (text.empty() ? "" : "\n\n---\n\n") +
                 code((module.empty() ? "" : module + ".") + entry->signature) + "\n" + entry->doc;
+    for (const fathom::v1::LibraryEntry *entry : library_forms(workspace, use->name, module))
+        if (const auto picture = picture_of_entry(entry->name, module, entry->doc)) {
+            text += fmt::format("\n\n![{}]({})", entry->name, uri_of(picture->string()));
+            break;
+        }
     const Constant *constant = constant_named(workspace, use->name);
     if (text.empty() && constant && use->as != UsedAs::Argument)
         text = code(fmt::format("{}: {}{}", constant->name, constant->type,
@@ -122,8 +221,7 @@ void hint_arguments(Workspace &workspace, const File &file, Json &hints, std::si
                 continue;
             const std::string name = parameter_at(forms, first + i, count);
             if (!name.empty())
-                hints.push_back({{"position", json_of(range_of(file.text, value.span.begin,
-                                                               value.span.begin))["start"]},
+                hints.push_back({{"position", json_of(position_at(read.lines, value.span.begin))},
                                  {"label", name + ":"},
                                  {"kind", 2},
                                  {"paddingRight", true}});
@@ -131,28 +229,56 @@ void hint_arguments(Workspace &workspace, const File &file, Json &hints, std::si
     }
 }
 
+// Why the bounds are what they are, a line a step.
+std::string explanation_text(Workspace &workspace, Document &document) {
+    const Compiled &result = compiled(workspace, document);
+    if (!result.good()) throw Refusal("a scene with errors has no bound");
+    std::string text;
+    explain(explanation(workspace, document), result.compilation.sources, 0, text);
+    return text;
+}
+
 } // namespace
 
 // What a name is: of the text's own names the type or the head, of the library's the entry. On a
-// shape at the top level also what is proved of it.
+// shape what is proved of it; on an error its message, with the point and its witness.
 Json hover(Workspace &workspace, const Json &params) {
     Document &document = document_of(workspace, params);
     const std::size_t offset = offset_of(document, params);
     const Word word = word_at(document.text, offset);
     std::string text;
+    const auto add = [&text](const std::string &part) {
+        if (!part.empty()) text += (text.empty() ? "" : "\n\n---\n\n") + part;
+    };
+    const Compiled &result = compiled(workspace, document);
+    for (const fathom::v1::Diagnostic &diagnostic : result.diagnostics)
+        if (diagnostic.severity == fathom::v1::Severity::Error && !diagnostic.notes.empty() &&
+            diagnostic.at.file == document.path && diagnostic.at.begin <= offset &&
+            offset <= diagnostic.at.end)
+            add(fmt::format("{}\n\n{}", diagnostic.message, fmt::join(diagnostic.notes, "\n\n")));
     if (!in_comment_or_string(reading(document).syntax, offset))
-        text = name_text(workspace, document, offset);
-    const fathom::v1::CompileResult &result = compiled(workspace, document);
-    if (result.scene)
-        for (const ShapeFacts &shape : result.scene->facts().shapes)
-            if (shape.at.file == document.path && shape.at.begin <= offset &&
-                offset <= shape.at.end)
-                text += fmt::format("{}This shape: {}.", text.empty() ? "" : "\n\n---\n\n",
-                                    facts_in_words(shape));
+        add(name_text(workspace, document, offset));
+    const ir::Scene &scene = result.compilation.scene;
+    std::string proved;
+    if (const ir::ShapeId made =
+            steepest_made_by(document, result, call_named_at(document, offset)))
+        proved = facts_in_words(scene.facts[made.index]) + more_in_words(workspace, document, made);
+    if (!proved.empty())
+        add(fmt::format("`{}` here: {}.", document.text.substr(word.begin, word.end - word.begin),
+                        proved));
+    for (const Made &here : shapes_of(document, result))
+        if (here.span.begin <= offset && offset <= here.span.end) {
+            const std::string whole = facts_in_words(scene.facts[here.shape.index]) +
+                                      more_in_words(workspace, document, here.shape);
+            if (here.count > 1)
+                add(fmt::format("The steepest of {} shapes: {}.", here.count, whole));
+            else if (whole != proved)
+                add(fmt::format("This shape: {}.", whole));
+        }
     if (text.empty()) return nullptr;
     Json answer{{"contents", markdown(text)}};
     if (word.begin < word.end)
-        answer["range"] = json_of(range_of(document.text, word.begin, word.end));
+        answer["range"] = json_of(range_of(reading(document).lines, word.begin, word.end));
     return answer;
 }
 
@@ -165,42 +291,49 @@ Json inlay_hints(Workspace &workspace, const Json &params) {
         from = offset_at(document.text, position_of(params["range"].at("start")));
         to = offset_at(document.text, position_of(params["range"].at("end")));
     }
-    if (compiled(workspace, document).scene)
-        for (const ShapeFacts &shape : compiled(workspace, document).scene->facts().shapes) {
-            if (shape.at.file != document.path || shape.lipschitz <= 1 || shape.at.end < from ||
-                shape.at.begin > to)
-                continue;
-            const Json range = place_of(document, shape.at);
-            hints.push_back({{"position", range["end"]},
-                             {"label", fmt::format("bound {:.3g}", shape.lipschitz)},
-                             {"tooltip", facts_in_words(shape)},
-                             {"paddingLeft", true}});
-        }
+    const Compiled &result = compiled(workspace, document);
+    for (const Made &shape : shapes_of(document, result)) {
+        const ir::ShapeFact &fact = result.compilation.scene.facts[shape.shape.index];
+        if (fact.lipschitz_sup <= 1 || shape.span.end < from || shape.span.begin > to) continue;
+        hints.push_back(
+            {{"position", json_of(position_at(reading(document).lines, shape.span.end))},
+             {"label", fmt::format("bound {:.3g}", fact.lipschitz_sup)},
+             {"tooltip", facts_in_words(fact)},
+             {"paddingLeft", true}});
+    }
     hint_arguments(workspace, file_of(workspace, document), hints, from, to);
     return hints;
 }
 
-// Above each top-level shape its bound, which explains itself.
+// Above each top-level shape its bound, which explains itself, and above the first one a window.
 Json code_lenses(Workspace &workspace, const Json &params) {
     Document &document = document_of(workspace, params);
     Json lenses = Json::array();
-    if (!compiled(workspace, document).scene) return lenses;
-    for (const ShapeFacts &shape : compiled(workspace, document).scene->facts().shapes)
-        if (shape.at.file == document.path)
-            lenses.push_back({{"range", place_of(document, shape.at)},
-                              {"command",
-                               {{"title", fmt::format("{}: explain", facts_in_words(shape))},
-                                {"command", "fathom.explain"},
-                                {"arguments", {document.uri}}}}});
+    const Compiled &result = compiled(workspace, document);
+    const auto lens = [&](Span at, const std::string &title, const char *command) {
+        lenses.push_back(
+            {{"range", range_json(reading(document).lines, at)},
+             {"command", {{"title", title}, {"command", command}, {"arguments", {document.uri}}}}});
+    };
+    const std::vector<Made> shapes = shapes_of(document, result);
+    if (!shapes.empty()) lens(shapes.front().span, "show", "fathom.show");
+    for (const Made &shape : shapes)
+        lens(shape.span,
+             facts_in_words(result.compilation.scene.facts[shape.shape.index]) + ": explain",
+             "fathom.explain");
     return lenses;
 }
 
-std::string explanation(Workspace &workspace, Document &document) {
-    const fathom::v1::CompileResult &result = compiled(workspace, document);
-    if (!result.scene) throw Refusal("a scene with errors has no bound");
-    std::string text;
-    explain(proof::explain(fathom::v1::ir_of(*result.scene)),
-            result.scene->impl().compilation->sources, 0, text);
+// `fathom.explain` [address]: why the bounds are what they are, as text, which is shown as well.
+// `fathom.show` [address] is answered by who serves (preview.h).
+Json execute_command(Workspace &workspace, const Json &params) {
+    const std::string command = params.at("command");
+    if (command == "fathom.show") throw Refusal("no window can be opened from here");
+    if (command != "fathom.explain") throw Refusal("there is no command " + command);
+    const std::string uri = params.at("arguments").at(0);
+    const std::string text = explanation_text(workspace, document_at(workspace, uri));
+    constexpr int info = 3;
+    workspace.said.push_back({"window/showMessage", {{"type", info}, {"message", text}}});
     return text;
 }
 

@@ -40,7 +40,7 @@ Json edits_within(const Reading &read, std::size_t from, std::size_t to) {
     if (!formatted || *formatted == old) return edits;
     const auto replace = [&](std::size_t begin, std::size_t end, std::string_view with) {
         if (std::string_view(old).substr(begin, end - begin) == with) return;
-        edits.push_back({{"range", json_of(range_of(old, begin, end))}, {"newText", with}});
+        edits.push_back({{"range", json_of(range_of(read.lines, begin, end))}, {"newText", with}});
     };
     const Syntax after = read_syntax(*formatted);
     const std::vector<Piece> was = pieces_of(read.syntax), is = pieces_of(after);

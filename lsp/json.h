@@ -14,9 +14,9 @@ using Json = nlohmann::json;
 inline std::string written(const Json &json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
+inline Json json_of(const Position &at) { return {{"line", at.line}, {"character", at.character}}; }
 inline Json json_of(const Range &range) {
-    return {{"start", {{"line", range.start.line}, {"character", range.start.character}}},
-            {"end", {{"line", range.end.line}, {"character", range.end.character}}}};
+    return {{"start", json_of(range.start)}, {"end", json_of(range.end)}};
 }
 inline Position position_of(const Json &json) {
     return {json.at("line").get<int>(), json.at("character").get<int>()};
@@ -24,5 +24,8 @@ inline Position position_of(const Json &json) {
 inline Json markdown(std::string text) {
     return {{"kind", "markdown"}, {"value", std::move(text)}};
 }
+
+// Does the changes of a `textDocument/didChange` to a text. Throws where one is malformed.
+void change(std::string &text, const Json &changes);
 
 } // namespace fathom::lsp

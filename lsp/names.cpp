@@ -1,6 +1,8 @@
 #include "lsp/names.h"
 
 #include <algorithm>
+#include <string_view>
+#include <unordered_map>
 
 namespace fathom::lsp {
 namespace {
@@ -16,8 +18,8 @@ struct Walk {
         bool visible;
     };
     struct Scope {
-        std::map<std::string, Entry, std::less<>> names;
-        bool function = false; // what is below runs when it is called
+        std::unordered_map<std::string_view, Entry> names; // texts of the tree
+        bool function = false;                             // what is below runs when it is called
     };
 
     const lang::Ast &ast;
@@ -254,6 +256,7 @@ template <class Item> bool touches(const Item &item, std::size_t offset) {
 
 Names names_of(const lang::Ast &ast) {
     Walk walk{ast, {}, {}};
+    walk.out.uses.reserve(ast.exprs.size());
     walk.block(ast.root);
     Names names = std::move(walk.out);
     for (Use &use : names.uses) {

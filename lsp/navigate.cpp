@@ -1,12 +1,12 @@
 // Where things are: definitions, references, symbols.
+#include "lsp/kept.h"
 #include "lsp/requests.h"
 #include "lsp/targets.h"
 
 #include "driver/compile.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <fstream>
+#include <cctype>
 
 namespace fathom::lsp {
 namespace {
@@ -27,38 +27,8 @@ int symbol_kind(const Declaration &declaration) {
     return symbol_variable;
 }
 
-Json location(std::string_view text, const std::string &path, Span at) {
-    return {{"uri", uri_of(path)}, {"range", range_json(text, at)}};
-}
-
-// A file of the embedded library as one that an editor can open: written once, read-only, into the
-// user's cache. Nothing where that cannot be written.
-std::optional<std::filesystem::path> library_file(const std::string &name, std::string_view text) {
-    namespace fs = std::filesystem;
-    const char *cache = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
-    fs::path folder;
-    if (cache && *cache)
-        folder = cache;
-    else if (home && *home)
-        folder = fs::path(home) / ".cache";
-    else
-        return std::nullopt;
-    folder = folder / "fathom" / std::string(fathom::v1::version()) / "library";
-    const fs::path file = folder / name;
-    std::error_code error;
-    {
-        std::ifstream in(file, std::ios::binary);
-        if (in && std::string(std::istreambuf_iterator<char>(in), {}) == text) return file;
-    }
-    fs::create_directories(folder, error);
-    fs::remove(file, error); // of a program of the same version with another library
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) return std::nullopt;
-    fs::permissions(file, fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read,
-                    error);
-    return file;
+Json location(const Lines &lines, const std::string &path, Span at) {
+    return {{"uri", uri_of(path)}, {"range", range_json(lines, at)}};
 }
 
 Json library_location(const std::string &name, const std::string &module) {
@@ -69,11 +39,11 @@ Json library_location(const std::string &name, const std::string &module) {
             if (at == std::string::npos) continue;
             std::string base(file.name);
             if (!base.ends_with(".sdf")) base += ".sdf";
-            const auto path = library_file(base, file.text);
+            const auto path = kept_file("library/" + base, file.text);
             if (!path) return nullptr;
             const std::size_t begin = at + start.find(' ') + 1;
             return {{"uri", uri_of(path->string())},
-                    {"range", json_of(range_of(file.text, begin, begin + name.size()))}};
+                    {"range", json_of(range_of(lines_of(file.text), begin, begin + name.size()))}};
         }
     }
     return nullptr;
@@ -84,21 +54,31 @@ File file_of(Document &document) {
     return {document.path, document.text, document.reading};
 }
 
-Json symbol_tree(const Reading &read, const lang::Block &block) {
+// Declarations by where their statement begins, without those that are in no list of symbols.
+using ByStatement = std::map<std::uint32_t, const Declaration *>;
+
+ByStatement by_statement(const Names &names) {
+    ByStatement all;
+    for (const Declaration &declared : names.declarations)
+        if (!declared.name.empty() && declared.by != DeclaredBy::Parameter &&
+            declared.by != DeclaredBy::Loop)
+            all[declared.statement.begin] = &declared;
+    return all;
+}
+
+Json symbol_tree(const Reading &read, const ByStatement &declarations, const lang::Block &block) {
     Json all = Json::array();
     for (const lang::Stmt &stmt : block.stmts) {
-        for (std::size_t i = 0; i < read.names.declarations.size(); ++i) {
-            const Declaration &declared = read.names.declarations[i];
-            if (declared.name.empty() || declared.by == DeclaredBy::Parameter ||
-                declared.by == DeclaredBy::Loop || declared.statement != stmt.span)
-                continue;
+        if (const auto found = declarations.find(stmt.span.begin);
+            found != declarations.end() && found->second->statement == stmt.span) {
+            const Declaration &declared = *found->second;
             Json symbol{{"name", declared.name},
                         {"kind", symbol_kind(declared)},
-                        {"range", range_json(read.syntax.text(), stmt.span)},
-                        {"selectionRange", range_json(read.syntax.text(), declared.at)}};
+                        {"range", range_json(read.lines, stmt.span)},
+                        {"selectionRange", range_json(read.lines, declared.at)}};
             if (declared.function) {
                 Json inner = symbol_tree(
-                    read,
+                    read, declarations,
                     read.syntax.ast.blocks[read.syntax.ast.functions[declared.function].body]);
                 if (!inner.empty()) symbol["children"] = std::move(inner);
             }
@@ -119,11 +99,11 @@ Json definition(Workspace &workspace, const Json &params) {
         const Declaration &declared = names.declarations[import];
         if (declared.at.begin > offset || declared.at.end < offset) continue;
         const auto imported = file_at(workspace, imported_path(file.path, declared.path));
-        return imported ? location(imported->text, imported->path, {}) : Json();
+        return imported ? location(imported->reading->lines, imported->path, {}) : Json();
     }
     if (const auto target = target_at(workspace, file, offset)) {
         const auto home = file_at(workspace, target->path);
-        return location(home->text, home->path,
+        return location(home->reading->lines, home->path,
                         home->reading->names.declarations[target->declaration].at);
     }
     const Use *use = names.use_at(offset);
@@ -141,8 +121,8 @@ Json references(Workspace &workspace, const Json &params) {
     const bool declaration = context.value("includeDeclaration", true);
     for (const Mention &mention : mentions_of(workspace, *target, all_files(workspace)))
         if (declaration || !mention.declared)
-            all.push_back(
-                location(file_at(workspace, mention.path)->text, mention.path, mention.at));
+            all.push_back(location(file_at(workspace, mention.path)->reading->lines, mention.path,
+                                   mention.at));
     return all;
 }
 
@@ -155,14 +135,37 @@ Json highlights(Workspace &workspace, const Json &params) {
     if (!target) return all;
     for (const Mention &mention : mentions_of(workspace, *target, {file}))
         if (mention.path == file.path)
-            all.push_back({{"range", range_json(file.text, mention.at)},
+            all.push_back({{"range", range_json(file.reading->lines, mention.at)},
                            {"kind", mention.written ? write : read}});
     return all;
 }
 
 Json document_symbols(Workspace &workspace, const Json &params) {
     const Reading &read = reading(document_of(workspace, params));
-    return symbol_tree(read, read.syntax.ast.blocks[read.syntax.ast.root]);
+    return symbol_tree(read, by_statement(read.names),
+                       read.syntax.ast.blocks[read.syntax.ast.root]);
+}
+
+// The files that a text names and that are there: imports, images, grids.
+Json document_links(Workspace &workspace, const Json &params) {
+    Document &document = document_of(workspace, params);
+    const Reading &read = reading(document);
+    const std::vector<lang::Token> &tokens = read.syntax.words.tokens;
+    Json links = Json::array();
+    for (std::size_t i = 1; i < tokens.size(); ++i) {
+        if (tokens[i].kind != lang::Tok::String) continue;
+        const auto call = call_around(read.syntax, tokens[i].begin);
+        if (tokens[i - 1].kind != lang::Tok::Import &&
+            !(call && (call->name == "image" || call->name == "grid")))
+            continue;
+        const Span name{{}, tokens[i].begin + 1, tokens[i].end - 1}; // without the quotes
+        const std::string file =
+            imported_path(document.path, document.text.substr(name.begin, name.end - name.begin));
+        std::error_code error;
+        if (std::filesystem::is_regular_file(file, error))
+            links.push_back({{"range", range_json(read.lines, name)}, {"target", uri_of(file)}});
+    }
+    return links;
 }
 
 Json workspace_symbols(Workspace &workspace, const Json &params) {
@@ -181,9 +184,10 @@ Json workspace_symbols(Workspace &workspace, const Json &params) {
     for (const File &file : all_files(workspace))
         for (const Declaration &declared : file.reading->names.declarations)
             if (declared.top_level && !declared.name.empty() && fits(declared.name))
-                all.push_back({{"name", declared.name},
-                               {"kind", symbol_kind(declared)},
-                               {"location", location(file.text, file.path, declared.at)}});
+                all.push_back(
+                    {{"name", declared.name},
+                     {"kind", symbol_kind(declared)},
+                     {"location", location(file.reading->lines, file.path, declared.at)}});
     return all;
 }
 

@@ -86,7 +86,7 @@ Json prepare_rename(Workspace &workspace, const Json &params) {
     if (!target_at(workspace, file, offset)) return nullptr;
     const auto declared = names.declaration_at(offset);
     const Span at = declared ? names.declarations[*declared].at : names.use_at(offset)->at;
-    return {{"range", range_json(document.text, at)},
+    return {{"range", range_json(file.reading->lines, at)},
             {"placeholder", document.text.substr(at.begin, at.end - at.begin)}};
 }
 
@@ -111,7 +111,9 @@ Json rename(Workspace &workspace, const Json &params) {
         if (mention.doubtful)
             throw Refusal(fmt::format(
                 "two declarations may be meant where `{}` stands in line {}", old_name,
-                position_at(file_at(workspace, mention.path)->text, mention.at.begin).line + 1));
+                position_at(file_at(workspace, mention.path)->reading->lines, mention.at.begin)
+                        .line +
+                    1));
         Rewritten &part = rewritten[mention.path];
         part.at.push_back(mention.at);
     }
@@ -125,7 +127,8 @@ Json rename(Workspace &workspace, const Json &params) {
         for (std::size_t i = part.at.size(); i-- > 0;) {
             const Span at = part.at[i];
             part.after.replace(at.begin, at.end - at.begin, new_name);
-            edits.push_back({{"range", range_json(part.before.text, at)}, {"newText", new_name}});
+            edits.push_back(
+                {{"range", range_json(part.before.reading->lines, at)}, {"newText", new_name}});
         }
         changes[uri_of(path)] = std::move(edits);
         texts[path] = part.after;

@@ -1,13 +1,8 @@
 #include "lsp/server.h"
 
 #include "lsp/requests.h"
-#include "lsp/serve.h"
-#include "lsp/transport.h"
-
-#include "typecheck/check.h"
 
 #include <algorithm>
-#include <deque>
 
 namespace fathom::lsp {
 namespace {
@@ -16,31 +11,21 @@ namespace {
 constexpr int parse_error = -32700, unknown_method = -32601, internal_error = -32603,
               invalid_params = -32602, request_cancelled = -32800, request_failed = -32803;
 
-using Request = Json (*)(Workspace &, const Json &);
-const std::map<std::string, Request> requests{
-    {"textDocument/hover", hover},
-    {"textDocument/completion", completion},
-    {"textDocument/signatureHelp", signature_help},
-    {"textDocument/definition", definition},
-    {"textDocument/references", references},
-    {"textDocument/documentHighlight", highlights},
-    {"textDocument/documentSymbol", document_symbols},
-    {"workspace/symbol", workspace_symbols},
-    {"textDocument/prepareRename", prepare_rename},
-    {"textDocument/rename", rename},
-    {"textDocument/semanticTokens/full", semantic_tokens},
-    {"textDocument/semanticTokens/range", semantic_tokens},
-    {"textDocument/foldingRange", folding_ranges},
-    {"textDocument/selectionRange", selection_ranges},
-    {"textDocument/documentColor", document_colors},
-    {"textDocument/colorPresentation", color_presentations},
-    {"textDocument/formatting", formatting},
-    {"textDocument/rangeFormatting", range_formatting},
-    {"textDocument/onTypeFormatting", on_type_formatting},
-    {"textDocument/codeAction", code_actions},
-    {"textDocument/codeLens", code_lenses},
-    {"textDocument/inlayHint", inlay_hints},
+struct Row {
+    const char *method;
+    Json (*answer)(Workspace &, const Json &);
+    const char *capability; // null: that of another row
+    Json value;
 };
+const std::vector<Row> &rows() {
+    static const std::vector<Row> all{
+#define FATHOM_REQUEST(function, method, capability, ...)                                          \
+    {method, function, capability, Json(__VA_ARGS__)},
+#include "lsp/requests.def"
+#undef FATHOM_REQUEST
+    };
+    return all;
+}
 
 // A member of members; null where one of them is not there.
 Json at_path(const Json &json, std::initializer_list<const char *> path) {
@@ -58,12 +43,7 @@ std::string failure(const Json &id, int code, const std::string &why) {
 
 } // namespace
 
-Server::Server() {
-    workspace_.library = fathom::v1::library_entries();
-    for (typecheck::LibraryConstant &constant : typecheck::library_constants())
-        workspace_.constants.push_back(
-            {std::move(constant.name), std::move(constant.type), constant.rgb});
-}
+Server::Server() : workspace_(workspace_with_library()) {}
 
 void Server::send(const char *method, Json params) {
     outbox_.push_back(
@@ -72,6 +52,7 @@ void Server::send(const char *method, Json params) {
 
 std::vector<std::string> Server::handle(const std::string &message) {
     outbox_.clear();
+    workspace_.said.clear();
     const Json request = Json::parse(message, nullptr, false);
     if (request.is_discarded() || !request.is_object())
         return {failure(nullptr, parse_error, "this is no JSON object")};
@@ -91,6 +72,8 @@ std::vector<std::string> Server::handle(const std::string &message) {
         } else {
             bool known = true;
             Json result = answer(method, params, known);
+            for (auto &[said, what] : std::exchange(workspace_.said, {}))
+                send(said.c_str(), std::move(what));
             if (known)
                 outbox_.push_back(
                     written({{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}}));
@@ -134,9 +117,8 @@ std::vector<std::string> Server::idle() {
 Json Server::answer(const std::string &method, const Json &params, bool &known) {
     if (method == "initialize") return initialize(params);
     if (method == "shutdown") return shut_down_ = true, Json();
-    if (method == "workspace/executeCommand") return execute(params);
-    const auto request = requests.find(method);
-    if (request != requests.end()) return request->second(workspace_, params);
+    const auto row = std::ranges::find(rows(), method, &Row::method);
+    if (row != rows().end()) return row->answer(workspace_, params);
     known = false;
     return {};
 }
@@ -154,46 +136,12 @@ Json Server::initialize(const Json &params) {
     else if (root.is_string())
         workspace_.roots.push_back(path_of(root.get<std::string>()));
     std::erase(workspace_.roots, "");
-    return {{"capabilities",
-             {{"positionEncoding", "utf-16"},
-              {"textDocumentSync", {{"openClose", true}, {"change", 2}}},
-              {"hoverProvider", true},
-              {"completionProvider", {{"triggerCharacters", {".", "\"", "/"}}}},
-              {"signatureHelpProvider",
-               {{"triggerCharacters", {"(", ","}}, {"retriggerCharacters", {":"}}}},
-              {"definitionProvider", true},
-              {"referencesProvider", true},
-              {"documentHighlightProvider", true},
-              {"documentSymbolProvider", true},
-              {"workspaceSymbolProvider", true},
-              {"renameProvider", {{"prepareProvider", true}}},
-              {"semanticTokensProvider",
-               {{"legend", semantic_legend()}, {"full", true}, {"range", true}}},
-              {"foldingRangeProvider", true},
-              {"selectionRangeProvider", true},
-              {"colorProvider", true},
-              {"documentFormattingProvider", true},
-              {"documentRangeFormattingProvider", true},
-              {"documentOnTypeFormattingProvider",
-               {{"firstTriggerCharacter", "}"}, {"moreTriggerCharacter", {"\n"}}}},
-              {"codeActionProvider",
-               {{"codeActionKinds",
-                 {"quickfix", "refactor.extract", "refactor.inline", "refactor.rewrite"}}}},
-              {"codeLensProvider", Json::object()},
-              {"executeCommandProvider", {{"commands", {"fathom.explain"}}}},
-              {"inlayHintProvider", true}}},
+    Json capabilities{{"positionEncoding", "utf-16"},
+                      {"textDocumentSync", {{"openClose", true}, {"change", 2}}}};
+    for (const Row &row : rows())
+        if (row.capability) capabilities[row.capability] = row.value;
+    return {{"capabilities", std::move(capabilities)},
             {"serverInfo", {{"name", "fathom"}, {"version", fathom::v1::version()}}}};
-}
-
-// `fathom.explain` [address]: why the bounds are what they are, as text, which is shown as well.
-Json Server::execute(const Json &params) {
-    const std::string command = params.at("command");
-    if (command != "fathom.explain") throw Refusal("there is no command " + command);
-    const std::string uri = params.at("arguments").at(0);
-    const std::string text = explanation(workspace_, document_at(workspace_, uri));
-    constexpr int info = 3;
-    send("window/showMessage", {{"type", info}, {"message", text}});
-    return text;
 }
 
 void Server::notified(const std::string &method, const Json &params) {
@@ -236,17 +184,7 @@ void Server::notified(const std::string &method, const Json &params) {
 
 void Server::edited(const Json &params) {
     Document &document = document_of(workspace_, params);
-    for (const Json &change : params.at("contentChanges")) {
-        std::string text = change.at("text");
-        if (!change.contains("range")) {
-            document.text = std::move(text);
-            continue;
-        }
-        const Json &range = change["range"];
-        const std::size_t begin = offset_at(document.text, position_of(range.at("start"))),
-                          end = offset_at(document.text, position_of(range.at("end")));
-        if (begin <= end) document.text.replace(begin, end - begin, text);
-    }
+    change(document.text, params.at("contentChanges"));
     document.version = params.at("textDocument").value("version", document.version + 1);
     changed(document);
 }
@@ -259,36 +197,6 @@ void Server::changed(Document &document) {
         other.compiled.reset();
         other.published = false;
     }
-}
-
-int serve(int in, int out) {
-    Transport transport(in, out);
-    Server server;
-    std::deque<std::string> waiting;
-    const auto send = [&](const std::vector<std::string> &messages) {
-        return std::ranges::all_of(messages,
-                                   [&](const std::string &m) { return transport.write(m); });
-    };
-    const auto receive = [&] {
-        std::optional<std::string> message = transport.read();
-        if (!message) return false;
-        server.foresee(*message);
-        waiting.push_back(std::move(*message));
-        return true;
-    };
-    bool open = true;
-    while (!server.ended()) {
-        while (open && transport.pending()) open = receive();
-        if (waiting.empty()) {
-            if (!send(server.idle())) break;
-            if (open && transport.pending()) continue;
-            if (!open || !receive()) break;
-        }
-        const std::string message = std::move(waiting.front());
-        waiting.pop_front();
-        if (!send(server.handle(message))) break;
-    }
-    return server.exit_status();
 }
 
 } // namespace fathom::lsp

@@ -35,7 +35,6 @@ class Server {
   private:
     Json answer(const std::string &method, const Json &params, bool &known);
     Json initialize(const Json &params);
-    Json execute(const Json &params);
     void notified(const std::string &method, const Json &params);
     void edited(const Json &params);
     void changed(Document &document);

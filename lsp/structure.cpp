@@ -135,42 +135,18 @@ std::vector<Colored> colored_words(const Workspace &workspace, const Reading &re
     return all;
 }
 
-// Positions of rising bytes, without going through the text from its start for each.
-struct Cursor {
-    std::string_view text;
-    std::size_t at = 0;
-    Position position{};
-
-    Position advance(std::size_t to) {
-        const Position inside = position_at(text.substr(at), to - at);
-        position = {position.line + inside.line,
-                    inside.line ? inside.character : position.character + inside.character};
-        at = to;
-        return position;
-    }
-};
-
-} // namespace
-
-Json semantic_legend() {
-    return {{"tokenTypes", meanings},
-            {"tokenModifiers", {"declaration", "readonly", "defaultLibrary"}}};
-}
-
-Json semantic_tokens(Workspace &workspace, const Json &params) {
+// `range`: null for the whole text.
+Json tokens_within(Workspace &workspace, const Json &params, const Json &range) {
     const Reading &read = reading(document_of(workspace, params));
     const std::string_view text = read.syntax.text();
-    const bool limited = params.contains("range");
-    const std::size_t from =
-                          limited ? offset_at(text, position_of(params["range"].at("start"))) : 0,
-                      to = limited ? offset_at(text, position_of(params["range"].at("end")))
-                                   : text.size();
+    const bool limited = !range.is_null();
+    const std::size_t from = limited ? offset_at(text, position_of(range.at("start"))) : 0,
+                      to = limited ? offset_at(text, position_of(range.at("end"))) : text.size();
     Json data = Json::array();
-    Cursor cursor{text};
     Position last;
     const auto put = [&](std::size_t begin, std::size_t end, const Colored &word) {
-        const Position start = cursor.advance(begin);
-        const int length = position_at(text.substr(begin, end - begin), end - begin).character;
+        const auto [start, stop] = range_of(read.lines, begin, end);
+        const int length = stop.character - start.character;
         if (length == 0) return;
         data.insert(data.end(),
                     {start.line - last.line,
@@ -189,6 +165,21 @@ Json semantic_tokens(Workspace &workspace, const Json &params) {
     return {{"data", std::move(data)}};
 }
 
+} // namespace
+
+Json semantic_legend() {
+    return {{"tokenTypes", meanings},
+            {"tokenModifiers", {"declaration", "readonly", "defaultLibrary"}}};
+}
+
+Json semantic_tokens(Workspace &workspace, const Json &params) {
+    return tokens_within(workspace, params, nullptr);
+}
+
+Json semantic_tokens_of_range(Workspace &workspace, const Json &params) {
+    return tokens_within(workspace, params, params.at("range"));
+}
+
 Json folding_ranges(Workspace &workspace, const Json &params) {
     const Reading &read = reading(document_of(workspace, params));
     const std::string_view text = read.syntax.text();
@@ -199,11 +190,10 @@ Json folding_ranges(Workspace &workspace, const Json &params) {
         if (*kind) range["kind"] = kind;
         all.push_back(std::move(range));
     };
-    Cursor cursor{text};
     std::vector<std::pair<char, int>> open;
     int imports = -1, last_import = -1;
     for (const lang::Token &token : read.syntax.words.tokens) {
-        const int line = cursor.advance(token.begin).line;
+        const int line = position_at(read.lines, token.begin).line;
         const char sign = text[token.begin];
         if (token.kind == Tok::Import) {
             if (imports < 0) imports = line;
@@ -220,11 +210,11 @@ Json folding_ranges(Workspace &workspace, const Json &params) {
     const std::vector<lang::Comment> &comments = read.syntax.words.comments;
     for (std::size_t i = 0; i < comments.size();) {
         std::size_t last = i;
-        int end = position_at(text, comments[i].end).line;
+        int end = position_at(read.lines, comments[i].end).line;
         while (last + 1 < comments.size() && comments[last + 1].is_line && comments[i].is_line &&
-               position_at(text, comments[last + 1].begin).line == end + 1)
-            end = position_at(text, comments[++last].end).line;
-        fold(position_at(text, comments[i].begin).line, end, "comment");
+               position_at(read.lines, comments[last + 1].begin).line == end + 1)
+            end = position_at(read.lines, comments[++last].end).line;
+        fold(position_at(read.lines, comments[i].begin).line, end, "comment");
         i = last + 1;
     }
     return all;
@@ -252,7 +242,7 @@ Json selection_ranges(Workspace &workspace, const Json &params) {
                 {{}, static_cast<std::uint32_t>(word.begin), static_cast<std::uint32_t>(word.end)});
         Json chain;
         for (Span span : spans) {
-            Json step{{"range", range_json(text, span)}};
+            Json step{{"range", range_json(read.lines, span)}};
             if (!chain.is_null()) step["parent"] = std::move(chain);
             chain = std::move(step);
         }
@@ -277,7 +267,7 @@ Json document_colors(Workspace &workspace, const Json &params) {
         if (token.kind != Tok::Color) continue;
         double rgba[4] = {0, 0, 0, 1};
         lang::read_color(text.substr(token.begin, token.end - token.begin), rgba);
-        all.push_back({{"range", range_json(text, {{}, token.begin, token.end})},
+        all.push_back({{"range", range_json(read.lines, {{}, token.begin, token.end})},
                        {"color", color_json(rgba[0], rgba[1], rgba[2], rgba[3])}});
     }
     for (const Use &use : read.names.uses) {
@@ -285,7 +275,7 @@ Json document_colors(Workspace &workspace, const Json &params) {
         const Constant *constant = constant_named(workspace, use.name);
         if (!constant || !constant->rgb) continue;
         const auto part = [&](int shift) { return double(*constant->rgb >> shift & 255) / 255; };
-        all.push_back({{"range", range_json(text, use.at)},
+        all.push_back({{"range", range_json(read.lines, use.at)},
                        {"color", color_json(part(16), part(8), part(0), 1)}});
     }
     return all;

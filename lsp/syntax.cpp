@@ -12,9 +12,9 @@ using lang::Tok;
 Syntax read_syntax(std::string text) {
     Syntax syntax;
     syntax.source = syntax.sources.add("", std::move(text));
-    Diagnostics diagnostics, again;
-    syntax.ast = lang::parse(syntax.sources, syntax.source, diagnostics);
-    syntax.words = lang::read_words(syntax.sources[syntax.source], syntax.source, again);
+    Diagnostics diagnostics;
+    syntax.ast =
+        lang::parse(syntax.sources, syntax.source, diagnostics, lang::usual_words, &syntax.words);
     syntax.whole = !diagnostics.has_errors();
     return syntax;
 }

@@ -10,7 +10,6 @@
 namespace fathom::lsp {
 namespace {
 
-constexpr std::size_t max_body = std::size_t{64} << 20;
 constexpr std::size_t max_header = 4096;
 
 // The number after `Content-Length:` in a header; nothing where there is none.
@@ -51,7 +50,7 @@ std::optional<std::string> Transport::read() {
             length_in(std::string_view(bytes_).substr(0, end));
         bytes_.erase(0, end + 4);
         if (!length) continue;
-        if (*length > max_body) {
+        if (*length > max_body_) {
             std::size_t left = *length;
             while (left > 0) {
                 if (bytes_.empty() && !fill()) return std::nullopt;

@@ -2,6 +2,7 @@
 // JSON. Knows nothing of what messages mean.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -9,10 +10,12 @@ namespace fathom::lsp {
 
 class Transport {
   public:
-    Transport(int in, int out) : in_(in), out_(out) {}
+    // `max_body`: of a message, in bytes.
+    Transport(int in, int out, std::size_t max_body = std::size_t{64} << 20)
+        : in_(in), out_(out), max_body_(max_body) {}
 
     // The next message's body; nothing at the end of the input. What is no header is skipped up to
-    // one that is; a body above 64 MiB is skipped too.
+    // one that is; a body above `max_body` is skipped too.
     std::optional<std::string> read();
 
     // Whether a message, or the end, is there to be read without waiting.
@@ -25,6 +28,7 @@ class Transport {
     bool fill(); // more bytes into `bytes_`; false at the end
 
     int in_, out_;
+    std::size_t max_body_;
     std::string bytes_; // read, not yet handed out
 };
 

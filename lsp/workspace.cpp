@@ -1,6 +1,6 @@
 #include "lsp/workspace.h"
 
-#include "driver/compile.h"
+#include "api/impl.h"
 #include "typecheck/check.h"
 
 #include <algorithm>
@@ -29,25 +29,16 @@ std::shared_ptr<const Reading> read_text(const std::string &text) {
     auto made = std::make_shared<Reading>();
     made->syntax = read_syntax(text);
     made->names = names_of(made->syntax.ast);
+    made->lines = lines_of(made->syntax.text());
     return made;
 }
 
-} // namespace
-
-Document &document_at(Workspace &workspace, const std::string &uri) {
-    const auto found = workspace.documents.find(uri);
-    if (found == workspace.documents.end()) throw UnknownDocument();
-    return found->second;
-}
-
-fathom::v1::CompileResult compile_as(Workspace &workspace, const std::string &path,
-                                     const std::string &text,
-                                     const std::map<std::string, std::string> &instead,
-                                     std::set<std::string> *asked_for) {
-    const fs::path folder = fs::path(path).parent_path();
-    fathom::v1::CompileOptions options;
-    options.files = [&workspace, &instead, asked_for,
-                     folder](const std::string &name) -> std::optional<std::string> {
+// What a text imports: `instead`, else what is open, else the files beside it.
+fathom::v1::FileProvider files_beside(Workspace &workspace, const fs::path &folder,
+                                      const std::map<std::string, std::string> &instead,
+                                      std::set<std::string> *asked_for) {
+    return [&workspace, instead, asked_for,
+            folder](const std::string &name) -> std::optional<std::string> {
         const fs::path file = folder / name;
         if (asked_for) asked_for->insert(file.string());
         if (const auto found = instead.find(file.string()); found != instead.end())
@@ -61,17 +52,81 @@ fathom::v1::CompileResult compile_as(Workspace &workspace, const std::string &pa
         if (error || way.empty() || *way.begin() == "..") return std::nullopt;
         return read_whole(file, any_size);
     };
+}
+
+// A fault of ours, or a lack of memory, is the only thing that is said of the text then.
+Compiled compile(Workspace &workspace, Document &document) {
+    const auto work = [&] {
+        const fathom::v1::FileProvider files =
+            files_beside(workspace, fs::path(document.path).parent_path(), {}, &document.asked_for);
+        Compiled made{
+            driver::compile_loaded(document.path, document.text, fathom::v1::loader_of(files), {}),
+            {},
+            {}};
+        made.diagnostics =
+            fathom::v1::translated(made.compilation.diagnostics, made.compilation.sources);
+        return made;
+    };
+    return fathom::v1::guarded(work, [](fathom::v1::Diagnostic why) {
+        Compiled made;
+        made.compilation.unreadable = why.message;
+        made.diagnostics.push_back(std::move(why));
+        return made;
+    });
+}
+
+} // namespace
+
+static Workspace made_from_library() {
+    Workspace workspace;
+    workspace.library = fathom::v1::library_entries();
+    for (std::size_t i = 0; i < workspace.library.size(); ++i)
+        workspace.entries.emplace(workspace.library[i].name, i);
+    for (typecheck::LibraryConstant &constant : typecheck::library_constants())
+        workspace.constants.push_back(
+            {std::move(constant.name), std::move(constant.type), constant.rgb});
+    std::ranges::sort(workspace.constants, {}, &Constant::name);
+    return workspace;
+}
+
+Workspace workspace_with_library() {
+    static const Workspace made = made_from_library();
+    return made;
+}
+
+Document &document_at(Workspace &workspace, const std::string &uri) {
+    const auto found = workspace.documents.find(uri);
+    if (found == workspace.documents.end()) throw UnknownDocument();
+    return found->second;
+}
+
+fathom::v1::CompileResult compile_as(Workspace &workspace, const std::string &path,
+                                     const std::string &text,
+                                     const std::map<std::string, std::string> &instead) {
+    fathom::v1::CompileOptions options;
+    options.files = files_beside(workspace, fs::path(path).parent_path(), instead, nullptr);
     return fathom::v1::compile_text(path, text, options);
 }
 
-const fathom::v1::CompileResult &compiled(Workspace &workspace, Document &document) {
+const Compiled &compiled(Workspace &workspace, Document &document) {
     if (!document.compiled) {
         document.asked_for.clear();
-        document.compiled =
-            compile_as(workspace, document.path, document.text, {}, &document.asked_for);
-        if (document.compiled->scene) document.last_names = document.compiled->names;
+        document.compiled = compile(workspace, document);
+        std::map<std::string, std::string, std::less<>> types;
+        for (const typecheck::NameFact &name : document.compiled->compilation.names)
+            types.try_emplace(name.name, name.type);
+        if (!document.compiled->good() && document.types)
+            types.merge(*document.types); // of what cannot be read now
+        document.types = std::move(types);
     }
     return *document.compiled;
+}
+
+const proof::Explanation &explanation(Workspace &workspace, Document &document) {
+    const driver::Compilation &compilation = compiled(workspace, document).compilation;
+    if (!document.compiled->explanation)
+        document.compiled->explanation = proof::explain(compilation.scene);
+    return *document.compiled->explanation;
 }
 
 const Reading &reading(Document &document) {
@@ -131,14 +186,16 @@ std::vector<File> all_files(Workspace &workspace) {
 std::vector<const fathom::v1::LibraryEntry *>
 library_forms(const Workspace &workspace, const std::string &name, const std::string &module) {
     std::vector<const fathom::v1::LibraryEntry *> forms;
-    for (const fathom::v1::LibraryEntry &entry : workspace.library)
-        if (entry.name == name && entry.module == module) forms.push_back(&entry);
+    const auto [first, last] = workspace.entries.equal_range(name);
+    for (auto entry = first; entry != last; ++entry)
+        if (workspace.library[entry->second].module == module)
+            forms.push_back(&workspace.library[entry->second]);
     return forms;
 }
 
 const Constant *constant_named(const Workspace &workspace, std::string_view name) {
-    const auto found = std::ranges::find(workspace.constants, name, &Constant::name);
-    return found == workspace.constants.end() ? nullptr : &*found;
+    const auto found = std::ranges::lower_bound(workspace.constants, name, {}, &Constant::name);
+    return found == workspace.constants.end() || found->name != name ? nullptr : &*found;
 }
 
 Signature read_signature(const std::string &signature) {

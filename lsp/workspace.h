@@ -2,7 +2,11 @@
 // compiled when that is first wanted, and again after it changed.
 #pragma once
 
+#include "lsp/json.h"
 #include "lsp/names.h"
+
+#include "driver/compile.h"
+#include "proof/prove.h"
 
 #include <fathom/fathom.h>
 
@@ -12,6 +16,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fathom::lsp {
@@ -20,18 +25,27 @@ namespace fathom::lsp {
 struct Reading {
     Syntax syntax;
     Names names;
+    Lines lines;
+};
+
+// What came of a text: the compiler's own result, and what it says as the client is told it.
+struct Compiled {
+    driver::Compilation compilation;
+    std::vector<fathom::v1::Diagnostic> diagnostics;
+    std::optional<proof::Explanation> explanation; // of the bounds, once someone asked
+    bool good() const { return compilation.good(); }
 };
 
 // A text that a client has open.
 struct Document {
     std::string uri, path, text;
     int version = 0;
-    std::optional<fathom::v1::CompileResult> compiled; // of the text as it is
-    std::shared_ptr<const Reading> reading;            // of the text as it is
-    bool published = false;                            // its diagnostics were sent
-    std::set<std::string> asked_for;                   // paths that compiling it wanted to read
-    // What was known when the text last compiled: half-typed texts go on having types.
-    std::vector<fathom::v1::Name> last_names;
+    std::optional<Compiled> compiled;       // of the text as it is
+    std::shared_ptr<const Reading> reading; // of the text as it is
+    bool published = false;                 // its diagnostics were sent
+    std::set<std::string> asked_for;        // paths that compiling it wanted to read
+    // Of names, as the last compilations knew them: half-typed texts go on having types.
+    std::optional<std::map<std::string, std::string, std::less<>>> types; // none: never compiled
 };
 
 // A text of the workspace, open or not.
@@ -50,8 +64,10 @@ struct Workspace {
     std::map<std::string, Document> documents; // by address
     std::vector<std::string> roots;            // folders that the client opened
     std::vector<fathom::v1::LibraryEntry> library;
-    std::vector<Constant> constants;
-    bool snippets = false; // the client takes snippets from completion
+    std::multimap<std::string, std::size_t, std::less<>> entries; // of `library`, by name
+    std::vector<Constant> constants;                              // by name
+    bool snippets = false;                          // the client takes snippets from completion
+    std::vector<std::pair<std::string, Json>> said; // methods and params that go before the answer
 
     struct Cached {
         std::filesystem::file_time_type time;
@@ -60,21 +76,22 @@ struct Workspace {
     std::map<std::string, Cached> closed; // files that were read, by path
 };
 
+Workspace workspace_with_library();
+
 // Throws `UnknownDocument` where the address is of no open text.
 struct UnknownDocument : std::exception {
     const char *what() const noexcept override { return "this text is not open"; }
 };
 Document &document_at(Workspace &workspace, const std::string &uri);
 
-const fathom::v1::CompileResult &compiled(Workspace &workspace, Document &document);
+const Compiled &compiled(Workspace &workspace, Document &document);
+const proof::Explanation &explanation(Workspace &workspace, Document &document);
 const Reading &reading(Document &document);
 
 // Compiles a text as the file `path`, with texts in place of files, by path; the rest as it stands.
-// `asked_for` gets the paths that it wanted to read.
 fathom::v1::CompileResult compile_as(Workspace &workspace, const std::string &path,
                                      const std::string &text,
-                                     const std::map<std::string, std::string> &instead = {},
-                                     std::set<std::string> *asked_for = nullptr);
+                                     const std::map<std::string, std::string> &instead = {});
 
 // The text at a path: the open one, else the file's, of at most 1 MiB.
 std::optional<File> file_at(Workspace &workspace, const std::string &path);

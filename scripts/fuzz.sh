@@ -1,9 +1,10 @@
 #!/bin/sh
 # Builds a libFuzzer target with clang++ in build-fuzz/ and runs it for a minute: scripts/fuzz.sh TARGET [SECONDS]
-# Targets: parse_fuzz (text to tree), compile_fuzz (text to shader), yaml_fuzz (save files), image_fuzz (images and grids); `all` only builds them. What it finds is left in
+# Targets: parse_fuzz (text to tree), compile_fuzz (text to shader), yaml_fuzz (save files), image_fuzz (images and grids),
+# lsp_fuzz (messages to the language server); `all` only builds them. What it finds is left in
 # build-fuzz/ as crash-…; what it learns is kept in build-fuzz/TARGET_corpus.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
-target=${1:?which target: parse_fuzz, compile_fuzz, yaml_fuzz, image_fuzz or all}
+target=${1:?which target: parse_fuzz, compile_fuzz, yaml_fuzz, image_fuzz, lsp_fuzz or all}
 seconds=${2:-60}
 build=$root/build-fuzz
 fuzz=$root/tests/fuzz
@@ -12,6 +13,7 @@ parse_fuzz) length=4096 words=fathom.dict seeds="$fuzz/seeds $root/examples $roo
 compile_fuzz) length=2048 words=fathom.dict seeds="$fuzz/seeds $root/tests/golden/cases $root/examples" ;;
 yaml_fuzz) length=4096 words=yaml.dict seeds=$fuzz/yaml_seeds ;;
 image_fuzz) length=4096 words=image.dict seeds="$fuzz/image_seeds $fuzz/corpus/image_fuzz" ;;
+lsp_fuzz) length=2048 words=fathom.dict seeds="$fuzz/lsp_seeds $fuzz/seeds" ;;
 all) ;;
 *) echo "there is no target $target" >&2; exit 2 ;;
 esac
@@ -20,7 +22,7 @@ use_ccache
 cd "$root" || exit 3
 [ -e "$build/build.ninja" ] || cmake --preset fuzz || exit 3
 if [ "$target" = all ]; then
-    exec flock "$build" ninja -C "$build" parse_fuzz compile_fuzz yaml_fuzz image_fuzz
+    exec flock "$build" ninja -C "$build" parse_fuzz compile_fuzz yaml_fuzz image_fuzz lsp_fuzz
 fi
 flock "$build" ninja -C "$build" "$target" || exit 3
 mkdir -p "$build/${target}_corpus"

@@ -109,6 +109,7 @@ void App::take(std::unique_ptr<Build> build) {
     const std::vector<std::string> old_views = scene ? scene->views : std::vector<std::string>{};
     if (scene) selected = found_again(scene->compilation, selected, build->compilation);
     scene = std::move(build);
+    outline_cursor();
     cached.scene_changed();
     progress.stale = true;
     const ir::Scene &s = scene->compilation.scene;
@@ -141,6 +142,46 @@ void App::param_changed(const ir::Param &param) {
     clock.touched = Clock::now();
     clock.frames_due = 3;
     if (param.structural) rebuild(structural_values(params));
+}
+
+// -- an editor
+
+// True where all values can be set without another compilation: then they are.
+static bool slid(App &app, const std::vector<std::pair<std::string, double>> &values) {
+    std::vector<std::pair<ir::Param *, double>> moved;
+    for (const auto &[name, value] : values) {
+        const auto param = std::ranges::find(app.params, name, &ir::Param::name);
+        if (param == app.params.end() || param->structural || ir::components(param->type) != 1 ||
+            (param->has_range && (value < param->lo[0] || value > param->hi[0])))
+            return false;
+        moved.emplace_back(&*param, value);
+    }
+    for (const auto &[param, value] : moved) {
+        param->value[0] = param->initial[0] = value; // the text says so
+        app.param_changed(*param);
+    }
+    return !moved.empty() && app.newest.errors.empty();
+}
+
+void App::hear_editor() {
+    if (!editor) return;
+    Typed typed = editor->take();
+    if (typed.cursor) cursor = typed.cursor;
+    if (typed.text && !slid(*this, typed.params)) worker->show(std::move(*typed.text));
+    if (typed.cursor) outline_cursor();
+    if (!editor->open()) {
+        editor.reset();
+        note("the editor has gone; the window follows the file from now on");
+    }
+}
+
+void App::outline_cursor() {
+    if (!scene || !cursor) return;
+    Part part = part_at(scene->compilation, settings.file.string(), *cursor);
+    if (part.number == selected.number) return;
+    selected = std::move(part);
+    progress.finished = false;
+    clock.frames_due = 3;
 }
 
 // -- back into the text

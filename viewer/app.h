@@ -6,6 +6,7 @@
 #include "render-gl/timer.h"
 #include "viewer/cached.h"
 #include "viewer/controls.h"
+#include "viewer/editor_line.h"
 #include "viewer/frame_times.h"
 #include "viewer/panels.h"
 #include "viewer/pick.h"
@@ -113,7 +114,9 @@ struct App {
     const Settings &settings;
     GLFWwindow *window = nullptr;
     std::unique_ptr<Worker> worker;
-    Linkers linkers; // where the worker has no context of its own
+    std::unique_ptr<EditorLine> editor;  // none: the window follows the file's saves alone
+    std::optional<std::uint32_t> cursor; // the editor's, a byte of the text
+    Linkers linkers;                     // where the worker has no context of its own
 
     // The good picture: its scene, its programs, what was drawn of it.
     std::unique_ptr<Build> scene;
@@ -151,6 +154,8 @@ struct App {
     void rebuild(std::vector<driver::Override> values);
     bool animated() const { return scene && clock.running && scene->picture.reads_time; }
     void param_changed(const ir::Param &param);
+    void hear_editor();    // what was typed since the last time
+    void outline_cursor(); // the shape that the editor's cursor stands in
     void write_param(const ir::Param &param);
     bool write_view(); // false where it could not be; the note says why
     void note(std::string words);

@@ -313,11 +313,15 @@ void App::select(bool open) {
     selected = part_of(scene->compilation, pick.part);
     progress.finished = false;
     if (!selected.number) return note("");
-    const std::string editor = users_editor();
-    if (open && !editor.empty() && !needs_terminal(editor))
+    if (open && editor) { // it puts its cursor there
+        editor->clicked(selected.file, selected.line, selected.column);
+        return note(place_of(selected));
+    }
+    const std::string program = users_editor();
+    if (open && !program.empty() && !needs_terminal(program))
         open_selected();
     else
-        note(place_of(selected) + (editor.empty() ? "" : " (O opens it)"));
+        note(place_of(selected) + (program.empty() ? "" : " (O opens it)"));
 }
 
 void App::scroll(double steps) {

@@ -201,6 +201,18 @@ Part part_of(const driver::Compilation &compilation, int number) {
     return part;
 }
 
+Part part_at(const driver::Compilation &compilation, const std::string &file, std::uint32_t byte) {
+    Part found;
+    const std::optional<SourceId> source = source_named(compilation.sources, file);
+    if (!source) return found;
+    for (Part &part : parts_in(compilation, *source))
+        if (part.place.begin <= byte && byte <= part.place.end &&
+            (!found.number ||
+             part.place.end - part.place.begin < found.place.end - found.place.begin))
+            found = std::move(part);
+    return found;
+}
+
 Part found_again(const driver::Compilation &before, const Part &part,
                  const driver::Compilation &now) {
     if (!part.number || !part.place.source) return {};

@@ -24,6 +24,9 @@ struct Part {
 // The part of that number; empty where there is none.
 Part part_of(const driver::Compilation &compilation, int number);
 
+// The part whose words are the fewest that hold a byte of a file's text; number 0 where none does.
+Part part_at(const driver::Compilation &compilation, const std::string &file, std::uint32_t byte);
+
 // The same part in a scene that was compiled anew: on the line that was the part's before the edit
 // (lines_after), by its words, else by its turn there. Where that line has gone, the same words on
 // a line that is new; number 0 where there are none or several.

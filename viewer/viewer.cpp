@@ -114,6 +114,7 @@ std::string loop(App &app) {
         before = Clock::now();
         if (working) app.clock.frames_due = std::max(app.clock.frames_due, 1);
         app.drop_old_note();
+        app.hear_editor();
         if (std::unique_ptr<Build> build = app.worker->take()) {
             if (build->good() && !build->linked) { // by this thread: it says so before
                 app.linking = true;
@@ -233,7 +234,13 @@ std::string run(const Settings &settings) {
             hooks.leave_context = [] { glfwMakeContextCurrent(nullptr); };
         }
         app.worker = std::make_unique<Worker>(settings.file, settings.options, std::move(hooks));
-        error = loop(app);
+        if (!settings.editor.empty()) {
+            app.editor = EditorLine::to(
+                settings.editor, [] { glfwPostEmptyEvent(); }, error);
+            if (!app.editor) error = "cannot reach the editor: " + error;
+        }
+        if (error.empty()) error = loop(app);
+        app.editor.reset(); // it wakes the window
         if (error.empty() && settings.save_view && app.scene) {
             if (!app.write_view()) error = app.status.note;
         }

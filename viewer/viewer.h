@@ -16,6 +16,9 @@ struct Settings {
     int width = 1280, height = 800;
     std::filesystem::path
         record; // a folder: a picture of the window goes there after every reload; empty: none
+    std::filesystem::path
+        editor;             // a socket: of an editor whose text is shown as it is typed; empty:
+                            // none
     bool save_view = false; // the view is written into the file when the window closes
     bool still = false;     // time stands, from the start
     bool one_context =

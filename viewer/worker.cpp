@@ -126,6 +126,14 @@ void Worker::rebuild(std::vector<driver::Override> overrides) {
     again();
 }
 
+void Worker::show(std::string text) {
+    {
+        std::lock_guard lock(mutex_);
+        unsaved_ = std::move(text);
+    }
+    again();
+}
+
 void Worker::want_probe() {
     if (!probe_.exchange(true)) again();
 }
@@ -139,6 +147,7 @@ std::unique_ptr<Build> Worker::build() {
     options.entered = [this](driver::Phase phase) { enter(stage_of(phase)); };
     {
         std::lock_guard lock(mutex_);
+        options.unsaved = unsaved_;
         for (const driver::Override &value : overrides_) {
             std::erase_if(options.overrides,
                           [&](const auto &given) { return given.name == value.name; });

@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 namespace fathom::viewer {
@@ -74,6 +75,9 @@ class Worker {
     // Builds again with these values of structural params, over those of the command line.
     void rebuild(std::vector<driver::Override> overrides);
 
+    // Builds from this text from now on, as if the file held it.
+    void show(std::string text);
+
     // From now on builds hold the probe too; one is made at once.
     void want_probe();
 
@@ -97,12 +101,13 @@ class Worker {
     driver::CompileOptions options_;
     Hooks hooks_;
     driver::Watcher watcher_;
-    std::mutex mutex_; // over the five below
+    std::mutex mutex_; // over the six below
     std::unique_ptr<Build> finished_;
     std::optional<Kept> kept_;
     std::size_t cached_number_ = 0; // of the build that `kept_` is for
     std::vector<driver::Override> overrides_;
     std::string complaint_;
+    std::optional<std::string> unsaved_;
     std::atomic<Stage> stage_ = Stage::Rest;
     std::atomic<std::chrono::steady_clock::time_point> begun_; // the work on the newest save
     std::atomic<bool> lent_ = false;

@@ -5,13 +5,17 @@
 
 ;;; Commentary:
 ;; Colours, indentation and `M-x compile' for texts of Fathom, and its language server by eglot.
+;; With eglot, `M-x fathom-show' opens a window of the viewer that follows the buffer as it is typed:
+;; point outlines the shape that it stands in, and a click there puts point at its line.
 ;;
 ;;   (add-to-list 'load-path "…/editors/emacs")
 ;;   (require 'fathom-mode)
 ;;   (add-hook 'fathom-mode-hook #'eglot-ensure)
 
 ;;; Code:
+(require 'cl-lib)
 (require 'compile)
+(require 'subr-x)
 (require 'fathom-words)
 
 (defgroup fathom nil "Scenes of signed distance functions." :group 'languages)
@@ -84,7 +88,32 @@
 ;;;###autoload
 (add-to-list 'auto-mode-alist '("\\.sdf\\'" . fathom-mode))
 
+(declare-function eglot-current-server "eglot")
+(declare-function eglot-execute-command "eglot")
+(declare-function eglot--TextDocumentIdentifier "eglot")
+(declare-function eglot--TextDocumentPositionParams "eglot")
+(declare-function eglot--uri-to-path "eglot")
+(declare-function eglot--lsp-position-to-point "eglot")
+(declare-function jsonrpc-notify "jsonrpc")
+
+(defun fathom--tell-point ()
+  "Tell the server where point is, for its window."
+  (when-let ((server (eglot-current-server)))
+    (jsonrpc-notify server :fathom/cursor (eglot--TextDocumentPositionParams))))
+
+(defun fathom-show ()
+  "Open a window of the viewer on this buffer, and tell it where point is from now on."
+  (interactive)
+  (eglot-execute-command (eglot-current-server) 'fathom.show
+                         (vector (plist-get (eglot--TextDocumentIdentifier) :uri)))
+  (add-hook 'post-command-hook #'fathom--tell-point nil t))
+
 (with-eval-after-load 'eglot
+  (cl-defmethod eglot-handle-notification
+    (_server (_method (eql fathom/clicked)) &key uri position)
+    "Put point at the place that was clicked in the viewer."
+    (pop-to-buffer (find-file-noselect (eglot--uri-to-path uri)))
+    (goto-char (eglot--lsp-position-to-point position)))
   (add-to-list 'eglot-server-programs
                `(fathom-mode . ,(lambda (&rest _) (list fathom-program "lsp")))))
 

@@ -54,6 +54,25 @@ function showPicture(editor) {
   draw();
 }
 
+// The viewer's window, which follows the text as it is typed; where none can be opened, the page.
+async function showWindow(editor) {
+  try {
+    await client.sendRequest("fathom/preview", {textDocument: {uri: editor.document.uri.toString()}});
+  } catch (failed) {
+    vscode.window.showWarningMessage(`Fathom: ${failed.message}`);
+    showPicture(editor);
+  }
+}
+
+// Adds so many units of its last digit to the number at the cursor.
+function slide(editor, steps) {
+  const range = editor.document.getWordRangeAtPosition(editor.selection.active, /\d+(?:\.\d+)?/);
+  if (!range) return;
+  const number = editor.document.getText(range), decimals = (number.split(".")[1] || "").length;
+  const value = Math.max(Number(number) + steps * 10 ** -decimals, 0).toFixed(decimals);
+  editor.edit((edit) => edit.replace(range, value));
+}
+
 function task(definition, file) {
   return new vscode.Task(definition, vscode.TaskScope.Workspace, definition.command, "fathom",
     new vscode.ProcessExecution(program(), [definition.command, file]), "$fathom");
@@ -73,11 +92,15 @@ function activate(context) {
   };
   context.subscriptions.push(
     vscode.commands.registerCommand("fathom.picture", withEditor(showPicture)),
-    vscode.commands.registerCommand("fathom.view", withEditor((editor) => {
-      const terminal = vscode.window.createTerminal({name: "fathom", shellPath: program(),
-        shellArgs: ["view", editor.document.fileName]});
-      terminal.show(true);
-    })),
+    vscode.commands.registerCommand("fathom.view", withEditor(showWindow)),
+    vscode.commands.registerCommand("fathom.slideUp", withEditor((editor) => slide(editor, 1))),
+    vscode.commands.registerCommand("fathom.slideDown", withEditor((editor) => slide(editor, -1))),
+    vscode.window.onDidChangeTextEditorSelection((event) => {
+      const document = event.textEditor.document;
+      if (document.languageId === "fathom" && client.isRunning())
+        client.sendNotification("fathom/cursor", {textDocument: {uri: document.uri.toString()},
+          position: event.selections[0].active});
+    }),
     vscode.tasks.registerTaskProvider("fathom", tasks));
   return client.start();
 }

@@ -3,6 +3,10 @@
 -- type are those of editors/vim.
 --
 --   require("fathom").setup({ cmd = { "fathom", "lsp" } })
+--
+-- `:FathomShow` opens a window of the viewer that follows the buffer as it is typed. The cursor
+-- outlines the shape that it stands in, a click there puts the cursor at its line, and `<M-Up>`,
+-- `<M-Down>` change the number under the cursor; of a `param` without another compilation.
 
 local M = {}
 local hints = vim.api.nvim_create_namespace("fathom_hints")
@@ -30,6 +34,46 @@ function M.show_hints(buffer, client)
   end, buffer)
 end
 
+-- Opens the window of a buffer; from then on the cursor is told.
+function M.show(buffer, client)
+  local document = { uri = vim.uri_from_bufnr(buffer) }
+  client.request("fathom/preview", { textDocument = document }, function(failed)
+    if failed then vim.notify("fathom: " .. failed.message, vim.log.levels.WARN) return end
+    vim.api.nvim_create_autocmd({ "CursorMoved", "CursorMovedI" }, {
+      group = vim.api.nvim_create_augroup("fathom_cursor_" .. buffer, {}),
+      buffer = buffer,
+      callback = function() client.notify("fathom/cursor", vim.lsp.util.make_position_params()) end,
+    })
+  end, buffer)
+end
+
+-- A place that was clicked in the window.
+function M.clicked(_, params)
+  local buffer = vim.uri_to_bufnr(params.uri)
+  vim.fn.bufload(buffer)
+  if buffer ~= vim.api.nvim_get_current_buf() then vim.api.nvim_set_current_buf(buffer) end
+  local line = vim.fn.getline(params.position.line + 1)
+  local column = vim.str_byteindex(line, math.min(params.position.character, vim.str_utfindex(line)))
+  vim.api.nvim_win_set_cursor(0, { params.position.line + 1, column })
+end
+
+-- Adds so many units of its last digit to the number at or after the cursor.
+function M.slide(steps)
+  local row, column = unpack(vim.api.nvim_win_get_cursor(0))
+  local line, from = vim.api.nvim_get_current_line(), 1
+  while true do
+    local first, last, number = line:find("(%d+%.?%d*)", from)
+    if not first then return end
+    if last > column and not line:sub(first - 1, first - 1):find("[%w_#]") then
+      local decimals = #(number:match("%.(%d+)$") or "")
+      local value = math.max(tonumber(number) + steps * 10 ^ -decimals, 0)
+      vim.api.nvim_buf_set_text(0, row - 1, first - 1, row - 1, last, { ("%." .. decimals .. "f"):format(value) })
+      return
+    end
+    from = last + 1
+  end
+end
+
 local clients = {} -- by root and command, one server for all texts below it
 
 local function attach(buffer, options)
@@ -46,13 +90,16 @@ local function attach(buffer, options)
         if options.hints ~= false then M.show_hints(attached, client) end
         if options.on_attach then options.on_attach(client, attached) end
       end,
-      handlers = options.handlers,
+      handlers = vim.tbl_extend("force", { ["fathom/clicked"] = M.clicked }, options.handlers or {}),
     })
   end
   if not clients[key] then return end
   vim.lsp.buf_attach_client(buffer, clients[key])
-  if options.hints == false then return end
   local client = vim.lsp.get_client_by_id(clients[key])
+  vim.api.nvim_buf_create_user_command(buffer, "FathomShow", function() M.show(buffer, client) end, {})
+  vim.keymap.set("n", "<M-Up>", function() M.slide(vim.v.count1) end, { buffer = buffer })
+  vim.keymap.set("n", "<M-Down>", function() M.slide(-vim.v.count1) end, { buffer = buffer })
+  if options.hints == false then return end
   vim.api.nvim_create_autocmd({ "InsertLeave", "TextChanged", "BufWritePost" }, {
     buffer = buffer,
     callback = function() M.show_hints(buffer, client) end,

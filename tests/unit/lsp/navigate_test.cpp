@@ -334,8 +334,9 @@ TEST_CASE("lenses explain bounds") {
     Client client;
     client.open("box([1, 3, 1]).twist(0.4, axis: Y)\n");
     const Json lenses = client.result("textDocument/codeLens", Client::at(0, 0));
-    REQUIRE(lenses.size() == 1);
-    const Json command = lenses[0].at("command");
+    REQUIRE(lenses.size() == 2);
+    CHECK(lenses[0].at("command").at("command") == "fathom.show"); // by who serves: no answer here
+    const Json command = lenses[1].at("command");
     const auto messages = client.server.handle(Json{
         {"id", 77},
         {"method", "workspace/executeCommand"},

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <unistd.h>
@@ -55,6 +56,46 @@ TEST_CASE("diagnostics come as one types, with their fixes") {
                    {"contentChanges", {{{"range", edit.at("range")}, {"text", "sphere"}}}}});
     found = client.diagnostics();
     CHECK(found == Json::array());
+}
+
+TEST_CASE("a hover says where a bound is proved, and what an error was seen at") {
+    Client client;
+    client.open("let a = box([1, 3, 1]).twist(0.4, axis: Y)\n"
+                "for i in 0..3 { a.translate(x: 3 * i) }\n"
+                "implicit(p => p.x * p.y - 1, within: ball(3))\n"
+                "implicit(p => sqrt(p.x), within: everywhere)\n");
+    const auto hover = [&](int line, int character) {
+        const Json answer = client.result("textDocument/hover", Client::at(line, character));
+        return answer.is_null() ? "" : answer.at("contents").at("value").get<std::string>();
+    };
+    // also beside an error, which has its point
+    CHECK(hover(0, 25).find("`twist` here: bound 1.1") != std::string::npos);
+    CHECK(hover(0, 25).find("proved at all points; a ray takes up to 1.1") != std::string::npos);
+    CHECK(hover(1, 18).find("The steepest of 3 shapes: bound 1.1") != std::string::npos);
+    CHECK(hover(2, 3).find("proved in ball(3)") != std::string::npos);
+    CHECK(hover(3, 15).find("near [") != std::string::npos);
+    const Json lenses = client.result("textDocument/codeLens", Client::at(0, 0));
+    CHECK(lenses.size() == 3); // the window, and one a statement, not one a copy
+    const Json diagnostics = client.diagnostics();
+    REQUIRE(diagnostics.size() == 1);
+    const std::string page = diagnostics[0].at("codeDescription").at("href");
+    CHECK(page.ends_with("/diagnostics/field-singular.md"));
+    CHECK(std::filesystem::is_regular_file(path_of(page)));
+}
+
+TEST_CASE("files that a text names are links") {
+    Client client;
+    const std::string part = std::string(FATHOM_SOURCE_DIR) + "/examples/parts",
+                      uri = uri_of(std::string(FATHOM_SOURCE_DIR) + "/examples/new.sdf");
+    std::string name;
+    for (const auto &entry : std::filesystem::directory_iterator(part))
+        if (entry.path().extension() == ".sdf") name = entry.path().filename().string();
+    REQUIRE_FALSE(name.empty());
+    client.open("import \"parts/" + name + "\"\nimport \"none.sdf\" as none\n", uri);
+    const Json links = client.result("textDocument/documentLink", Client::at(0, 0, uri));
+    REQUIRE(links.size() == 1);
+    CHECK(links[0].at("target") == uri_of(part + "/" + name));
+    CHECK(links[0].at("range") == range(0, 8, 14 + static_cast<int>(name.size())));
 }
 
 TEST_CASE("an edit counts UTF-16 units") {
@@ -117,6 +158,39 @@ TEST_CASE("completion after a dot leaves out the text's own names") {
     const auto free = labels(client.result("textDocument/completion", Client::at(1, 0)));
     CHECK(has(free, "radius"));
     CHECK(has(free, "sphere"));
+}
+
+TEST_CASE("completion after a dot knows parameters and names of blocks by their types") {
+    Client client;
+    const auto offered = [&](const std::string &text, const std::string &name) {
+        const std::size_t dot = text.find(".@");
+        std::string typed = text;
+        typed.erase(dot + 1, 1);
+        client.open(typed);
+        const Lines lines = lines_of(typed);
+        const Position at = position_at(lines, dot + 1);
+        for (const Json &item :
+             client.result("textDocument/completion", Client::at(at.line, at.character)))
+            if (item.at("label") == name) return true;
+        return false;
+    };
+    for (const std::string text :
+         {"fn f(s: shape) { s.@ }\n", "fn f(x) {\n  let s = box(x)\n  s.@\n}\n",
+          "let s = 1\nfn f(s: shape) { s.@ }\n", "let s = box(1)\ns.@\n"}) {
+        INFO(text);
+        CHECK(offered(text, "twist"));
+        CHECK_FALSE(offered(text, "x"));
+        CHECK_FALSE(offered(text, "sqrt"));
+    }
+    for (const std::string text :
+         {"fn f(v: vec3) { v.@ }\n", "fn f(s) {\n  let v = [1, 2, 3]\n  v.@\n}\n",
+          "let s = box(1)\nfn f(s: float) { s.@ }\n"}) {
+        INFO(text);
+        CHECK(offered(text, "x"));
+        CHECK_FALSE(offered(text, "twist"));
+    }
+    // names that stand for each other end
+    CHECK_FALSE(offered("fn f() {\n  let union = union { 1 }\n  union.@\n}\n", "none such"));
 }
 
 TEST_CASE("formatting changes the space between words, and nothing where nothing changes") {

@@ -1,0 +1,85 @@
+// The server's process ends where it should not: the client hears of it, and goes on.
+#include "client.h"
+
+#include "lsp/worker.h"
+
+#include <csignal>
+
+namespace {
+
+using fathom::lsp::Worker;
+
+std::string message(const std::string &method, const Json &params, int id = 0) {
+    Json json{{"jsonrpc", "2.0"}, {"method", method}, {"params", params}};
+    if (id) json["id"] = id;
+    return json.dump();
+}
+
+// Ends the process as a fault would.
+void crash(const Worker &worker) {
+    REQUIRE(worker.process() > 0);
+    REQUIRE(kill(worker.process(), SIGSEGV) == 0);
+}
+
+std::string hover_text(Worker &worker, int id) {
+    const auto answers = worker.handle(message("textDocument/hover", Client::at(0, 1), id));
+    REQUIRE(answers.size() == 1);
+    const Json answer = Json::parse(answers[0]);
+    CHECK(answer.at("id") == id);
+    return answer.at("result").at("contents").at("value");
+}
+
+} // namespace
+
+TEST_CASE("a crash in a request is a message, and the texts are still there") {
+    Worker worker;
+    worker.handle(message("initialize", Json::object(), 1));
+    worker.handle(
+        message("textDocument/didOpen",
+                {{"textDocument",
+                  {{"uri", "file:///scenes/a.sdf"}, {"version", 1}, {"text", "torus(1, 1)\n"}}}}));
+    REQUIRE(worker.idle().size() == 1);
+    worker.handle(message("textDocument/didChange",
+                          {{"textDocument", {{"uri", "file:///scenes/a.sdf"}, {"version", 2}}},
+                           {"contentChanges", {{{"range", range(0, 0, 5)}, {"text", "box"}}}}}));
+    const std::string before = hover_text(worker, 2);
+    CHECK(before.find("box(") != std::string::npos);
+
+    crash(worker);
+    const auto answers = worker.handle(message("textDocument/hover", Client::at(0, 1), 3));
+    REQUIRE(answers.size() == 2);
+    const Json said = Json::parse(answers[0]), failed = Json::parse(answers[1]);
+    CHECK(said.at("method") == "window/showMessage");
+    CHECK(failed.at("id") == 3);
+    const std::string why = failed.at("error").at("message");
+    CHECK(why.find("textDocument/hover") != std::string::npos);
+
+    CHECK(hover_text(worker, 4) == before);
+    const auto diagnostics = worker.idle(); // said anew, of the text as it was edited
+    REQUIRE(diagnostics.size() == 1);
+    CHECK(Json::parse(diagnostics[0]).at("params").at("version") == 2);
+}
+
+TEST_CASE("a crash that comes with every message is told once, and each request is answered") {
+    Worker worker;
+    worker.handle(message("initialize", Json::object(), 1));
+    int shown = 0, logged = 0;
+    for (int id = 2; id < 6; ++id) {
+        crash(worker);
+        const auto answers = worker.handle(message("workspace/symbol", {{"query", ""}}, id));
+        REQUIRE(answers.size() == 2);
+        shown += Json::parse(answers[0]).at("method") == "window/showMessage";
+        logged += Json::parse(answers[0]).at("method") == "window/logMessage";
+        CHECK(Json::parse(answers[1]).at("id") == id);
+        CHECK(worker.idle().empty()); // nothing is tried before the next message
+        worker.handle(message("$/setTrace", {{"value", "off"}}));
+    }
+    CHECK(shown == 1);
+    CHECK(logged == 3);
+    worker.handle(message("shutdown", nullptr, 9));
+    crash(worker);
+    worker.handle(message("$/setTrace", {{"value", "off"}}));
+    worker.handle(message("exit", nullptr));
+    CHECK(worker.ended());
+    CHECK(worker.exit_status() == 0); // the shutdown is not forgotten
+}
