@@ -1,8 +1,8 @@
 #!/bin/sh
 # The checks that take too long for every change: the tests by clang++, the sanitizers, clang-tidy,
-# ten minutes of each fuzzer, the coverage of the front end, two ops more, and the columns of the op
-# table. Each leaves its output in build-weekly/; the last lines say what passed. Takes some hours on
-# two cores.
+# ten minutes of each fuzzer, the coverage of the front end, the editors and the pages in real
+# programs, two ops more, and the columns of the op table. Each leaves its output in build-weekly/;
+# the last lines say what passed. Takes some hours on two cores.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
 cd "$root" && mkdir -p build-weekly || exit 3
 failed=0
@@ -22,6 +22,7 @@ for target in parse_fuzz compile_fuzz yaml_fuzz image_fuzz lsp_fuzz; do try $tar
 try cuts env FATHOM_CUTS=all build/test_lsp 'a text that ends early is known above its end'
 try coverage scripts/coverage.sh
 try editors scripts/editors.sh
+try pages scripts/pages.sh
 try ops scripts/weekly-ops.sh
 try columns scripts/weekly-columns.sh
 exit $failed
