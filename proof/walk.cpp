@@ -76,6 +76,8 @@ void Prover::run() {
             find_extent(ShapeId{i}, k);
             keep_in_ball(ShapeId{i}, k);
             k.fact.curvature = curvature_of(ShapeId{i}, k);
+            // A shape's facts may begin as its child's, whose cells are of another field.
+            if (scene.shapes[ShapeId{i}].kind != ShapeKind::Within) k.fact.cells = {};
             finish(ShapeId{i}, k);
         }
         if (places[i].reached) {

@@ -46,8 +46,10 @@ struct Verdict {
     double steepest = 0;
 };
 
-driver::Compilation compiled(const std::string &text) {
-    return driver::compile_text("random.sdf", text, FATHOM_SOURCE_DIR "/examples/parts", {});
+driver::Compilation compiled(const std::string &text, int cells) {
+    driver::CompileOptions options;
+    options.cells = cells;
+    return driver::compile_text("random.sdf", text, FATHOM_SOURCE_DIR "/examples/parts", options);
 }
 
 void set_params(ir::Scene &scene, int end) {
@@ -82,13 +84,15 @@ std::string against_plain(const ir::Scene &scene, const ir::Scene &truth, int co
     return {};
 }
 
-Verdict judge(const std::string &head, const Term &tree, int count) {
+Verdict judge(const std::string &head, const Term &tree, int count, bool cells) {
     Verdict out;
     const std::string shape = text_of(tree);
     const bool repeated = tree.text.find(".repeat") != std::string::npos;
     for (const bool raw : {false, true}) {
-        // The raw reading, as an offset uses it: divided by its bound, at most 1 steep.
-        driver::Compilation c = compiled(head + (raw ? "(" + shape + ").offset(0.003)" : shape));
+        // The raw reading, as an offset uses it: divided by its bound, at most 1 steep. With
+        // `cells` steps as for pictures, by bounds of cells.
+        driver::Compilation c = raw ? compiled(head + "(" + shape + ").offset(0.003)", 0)
+                                    : compiled(head + shape, cells ? 8 : 0);
         if (!c.good()) {
             for (const Diagnostic &d : c.diagnostics.items())
                 if (d.severity == Severity::Error) {
@@ -134,7 +138,8 @@ TEST_CASE("random compositions are marched safely, and are no steeper than prove
         TermPtr tree = random.solid(1 + i % 4);
         std::string head;
         for (const std::string &param : random.params()) head += param;
-        Verdict verdict = judge(head, *tree, 4096);
+        const bool cells = i % 5 == 0; // they take four times as long
+        Verdict verdict = judge(head, *tree, 4096, cells);
         if (!verdict.code.empty()) {
             ++refused[verdict.code];
             if (std::getenv("FATHOM_SHOW"))
@@ -149,7 +154,7 @@ TEST_CASE("random compositions are marched safely, and are no steeper than prove
             std::vector<TermPtr> tries;
             cuts(tree, tree, tries);
             for (const TermPtr &one : tries) {
-                Verdict v = judge(head, *one, 4096);
+                Verdict v = judge(head, *one, 4096, cells);
                 if (v.wrong.empty()) continue;
                 tree = one, verdict = v, smaller = true;
                 break;

@@ -16,6 +16,7 @@
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+#include <zlib.h>
 
 #include <cstdlib>
 #include <fmt/format.h>
@@ -298,10 +299,34 @@ std::string from_html(std::string text) {
     return out;
 }
 
+// A text that a page holds: base64 of what zlib compressed.
+std::string unpacked(const std::string &base64) {
+    std::string bytes;
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : base64) {
+        const std::size_t digit =
+            std::string_view("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/")
+                .find(c);
+        if (digit == std::string_view::npos) break;
+        bits = bits << 6 | static_cast<std::uint32_t>(digit);
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        bytes += static_cast<char>(bits >> count & 255);
+    }
+    std::string text(std::size_t{1} << 20, ' ');
+    uLongf size = text.size();
+    REQUIRE(uncompress(reinterpret_cast<Bytef *>(text.data()), &size,
+                       reinterpret_cast<const Bytef *>(bytes.data()), bytes.size()) == Z_OK);
+    text.resize(size);
+    return text;
+}
+
 void check_page(const std::string &page, const std::string &wanted, const std::string &title,
                 const std::string &label) {
     const auto parts = [](const std::string &text) {
-        const std::string opening = "<script type=\"application/json\" id=\"scene\">";
+        const std::string opening = "<script type=\"application/json\" id=\"fathom-scene\">";
         const std::size_t begin = text.find(opening) + opening.size();
         const std::size_t end = script_end(text, begin);
         return std::array<std::string, 3>{text.substr(0, begin), text.substr(begin, end - begin),
@@ -311,7 +336,6 @@ void check_page(const std::string &page, const std::string &wanted, const std::s
     CHECK(found[2] == other[2]);
     const std::string shown_title = for_terminal(title);
     CHECK(from_html(between(found[0], "<title>", "<")) == shown_title);
-    CHECK(from_html(between(found[0], "aria-label=\"", "\"")).starts_with(shown_title + ": drag"));
     CHECK(std::ranges::count(found[0], '<') == std::ranges::count(other[0], '<'));
     CHECK(std::ranges::count(found[0], '"') == std::ranges::count(other[0], '"'));
     const auto script = take_strings(found[1]), harmless = take_strings(other[1]);
@@ -326,8 +350,8 @@ void check_page(const std::string &page, const std::string &wanted, const std::s
             ++labels;
         } else if (harmless->strings[i] == "harmless_title") {
             CHECK(script->strings[i] == label); // the texts of a case are one
-        } else if (harmless->strings[i].starts_with("#version")) {
-            check_same_tokens(script->strings[i], harmless->strings[i]);
+        } else if (i > 0 && harmless->strings[i - 1] == "packed") {
+            check_same_tokens(unpacked(script->strings[i]), unpacked(harmless->strings[i]));
         } else {
             CHECK(script->strings[i] == harmless->strings[i]);
         }
