@@ -52,6 +52,19 @@ TEST_CASE("an op with a value of its own has spellings, but for those that need 
     }
 }
 
+TEST_CASE("a function of the language says in a line what it is") {
+    const std::pair<const char *, std::string_view> rows[] = {
+#define FATHOM_FUNCTION(name, function, glsl, weight, cost, parity, trouble, undefined, doc)       \
+    {#function, doc},
+#include "ir/ops.def"
+    };
+    for (const auto &[function, doc] : rows) {
+        INFO(function);
+        CHECK(doc.size() > 5);
+        CHECK(doc.find('\n') == doc.npos);
+    }
+}
+
 TEST_CASE("what takes long takes an op's weight in a shader") {
     struct Row {
         Op op;
