@@ -8,12 +8,13 @@ target=${1:?which target: parse_fuzz, compile_fuzz, yaml_fuzz, image_fuzz, lsp_f
 seconds=${2:-60}
 build=$root/build-fuzz
 fuzz=$root/tests/fuzz
+more="" # seeds that take most of a minute to run through, and so for longer runs alone
 case $target in
 parse_fuzz) length=4096 words=fathom.dict seeds="$fuzz/seeds $root/examples $root/stdlib" ;;
-compile_fuzz) length=2048 words=fathom.dict seeds="$fuzz/seeds $root/tests/golden/cases $root/examples" ;;
+compile_fuzz) length=2048 words=fathom.dict seeds=$fuzz/seeds more="$root/tests/golden/cases $root/examples" ;;
 yaml_fuzz) length=4096 words=yaml.dict seeds=$fuzz/yaml_seeds ;;
 image_fuzz) length=4096 words=image.dict seeds="$fuzz/image_seeds $fuzz/corpus/image_fuzz" ;;
-lsp_fuzz) length=2048 words=fathom.dict seeds="$fuzz/lsp_seeds $fuzz/seeds" ;;
+lsp_fuzz) length=2048 words=fathom.dict seeds=$fuzz/lsp_seeds more=$fuzz/seeds ;;
 all) ;;
 *) echo "there is no target $target" >&2; exit 2 ;;
 esac
@@ -25,6 +26,7 @@ if [ "$target" = all ]; then
     exec flock "$build" ninja -C "$build" parse_fuzz compile_fuzz yaml_fuzz image_fuzz lsp_fuzz
 fi
 flock "$build" ninja -C "$build" "$target" || exit 3
+[ "$seconds" -ge 60 ] && seeds="$seeds $more"
 mkdir -p "$build/${target}_corpus"
 cd "$build" && exec "./$target" -max_total_time="$seconds" -max_len=$length -timeout=60 -rss_limit_mb=2048 -seed=1 \
     -dict="$fuzz/$words" -print_final_stats=1 "${target}_corpus" $seeds

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Whether two builds of the program (by two compilers, at two levels of optimization) write the same
-# bytes: each example for each target, and its field at some points.
+# bytes: each example for each target, its field at some points, and its save file.
 #   scripts/same_text.sh PROGRAM PROGRAM
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
 first=$(realpath -- "${1:?a program}") second=$(realpath -- "${2:?another program}") || exit 3
@@ -8,21 +8,35 @@ work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 3
 cd "$root/examples" || exit 3
 targets=$("$first" help compile | sed -n 's/.*--target TARGET *//p' | tr -d ',' | sed 's/(unless said)//; s/ or / /')
 [ -n "$targets" ] || { echo "no targets in the help of $first" >&2; exit 3; }
-count=0 differ=0
-same() { # WHAT ARGUMENTS…
+same() { # WHAT ARGUMENTS…: a line for what differs
     what=$1
     shift
-    "$first" "$@" >"$work/a" 2>"$work/a.err"; a=$?
-    "$second" "$@" >"$work/b" 2>"$work/b.err"; b=$?
+    "$first" "$@" >"$here/a" 2>"$here/a.err"; a=$?
+    "$second" "$@" >"$here/b" 2>"$here/b.err"; b=$?
     count=$((count + 1))
-    [ $a = $b ] && cmp -s "$work/a" "$work/b" && cmp -s "$work/a.err" "$work/b.err" && return
-    differ=$((differ + 1))
+    [ $a = $b ] && cmp -s "$here/a" "$here/b" && cmp -s "$here/a.err" "$here/b.err" && return
     echo "$what differs"
 }
-for scene in *.sdf; do
-    for target in $targets; do same "$scene --target $target" compile "$scene" --target "$target"; done
-    same "$scene, its field" eval "$scene" --at 0.3,0.4,0.5 --at 1,2,3 --at -1.1,0.2,0.7
-    same "$scene, its save file" export "$scene"
+scene_outputs() { # SCENE
+    here=$work/$1 count=0
+    mkdir "$here"
+    for target in $targets; do same "$1 --target $target" compile "$1" --target "$target"; done >"$here/differ"
+    same "$1, its field" eval "$1" --at 0.3,0.4,0.5 --at 1,2,3 --at -1.1,0.2,0.7 >>"$here/differ"
+    same "$1, its save file" export "$1" >>"$here/differ"
+    echo $count >"$here/count"
+}
+workers=$(nproc)
+for worker in $(seq 0 $((workers - 1))); do
+    (
+        number=0
+        for scene in *.sdf; do
+            [ $((number % workers)) = "$worker" ] && scene_outputs "$scene"
+            number=$((number + 1))
+        done
+    ) &
 done
+wait
+cat "$work"/*/differ
+count=$(cat "$work"/*/count | awk "{ n += \$1 } END { print n + 0 }") differ=$(cat "$work"/*/differ | wc -l)
 echo "$count outputs, $differ differ"
-[ $differ = 0 ]
+[ "$count" -gt 0 ] && [ "$differ" = 0 ]

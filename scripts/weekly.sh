@@ -14,6 +14,7 @@ try() { # NAME COMMAND…
 }
 : >build-weekly/summary
 try clang scripts/clang.sh
+try effort env FATHOM_EFFORT=4 ctest --test-dir build --output-on-failure -E fuzz
 try sanitize scripts/sanitize.sh
 try tidy scripts/tidy.sh
 try argument_order scripts/argument_order.sh

@@ -2,6 +2,7 @@
 // --partial do, what is left behind, and files that mean harm. Save files are opened by the other
 // commands too.
 #include "shell.h"
+#include "tests/support/effort.h"
 
 #include <catch2/catch.hpp>
 
@@ -126,7 +127,8 @@ TEST_CASE("save files are scenes to all commands, and pass through a pipe") {
     CHECK(piped.exit == 0);
 }
 
-TEST_CASE("a file of 100 MB is imported in bounded memory") {
+TEST_CASE("a large file is imported in bounded memory") {
+    const int megabytes = fathom::test::effort(25);
     ScratchFolder folder;
     {
         std::ofstream out(folder / "big.yaml");
@@ -136,10 +138,12 @@ TEST_CASE("a file of 100 MB is imported in bounded memory") {
             block += fmt::format("    - [Sphere, a sphere with a name that is long enough, "
                                  "{{Radius: 0.{}, Offset: {{X: 0, Y: 0}}}}]\n",
                                  i % 9 + 1);
-        for (int i = 0; i < 100; ++i) out << block;
+        for (int i = 0; i < megabytes; ++i) out << block;
     }
-    CHECK(std::filesystem::file_size(folder / "big.yaml") > 100000000);
-    CHECK(shell(folder, "ulimit -v 2000000; fathom import big.yaml -o big.sdf").exit ==
-          0); // 2 GB of addresses; 0.6 GB are used
-    CHECK(std::filesystem::file_size(folder / "big.sdf") > 50000000);
+    CHECK(std::filesystem::file_size(folder / "big.yaml") > std::uintmax_t(megabytes) * 1'000'000);
+    // Of 100 MB: 2 GB of addresses; 0.6 GB are used.
+    CHECK(shell(folder, fmt::format("ulimit -v {}; fathom import big.yaml -o big.sdf",
+                                    200'000 + 18'000 * megabytes))
+              .exit == 0);
+    CHECK(std::filesystem::file_size(folder / "big.sdf") > std::uintmax_t(megabytes) * 500'000);
 }

@@ -419,7 +419,7 @@ TEST_CASE("room for the frames is asked for before the first is made") {
     const FilmScenes folder;
     const Result full =
         shell(folder, "timeout 20 '" FATHOM_PROGRAM "' render still.sdf --backend cpu "
-                      "--size 65536x65536 --frames 0..=1000000 -o f#.png");
+                      "--size 8192x8192 --frames 0..=100000 -o f#.png");
     CHECK(full.exit == 3);
     CHECK(contains(full.err, "free"));
 }

@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "base/picture.h"
 #include "tests/cli/shell.h"
+#include "tests/support/effort.h"
 
 #include <catch2/catch.hpp>
 #include <fcntl.h>
@@ -70,6 +71,7 @@ std::string shared_lists(const std::string &leaf, const std::string &use) {
 struct Hostile {
     const char *what, *code; // of the one error; empty: the scene is cheap after all
     std::string text;
+    bool often = true; // false: one that stands beside it is nearly the same; weekly
 };
 
 std::vector<Hostile> hostile_scenes() {
@@ -107,10 +109,10 @@ std::vector<Hostile> hostile_scenes() {
         {"two million functions", "memory-limit",
          "let l = map(0..2000000, i => (x => x + i))\nsphere(1)\n"},
         {"loops in loops of a field", "proof-limit", field_of(loops, "")},
-        {"loops in loops, claimed", "", field_of(loops, ", lipschitz: 5")},
+        {"loops in loops, claimed", "", field_of(loops, ", lipschitz: 5"), false},
         {"3,000 ifs", "proof-limit", field_of(ifs("else { s = s * 1.01 }"), "")},
         {"3,000 ifs, claimed", "proof-limit",
-         field_of(ifs("else { s = s * 1.01 }"), ", lipschitz: 5")},
+         field_of(ifs("else { s = s * 1.01 }"), ", lipschitz: 5"), false},
         {"fbm of many octaves", "bad-argument",
          "sphere(1).displace(p => fbm(p, octaves: 100000) * 0.1)\n"},
         {"4,000 unknown names", "unknown-name",
@@ -141,6 +143,7 @@ std::vector<Hostile> hostile_scenes() {
 
 TEST_CASE("each hostile scene is answered within 10 s of processor time and 1 GB") {
     for (const Hostile &scene : hostile_scenes()) {
+        if (!scene.often && test::effort(1) == 1) continue;
         const Cost cost = check_alone(scene.text);
         INFO(scene.what << ": " << cost.words.substr(0, 500));
         CHECK(cost.exit == (*scene.code ? 1 : 0));
@@ -201,7 +204,7 @@ TEST_CASE("evaluation goes as deep as the stack that the system grants") {
 
 TEST_CASE("where the system gives no memory there is an error, and no fault") {
     const Cost cost =
-        check_alone("let l = map(0..2000000, i => i)\nsphere(1)\n", std::size_t{200} << 20);
+        check_alone("let l = map(0..2000000, i => i)\nsphere(1)\n", std::size_t{260} << 20);
     INFO(cost.words);
     CHECK(cost.exit == 1);
     CHECK(contains(cost.words, "error[memory-limit]"));

@@ -82,7 +82,7 @@ TEST_CASE("Ctrl-C ends a picture, keeps the old file and leaves the terminal in 
     folder.write("out.png", "what was there");
     const std::size_t files = files_in(folder);
     const Session session =
-        run_in_terminal(folder, draw("quick.sdf", "16000x16000"), " %", "\x03", true);
+        run_in_terminal(folder, draw("quick.sdf", "6000x6000"), " %", "\x03", true);
     CHECK(WIFSIGNALED(session.status));
     CHECK(WTERMSIG(session.status) == SIGINT);
     CHECK(folder.read("out.png") == "what was there");

@@ -160,6 +160,39 @@ std::string fixed_text(const Fixed &result) {
            (result.stuck.empty() ? "" : "no fix: " + result.stuck + "\n");
 }
 
+// `found`: what the case's own program says.
+Fixed apply_fixes(const Case &golden, std::vector<Diagnostic> found) {
+    constexpr int max_fixes = 60;
+    Fixed result{golden.program, "", ""};
+    for (int i = 0; i < max_fixes; ++i) {
+        const auto fixable = std::find_if(found.begin(), found.end(), [](const Diagnostic &d) {
+            return d.fix && !d.fix->edits.empty();
+        });
+        if (fixable == found.end()) {
+            for (const Diagnostic &d : found)
+                if (d.severity != Severity::Note)
+                    result.left += fmt::format("left: {}: {}\n", code_name(d.code), d.message);
+            return result;
+        }
+        const std::string edited = with_edits(result.program, fixable->fix->edits);
+        // The same thing said at the same place: the fix has changed nothing.
+        const auto says_it = [&](const Diagnostic &d) {
+            return d.code == fixable->code && d.message == fixable->message &&
+                   d.primary.span.begin == fixable->primary.span.begin;
+        };
+        const driver::Compilation after =
+            driver::compile_text(golden.file, edited, golden.folder, {});
+        const auto &items = after.diagnostics.items();
+        if (std::any_of(items.begin(), items.end(), says_it))
+            result.stuck = fmt::format("{}: {}", code_name(fixable->code), fixable->message);
+        if (!result.stuck.empty()) return result;
+        result.program = edited;
+        found = after.diagnostics.sorted();
+    }
+    result.stuck = "there is no end of fixes";
+    return result;
+}
+
 } // namespace
 
 Case read_case(const std::string &path) {
@@ -198,48 +231,15 @@ Outcome run_case(const Case &golden) {
     driver::Compilation compilation =
         driver::compile_text(golden.file, golden.program, golden.folder, {});
     Outcome outcome;
+    outcome.fixed = apply_fixes(golden, compilation.diagnostics.sorted());
     outcome.has_errors = compilation.diagnostics.has_errors();
     for (const Diagnostic &diagnostic : compilation.diagnostics.items())
         outcome.codes.emplace_back(code_name(diagnostic.code));
     for (const Section &section : golden.sections)
         outcome.actual.push_back({section.stage, section.arguments,
-                                  section.stage == "fixed" ? fixed_text(apply_fixes(golden))
+                                  section.stage == "fixed" ? fixed_text(outcome.fixed)
                                                            : section_text(section, compilation)});
     return outcome;
-}
-
-Fixed apply_fixes(const Case &golden) {
-    constexpr int max_fixes = 60;
-    Fixed result{golden.program, "", ""};
-    for (int i = 0; i < max_fixes; ++i) {
-        const driver::Compilation compilation =
-            driver::compile_text(golden.file, result.program, golden.folder, {});
-        const std::vector<Diagnostic> found = compilation.diagnostics.sorted();
-        const auto fixable = std::find_if(found.begin(), found.end(), [](const Diagnostic &d) {
-            return d.fix && !d.fix->edits.empty();
-        });
-        if (fixable == found.end()) {
-            for (const Diagnostic &d : found)
-                if (d.severity != Severity::Note)
-                    result.left += fmt::format("left: {}: {}\n", code_name(d.code), d.message);
-            return result;
-        }
-        const std::string edited = with_edits(result.program, fixable->fix->edits);
-        // The same thing said at the same place: the fix has changed nothing.
-        const auto says_it = [&](const Diagnostic &d) {
-            return d.code == fixable->code && d.message == fixable->message &&
-                   d.primary.span.begin == fixable->primary.span.begin;
-        };
-        const driver::Compilation after =
-            driver::compile_text(golden.file, edited, golden.folder, {});
-        const auto &items = after.diagnostics.items();
-        if (std::any_of(items.begin(), items.end(), says_it))
-            result.stuck = fmt::format("{}: {}", code_name(fixable->code), fixable->message);
-        if (!result.stuck.empty()) return result;
-        result.program = edited;
-    }
-    result.stuck = "there is no end of fixes";
-    return result;
 }
 
 std::string write_case(const Case &golden, const std::vector<Section> &sections) {

@@ -24,21 +24,21 @@ struct Case {
 
 Case read_case(const std::string &path);
 
-struct Outcome {
-    std::vector<Section> actual; // the same sections, as the program is now
-    bool has_errors = false;
-    std::vector<std::string> codes; // of all its diagnostics
-};
-Outcome run_case(const Case &golden);
-
-std::string write_case(const Case &golden, const std::vector<Section> &sections); // the file's text
-
 // The program after all fixes that its diagnostics propose, made one after the other as a person
 // would; and the diagnostics that remain. `stuck` names a fix that changes nothing.
 struct Fixed {
     std::string program, left, stuck;
 };
-Fixed apply_fixes(const Case &golden);
+
+struct Outcome {
+    std::vector<Section> actual; // the same sections, as the program is now
+    bool has_errors = false;
+    std::vector<std::string> codes; // of all its diagnostics
+    Fixed fixed;
+};
+Outcome run_case(const Case &golden);
+
+std::string write_case(const Case &golden, const std::vector<Section> &sections); // the file's text
 
 // The first difference, in a few lines.
 std::string difference(std::string_view expected, std::string_view actual);

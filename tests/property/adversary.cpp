@@ -1,9 +1,10 @@
 // An adversary of the proof: random fields and shapes of the kinds that have been proved wrongly
 // before. Whatever the checker accepts is measured where such fields go wrong: on borders and next
-// to them, at 0, over params' ends and inside, over time. FATHOM_SCENES and FATHOM_SEED in the
+// to them, at 0, over params' ends and inside, over time. FATHOM_EFFORT and FATHOM_SEED in the
 // environment make it longer, or another; FATHOM_SHOW says what each scene came to.
 // Long: one generator and its table of hostile calls.
 #include "judge.h"
+#include "tests/support/effort.h"
 
 #include <catch2/catch.hpp>
 
@@ -383,7 +384,7 @@ class Adversary : public Chance {
 } // namespace
 
 TEST_CASE("what an adversary writes is refused, or is as flat as proved") {
-    const int scenes = number_from("FATHOM_SCENES", 700), seed = number_from("FATHOM_SEED", 1);
+    const int scenes = effort(700), seed = test::seed();
     int accepted = 0, wrong = 0;
     for (int i = 0; i < scenes; ++i) {
         Adversary random(std::uint64_t(seed) * 1'000'003u + std::uint64_t(i));

@@ -1,10 +1,11 @@
 // Random compositions of everything in the library: the safe ball against the scene's plain
 // geometry (every copy asked, nothing guarded), the slope of what offsets, shells and blends use,
 // over params at both ends of their ranges. A scene that fails is cut down before it is shown.
-// FATHOM_SCENES and FATHOM_SEED in the environment make it longer, or another.
+// FATHOM_EFFORT and FATHOM_SEED in the environment make it longer, or another.
 #include "driver/compile.h"
 #include "ir/lower/lower.h"
 #include "random_scenes.h"
+#include "tests/support/effort.h"
 #include "tests/support/slopes.h"
 
 #include <catch2/catch.hpp>
@@ -122,15 +123,10 @@ Verdict judge(const std::string &head, const Term &tree, int count, bool cells) 
     return out;
 }
 
-int number_from(const char *variable, int otherwise) {
-    const char *text = std::getenv(variable);
-    return text ? std::atoi(text) : otherwise;
-}
-
 } // namespace
 
 TEST_CASE("random compositions are marched safely, and are no steeper than proved") {
-    const int scenes = number_from("FATHOM_SCENES", 150), seed = number_from("FATHOM_SEED", 1);
+    const int scenes = test::effort(60), seed = test::seed();
     int good = 0, wrong = 0;
     std::map<std::string, int> refused;
     for (int i = 0; i < scenes; ++i) {

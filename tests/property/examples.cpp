@@ -1,8 +1,9 @@
 // Every example, as it is marched: the safe ball (the field keeps its sign within |d(p)| of p) on
-// 10^6 random balls, on the CPU and in the shader, and no holes: rays marched by proved steps land
+// many random balls, on the CPU and in the shader, and no holes: rays marched by proved steps land
 // where a plain march at a tenth of the step lands.
 #include "backend-cpu/trace/march.h"
 #include "driver/compile.h"
+#include "tests/support/effort.h"
 #include "tests/support/shader_balls.h"
 
 #include <catch2/catch.hpp>
@@ -37,20 +38,21 @@ void around(const ir::Scene &scene, test::Point3 &lo, test::Point3 &hi) {
 } // namespace
 
 TEST_CASE("the field keeps its sign within the distance it gives") {
+    const int balls = test::effort(250'000);
     for (const fs::path &file : examples()) {
         driver::Compilation c = driver::compile_file(file, {});
         INFO(file.filename().string());
         REQUIRE(c.good());
         test::Point3 lo, hi;
         around(c.scene, lo, hi);
-        test::Slopes s = test::measure(c.scene, lo, hi, 1'000'000, 100'000);
+        test::Slopes s = test::measure(c.scene, lo, hi, balls, balls / 10);
         std::printf("%-24s %d balls, steepest marched slope %.3f\n",
                     file.filename().string().c_str(), s.balls, s.steepest);
         INFO("at [" << s.unsafe_center[0] << ", " << s.unsafe_center[1] << ", "
                     << s.unsafe_center[2] << "] the step is " << s.unsafe_by
                     << " times the way to [" << s.unsafe_point[0] << ", " << s.unsafe_point[1]
                     << ", " << s.unsafe_point[2] << "]");
-        CHECK(s.balls >= 1'000'000);
+        CHECK(s.balls >= balls);
         CHECK(s.unsafe == 0);
     }
 }
@@ -63,7 +65,7 @@ TEST_CASE("so it does in the shader") {
         REQUIRE(c.good());
         test::Point3 lo, hi;
         around(c.scene, lo, hi);
-        const test::ShaderBalls s = test::shader_balls(c.scene, lo, hi, 1 << 20);
+        const test::ShaderBalls s = test::shader_balls(c.scene, lo, hi, test::effort(1 << 18));
         INFO(s.worst);
         CHECK(s.unsafe == 0);
     }

@@ -1,8 +1,9 @@
 // A random search over formulas of the whole language: scalars and points made of everything that
 // may stand in a field, with choices, steps and waves whose sides meet, or nearly. Whatever the
-// checker accepts is measured (judge.h). FATHOM_SCENES=10000 is the long form.
+// checker accepts is measured (judge.h). FATHOM_EFFORT=40 is the long form.
 // Long: one grammar, whose rules call each other.
 #include "judge.h"
+#include "tests/support/effort.h"
 
 #include <catch2/catch.hpp>
 
@@ -313,7 +314,7 @@ class Formula : public Chance {
 } // namespace
 
 TEST_CASE("a formula is refused, or is as flat as proved") {
-    const int scenes = number_from("FATHOM_SCENES", 250), seed = number_from("FATHOM_SEED", 1);
+    const int scenes = effort(250), seed = test::seed();
     int accepted = 0, wrong = 0;
     long pairs = 0;
     for (int i = 0; i < scenes; ++i) {

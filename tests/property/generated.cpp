@@ -1,6 +1,6 @@
 // Whole programs made at random, through the whole compiler: what checks emits valid GLSL,
 // evaluates on the tape to what the graph says, and means the same when formatted; and a function
-// means the same at scene time and at field time. FATHOM_PROGRAMS=n tries n programs a property.
+// means the same at scene time and at field time. FATHOM_EFFORT=n tries n times as many programs.
 #include "programs.h"
 
 #include "backend-cpu/tape.h"
@@ -10,6 +10,7 @@
 #include "ir/passes/verify.h"
 #include "lang/format.h"
 #include "lang/parse.h"
+#include "tests/support/effort.h"
 #include "tests/support/reference_eval.h"
 
 #include <catch2/catch.hpp>
@@ -19,11 +20,6 @@
 using namespace fathom;
 
 namespace {
-
-unsigned programs_to_try(unsigned fixed) {
-    const char *wanted = std::getenv("FATHOM_PROGRAMS");
-    return wanted ? static_cast<unsigned>(std::atoi(wanted)) : fixed;
-}
 
 driver::Compilation compile(const std::string &text) {
     return driver::compile_text("program.sdf", text, "", {});
@@ -89,7 +85,7 @@ template <typename F> bool agree(double found, const std::array<double, 3> &p, c
 
 TEST_CASE("a program that checks emits valid GLSL, evaluates as the graph says, and is formatted "
           "without a change") {
-    unsigned good = 0, tried = programs_to_try(300);
+    unsigned good = 0, tried = static_cast<unsigned>(test::effort(300));
     for (unsigned seed = 0; seed < tried; ++seed) {
         const std::string text = programs::scene(seed);
         INFO("seed " << seed << "\n" << text);
@@ -174,7 +170,7 @@ TEST_CASE("a program that checks emits valid GLSL, evaluates as the graph says, 
 }
 
 TEST_CASE("a function means the same at scene time and at field time") {
-    unsigned good = 0, tried = programs_to_try(400);
+    unsigned good = 0, tried = static_cast<unsigned>(test::effort(400));
     for (unsigned seed = 0; seed < tried; ++seed) {
         const std::string text =
             programs::function(seed) +

@@ -1,12 +1,13 @@
 // What the searches of the proof share: chance, and a judge that compiles a scene and measures what
 // was accepted where fields go wrong: on borders and next to them, on axes and diagonals, on
 // surfaces, at params' ends and inside, over time; then closer and closer to where it is steepest.
-// FATHOM_SCENES and FATHOM_SEED in the environment make a search longer, or another; FATHOM_SHOW
+// FATHOM_EFFORT and FATHOM_SEED in the environment make a search longer, or another; FATHOM_SHOW
 // prints what each scene came to.
 #pragma once
 
 #include "driver/compile.h"
 #include "ir/lower/lower.h"
+#include "tests/support/effort.h"
 #include "tests/support/slopes.h"
 
 #include <cstdio>
@@ -211,11 +212,6 @@ inline Verdict judge(const std::string &text, Chance &random, int pairs) {
         }
     }
     return out;
-}
-
-inline int number_from(const char *variable, int otherwise) {
-    const char *text = std::getenv(variable);
-    return text ? std::atoi(text) : otherwise;
 }
 
 } // namespace fathom::test

@@ -1,9 +1,10 @@
 // Meshes of random scenes: closed, oriented 2-manifolds without triangles that cross, whatever the
 // scene; and their certificates, which claim no less than what is measured.
-// FATHOM_SCENES and FATHOM_SEED in the environment make it longer, or another.
+// FATHOM_EFFORT and FATHOM_SEED in the environment make it longer, or another.
 #include "driver/compile.h"
 #include "mesh/certify.h"
 #include "random_scenes.h"
+#include "tests/support/effort.h"
 #include "tests/support/mesh_checks.h"
 
 #include <catch2/catch.hpp>
@@ -13,11 +14,6 @@
 using namespace fathom;
 
 namespace {
-
-std::uint64_t setting(const char *name, std::uint64_t usual) {
-    const char *text = std::getenv(name);
-    return text ? std::strtoull(text, nullptr, 10) : usual;
-}
 
 double to_segment(const test::Exact &p, const test::Exact &a, const test::Exact &b) {
     const test::Exact d = test::minus(b, a), w = test::minus(p, a);
@@ -113,7 +109,7 @@ void hold_against(const mesh::Made &made, const mesh::Certificate &certificate,
 
 TEST_CASE(
     "meshes of random scenes are closed, do not cross themselves, and are as near as claimed") {
-    const std::uint64_t count = setting("FATHOM_SCENES", 20), seed = setting("FATHOM_SEED", 1);
+    const std::uint64_t count = std::uint64_t(test::effort(8)), seed = std::uint64_t(test::seed());
     std::size_t made_meshes = 0, triangles = 0, certified = 0;
     for (std::uint64_t number = 0; number < count; ++number) {
         test::Dice dice{seed * 1'000'003 + number};

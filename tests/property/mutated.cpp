@@ -1,7 +1,8 @@
 // A deterministic smoke of tests/fuzz/compile_fuzz.cpp: whole programs broken at random, and those
 // of the project, are answered by reports that print, or by a shader that glslang accepts.
-// FATHOM_PROGRAMS=n tries n of each.
+// FATHOM_EFFORT=n tries n times as many.
 #include "programs.h"
+#include "tests/support/effort.h"
 #include "tests/support/whole.h"
 #include "tests/unit/lang/programs.h"
 
@@ -15,11 +16,6 @@
 
 namespace {
 
-unsigned programs_to_try(unsigned fixed) {
-    const char *wanted = std::getenv("FATHOM_PROGRAMS");
-    return wanted ? static_cast<unsigned>(std::atoi(wanted)) : fixed;
-}
-
 void try_text(const std::string &text) {
     INFO(text);
     CHECK(fathom::test::whole_compiler(text).fault == "");
@@ -28,7 +24,7 @@ void try_text(const std::string &text) {
 } // namespace
 
 TEST_CASE("mutated random scenes") {
-    for (unsigned seed = 0; seed < programs_to_try(300); ++seed)
+    for (unsigned seed = 0; seed < static_cast<unsigned>(fathom::test::effort(300)); ++seed)
         try_text(lang_test::mutated(programs::scene(seed), seed));
 }
 
@@ -45,6 +41,6 @@ TEST_CASE("mutated scenes of the project") {
             }
     std::sort(texts.begin(), texts.end());
     REQUIRE(texts.size() > 50);
-    for (unsigned seed = 0; seed < programs_to_try(300); ++seed)
+    for (unsigned seed = 0; seed < static_cast<unsigned>(fathom::test::effort(300)); ++seed)
         try_text(lang_test::mutated(texts[seed % texts.size()], seed));
 }

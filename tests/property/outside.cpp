@@ -1,7 +1,7 @@
 // Text from outside (names of files, labels, strings, -D, names in save files) changes nothing of
 // what is emitted but comments and strings: GLSL of each target has the tokens that it has with
 // harmless names, pages and JSON the same skeleton and the very strings, YAML the same tree,
-// diagnostics the same lines. FATHOM_PROGRAMS=n tries n random texts.
+// diagnostics the same lines. FATHOM_EFFORT=n tries n times as many random texts.
 // Long: one list of nasty texts, against each reader.
 #include "backend-glsl/emit.h"
 #include "base/encode.h"
@@ -11,6 +11,7 @@
 #include "save-format/save_format.h"
 #include "save-format/yaml_reader.h"
 #include "save-format/yaml_writer.h"
+#include "tests/support/effort.h"
 #include "tests/unit/driver/scratch_folder.h"
 #include "tests/unit/save/support.h"
 
@@ -144,11 +145,6 @@ std::vector<std::string> nasty_texts(std::size_t count) {
         texts.push_back(text);
     }
     return texts;
-}
-
-std::size_t texts_to_try(std::size_t fixed) {
-    const char *wanted = std::getenv("FATHOM_PROGRAMS");
-    return wanted ? static_cast<std::size_t>(std::atoi(wanted)) : fixed;
 }
 
 std::string as_utf8(const std::string &text) {
@@ -435,7 +431,7 @@ TEST_CASE("what a scene, a file or a label is called changes no token of a shade
         CHECK(wanted[0][0].find(place) != std::string::npos);
     }
     std::size_t next = 0;
-    for (const std::string &text : nasty_texts(texts_to_try(28))) {
+    for (const std::string &text : nasty_texts(static_cast<std::size_t>(test::effort(28)))) {
         INFO(for_json(text));
         const std::string module_name = as_file(as_utf8(text)) + ".sdf";
         const std::string scene_name = as_file(text) + ".sdf";
@@ -477,7 +473,7 @@ TEST_CASE("diagnostics of any names and texts are lines of their own alone, and 
             all += to_text(d, compilation.sources, false);
         return all;
     };
-    for (const std::string &text : nasty_texts(texts_to_try(300))) {
+    for (const std::string &text : nasty_texts(static_cast<std::size_t>(test::effort(300)))) {
         INFO(for_json(text));
         const driver::Compilation nasty = compile(text, text);
         const std::string shown = said(nasty);
@@ -499,7 +495,7 @@ TEST_CASE("diagnostics of any names and texts are lines of their own alone, and 
 
 TEST_CASE(
     "any text comes back from YAML, as a value, as a key, and through an import and an export") {
-    for (const std::string &raw : nasty_texts(texts_to_try(2000))) {
+    for (const std::string &raw : nasty_texts(static_cast<std::size_t>(test::effort(2000)))) {
         INFO(for_json(raw));
         const std::string text = as_utf8(raw);
         const save::Value tree = save::yaml_list(
@@ -535,7 +531,7 @@ TEST_CASE("names that YAML readers take for numbers, dates, switches or merges a
 }
 
 TEST_CASE("a save file of any names is imported and exported as the same tree") {
-    for (const std::string &raw : nasty_texts(texts_to_try(60))) {
+    for (const std::string &raw : nasty_texts(static_cast<std::size_t>(test::effort(60)))) {
         INFO(for_json(raw));
         const std::string name = for_yaml(raw);
         const std::string file = "- 0.3\n- {" + for_yaml("t" + raw) + ": " +

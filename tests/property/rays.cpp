@@ -4,6 +4,7 @@
 #include "backend-cpu/trace/march.h"
 #include "driver/compile.h"
 #include "random_scenes.h"
+#include "tests/support/effort.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -16,8 +17,7 @@ using namespace fathom;
 
 namespace {
 
-// FATHOM_RAYS=N judges N scenes.
-const int scenes = std::getenv("FATHOM_RAYS") ? std::atoi(std::getenv("FATHOM_RAYS")) : 40;
+const int scenes = test::effort(40);
 constexpr int width = 16, height = 12;
 constexpr std::size_t samples = 1000, closer = 1000, least = 4; // along a ray; between two; places
 

@@ -1,17 +1,16 @@
 // Every example and every entry of the library again, by the second checker of slopes
 // (tests/support/second_check.h), which shares nothing with the proof: the marched field is nowhere
 // certainly steeper than 1. Where the second checker reaches a bound of its own it says the same.
-// FATHOM_WORK is how many nodes it may evaluate for each.
 #include "driver/compile.h"
 #include "driver/verdict.h"
 #include "ir/lower/lower.h"
+#include "tests/support/effort.h"
 #include "tests/support/library_entries.h"
 #include "tests/support/second_check.h"
 
 #include <catch2/catch.hpp>
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 
 using namespace fathom;
@@ -37,8 +36,7 @@ void check_again(const std::string &name, driver::Compilation c, Counts &counts)
     // Steps by cells are as long as is safe, and no slope of anything.
     for (ir::ShapeFact &fact : c.scene.facts) fact.cells = {};
     ir::lower(c.scene);
-    const char *given = std::getenv("FATHOM_WORK");
-    const long work = given ? std::atol(given) : 60'000;
+    const long work = test::effort(10'000); // nodes that it evaluates
     std::array<double, 3> lo{-4, -4, -4}, hi{4, 4, 4};
     if (!c.scene.bounds.empty())
         for (std::size_t k = 0; k < 3; ++k) {

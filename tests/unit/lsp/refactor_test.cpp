@@ -4,6 +4,7 @@
 #include "scenes.h"
 
 #include "lsp/refactor.h"
+#include "tests/support/effort.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,7 +104,7 @@ TEST_CASE("what is extracted and put back in has the same field") {
         const Read before = read(scene.text);
         std::vector<Span> spans;
         for (const fathom::lang::Expr &e : before.syntax.ast.exprs) spans.push_back(e.span);
-        for (int i = 0; i < 3 && !spans.empty(); ++i) {
+        for (int i = 0; i < fathom::test::effort(1) && !spans.empty(); ++i) {
             const Span at = spans[random() % spans.size()];
             try_out(workspace, scene, *values,
                     extract_let(before.syntax, before.names, at.begin, at.end), lets, equal);
@@ -121,7 +122,7 @@ TEST_CASE("what is extracted and put back in has the same field") {
                 try_out(workspace, scene, *values, one, units, same_solid);
             break; // one a scene
         }
-        for (int i = 0; i < 2 && !before.names.declarations.empty(); ++i) {
+        for (int i = 0; i < fathom::test::effort(1) && !before.names.declarations.empty(); ++i) {
             const std::size_t at = random() % before.names.declarations.size();
             try_out(workspace, scene, *values,
                     inline_let(before.syntax, before.names, before.names.declarations[at].at.begin),

@@ -21,7 +21,7 @@ namespace {
 // 1e-6, and what the compiler widens a guard's box by: a file has a shape's paint below its
 // transforms, and so the guard of what is painted within a region (minimal_surfaces: 1.3e-6).
 constexpr double max_field = 1.5e-6;
-constexpr int picture_width = 80, picture_height = 60, asked_points = 1000;
+constexpr int picture_width = 60, picture_height = 45, asked_points = 1000;
 
 using Coordinates = std::array<std::vector<float>, 3>;
 

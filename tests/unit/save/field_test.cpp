@@ -1,6 +1,7 @@
 // What an export says is the scene's field: exported and imported again, the raw field is the same
 // at 10^4 points of generated scenes (every example: examples_test.cpp). Raw, since the bounds that
 // divide it may differ: of what is written as a function, more may be known.
+#include "tests/support/effort.h"
 #include "tests/unit/save/support.h"
 
 #include "backend-cpu/tape.h"
@@ -255,8 +256,9 @@ class Generator {
 } // namespace
 
 TEST_CASE("generated scenes are the same after an export and an import", "[save][field]") {
-    int proved = 0;
-    for (unsigned seed = 1; seed <= 150; ++seed) {
+    const auto scenes = static_cast<unsigned>(fathom::test::effort(50));
+    unsigned proved = 0;
+    for (unsigned seed = 1; seed <= scenes; ++seed) {
         const std::string text = "import \"dfmodel\" as dfmodel\n" + Generator(seed).scene();
         const driver::Compilation first = driver::compile_text("a.sdf", text, "", {});
         for (const Diagnostic &d : first.diagnostics.items()) {
@@ -278,7 +280,7 @@ TEST_CASE("generated scenes are the same after an export and an import", "[save]
         CHECK(result.errors == "");
         check_fields(result);
     }
-    CHECK(proved > 90);
+    CHECK(proved > scenes * 3 / 5);
 }
 
 TEST_CASE("the edges of what arguments may be come back, and deformed functions", "[save][field]") {
