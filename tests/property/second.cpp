@@ -35,7 +35,7 @@ void check_again(const std::string &name, driver::Compilation c, Counts &counts)
     for (const ir::ShapeFact &fact : c.scene.facts)
         if (fact.detour > 1) return;
     // Steps by cells are as long as is safe, and no slope of anything.
-    for (ir::ShapeFact &fact : c.scene.facts) fact.cells = {};
+    c.scene.cells.clear();
     ir::lower(c.scene);
     const char *given = std::getenv("FATHOM_WORK");
     const long work = given ? std::atol(given) : 60'000;
