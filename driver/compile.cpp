@@ -285,4 +285,11 @@ Compilation compile_file(const std::filesystem::path &file, const CompileOptions
     return out;
 }
 
+bool is_steep(const ir::Scene &scene) {
+    return std::ranges::any_of(scene.facts, [](const ir::ShapeFact &fact) {
+        return fact.status == ir::ProofStatus::Proved && fact.lipschitz_sup > proof::steep &&
+               std::isfinite(fact.lipschitz_sup);
+    });
+}
+
 } // namespace fathom::driver

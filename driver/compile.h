@@ -85,6 +85,9 @@ Compilation compile_loaded(std::string name, std::string text, const typecheck::
 void leave_out_unusable(const std::string &name, const std::string &text,
                         const std::filesystem::path &scene, save::ImportOptions &import);
 
+// Is some shape so steep that it may be marched by bounds by cells (CompileOptions::cells)?
+bool is_steep(const ir::Scene &scene);
+
 // The embedded standard library.
 const std::vector<typecheck::LibraryFile> &standard_library();
 

@@ -5,6 +5,8 @@
 
 #include "ir/shape.h"
 
+#include <map>
+
 namespace fathom::ir {
 
 // How many copies of a repetition have to be evaluated, per axis, for a valid and continuous bound.
@@ -24,7 +26,7 @@ struct CellBounds {
     Box box;
     std::array<int, 3> count{};
     double margin = 0;
-    std::vector<double> lipschitz; // empty: none
+    std::vector<double> lipschitz;
     std::vector<double> way;  // from any point of the cell to the surface, at least; 0 where the
                               // cell may hold surface or lies in the solid
     std::vector<double> bend; // of second derivatives along lines; empty: known of no cell
@@ -65,9 +67,6 @@ struct ShapeFact {
     RepeatPlan repeat;
     double detour =
         1; // Within: the ways round what its region leaves out, over the straight ones, at most
-    CellBounds
-        cells; // the marched field's bounds cell by cell, where they differ much: of a Within
-               // its child's in the region, of what has a guard its own in `bounds`
 };
 
 // What was proved of a cached field (Graph::caches) everywhere, for all params.
@@ -184,7 +183,10 @@ struct Scene {
     ShapeId root; // the union of the top-level shapes
     std::vector<TopLevel> top_level;
     std::vector<Condition> conditions;
-    std::vector<ShapeFact> facts;  // by ShapeId; filled by the analysis
+    std::vector<ShapeFact> facts; // by ShapeId; filled by the analysis
+    // Of shapes whose marched field has bounds that differ much from cell to cell: of a Within its
+    // child's in the region, of what has a guard its own in its `bounds`. Filled by the analysis.
+    std::map<ShapeId, CellBounds> cells;
     std::vector<CacheFact> caches; // by CacheId; filled by the analysis
     std::vector<Param> params;
     std::vector<Light> lights;

@@ -313,14 +313,13 @@ class Search {
 
 } // namespace
 
-ir::CellBounds bound_cells(Flattening &context, const Ranges &ranges, NodeId field,
-                           const Domain &domain, double whole, const CellAim &aim) {
-    ir::CellBounds out;
+std::optional<ir::CellBounds> bound_cells(Flattening &context, const Ranges &ranges, NodeId field,
+                                          const Domain &domain, double whole, const CellAim &aim) {
     const Cell &box = domain.box;
     for (const Interval &side : box.p)
-        if (!side.finite() || !(side.width() > 0)) return out;
+        if (!side.finite() || !(side.width() > 0)) return std::nullopt;
     const Tape tape = flatten(context, field);
-    if (tape.too_large || tape.length() * 64 > aim.instructions) return out;
+    if (tape.too_large || tape.length() * 64 > aim.instructions) return std::nullopt;
     Machine machine(tape, ranges, aim.bends);
     // Where it is everywhere about as steep, one bound says as much.
     std::vector<double> slopes;
@@ -333,36 +332,38 @@ ir::CellBounds bound_cells(Flattening &context, const Ranges &ranges, NodeId fie
         machine.run(point);
         slopes.push_back(machine.norm());
     }
-    if (slopes.empty()) return out;
+    if (slopes.empty()) return std::nullopt;
     std::nth_element(slopes.begin(), slopes.begin() + std::ptrdiff_t(slopes.size() / 2),
                      slopes.end());
     const double enough =
         aim.gain * (1 + aim.look_up / double(std::max<std::size_t>(tape.length(), 1)));
-    if (slopes[slopes.size() / 2] * enough > whole) return out;
+    if (slopes[slopes.size() / 2] * enough > whole) return std::nullopt;
     const double seen =
         *std::ranges::max_element(slopes, {}, [](double x) { return std::isfinite(x) ? x : 0; });
+    ir::CellBounds out;
     Search search(machine, domain, whole, std::isfinite(seen) ? seen : 0, aim, out);
     search.run();
     // By curvature they pay all the same.
-    if (out.bend.empty() && search.mean_near() * enough > whole) return {};
+    if (out.bend.empty() && search.mean_near() * enough > whole) return std::nullopt;
     return out;
 }
 
-ir::CellBounds Prover::cells_of(NodeId field, const Domain &domain, double whole,
-                                const CellAim &aim) {
-    ir::CellBounds out = bound_cells(flattening, ranges, field, domain, whole, aim);
-    for (double &bound : out.lipschitz) bound *= options.rules[Rule::Field];
-    for (double &bend : out.bend) bend *= options.rules[Rule::Curvature];
-    return out;
+void Prover::find_cells(ir::ShapeId id, NodeId field, const Domain &domain, double whole,
+                        const CellAim &aim) {
+    std::optional<ir::CellBounds> cells =
+        bound_cells(flattening, ranges, field, domain, whole, aim);
+    if (!cells) return;
+    for (double &bound : cells->lipschitz) bound *= options.rules[Rule::Field];
+    for (double &bend : cells->bend) bend *= options.rules[Rule::Curvature];
+    scene.cells[id] = std::move(*cells);
 }
 
 void Prover::know_cells() {
     if (options.cells == 0) return;
-    constexpr double steep = 1.5;
     constexpr std::size_t max_nodes = 4'000;
     const std::vector<ir::DividedField> fields = ir::divided_fields(scene, steep);
     for (const auto &[id, field] : fields) {
-        ir::ShapeFact &fact = scene.facts[id.index];
+        const ir::ShapeFact &fact = scene.facts[id.index];
         const Shape &shape = scene.shapes[id];
         const bool region = shape.kind == ir::ShapeKind::Within;
         const ir::ShapeFact &divided = region ? scene.facts[shape.children.front().index] : fact;
@@ -374,14 +375,12 @@ void Prover::know_cells() {
         const ir::WithoutCalls written = ir::without_loops(graph, field, max_nodes);
         work.take(max_nodes);
         const NodeId text = written.all ? ir::balanced(graph, written.root) : field;
-        ir::CellBounds cells;
         if (region) {
             const Zone zone = zone_of(scene.shapes.regions[shape.payload]);
-            cells = cells_of(text, {outer_box(zone), &zone}, divided.lipschitz_sup, aim);
+            find_cells(id, text, {outer_box(zone), &zone}, divided.lipschitz_sup, aim);
         } else {
-            cells = cells_of(text, {to_cell(fact.bounds), nullptr}, divided.lipschitz_sup, aim);
+            find_cells(id, text, {to_cell(fact.bounds), nullptr}, divided.lipschitz_sup, aim);
         }
-        if (!cells.lipschitz.empty()) fact.cells = std::move(cells);
     }
 }
 

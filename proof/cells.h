@@ -18,7 +18,7 @@ struct CellAim {
 
 // None where the field is mostly not far less steep than `whole`, its bound over all of the domain,
 // whose box has to be bounded.
-ir::CellBounds bound_cells(Flattening &context, const Ranges &ranges, NodeId field,
-                           const Domain &domain, double whole, const CellAim &aim);
+std::optional<ir::CellBounds> bound_cells(Flattening &context, const Ranges &ranges, NodeId field,
+                                          const Domain &domain, double whole, const CellAim &aim);
 
 } // namespace fathom::proof

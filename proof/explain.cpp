@@ -111,14 +111,16 @@ std::string rule_text(const ir::Scene &scene, ShapeId id, Prover &prover) {
                                               : "a mean of the fields' slopes";
     case ShapeKind::Library:
         return opaque(scene, id) ? "stated in the library, beside its proof" : "its body's";
-    case ShapeKind::Within:
-        return fact.cells.lipschitz.empty()
-                   ? "the field inside, the distance to the region outside"
-                   : "the field inside, marched by a bound for each of " +
-                         std::to_string(fact.cells.count[0] * fact.cells.count[1] *
-                                        fact.cells.count[2]) +
-                         (fact.cells.bend.empty() ? " cells" : " cells, and by curvature") +
-                         "; the distance to the region outside";
+    case ShapeKind::Within: {
+        const auto found = scene.cells.find(id);
+        if (found == scene.cells.end())
+            return "the field inside, the distance to the region outside";
+        const ir::CellBounds &cells = found->second;
+        return "the field inside, marched by a bound for each of " +
+               std::to_string(cells.count[0] * cells.count[1] * cells.count[2]) +
+               (cells.bend.empty() ? " cells" : " cells, and by curvature") +
+               "; the distance to the region outside";
+    }
     case ShapeKind::Repeat: {
         std::string copies;
         for (int n : fact.repeat.neighbors)

@@ -16,6 +16,9 @@
 
 namespace fathom::proof {
 
+// Bounds by cells are looked for where a shape's one bound is above this.
+constexpr double steep = 1.5;
+
 struct Options {
     // None: the proof holds for all values that the params' ranges and the scene's times allow.
     // Else for the params' present values (ir::Param::value) and these times, in seconds, alone.

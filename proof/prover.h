@@ -104,8 +104,8 @@ struct Prover {
     Derived know_repeat(ir::ShapeId id);
     Derived know_within(ir::ShapeId id);
     void know_cells(); // after all facts: cells.cpp
-    ir::CellBounds cells_of(ir::NodeId field, const Domain &domain, double whole,
-                            const CellAim &aim);
+    void find_cells(ir::ShapeId id, ir::NodeId field, const Domain &domain, double whole,
+                    const CellAim &aim); // sets Scene::cells where they pay
     Derived know_instances(ir::ShapeId id);
     Derived know_library(ir::ShapeId id);
     Derived know_contract(ir::ShapeId id);

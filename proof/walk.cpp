@@ -35,6 +35,7 @@ void Prover::run() {
     set_lipschitz(derived.emplace_back(), 1);
     places.assign(count, {});
     scene.facts.assign(count, {});
+    scene.cells.clear();
     for (std::size_t i = 0; i < count; ++i) { // variables that shapes bind
         const Shape &shape = scene.shapes[ShapeId{i}];
         if (shape.kind == ShapeKind::Instances) {
@@ -76,8 +77,6 @@ void Prover::run() {
             find_extent(ShapeId{i}, k);
             keep_in_ball(ShapeId{i}, k);
             k.fact.curvature = curvature_of(ShapeId{i}, k);
-            // A shape's facts may begin as its child's, whose cells are of another field.
-            if (scene.shapes[ShapeId{i}].kind != ShapeKind::Within) k.fact.cells = {};
             finish(ShapeId{i}, k);
         }
         if (places[i].reached) {

@@ -149,8 +149,7 @@ Derived Prover::know_within(ShapeId id) {
         graph.is_constant(inner.fact.lipschitz) && inner.fact.status == ProofStatus::Proved) {
         CellAim aim;
         aim.instructions = options.field_instructions;
-        k.fact.cells =
-            cells_of(inner.leaf, {outer_box(zone), &zone}, inner.fact.lipschitz_sup, aim);
+        find_cells(id, inner.leaf, {outer_box(zone), &zone}, inner.fact.lipschitz_sup, aim);
     }
     const double across = 1 + (slope_in_holes(zone) - 1) * options.rules[Rule::Holes];
     NodeId formula =

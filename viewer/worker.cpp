@@ -138,12 +138,13 @@ void Worker::want_probe() {
     if (!probe_.exchange(true)) again();
 }
 
-std::unique_ptr<Build> Worker::build() {
+// `cells`: bounds by cells, so many along a side; 0: none but those of fields in a region.
+std::unique_ptr<Build> Worker::build(int cells) {
     auto start = std::chrono::steady_clock::now();
     auto result = std::make_unique<Build>();
     driver::CompileOptions options = options_;
     options.parts = true;
-    options.cells = driver::cells_of_views;
+    options.cells = cells;
     options.entered = [this](driver::Phase phase) { enter(stage_of(phase)); };
     {
         std::lock_guard lock(mutex_);
@@ -186,6 +187,31 @@ std::unique_ptr<Build> Worker::build() {
     return result;
 }
 
+// The build's scene, where it has fields that may be cached.
+static std::optional<ir::Scene> with_caches(const Build &build) {
+    const ir::Scene &scene = build.compilation.scene;
+    if (!build.good() || scene.graph.cache_count() == 0) return std::nullopt;
+    return scene;
+}
+
+void Worker::hand_over(std::unique_ptr<Build> made, Linkers &linkers) {
+    if (lent_ && made->good()) {
+        enter(Stage::Linking);
+        linkers.link(*made);
+        made->linked = true;
+    }
+    made->number = ++number_;
+    std::lock_guard lock(mutex_);
+    if (finished_ && made->good()) {
+        inherit(made->picture_link, finished_->picture_link);
+        inherit(made->probe_link, finished_->probe_link);
+    } else if (finished_ && finished_->picture_link.program) {
+        linkers = {}; // its program ends with it, so the next is made anew
+    }
+    finished_ = std::move(made);
+    complaint_ = watcher_.polls_because();
+}
+
 void Worker::run() {
     const bool lent = hooks_.take_context && hooks_.take_context();
     lent_ = lent;
@@ -193,34 +219,25 @@ void Worker::run() {
     pruning_ = lent && gl::can_prune() && !gl::is_software();
     {
         Linkers linkers;
-        std::size_t number = 0;
         while (!ending_) {
             asked_ = false;
-            std::unique_ptr<Build> made = build();
+            std::unique_ptr<Build> made = build(0);
             watcher_.watch(made->compilation.files);
-            if (lent && made->good()) {
-                enter(Stage::Linking);
-                linkers.link(*made);
-                made->linked = true;
-            }
-            made->number = ++number;
-            std::optional<ir::Scene> scene; // the build itself is the window's from here on
+            const bool steep = made->good() && driver::is_steep(made->compilation.scene);
+            const std::size_t regions = made->compilation.scene.cells.size();
             const int part_stride = made->compilation.parts.stride;
-            if (lent && made->good() && made->compilation.scene.graph.cache_count() > 0)
-                scene = made->compilation.scene;
-            {
-                std::lock_guard lock(mutex_);
-                if (finished_ && made->good()) {
-                    inherit(made->picture_link, finished_->picture_link);
-                    inherit(made->probe_link, finished_->probe_link);
-                } else if (finished_ && finished_->picture_link.program) {
-                    linkers = {}; // its program ends with it, so the next is made anew
+            std::optional<ir::Scene> scene = with_caches(*made); // the build goes to the window
+            hand_over(std::move(made), linkers);
+            // Bounds by cells take longer to find than all else: the first picture is without them.
+            if (steep && !ending_ && !asked_) {
+                std::unique_ptr<Build> by_cells = build(driver::cells_of_views);
+                if (!ending_ && !asked_ && by_cells->compilation.scene.cells.size() > regions) {
+                    scene = with_caches(*by_cells);
+                    hand_over(std::move(by_cells), linkers);
                 }
-                finished_ = std::move(made);
-                complaint_ = watcher_.polls_because();
             }
             enter(Stage::Rest);
-            if (scene && !ending_ && !asked_) build_cached(*scene, part_stride, number);
+            if (lent && scene && !ending_ && !asked_) build_cached(*scene, part_stride, number_);
             while (!ending_ && !asked_ && !watcher_.wait(std::chrono::hours(1))) {
             }
         }

@@ -92,7 +92,8 @@ class Worker {
 
   private:
     void run();
-    std::unique_ptr<Build> build();
+    std::unique_ptr<Build> build(int cells);
+    void hand_over(std::unique_ptr<Build> made, Linkers &linkers);
     void build_cached(const ir::Scene &scene, int part_stride, std::size_t number);
     void again();
     void enter(Stage stage); // and the window hears of it
@@ -112,8 +113,9 @@ class Worker {
     std::atomic<std::chrono::steady_clock::time_point> begun_; // the work on the newest save
     std::atomic<bool> lent_ = false;
     std::atomic<bool> asked_ = false, ending_ = false, probe_ = false;
-    bool pruning_ = false; // of the thread's own
-    std::thread thread_;   // last: starts when all else is there
+    bool pruning_ = false;   // of the thread's own
+    std::size_t number_ = 0; // of builds
+    std::thread thread_;     // last: starts when all else is there
 };
 
 } // namespace fathom::viewer

@@ -30,7 +30,7 @@ static Table cell_table(const CellBounds &cells) {
 
 Lowering::InCell Lowering::in_cell(ShapeId id, NodeId q) {
     Graph &g = graph_;
-    const CellBounds &cells = fact(id).cells;
+    const CellBounds &cells = scene_.cells.at(id);
     std::array<double, 3> size{}, often{}, lo = cells.box.lo, last{};
     for (std::size_t i = 0; i < 3; ++i) {
         size[i] = (cells.box.hi[i] - lo[i]) / cells.count[i];
@@ -77,7 +77,7 @@ NodeId Lowering::divided_by_cells(ShapeId id, ShapeId of, NodeId field, NodeId q
 // What has a guard, by cells of the guard's box: as what is confined to that region (shapes.cpp,
 // within).
 NodeId Lowering::marched_in_box(ShapeId id, Where frame) {
-    const Box &box = fact(id).cells.box;
+    const Box &box = scene_.cells.at(id).box;
     const NodeId q = graph_.make(Op::Clamp, {frame.p, graph_.vec(box.lo), graph_.vec(box.hi)});
     const Where inside = at(frame, q);
     const NodeId here = shape(id).kind == ShapeKind::Displace

@@ -148,6 +148,7 @@ class Lowering {
 
     const Shape &shape(ShapeId id) const { return shapes_[id]; }
     const ShapeFact &fact(ShapeId id) const { return scene_.facts[id.index]; }
+    bool has_cells(ShapeId id) const { return scene_.cells.contains(id); }
 
     Scene &scene_;
     Graph &graph_;

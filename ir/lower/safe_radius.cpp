@@ -21,7 +21,8 @@ void Lowering::find_curved() {
         const Shape &s = shape(ShapeId{i});
         curved_[i] = s.kind == ShapeKind::Displace && std::isfinite(fact(ShapeId{i}).curvature) &&
                      std::isfinite(fact(ShapeId{i}).outward);
-        curved_[i] |= s.kind == ShapeKind::Within && !fact(ShapeId{i}).cells.bend.empty();
+        curved_[i] |= s.kind == ShapeKind::Within && has_cells(ShapeId{i}) &&
+                      !scene_.cells.at(ShapeId{i}).bend.empty();
         if (!passes_safe_radius_on(s)) continue;
         for (ShapeId child : s.children) curved_[i] |= curved_[child.index];
     }

@@ -33,7 +33,7 @@ void Lowering::find_shaded() {
         } else if (s.kind == ShapeKind::Within) {
             shaded_apart_[i] = shapes_.regions[s.payload].kind != RegionKind::Everywhere ||
                                has_slope_above_one(s.children.front()) ||
-                               fact(id).detour > 1 + rounding || !fact(id).cells.lipschitz.empty();
+                               fact(id).detour > 1 + rounding || has_cells(id);
         } else if (s.kind == ShapeKind::Offset || s.kind == ShapeKind::Shell) {
             shaded_apart_[i] = has_slope_above_one(id);
             unit_slope_[i] = unit(s.children.front());

@@ -118,7 +118,7 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Where frame) {
                            {colored(id, frame), expression_of(Reading::Marched, id, frame)});
     if (reading == Reading::Shaded)
         return guarded(reading, id, frame, shaded(id, expression_of(Reading::Raw, id, frame)));
-    if (!fact(id).cells.lipschitz.empty()) return marched_in_box(id, frame);
+    if (has_cells(id)) return marched_in_box(id, frame);
     if (shape(id).kind == ShapeKind::Displace)
         return guarded(reading, id, frame, displaced(reading, id, frame));
     return guarded(reading, id, frame, divided(id, expression_of(Reading::Raw, id, frame)));
@@ -136,8 +136,7 @@ NodeId Lowering::displaced(Reading reading, ShapeId id, Where frame) {
     const bool reaches = reading == Reading::SafeRadius;
     NodeId raw = expression_of(Reading::Raw, id, frame);
     const auto whole_of = [&] {
-        return known.cells.lipschitz.empty() ? divided(id, raw)
-                                             : divided_by_cells(id, id, raw, frame.p);
+        return has_cells(id) ? divided_by_cells(id, id, raw, frame.p) : divided(id, raw);
     };
     if (!std::isfinite(known.outward)) return whole_of();
     const ShapeId child = shape(id).children.front();
@@ -394,8 +393,8 @@ NodeId Lowering::within(Reading reading, ShapeId id, Where frame) {
         if (reading == Reading::Shaded)
             field = shaded(child, field);
         else
-            field = fact(id).cells.lipschitz.empty() ? divided(child, field, fact(id).detour)
-                                                     : divided_by_cells(id, child, field, q);
+            field = has_cells(id) ? divided_by_cells(id, child, field, q)
+                                  : divided(child, field, fact(id).detour);
         NodeId out = q;
         for (const Region &less : region.less) out = region_way_out(g, less, out).point;
         if (out != nearest) field = g.sub(field, g.make(Op::Length, {g.sub(nearest, out)}));

@@ -27,9 +27,10 @@ void loosen(ir::Scene &scene, double times) {
         if (fact.lipschitz)
             fact.lipschitz = scene.graph.mul(fact.lipschitz, scene.graph.number(times));
         fact.lipschitz_sup *= times;
-        for (double &bound : fact.cells.lipschitz) bound *= times;
         for (ir::PartialSum &sum : fact.partial) sum.slope *= times;
     }
+    for (auto &[shape, cells] : scene.cells)
+        for (double &bound : cells.lipschitz) bound *= times;
     const ir::Box framed = scene.framed; // which is found after lowering
     ir::lower(scene);
     scene.framed = framed;

@@ -50,9 +50,7 @@ driver::Compilation compiled(const std::string &text, int cells) {
 }
 
 const ir::CellBounds *cells_in(const ir::Scene &scene) {
-    for (const ir::ShapeFact &fact : scene.facts)
-        if (!fact.cells.lipschitz.empty()) return &fact.cells;
-    return nullptr;
+    return scene.cells.empty() ? nullptr : &scene.cells.begin()->second;
 }
 
 void around(const ir::Scene &scene, test::Point3 &lo, test::Point3 &hi) {
@@ -131,9 +129,9 @@ TEST_CASE("the measure sees bounds by cells that are too small") {
     for (const Steep &steep : scenes) {
         driver::Compilation c = compiled(steep.text, 16);
         REQUIRE(c.good());
-        for (ir::ShapeFact &fact : c.scene.facts) {
-            for (double &bound : fact.cells.lipschitz) bound *= 0.3;
-            for (double &way : fact.cells.way) way *= 2;
+        for (auto &[shape, cells] : c.scene.cells) {
+            for (double &bound : cells.lipschitz) bound *= 0.3;
+            for (double &way : cells.way) way *= 2;
         }
         ir::lower(c.scene);
         test::Point3 lo, hi;

@@ -197,7 +197,7 @@ inline Verdict judge(const std::string &text, Chance &random, int pairs) {
     }
     out.accepted = true;
     // Steps by cells are as long as is safe, and no slope of anything.
-    for (ir::ShapeFact &fact : c.scene.facts) fact.cells = {};
+    c.scene.cells.clear();
     ir::lower(c.scene);
     for (const double part : {0.0, 1.0, 0.5, 0.37, 1.0 / 3}) {
         for (ir::Param &k : c.scene.params) // those that decide what there is are compiled in

@@ -34,7 +34,7 @@ void check_again(const std::string &name, driver::Compilation c, Counts &counts)
     for (const ir::ShapeFact &fact : c.scene.facts)
         if (fact.detour > 1) return;
     // Steps by cells are as long as is safe, and no slope of anything.
-    for (ir::ShapeFact &fact : c.scene.facts) fact.cells = {};
+    c.scene.cells.clear();
     ir::lower(c.scene);
     const long work = test::effort(10'000); // nodes that it evaluates
     std::array<double, 3> lo{-4, -4, -4}, hi{4, 4, 4};

@@ -18,12 +18,20 @@ namespace {
 
 constexpr int width = 96, height = 72;
 
-cpu::Picture drawn(const std::string &text, int samples = 1) {
-    const driver::Compilation compilation = driver::compile_text("still.sdf", text, {}, {});
+driver::Compilation compiled(const std::string &text) {
+    driver::Compilation compilation = driver::compile_text("still.sdf", text, {}, {});
     REQUIRE(compilation.good());
-    const ir::Scene &scene = compilation.scene;
-    const cpu::Stage stage = cpu::prepare(
-        scene, ir::view_of(scene, 0, static_cast<double>(width) / height), width, height, 0);
+    return compilation;
+}
+
+cpu::Stage stage_of(const ir::Scene &scene) {
+    return cpu::prepare(scene, ir::view_of(scene, 0, static_cast<double>(width) / height), width,
+                        height, 0);
+}
+
+cpu::Picture drawn(const std::string &text, int samples = 1) {
+    const driver::Compilation compilation = compiled(text);
+    const cpu::Stage stage = stage_of(compilation.scene);
     cpu::PictureOptions options;
     options.samples = samples;
     cpu::Picture picture = cpu::render(stage, options);
@@ -72,6 +80,36 @@ TEST_CASE("a taper that is steep at its end keeps its neck") {
         }
     CHECK(inside == last - first + 1);
     CHECK(inside > height / 3);
+}
+
+TEST_CASE("a hundred blobs are drawn whole by one bound") {
+    const std::string scene = "import \"dfmodel\" as dfmodel\n"
+                              "dfmodel.blobby(100, size: [4, 2, 4], radius: 0.1, seed: 3)\n"
+                              "background(black)\n";
+    const cpu::Picture picture = drawn(scene);
+    int shown = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) shown += byte(picture, x, y, 0) > 16;
+    CHECK(shown > width * height / 8);
+}
+
+TEST_CASE("no sky shows through a city without an end") {
+    const driver::Compilation city =
+        compiled("box(1).repeat([1.5, 0, 1.5], (s, id) => s.scale([0.6, 0.8 + 2 * hash(id), 0.6])"
+                 ".rotate(0.5 * hash(id + 3), axis: Y))\nplane(Y, 0)\n"
+                 "camera(at: [6, 5, 8], look_at: [0, 2.5, 0], fov: 40deg)\n");
+    const cpu::Stage stage = stage_of(city.scene);
+    std::vector<cpu::Ray> rays;
+    for (int y = 0; y < height; y += 2)
+        for (int x = 0; x < width; x += 2) {
+            const cpu::Ray ray = cpu::eye_ray(stage, float(x) + 0.5f, float(y) + 0.5f);
+            if (ray.direction[1] < -0.02f)
+                rays.push_back(ray); // it meets the ground, if nothing else
+        }
+    REQUIRE(rays.size() > 1000);
+    const std::vector<cpu::Landing> landings = cpu::cast(stage, rays);
+    CHECK(std::ranges::all_of(landings,
+                              [](const cpu::Landing &l) { return l.end == cpu::RayEnd::Hit; }));
 }
 
 TEST_CASE("a param's range in place of a constant changes no shadow") {
@@ -137,6 +175,83 @@ TEST_CASE("a lawn round a solid changes no groove of it") {
         for (int x = width / 3; x < 2 * width / 3; ++x)
             darker += std::abs(byte(alone, x, y, 1) - byte(lawn, x, y, 1)) > 2;
     CHECK(darker <= few);
+}
+
+TEST_CASE("where a field's region ends under water nothing is seen") {
+    const auto lake = [](const char *size) {
+        return std::string("heightfield(q => 0.9 * exp(-1.5 * dot(q, q)) - 0.35, size: ") + size +
+               ", depth: 0.6)\nplane(Y).paint(#2f8fa3)\n"
+               "camera(at: [3, 2.4, 4], look_at: [0, 0.2, 0], fov: 40deg)\n"
+               "lighting(ambient: 0.3, ambient_occlusion: 1, shadow_darkness: 0)\n";
+    };
+    CHECK(different(drawn(lake("[4, 4]")), drawn(lake("[9, 9]"))) <= few);
+}
+
+TEST_CASE("a folded fractal's region casts no band on the ground") {
+    const auto folded = [](const char *radius) {
+        return std::string("fn over(p: vec2) -> vec2 = [max(p.x, -p.y), max(p.y, -p.x)]\n"
+                           "fn fold(p: vec3) -> float {\n  var q = p\n  var scale = 1.0\n"
+                           "  for i in 0..4 {\n    q.xy = over(q.xy)\n    q.xz = over(q.xz)\n"
+                           "    q.yz = over(q.yz)\n    q = 2 * q - 1\n    scale = 2 * scale\n  }\n"
+                           "  (length(q) - 1.6) / scale\n}\n"
+                           "implicit(p => fold(p), within: ball(") +
+               radius +
+               ")).orient([1, 1, 1], Y)\nplane(Y, -0.7)\n"
+               "camera(at: [3, 3, 5], look_at: [0, -0.5, 0.8], fov: 30deg)\n"
+               "lighting(ambient: 0.3, ambient_occlusion: 1, shadow_darkness: 0)\n";
+    };
+    CHECK(different(drawn(folded("1.95")), drawn(folded("2.6"))) <= few);
+}
+
+TEST_CASE("a flat face of a gem has one colour, in soft shadows too") {
+    const std::string scene = "gdf_truncated_octahedron(1).rotate_euler([10deg, 25deg, 0])\n"
+                              "camera(at: [0.8, 0.5, 6], look_at: [0, 0, 0], fov: 26deg)\n"
+                              "sun(direction: [0.4, 0.7, 0.6])\nbackground(black)\n"
+                              "lighting(ambient: 0.3, ambient_occlusion: 1, soft_shadows: 0.06, "
+                              "specular_intensity: 0, classic: true)\n";
+    const cpu::Picture picture = drawn(scene);
+    // A pixel whose four neighbours are alike is like them: no slit, no dot.
+    int inside = 0, apart = 0;
+    for (int y = 1; y + 1 < height; ++y)
+        for (int x = 1; x + 1 < width; ++x) {
+            const std::array<int, 4> around{byte(picture, x - 1, y, 1), byte(picture, x + 1, y, 1),
+                                            byte(picture, x, y - 1, 1), byte(picture, x, y + 1, 1)};
+            const auto [least, most] = std::ranges::minmax(around);
+            if (most - least > 2 || least < 16) continue;
+            ++inside;
+            const int own = byte(picture, x, y, 1);
+            apart += own < least - 2 || own > most + 2;
+        }
+    CHECK(inside > width * height / 5);
+    CHECK(apart == 0);
+}
+
+TEST_CASE("the soft shadow on a soft star has no grain") {
+    const std::string scene =
+        "gdf_blend([X, Y, Z], [[1, 1, 1], [-1, 1, 1], [1, -1, 1], [1, 1, -1]], 1.8, -0.9, "
+        "radius: 0.22).rotate_euler([10deg, 25deg, 0])\n"
+        "camera(at: [0.8, 0.5, 6], look_at: [0, 0, 0], fov: 22deg)\n"
+        "light(at: [5, 6, 9], color: #fff2e0)\nbackground(black)\n"
+        "lighting(ambient: 0.2, ambient_occlusion: 0, shadow_darkness: 0.6, soft_shadows: 0.06, "
+        "specular_intensity: 0)\n";
+    const cpu::Picture picture = drawn(scene);
+    // Along a row it gets lighter and darker a few times, by the star's arms, and not at each pixel.
+    int turns = 0, rows = 0;
+    for (int y = 0; y < height; ++y) {
+        int way = 0, from = byte(picture, 0, y, 1), inside = 0;
+        for (int x = 1; x < width; ++x) {
+            const int to = byte(picture, x, y, 1);
+            inside += to > 16;
+            if (std::abs(to - from) <= 5) continue;
+            const int now = to > from ? 1 : -1;
+            turns += now == -way;
+            way = now, from = to;
+        }
+        rows += inside > 8;
+    }
+    INFO(turns << " turns in " << rows << " rows");
+    CHECK(rows > height / 4);
+    CHECK(turns < 8 * rows);
 }
 
 TEST_CASE("two texts of one solid give one picture") {

@@ -89,8 +89,8 @@ class Sampler {
 // loses some units in the last place of the coordinates and of the field; `rounding` is that,
 // absolutely.
 inline Slopes measure(const ir::Scene &scene, Point3 lo, Point3 hi, int count,
-                      int sloped = std::numeric_limits<int>::max()) {
-    Sampler sampler(scene);
+                      int sloped = std::numeric_limits<int>::max(), double time = 0) {
+    Sampler sampler(scene, time);
     Slopes out;
     double size = 0;
     for (std::size_t i = 0; i < 3; ++i)
