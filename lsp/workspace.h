@@ -11,6 +11,7 @@
 #include <fathom/fathom.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -69,6 +70,10 @@ struct Workspace {
     bool snippets = false;                          // the client takes snippets from completion
     std::vector<std::pair<std::string, Json>> said; // methods and params that go before the answer
 
+    fathom::v1::ProofCache proofs; // from one edit to the next; a server's own
+    // Whether nobody waits for the compilation in hand any more; may be empty.
+    std::function<bool()> outdated;
+
     struct Cached {
         std::filesystem::file_time_type time;
         File file;
@@ -84,6 +89,10 @@ struct UnknownDocument : std::exception {
 };
 Document &document_at(Workspace &workspace, const std::string &uri);
 
+// Throws `Outdated` where nobody waits for it any more.
+struct Outdated : std::exception {
+    const char *what() const noexcept override { return "no longer wanted"; }
+};
 const Compiled &compiled(Workspace &workspace, Document &document);
 const proof::Explanation &explanation(Workspace &workspace, Document &document);
 const Reading &reading(Document &document);

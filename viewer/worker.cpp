@@ -144,6 +144,7 @@ std::unique_ptr<Build> Worker::build() {
     driver::CompileOptions options = options_;
     options.parts = true;
     options.cells = driver::cells_of_views;
+    options.bounds = &bounds_;
     options.entered = [this](driver::Phase phase) { enter(stage_of(phase)); };
     {
         std::lock_guard lock(mutex_);
