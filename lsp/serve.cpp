@@ -11,6 +11,8 @@ namespace fathom::lsp {
 
 namespace {
 
+constexpr int quiet_ms = 3; // for which nothing is said before a text is compiled unasked
+
 // Whether what the server is at is still wanted beside a message that has come: a request until it
 // is taken back or a text changes; the diagnostics of an idle server until a text changes or
 // something is asked, which need not wait for them.
@@ -75,6 +77,12 @@ int serve(int in, int out) {
         foresee();
         while (open && transport.pending()) open = receive();
         if (waiting.empty()) {
+            // After a letter clients ask for something at once; what they wait for comes first.
+            pollfd more{in, POLLIN, 0};
+            if (open && ::poll(&more, 1, quiet_ms) > 0) {
+                open = receive();
+                continue;
+            }
             if (!send(server.idle())) break;
             if (!waiting.empty()) continue;
             if (!open) break;
