@@ -207,6 +207,7 @@ void Server::changed(Document &document) {
     document.reading.reset();
     for (auto &[uri, other] : workspace_.documents) {
         if (&other != &document && !other.asked_for.contains(document.path)) continue;
+        if (other.compiled) other.replaced = std::move(other.compiled);
         other.compiled.reset();
         other.published = false;
     }

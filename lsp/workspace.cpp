@@ -120,6 +120,7 @@ fathom::v1::CompileResult compile_as(Workspace &workspace, const std::string &pa
 const Compiled &compiled(Workspace &workspace, Document &document) {
     if (!document.compiled) {
         document.asked_for.clear();
+        document.replaced.reset();
         Compiled made = compile(workspace, document);
         if (made.compilation.cancelled) throw Outdated();
         document.compiled = std::move(made);

@@ -41,7 +41,8 @@ struct Compiled {
 struct Document {
     std::string uri, path, text;
     int version = 0;
-    std::optional<Compiled> compiled;       // of the text as it is
+    std::optional<Compiled> compiled; // of the text as it is
+    std::optional<Compiled> replaced; // of an earlier one: freed with the next, as it takes time
     std::shared_ptr<const Reading> reading; // of the text as it is
     bool published = false;                 // its diagnostics were sent
     std::set<std::string> asked_for;        // paths that compiling it wanted to read
