@@ -27,6 +27,11 @@ struct Scene::Impl {
     Facts facts;
 };
 
+struct ProofCache::Impl {
+    explicit Impl(std::size_t most) : bounds(most) {}
+    proof::BoundCache bounds;
+};
+
 inline const ir::Scene &ir_of(const Scene &scene) { return scene.impl().scene; }
 
 // What a scene names, from the provider alone.

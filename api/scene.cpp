@@ -88,6 +88,8 @@ CompileResult result_of(driver::Compilation compilation, std::shared_ptr<const O
                                                compilation.unreadable)));
     for (const std::string &error : compilation.usage_errors)
         result.diagnostics.push_back(sentence("usage", error));
+    if (compilation.cancelled)
+        result.diagnostics.push_back(sentence("cancelled", "the compilation was cancelled"));
     for (const typecheck::NameFact &name : compilation.names)
         result.names.push_back(
             {name.name, name.type, place_of(name.declared, compilation.sources)});
@@ -111,10 +113,25 @@ std::optional<std::string> inside(const std::string &path, const std::string &fr
     return whole.generic_string();
 }
 
+Phase phase_of(driver::Phase phase) {
+    switch (phase) {
+    case driver::Phase::Read: return Phase::Read;
+    case driver::Phase::Check: return Phase::Check;
+    case driver::Phase::Prove: return Phase::Prove;
+    case driver::Phase::Lower: return Phase::Lower;
+    case driver::Phase::Done: return Phase::Done;
+    }
+    return Phase::Done;
+}
+
 driver::CompileOptions driver_options(const CompileOptions &options) {
     driver::CompileOptions to;
     to.include_folders = options.include_folders;
     for (const auto &[name, text] : options.definitions) to.overrides.push_back({name, text});
+    if (options.cache.impl()) to.bounds = &options.cache.impl()->bounds;
+    to.cancelled = options.cancelled;
+    if (options.entered)
+        to.entered = [told = options.entered](driver::Phase phase) { told(phase_of(phase)); };
     return to;
 }
 
@@ -122,6 +139,12 @@ CompileResult failed(Diagnostic diagnostic);
 
 CompileResult compile(std::shared_ptr<const Origin> origin) {
     driver::CompileOptions options = driver_options(origin->options);
+    {
+        auto lasting = std::make_shared<Origin>(*origin); // whose callers' functions may not last
+        lasting->options.cancelled = nullptr;
+        lasting->options.entered = nullptr;
+        origin = std::move(lasting);
+    }
     for (const auto &[name, value] : origin->options.limits)
         if (const std::string wrong = set_limit(options.limits, name + "=" + value); !wrong.empty())
             return failed(sentence("usage", wrong));
@@ -292,6 +315,14 @@ std::vector<LibraryEntry> library_entries() {
         },
         [](const Diagnostic &) { return std::vector<LibraryEntry>(); });
 }
+
+ProofCache ProofCache::of_bytes(std::size_t most) {
+    ProofCache cache;
+    cache.impl_ = std::make_shared<Impl>(most);
+    return cache;
+}
+std::size_t ProofCache::searches() const { return impl_ ? impl_->bounds.searches() : 0; }
+std::size_t ProofCache::bytes() const { return impl_ ? impl_->bounds.bytes() : 0; }
 
 std::string_view version() { return FATHOM_VERSION; }
 

@@ -42,35 +42,45 @@ void enter(const CompileOptions &options, Phase phase) {
     if (options.entered) options.entered(phase);
 }
 
+// What the proofs of one compilation share.
+struct Effort {
+    std::size_t work;
+    proof::BoundCache &bounds;
+    Stop stop;
+};
+
 // What the proof says of one shape while the scene is still being built (`lipschitz(s)`, `taper`).
 // Its diagnostics are dropped: the whole scene is proved afterwards, and reports each of them once.
-// Takes its steps off `work`.
-std::optional<ir::ShapeFact> prove_one(ir::Scene &scene, ir::ShapeId shape, std::size_t &work) {
+// Takes its steps off the effort's.
+std::optional<ir::ShapeFact> prove_one(ir::Scene &scene, ir::ShapeId shape, Effort &effort) {
     Diagnostics discarded;
     proof::Options options;
     options.test_assumptions = false;
-    options.work = work;
+    options.work = effort.work;
+    options.cache = &effort.bounds;
+    options.stop = &effort.stop;
     ir::ShapeId root = std::exchange(scene.root, shape);
     std::vector<ir::TopLevel> top_level = std::exchange(scene.top_level, {{shape, {}}});
-    work -= proof::prove(scene, discarded, options);
+    effort.work -= proof::prove(scene, discarded, options);
     scene.root = root;
     scene.top_level = std::move(top_level);
     if (discarded.has_errors()) return std::nullopt;
     return scene.facts[shape.index];
 }
 
-typecheck::Options check_options(const CompileOptions &options, std::size_t &work) {
+typecheck::Options check_options(const CompileOptions &options, Effort &effort) {
     typecheck::Options result;
     result.overrides = options.overrides;
     result.limits = options.limits;
-    result.lipschitz = [&work](ir::Scene &scene, ir::ShapeId shape) -> std::optional<double> {
-        std::optional<ir::ShapeFact> fact = prove_one(scene, shape, work);
+    result.stop = &effort.stop;
+    result.lipschitz = [&effort](ir::Scene &scene, ir::ShapeId shape) -> std::optional<double> {
+        std::optional<ir::ShapeFact> fact = prove_one(scene, shape, effort);
         if (!fact || !std::isfinite(fact->lipschitz_sup)) return std::nullopt;
         return fact->lipschitz_sup;
     };
-    result.extent = [&work](ir::Scene &scene, ir::ShapeId shape,
-                            int axis) -> std::optional<std::pair<double, double>> {
-        std::optional<ir::ShapeFact> fact = prove_one(scene, shape, work);
+    result.extent = [&effort](ir::Scene &scene, ir::ShapeId shape,
+                              int axis) -> std::optional<std::pair<double, double>> {
+        std::optional<ir::ShapeFact> fact = prove_one(scene, shape, effort);
         std::size_t i = static_cast<std::size_t>(axis);
         if (!fact || !std::isfinite(fact->bounds.lo[i]) || !std::isfinite(fact->bounds.hi[i]))
             return std::nullopt;
@@ -109,36 +119,49 @@ std::vector<ir::NodeId> roots_of(const ir::Scene &scene) {
     return roots;
 }
 
+void cancel(Compilation &out) {
+    out.scene = {};
+    out.diagnostics = {};
+    out.cancelled = true;
+}
+
 void run_phases(Compilation &out, const typecheck::Loader &loader, const std::string &identity,
                 SourceId root, const CompileOptions &options) {
     enter(options, Phase::Check);
-    std::size_t work = options.limits.proof;
+    proof::BoundCache own;
+    Effort effort{options.limits.proof, options.bounds ? *options.bounds : own,
+                  Stop(options.cancelled)};
     typecheck::Checked checked =
         typecheck::check(out.sources, root, identity, standard_library(), loader,
-                         check_options(options, work), out.diagnostics);
+                         check_options(options, effort), out.diagnostics);
     if (checked.no_memory) throw std::bad_alloc();
     out.scene = std::move(checked.scene);
     out.usage_errors = std::move(checked.usage_errors);
     out.names = std::move(checked.names);
     out.evaluations = checked.evaluations;
+    if (effort.stop.now()) return cancel(out);
     if (checked.over_limit) return;
     // What checked is proved also where other statements did not: all errors in one run.
     enter(options, Phase::Prove);
     proof::Options proof_options;
-    proof_options.work = work;
+    proof_options.work = effort.work;
+    proof_options.cache = &effort.bounds;
+    proof_options.stop = &effort.stop;
     proof_options.limit_note = limit_note(options.limits, &Limits::proof);
     proof_options.limit_help = limit_help(options.limits, &Limits::proof);
     proof_options.cells = options.cells;
     if (options.times)
         proof_options.times = ir::Interval(options.times->first, options.times->second);
-    out.proof_steps =
-        options.limits.proof - work + proof::prove(out.scene, out.diagnostics, proof_options);
+    out.proof_steps = options.limits.proof - effort.work +
+                      proof::prove(out.scene, out.diagnostics, proof_options);
+    if (effort.stop.now()) return cancel(out);
     if (out.good()) {
         enter(options, Phase::Lower);
         if (options.parts)
             out.parts = ir::lower_with_parts(out.scene);
         else
             ir::lower(out.scene);
+        if (effort.stop.now()) return cancel(out);
         const ir::Graph &graph = out.scene.graph;
         const Span whole =
             out.scene.top_level.empty() ? Span{root, 0, 0} : out.scene.top_level[0].span;

@@ -4,6 +4,7 @@
 
 #include "driver/files.h"
 #include "ir/lower/lower.h"
+#include "proof/bound_cache.h"
 #include "save-format/save_format.h"
 #include "typecheck/check.h"
 
@@ -44,6 +45,11 @@ struct CompileOptions {
     std::optional<std::string> unsaved{};
     bool parts =
         false; // lower so that hits tell their parts (ir::lower_with_parts): for the viewer alone
+    // What earlier compilations found of fields, for who compiles after each edit; it outlives them.
+    // It changes how long a compilation takes and nothing else. None: one for each compilation.
+    proof::BoundCache *bounds = nullptr;
+    // Asked now and then; where it says yes the compilation ends soon, as `cancelled`. May be empty.
+    std::function<bool()> cancelled{};
 };
 
 // All that came of a compilation; `scene` is whole only where there are no errors.
@@ -58,9 +64,11 @@ struct Compilation {
         files;                                    // all that was read or looked for: what to watch
     std::vector<typecheck::NameFact> names;       // of the scene's own file: types and stages
     std::size_t evaluations = 0, proof_steps = 0; // counted work
+    bool cancelled = false; // nobody wanted it any more: no scene, and nothing is said of the text
 
     bool good() const {
-        return unreadable.empty() && usage_errors.empty() && !diagnostics.has_errors();
+        return !cancelled && unreadable.empty() && usage_errors.empty() &&
+               !diagnostics.has_errors();
     }
 };
 

@@ -130,6 +130,10 @@ class Graph {
     NodeId make(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload = 0);
     NodeId make(Op op, std::initializer_list<NodeId> args);
     NodeId make(Op op, Type type, std::initializer_list<NodeId> args, std::uint32_t payload = 0);
+    // The same without folding: for copies of what another graph holds. No Const and no Var.
+    NodeId make_as_is(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
+        return intern(op, type, args, payload);
+    }
 
     NodeId constant(const Constant &constant);
     NodeId number(double value);

@@ -6,6 +6,7 @@
 #include "lang/vocabulary.h"
 
 #include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <set>
 
@@ -152,6 +153,15 @@ Kind kind_before(const Place &place, std::size_t end, int depth) {
     return Kind::Unknown;
 }
 
+// Whether what is typed so far may go on to be the name, as clients see it, who leave letters out:
+// the name has its first letter. In long texts most names are not looked at any further.
+bool may_become(const Place &place, std::string_view name) {
+    if (place.word.begin >= place.offset) return true;
+    const auto low = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+    const int first = low(place.document.text[place.word.begin]);
+    return std::ranges::any_of(name, [&](char c) { return low(c) == first; });
+}
+
 bool snippet(const Place &place) { return place.workspace.snippets; }
 
 void add_function(const Place &place, Json &items, const std::string &name, const Form &form,
@@ -170,6 +180,7 @@ void add_library(const Place &place, Json &items, bool method, Kind kind) {
     std::set<std::string> seen;
     for (const fathom::v1::LibraryEntry &entry : place.workspace.library) {
         if (!entry.module.empty() || entry.signature.find('(') == std::string::npos) continue;
+        if (!may_become(place, entry.name)) continue;
         const Form form{entry.signature, entry.doc, read_signature(entry.signature)};
         const Kind first = kind_of_first(form.read);
         if (method && form.read.names.empty()) continue;
@@ -241,7 +252,8 @@ void add_own(const Place &place, Json &items) {
     const std::vector<Declaration> &all = place.read.names.declarations;
     for (std::size_t i = all.size(); i-- > 0;) { // the innermost last declared first
         const Declaration &declared = all[i];
-        if (declared.name.empty() || !visible(declared) || !seen.insert(declared.name).second)
+        if (declared.name.empty() || !may_become(place, declared.name) || !visible(declared) ||
+            !seen.insert(declared.name).second)
             continue;
         if (declared.at.begin <= place.offset && place.offset <= declared.at.end) continue;
         if (declared.function) {
@@ -332,6 +344,7 @@ void add_words(const Place &place, Json &items) {
         items.push_back(std::move(item));
     }
     for (const Constant &constant : place.workspace.constants) {
+        if (!may_become(place, constant.name)) continue;
         Json item{{"label", constant.name},
                   {"kind", constant.rgb ? item_color : item_constant},
                   {"detail", constant.type}};

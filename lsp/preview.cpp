@@ -297,6 +297,9 @@ std::vector<std::string> Previews::heard() {
             messages.push_back(written({{"jsonrpc", "2.0"},
                                         {"method", "window/showMessage"},
                                         {"params", {{"type", warning}, {"message", here->said}}}}));
+            messages.push_back(written({{"jsonrpc", "2.0"},
+                                        {"method", "fathom/windowFailed"},
+                                        {"params", {{"uri", here->uri}}}}));
         }
         close(*here);
         windows_.erase(here);

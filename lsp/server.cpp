@@ -9,7 +9,8 @@ namespace {
 
 // JSON-RPC's, and the protocol's own.
 constexpr int parse_error = -32700, unknown_method = -32601, internal_error = -32603,
-              invalid_params = -32602, request_cancelled = -32800, request_failed = -32803;
+              invalid_params = -32602, request_cancelled = -32800, content_modified = -32801,
+              request_failed = -32803;
 
 struct Row {
     const char *method;
@@ -43,7 +44,9 @@ std::string failure(const Json &id, int code, const std::string &why) {
 
 } // namespace
 
-Server::Server() : workspace_(workspace_with_library()) {}
+Server::Server() : workspace_(workspace_with_library()) {
+    workspace_.proofs = fathom::v1::ProofCache::of_bytes();
+}
 
 void Server::send(const char *method, Json params) {
     outbox_.push_back(
@@ -80,6 +83,11 @@ std::vector<std::string> Server::handle(const std::string &message) {
             else
                 fail(unknown_method, "there is no request " + method);
         }
+    } catch (const Outdated &) {
+        if (wanted_ == Wanted::TakenBack)
+            fail(request_cancelled, "cancelled");
+        else
+            fail(content_modified, "the text has changed");
     } catch (const Refusal &refusal) {
         fail(request_failed, refusal.what());
     } catch (const UnknownDocument &unknown) {
@@ -106,10 +114,15 @@ std::vector<std::string> Server::idle() {
     for (auto &[uri, document] : workspace_.documents) {
         if (document.published) continue;
         document.published = true;
-        send("textDocument/publishDiagnostics",
-             {{"uri", uri},
-              {"version", document.version},
-              {"diagnostics", diagnostics_of(workspace_, document)}});
+        try {
+            send("textDocument/publishDiagnostics",
+                 {{"uri", uri},
+                  {"version", document.version},
+                  {"diagnostics", diagnostics_of(workspace_, document)}});
+        } catch (const Outdated &) {
+            document.published = false;
+            break;
+        }
     }
     return std::move(outbox_);
 }
@@ -194,6 +207,7 @@ void Server::changed(Document &document) {
     document.reading.reset();
     for (auto &[uri, other] : workspace_.documents) {
         if (&other != &document && !other.asked_for.contains(document.path)) continue;
+        if (other.compiled) other.replaced = std::move(other.compiled);
         other.compiled.reset();
         other.published = false;
     }

@@ -1,11 +1,10 @@
 #include "lsp/worker.h"
 
-#include "lsp/server.h"
-
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,6 +18,8 @@ constexpr int internal_error = -32603;
 // Between the two processes a body is a letter and a text: to the server what is asked of it, and
 // the message; back each message for the client, and at the end that this was all.
 constexpr char handle_it = 'h', foresee_it = 'f', be_idle = 'i';
+// Sent while the other works, and without an answer: that it need not. The text says why.
+constexpr char leave_it = 'l';
 constexpr char for_client = 'm', that_was_all = 'd', will_end_well = '0', will_end_badly = '1';
 constexpr std::size_t any_body = std::size_t(-1) / 2;
 
@@ -26,8 +27,13 @@ constexpr std::size_t any_body = std::size_t(-1) / 2;
 void serve_other(int socket) {
     Transport other(socket, socket, any_body);
     Server server;
+    server.ask_whether_wanted([&] {
+        if (!other.pending()) return Wanted::Still;
+        const std::optional<std::string> why = other.read();
+        return why && why->size() > 1 ? Wanted((*why)[1]) : Wanted::TakenBack;
+    });
     while (const std::optional<std::string> asked = other.read()) {
-        if (asked->empty()) continue;
+        if (asked->empty() || asked->front() == leave_it) continue; // it came too late
         const std::string message = asked->substr(1);
         std::vector<std::string> answers;
         if (asked->front() == handle_it) answers = server.handle(message);
@@ -110,11 +116,26 @@ void Worker::note(const Json &message) {
     }
 }
 
+// Until the process says something; meanwhile the client is heard.
+void Worker::wait() {
+    while (client.descriptor >= 0 && !transport_->pending()) {
+        pollfd both[] = {{socket_, POLLIN, 0}, {client.descriptor, POLLIN, 0}};
+        if (::poll(both, 2, -1) < 0 && errno != EINTR) return;
+        if (both[0].revents != 0) return;
+        if (both[1].revents == 0) continue;
+        const Wanted wanted = client.heard();
+        if (wanted != Wanted::Still) transport_->write({leave_it, static_cast<char>(wanted)});
+    }
+}
+
 // Nothing where the process ended before it had answered.
 std::optional<std::vector<std::string>> Worker::ask(char what, const std::string &message) {
     std::vector<std::string> messages;
     if (transport_->write(what + message)) {
-        while (std::optional<std::string> body = transport_->read()) {
+        for (;;) {
+            if (what != foresee_it) wait();
+            const std::optional<std::string> body = transport_->read();
+            if (!body) break;
             if (body->empty()) continue;
             if (body->front() == for_client) {
                 messages.push_back(body->substr(1));

@@ -4,8 +4,10 @@
 #pragma once
 
 #include "lsp/json.h"
+#include "lsp/server.h"
 #include "lsp/transport.h"
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,6 +31,14 @@ class Worker {
     bool ended() const { return ended_; }
     int exit_status() const { return exit_status_; }
 
+    // Looked at while the process works. `heard` is called once the descriptor can be read, and says
+    // whether what is in hand is still wanted; if not, it ends soon. -1: nothing is looked at.
+    struct Client {
+        int descriptor = -1;
+        std::function<Wanted()> heard{};
+    };
+    Client client{};
+
     // `textDocument` of each open text, as it stands now.
     const std::map<std::string, Json> &texts() const { return opened_; }
     pid_t process() const { return process_; } // 0 where none runs
@@ -36,6 +46,7 @@ class Worker {
   private:
     bool start();
     void note(const Json &message);
+    void wait();
     std::optional<std::vector<std::string>> ask(char what, const std::string &message);
     std::string failure(const std::string &what);
 

@@ -59,10 +59,13 @@ Compiled compile(Workspace &workspace, Document &document) {
     const auto work = [&] {
         const fathom::v1::FileProvider files =
             files_beside(workspace, fs::path(document.path).parent_path(), {}, &document.asked_for);
-        Compiled made{
-            driver::compile_loaded(document.path, document.text, fathom::v1::loader_of(files), {}),
-            {},
-            {}};
+        driver::CompileOptions options;
+        if (workspace.proofs.impl()) options.bounds = &workspace.proofs.impl()->bounds;
+        options.cancelled = workspace.outdated;
+        Compiled made{driver::compile_loaded(document.path, document.text,
+                                             fathom::v1::loader_of(files), options),
+                      {},
+                      {}};
         made.diagnostics =
             fathom::v1::translated(made.compilation.diagnostics, made.compilation.sources);
         return made;
@@ -105,13 +108,22 @@ fathom::v1::CompileResult compile_as(Workspace &workspace, const std::string &pa
                                      const std::map<std::string, std::string> &instead) {
     fathom::v1::CompileOptions options;
     options.files = files_beside(workspace, fs::path(path).parent_path(), instead, nullptr);
-    return fathom::v1::compile_text(path, text, options);
+    options.cache = workspace.proofs;
+    options.cancelled = workspace.outdated;
+    fathom::v1::CompileResult result = fathom::v1::compile_text(path, text, options);
+    if (std::ranges::any_of(result.diagnostics,
+                            [](const auto &said) { return said.code == "cancelled"; }))
+        throw Outdated();
+    return result;
 }
 
 const Compiled &compiled(Workspace &workspace, Document &document) {
     if (!document.compiled) {
         document.asked_for.clear();
-        document.compiled = compile(workspace, document);
+        document.replaced.reset();
+        Compiled made = compile(workspace, document);
+        if (made.compilation.cancelled) throw Outdated();
+        document.compiled = std::move(made);
         std::map<std::string, std::string, std::less<>> types;
         for (const typecheck::NameFact &name : document.compiled->compilation.names)
             types.try_emplace(name.name, name.type);

@@ -11,6 +11,7 @@
 #include <fathom/fathom.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -40,7 +41,8 @@ struct Compiled {
 struct Document {
     std::string uri, path, text;
     int version = 0;
-    std::optional<Compiled> compiled;       // of the text as it is
+    std::optional<Compiled> compiled; // of the text as it is
+    std::optional<Compiled> replaced; // of an earlier one: freed with the next, as it takes time
     std::shared_ptr<const Reading> reading; // of the text as it is
     bool published = false;                 // its diagnostics were sent
     std::set<std::string> asked_for;        // paths that compiling it wanted to read
@@ -69,6 +71,10 @@ struct Workspace {
     bool snippets = false;                          // the client takes snippets from completion
     std::vector<std::pair<std::string, Json>> said; // methods and params that go before the answer
 
+    fathom::v1::ProofCache proofs; // from one edit to the next; a server's own
+    // Whether nobody waits for the compilation in hand any more; may be empty.
+    std::function<bool()> outdated;
+
     struct Cached {
         std::filesystem::file_time_type time;
         File file;
@@ -84,6 +90,10 @@ struct UnknownDocument : std::exception {
 };
 Document &document_at(Workspace &workspace, const std::string &uri);
 
+// Throws `Outdated` where nobody waits for it any more.
+struct Outdated : std::exception {
+    const char *what() const noexcept override { return "no longer wanted"; }
+};
 const Compiled &compiled(Workspace &workspace, Document &document);
 const proof::Explanation &explanation(Workspace &workspace, Document &document);
 const Reading &reading(Document &document);

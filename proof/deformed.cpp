@@ -9,6 +9,7 @@
 #include "proof/deformed.h"
 
 #include "ir/maps.h"
+#include "proof/question.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,10 +116,8 @@ struct Undivided {
     bool operator<(const Undivided &other) const { return bound < other.bound; }
 };
 
-} // namespace
-
-FieldBound bound_deformed(Flattening &context, const Ranges &ranges, NodeId field,
-                          const Deformation &d, const Budget &budget) {
+FieldBound search_deformed(Flattening &context, const Ranges &ranges, NodeId field,
+                           const Deformation &d, const Budget &budget) {
     FieldBound out;
     out.lipschitz = infinity;
     const Tape tape = flatten(context, field);
@@ -178,6 +177,21 @@ FieldBound bound_deformed(Flattening &context, const Ranges &ranges, NodeId fiel
     out.lipschitz = queue.empty() ? settled : std::max(settled, queue.top().bound);
     out.evaluations = cells.size();
     return out;
+}
+
+} // namespace
+
+FieldBound bound_deformed(Flattening &context, const Ranges &ranges, NodeId field,
+                          const Deformation &d, const Budget &budget) {
+    Question question(context, ranges, field, Wanted::Deformed);
+    question.add(static_cast<double>(d.map));
+    question.add(static_cast<double>(d.axis));
+    for (const Interval &number : {d.rate, d.ratio, d.from, d.to}) question.add(number);
+    question.add(d.box);
+    question.add(budget);
+    return std::move(question).answer([&](Flattening &own, const Ranges &all, NodeId copy) {
+        return search_deformed(own, all, copy, d, budget);
+    });
 }
 
 } // namespace fathom::proof

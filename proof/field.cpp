@@ -2,6 +2,8 @@
 // largest slope seen.
 #include "proof/field.h"
 
+#include "proof/question.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -218,8 +220,10 @@ bool keep_half(const Tape &tape, Cell &whole, const Zone *zone) {
 
 } // namespace
 
-FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
-                       const Domain &domain, const Budget &budget) {
+namespace {
+
+FieldBound search_bound(Flattening &context, const Ranges &ranges, NodeId field,
+                        const Domain &domain, const Budget &budget) {
     FieldBound out;
     Tape tape = flatten(context, field);
     if (tape.too_large) {
@@ -293,7 +297,7 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
             out.value = hull(settled_value, value);
             out.trouble = machine.trouble();
             out.at_infinity = endless;
-            out.cause = machine.cause();
+            if (machine.cause()) out.cause = context.graph[machine.cause()].op;
             out.where = centre;
             if (!endless) find_sides(machine, out, std::max(1e-5 * size, width), periods.reads);
             out.value = Interval::everything();
@@ -333,8 +337,8 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
     return out;
 }
 
-double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
-                       const Domain &domain, const Budget &budget) {
+double search_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
+                        const Domain &domain, const Budget &budget) {
     Tape tape = flatten(context, scalar);
     if (tape.too_large) return infinity;
     Machine machine(tape, ranges);
@@ -376,6 +380,34 @@ double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
         push(right, top.depth + 1);
     }
     return 0;
+}
+
+} // namespace
+
+FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
+                       const Domain &domain, const Budget &budget) {
+    Question question(context, ranges, field, Wanted::Bound);
+    question.add(domain.box);
+    question.add(domain.zone);
+    question.add(budget);
+    return std::move(question).answer([&](Flattening &own, const Ranges &all, NodeId copy) {
+        return search_bound(own, all, copy, domain, budget);
+    });
+}
+
+double bound_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
+                       const Domain &domain, const Budget &budget) {
+    Question question(context, ranges, scalar, Wanted::Magnitude);
+    question.add(domain.box);
+    question.add(domain.zone);
+    question.add(budget);
+    return std::move(question)
+        .answer([&](Flattening &own, const Ranges &all, NodeId copy) {
+            FieldBound out;
+            out.lipschitz = search_magnitude(own, all, copy, domain, budget);
+            return out;
+        })
+        .lipschitz;
 }
 
 std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, NodeId expression,

@@ -4,6 +4,8 @@
 
 #include "proof/machine.h"
 
+#include <optional>
+
 namespace fathom::proof {
 
 // A region with its numbers as intervals over all params and times.
@@ -35,7 +37,7 @@ struct FieldBound {
     Trouble trouble = Trouble::None;
     bool at_infinity = false; // the slope grows without bound on an unbounded region
     bool too_large = false;   // the field was cut off while flattening
-    NodeId cause;
+    std::optional<Op> cause;  // the first operation in trouble
     std::array<double, 3> where{};
     std::array<double, 3> side_a{}, side_b{}; // of a jump: two near points and the values there
     double value_a = 0, value_b = 0;

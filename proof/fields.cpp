@@ -207,20 +207,20 @@ std::optional<NodeId> Prover::expression(ShapeId id, int depth) {
 
 namespace {
 
-std::string cause_text(const ir::Graph &graph, NodeId cause) {
+std::string cause_text(std::optional<Op> cause) {
     if (!cause) return "an operation";
-    if (const char *trouble = ir::info(graph[cause].op).trouble; *trouble) return trouble;
-    std::string name(ir::info(graph[cause].op).name);
+    if (const char *trouble = ir::info(*cause).trouble; *trouble) return trouble;
+    std::string name(ir::info(*cause).name);
     for (char &c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return "`" + name + "`";
 }
 
 // Smooth at every point: what has no bound by one of these has outgrown all numbers.
-bool only_grows(const ir::Graph &graph, NodeId cause) {
+bool only_grows(std::optional<Op> cause) {
     if (!cause) return false;
     constexpr ir::OpSet products{Op::Mul, Op::MatMul, Op::Dot, Op::Cross};
-    const ir::OpInfo &op = ir::info(graph[cause].op);
-    return products[graph[cause].op] || (op.function && *op.trouble == '\0');
+    const ir::OpInfo &op = ir::info(*cause);
+    return products[*cause] || (op.function && *op.trouble == '\0');
 }
 
 } // namespace
@@ -262,10 +262,10 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             d->help("make its loops shorter, " + assume);
         return;
     }
-    std::string cause = cause_text(graph, b.cause);
+    std::string cause = cause_text(b.cause);
     const bool endless = !place(id).box.finite() && !place(id).zone;
     const bool grows = b.trouble == Trouble::None || b.trouble == Trouble::Overflow ||
-                       (b.trouble == Trouble::Singular && only_grows(graph, b.cause));
+                       (b.trouble == Trouble::Singular && only_grows(b.cause));
     if (b.at_infinity || (grows && endless)) {
         const bool jumps = b.trouble == Trouble::Jump;
         if (Diagnostic *d = report(

@@ -6,6 +6,7 @@
 
 #include "base/diagnostic.h"
 #include "base/limits.h"
+#include "base/stop.h"
 #include "ir/interval.h"
 #include "ir/scene.h"
 #include "proof/rules.h"
@@ -18,6 +19,8 @@ namespace fathom::proof {
 
 // Bounds by cells are looked for where a shape's one bound is above this.
 constexpr double steep = 1.5;
+
+class BoundCache;
 
 struct Options {
     // None: the proof holds for all values that the params' ranges and the scene's times allow.
@@ -34,6 +37,10 @@ struct Options {
     bool test_assumptions = true;           // sample `lipschitz:` and `estimate:`
     std::size_t work = Limits{}.proof;      // steps in all
     std::string limit_note{}, limit_help{}; // for an error that there was too much
+    // What earlier proofs found, and what this one finds (bound_cache.h). Nothing that a proof says
+    // or fills depends on it but how long that takes. None: one for this proof alone.
+    BoundCache *cache = nullptr;
+    Stop *stop = nullptr; // where it stops, what was filled and reported means nothing
 };
 
 // Fills scene.facts (one a shape), scene.bounds and scene.far. A shape without a proof is reported

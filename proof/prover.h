@@ -2,6 +2,7 @@
 // shapes.cpp, maps.cpp, repeat.cpp, fields.cpp).
 #pragma once
 
+#include "proof/bound_cache.h"
 #include "proof/cells.h"
 #include "proof/prove.h"
 #include "proof/shape_facts.h"
@@ -29,6 +30,7 @@ struct Prover {
     const Options &options;
     ir::Graph &graph;
     Work work;
+    BoundCache of_this_proof; // where the caller has none
     Flattening flattening;
     Ranges ranges;
     std::deque<Derived> derived;      // the first is that of shapes that no one asks
@@ -40,8 +42,10 @@ struct Prover {
 
     Prover(ir::Scene &s, Diagnostics &d, const Options &o)
         : scene(s), diagnostics(d), options(o),
-          graph(s.graph), work{o.work}, flattening{s.graph, work},
-          ranges(ranges_of(s, work, o.times)) {}
+          graph(s.graph), work{o.work, o.stop}, flattening{s.graph, work},
+          ranges(ranges_of(s, work, o.times)) {
+        flattening.cache = o.cache ? o.cache : &of_this_proof;
+    }
 
     void run();
 

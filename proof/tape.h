@@ -86,6 +86,8 @@ struct Meeting {
     bool near = false; // where no coordinate is above `near_enough` alone (on_line.h)
 };
 
+class BoundCache;
+
 // Border questions: is this Select continuous (continuity.h)? Answered once a Select that varies.
 struct Flattening {
     ir::Graph &graph;
@@ -98,7 +100,8 @@ struct Flattening {
     std::unordered_map<NodeId, std::optional<Pieces>> pieces{}; // by node, remembered over fields
     // By field: the same with its loops written out, where borders in their bodies have to be seen.
     std::unordered_map<NodeId, NodeId> written{};
-    std::vector<bool> cached{}; // by cached field: known by its bounds alone (Ranges::caches)
+    std::vector<bool> cached{};  // by cached field: known by its bounds alone (Ranges::caches)
+    BoundCache *cache = nullptr; // of answers to whole questions (question.h), or none
 };
 
 Tape flatten(Flattening &context, NodeId root);

@@ -70,6 +70,8 @@ void Prover::run() {
                      shape.map == MapKind::Taper || shape.map == MapKind::Distort);
     }
     for (std::size_t i = 0; i < count; ++i) {
+        constexpr std::size_t steps_of_a_shape = 50; // in time, not counted as work
+        if (work.stop && work.stop->after(steps_of_a_shape)) work.left = 0;
         Derived k = derived.front();
         if (places[i].reached) { // what is never evaluated keeps facts that say nothing
             k = know(ShapeId{i});

@@ -19,5 +19,6 @@ FATHOM_ROOT=$root FATHOM_PROGRAM=$program FATHOM_WORK=$work/neovim \
 rm -rf "$work/emacs" && mkdir "$work/emacs" || exit 3
 FATHOM_ROOT=$root FATHOM_PROGRAM=$program FATHOM_WORK=$work/emacs \
     timeout 120 emacs --batch -l "$root/tests/editors/emacs.el" || exit 1
+node "$root/tests/editors/vscode.mjs" "$root/editors/vscode/extension.js" || exit 1
 rm -rf "$work/vscode" && cp -r "$root/editors/vscode" "$work/vscode" && cd "$work/vscode" || exit 3
 npm install --no-audit --no-fund --ignore-scripts && npm run build && npm run package

@@ -29,6 +29,8 @@ static bool inside_library(Interpreter &ev) { return ev.modules[ev.current_modul
 static Value remembered(Interpreter &ev, const Value &callee, std::string_view name,
                         std::span<const Value> values, Span call) {
     const Closure &c = ev.closures[callee.id];
+    // What stands in a body is another function each time that the body is run.
+    if (!c.ast->functions[c.function].name) return run_closure(ev, callee, name, values, call);
     std::vector<std::uint64_t> key{c.ast->place, c.function.index, c.frame};
     key.reserve(3 + 6 * values.size());
     for (const Value &v : values) {

@@ -5,6 +5,7 @@
 
 #include "base/diagnostic.h"
 #include "base/limits.h"
+#include "base/stop.h"
 #include "ir/scene.h"
 
 #include <cstdint>
@@ -81,7 +82,8 @@ struct Options {
     std::function<std::optional<double>(ir::Scene &, ir::ShapeId)> lipschitz;
     std::function<std::optional<std::pair<double, double>>(ir::Scene &, ir::ShapeId, int axis)>
         extent;
-    Limits limits; // what the scene may cost before it is refused
+    Limits limits;        // what the scene may cost before it is refused
+    Stop *stop = nullptr; // where it stops, evaluation ends as at a limit, and nothing is reported
 };
 
 // When a value is known: while the scene is read, once its parameters are set, or where a point or

@@ -329,6 +329,8 @@ bool is_scalar(const Interpreter &ev, const Value &v); // Int or Float, known or
 ir::NodeId to_node(Interpreter &ev, const Value &v);   // of a numeric value
 Value from_node(Interpreter &ev, ir::NodeId node,
                 bool color = false); // constants come back as known numbers
+// The value of an op of known numbers, of its arguments' types; nothing where one is not known.
+std::optional<Value> folded(ir::Op op, ir::Type type, std::span<const Value> args, bool is_color);
 Value apply_op(Interpreter &ev, ir::Op op, std::vector<Value> args, Span place,
                std::string_view name);
 Value arithmetic(Interpreter &ev, lang::BinaryOp op, const Value &a, const Value &b, Span place,

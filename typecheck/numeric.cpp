@@ -106,6 +106,10 @@ Value to_float(Interpreter &ev, const Value &v) {
     return v;
 }
 
+static bool known_scalar(const Value &v) {
+    return v.kind == ValueKind::Int || v.kind == ValueKind::Float;
+}
+
 static bool any_color(const std::vector<Value> &args) {
     for (const Value &a : args)
         if (a.color) return true;
@@ -137,14 +141,24 @@ Value apply_op(Interpreter &ev, Op op, std::vector<Value> args, Span place, std:
         }
     }
     if (widest == Type::Int && ir::info(op).takes != ir::Takes::Numbers) widest = Type::Float;
+    for (Value &a : args) {
+        if (widest != Type::Int) a = to_float(ev, a);
+        if (known_scalar(a) && ir::is_vector(widest)) { // as a splat of it
+            const double x = a.num[0];
+            a = vec(ir::components(widest), {x, x, x, x}, a.color);
+        }
+    }
+    const bool is_color = any_color(args) && widest == Type::Vec3;
+    if (ir::info(op).rule == ir::TypeRule::Same)
+        if (const auto known = folded(op, widest, args, is_color)) return *known;
     std::vector<ir::NodeId> nodes;
     for (Value &a : args) {
-        ir::NodeId node = to_node(ev, widest == Type::Int ? a : to_float(ev, a));
+        ir::NodeId node = to_node(ev, a);
         if (ir::components(widest) > 1 && ir::components(ev.scene.graph[node].type) == 1)
             node = ev.scene.graph.splat(node, widest);
         nodes.push_back(node);
     }
-    return from_node(ev, ev.scene.graph.make(op, nodes), any_color(args) && widest == Type::Vec3);
+    return from_node(ev, ev.scene.graph.make(op, nodes), is_color);
 }
 
 static Value overflow(Interpreter &ev, Span place, double value) {
@@ -181,10 +195,6 @@ static const char *operator_text(lang::BinaryOp op) {
     case lang::BinaryOp::Pow: return "^";
     }
     return "";
-}
-
-static bool known_scalar(const Value &v) {
-    return v.kind == ValueKind::Int || v.kind == ValueKind::Float;
 }
 
 static Value compare(Interpreter &ev, lang::BinaryOp op, const Value &a, const Value &b,

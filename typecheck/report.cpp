@@ -243,6 +243,10 @@ bool spend(Interpreter &ev, Span place, std::size_t amount) {
     const std::size_t before = ev.evaluations;
     ev.evaluations += amount;
     if (ev.out_of_budget) return false;
+    if (ev.options.stop && ev.options.stop->after(amount)) { // nobody hears what would be said
+        ev.out_of_budget = true;
+        return false;
+    }
     if (ev.evaluations > ev.options.limits.work)
         return refuse(ev, Code::LoopLimit, place, "this scene takes more work than is allowed",
                       &Limits::work,

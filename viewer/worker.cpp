@@ -145,6 +145,7 @@ std::unique_ptr<Build> Worker::build(int cells) {
     driver::CompileOptions options = options_;
     options.parts = true;
     options.cells = cells;
+    options.bounds = &bounds_;
     options.entered = [this](driver::Phase phase) { enter(stage_of(phase)); };
     {
         std::lock_guard lock(mutex_);

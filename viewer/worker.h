@@ -100,6 +100,7 @@ class Worker {
 
     std::filesystem::path file_;
     driver::CompileOptions options_;
+    proof::BoundCache bounds_; // from one edit to the next
     Hooks hooks_;
     driver::Watcher watcher_;
     std::mutex mutex_; // over the six below

@@ -64,13 +64,43 @@ async function showWindow(editor) {
   }
 }
 
-// Adds so many units of its last digit to the number at the cursor.
+const numberAt = (document, position) => document.getWordRangeAtPosition(position, /\d+(?:\.\d+)?/);
+
+// A number's text, so many units of its last digit further.
+function moved(number, steps) {
+  const decimals = (number.split(".")[1] || "").length;
+  return Math.max(Number(number) + steps * 10 ** -decimals, 0).toFixed(decimals);
+}
+
 function slide(editor, steps) {
-  const range = editor.document.getWordRangeAtPosition(editor.selection.active, /\d+(?:\.\d+)?/);
-  if (!range) return;
-  const number = editor.document.getText(range), decimals = (number.split(".")[1] || "").length;
-  const value = Math.max(Number(number) + steps * 10 ** -decimals, 0).toFixed(decimals);
-  editor.edit((edit) => edit.replace(range, value));
+  const range = numberAt(editor.document, editor.selection.active);
+  if (range) editor.edit((edit) => edit.replace(range, moved(editor.document.getText(range), steps)));
+}
+
+// Alt-drag: where Alt adds cursors, pressing it on a number and moving the mouse makes a second selection
+// that begins there. Each column to the right is one unit of the number's last digit more, to the left one
+// less; the number as it stood when the drag began is what is counted from.
+let drag = null; // {document, anchor, number, length, steps}, while there is one
+
+function dragged(event) {
+  const editor = event.textEditor, selections = event.selections, last = selections[selections.length - 1];
+  if (event.kind !== vscode.TextEditorSelectionChangeKind.Mouse || selections.length < 2) {
+    if (event.kind === vscode.TextEditorSelectionChangeKind.Mouse) drag = null;
+    return;
+  }
+  if (!drag || drag.document !== editor.document || !drag.anchor.isEqual(last.anchor)) {
+    const range = numberAt(editor.document, last.anchor);
+    drag = range ? {document: editor.document, anchor: last.anchor, start: range.start, steps: 0,
+      number: editor.document.getText(range), length: editor.document.getText(range).length} : null;
+  }
+  if (!drag || last.active.line !== drag.anchor.line) return;
+  const steps = last.active.character - drag.anchor.character;
+  if (steps === drag.steps) return;
+  const value = moved(drag.number, steps);
+  const range = new vscode.Range(drag.start, drag.start.translate(0, drag.length));
+  drag.steps = steps;
+  drag.length = value.length;
+  editor.edit((edit) => edit.replace(range, value), {undoStopBefore: false, undoStopAfter: false});
 }
 
 function task(definition, file) {
@@ -95,8 +125,13 @@ function activate(context) {
     vscode.commands.registerCommand("fathom.view", withEditor(showWindow)),
     vscode.commands.registerCommand("fathom.slideUp", withEditor((editor) => slide(editor, 1))),
     vscode.commands.registerCommand("fathom.slideDown", withEditor((editor) => slide(editor, -1))),
+    client.onNotification("fathom/windowFailed", ({uri}) => {
+      const editor = vscode.window.visibleTextEditors.find((one) => one.document.uri.toString() === uri);
+      if (editor) showPicture(editor);
+    }),
     vscode.window.onDidChangeTextEditorSelection((event) => {
       const document = event.textEditor.document;
+      if (document.languageId === "fathom") dragged(event);
       if (document.languageId === "fathom" && client.isRunning())
         client.sendNotification("fathom/cursor", {textDocument: {uri: document.uri.toString()},
           position: event.selections[0].active});

@@ -96,6 +96,31 @@ struct Facts {
  *  relative to the scene's text, with `/`, without `..`. */
 using FileProvider = std::function<std::optional<std::string>(const std::string &path)>;
 
+/** What compilations found of fields, for the next ones: who compiles a text again and again, as it
+ *  is edited, gives the same one each time, and only what the edit touches is proved anew. A scene
+ *  and what is said of it do not depend on it. A handle: copies share what they hold; any number of
+ *  threads may use one. Default-made it is none. */
+class FATHOM_API ProofCache {
+  public:
+    ProofCache() = default;
+    /** An empty one, of at most so many bytes; what was not wanted for longest goes first. */
+    static ProofCache of_bytes(std::size_t most = std::size_t{32} << 20);
+
+    /** How many bounds were not in it when they were wanted, and how many bytes it holds. 0 of none. */
+    std::size_t searches() const;
+    std::size_t bytes() const;
+
+    struct Impl;
+    const std::shared_ptr<Impl> &impl() const { return impl_; } // of the library's own use
+
+  private:
+    std::shared_ptr<Impl> impl_;
+};
+
+/** What a compilation does at present: reads the text, evaluates it, proves its bounds, makes the
+ *  functions that are evaluated. */
+enum class Phase { Read, Check, Prove, Lower, Done };
+
 struct CompileOptions {
     /** Folders where imports are looked for, after the scene's own. */
     std::vector<std::filesystem::path> include_folders;
@@ -106,6 +131,13 @@ struct CompileOptions {
     std::map<std::string, std::string> limits;
     /** Where named files come from. None: the file system. With one, no file is opened. */
     FileProvider files;
+    /** What earlier compilations found. */
+    ProofCache cache;
+    /** Asked about once a millisecond, by the thread that compiles; where it says yes the compilation
+     *  ends within some milliseconds, with the one error `cancelled`. Forgotten once it has ended. */
+    std::function<bool()> cancelled;
+    /** Told as each phase begins, by that thread. Forgotten, too. */
+    std::function<void(Phase)> entered;
 };
 
 struct CompileResult;

@@ -328,3 +328,76 @@ TEST_CASE("public headers see only themselves and the standard library") {
     }
     CHECK(counted > 20);
 }
+
+namespace {
+
+// Fields whose proof asks many times whether it is still wanted.
+std::string steep_fields(int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i)
+        text += "implicit(p => sin(" + std::to_string(i + 3) +
+                "*p.x + sin(5*p.y)) * cos(6*p.z + sin(4*p.x*p.y)) * sin(p.x*p.z), "
+                "within: ball(4))\n";
+    return text;
+}
+
+} // namespace
+
+TEST_CASE("a compilation that is cancelled ends early") {
+    fathom::CompileOptions options;
+    std::vector<fathom::Phase> phases;
+    options.entered = [&](fathom::Phase phase) { phases.push_back(phase); };
+    int asked = 0;
+    options.cancelled = [&] { return ++asked, false; };
+    options.cache = fathom::ProofCache::of_bytes();
+    REQUIRE(fathom::compile_text("a.sdf", steep_fields(6), options));
+    const int asked_in_all = asked;
+    const std::size_t searches = options.cache.searches();
+    CHECK(asked_in_all > 40);
+    CHECK(searches >= 6);
+    using fathom::Phase;
+    CHECK(phases == std::vector{Phase::Check, Phase::Prove, Phase::Lower, Phase::Done});
+
+    phases.clear();
+    asked = 0;
+    options.cache = fathom::ProofCache::of_bytes();
+    options.cancelled = [&] { return ++asked >= 8; };
+    const fathom::CompileResult ended = fathom::compile_text("a.sdf", steep_fields(6), options);
+    CHECK_FALSE(ended);
+    REQUIRE(ended.diagnostics.size() == 1);
+    CHECK(ended.diagnostics[0].code == "cancelled");
+    CHECK(asked == 8); // once it was told it asks no more
+    CHECK(phases.back() == Phase::Prove);
+    CHECK(options.cache.searches() < searches / 2); // what was left is not searched
+
+    // What was found before is of use, and what was broken off does no harm.
+    options.cancelled = nullptr;
+    const fathom::Scene after = compiled(steep_fields(6), options);
+    CHECK(*after.facts().lipschitz == *compiled(steep_fields(6)).facts().lipschitz);
+
+    options.cancelled = [] { return true; };
+    CHECK_FALSE(fathom::compile_text("a.sdf", "sphere(1)\n", options));
+}
+
+TEST_CASE("a cache of proofs changes no answer, and may be shared by threads") {
+    fathom::CompileOptions options;
+    options.cache = fathom::ProofCache::of_bytes();
+    const fathom::Facts alone = compiled(steep_fields(3)).facts();
+    std::vector<double> bounds(4);
+    std::vector<std::thread> threads;
+    for (double &bound : bounds)
+        threads.emplace_back([&] {
+            const auto result = fathom::compile_text("a.sdf", steep_fields(3), options);
+            bound = result ? *result.scene->facts().lipschitz : 0;
+        });
+    for (std::thread &thread : threads) thread.join();
+    for (double bound : bounds) CHECK(bound == *alone.lipschitz);
+    const std::size_t searches = options.cache.searches();
+    compiled("// moved\n" + steep_fields(3), options);
+    CHECK(options.cache.searches() == searches);
+    CHECK(options.cache.bytes() > 0);
+    CHECK(fathom::ProofCache().searches() == 0);
+    options.cache = fathom::ProofCache::of_bytes(100); // holds nothing, and does no harm
+    CHECK(*compiled(steep_fields(1), options).facts().lipschitz > 0);
+    CHECK(options.cache.bytes() <= 100);
+}

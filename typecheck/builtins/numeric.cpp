@@ -111,6 +111,7 @@ static Value length_call(Interpreter &ev, const CallSite &site, std::vector<Valu
     auto v = vector_argument(ev, site, args[0], 0);
     if (!v) return poison();
     if (is_scalar(ev, *v)) return apply_op(ev, Op::Abs, {*v}, site.call, site.name);
+    if (const auto known = folded(Op::Length, Type::Float, {&*v, 1}, false)) return *known;
     return from_node(ev, ev.scene.graph.make(Op::Length, {to_node(ev, *v)}));
 }
 
@@ -142,6 +143,8 @@ static Value product(Interpreter &ev, const CallSite &site, std::vector<Value> &
                            describe(ev, *a), describe(ev, *b)));
         return poison();
     }
+    const Type type = op == Op::Dot ? Type::Float : ta;
+    if (const auto known = folded(op, type, std::array{*a, *b}, false)) return *known;
     return from_node(ev, ev.scene.graph.make(op, {to_node(ev, *a), to_node(ev, *b)}));
 }
 

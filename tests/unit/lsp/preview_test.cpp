@@ -5,10 +5,15 @@
 #include "lsp/preview.h"
 
 #include <array>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <grp.h>
+#include <optional>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 namespace {
@@ -179,6 +184,74 @@ TEST_CASE("a window that is closed says nothing, and one that does not read is g
     ::close(window);
 }
 
+// What another user reads who connects to the socket; nothing where he cannot.
+static std::optional<std::string> read_by_another_user(const fs::path &socket) {
+    constexpr uid_t nobody = 65534;
+    int ends[2] = {-1, -1};
+    REQUIRE(::pipe(ends) == 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        socket.string().copy(address.sun_path, sizeof address.sun_path - 1);
+        const int descriptor = ::socket(AF_UNIX, SOCK_STREAM, 0);
+        if (::setgroups(0, nullptr) != 0 || ::setresgid(nobody, nobody, nobody) != 0 ||
+            ::setresuid(nobody, nobody, nobody) != 0 ||
+            ::connect(descriptor, reinterpret_cast<sockaddr *>(&address), sizeof address) != 0)
+            ::_exit(1);
+        std::array<char, 64> block{};
+        const ssize_t count = ::read(descriptor, block.data(), block.size());
+        if (count > 0 && ::write(ends[1], block.data(), static_cast<std::size_t>(count)) < 0)
+            ::_exit(2);
+        ::_exit(0);
+    }
+    ::close(ends[1]);
+    std::string read;
+    std::array<char, 64> block{};
+    for (ssize_t count; (count = ::read(ends[0], block.data(), block.size())) > 0;)
+        read.append(block.data(), static_cast<std::size_t>(count));
+    ::close(ends[0]);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? std::optional(read) : std::nullopt;
+}
+
+TEST_CASE("another user cannot connect, and hears nothing where the folder is open") {
+    if (::geteuid() != 0) {
+        WARN("not tried: only root can be another user");
+        return;
+    }
+    const Script script("echo \"$4\" > \"$0.started\"; exec sleep 60");
+    Previews previews(script.file);
+    const std::map<std::string, Json> texts = texts_with("sphere(1)\n");
+    std::vector<std::string> out;
+    REQUIRE(previews.handle(request(1), texts, out));
+    std::string socket;
+    for (int i = 0; i < 500 && socket.empty(); ++i) {
+        std::ifstream(script.file.string() + ".started") >> socket;
+        if (socket.empty()) ::usleep(10000);
+    }
+    REQUIRE_FALSE(socket.empty());
+    CHECK_FALSE(read_by_another_user(socket)); // the folder's mode
+
+    fs::permissions(fs::path(socket).parent_path(), fs::perms::all);
+    fs::permissions(socket, fs::perms::all);
+    std::atomic<bool> done = false;
+    std::thread listener([&] {
+        while (!done) {
+            previews.heard();
+            ::usleep(1000);
+        }
+    });
+    CHECK(read_by_another_user(socket) == std::string()); // refused before a letter is sent
+    done = true;
+    listener.join();
+    const int same = connected_to(socket); // and that refusal kept nobody else out
+    previews.heard();
+    CHECK(received(same) == "text 10\nsphere(1)\n");
+    ::close(same);
+}
+
 TEST_CASE("a window that does not open says why") {
     const Script script("echo 'fathom: there is no display' >&2; exit 4");
     Previews previews(script.file);
@@ -186,7 +259,8 @@ TEST_CASE("a window that does not open says why") {
     std::vector<std::string> out;
     REQUIRE(previews.handle(request(1), texts, out));
     const std::vector<Json> messages = heard(previews);
-    REQUIRE(messages.size() == 1);
+    REQUIRE(messages.size() == 2);
+    CHECK(messages[1] == notification("fathom/windowFailed", {{"uri", a_uri}}));
     CHECK(messages[0].at("method") == "window/showMessage");
     const std::string why = messages[0].at("params").at("message");
     CHECK(why.find("no display") != std::string::npos);

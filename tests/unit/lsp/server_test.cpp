@@ -259,3 +259,19 @@ TEST_CASE("messages are cut by their lengths") {
           "Content-Length: 2\r\n\r\n{}");
     for (int descriptor : {in[0], out[0], out[1]}) close(descriptor);
 }
+
+TEST_CASE("hover on an error says the point and the witness") {
+    Client client;
+    const auto said = [&](const std::string &text) {
+        client.open(text);
+        const Json hover = client.result("textDocument/hover", Client::at(0, 3));
+        return hover.at("contents").at("value").get<std::string>();
+    };
+    const std::string jump = said("implicit(p => p.z + step(0.3, p.x), within: ball(2))\n");
+    CHECK(jump.find("jumps near [0.3") != std::string::npos);
+    CHECK(jump.find("it is ") != std::string::npos); // two values at two points
+    CHECK(jump.find(" at [0.3") != std::string::npos);
+    const std::string steep = said("implicit(p => 2 * p.x, within: everywhere, lipschitz: 1)\n");
+    CHECK(steep.find("between [") != std::string::npos);
+    CHECK(steep.find("its slope is 2") != std::string::npos);
+}

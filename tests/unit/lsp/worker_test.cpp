@@ -4,6 +4,7 @@
 #include "lsp/worker.h"
 
 #include <csignal>
+#include <unistd.h>
 
 namespace {
 
@@ -82,4 +83,56 @@ TEST_CASE("a crash that comes with every message is told once, and each request 
     worker.handle(message("exit", nullptr));
     CHECK(worker.ended());
     CHECK(worker.exit_status() == 0); // the shutdown is not forgotten
+}
+
+// A field whose proof asks many times whether it is still wanted.
+static const char *const slow_text =
+    "implicit(p => sin(7*p.x + sin(5*p.y)) * cos(6*p.z + sin(4*p.x*p.y)) * sin(p.x*p.z), "
+    "within: ball(8))\n";
+
+TEST_CASE("what the client no longer waits for is left") {
+    Worker worker;
+    worker.handle(message("initialize", Json::object(), 1));
+    worker.handle(
+        message("textDocument/didOpen",
+                {{"textDocument",
+                  {{"uri", "file:///scenes/a.sdf"}, {"version", 1}, {"text", slow_text}}}}));
+    int client[2] = {-1, -1};
+    REQUIRE(::pipe(client) == 0);
+    REQUIRE(::write(client[1], "x", 1) == 1); // the client has said something
+    int heard = 0;
+    worker.client.descriptor = client[0];
+    worker.client.heard = [&] {
+        ++heard;
+        char byte = 0;
+        REQUIRE(::read(client[0], &byte, 1) == 1);
+        return fathom::lsp::Wanted::Modified;
+    };
+    CHECK(worker.idle().empty());
+    CHECK(heard == 1);
+
+    REQUIRE(::write(client[1], "x", 1) == 1);
+    const auto hovered = worker.handle(message("textDocument/hover", Client::at(0, 1), 2));
+    REQUIRE(hovered.size() == 1);
+    CHECK(Json::parse(hovered[0]).at("error").at("code") == -32801); // content modified
+
+    REQUIRE(::write(client[1], "x", 1) == 1);
+    worker.client.heard = [&] {
+        char byte = 0;
+        REQUIRE(::read(client[0], &byte, 1) == 1);
+        return fathom::lsp::Wanted::TakenBack;
+    };
+    const auto again = worker.handle(message("textDocument/hover", Client::at(0, 1), 3));
+    REQUIRE(again.size() == 1);
+    CHECK(Json::parse(again[0]).at("error").at("code") == -32800); // request cancelled
+
+    worker.client.descriptor = -1;
+    worker.handle(message("textDocument/didChange",
+                          {{"textDocument", {{"uri", "file:///scenes/a.sdf"}, {"version", 2}}},
+                           {"contentChanges", {{{"text", "sphere(1)\n"}}}}}));
+    const auto diagnostics = worker.idle(); // of the text as it is now
+    REQUIRE(diagnostics.size() == 1);
+    CHECK(Json::parse(diagnostics[0]).at("params").at("version") == 2);
+    ::close(client[0]);
+    ::close(client[1]);
 }
