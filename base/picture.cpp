@@ -34,7 +34,8 @@ Picture picture_of_linear(int width, int height, std::span<const float> rgba) {
     return picture;
 }
 
-std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const float> rgba) {
+std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const float> rgba,
+                                       bool alpha) {
     const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
     std::vector<float> encoded(3 * w * h);
     for (std::size_t i = 0; i < w * h; ++i)
@@ -45,6 +46,8 @@ std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const fl
         for (std::size_t c = 0; c < 3; ++c)
             if (std::fabs(encoded[3 * a + c] - encoded[3 * b + c]) > rough_contrast)
                 rough[a] = rough[b] = 1;
+        if (alpha && std::fabs(rgba[4 * a + 3] - rgba[4 * b + 3]) > rough_contrast)
+            rough[a] = rough[b] = 1;
     };
     for (std::size_t y = 0; y < h; ++y)
         for (std::size_t x = 0; x < w; ++x) {

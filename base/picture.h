@@ -29,9 +29,11 @@ std::uint8_t srgb_byte(float linear, float dither = 0.5f);
 Picture picture_of_linear(int width, int height, std::span<const float> rgba);
 
 // The pixels that one sample does not do for: those which differ from one of the four beside them
-// by more than `rough_contrast` in some channel, encoded 0..1. 1 or 0 a pixel; of linear RGBA.
+// by more than `rough_contrast` in some channel, encoded 0..1, or in alpha where that counts. 1 or 0 a
+// pixel; of linear RGBA.
 inline constexpr float rough_contrast = 0.08f;
-std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const float> rgba);
+std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const float> rgba,
+                                       bool alpha = false);
 
 // A whole PNG file; empty where the picture has no pixels or is larger than PNG allows. A `note` that
 // is not empty is kept in the file as a text of the keyword `fathom`; it is ASCII.

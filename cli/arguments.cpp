@@ -281,7 +281,8 @@ struct Reader {
         CLI::App *sub = command("render", "make a picture or a film, without a window", render);
         add_proved_scene(sub, render.scene);
         add_out(sub, render.out,
-                "a .png, a .jpg, a film (.mp4, .webm, .gif, .apng) or .sums; `-`: standard output; "
+                "a .png, .jpg or .exr, a film (.mp4, .webm, .gif, .apng) or .sums; `-`: standard "
+                "output; "
                 "`#`s stand for the frame's number")
             ->type_name("OUT.png")
             ->required();

@@ -91,6 +91,7 @@ struct RenderCommand {
     int max_steps = 0;                        // evaluations of a ray; 0: what the scene says
     bool strict = false;                      // a ray left undecided is an error
     int quality = 90;                         // of a JPEG
+    bool alpha = false;                       // no background, but transparent pixels
     bool cache = false;                       // through the noise cache
     bool skip_existing = false;               // files that are whole and the same are kept
     StreamFormat stream = StreamFormat::Png;  // of `-o -`

@@ -2,6 +2,7 @@
 
 #include "cli/film.h"
 #include "cli/outputs.h"
+#include "cli/painter.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -69,13 +70,13 @@ std::string of_parts(const RenderCommand &render) {
     const bool sums = is_sums_name(render.out);
     if (render.part_of_samples && !sums)
         return "--samples A..B makes a part of a picture, which is a file of sums: -o OUT.sums";
-    const bool cpu = render.tile || render.region || sums || render.shutter > 0;
+    const bool cpu = needs_cpu(render);
     if (render.backend == Backend::Gl && cpu)
-        return "--tile, --region, --shutter and .sums are for the CPU, which gives the same bits "
-               "for any division: --backend cpu";
+        return "--tile, --region, --shutter, --alpha and .sums are for the CPU, which gives the "
+               "same bits for any division: --backend cpu";
     if (render.cache && (render.backend == Backend::Cpu || cpu))
         return "--cache needs GL, which --backend cpu leaves out, and so do --tile, --region, "
-               "--shutter and .sums";
+               "--shutter, --alpha and .sums";
     return "";
 }
 
@@ -91,10 +92,16 @@ std::string of_outputs(const RenderCommand &render, const Given &given) {
     if (sheet && (part || !render.only.numbers.empty()))
         return "--contact-sheet chooses the frames itself, and shows whole ones";
     if (given("--stream") && !stream) return "--stream is for standard output: -o -";
+    const std::optional<PictureFormat> format = picture_format(render.out);
+    if (render.alpha && (film || sheet || is_sums_name(render.out) ||
+                         render.stream != StreamFormat::Png || format == PictureFormat::Jpeg))
+        return "--alpha is of PNG and EXR pictures: the other outputs have no transparent pixels";
+    if (sheet && format == PictureFormat::Exr)
+        return "--contact-sheet makes a PNG or a JPEG, which hold what a screen shows";
     if (render.skip_existing &&
-        (film || sheet || stream || picture_format(render.out) == PictureFormat::Jpeg))
+        (film || sheet || stream || (format && format != PictureFormat::Png)))
         return "--skip-existing is for PNG and .sums files, which say of what they are";
-    if (given("--quality") && picture_format(render.out) != PictureFormat::Jpeg)
+    if (given("--quality") && format != PictureFormat::Jpeg)
         return "--quality is of a JPEG: -o OUT.jpg writes one";
     return "";
 }
@@ -112,6 +119,8 @@ std::string of(const MergeCommand &merge, const Given &given) {
         return "--frames wants one name of frames, with `#`s for the number: 'frame_####.png'";
     if (given("--fps") && !film) return "--fps is for --frames: one picture has no rate";
     if (given("--samples") && film) return "--samples is of a picture, and --frames joins a film";
+    if (picture_format(merge.out) == PictureFormat::Exr)
+        return "parts are joined to a PNG or a JPEG; `fathom render` writes an EXR whole";
     if (given("--quality") && picture_format(merge.out) != PictureFormat::Jpeg)
         return "--quality is of a JPEG: -o OUT.jpg writes one";
     return "";
@@ -136,6 +145,8 @@ std::string of(const FarmCommand &farm, const Given &given) {
     const bool frames = !farm.render.frames.numbers.empty() || farm.render.turntable > 0;
     if (!farm.film.empty() && !frames)
         return "a film has frames: --frames A..B or --turntable N says which";
+    if (!farm.film.empty() && farm.render.alpha)
+        return "a film has no transparent pixels: leave out --film, and the frames are PNGs";
     if (farm.tiles > 1 && farm.render.backend == Backend::Gl)
         return "--tiles are for the CPU, which gives the same bits for any division: --backend cpu";
     RenderCommand render = farm.render;

@@ -1,5 +1,6 @@
 #include "cli/delivery.h"
 
+#include "cli/exr.h"
 #include "driver/image.h"
 
 #include <algorithm>
@@ -92,6 +93,12 @@ Exit Delivery::take(int frame, const Note &note, Painted painted) {
     switch (kind_) {
     case Kind::Files: {
         const std::string out = file_of(frame);
+        if (picture_format(out) == PictureFormat::Exr) {
+            const std::string bytes =
+                encode_exr(painted.picture.width, painted.picture.height, painted.linear);
+            return bytes.empty() ? refuse("there is no memory for it")
+                                 : write_result(out, bytes, terminal_);
+        }
         if (!sums_)
             return write_result(out, encoded(painted.picture, out, command_.quality, text_of(note)),
                                 terminal_);

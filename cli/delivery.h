@@ -41,7 +41,7 @@ class Delivery {
     int on_sheet_ = 0;
 };
 
-// A picture's bytes in the format of the file's suffix; a PNG with the note.
+// A picture's bytes in the format of the file's suffix, of a PNG or a JPEG; a PNG with the note.
 std::string encoded(const Picture &picture, const std::string &out, int quality,
                     std::string_view note);
 

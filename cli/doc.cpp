@@ -95,6 +95,7 @@ Exit run(const DocCommand &command, Terminal &terminal) {
     const std::vector<LibraryEntry> entries =
         typecheck::library_entries(driver::standard_library());
     if (command.json && put_json(entries, command.name, terminal)) return done;
+    terminal.page();
     if (command.name.empty()) {
         if (list(entries, command.search, terminal)) return done;
         terminal.say("fathom: no entry of the library holds these words; `fathom doc` lists all");

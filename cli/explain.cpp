@@ -8,6 +8,7 @@
 namespace fathom::cli {
 
 Exit run(const ExplainCommand &command, Terminal &terminal) {
+    terminal.page();
     if (command.code.empty()) {
         for (Code code : all_codes())
             terminal.put(fmt::format("{:<22} {}\n", code_name(code), code_summary(code)));

@@ -111,6 +111,7 @@ std::string identity_of_film(const driver::Compilation &compilation, const Rende
                               format_shortest(command.time), format_shortest(command.frame_rate),
                               command.turntable, format_shortest(command.shutter),
                               command.max_steps, maker));
+    if (command.alpha) append(bytes, "alpha");
     return fingerprint(bytes);
 }
 

@@ -79,6 +79,11 @@ std::vector<OptionRow> picture_rows(RenderCommand &command) {
         {"--max-steps", "N",
          "evaluations that a ray may take, whatever the scene says; 65536 unless said",
          whole(command.max_steps, 1, 100'000'000)},
+        {"--alpha",
+         "",
+         "no background: a PNG or EXR that is transparent there",
+         {},
+         &command.alpha},
         {"--strict",
          "",
          "no picture, and status 1, where a ray stays undecided",
@@ -147,6 +152,7 @@ std::vector<std::string> words_of_pictures(const RenderCommand &command) {
     add(command.time != usual.time, "--time", format_shortest(command.time));
     add(command.samples != usual.samples, "--samples", fmt::format("{}", command.samples));
     add(command.max_steps != usual.max_steps, "--max-steps", fmt::format("{}", command.max_steps));
+    if (command.alpha) words.emplace_back("--alpha");
     if (command.strict) words.emplace_back("--strict");
     add(command.jobs != usual.jobs, "--jobs", fmt::format("{}", command.jobs));
     add(!command.frames.numbers.empty(), "--frames", command.frames.word);

@@ -15,14 +15,15 @@ struct Suffix {
 };
 
 // The suffixes that promise what a file holds. Others promise nothing and are free.
-constexpr std::array<Suffix, 21> suffixes{
-    {{".png", Content::Picture}, {".jpg", Content::Picture},   {".jpeg", Content::Picture},
-     {".mp4", Content::Film},    {".webm", Content::Film},     {".gif", Content::Film},
-     {".apng", Content::Film},   {".sums", Content::Sums},     {".glsl", Content::Shader},
-     {".frag", Content::Shader}, {".spv", Content::SpirV},     {".html", Content::Page},
-     {".htm", Content::Page},    {".stl", Content::Mesh},      {".obj", Content::Mesh},
-     {".ply", Content::Mesh},    {".glb", Content::Mesh},      {".3mf", Content::Mesh},
-     {".sdf", Content::Scene},   {".yaml", Content::SaveFile}, {".yml", Content::SaveFile}}};
+constexpr std::array<Suffix, 22> suffixes{
+    {{".png", Content::Picture}, {".jpg", Content::Picture}, {".jpeg", Content::Picture},
+     {".exr", Content::Picture}, {".mp4", Content::Film},    {".webm", Content::Film},
+     {".gif", Content::Film},    {".apng", Content::Film},   {".sums", Content::Sums},
+     {".glsl", Content::Shader}, {".frag", Content::Shader}, {".spv", Content::SpirV},
+     {".html", Content::Page},   {".htm", Content::Page},    {".stl", Content::Mesh},
+     {".obj", Content::Mesh},    {".ply", Content::Mesh},    {".glb", Content::Mesh},
+     {".3mf", Content::Mesh},    {".sdf", Content::Scene},   {".yaml", Content::SaveFile},
+     {".yml", Content::SaveFile}}};
 
 const Suffix *known_suffix(std::string_view suffix) {
     const auto *known = std::find_if(suffixes.begin(), suffixes.end(),
@@ -114,6 +115,7 @@ std::optional<PictureFormat> picture_format(const std::string &out) {
     const std::string suffix = suffix_of(out);
     if (suffix == ".png") return PictureFormat::Png;
     if (suffix == ".jpg" || suffix == ".jpeg") return PictureFormat::Jpeg;
+    if (suffix == ".exr") return PictureFormat::Exr;
     return std::nullopt;
 }
 
@@ -136,7 +138,7 @@ bool misnamed(const std::string &out, Content content, Terminal &terminal) {
     }
     if (content == Content::Picture && !picture_format(out)) {
         terminal.say(
-            fmt::format("fathom: -o {}: pictures are written as .png, .jpg or .jpeg", out));
+            fmt::format("fathom: -o {}: pictures are written as .png, .jpg, .jpeg or .exr", out));
         return true;
     }
     if (content == Content::Mesh && !known) {

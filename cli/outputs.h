@@ -17,7 +17,7 @@ std::string targets_with(bool glsl::TargetTraits::*trait);
 std::string listed(const std::vector<std::string> &names);
 
 // The picture files that can be written.
-enum class PictureFormat { Png, Jpeg };
+enum class PictureFormat { Png, Jpeg, Exr };
 
 // By the suffix of `out`. Standard output, devices and pipes take PNGs. None: the suffix is of no
 // picture that can be written.

@@ -113,12 +113,15 @@ struct Preview {
     }
 };
 
-Painted painted(const gl::Pixels &pixels) {
-    return {picture_of_linear(pixels.width, pixels.height, pixels.rgba),
-            {},
-            pixels.rays,
-            pixels.undecided,
-            pixels.undecided_shadows};
+Painted painted(gl::Pixels pixels) {
+    Painted made{picture_of_linear(pixels.width, pixels.height, pixels.rgba),
+                 {},
+                 std::move(pixels.rgba),
+                 pixels.rays,
+                 pixels.undecided,
+                 pixels.undecided_shadows};
+    for (std::size_t i = 3; i < made.linear.size(); i += 4) made.linear[i] = 1; // it is opaque
+    return made;
 }
 
 // The picture by the CPU, of one moment: `samples` of them from `first` on.
@@ -157,6 +160,7 @@ std::optional<cpu::Picture> trace(const ir::Scene &scene, const RenderCommand &c
 Painted painted(cpu::Picture made) {
     return {{made.width, made.height, std::move(made.rgba)},
             std::move(made.sums),
+            std::move(made.linear),
             made.work.rays,
             made.work.undecided,
             made.work.undecided_shadows};
@@ -169,7 +173,7 @@ std::optional<Painted> trace_open(const ir::Scene &scene, const RenderCommand &c
                                   Terminal &terminal) {
     const int first = options.first_sample, samples = options.samples;
     options.samples = 1;
-    options.sums = true;
+    options.sums = options.linear = true;
     std::optional<Painted> sum;
     for (int k = 0; k < samples; ++k) {
         options.first_sample = first + k;
@@ -180,6 +184,7 @@ std::optional<Painted> trace_open(const ir::Scene &scene, const RenderCommand &c
         Painted one = painted(std::move(*made));
         if (sum) {
             for (std::size_t i = 0; i < one.sums.size(); ++i) sum->sums[i] += one.sums[i];
+            for (std::size_t i = 3; i < one.linear.size(); i += 4) sum->linear[i] += one.linear[i];
             sum->rays += one.rays;
             sum->undecided += one.undecided;
             sum->undecided_shadows += one.undecided_shadows;
@@ -187,12 +192,16 @@ std::optional<Painted> trace_open(const ir::Scene &scene, const RenderCommand &c
             sum = std::move(one);
         }
     }
-    const auto width = static_cast<std::size_t>(sum->picture.width);
-    for (int row = 0; row < sum->picture.height; ++row) {
-        const std::size_t place = width * static_cast<std::size_t>(row);
-        cpu::encode_sums(std::span(sum->sums).subspan(3 * place, 3 * width), samples,
-                         options.region->x, options.region->y + row,
-                         std::span(sum->picture.rgba).subspan(4 * place, 4 * width));
+    for (std::size_t i = 0; 4 * i < sum->linear.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c)
+            sum->linear[4 * i + c] = static_cast<float>(sum->sums[3 * i + c] / samples);
+        sum->linear[4 * i + 3] /= static_cast<float>(samples);
+    }
+    const auto row = 4 * static_cast<std::size_t>(sum->picture.width);
+    for (int y = 0; y < sum->picture.height; ++y) {
+        const std::size_t first = row * static_cast<std::size_t>(y);
+        cpu::encode_linear(std::span(sum->linear).subspan(first, row), options.region->x,
+                           options.region->y + y, std::span(sum->picture.rgba).subspan(first, row));
     }
     return sum;
 }
@@ -208,7 +217,8 @@ int samples_of(const RenderCommand &command) {
 }
 
 bool needs_cpu(const RenderCommand &command) {
-    return command.region || command.tile || is_sums_name(command.out) || command.shutter > 0;
+    return command.region || command.tile || is_sums_name(command.out) || command.shutter > 0 ||
+           command.alpha;
 }
 
 Exit begin(Painter &painter, const RenderCommand &command, Terminal &terminal) {
@@ -277,7 +287,7 @@ std::optional<Painted> paint(const Painter &painter, const ir::Scene &scene,
         std::optional<gl::Pixels> pixels =
             draw_cached(*painter.cache, scene, command, moment, progress, status);
         if (!pixels) return std::nullopt;
-        return painted(*pixels);
+        return painted(std::move(*pixels));
     }
     if (painter.program) {
         gl::Request request;
@@ -290,9 +300,11 @@ std::optional<Painted> paint(const Painter &painter, const ir::Scene &scene,
         std::optional<gl::Pixels> pixels =
             gl::draw(*painter.program, scene, request, gl::Mode::Linear);
         if (!pixels) return std::nullopt;
-        return painted(*pixels);
+        return painted(std::move(*pixels));
     }
     cpu::PictureOptions options;
+    options.alpha = command.alpha;
+    options.linear = picture_format(command.out) == PictureFormat::Exr;
     options.first_sample = command.first_sample;
     options.samples = samples_of(command);
     options.region = region;

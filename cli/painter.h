@@ -25,7 +25,8 @@ struct Painter {
 // The command's samples a pixel: 0 for one, and more where a pixel is rough. Sums have one unless said.
 int samples_of(const RenderCommand &command);
 
-// Whether the command makes a part of a picture, or opens a shutter: what the CPU alone does.
+// Whether the command makes a part of a picture, opens a shutter, or leaves out the background: what
+// the CPU alone does.
 bool needs_cpu(const RenderCommand &command);
 
 // "cpu", "gl", or "gl by cached values".
@@ -40,7 +41,8 @@ Exit build(Painter &painter, const driver::Compilation &compilation, const Rende
 // A picture or a part of it, and how many of its rays ended neither in a hit nor in a miss.
 struct Painted {
     Picture picture;
-    std::vector<double> sums; // by the CPU, where sums are wanted
+    std::vector<double> sums;  // by the CPU, where sums are wanted
+    std::vector<float> linear; // RGBA, alpha multiplied into it; where the output is an EXR
     std::uint64_t rays = 0, undecided = 0, undecided_shadows = 0;
 };
 

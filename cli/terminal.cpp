@@ -8,9 +8,13 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace fathom::cli {
@@ -36,6 +40,25 @@ std::string lines_for_terminal(std::string_view text) {
     return out;
 }
 
+// Shows the text by a pager, until the reader leaves it. False: it fits, or there is no pager.
+bool is_paged(const std::string &text) {
+    winsize size{};
+    if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row == 0 ||
+        std::ranges::count(text, '\n') < size.ws_row)
+        return false;
+    const char *named = std::getenv("PAGER");
+    if (named && !*named) return false;
+    ::setenv("LESS", "FRX", 0); // where the reader says nothing: the text stays when less is left
+    FILE *pager = ::popen(
+        named ? named : "if command -v less >/dev/null; then exec less; else exec cat; fi", "w");
+    if (!pager) return false;
+    const auto before = std::signal(SIGINT, SIG_IGN); // Ctrl-C is the pager's
+    (void)driver::write_all(::fileno(pager), text);   // the reader may leave before the end
+    const int status = ::pclose(pager);
+    std::signal(SIGINT, before);
+    return !(WIFEXITED(status) && WEXITSTATUS(status) == 127); // the shell said that there is none
+}
+
 } // namespace
 
 Terminal::Terminal(ColorChoice color) {
@@ -52,13 +75,15 @@ Terminal::Terminal(ColorChoice color) {
 void Terminal::put(std::string_view results) {
     if (gone_ || failure_) return;
     buffer_ += results;
-    if (buffer_.size() >= buffer_size) flush();
+    if (!pages_ && buffer_.size() >= buffer_size) flush();
 }
 
 Exit Terminal::flush() {
     if (!failure_ && !gone_ && !buffer_.empty()) {
         const bool shown = ::isatty(STDOUT_FILENO) != 0;
-        int error = driver::write_all(STDOUT_FILENO, shown ? lines_for_terminal(buffer_) : buffer_);
+        if (shown) buffer_ = lines_for_terminal(buffer_);
+        const bool paged = shown && pages_ && is_paged(buffer_);
+        const int error = paged ? 0 : driver::write_all(STDOUT_FILENO, buffer_);
         if (error == EPIPE)
             gone_ = true;
         else if (error) {

@@ -22,6 +22,9 @@ class Terminal {
     void say(std::string_view words);     // a line, at once, encoded for a terminal
     void say_text(std::string_view text); // lines that are encoded already, with colours of ours
     Exit flush(); // of the results; device_error where they could not be written
+    // The results are text to read: where standard output is a terminal that is too small for them,
+    // `flush` gives them to the pager of the variable PAGER, else to less.
+    void page() { pages_ = true; }
 
     bool color() const { return color_; }             // on standard error
     bool interactive() const { return interactive_; } // standard error is a terminal
@@ -38,7 +41,7 @@ class Terminal {
 
   private:
     std::string buffer_;
-    bool color_ = false, interactive_ = false, gone_ = false, bar_shown_ = false;
+    bool color_ = false, interactive_ = false, gone_ = false, bar_shown_ = false, pages_ = false;
     int failure_ = 0;
     long long next_bar_ = 0, next_preview_ = 0;
     int preview_rows_ = 0; // shown

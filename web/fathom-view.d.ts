@@ -145,6 +145,8 @@ export class FathomView extends HTMLElement {
   readonly drawn: number;
   /** Camera and params as in the first view. */
   home(): void;
+  /** The camera looks at its target from that side: from z, from x, or from above. */
+  look(side: "front" | "right" | "top"): void;
   /** What is shown, as a PNG. Rejects before the first picture. */
   picture(): Promise<Blob>;
   addEventListener<K extends keyof FathomViewEvents>(type: K, listener: (event: FathomViewEvents[K]) => void, options?: boolean | AddEventListenerOptions): void;

@@ -3,6 +3,9 @@
 
 // ---- numbers ----
 
+// Names that a scene gives are keys: of such objects `__proto__` and `toString` are keys like others.
+const bare = pairs => Object.assign(Object.create(null), Object.fromEntries(pairs));
+
 const encode = x => x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055;
 const decode = x => x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -56,7 +59,7 @@ function inputsOf(scene) {
       if (!found.has(u.param)) found.set(u.param, {name: u.param, uniform: u.name, label: u.label || u.param, type: u.type,
         color: u.color, unit: u.unit || "", range: u.range, first: value, values: u.value && [value]});
       const p = found.get(u.param);
-      if (p.values && u.param in values && !p.values.some(v => v.every((x, i) => x === value[i]))) p.values.push(value);
+      if (p.values && Object.hasOwn(values, u.param) && !p.values.some(v => v.every((x, i) => x === value[i]))) p.values.push(value);
     }
   for (const p of found.values()) if (p.values) p.values.sort((a, b) => a[0] - b[0]);
   return [...found.values()];
@@ -86,6 +89,9 @@ export function cameraUniforms(reflection, camera, aspect) {
     fathom_up: cross(right, forward), fathom_forward: forward, fathom_focus: [focus],
     fathom_extent: [d.fathom_extent[0] * (d.fathom_orthographic[0] ? scale : 1)]};
 }
+
+// Where a side is seen from; its keys are the viewer's.
+const sides = {front: {key: "1", at: {around: 0, above: 0}}, right: {key: "3", at: {around: Math.PI / 2, above: 0}}, top: {key: "7", at: {around: 0, above: 1.57}}};
 
 // ---- shaders of our own ----
 
@@ -154,7 +160,7 @@ function drawing(canvas, scene, state, {say, happened, tick}) {
       return shader;
     });
     gl.linkProgram(program);
-    return {program, all, at: {}};
+    return {program, all, at: bare([])};
   }
 
   // Empty, or what the driver says against it.
@@ -274,7 +280,7 @@ function drawing(canvas, scene, state, {say, happened, tick}) {
 
   // All uniforms of one picture.
   function viewNow() {
-    const v = Object.fromEntries(made.fixed.map(u => [u.name, u.default]));
+    const v = bare(made.fixed.map(u => [u.name, u.default]));
     Object.assign(v, cameraUniforms(made.reflection, state.camera, canvas.clientWidth / Math.max(canvas.clientHeight, 1)),
       {fathom_time: [state.time], fathom_mode: [3]});
     for (const u of made.params) v[u.name] = state.params[u.param].slice();
@@ -538,7 +544,7 @@ function controls(view, panel, state, inputs, animated, end) {
   if (animated) {
     const label = make("label", "", panel), last = Math.min(end, 60);
     make("span", "Time", label);
-    const value = make("output", "", label), scrub = control(label, "range", e => { view.playing = false; view.time = Math.min(Number(e.value), last * 0.999999); tell(view, "change", {what: "time"}); });
+    const value = make("output", "", label), scrub = control(label, "range", e => { view.time = Math.min(Number(e.value), last * 0.999999); view.playing = false; tell(view, "change", {what: "time"}); });
     Object.assign(scrub, {min: 0, max: last, step: "any"});
     scrub.setAttribute("aria-label", "Time, seconds");
     const play = button("", () => { view.playing = !view.playing; tell(view, "change", {what: "time"}); }), rate = make("label", "", panel);
@@ -554,6 +560,7 @@ function controls(view, panel, state, inputs, animated, end) {
     });
   }
   button("First view", () => { view.home(); tell(view, "change", {what: "camera"}); });
+  for (const side in sides) button(side[0].toUpperCase() + side.slice(1), () => { view.look(side); tell(view, "change", {what: "camera"}); }).title = "From the " + side + " (key " + sides[side].key + ")";
   button("Save picture", async () => {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(await view.picture());
@@ -602,17 +609,19 @@ function gestures(view, canvas, state) {
     moved();
     e.preventDefault();
   }, {passive: false});
+  const keys = {ArrowLeft: () => turn(0.1, 0), ArrowRight: () => turn(-0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
+    "+": () => come(0.9), "-": () => come(1 / 0.9), r: () => Object.assign(camera, firstCamera(view.scene.variants[0].reflection))};
+  for (const {key, at} of Object.values(sides)) keys[key] = () => Object.assign(camera, at);
   canvas.addEventListener("keydown", e => {
-    if (e.key === " " && view.animated) {
+    if (e.ctrlKey || e.metaKey || e.altKey) return; // the browser's own
+    const key = e.key.length === 1 ? e.key.toLowerCase() : e.key;
+    if (key === " " && view.animated) {
       view.playing = !view.playing;
       tell(view, "change", {what: "time"});
-      return e.preventDefault();
-    }
-    const act = {ArrowLeft: () => turn(0.1, 0), ArrowRight: () => turn(-0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
-      "+": () => come(0.9), "-": () => come(1 / 0.9)}[e.key];
-    if (!act) return;
-    act();
-    moved();
+    } else if (Object.hasOwn(keys, key)) {
+      keys[key]();
+      moved();
+    } else return;
     e.preventDefault();
   });
 }
@@ -672,7 +681,7 @@ export class FathomView extends HTMLElement {
     return Object.fromEntries(this.#inputs.map(p => [p.name, this.#given(p, params[p.name])]));
   }
   set params(values) {
-    const state = this.#there(), next = {};
+    const state = this.#there(), next = bare([]);
     for (const [name, value] of Object.entries(values)) {
       const p = this.#inputs.find(p => p.name === name), list = [value].flat().map(Number);
       if (!p) throw new RangeError("The scene has no param " + name + ".");
@@ -725,6 +734,10 @@ export class FathomView extends HTMLElement {
     for (const p of this.#inputs) state.params[p.name] = p.first.slice();
     this.#changed();
   }
+  look(side) {
+    if (!Object.hasOwn(sides, side)) throw new RangeError("A view is from the " + Object.keys(sides).join(", ") + ", not from " + side + ".");
+    this.camera = sides[side].at;
+  }
   picture() {
     if (!this.#drawing || !this.#drawing.show()) return Promise.reject(new Error("There is no picture yet."));
     return new Promise(resolve => this.#canvas.toBlob(resolve));
@@ -767,11 +780,11 @@ export class FathomView extends HTMLElement {
     this.#end();
     const {reflection} = this.#scene.variants[0];
     this.#inputs = inputsOf(this.#scene);
-    this.#state = this.#state || {camera: firstCamera(reflection), params: Object.fromEntries(this.#inputs.map(p => [p.name, p.first.slice()])),
+    this.#state = this.#state || {camera: firstCamera(reflection), params: bare(this.#inputs.map(p => [p.name, p.first.slice()])),
       time: (defaultsOf(reflection).fathom_time || [0])[0], speed: 1, playing: this.animated, samples: 8, drawn: 0};
     this.#canvas = make("canvas", "", this.#root);
     Object.assign(this.#canvas, {tabIndex: 0, role: "img"});
-    this.#canvas.setAttribute("aria-label", this.#scene.title + ": drag to turn, wheel to come nearer, arrow keys turn, plus and minus come nearer");
+    this.#canvas.setAttribute("aria-label", this.#scene.title + ": drag to turn, wheel to come nearer; keys: arrows turn, plus and minus come nearer, 1, 3 and 7 look from the front, the right and the top, R from where the scene says");
     this.#status("");
     this.#panel();
     gestures(this, this.#canvas, this.#state);

@@ -80,6 +80,8 @@ struct PictureOptions {
     int first_sample = 0;       // of a pixel's sequence of them (ir::sample_offset)
     std::optional<Tile> region; // what is drawn of the picture; none: all of it
     bool sums = false;          // also Picture::sums; not with 0 samples
+    bool linear = false;        // also Picture::linear
+    bool alpha = false;         // no background: alpha is how much of a pixel something covers
     unsigned jobs = 0;          // threads; 0: as many as the machine has cores
     PictureMode mode = PictureMode::Color;
 };
@@ -87,8 +89,9 @@ struct PictureOptions {
 // Of the region, which has its size.
 struct Picture {
     int width = 0, height = 0;
-    std::vector<std::uint8_t> rgba; // sRGB, from the top left
-    std::vector<double> sums;       // three a pixel, where they are wanted (summand)
+    std::vector<std::uint8_t> rgba; // sRGB, from the top left; alpha is not multiplied into it
+    std::vector<float> linear; // four a pixel, where they are wanted; alpha is multiplied into it
+    std::vector<double> sums;  // three a pixel, where they are wanted (summand); as `linear`
     Work work;
     bool complete = false; // false: cancelled
 };
@@ -103,8 +106,10 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
 // 2^-32 and limited to 2^12 either way, which no picture shows. So max_samples of them are added
 // without rounding, in any order and in any groups: pictures can be divided by their samples.
 double summand(float linear);
-// Pixels of a row, RGBA, of sums of so many samples: three numbers a pixel. x and y: the place of the
-// first one in the whole picture.
+// Pixels of a row, RGBA, of linear ones as Picture::linear. x and y: the place of the first one in the
+// whole picture.
+void encode_linear(std::span<const float> linear, int x, int y, std::span<std::uint8_t> rgba);
+// The same of sums of so many samples: three numbers a pixel.
 void encode_sums(std::span<const double> sums, int samples, int x, int y,
                  std::span<std::uint8_t> rgba);
 

@@ -188,41 +188,66 @@ Places all_of(const Tile &tile) {
     return places;
 }
 
-// Where one sample of each pixel lands, and in colour what it sees there.
+// Where one sample of each pixel lands, and in colour what it sees there. With alpha `cover` is how
+// much of that is no background.
 struct Seen {
     std::vector<Landing> landings;
     std::vector<Vec> colors;
+    std::vector<float> cover;
 };
-Seen look(Worker &worker, const Places &places, int sample, PictureMode mode) {
+Seen look(Worker &worker, const Places &places, int sample, const PictureOptions &options) {
     const Stage &stage = worker.stage;
     std::vector<RayState> rays;
     const auto offset = ir::sample_offset(sample);
     for (std::size_t i = 0; i < places.size(); ++i)
         rays.push_back(eye(stage, static_cast<float>(places.x[i] + offset[0]),
                            static_cast<float>(places.y[i] + offset[1])));
-    Seen seen{std::vector<Landing>(places.size()), std::vector<Vec>(places.size())};
+    Seen seen{std::vector<Landing>(places.size()), std::vector<Vec>(places.size()),
+              std::vector<float>(options.alpha ? places.size() : 0)};
     march(worker, rays, seen.landings, false);
-    if (mode == PictureMode::Color) shade(worker, rays, seen.landings, seen.colors);
+    if (options.mode == PictureMode::Color)
+        shade(worker, rays, seen.landings, seen.colors, seen.cover);
     return seen;
 }
+
+// Of samples: three colours and what covers them (summand).
+struct Sum {
+    std::array<double, 4> numbers{};
+    void add(const Seen &seen, std::size_t i) {
+        for (std::size_t c = 0; c < 3; ++c)
+            numbers[c] += summand(seen.colors[i][static_cast<int>(c)]);
+        numbers[3] += seen.cover.empty() ? 1 : summand(seen.cover[i]);
+    }
+};
 
 // The picture that is being made of a part of the whole one.
 struct PartPicture {
     Tile region;
-    bool sums = false;
+    const PictureOptions &options;
     Picture &picture;
     std::size_t place(int x, int y) const { // of a pixel of the whole picture
         return static_cast<std::size_t>(y - region.y) * static_cast<std::size_t>(region.width) +
                static_cast<std::size_t>(x - region.x);
     }
     std::uint8_t *pixel(int x, int y) { return picture.rgba.data() + 4 * place(x, y); }
+    void put(int x, int y, const Sum &sum, int samples) {
+        std::array<float, 4> linear;
+        for (std::size_t c = 0; c < 4; ++c)
+            linear[c] = static_cast<float>(sum.numbers[c] / samples);
+        encode_linear(linear, x, y, {pixel(x, y), 4});
+        const auto to = [&](auto &numbers, std::size_t each) {
+            return numbers.begin() + static_cast<std::ptrdiff_t>(each * place(x, y));
+        };
+        if (options.linear) std::ranges::copy(linear, to(picture.linear, 4));
+        if (options.sums) std::copy_n(sum.numbers.begin(), 3, to(picture.sums, 3));
+    }
 };
 
 // All samples of a tile, which lies in the region.
 void draw(Worker &worker, const PictureOptions &options, const Tile &tile, PartPicture &part) {
     const Places places = all_of(tile);
     if (options.mode == PictureMode::Steps) {
-        const Seen seen = look(worker, places, 0, options.mode);
+        const Seen seen = look(worker, places, 0, options);
         for (std::size_t i = 0; i < places.size(); ++i) {
             std::uint8_t *pixel = part.pixel(places.x[i], places.y[i]);
             const Vec c = heat(seen.landings[i]);
@@ -231,22 +256,14 @@ void draw(Worker &worker, const PictureOptions &options, const Tile &tile, PartP
         }
         return;
     }
-    std::vector<double> sums(3 * places.size());
+    std::vector<Sum> sums(places.size());
     const int samples = std::max(options.samples, 1);
     for (int sample = 0; sample < samples; ++sample) {
-        const Seen seen = look(worker, places, options.first_sample + sample, options.mode);
-        for (std::size_t i = 0; i < places.size(); ++i)
-            for (int c = 0; c < 3; ++c)
-                sums[3 * i + static_cast<std::size_t>(c)] += summand(seen.colors[i][c]);
+        const Seen seen = look(worker, places, options.first_sample + sample, options);
+        for (std::size_t i = 0; i < places.size(); ++i) sums[i].add(seen, i);
     }
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const int x = places.x[i], y = places.y[i];
-        const std::span<const double> sum = std::span(sums).subspan(3 * i, 3);
-        encode_sums(sum, samples, x, y, {part.pixel(x, y), 4});
-        if (part.sums)
-            std::ranges::copy(sum, part.picture.sums.begin() +
-                                       static_cast<std::ptrdiff_t>(3 * part.place(x, y)));
-    }
+    for (std::size_t i = 0; i < places.size(); ++i)
+        part.put(places.x[i], places.y[i], sums[i], samples);
 }
 
 // One sample of each pixel, and where it is rough more.
@@ -264,33 +281,37 @@ class Smooth {
     const Tile &area() const { return area_; } // what has to be drawn once
     void draw_first(Worker &worker, const Tile &tile) {
         const Places places = all_of(tile);
-        const Seen seen = look(worker, places, 0, PictureMode::Color);
+        const Seen seen = look(worker, places, 0, part_.options);
         for (std::size_t i = 0; i < places.size(); ++i) {
             const int x = places.x[i], y = places.y[i];
             float *color = first_.data() + 4 * place(x, y);
             for (int c = 0; c < 3; ++c) color[c] = seen.colors[i][c];
-            if (is_inside(x, y)) put(x, y, seen.colors[i], {}, 1);
+            color[3] = seen.cover.empty() ? 1 : seen.cover[i];
+            Sum sum;
+            sum.add(seen, i);
+            if (is_inside(x, y)) part_.put(x, y, sum, 1);
         }
     }
-    void find_rough() { rough_ = rough_pixels(area_.width, area_.height, first_); }
+    void find_rough() {
+        rough_ = rough_pixels(area_.width, area_.height, first_, part_.options.alpha);
+    }
     void draw_more(Worker &worker, const Tile &tile) {
         Places places;
         for (int y = tile.y; y < tile.y + tile.height; ++y)
             for (int x = tile.x; x < tile.x + tile.width; ++x)
                 if (is_inside(x, y) && rough_[place(x, y)]) places.add(x, y);
         if (places.size() == 0) return;
-        std::vector<std::array<double, 3>> sums(places.size());
-        for (int sample = 1; sample < ir::shading::rough_samples; ++sample) {
-            const Seen seen = look(worker, places, sample, PictureMode::Color);
-            for (std::size_t i = 0; i < places.size(); ++i)
-                for (std::size_t c = 0; c < 3; ++c)
-                    sums[i][c] += summand(seen.colors[i][static_cast<int>(c)]);
-        }
+        std::vector<Sum> sums(places.size());
         for (std::size_t i = 0; i < places.size(); ++i) {
             const float *first = first_.data() + 4 * place(places.x[i], places.y[i]);
-            put(places.x[i], places.y[i], {first[0], first[1], first[2]}, sums[i],
-                ir::shading::rough_samples);
+            for (std::size_t c = 0; c < 4; ++c) sums[i].numbers[c] = summand(first[c]);
         }
+        for (int sample = 1; sample < ir::shading::rough_samples; ++sample) {
+            const Seen seen = look(worker, places, sample, part_.options);
+            for (std::size_t i = 0; i < places.size(); ++i) sums[i].add(seen, i);
+        }
+        for (std::size_t i = 0; i < places.size(); ++i)
+            part_.put(places.x[i], places.y[i], sums[i], ir::shading::rough_samples);
     }
 
   private:
@@ -301,10 +322,6 @@ class Smooth {
     bool is_inside(int x, int y) const {
         const Tile &r = part_.region;
         return x >= r.x && x < r.x + r.width && y >= r.y && y < r.y + r.height;
-    }
-    void put(int x, int y, Vec first, std::array<double, 3> sum, int samples) {
-        for (std::size_t c = 0; c < 3; ++c) sum[c] += summand(first[static_cast<int>(c)]);
-        encode_sums(sum, samples, x, y, {part_.pixel(x, y), 4});
     }
 
     PartPicture &part_;
@@ -359,13 +376,24 @@ double summand(float linear) {
     return std::nearbyint(limited * 0x1p32) * 0x1p-32;
 }
 
+void encode_linear(std::span<const float> linear, int x, int y, std::span<std::uint8_t> rgba) {
+    for (std::size_t i = 0; 4 * i < linear.size(); ++i, ++x) {
+        const float add = dither(x, y), alpha = linear[4 * i + 3];
+        for (std::size_t c = 0; c < 3; ++c) {
+            const float color = linear[4 * i + c];
+            rgba[4 * i + c] = srgb_byte(alpha > 0 && alpha < 1 ? color / alpha : color, add);
+        }
+        rgba[4 * i + 3] = byte(alpha);
+    }
+}
+
 void encode_sums(std::span<const double> sums, int samples, int x, int y,
                  std::span<std::uint8_t> rgba) {
     for (std::size_t i = 0; 3 * i < sums.size(); ++i, ++x) {
-        const float add = dither(x, y);
-        for (std::size_t c = 0; c < 3; ++c)
-            rgba[4 * i + c] = srgb_byte(static_cast<float>(sums[3 * i + c] / samples), add);
-        rgba[4 * i + 3] = 255;
+        const std::array<float, 4> linear{static_cast<float>(sums[3 * i] / samples),
+                                          static_cast<float>(sums[3 * i + 1] / samples),
+                                          static_cast<float>(sums[3 * i + 2] / samples), 1};
+        encode_linear(linear, x, y, rgba.subspan(4 * i, 4));
     }
 }
 
@@ -378,7 +406,8 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
         static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
     picture.rgba.resize(4 * pixels);
     if (options.sums) picture.sums.resize(3 * pixels);
-    PartPicture part{region, options.sums, picture};
+    if (options.linear) picture.linear.resize(4 * pixels);
+    PartPicture part{region, options, picture};
     std::mutex report;
 
     // Every tile of an area once, by all threads. Whether the caller wants to go on.

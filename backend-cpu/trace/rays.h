@@ -120,9 +120,10 @@ struct Crossing {
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,
             std::span<Landing> landings);
 void march(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings, bool brute);
-// Linear colours of the rays; those with t < 0 see the background.
+// Linear colours of the rays; those with t < 0 see the background. With `cover` they see none: it is
+// how much of a ray's colour is the surface's, 0 to 1, and the colours are multiplied by it.
 void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings,
-           std::span<Vec> colors);
+           std::span<Vec> colors, std::span<float> cover = {});
 
 struct ShadowRay {
     Vec from, towards;

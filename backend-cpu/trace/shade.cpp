@@ -181,17 +181,19 @@ void add_light(Worker &worker, std::span<const RayState> rays, const Points &at,
     }
 }
 
-// Whole where a ray misses; and what lies far off fades into it (shading.h, MISS, FADE).
+// How much of a ray's colour is the background: all where it misses; and what lies far off fades
+// into it (shading.h, MISS, FADE).
+float background_share(const Lengths &lengths, float t) {
+    if (t < 0) return 1.0f;
+    if (!lengths.fades) return 0.0f;
+    const float x = clamp((t / lengths.far - shading::fade_from) / (1 - shading::fade_from), 0, 1);
+    return x * x * (3 - 2 * x);
+}
+
 void see_background(Worker &worker, std::span<const RayState> rays,
                     std::span<const Landing> landings, std::span<Vec> colors) {
     const Lengths lengths(worker.stage);
-    const auto share = [&](float t) {
-        if (t < 0) return 1.0f;
-        if (!lengths.fades) return 0.0f;
-        const float x =
-            clamp((t / lengths.far - shading::fade_from) / (1 - shading::fade_from), 0, 1);
-        return x * x * (3 - 2 * x);
-    };
+    const auto share = [&](float t) { return background_share(lengths, t); };
     std::vector<std::size_t> seen;
     for (std::size_t i = 0; i < rays.size(); ++i)
         if (share(landings[i].t) > 0) seen.push_back(i);
@@ -263,9 +265,14 @@ void shade_hits(Worker &worker, std::span<const RayState> rays, std::span<const 
 } // namespace
 
 void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landing> landings,
-           std::span<Vec> colors) {
+           std::span<Vec> colors, std::span<float> cover) {
     shade_hits(worker, rays, landings, colors);
-    see_background(worker, rays, landings, colors);
+    if (cover.empty()) return see_background(worker, rays, landings, colors);
+    const Lengths lengths(worker.stage);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        cover[i] = 1 - background_share(lengths, landings[i].t);
+        colors[i] = cover[i] > 0 ? cover[i] * colors[i] : Vec(0);
+    }
 }
 
 std::vector<std::array<float, 3>> diffuse_colors(const Stage &stage,

@@ -44,6 +44,38 @@ float fathom_atan2(float y, float x) {
     return mix(atan(y, x), mix(0.0, 3.14159274, x < 0.0), y == 0.0);
 }
 
+$# The sine of x + quarters * pi/2, right to 5e-7 + 1.2e-7 |x|, which the proof relies on. Drivers' own may be wrong
+$# by 2^-11 (Vulkan 1.3, A.4), and SwiftShader's are, by 1.9e-4. x is turns * pi/2 + r, with pi/2 in three parts, whose
+$# products have few digits (Cody and Waite 1980); the polynomials are those of backend-cpu/kernels/trigonometry.h.
+$helper fathom_sine
+float fathom_sine(float x, float quarters) {
+    float turns = floor(0.636619772 * x + 0.5);
+    float r = x - 1.5703125 * turns - 4.83751297e-4 * turns - 7.54978995e-8 * turns;
+    r = clamp(r, -0.785398185, 0.785398185);
+    float u = r * r;
+    float s = r + r * u * (-1.666665494e-01 + u * (8.332177916e-03 + u * -1.951726684e-04));
+    float c = 1.0 - 0.5 * u + u * u * (4.166664686e-02 + u * (-1.388736721e-03 + u * 2.443841555e-05));
+    float quarter = turns + quarters;
+    quarter -= 4.0 * floor(0.25 * quarter);
+    float size = mix(s, c, quarter == 1.0 || quarter == 3.0);
+    return mix(size, -size, quarter > 1.5);
+}
+
+$helper fathom_sin:each needs fathom_sine
+float fathom_sin(float x) {
+    return fathom_sine(x, 0.0);
+}
+
+$helper fathom_cos:each needs fathom_sine
+float fathom_cos(float x) {
+    return fathom_sine(x, 1.0);
+}
+
+$helper fathom_tan:each needs fathom_sine
+float fathom_tan(float x) {
+    return fathom_sine(x, 0.0) / fathom_sine(x, 1.0);
+}
+
 $helper fathom_sqrt:T
 $T fathom_sqrt($T x) {
     return sqrt(max(x, 0.0));

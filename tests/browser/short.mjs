@@ -2,7 +2,7 @@
 //   node short.mjs FATHOM MODULE.js [NAME…]      the tests of these names alone
 // Prints a line a test; exit status 1 where one fails.
 import {execFileSync, spawnSync} from "node:child_process";
-import {copyFileSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync} from "node:fs";
+import {copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync} from "node:fs";
 import {tmpdir} from "node:os";
 import {dirname, join, resolve} from "node:path";
 import {difference, launch, picture, serve} from "./chromium.mjs";
@@ -121,6 +121,12 @@ const tests = {
     must(Math.abs(turned.around - camera.around - 0.4) < 1e-6, "50 pixels turn by " + (turned.around - camera.around));
     await page.key("ArrowUp");
     must(Math.abs((await view(page, v => v.camera)).above - camera.above - 0.1) < 1e-6, "an arrow turns by a tenth");
+    const seen = () => view(page, v => [v.camera.around, v.camera.above]);
+    for (const [key, there] of [["1", [0, 0]], ["3", [Math.PI / 2, 0]], ["7", [0, 1.57]], ["R", [camera.around, camera.above]]]) {
+      await page.key(key);
+      same(await seen(), there, "the view of the key " + key);
+    }
+    must(!await view(page, v => !v.shadowRoot.querySelector("canvas").dispatchEvent(new KeyboardEvent("keydown", {key: "r", ctrlKey: true, cancelable: true}))), "the browser's own key is taken");
     await page.mouse("mouseWheel", 280, 90, {deltaX: 0, deltaY: 200});
     await page.until(z => document.querySelector("fathom-view").camera.zoom > z, 5, camera.zoom);
     await rest(page);
@@ -147,6 +153,43 @@ const tests = {
     same(await view(again, v => [v.time, v.playing]), [1.5, false], "the address' time");
     quiet(page), quiet(again);
     await page.close(), await again.close();
+  },
+  async "what is clicked: time, speed, a side, a picture to keep, and the full screen"() {
+    compiled("moving", moving);
+    const page = await browser.open({width: 340, height: 300});
+    await page.go(site.address + "moving.html#samples=1");
+    await view(page, v => { v.shadowRoot.querySelector("details").open = true; });
+    const click = async ([x, y]) => { for (const type of ["mousePressed", "mouseReleased"]) await page.mouse(type, x, y); };
+    const button = text => page.run(text => {
+      const all = [...document.querySelector("fathom-view").shadowRoot.querySelectorAll("button")], r = all.find(b => b.textContent === text).getBoundingClientRect();
+      return [r.x + r.width / 2, r.y + r.height / 2];
+    }, text);
+    await click(await middle(page, "[aria-label='Speed of the time']"));
+    await view(page, v => v.shadowRoot.activeElement.select());
+    await page.key("3");
+    same(await view(page, v => [v.speed, v.playing]), [3, true], "the speed that is typed");
+    await click(await middle(page, "[aria-label='Time, seconds']"));
+    const time = await view(page, v => v.time);
+    must(!await view(page, v => v.playing) && time > 25 && time < 35, "a click in the middle of a minute gave " + time);
+    await click(await button("Play"));
+    await page.until(time => document.querySelector("fathom-view").time > time, 5, time);
+    await click(await button("Pause"));
+    const before = await view(page, v => v.camera);
+    await click(await button("Top"));
+    same(await view(page, v => v.camera), {...before, around: 0, above: 1.57}, "the camera above");
+    await page.until(() => location.hash.includes("view=0,1.57"), 5);
+    await rest(page);
+    await page.ask("Page.setDownloadBehavior", {behavior: "allow", downloadPath: folder});
+    await click(await button("Save picture"));
+    const kept = join(folder, "moving.png");
+    for (const end = Date.now() + 10000; !existsSync(kept); await new Promise(r => setTimeout(r, 20))) must(Date.now() < end, "no picture is kept");
+    same(await difference(blank, bytes(kept), await picture(page)), 0, "the pixels of the kept picture that differ");
+    await click(await button("Full screen"));
+    await page.until(() => document.fullscreenElement === document.querySelector("fathom-view"), 5);
+    await click(await button("Full screen"));
+    await page.until(() => document.fullscreenElement === null, 5);
+    quiet(page);
+    await page.close();
   },
   async "one finger turns, two come nearer, and a phone's layout fits"() {
     compiled("scene", scene);
@@ -291,6 +334,49 @@ const tests = {
     quiet(page);
     await page.close(), await plain.close();
   },
+  async "names that every object has are names of params like others, and hostile attributes do nothing"() {
+    const names = ["__proto__", "toString", "constructor", "hasOwnProperty", "valueOf"];
+    compiled("own", names.map(n => `param ${n} = 1 in 0.5..1.5\n`).join("") + "param many = 1 in 1..2\nfor i in 0..many { sphere(" + names.join(" * ") + ").translate(x: 2 * i) }\ncamera(at: [0, 1, 9], look_at: [0, 0, 0])\n");
+    const page = await fresh("own.html#samples=1");
+    await page.until(() => document.querySelector("fathom-view").drawn >= 1);
+    const first = await picture(page);
+    for (const [i, name] of names.entries()) {
+      await view(page, (v, name) => { v.params = {[name]: 1.25}; }, name);
+      same(await view(page, v => Object.values(v.params)), [...names.map((_, k) => k <= i ? 1.25 : 1), 1], "the params after " + name);
+    }
+    await rest(page);
+    await near(await picture(page), bytes(rendered("own", ...names.flatMap(n => ["-D", n + "=1.25"]))), "all five");
+    await apart(await picture(page), first, "the five change nothing");
+    quiet(page);
+    await page.close();
+
+    const bad = "</script><img src=x onerror=window.ran=1>\"'`<!--${window.ran=1}";
+    run("compile", "own.sdf", "--target", "es300", "-o", "own.frag", "--reflect", "own.json");
+    copyFileSync(module, join(folder, "fathom-view.js"));
+    write("bare.html", "<!doctype html><style>fathom-view { width: 320px; height: 180px; aspect-ratio: auto }</style><script type=module src=fathom-view.js></script><fathom-view controls></fathom-view>");
+    const host = await fresh("bare.html");
+    const markup = () => host.run(() => [document, document.querySelector("fathom-view").shadowRoot].map(d => [...d.querySelectorAll("*")].map(e => e.tagName).join(" ")));
+    const give = (word) => host.run(async word => {
+      const v = document.querySelector("fathom-view"), reflection = await fetch("own.json").then(r => r.json()), text = await fetch("own.frag").then(r => r.text());
+      for (const u of [...reflection.uniforms, ...reflection.constants]) for (const k of ["param", "label", "unit", "meaning"]) if (u[k] !== undefined) u[k] = (k === "param" ? u.name : "") + word;
+      v.scene = {title: word, variants: [{reflection, text}]};
+      v.samples = 1;
+    }, word);
+    await give("plain");
+    await rest(host);
+    const expected = await markup(), shown = await picture(host);
+    await give(bad);
+    await rest(host);
+    same(await markup(), expected, "the elements");
+    await near(await picture(host), shown, "the picture");
+    for (const src of ["javascript:window.ran=1", "data:text/html," + encodeURIComponent("<script>window.ran=1</script>"), bad, "//" + bad]) {
+      await host.run(src => new Promise(r => { const v = document.querySelector("fathom-view"); v.addEventListener("error", r, {once: true}); v.src = src; }), src);
+      must((await words(host)).length > 0, "nothing is said of " + src);
+      same(await markup(), ["HTML HEAD STYLE SCRIPT BODY FATHOM-VIEW", "DIV"], "the elements of " + src);
+    }
+    must(!await host.run(() => window.ran), "a name ran");
+    await host.close();
+  },
   async "the element: a scene of a page and one of a shader, its properties and its events"() {
     compiled("scene", scene);
     run("compile", "scene.sdf", "--target", "es300", "-o", "textured.frag", "--reflect", "textured.json");
@@ -374,6 +460,39 @@ const tests = {
     writeFileSync(join(out, "more.html"), "<!doctype html><a href='one.html'>there</a> <a href='nowhere.html'>lost</a>");
     const lost = made();
     same([lost.status, lost.stderr.toString().trim()], [1, "more.html: nowhere.html leads nowhere"], "a lost link");
+  },
+  async "sines are as right as the proof supposes, whatever the driver's are"() {
+    write("sines.sdf", "implicit(p => 0.2 * sin(p.x) * cos(p.y) - p.z, within: ball(9))\n");
+    run("compile", "sines.sdf", "--target", "es300", "--field-only", "-o", "sines.frag");
+    const ours = ["sine", "sin", "cos"].map(f => new RegExp("float fathom_" + f + "\\([^]*?\n}\n").exec(bytes(join(folder, "sines.frag")).toString())[0]).join("");
+    const page = await browser.open(size);
+    const wrong = await page.run(ours => {
+      const gl = Object.assign(document.createElement("canvas"), {width: 256, height: 64}).getContext("webgl2"), program = gl.createProgram(), counted = 256 * 64;
+      gl.getExtension("EXT_color_buffer_float");
+      for (const [kind, source] of [[gl.VERTEX_SHADER, "#version 300 es\nvoid main() { gl_Position = vec4(vec2(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1), 0.0, 1.0); }"],
+        [gl.FRAGMENT_SHADER, "#version 300 es\nprecision highp float;\nout vec4 color;\n" + ours + "void main() { float i = gl_FragCoord.x - 0.5 + 256.0 * (gl_FragCoord.y - 0.5), x = (i - 8192.0) / 512.0 * (i < 4096.0 ? 1000.0 : 1.0); color = vec4(x, fathom_sin(x), fathom_cos(x), 1.0); }"]]) {
+        const shader = gl.createShader(kind);
+        gl.shaderSource(shader, source);
+        gl.compileShader(shader);
+        if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+        gl.attachShader(program, shader);
+      }
+      gl.linkProgram(program);
+      gl.useProgram(program);
+      gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+      gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, 256, 64);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, gl.getParameter(gl.TEXTURE_BINDING_2D), 0);
+      gl.viewport(0, 0, 256, 64);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+      const v = new Float32Array(4 * counted);
+      gl.readPixels(0, 0, 256, 64, gl.RGBA, gl.FLOAT, v);
+      const wrong = [];
+      for (let i = 0; i < v.length; i += 4) if (v[i + 3] !== 1 || [Math.sin, Math.cos].some((f, k) => !(Math.abs(v[i + 1 + k] - f(v[i])) <= 5e-7 + 1.2e-7 * Math.abs(v[i])))) wrong.push([...v.slice(i, i + 3)]);
+      return wrong;
+    }, ours);
+    same(wrong.slice(0, 3), [], wrong.length + " of 16384 angles");
+    await page.close();
   },
   async "on Shadertoy a click does not move the picture, and a drag does"() {
     write("toy.sdf", "param radius = 1 in 0.5..1.5 \"Radius\"\nbox(radius).paint(tomato)\nplane(Y, -1)\ncamera(at: [2, 5, 4], look_at: [0, 0, 0])\n");

@@ -14,6 +14,7 @@ view.addEventListener("load", () => {
   view.samples = 4;
   const zoom: number = view.camera.zoom;
   view.home();
+  view.look("top");
   console.log(zoom, view.drawn, view.animated, view.inputs.map(i => i.values ?? i.range));
 });
 view.picture().then((png: Blob) => png.size);
@@ -29,3 +30,5 @@ view.params = {radius: "1.5"};
 view.drawn = 3;
 // @ts-expect-error a camera has no roll
 view.camera = {roll: 1};
+// @ts-expect-error a side has a name
+view.look("below it");

@@ -1,4 +1,4 @@
-// `render` in a terminal of its own (a pseudo terminal): what it shows, and what Ctrl-C leaves.
+// The program in a terminal of its own (a pseudo terminal): what it shows, and what Ctrl-C leaves.
 #include "shell.h"
 
 #include <catch2/catch.hpp>
@@ -93,6 +93,30 @@ TEST_CASE("Ctrl-C ends a picture, keeps the old file and leaves the terminal in 
     REQUIRE(wiped != std::string::npos);
     CHECK(session.shown.find_first_not_of("\r\n^C", wiped + 3) == std::string::npos);
     CHECK(session.shown.rfind("\x1b[0m") > session.shown.rfind("m▀"));
+}
+
+TEST_CASE("what is longer than the terminal goes to the reader's pager, and nothing else does") {
+    Drawings folder;
+    folder.write("pager", "#!/bin/sh\necho paged $LESS\nsed 's/^/| /'\n");
+    fs::permissions(folder.path() / "pager", fs::perms::owner_all);
+    const auto shown = [&](const std::vector<std::string> &arguments, const char *pager) {
+        ::setenv("PAGER", pager, 1);
+        const Session session = run_in_terminal(folder, arguments, "", "", false);
+        ::unsetenv("PAGER");
+        CHECK((WIFEXITED(session.status) && WEXITSTATUS(session.status) == 0));
+        return session.shown;
+    };
+    const std::string all = shown({"doc"}, "./pager");
+    CHECK(contains(all, "paged FRX"));
+    CHECK(contains(all, "|   sphere "));
+    CHECK(contains(all, "|   twist ")); // to the end
+    CHECK(contains(shown({"explain"}, "./pager"), "| "));
+    CHECK_FALSE(contains(shown({"doc", "sphere"}, "./pager"), "paged")); // it fits
+    CHECK_FALSE(contains(shown({"doc"}, ""), "paged"));
+    // A pager that is not there is said by the shell, and the text is shown; one that is left early is
+    // no error.
+    CHECK(contains(shown({"doc"}, "nowhere-at-all"), "  sphere "));
+    CHECK(contains(shown({"doc"}, "head -n 3"), "shapes"));
 }
 
 TEST_CASE("a terminal that can shows the picture as it comes, any other the bar alone") {

@@ -5,6 +5,7 @@
 
 #include "backend-glsl/targets.h"
 
+#include <ImfRgbaFile.h>
 #include <catch2/catch.hpp>
 
 namespace glsl = fathom::glsl;
@@ -24,6 +25,19 @@ struct OutputScenes : ScratchFolder {
 };
 
 const std::string small = " --size 8x8 --backend cpu ";
+
+// The pixels of an EXR file of that size.
+std::vector<Imf::Rgba> exr_of(const OutputScenes &folder, const std::string &name, int width,
+                              int height) {
+    Imf::RgbaInputFile file((folder.path() / name).c_str());
+    const auto window = file.dataWindow();
+    REQUIRE((window.min.x == 0 && window.min.y == 0 && window.max.x == width - 1 &&
+             window.max.y == height - 1));
+    std::vector<Imf::Rgba> pixels(static_cast<std::size_t>(width * height));
+    file.setFrameBuffer(pixels.data(), 1, static_cast<std::size_t>(width));
+    file.readPixels(0, height - 1);
+    return pixels;
+}
 
 } // namespace
 
@@ -71,6 +85,78 @@ TEST_CASE("a JPEG shows the picture that the PNG shows, as finely as is asked") 
     CHECK(sum / static_cast<double>(png->rgba.size()) < 0.01);
     CHECK(shell(folder, line + "-o a.png --quality 50").exit == 2);
     CHECK(shell(folder, line + "-o a.jpg --quality 0").exit == 2);
+}
+
+TEST_CASE(
+    "without a background pixels are transparent by what covers them, in a PNG and in an EXR") {
+    OutputScenes folder;
+    folder.write("black.sdf", "sphere(1).paint(tomato)\nbackground(d => black)\n");
+    // A ground without an end fades.
+    folder.write("ground.sdf", "plane(Y, 0).paint(white)\nbackground(d => black)\n"
+                               "camera(at: [0, 1, 5], look_at: [0, 1, 0])\n");
+    for (const std::string name : {"black", "ground"}) {
+        const std::string line =
+            "fathom render " + name + ".sdf --size 48x32 --samples 4 --backend cpu ";
+        REQUIRE(shell(folder, line + "-o opaque.png").exit == 0);
+        REQUIRE(shell(folder, line + "--alpha -o clear.png").exit == 0);
+        REQUIRE(shell(folder, line + "--alpha -o clear.exr").exit == 0);
+        REQUIRE(shell(folder, line + "-o opaque.exr").exit == 0);
+        std::string error;
+        const auto opaque = fathom::test::decoded_image(folder.read("opaque.png"), error),
+                   clear = fathom::test::decoded_image(folder.read("clear.png"), error);
+        const std::vector<Imf::Rgba> exr = exr_of(folder, "clear.exr", 48, 32),
+                                     whole = exr_of(folder, "opaque.exr", 48, 32);
+        REQUIRE((opaque && clear));
+        int none = 0, some = 0, all = 0;
+        for (std::size_t i = 0; i < exr.size(); ++i) {
+            const float *pixel = clear->rgba.data() + 4 * i, alpha = pixel[3];
+            ++(alpha == 0 ? none : alpha < 1 ? some : all);
+            CHECK(std::abs(exr[i].a - alpha) < 0.003);
+            CHECK(whole[i].a == 1);
+            const float linear[3] = {exr[i].r, exr[i].g, exr[i].b},
+                        over[3] = {whole[i].r, whole[i].g, whole[i].b};
+            for (std::size_t c = 0; c < 3; ++c) {
+                CHECK(std::abs(pixel[c] * alpha - opaque->rgba[4 * i + c]) < 0.015);
+                CHECK(std::abs(linear[c] - pixel[c] * alpha) < 0.015);
+                CHECK(linear[c] == over[c]); // over black
+            }
+        }
+        CHECK((none > 100 && some > 20 && all > 100));
+        // One sample, and more where the outline needs them.
+        REQUIRE(
+            shell(folder, "fathom render " + name + ".sdf --size 48x32 --alpha -o a.png").exit ==
+            0);
+        const auto rough = fathom::test::decoded_image(folder.read("a.png"), error);
+        int between = 0;
+        for (std::size_t i = 3; i < rough->rgba.size(); i += 4)
+            between += rough->rgba[i] > 0 && rough->rgba[i] < 1;
+        CHECK(between > 20);
+    }
+    const std::string line = "fathom render black.sdf --size 8x8 --alpha ";
+    CHECK(shell(folder, line + "-o -").out.starts_with("\x89PNG"));
+    const std::size_t before = folder.files();
+    for (const char *out : {"-o a.jpg", "-o a.gif --frames 0..2", "-o a.sums", "-o - --stream raw",
+                            "-o b.png --backend gl", "-o b.png --frames 0..4 --contact-sheet 2x2"})
+        CHECK(shell(folder, line + out).exit == 2);
+    CHECK(shell(folder, "fathom render black.sdf -o b.exr --quality 3").exit == 2);
+    CHECK(shell(folder, "fathom render black.sdf -o b.exr --skip-existing").exit == 2);
+    CHECK(shell(folder, "fathom merge -o b.exr a.png").exit == 2);
+    CHECK(
+        shell(folder, "fathom farm parallel black.sdf --out job --frames 0..2 --film a.mp4 --alpha")
+            .exit == 2);
+    CHECK(folder.files() == before);
+    // With an open shutter each sample has a time, and what moves is transparent where it was in part.
+    folder.write("moves.sdf",
+                 "box(1).translate(x: 4 * time)\ncamera(at: [0, 0, 9], look_at: [0, 0, 0])\n");
+    REQUIRE(
+        shell(
+            folder,
+            "fathom render moves.sdf --size 48x32 --samples 8 --shutter 1 --fps 1 --alpha -o m.exr")
+            .exit == 0);
+    int between = 0;
+    for (const Imf::Rgba &pixel : exr_of(folder, "m.exr", 48, 32))
+        between += pixel.a > 0 && pixel.a < 1;
+    CHECK(between > 60);
 }
 
 TEST_CASE("no file holds something else than its suffix says") {

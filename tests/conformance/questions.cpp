@@ -16,6 +16,7 @@ bool is_noise(Op op) {
     return op == Op::Perlin || op == Op::Simplex || op == Op::ValueNoise || op == Op::Worley ||
            op == Op::SpotNoise;
 }
+bool is_sine(Op op) { return op == Op::Sin || op == Op::Cos; }
 bool is_angle(Op op) { return op == Op::Sin || op == Op::Cos || op == Op::Tan; }
 
 float nasty(Random &random, Op op) {
@@ -28,6 +29,7 @@ float nasty(Random &random, Op op) {
     if (kind < 5) return usual[random.below(std::size(usual))];
     if (kind == 5 && !is_noise(op) && !is_angle(op))
         return extreme[random.below(std::size(extreme))];
+    if (kind == 5 && is_sine(op)) return static_cast<float>(random.between(-3e5, 3e5));
     return static_cast<float>(random.between(-10, 10));
 }
 

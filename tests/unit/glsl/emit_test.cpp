@@ -119,7 +119,7 @@ TEST_CASE("a shared node is computed once") {
     });
     CHECK(sdf_of(scene) == R"(float sdf(vec3 p) {
     float d1 = length(p);
-    return d1 * d1 - sin(d1);
+    return d1 * d1 - fathom_sin(d1);
 }
 )");
 }
@@ -151,17 +151,17 @@ TEST_CASE("an arm with work of its own is a block, and a chain of them stays fla
     float d1;
     bool b2 = true;
     if (p.x < 1.0) {
-        float d3 = sin(p.y * 5.0);
+        float d3 = fathom_sin(p.y * 5.0);
         d1 = d3 * d3 + exp(d3);
         b2 = false;
     }
     if (b2 && p.x < 2.0) {
-        float d4 = sin(p.y * 2.0);
+        float d4 = fathom_sin(p.y * 2.0);
         d1 = d4 * d4 + exp(d4);
         b2 = false;
     }
     if (b2) {
-        float d5 = sin(p.y * 3.0);
+        float d5 = fathom_sin(p.y * 3.0);
         d1 = d5 * d5 + exp(d5);
     }
     return d1;
@@ -213,7 +213,7 @@ TEST_CASE("a loop stays a loop, and what does not change in it stands before") {
         return loop(g, {g.integer(8), i, {x}, {next}, condition, 8}, g.component(p, 0));
     });
     CHECK(sdf_of(scene) == R"(float sdf(vec3 p) {
-    float d1 = sin(p.y);
+    float d1 = fathom_sin(p.y);
     float d2 = p.x;
     for (int i3 = 0; i3 < 8; ++i3) {
         if (!(0.0 < d2)) break;
