@@ -64,8 +64,10 @@ struct Said {
             add(sum.terms);
             for (double x : {sum.slope, sum.maximum, sum.minimum}) add(x);
         }
-        add(fact.cells.box);
-        for (const auto *all : {&fact.cells.lipschitz, &fact.cells.way, &fact.cells.bend})
+    }
+    void add(const ir::CellBounds &cells) {
+        add(cells.box);
+        for (const auto *all : {&cells.lipschitz, &cells.way, &cells.bend})
             for (double x : *all) add(x);
     }
 };
@@ -77,6 +79,10 @@ std::string said(const driver::Compilation &c) {
     all.out += std::to_string(c.evaluations) + ' ' + std::to_string(c.proof_steps) + ' ' +
                std::to_string(c.scene.graph.size());
     for (const ir::ShapeFact &fact : c.scene.facts) all.add(fact);
+    for (const auto &[shape, cells] : c.scene.cells) {
+        all.out += std::to_string(shape.index) + ' ';
+        all.add(cells);
+    }
     for (const ir::CacheFact &fact : c.scene.caches) all.add(fact.slope), all.add(fact.span);
     all.add(c.scene.bounds);
     all.add(c.scene.far);
