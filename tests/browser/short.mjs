@@ -179,9 +179,9 @@ const tests = {
     same(await view(page, v => v.camera), {...before, around: 0, above: 1.57}, "the camera above");
     await page.until(() => location.hash.includes("view=0,1.57"), 5);
     await rest(page);
-    await page.ask("Page.setDownloadBehavior", {behavior: "allow", downloadPath: folder});
+    await page.ask("Page.setDownloadBehavior", {behavior: "allow", downloadPath: join(folder, "kept")});
     await click(await button("Save picture"));
-    const kept = join(folder, "moving.png");
+    const kept = join(folder, "kept", "moving.png"); // beside what the other tests render
     for (const end = Date.now() + 10000; !existsSync(kept); await new Promise(r => setTimeout(r, 20))) must(Date.now() < end, "no picture is kept");
     same(await difference(blank, bytes(kept), await picture(page)), 0, "the pixels of the kept picture that differ");
     await click(await button("Full screen"));
