@@ -2,6 +2,7 @@
 #include "lsp/requests.h"
 
 #include "lsp/calls.h"
+#include "lsp/paths.h"
 
 #include "lang/vocabulary.h"
 
@@ -298,30 +299,24 @@ Json files_here(const Place &place, const lang::Token &string) {
     if (place.offset < begin) return items;
     const std::string_view before =
         std::string_view(place.document.text).substr(begin, place.offset - begin);
-    std::size_t at = 0;
-    while (at < place.tokens().size() && place.tokens()[at].begin != string.begin) ++at;
-    const bool import = at > 0 && place.tokens()[at - 1].kind == Tok::Import;
-    const auto call = call_around(place.read.syntax, string.begin);
-    if (!import && !(call && (call->name == "image" || call->name == "grid"))) return items;
+    const Named what = named_by(place.read.syntax, string);
+    if (what == Named::Nothing) return items;
     const std::size_t slash = before.rfind('/');
     const std::string folder(slash == before.npos ? "" : before.substr(0, slash + 1));
     std::error_code error;
     const std::filesystem::path home =
         std::filesystem::path(place.document.path).parent_path() / folder;
-    if (import && folder.empty())
+    if (what == Named::Scene && folder.empty())
         for (const fathom::v1::LibraryEntry &entry : place.workspace.library)
             if (!entry.module.empty() && (items.empty() || items.back()["label"] != entry.module))
                 items.push_back({{"label", entry.module}, {"kind", item_module}});
     for (const auto &entry : std::filesystem::directory_iterator(home, error)) {
         const std::string name = entry.path().filename().string();
-        const std::string extension = entry.path().extension().string();
         if (name.starts_with('.') || items.size() > 500) continue;
-        const bool fits = import ? extension == ".sdf"
-                                 : extension == ".png" || extension == ".jpg" ||
-                                       extension == ".jpeg" || extension == ".grid";
         if (entry.is_directory(error))
             items.push_back({{"label", name + "/"}, {"kind", item_folder}});
-        else if (fits && entry.path() != place.document.path)
+        else if (may_be(what, entry.path().extension().string()) &&
+                 entry.path() != place.document.path)
             items.push_back({{"label", name}, {"kind", item_file}});
     }
     return items;

@@ -10,6 +10,11 @@ namespace fathom::lsp {
 
 using Json = nlohmann::json;
 
+// The codes of errors: JSON-RPC's, and the protocol's own.
+constexpr int parse_error = -32700, unknown_method = -32601, internal_error = -32603,
+              invalid_params = -32602, request_cancelled = -32800, content_modified = -32801,
+              request_failed = -32803;
+
 // A string of ours may hold bytes that are no UTF-8: they become U+FFFD.
 inline std::string written(const Json &json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);

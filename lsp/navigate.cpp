@@ -49,11 +49,6 @@ Json library_location(const std::string &name, const std::string &module) {
     return nullptr;
 }
 
-File file_of(Document &document) {
-    (void)reading(document);
-    return {document.path, document.text, document.reading};
-}
-
 // Declarations by where their statement begins, without those that are in no list of symbols.
 using ByStatement = std::map<std::uint32_t, const Declaration *>;
 
@@ -144,28 +139,6 @@ Json document_symbols(Workspace &workspace, const Json &params) {
     const Reading &read = reading(document_of(workspace, params));
     return symbol_tree(read, by_statement(read.names),
                        read.syntax.ast.blocks[read.syntax.ast.root]);
-}
-
-// The files that a text names and that are there: imports, images, grids.
-Json document_links(Workspace &workspace, const Json &params) {
-    Document &document = document_of(workspace, params);
-    const Reading &read = reading(document);
-    const std::vector<lang::Token> &tokens = read.syntax.words.tokens;
-    Json links = Json::array();
-    for (std::size_t i = 1; i < tokens.size(); ++i) {
-        if (tokens[i].kind != lang::Tok::String) continue;
-        const auto call = call_around(read.syntax, tokens[i].begin);
-        if (tokens[i - 1].kind != lang::Tok::Import &&
-            !(call && (call->name == "image" || call->name == "grid")))
-            continue;
-        const Span name{{}, tokens[i].begin + 1, tokens[i].end - 1}; // without the quotes
-        const std::string file =
-            imported_path(document.path, document.text.substr(name.begin, name.end - name.begin));
-        std::error_code error;
-        if (std::filesystem::is_regular_file(file, error))
-            links.push_back({{"range", range_json(read.lines, name)}, {"target", uri_of(file)}});
-    }
-    return links;
 }
 
 Json workspace_symbols(Workspace &workspace, const Json &params) {

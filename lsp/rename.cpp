@@ -11,11 +11,6 @@
 namespace fathom::lsp {
 namespace {
 
-File file_with(Document &document) {
-    (void)reading(document);
-    return {document.path, document.text, document.reading};
-}
-
 bool is_name(std::string_view text) {
     const auto letter = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -80,7 +75,7 @@ bool would_hide(Workspace &workspace, const File &file, const Target &target,
 
 Json prepare_rename(Workspace &workspace, const Json &params) {
     Document &document = document_of(workspace, params);
-    const File file = file_with(document);
+    const File file = file_of(document);
     const std::size_t offset = offset_of(document, params);
     const Names &names = file.reading->names;
     if (!target_at(workspace, file, offset)) return nullptr;
@@ -93,7 +88,7 @@ Json prepare_rename(Workspace &workspace, const Json &params) {
 Json rename(Workspace &workspace, const Json &params) {
     Document &document = document_of(workspace, params);
     const std::string new_name = params.at("newName");
-    const File file = file_with(document);
+    const File file = file_of(document);
     const auto target = target_at(workspace, file, offset_of(document, params));
     if (!target) throw Refusal("only names that a text declares can be renamed");
     if (!is_name(new_name)) throw Refusal(fmt::format("`{}` is no name", new_name));

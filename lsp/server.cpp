@@ -7,11 +7,6 @@
 namespace fathom::lsp {
 namespace {
 
-// JSON-RPC's, and the protocol's own.
-constexpr int parse_error = -32700, unknown_method = -32601, internal_error = -32603,
-              invalid_params = -32602, request_cancelled = -32800, content_modified = -32801,
-              request_failed = -32803;
-
 struct Row {
     const char *method;
     Json (*answer)(Workspace &, const Json &);
@@ -169,7 +164,7 @@ void Server::notified(const std::string &method, const Json &params) {
                 {{{"id", "fathom-watches"},
                   {"method", "workspace/didChangeWatchedFiles"},
                   {"registerOptions",
-                   {{"watchers", {{{"globPattern", "**/*.{sdf,png,jpg,jpeg,grid}"}}}}}}}}}}}}));
+                   {{"watchers", {{{"globPattern", "**/*.{sdf,png,jpg,jpeg,nrrd}"}}}}}}}}}}}}));
     if (method == "workspace/didChangeWatchedFiles")
         for (auto &[uri, document] : workspace_.documents) changed(document);
     if (method == "textDocument/didOpen") {

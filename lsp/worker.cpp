@@ -13,8 +13,6 @@
 namespace fathom::lsp {
 namespace {
 
-constexpr int internal_error = -32603;
-
 // Between the two processes a body is a letter and a text: to the server what is asked of it, and
 // the message; back each message for the client, and at the end that this was all.
 constexpr char handle_it = 'h', foresee_it = 'f', be_idle = 'i';

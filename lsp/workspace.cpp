@@ -164,6 +164,11 @@ std::optional<File> file_at(Workspace &workspace, const std::string &path) {
     return file;
 }
 
+File file_of(Document &document) {
+    (void)reading(document);
+    return {document.path, document.text, document.reading};
+}
+
 std::string imported_path(const std::string &from, const std::string &path) {
     return (fs::path(from).parent_path() / path).lexically_normal().string();
 }

@@ -103,6 +103,7 @@ fathom::v1::CompileResult compile_as(Workspace &workspace, const std::string &pa
                                      const std::string &text,
                                      const std::map<std::string, std::string> &instead = {});
 
+File file_of(Document &document);
 // The text at a path: the open one, else the file's, of at most 1 MiB.
 std::optional<File> file_at(Workspace &workspace, const std::string &path);
 // What a text imports as `path`, seen from the file that says so.

@@ -124,6 +124,58 @@ TEST_CASE("definitions lead to other files and into the library") {
     std::filesystem::remove_all(cache);
 }
 
+TEST_CASE("files and folders get other names, and texts name them by these") {
+    namespace fs = std::filesystem;
+    const fs::path home = fs::temp_directory_path() / "fathom-lsp-test-names";
+    fs::remove_all(home);
+    fs::create_directories(home / "parts/stone");
+    const auto write = [&](const char *name, const std::string &text) {
+        std::ofstream(home / name) << text;
+    };
+    const auto uri = [&](const char *name) { return uri_of((home / name).string()); };
+    const std::string scene = "import \"parts/knob.sdf\"\nimport \"parts/gone.sdf\" as gone\n"
+                              "let skin = image(\"parts/stone/skin.png\")\n"
+                              "print(\"parts/knob.sdf\")\nknob()\n",
+                      knob = "import \"../top.sdf\" as top\nfn knob() = sphere(top.r)\n"
+                             "fn rock() = distance_grid(\"stone/rock.nrrd\")\n";
+    write("scene.sdf", scene), write("top.sdf", "let r = 1\n"), write("parts/knob.sdf", knob);
+    write("parts/stone/skin.png", ""), write("parts/stone/rock.nrrd", "");
+    Client client;
+    const Json capabilities =
+        client.result("initialize", {{"rootUri", uri_of(home.string())}}).at("capabilities");
+    CHECK(capabilities.at("workspace").at("fileOperations").contains("willRename"));
+    const auto after = [&](const char *from, const char *to, const char *file,
+                           const std::string &text) {
+        const Json changes =
+            client
+                .result("workspace/willRenameFiles",
+                        {{"files", Json::array({{{"oldUri", uri(from)}, {"newUri", uri(to)}}})}})
+                .at("changes");
+        return changes.contains(uri(file)) ? with_edits(text, changes.at(uri(file))) : text;
+    };
+    const auto replaced = [](std::string text, const std::string &a, const std::string &b) {
+        return text.replace(text.find(a), a.size(), b);
+    };
+    // a file: what imports it; a string that is no path stays
+    CHECK(after("parts/knob.sdf", "parts/handle.sdf", "scene.sdf", scene) ==
+          replaced(scene, "parts/knob.sdf", "parts/handle.sdf"));
+    // to another folder: what it names itself
+    CHECK(after("parts/knob.sdf", "knob.sdf", "parts/knob.sdf", knob) ==
+          replaced(replaced(knob, "../top.sdf", "top.sdf"), "stone/rock", "parts/stone/rock"));
+    // a folder: all that is in it; what moves with it stays as it is
+    CHECK(after("parts", "lib/bits", "scene.sdf", scene) ==
+          replaced(replaced(scene, "parts/knob.sdf", "lib/bits/knob.sdf"), "parts/stone",
+                   "lib/bits/stone"));
+    CHECK(after("parts", "lib/bits", "parts/knob.sdf", knob) ==
+          replaced(knob, "../top.sdf", "../../top.sdf"));
+    CHECK(after("top.sdf", "a\"b.sdf", "parts/knob.sdf", knob) == knob); // no string can say it
+    // and their names are links, the grid's too
+    client.open(knob, uri("parts/knob.sdf"));
+    CHECK(client.result("textDocument/documentLink", Client::at(0, 0, uri("parts/knob.sdf")))
+              .size() == 2);
+    fs::remove_all(home);
+}
+
 TEST_CASE("symbols are nested, and found by their letters") {
     Client client;
     client.open("fn tower(n) {\n  let part = box(n)\n  part\n}\nlet base = 3\ntower(base)\n");
