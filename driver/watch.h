@@ -5,7 +5,9 @@
 #pragma once
 
 #include "driver/files.h"
+#include "driver/folder_events.h"
 
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <map>
@@ -17,14 +19,8 @@ namespace fathom::driver {
 // Waits until one of a set of files is saved.
 class Watcher {
   public:
-    Watcher();
-    ~Watcher();
-    Watcher(const Watcher &) = delete;
-    Watcher &operator=(const Watcher &) = delete;
-
-    // Why it looks at the files instead of being told: the system gave no inotify instance or watch
-    // (its limits are reached). Empty where it is told.
-    const std::string &polls_because() const { return polls_because_; }
+    // Why it looks at the files instead of being told (FolderEvents::refusal). Empty where it is told.
+    std::string polls_because() const;
 
     // The files to watch from now on, in place of those before, each with its state when it was
     // read: what was saved since then is news too, so nothing falls between reading and watching.
@@ -41,28 +37,22 @@ class Watcher {
 
   private:
     void rewatch_folders();
-    void watch_folder(const std::filesystem::path &folder);
-    // Reads what the system has; says whether a watched name was among it and whether the last
-    // event on one left its file complete.
-    struct Batch {
-        bool relevant = false;
-        bool complete = false;
-        bool folders_changed = false;
-    };
-    Batch read_events();
     void settle(bool complete);
     bool compare();
-    void poll_from_now_on(int error, const char *what);
     bool wait_polling(std::chrono::steady_clock::time_point end);
 
-    int inotify_ = -1;
-    int wake_ = -1;
-    std::string polls_because_;
+    bool told() const { return events_.refusal().empty(); }
+
+    struct Wake { // a pipe: a byte in it ends a wait
+        Wake();
+        ~Wake();
+        Wake(const Wake &) = delete;
+        Wake &operator=(const Wake &) = delete;
+        std::array<int, 2> ends{-1, -1};
+    } wake_;
+    FolderEvents events_;
     std::map<std::filesystem::path, FileStamp> files_; // absolute; as last reported
     bool compare_first_ = false;
-    std::map<int, std::filesystem::path> folders_; // by watch descriptor
-    std::map<std::filesystem::path, std::vector<std::string>>
-        names_; // by folder: the names that matter there
 };
 
 } // namespace fathom::driver

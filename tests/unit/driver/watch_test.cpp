@@ -2,6 +2,7 @@
 // machine: no test measures time, and none passes because nothing happened yet, but where it says
 // so.
 #include "driver/watch.h"
+#include "polled.h"
 #include "scratch_folder.h"
 
 #include <catch2/catch.hpp>
@@ -180,32 +181,11 @@ TEST_CASE("without watches the files are looked at, and it is said") {
     const fs::path file = folder.write("scene.sdf", "sphere(1)");
     std::optional<Watcher> watcher;
     {
-        FewFiles few(1);
+        FewFiles few(2); // to be woken by
         watcher.emplace();
     }
     CHECK(watcher->polls_because() ==
           "the system gives no more file watches (fs.inotify.max_user_instances): files are looked "
           "at twice a second instead");
-    watcher->watch({{file, stamp_of(file)}});
-    CHECK_FALSE(watcher->wait(milliseconds(0)));
-    folder.write("scene.sdf", "sphere(2)  ");
-    CHECK(watcher->wait(patience));
-    CHECK_FALSE(watcher->wait(milliseconds(0)));
-    fs::remove(file); // a rename into place, later
-    std::thread later([&] {
-        std::this_thread::sleep_for(milliseconds(100));
-        fs::rename(folder.write("other", "sphere(3)"), file);
-    });
-    CHECK(watcher->wait(patience)); // it is gone, or already back
-    later.join();
-    while (watcher->wait(milliseconds(700))) {
-    }
-    folder.write("scene.sdf", "sphere(4)      ");
-    CHECK(watcher->wait(patience));
-    std::thread other([&] {
-        std::this_thread::sleep_for(milliseconds(50));
-        watcher->wake();
-    });
-    CHECK_FALSE(watcher->wait(std::chrono::hours(1)));
-    other.join();
+    sees_saves_by_looking(*watcher, folder, file);
 }
