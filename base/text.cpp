@@ -1,10 +1,12 @@
-// Number and text helpers: everything by std::to_chars and std::from_chars, which know no locale.
+// Number and text helpers. Numbers are written by std::to_chars and read by its counterpart of the
+// library fast_float, which know no locale (libc++ cannot read fractions by std::from_chars).
 #include "base/text.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <fast_float/fast_float.h>
 #include <iterator>
 
 namespace fathom {
@@ -62,8 +64,13 @@ std::string format_shortest(float value) { return shortest(value); }
 
 std::optional<double> parse_number(std::string_view text) {
     double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    // older versions of the library have what is too large as infinite and what is too small as 0,
+    // without an error
+    const std::string_view digits = text.substr(0, text.find_first_of("eE"));
+    if (std::isinf(value) && digits.find_first_of("0123456789") != digits.npos) return std::nullopt;
+    if (value == 0 && digits.find_first_of("123456789") != digits.npos) return std::nullopt;
     return value;
 }
 

@@ -1,9 +1,9 @@
 #include "lsp/refactor.h"
 
+#include "base/text.h"
 #include "lang/vocabulary.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
@@ -226,8 +226,7 @@ std::optional<Refactoring> extract_param(const Syntax &syntax, const Names &name
     if (const auto *number = std::get_if<lang::Number>(&literal.kind)) {
         const std::string unit = number->unit;
         const std::string digits = text.substr(0, text.size() - unit.size());
-        double value = 0;
-        std::from_chars(digits.data(), digits.data() + digits.size(), value);
+        const double value = parse_number(digits).value_or(0);
         if (number->is_int && value == 0) return std::nullopt; // what it counts is not known
         if (value == 0)
             range = " in -1..1";
@@ -363,8 +362,7 @@ std::vector<Refactoring> convert_units(const Syntax &syntax, std::size_t at) {
         std::string digits;
         for (int precision = 1; precision <= 17; ++precision) { // the fewest that are equal
             digits = fmt::format("{:.{}g}", number->value / size, precision);
-            double read = 0;
-            std::from_chars(digits.data(), digits.data() + digits.size(), read);
+            const double read = parse_number(digits).value_or(0);
             if (static_cast<float>(read * size) == static_cast<float>(number->value)) break;
         }
         if (digits.find('e') != digits.npos) continue; // nobody writes an angle so

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds everything with clang++ in build-clang/, warnings as errors, and runs the tests with it.
+# Builds everything with clang++ and its own standard library, libc++, in build-clang/, warnings as errors, and runs the tests with it.
 #   scripts/clang.sh build             only builds
 #   scripts/clang.sh [CTEST OPTIONS]   builds and tests
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3

@@ -3,10 +3,10 @@
 
 # To build and to run. Mesa draws without a graphics card and without a display.
 build_packages="g++ cmake ninja-build ccache pkg-config libfmt-dev tao-pegtl-dev libcli11-dev libglfw3-dev libimgui-dev
-libepoxy-dev libegl-dev libyaml-dev glslang-dev libglm-dev nlohmann-json3-dev spirv-tools libpng-dev libjpeg-dev libzip-dev libopenexr-dev catch2 libegl1 libgl1-mesa-dri
+libepoxy-dev libegl-dev libyaml-dev glslang-dev libglm-dev nlohmann-json3-dev libfast-float-dev spirv-tools libpng-dev libjpeg-dev libzip-dev libopenexr-dev catch2 libegl1 libgl1-mesa-dri
 pybind11-dev python3-dev"
-# To test: a display of our own for the viewer, a second compiler for the fuzzers and for .ci/run, a browser and what drives it.
-test_packages="xvfb xauth xdotool clang python3-numpy python3-pytest chromium nodejs"
+# To test: a display of our own for the viewer, a second compiler, with its own standard library, for the fuzzers and for .ci/run, a browser and what drives it.
+test_packages="xvfb xauth xdotool clang-16 libclang-rt-16-dev libc++-16-dev libc++abi-16-dev python3-numpy python3-pytest chromium nodejs"
 
 say() { printf '%s\n' "fathom: $*" >&2; }
 

@@ -67,7 +67,7 @@ Value make_vector(Interpreter &ev, const std::vector<Value> &parts, int size, Sp
             for (int i = 0; i < n; ++i)
                 scalars.push_back(swizzle(ev, part, std::string(1, "xyzw"[i]), place));
     }
-    if (scalars.size() == 1) scalars.assign(static_cast<std::size_t>(size), scalars[0]);
+    if (scalars.size() == 1) scalars.resize(static_cast<std::size_t>(size), scalars[0]);
     if (parts.size() == 1 && scalars.size() > static_cast<std::size_t>(size))
         scalars.resize(static_cast<std::size_t>(size));
     if (scalars.size() != static_cast<std::size_t>(size)) {

@@ -6,6 +6,7 @@
 #include "typecheck/interpreter.h"
 
 #include <functional>
+#include <tuple>
 
 namespace fathom::typecheck {
 
@@ -13,7 +14,10 @@ namespace fathom::typecheck {
 struct Line {
     std::array<double, 2> at{}, along{};
     bool known() const { return along[0] != 0 || along[1] != 0; }
-    friend auto operator<=>(const Line &, const Line &) = default;
+    friend bool operator==(const Line &, const Line &) = default;
+    friend bool operator<(const Line &a, const Line &b) {
+        return std::tie(a.at, a.along) < std::tie(b.at, b.along);
+    }
 };
 
 // Where a base shape stands below the shape that is rewritten.

@@ -1,5 +1,6 @@
 #include "viewer/editor_line.h"
 
+#include "base/text.h"
 #include "driver/files.h"
 
 #include <array>
@@ -15,7 +16,7 @@
 namespace fathom::viewer {
 namespace {
 
-// The number at a text's beginning; nothing where none stands there.
+// The whole number at a text's beginning; nothing where none stands there.
 template <class Number> std::optional<Number> number_at(std::string_view text) {
     Number number{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -86,7 +87,7 @@ bool EditorLine::understood(std::string &bytes) {
     } else if (line.starts_with("param ")) {
         const std::size_t blank = line.find(' ', 6);
         if (blank != line.npos)
-            if (const auto value = number_at<double>(std::string_view(line).substr(blank + 1)))
+            if (const auto value = parse_number(std::string_view(line).substr(blank + 1)))
                 typed_.params.emplace_back(line.substr(6, blank - 6), *value);
     }
     bytes.erase(0, taken);

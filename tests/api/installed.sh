@@ -24,9 +24,13 @@ if cmake -G Ninja -S "$consumer" -B "$place/none" -DCMAKE_PREFIX_PATH="$place/us
 then echo 'a component that there is not was found' >&2; exit 1; fi
 grep -q 'no component of Fathom: Ray' "$place/none.log"
 
-# As a part of the consumer's build. It is configured alone: to build it takes as long as the library does.
-cmake -G Ninja -S "$consumer" -B "$place/part" -DFATHOM_TREE="$source" >"$place/part.log"
-ninja -C "$place/part" -n points points_static points_c >"$place/part.log"
+# As a part of the consumer's build, by either of CMake's ways. It is configured alone: to build it takes as long as the
+# library does.
+for fetch in OFF ON; do
+    cmake -G Ninja -S "$consumer" -B "$place/part" -DFATHOM_TREE="$source" -DFETCH=$fetch >"$place/part.log"
+    ninja -C "$place/part" -n points points_static points_c >"$place/part.log"
+    rm -r "$place/part"
+done
 
 # Nothing but the names of the headers is exported: the C interface, as the list in the tree has it, and fathom::v1.
 library=$(find "$place/usr" -name libfathom.so)

@@ -41,16 +41,14 @@ const std::map<std::string, Names> sees{
 
 // Foreign headers, by how their names begin, and the only folder (or file) that may see them.
 const std::map<std::string, std::string> owners{
-    {"tao/", "lang/"},          {"yaml.h", "save-format/"},
-    {"GLFW/", "viewer/"},       {"imgui", "viewer/"},
-    {"epoxy/", "render-gl/"},   {"GL/", "render-gl/"},
-    {"EGL/", "render-gl/"},     {"glslang/", "backend-glsl/"},
-    {"spirv", "backend-glsl/"}, {"CLI/", "cli/"},
-    {"jpeglib.h", "driver/"},   {"sys/inotify.h", "driver/"},
-    {"pybind11/", "bindings/"}, {"Imf", "cli/"},
+    {"tao/", "lang/"},          {"yaml.h", "save-format/"},    {"GLFW/", "viewer/"},
+    {"imgui", "viewer/"},       {"epoxy/", "render-gl/"},      {"GL/", "render-gl/"},
+    {"EGL/", "render-gl/"},     {"glslang/", "backend-glsl/"}, {"spirv", "backend-glsl/"},
+    {"CLI/", "cli/"},           {"jpeglib.h", "driver/"},      {"sys/inotify.h", "driver/"},
+    {"pybind11/", "bindings/"}, {"openexr", "cli/"},           {"fast_float/", "base/"},
 };
 // Seen by one file alone.
-const Names lonely{"tao/", "CLI/", "Imf", "sys/inotify.h"};
+const Names lonely{"tao/", "CLI/", "openexr", "fast_float/", "sys/inotify.h"};
 
 // Below the driver nothing opens a file, prints, or reads a clock or a locale.
 const Names pure{"base",         "lang",        "ir",   "proof",      "typecheck",

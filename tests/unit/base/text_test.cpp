@@ -22,7 +22,10 @@ TEST_CASE("numbers are written in their shortest form and read back equal") {
 TEST_CASE("a number is the whole text or nothing") {
     CHECK(parse_number("2.5") == 2.5);
     CHECK(parse_number("-1e-3") == -0.001);
-    for (const char *text : {"", " 1", "1 ", "1,5", "1x", "+1", "0x10", "1e999"})
+    CHECK(parse_number("0e999") == 0);
+    CHECK(parse_number("-inf") == -std::numeric_limits<double>::infinity());
+    for (const char *text :
+         {"", " 1", "1 ", "1,5", "1x", "+1", "0x10", "1e999", "-1e999", "1e-999"})
         CHECK_FALSE(parse_number(text));
 }
 
