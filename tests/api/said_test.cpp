@@ -165,7 +165,7 @@ TEST_CASE("the table of targets is that of their names; the noise cache has its 
     CHECK(names == fathom::shader_targets());
 
     const fathom::Scene noisy =
-        said_scene("sphere(1).displace(p => 0.1 * fbm(3 * p, octaves: 6))\n");
+        said_scene("sphere(1).displace(cached(p => 0.03 * fbm(2 * p, octaves: 6), cell: 0.05))\n");
     for (const fathom::ShaderTarget &target : fathom::shader_target_table()) {
         INFO(target.name);
         fathom::ShaderOptions options;

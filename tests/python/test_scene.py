@@ -152,6 +152,9 @@ def test_a_cache_proves_what_is_new():
 def test_a_compilation_tells_its_phases_and_is_given_up():
     phases = []
     fathom.compile(WAVES, entered=phases.append)
+    assert phases == ["check", "prove", "lower", "done"]
+    phases.clear()
+    fathom.load(EXAMPLES / "gears.sdf", entered=phases.append)
     assert phases == ["read", "check", "prove", "lower", "done"]
     with pytest.raises(fathom.Cancelled, match="cancelled"):
         fathom.compile(WAVES, cancelled=lambda: True)
