@@ -31,6 +31,9 @@ struct fathom_mesh {
 struct fathom_options {
     CompileOptions value;
 };
+struct fathom_cache {
+    ProofCache value;
+};
 
 static_assert(sizeof(Point) == 3 * sizeof(float) && sizeof(Box) == 6 * sizeof(float) &&
               sizeof(Interval) == 2 * sizeof(float)); // so arrays of floats are arrays of these
@@ -122,6 +125,33 @@ int fathom_options_files(fathom_options *options, fathom_file_provider provider,
             if (!text) return std::nullopt;
             return std::move(text->value);
         };
+    });
+}
+
+fathom_cache *fathom_cache_make(size_t most_bytes) {
+    return without_throwing([&] {
+        return new fathom_cache{most_bytes > 0 ? ProofCache::of_bytes(most_bytes)
+                                               : ProofCache::of_bytes()};
+    });
+}
+void fathom_cache_free(fathom_cache *cache) { delete cache; }
+size_t fathom_cache_searches(const fathom_cache *cache) {
+    return cache ? cache->value.searches() : 0;
+}
+size_t fathom_cache_bytes(const fathom_cache *cache) { return cache ? cache->value.bytes() : 0; }
+int fathom_options_cache(fathom_options *options, const fathom_cache *cache) {
+    if (!options || !cache) return FATHOM_BAD_ARGUMENT;
+    options->value.cache = cache->value;
+    return FATHOM_OK;
+}
+int fathom_options_cancel(fathom_options *options, fathom_cancelled cancelled, void *own) {
+    if (!options || !cancelled) return FATHOM_BAD_ARGUMENT;
+    return guarded_status([&] { options->value.cancelled = [=] { return cancelled(own) != 0; }; });
+}
+int fathom_options_entered(fathom_options *options, fathom_entered entered, void *own) {
+    if (!options || !entered) return FATHOM_BAD_ARGUMENT;
+    return guarded_status([&] {
+        options->value.entered = [=](Phase phase) { entered(static_cast<int>(phase), own); };
     });
 }
 

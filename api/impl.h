@@ -32,10 +32,20 @@ struct ProofCache::Impl {
     proof::BoundCache bounds;
 };
 
+// The texts of a compilation, or those alone.
+struct Texts::Impl {
+    std::shared_ptr<const driver::Compilation> compilation; // none: of no compilation
+    Sources own;
+    const Sources &sources() const { return compilation ? compilation->sources : own; }
+};
+
+Texts texts_of(Sources sources);
+
 inline const ir::Scene &ir_of(const Scene &scene) { return scene.impl().scene; }
 
 // What a scene names, from the provider alone.
 typecheck::Loader loader_of(const FileProvider &provider);
+Severity severity_of(fathom::Severity severity);
 Place place_of(Span span, const Sources &sources);
 Diagnostic translated(const fathom::Diagnostic &diagnostic, const Sources &sources);
 std::vector<Diagnostic> translated(const Diagnostics &diagnostics, const Sources &sources);

@@ -4,21 +4,34 @@
 
 namespace fathom::v1 {
 
-Imported import_yaml(std::string_view name, std::string_view yaml, bool strict) {
+Imported import_yaml(std::string_view name, std::string_view yaml, const ImportOptions &options) {
     return guarded(
         [&] {
             Sources sources;
             Diagnostics diagnostics;
             const SourceId source = sources.add(std::string(name), std::string(yaml));
-            save::ImportOptions options;
-            options.strict = strict;
-            save::ImportResult result = save::import_yaml(sources, source, diagnostics, options);
-            return Imported{std::move(result.sdf), !result.structural_error,
-                            translated(diagnostics, sources)};
+            save::ImportOptions to;
+            to.strict = options.strict;
+            to.asset_prefix = options.asset_prefix;
+            if (!options.scene.empty())
+                driver::leave_out_unusable(sources[source].name, sources[source].text,
+                                           options.scene, to);
+            save::ImportResult result = save::import_yaml(sources, source, diagnostics, to);
+            Imported imported{std::move(result.sdf), !result.structural_error,
+                              translated(diagnostics, sources), diagnostics.dropped(),
+                              result.nodes};
+            imported.texts = texts_of(std::move(sources));
+            return imported;
         },
         [](Diagnostic why) {
             return Imported{"", false, {std::move(why)}};
         });
+}
+
+Imported import_yaml(std::string_view name, std::string_view yaml, bool strict) {
+    ImportOptions options;
+    options.strict = strict;
+    return import_yaml(name, yaml, options);
 }
 
 std::string export_yaml(const Scene &scene, std::vector<Diagnostic> *diagnostics) {

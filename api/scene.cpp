@@ -69,6 +69,7 @@ Facts facts_of(const driver::Compilation &compilation) {
     facts.exact = verdict.exact;
     if (scene.bounds.finite()) facts.bounds = outward(scene.bounds);
     facts.time_end = scene.render.time_end;
+    facts.reads_time = scene.graph.reads(scene.graph.function(scene.distance).result).time;
     for (const ir::Axiom &axiom : scene.axioms) facts.axioms.push_back(axiom.says);
     for (const ir::TopLevel &top : scene.top_level) {
         const ir::ShapeFact &fact = scene.facts[top.shape.index];
@@ -76,6 +77,20 @@ Facts facts_of(const driver::Compilation &compilation) {
                                 status_of(fact.status), fact.kind == ir::FieldKind::Exact});
     }
     return facts;
+}
+
+// Standard input was read to its end, so that another compilation takes its text from the first.
+std::shared_ptr<const Origin> repeatable(std::shared_ptr<const Origin> origin,
+                                         const Sources &sources) {
+    if (!origin->is_file || origin->file != "-") return origin;
+    std::uint32_t at = 0;
+    while (at < sources.size() && sources[SourceId{at}].name != "<stdin>") ++at;
+    if (at == sources.size()) return origin;
+    auto text = std::make_shared<Origin>(*origin);
+    text->is_file = false;
+    text->name = "<stdin>";
+    text->text = sources[SourceId{at}].text;
+    return text;
 }
 
 CompileResult result_of(driver::Compilation compilation, std::shared_ptr<const Origin> origin) {
@@ -93,13 +108,18 @@ CompileResult result_of(driver::Compilation compilation, std::shared_ptr<const O
     for (const typecheck::NameFact &name : compilation.names)
         result.names.push_back(
             {name.name, name.type, place_of(name.declared, compilation.sources)});
-    if (!compilation.good()) return result;
+    result.dropped = compilation.diagnostics.dropped();
+    const auto whole = std::make_shared<const driver::Compilation>(std::move(compilation));
+    auto texts = std::make_shared<Texts::Impl>();
+    texts->compilation = whole;
+    result.texts = Texts(std::move(texts));
+    if (!whole->good()) return result;
     auto impl = std::make_shared<Scene::Impl>();
-    impl->origin = std::move(origin);
-    impl->scene = compilation.scene;
-    impl->params = params_of(compilation.scene);
-    impl->facts = facts_of(compilation);
-    impl->compilation = std::make_shared<const driver::Compilation>(std::move(compilation));
+    impl->origin = repeatable(std::move(origin), whole->sources);
+    impl->scene = whole->scene;
+    impl->params = params_of(whole->scene);
+    impl->facts = facts_of(*whole);
+    impl->compilation = whole;
     result.scene.emplace(std::move(impl));
     return result;
 }
@@ -128,6 +148,9 @@ driver::CompileOptions driver_options(const CompileOptions &options) {
     driver::CompileOptions to;
     to.include_folders = options.include_folders;
     for (const auto &[name, text] : options.definitions) to.overrides.push_back({name, text});
+    to.strict_proof = options.strict_proof;
+    if (options.times) to.times = {(*options.times)[0], (*options.times)[1]};
+    to.cells = options.cells;
     if (options.cache.impl()) to.bounds = &options.cache.impl()->bounds;
     to.cancelled = options.cancelled;
     if (options.entered)
@@ -290,17 +313,33 @@ CompileResult compile_text(std::string_view name, std::string_view text,
         failed);
 }
 
-std::optional<std::string> format_text(std::string_view text) {
+std::optional<std::string> format_text(std::string_view text) { return format_text("", text).text; }
+
+Formatted format_text(std::string_view name, std::string_view text) {
     return guarded(
-        [&]() -> std::optional<std::string> {
+        [&] {
             Sources sources;
             Diagnostics diagnostics;
-            const SourceId source = sources.add("", std::string(text));
+            const SourceId source = sources.add(std::string(name), std::string(text));
             const lang::Ast ast = lang::parse(sources, source, diagnostics);
-            if (diagnostics.has_errors()) return std::nullopt;
-            return lang::format(sources, ast);
+            Formatted formatted;
+            if (!diagnostics.has_errors()) formatted.text = lang::format(sources, ast);
+            formatted.diagnostics = translated(diagnostics, sources);
+            formatted.dropped = diagnostics.dropped();
+            formatted.texts = texts_of(std::move(sources));
+            return formatted;
         },
-        [](const Diagnostic &) { return std::optional<std::string>(); });
+        [](Diagnostic why) {
+            Formatted formatted;
+            formatted.diagnostics.push_back(std::move(why));
+            return formatted;
+        });
+}
+
+std::string verdict_json(const CompileResult &result) {
+    if (!result.texts.impl() || !result.texts.impl()->compilation) return "";
+    return guarded([&] { return driver::verdict_json(*result.texts.impl()->compilation); },
+                   [](const Diagnostic &) { return std::string(); });
 }
 
 std::vector<LibraryEntry> library_entries() {
@@ -310,7 +349,8 @@ std::vector<LibraryEntry> library_entries() {
             for (typecheck::LibraryEntry &entry :
                  typecheck::library_entries(driver::standard_library()))
                 entries.push_back({std::move(entry.name), std::move(entry.signature),
-                                   std::move(entry.doc), std::move(entry.module)});
+                                   std::move(entry.doc), std::move(entry.module),
+                                   std::move(entry.file)});
             return entries;
         },
         [](const Diagnostic &) { return std::vector<LibraryEntry>(); });

@@ -29,12 +29,20 @@ std::optional<Shader> shader_of(const Scene &scene, const ShaderOptions &options
         said.push_back(sentence("usage", fmt::format("there is no target `{}`", options.target)));
         return std::nullopt;
     }
+    if (options.noise_cache && (!glsl::traits_of(*target).noise_cache || options.field_only)) {
+        said.push_back(
+            sentence("usage", fmt::format("the noise cache is for whole pictures, and not "
+                                          "for the target `{}`",
+                                          options.target)));
+        return std::nullopt;
+    }
     const ir::Scene &ir_scene = ir_of(scene);
     const Sources &sources = scene.impl().compilation->sources;
     glsl::Options to;
     to.target = *target;
     to.field_only = options.field_only;
     to.buffers = options.buffers;
+    to.noise_cache = options.noise_cache;
     to.computed = true;
     to.table_text = 256;
     to.time = options.time;
@@ -57,6 +65,16 @@ std::optional<Shader> shader_of(const Scene &scene, const ShaderOptions &options
         said.push_back(std::move(diagnostic));
     if (diagnostics.has_errors()) return std::nullopt;
     Shader shader;
+    if (options.noise_cache) {
+        glsl::CachePasses passes = glsl::emit_cache_passes(ir_scene, to, diagnostics);
+        if (diagnostics.has_errors()) {
+            said = translated(diagnostics, sources);
+            return std::nullopt;
+        }
+        if (!passes.fill.text.empty())
+            shader.cache = {std::move(passes.reserve), std::move(passes.fill.text),
+                            std::move(passes.publish), std::move(passes.sweep)};
+    }
     shader.reflection = glsl::reflection_json(ir_scene, to, output);
     shader.text = std::move(output.text);
     shader.words = std::move(output.words);
@@ -91,6 +109,15 @@ std::vector<std::string> shader_targets() {
     for (const glsl::Target &target : glsl::all_targets())
         names.emplace_back(glsl::traits_of(target).name);
     return names;
+}
+
+std::vector<ShaderTarget> shader_target_table() {
+    std::vector<ShaderTarget> all;
+    for (const glsl::Target &target : glsl::all_targets()) {
+        const glsl::TargetTraits &row = glsl::traits_of(target);
+        all.push_back({row.name, row.suffix, row.field_by, row.buffer_file, row.noise_cache});
+    }
+    return all;
 }
 
 std::optional<Shader> make_shader(const Scene &scene, const ShaderOptions &options,

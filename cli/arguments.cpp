@@ -139,13 +139,13 @@ struct Reader {
     CLI::App *help = nullptr;
 
     void add_target(CLI::App *sub) {
-        std::vector<std::pair<std::string, glsl::Target>> targets;
+        std::vector<std::pair<std::string, std::string>> targets;
         std::vector<std::string> names;
-        for (const glsl::Target target : glsl::all_targets()) {
-            targets.emplace_back(glsl::traits_of(target).name, target);
+        for (const std::string &target : v1::shader_targets()) {
+            targets.emplace_back(target, target);
             names.push_back(targets.back().first + (names.empty() ? " (unless said)" : ""));
         }
-        choice<glsl::Target>(sub, "--target", compile.target, targets, listed(names))
+        choice<std::string>(sub, "--target", compile.target, targets, listed(names))
             ->type_name("TARGET");
     }
 
@@ -255,7 +255,7 @@ struct Reader {
         add_out(
             sub, compile.out,
             fmt::format("write here, not to standard output; for {}, large tables to OUT.tables",
-                        targets_with(&glsl::TargetTraits::buffer_file)))
+                        targets_with(&v1::ShaderTarget::buffers)))
             ->type_name("OUT");
         add_target(sub);
         sub->add_option("--reflect", compile.reflect,

@@ -2,7 +2,7 @@
 // counts that do not depend on it.
 #include "backend-cpu/trace/march.h"
 #include "backend-glsl/emit.h"
-#include "cli/terminal.h"
+#include "cli/compiled.h"
 #include "render-gl/context.h"
 #include "render-gl/pruning.h"
 #include "render-gl/render.h"

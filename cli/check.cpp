@@ -1,95 +1,107 @@
 // fathom check: parses, types, proves; says what it found to people, or to editors as JSON.
-#include "backend-cpu/trace/march.h"
-#include "backend-glsl/emit.h"
 #include "base/encode.h"
 #include "cli/terminal.h"
-#include "driver/verdict.h"
-#include "proof/prove.h"
+
+#include <fathom/explain.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <new>
 
 namespace fathom::cli {
 namespace {
 
-std::string verdict_line(const driver::Compilation &compilation, const std::string &file) {
-    driver::Verdict verdict = driver::judge(compilation.scene);
-    return fmt::format("{}: ok, {}{}{}", file, driver::status_name(verdict.status),
-                       verdict.lipschitz ? fmt::format(", lipschitz {:.6g}", *verdict.lipschitz)
-                                         : "",
-                       verdict.exact ? ", exact" : "");
+std::string_view word_of(v1::Status status) {
+    switch (status) {
+    case v1::Status::Proved: return "proved";
+    case v1::Status::Assumed: return "assumed";
+    case v1::Status::Estimated: return "estimated";
+    }
+    return "";
+}
+
+std::string verdict_line(const v1::Facts &facts, const std::string &file) {
+    return fmt::format("{}: ok, {}{}{}", file, word_of(facts.status),
+                       facts.lipschitz ? fmt::format(", lipschitz {:.6g}", *facts.lipschitz) : "",
+                       facts.exact ? ", exact" : "");
 }
 
 // A line for an operation: what it is, the bound after it, what it does to its children's, and
 // where it was written.
 // `*` marks the chain of the steepest.
-void explain(const proof::Explanation &node, const Sources &sources, const std::string &lead,
-             const std::string &below, Terminal &terminal) {
-    std::string line = fmt::format("{}{} {}: {:.4g}", lead, node.worst ? "*" : " ", node.operation,
-                                   node.lipschitz);
+void explain(const v1::Explanation &node, const std::string &lead, const std::string &below,
+             Terminal &terminal) {
+    std::string line = fmt::format("{}{} {}: {:.4g}", lead, node.steepest ? "*" : " ",
+                                   node.operation, node.lipschitz);
     if (std::abs(node.factor - 1) > 1e-9) line += fmt::format(" (x {:.4g})", node.factor);
     if (node.share > 0.005) line += fmt::format(", {:.0f} % of the bound", 100 * node.share);
     if (!node.rule.empty()) line += ", " + node.rule;
     if (!node.region.empty() && node.region != "everywhere") line += ", in " + node.region;
-    if (node.place.source) {
-        const Source &source = sources[node.place.source];
-        line += fmt::format("  [{}:{}]", source.name, position(source, node.place.begin).line);
-    }
+    if (node.at.line > 0) line += fmt::format("  [{}:{}]", node.at.file, node.at.line);
     terminal.put(for_terminal(line) + "\n");
     for (std::size_t i = 0; i < node.children.size(); ++i) {
         bool last = i + 1 == node.children.size();
-        explain(node.children[i], sources, below + (last ? "`-" : "|-"),
-                below + (last ? "  " : "| "), terminal);
+        explain(node.children[i], below + (last ? "`-" : "|-"), below + (last ? "  " : "| "),
+                terminal);
     }
 }
 
 // What the bound rests on beside the proof, an entry of the library a line.
-void explain_axioms(const ir::Scene &scene, Terminal &terminal) {
-    if (scene.axioms.empty()) terminal.put("rests on no axiom\n");
-    for (const ir::Axiom &axiom : scene.axioms)
-        terminal.put(for_terminal(fmt::format("rests on {}", axiom.says)) + "\n");
+void explain_axioms(const v1::Facts &facts, Terminal &terminal) {
+    if (facts.axioms.empty()) terminal.put("rests on no axiom\n");
+    for (const std::string &axiom : facts.axioms)
+        terminal.put(for_terminal(fmt::format("rests on {}", axiom)) + "\n");
 }
 
-void explain_params(const ir::Scene &scene, Terminal &terminal) {
-    for (const ir::Param &param : scene.params)
+void explain_params(const v1::Scene &scene, Terminal &terminal) {
+    for (const v1::Param &param : scene.params())
         terminal.put(fmt::format("param {}: {}\n", param.name,
                                  param.structural
                                      ? "decides what there is: moving it builds the scene anew"
                                      : "a number of the shader: moving it costs nothing"));
 }
 
-// Which cells hold which shapes is found while a picture is drawn; whether it will be is known now.
-void explain_pruning(const ir::Scene &scene, Terminal &terminal) {
-    const float shapes = cpu::shapes_of(scene);
-    terminal.put(
-        fmt::format("pruning: {}, with {:.0f} shapes to choose from\n",
-                    shapes >= cpu::prune_from
-                        ? "the processor computes for each cell of space what can matter there"
-                        : "not worth it",
-                    shapes));
+void explain_pruning(const v1::Scene &scene, Terminal &terminal) {
+    const v1::Pruning pruning = v1::pruning(scene);
+    terminal.put(fmt::format(
+        "pruning: {}, with {:.0f} shapes to choose from\n",
+        pruning.by_cells ? "the processor computes for each cell of space what can matter there"
+                         : "not worth it",
+        pruning.shapes));
+    for (int rows : pruning.rows)
+        terminal.put(fmt::format("a loop over {} rows: where GL 4.3 draws, each cell of "
+                                 "space has a list of those that can matter in it, or "
+                                 "one number if none is near\n",
+                                 rows));
 }
 
-Exit say(const CheckCommand &command, const SceneArguments &scene,
-         const driver::Compilation &compilation, Terminal &terminal) {
-    if (!command.json || !compilation.unreadable.empty() || !compilation.usage_errors.empty()) {
-        Exit exit = report(compilation, scene, terminal);
+void explain(const v1::Scene &scene, Terminal &terminal) {
+    const std::optional<v1::Explanation> root = v1::explain(scene);
+    if (!root) throw std::bad_alloc();
+    explain(*root, "", "", terminal);
+    explain_axioms(scene.facts(), terminal);
+    explain_params(scene, terminal);
+    explain_pruning(scene, terminal);
+}
+
+// Whether the result is no verdict on a text: there was none to read, or the command line is wrong.
+bool is_about_no_text(const v1::CompileResult &result) {
+    return std::ranges::any_of(result.diagnostics, [](const v1::Diagnostic &d) {
+        return d.code == "unreadable" || d.code == "usage";
+    });
+}
+
+Exit say(const CheckCommand &command, const SceneArguments &scene, const v1::CompileResult &result,
+         Terminal &terminal) {
+    if (!command.json || is_about_no_text(result)) {
+        const Exit exit = report(result, terminal);
         if (exit != done) return exit;
-        if (command.explain) {
-            explain(proof::explain(compilation.scene), compilation.sources, "", "", terminal);
-            explain_axioms(compilation.scene, terminal);
-            explain_params(compilation.scene, terminal);
-            explain_pruning(compilation.scene, terminal);
-            for (int rows : glsl::prunable_rows(compilation.scene))
-                terminal.put(fmt::format("a loop over {} rows: where GL 4.3 draws, each cell of "
-                                         "space has a list of those that can matter in it, or "
-                                         "one number if none is near\n",
-                                         rows));
-        }
-        if (!command.json) terminal.say(verdict_line(compilation, scene.file));
+        if (command.explain) explain(*result.scene, terminal);
+        if (!command.json) terminal.say(verdict_line(result.scene->facts(), scene.file));
     }
-    if (command.json) terminal.put(driver::verdict_json(compilation));
-    return compilation.good() ? done : scene_error;
+    if (command.json) terminal.put(v1::verdict_json(result));
+    return result ? done : scene_error;
 }
 
 } // namespace
@@ -99,12 +111,12 @@ Exit run(const CheckCommand &command, Terminal &terminal) {
     for (const std::string &file : command.files) {
         SceneArguments scene = command.scene;
         scene.file = file;
-        const auto act = [&](const driver::Compilation &compilation) {
-            return say(command, scene, compilation, terminal);
+        const auto act = [&](const v1::CompileResult &result) {
+            return say(command, scene, result, terminal);
         };
         worst = std::max(worst, command.watch
-                                    ? watch_scene(scene, compile_options(scene), terminal, act)
-                                    : act(driver::compile_file(file, compile_options(scene))));
+                                    ? watch_scene(scene, library_options(scene), terminal, act)
+                                    : act(v1::compile_file(file, library_options(scene))));
     }
     return worst;
 }

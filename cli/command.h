@@ -2,8 +2,7 @@
 // knows nothing of what the commands do, the commands nothing of how the line is written.
 #pragma once
 
-#include "backend-glsl/targets.h"
-#include "typecheck/check.h"
+#include "base/limits.h"
 
 #include <array>
 #include <filesystem>
@@ -26,10 +25,15 @@ enum Exit {
 // Whether diagnostics are coloured: where a terminal is, always, or never.
 enum class ColorChoice { Auto, Always, Never };
 
+// A param that `-D name=text` sets; the text is an expression of the language.
+struct Definition {
+    std::string name, text;
+};
+
 // What every command that reads a scene takes.
 struct SceneArguments {
     std::string file;                                   // `-` is standard input
-    std::vector<typecheck::Override> overrides;         // -D
+    std::vector<Definition> overrides;                  // -D
     std::vector<std::filesystem::path> include_folders; // -I
     Limits limits;                                      // --limit
     std::vector<std::string> limit_words;               // --limit, as written
@@ -45,9 +49,9 @@ struct CheckCommand {
 // `fathom compile`.
 struct CompileCommand {
     SceneArguments scene;
-    std::string out;       // empty: standard output
-    std::string reflect;   // where what a host has to bind is written; empty: nowhere
-    glsl::Target target{}; // the table's first
+    std::string out;     // empty: standard output
+    std::string reflect; // where what a host has to bind is written; empty: nowhere
+    std::string target;  // by name; empty: the table's first
     bool field_only = false, watch = false;
     bool noise_cache = false; // with the cache's hooks, and its passes beside `out`
 };

@@ -24,11 +24,11 @@ std::string of(const CheckCommand &check, const Given &) {
 
 std::string of(const CompileCommand &compile, const Given &) {
     if (compile.watch && compile.scene.file == "-") return watches_nothing;
-    const glsl::TargetTraits &target = glsl::traits_of(compile.target);
-    if (compile.field_only && *target.field_by)
+    const v1::ShaderTarget target = target_named(compile.target);
+    if (compile.field_only && !target.field_target.empty())
         return fmt::format("--field-only leaves out the picture that a page shows; `--target {} "
                            "--field-only` writes the text that a page of your own can use",
-                           target.field_by);
+                           target.field_target);
     const auto to_file = [](const std::string &out) { return !out.empty() && out != "-"; };
     if (!compile.reflect.empty() &&
         (compile.reflect == compile.out || (!to_file(compile.reflect) && !to_file(compile.out))))
@@ -36,7 +36,7 @@ std::string of(const CompileCommand &compile, const Given &) {
     if (!compile.noise_cache) return "";
     if (!target.noise_cache || compile.field_only)
         return fmt::format("--noise-cache is for whole pictures by `--target {}`",
-                           targets_with(&glsl::TargetTraits::noise_cache));
+                           targets_with(&v1::ShaderTarget::noise_cache));
     if (compile.out.empty() || compile.out == "-")
         return "--noise-cache writes several files: name the first by -o";
     return "";

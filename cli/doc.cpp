@@ -3,7 +3,8 @@
 // vocabulary, which the grammars of editors are made from.
 #include "base/suggest.h"
 #include "cli/terminal.h"
-#include "lang/vocabulary.h"
+
+#include <fathom/reference.h>
 
 #include <algorithm>
 #include <cctype>
@@ -14,7 +15,7 @@
 namespace fathom::cli {
 namespace {
 
-using typecheck::LibraryEntry;
+using v1::LibraryEntry;
 
 std::string first_line(std::string_view doc) { return std::string(doc.substr(0, doc.find('\n'))); }
 
@@ -59,7 +60,7 @@ using Json = nlohmann::ordered_json;
 
 Json constants() {
     Json all = Json::array();
-    for (const typecheck::LibraryConstant &constant : typecheck::library_constants()) {
+    for (const v1::LibraryConstant &constant : v1::library_constants()) {
         Json entry{{"name", constant.name}, {"type", constant.type}};
         if (constant.rgb) entry["color"] = fmt::format("#{:06x}", *constant.rgb);
         all.push_back(std::move(entry));
@@ -78,7 +79,7 @@ bool put_json(const std::vector<LibraryEntry> &entries, const std::string &name,
                                  {"signature", entry.signature},
                                  {"doc", entry.doc}});
     if (name.empty()) {
-        const lang::Vocabulary words = lang::vocabulary();
+        const v1::Vocabulary words = v1::vocabulary();
         whole = {{"keywords", words.keywords}, {"keywords_in_place", words.keywords_in_place},
                  {"types", words.types},       {"units", words.units},
                  {"signs", words.signs},       {"constants", constants()}};
@@ -92,8 +93,7 @@ bool put_json(const std::vector<LibraryEntry> &entries, const std::string &name,
 } // namespace
 
 Exit run(const DocCommand &command, Terminal &terminal) {
-    const std::vector<LibraryEntry> entries =
-        typecheck::library_entries(driver::standard_library());
+    const std::vector<LibraryEntry> entries = v1::library_entries();
     if (command.json && put_json(entries, command.name, terminal)) return done;
     terminal.page();
     if (command.name.empty()) {

@@ -1,10 +1,12 @@
 // fathom eval: the marched distance and its gradient at points, on the CPU.
-#include "backend-cpu/tape.h"
 #include "base/text.h"
 #include "cli/terminal.h"
 
+#include <fathom/field.h>
+
 #include <cerrno>
 #include <fmt/format.h>
+#include <new>
 #include <unistd.h>
 
 namespace fathom::cli {
@@ -14,38 +16,30 @@ namespace {
 // that is marched; where the field has a kink the gradient's numbers may have taken its other side.
 class PointPrinter {
   public:
-    PointPrinter(const ir::Scene &scene, double time)
-        : program_(cpu::compile(scene, scene.distance)),
-          values_(cpu::make_scratch(program_, cpu::inputs_of(scene, time))),
-          scratch_(cpu::make_gradient_scratch(program_, cpu::inputs_of(scene, time))) {}
+    explicit PointPrinter(v1::Field field) : field_(std::move(field)) {}
 
     void add(const std::array<double, 3> &point) {
-        for (std::size_t i = 0; i < 3; ++i) in_[i].push_back(static_cast<float>(point[i]));
+        points_.push_back({static_cast<float>(point[0]), static_cast<float>(point[1]),
+                           static_cast<float>(point[2])});
     }
 
     void print(Terminal &terminal) {
-        std::size_t count = in_[0].size();
-        std::array<const float *, 3> in;
-        std::array<float *, 4> out;
-        for (std::size_t i = 0; i < 3; ++i) in[i] = in_[i].data();
-        for (std::size_t i = 0; i < 4; ++i) {
-            out_[i].resize(count);
-            out[i] = out_[i].data();
-        }
-        cpu::evaluate_gradient(program_, scratch_, in.data(), out.data(), count);
-        cpu::evaluate(program_, values_, in.data(), out.data(), count); // the first of the four
-        for (std::size_t k = 0; k < count; ++k)
-            terminal.put(fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", out_[0][k] + 0.0f,
-                                     out_[1][k] + 0.0f, out_[2][k] + 0.0f, out_[3][k] + 0.0f));
-        for (std::vector<float> &values : in_) values.clear();
+        distances_.resize(points_.size());
+        gradients_.resize(points_.size());
+        if (!field_.gradients(points_, distances_, gradients_) ||
+            !field_.distances(points_, distances_))
+            throw std::bad_alloc();
+        for (std::size_t k = 0; k < points_.size(); ++k)
+            terminal.put(fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", distances_[k] + 0.0f,
+                                     gradients_[k][0] + 0.0f, gradients_[k][1] + 0.0f,
+                                     gradients_[k][2] + 0.0f));
+        points_.clear();
     }
 
   private:
-    cpu::Program program_;
-    cpu::Scratch values_;
-    cpu::GradientScratch scratch_;
-    std::array<std::vector<float>, 3> in_;
-    std::array<std::vector<float>, 4> out_;
+    v1::Field field_;
+    std::vector<v1::Point> points_, gradients_;
+    std::vector<float> distances_;
 };
 
 // Three numbers, separated by blanks; false where the line is something else. An empty line is no
@@ -108,13 +102,14 @@ Exit answer_standard_input(PointPrinter &evaluator, Terminal &terminal) {
 } // namespace
 
 Exit run(const EvalCommand &command, Terminal &terminal) {
-    driver::Compilation compilation = driver::compile_file(
-        command.scene.file, compile_options(command.scene, command.time, command.time));
-    Exit exit = report(compilation, command.scene, terminal);
-    if (exit != done) return exit;
-    if (!in_proved_time(compilation.scene, command.time, command.time, terminal))
+    const v1::CompileResult result = v1::compile_file(
+        command.scene.file, library_options(command.scene, command.time, command.time));
+    if (const Exit exit = report(result, terminal); exit != done) return exit;
+    if (!in_proved_time(result.scene->facts(), command.time, command.time, terminal))
         return usage_error;
-    PointPrinter evaluator(compilation.scene, command.time);
+    std::optional<v1::Field> field = v1::make_field(*result.scene, command.time);
+    if (!field) throw std::bad_alloc();
+    PointPrinter evaluator(std::move(*field));
     for (std::size_t i = 0; i + 2 < command.coordinates.size(); i += 3)
         evaluator.add(
             {command.coordinates[i], command.coordinates[i + 1], command.coordinates[i + 2]});

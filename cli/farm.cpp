@@ -5,6 +5,8 @@
 #include "cli/job.h"
 #include "cli/option_rows.h"
 
+#include <fathom/files.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -50,7 +52,7 @@ std::string line_of(const RenderCommand &command) {
     std::string line =
         fmt::format("${{FATHOM:-{}}} render {}", quoted(own_program()), quoted(command.scene.file));
     const auto add = [&](const std::string &word) { line += " " + quoted(word); };
-    for (const typecheck::Override &value : command.scene.overrides)
+    for (const Definition &value : command.scene.overrides)
         add("-D"), add(value.name + "=" + value.text);
     for (const fs::path &folder : command.scene.include_folders) add("-I"), add(folder.string());
     for (const std::string &limit : command.scene.limit_words) add("--limit"), add(limit);
@@ -113,7 +115,7 @@ std::string batch_script(const Job &job, const char *name, const std::string &li
 }
 
 std::string write_script(const fs::path &file, std::string_view text) {
-    std::string error = driver::write_file(file, text);
+    std::string error = v1::write_file(file, text);
     std::error_code mode;
     fs::permissions(file, fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
                     fs::perm_options::add, mode);
@@ -127,7 +129,7 @@ std::string write_folder(const RenderCommand &render, const Job &job) {
         lines += line_of(command_of(render, job, "", unit.frames, unit.tile)) + "\n";
     }
     const std::string folder = quoted(job.folder.string());
-    std::string error = driver::write_file(job.folder / "units", lines);
+    std::string error = v1::write_file(job.folder / "units", lines);
     if (error.empty()) error = write_script(job.folder / "run", run_script());
     if (error.empty() && job.engine == Engine::Slurm)
         error = write_script(
@@ -140,7 +142,7 @@ std::string write_folder(const RenderCommand &render, const Job &job) {
                                           fmt::format("exec ${{FATHOM:-{}}} farm collect {}",
                                                       quoted(own_program()), folder)));
     // Last: a folder with a manifest is whole.
-    if (error.empty()) error = driver::write_file(job.folder / "manifest.json", manifest_of(job));
+    if (error.empty()) error = v1::write_file(job.folder / "manifest.json", manifest_of(job));
     return error;
 }
 
@@ -222,13 +224,13 @@ constexpr int most_rounds = 20;
 Exit count_round(const Job &job, Terminal &terminal) {
     const fs::path file = job.folder / "state" / "rounds";
     std::string error;
-    const std::string rounds = driver::read_file(file, 1 << 20, error).value_or("");
+    const std::string rounds = v1::read_file(file, 1 << 20, error).value_or("");
     if (std::ranges::count(rounds, '\n') >= most_rounds)
         return refuse(terminal, device_error,
                       fmt::format("the units were submitted {} times; see {}. Without {} they are "
                                   "submitted again",
                                   most_rounds, (job.folder / "logs").string(), file.string()));
-    error = driver::write_file(file, rounds + "round\n");
+    error = v1::write_file(file, rounds + "round\n");
     return error.empty() ? done : refuse(terminal, device_error, "cannot write: " + error);
 }
 
@@ -269,7 +271,7 @@ Exit run_parallel(const Job &job, Terminal &terminal) {
         before = open.size();
         std::string list;
         for (const std::size_t unit : open) list += fmt::format("{}\n", unit);
-        const std::string error = driver::write_file(job.folder / "state" / "list", list);
+        const std::string error = v1::write_file(job.folder / "state" / "list", list);
         if (!error.empty())
             return refuse(terminal, device_error, "cannot write the list: " + error);
         // How far the units are is read from their files; but who ends the engine means it.
@@ -421,7 +423,7 @@ Exit make(const FarmCommand &command, Job &job, Terminal &terminal) {
 Exit print_units(const Job &job, Terminal &terminal) {
     std::string error;
     terminal.put(fmt::format("# {} units, each run in {}\n", unit_count(job), job.folder.string()));
-    terminal.put(driver::read_file(job.folder / "units", 1 << 30, error).value_or(""));
+    terminal.put(v1::read_file(job.folder / "units", 1 << 30, error).value_or(""));
     terminal.put("# what would start them\n");
     if (job.engine == Engine::Parallel) {
         terminal.put(parallel_line(job, false) + "\n");

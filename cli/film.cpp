@@ -2,7 +2,8 @@
 
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
-#include "driver/files.h"
+
+#include <fathom/files.h>
 
 #include <array>
 #include <cerrno>
@@ -110,13 +111,13 @@ std::unique_ptr<Film> Film::open(const std::string &out, int width, int height, 
     std::unique_ptr<Film> film(new Film);
     film->target_ = out;
     const fs::path path(out);
-    // The name and the lock are those of results that are being written (driver::write_file): what
+    // The name and the lock are those of results that are being written (v1::write_file): what
     // a kill leaves, the next process that writes into the folder removes.
     std::string name =
         (path.parent_path() / ("." + path.filename().string() + ".fathom-tmpXXXXXX")).string();
     film->lock_ = ::mkostemp(name.data(), O_CLOEXEC);
     if (film->lock_ < 0) {
-        error = driver::error_words(errno);
+        error = v1::error_words(errno);
         return nullptr;
     }
     film->temporary_ = name;
@@ -128,7 +129,7 @@ std::unique_ptr<Film> Film::open(const std::string &out, int width, int height, 
     std::array<int, 2> frames{-1, -1};
     film->words_ = ::memfd_create("ffmpeg's words", MFD_CLOEXEC); // who writes there never waits
     if (film->words_ < 0 || ::pipe2(frames.data(), O_CLOEXEC) != 0) {
-        error = driver::error_words(errno);
+        error = v1::error_words(errno);
         return nullptr;
     }
     std::vector<std::string> words =
@@ -149,7 +150,7 @@ std::unique_ptr<Film> Film::open(const std::string &out, int width, int height, 
     ::close(frames[0]);
     film->frames_ = frames[1];
     if (film->process_ < 0) {
-        error = driver::error_words(errno);
+        error = v1::error_words(errno);
         return nullptr;
     }
     return film;
@@ -165,11 +166,11 @@ std::string Film::why(const std::string &otherwise) {
 
 std::string Film::add(std::span<const std::uint8_t> rgba) {
     const int error =
-        driver::write_all(frames_, {reinterpret_cast<const char *>(rgba.data()), rgba.size()});
+        v1::write_all(frames_, {reinterpret_cast<const char *>(rgba.data()), rgba.size()});
     if (error == 0) return "";
     int status = 0;
     if (error == EPIPE) ::waitpid(process_, &status, 0), process_ = -1;
-    return why(driver::error_words(error));
+    return why(v1::error_words(error));
 }
 
 std::string Film::finish() {
@@ -182,7 +183,7 @@ std::string Film::finish() {
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         return why(fmt::format("it ended with status {}", status));
     if (::fsync(lock_) != 0 || ::rename(temporary_.c_str(), target_.c_str()) != 0)
-        return driver::error_words(errno);
+        return v1::error_words(errno);
     temporary_.clear();
     remove_on_end("");
     return "";

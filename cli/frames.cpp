@@ -48,8 +48,8 @@ double time_of_sample(const Moment &moment, int k) {
     return moment.time + moment.open * (golden - std::floor(golden));
 }
 
-std::vector<typecheck::Override> swept(const RenderCommand &command, int frame) {
-    std::vector<typecheck::Override> values;
+std::vector<Definition> swept(const RenderCommand &command, int frame) {
+    std::vector<Definition> values;
     const std::vector<int> film = frames_of_film(command);
     for (const Sweep &sweep : command.sweeps) {
         const int length = film.back() - film.front() + (sweep.to_last ? 0 : 1);

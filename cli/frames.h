@@ -27,7 +27,7 @@ double latest_time(const RenderCommand &command, const std::vector<int> &frames)
 double time_of_sample(const Moment &moment, int k);
 
 // The swept params' values at a frame, as `-D` writes them.
-std::vector<typecheck::Override> swept(const RenderCommand &command, int frame);
+std::vector<Definition> swept(const RenderCommand &command, int frame);
 
 // `out` with the frame's number in place of its last row of `#`s, or before its suffix where it has
 // none.

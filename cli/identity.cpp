@@ -2,7 +2,9 @@
 
 #include "base/picture.h"
 #include "base/text.h"
+
 #include "cli/parts.h"
+#include <fathom/files.h>
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -81,7 +83,7 @@ std::string identity_of_film(const driver::Compilation &compilation, const Rende
     for (const typecheck::LibraryFile &file : driver::standard_library()) append(bytes, file.text);
     for (const SceneFile &file : files_of(compilation, command.scene)) {
         const std::optional<std::string> text =
-            driver::read_file(file.path, std::numeric_limits<std::size_t>::max() / 4, error);
+            v1::read_file(file.path, std::numeric_limits<std::size_t>::max() / 4, error);
         if (!text) {
             error = fmt::format("cannot read `{}`: {}", file.path.string(), error);
             return "";
@@ -95,7 +97,7 @@ std::string identity_of_film(const driver::Compilation &compilation, const Rende
             append(bytes, compilation.sources[SourceId{i}].text);
     else
         append(bytes, fs::path(command.scene.file).filename().string());
-    for (const typecheck::Override &override : command.scene.overrides) {
+    for (const Definition &override : command.scene.overrides) {
         append(bytes, override.name);
         append(bytes, override.text);
     }
@@ -169,7 +171,7 @@ std::optional<Note> note_of(std::string_view text) {
 std::optional<Note> note_of_file(const std::string &file) {
     std::string error;
     const std::optional<std::string> bytes =
-        driver::read_file(file, std::numeric_limits<std::size_t>::max() / 4, error);
+        v1::read_file(file, std::numeric_limits<std::size_t>::max() / 4, error);
     if (!bytes) return std::nullopt;
     if (is_sums(*bytes)) {
         const std::optional<Sums> sums = read_sums(*bytes);

@@ -2,7 +2,8 @@
 
 #include "cli/film.h"
 #include "cli/words.h"
-#include "driver/files.h"
+
+#include <fathom/files.h>
 
 #include <algorithm>
 #include <fcntl.h>
@@ -121,7 +122,7 @@ std::string manifest_of(const Job &job) {
 
 std::optional<Job> read_job(const fs::path &folder, std::string &error) {
     const std::optional<std::string> text =
-        driver::read_file(folder / "manifest.json", 256 << 20, error);
+        v1::read_file(folder / "manifest.json", 256 << 20, error);
     if (!text) return std::nullopt;
     try {
         const Json json = Json::parse(*text);
@@ -159,7 +160,7 @@ UnitReport report_of(const Job &job, std::size_t number) {
     UnitReport report;
     const fs::path state = job.folder / "state" / fmt::format("{}", number);
     std::string error;
-    std::istringstream lines(driver::read_file(state, 1 << 20, error).value_or(""));
+    std::istringstream lines(v1::read_file(state, 1 << 20, error).value_or(""));
     for (std::string word; lines >> word;) {
         if (word == "begin") ++report.tries;
         int status = 0;

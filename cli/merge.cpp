@@ -5,6 +5,8 @@
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 
+#include <fathom/files.h>
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
@@ -24,7 +26,7 @@ struct Part {
 std::optional<std::string> bytes_of(const std::string &file, Terminal &terminal) {
     std::string error;
     std::optional<std::string> bytes =
-        driver::read_file(file, std::numeric_limits<std::size_t>::max() / 4, error);
+        v1::read_file(file, std::numeric_limits<std::size_t>::max() / 4, error);
     if (!bytes) terminal.say(fmt::format("fathom: cannot read `{}`: {}", file, error));
     return bytes;
 }

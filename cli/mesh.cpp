@@ -1,6 +1,4 @@
-// fathom mesh: the surface as triangles, in a file. By the public library alone; what it says of the
-// scene has no excerpts, as `fathom check` has. The mesh is whole before its file appears.
-#include "base/limits.h"
+// fathom mesh: the surface as triangles, in a file. The mesh is whole before its file appears.
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
 
@@ -11,43 +9,6 @@
 
 namespace fathom::cli {
 namespace {
-
-v1::CompileOptions library_options(const SceneArguments &scene) {
-    v1::CompileOptions options;
-    options.include_folders = scene.include_folders;
-    for (const typecheck::Override &set : scene.overrides) options.definitions[set.name] = set.text;
-    for (const LimitRow &row : limit_rows())
-        if (scene.limits.*row.member != row.usual)
-            options.limits[row.name] = fmt::to_string(scene.limits.*row.member);
-    return options;
-}
-
-std::string_view word_of(v1::Severity severity) {
-    switch (severity) {
-    case v1::Severity::Error: return "error";
-    case v1::Severity::Warning: return "warning";
-    case v1::Severity::Note: return "note";
-    }
-    return "";
-}
-
-// Says what is to be said of a scene, and how the command ends because of it.
-Exit say_diagnostics(const v1::CompileResult &result, Terminal &terminal) {
-    Exit exit = done;
-    for (const v1::Diagnostic &d : result.diagnostics) {
-        if (d.at.line == 0) {
-            terminal.say("fathom: " + d.message);
-            exit = d.code == "usage" ? usage_error : device_error;
-            continue;
-        }
-        terminal.say(fmt::format("{}:{}:{}: {}[{}]: {}", d.at.file, d.at.line, d.at.column,
-                                 word_of(d.severity), d.code, d.message));
-        for (const std::string &note : d.notes) terminal.say("  note: " + note);
-        if (!d.help.empty()) terminal.say("  help: " + d.help);
-        if (d.severity == v1::Severity::Error) exit = scene_error;
-    }
-    return result.scene ? done : exit == done ? scene_error : exit;
-}
 
 // How a command ends that made no mesh.
 Exit exit_of(v1::MeshStatus status) {
@@ -145,7 +106,7 @@ Exit run(const MeshCommand &command, Terminal &terminal) {
     if (unwritable(command.out, terminal)) return device_error;
     const v1::CompileResult result =
         v1::compile_file(command.scene.file, library_options(command.scene));
-    if (const Exit exit = say_diagnostics(result, terminal); exit != done) return exit;
+    if (const Exit exit = report(result, terminal); exit != done) return exit;
     if (overwrites(result.files, command.out, terminal)) return usage_error;
     if (command.time < 0 || command.time > result.scene->facts().time_end) {
         terminal.say(fmt::format("fathom: --time {}: this scene is proved from 0 to {} seconds; "

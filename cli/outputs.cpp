@@ -1,5 +1,7 @@
 #include "cli/outputs.h"
 
+#include <fathom/files.h>
+
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
@@ -48,11 +50,12 @@ std::string_view name_of(Content content) {
 
 // The first target that writes it.
 std::string compiler_of(Content content) {
-    for (const glsl::Target target : glsl::all_targets())
+    const std::vector<v1::ShaderTarget> targets = v1::shader_target_table();
+    for (const v1::ShaderTarget &target : targets)
         if (content_of(target) == content)
-            return target == glsl::Target{}
+            return &target == &targets.front()
                        ? "`fathom compile`"
-                       : fmt::format("`fathom compile --target {}`", glsl::traits_of(target).name);
+                       : fmt::format("`fathom compile --target {}`", target.name);
     return "";
 }
 
@@ -98,16 +101,22 @@ std::string listed(const std::vector<std::string> &names) {
     return all;
 }
 
-std::string targets_with(bool glsl::TargetTraits::*trait) {
+std::string targets_with(bool v1::ShaderTarget::*trait) {
     std::vector<std::string> names;
-    for (const glsl::Target target : glsl::all_targets())
-        if (glsl::traits_of(target).*trait) names.emplace_back(glsl::traits_of(target).name);
+    for (const v1::ShaderTarget &target : v1::shader_target_table())
+        if (target.*trait) names.push_back(target.name);
     return listed(names);
 }
 
-Content content_of(glsl::Target target) {
-    const Suffix *known = known_suffix(glsl::traits_of(target).suffix);
+Content content_of(const v1::ShaderTarget &target) {
+    const Suffix *known = known_suffix(target.suffix);
     return known ? known->content : Content::Shader;
+}
+
+v1::ShaderTarget target_named(const std::string &name) {
+    const std::vector<v1::ShaderTarget> targets = v1::shader_target_table();
+    const auto named = std::ranges::find(targets, name, &v1::ShaderTarget::name);
+    return named == targets.end() ? targets.front() : *named;
 }
 
 std::optional<PictureFormat> picture_format(const std::string &out) {
@@ -155,14 +164,6 @@ bool overwrites(const std::string &file, const std::string &out, Terminal &termi
     return refuse_overwriting(out, terminal);
 }
 
-bool overwrites(const driver::Compilation &compilation, const std::string &out,
-                Terminal &terminal) {
-    std::vector<fs::path> files;
-    for (const auto &[file, stamp] : compilation.files)
-        if (stamp.exists) files.push_back(file);
-    return overwrites(files, out, terminal);
-}
-
 bool overwrites(const std::vector<fs::path> &files, const std::string &out, Terminal &terminal) {
     std::error_code none;
     if (is_stream(out) || !fs::exists(out, none)) return false;
@@ -191,7 +192,7 @@ Exit write_result(const std::string &out, std::string_view bytes, Terminal &term
         terminal.put(bytes);
         return done; // a failed write is told when the results are flushed
     }
-    std::string error = driver::write_file(out, bytes);
+    std::string error = v1::write_file(out, bytes);
     if (error.empty()) return done;
     terminal.say(fmt::format("fathom: cannot write `{}`: {}", out, error));
     return device_error;

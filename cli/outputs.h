@@ -2,18 +2,21 @@
 // can be refused is refused before any work is done.
 #pragma once
 
-#include "backend-glsl/targets.h"
 #include "cli/terminal.h"
+
+#include <fathom/shader.h>
 
 namespace fathom::cli {
 
 // What a command writes.
 enum class Content { Picture, Film, Sums, Shader, SpirV, Page, Mesh, Scene, SaveFile };
 
-Content content_of(glsl::Target target); // by its suffix
+Content content_of(const v1::ShaderTarget &target); // by its suffix
+
+v1::ShaderTarget target_named(const std::string &name); // that there is; empty: the first
 
 // The names of the targets that have the trait; names as "a, b or c".
-std::string targets_with(bool glsl::TargetTraits::*trait);
+std::string targets_with(bool v1::ShaderTarget::*trait);
 std::string listed(const std::vector<std::string> &names);
 
 // The picture files that can be written.
@@ -33,7 +36,6 @@ bool misnamed(const std::string &out, Content content, Terminal &terminal);
 // Whether a result would be written over the very file that it is made from, or over one that the
 // scene reads; says so.
 bool overwrites(const std::string &file, const std::string &out, Terminal &terminal);
-bool overwrites(const driver::Compilation &compilation, const std::string &out, Terminal &terminal);
 bool overwrites(const std::vector<std::filesystem::path> &files, const std::string &out,
                 Terminal &terminal);
 

@@ -3,8 +3,8 @@
 
 #include "backend-cpu/trace/march.h"
 #include "base/picture.h"
+#include "cli/compiled.h"
 #include "cli/frames.h"
-#include "cli/terminal.h"
 #include "render-gl/cache_passes.h"
 #include "render-gl/context.h"
 #include "render-gl/render.h"

@@ -88,8 +88,8 @@ Exit compile(Work &work, const std::vector<int> &frames) {
     driver::CompileOptions options = compile_options(command.scene, first, last);
     options.cells = driver::cells_of_pictures;
     if (!command.sweeps.empty())
-        for (const typecheck::Override &value : swept(command, frames.front()))
-            options.overrides.push_back(value);
+        for (const Definition &value : swept(command, frames.front()))
+            options.overrides.push_back({value.name, value.text});
     work.compilation = driver::compile_file(command.scene.file, options);
     // What is no error was said of the first frame.
     const bool again = !work.identity.empty() && work.compilation.good();

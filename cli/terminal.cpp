@@ -2,7 +2,9 @@
 
 #include "base/encode.h"
 #include "base/text.h"
-#include "driver/watch.h"
+
+#include <fathom/files.h>
+#include <fathom/watch.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -53,7 +55,7 @@ bool is_paged(const std::string &text) {
         named ? named : "if command -v less >/dev/null; then exec less; else exec cat; fi", "w");
     if (!pager) return false;
     const auto before = std::signal(SIGINT, SIG_IGN); // Ctrl-C is the pager's
-    (void)driver::write_all(::fileno(pager), text);   // the reader may leave before the end
+    (void)v1::write_all(::fileno(pager), text);       // the reader may leave before the end
     const int status = ::pclose(pager);
     std::signal(SIGINT, before);
     return !(WIFEXITED(status) && WEXITSTATUS(status) == 127); // the shell said that there is none
@@ -83,13 +85,12 @@ Exit Terminal::flush() {
         const bool shown = ::isatty(STDOUT_FILENO) != 0;
         if (shown) buffer_ = lines_for_terminal(buffer_);
         const bool paged = shown && pages_ && is_paged(buffer_);
-        const int error = paged ? 0 : driver::write_all(STDOUT_FILENO, buffer_);
+        const int error = paged ? 0 : v1::write_all(STDOUT_FILENO, buffer_);
         if (error == EPIPE)
             gone_ = true;
         else if (error) {
             failure_ = error;
-            say(fmt::format("fathom: cannot write to standard output: {}",
-                            driver::error_words(error)));
+            say(fmt::format("fathom: cannot write to standard output: {}", v1::error_words(error)));
         }
     }
     buffer_.clear();
@@ -102,8 +103,8 @@ void Terminal::say_text(std::string_view text) {
     finish_progress();
     std::string line(text);
     if (line.empty() || line.back() != '\n') line += '\n';
-    (void)driver::write_all(STDERR_FILENO,
-                            line); // where words cannot be said, nothing can be said about it
+    (void)v1::write_all(STDERR_FILENO,
+                        line); // where words cannot be said, nothing can be said about it
 }
 
 std::string duration_words(double seconds) {
@@ -120,18 +121,18 @@ void Terminal::progress(std::string_view what, double share, double left) {
     next_bar_ = now + 50;
     constexpr int width = 30;
     int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * width);
-    (void)driver::write_all(STDERR_FILENO,
-                            fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %{}",
-                                        for_terminal(what), "", full, "", width - full, 100 * share,
-                                        left < 0 ? "" : ", " + duration_words(left) + " left"));
+    (void)v1::write_all(STDERR_FILENO,
+                        fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %{}", for_terminal(what),
+                                    "", full, "", width - full, 100 * share,
+                                    left < 0 ? "" : ", " + duration_words(left) + " left"));
     bar_shown_ = true;
 }
 
 void Terminal::finish_progress() {
     if (preview_rows_ > 0)
-        (void)driver::write_all(STDERR_FILENO, fmt::format("\r\x1b[{}A\x1b[J", preview_rows_));
+        (void)v1::write_all(STDERR_FILENO, fmt::format("\r\x1b[{}A\x1b[J", preview_rows_));
     else if (bar_shown_)
-        (void)driver::write_all(STDERR_FILENO, "\r\x1b[K");
+        (void)v1::write_all(STDERR_FILENO, "\r\x1b[K");
     bar_shown_ = false;
     preview_rows_ = 0;
     next_bar_ = next_preview_ = 0;
@@ -143,66 +144,75 @@ void Terminal::preview(int rows, const std::function<std::string()> &lines) {
     next_preview_ = now + 200;
     std::string text = "\r";
     if (preview_rows_ > 0) text += fmt::format("\x1b[{}A", preview_rows_);
-    (void)driver::write_all(STDERR_FILENO, text + lines());
+    (void)v1::write_all(STDERR_FILENO, text + lines());
     preview_rows_ = rows;
     next_bar_ = 0;
 }
 
-driver::CompileOptions compile_options(const SceneArguments &scene) {
-    driver::CompileOptions options;
+v1::CompileOptions library_options(const SceneArguments &scene) {
+    v1::CompileOptions options;
     options.include_folders = scene.include_folders;
-    options.overrides = scene.overrides;
-    options.limits = scene.limits;
+    for (const Definition &set : scene.overrides) options.definitions[set.name] = set.text;
+    for (const LimitRow &row : limit_rows())
+        if (scene.limits.*row.member != row.usual)
+            options.limits[row.name] = fmt::to_string(scene.limits.*row.member);
     options.strict_proof = scene.strict_proof;
     return options;
 }
 
-driver::CompileOptions compile_options(const SceneArguments &scene, double first, double last) {
-    driver::CompileOptions options = compile_options(scene);
+v1::CompileOptions library_options(const SceneArguments &scene, double first, double last) {
+    v1::CompileOptions options = library_options(scene);
     options.times = {first, last};
     return options;
 }
 
-void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, Terminal &terminal) {
-    for (const Diagnostic &diagnostic : diagnostics.sorted())
-        terminal.say_text(to_text(diagnostic, sources, terminal.color()));
-    if (diagnostics.dropped() > 0)
-        terminal.say(fmt::format("({} more are not shown)", diagnostics.dropped()));
+void print_diagnostics(const std::vector<v1::Diagnostic> &diagnostics, std::size_t dropped,
+                       const v1::Texts &texts, Terminal &terminal) {
+    for (const v1::Diagnostic &diagnostic : diagnostics)
+        terminal.say_text(v1::printed(diagnostic, texts, terminal.color()));
+    if (dropped > 0) terminal.say(fmt::format("({} more are not shown)", dropped));
 }
 
-Exit report(const driver::Compilation &compilation, const SceneArguments &scene,
-            Terminal &terminal) {
-    if (!compilation.unreadable.empty()) {
-        terminal.say(
-            fmt::format("fathom: cannot read `{}`: {}", scene.file, compilation.unreadable));
-        return device_error;
+bool has_errors(const std::vector<v1::Diagnostic> &diagnostics) {
+    return std::ranges::any_of(
+        diagnostics, [](const v1::Diagnostic &d) { return d.severity == v1::Severity::Error; });
+}
+
+Exit report(const v1::CompileResult &result, Terminal &terminal) {
+    print_diagnostics(result.diagnostics, result.dropped, result.texts, terminal);
+    if (result.scene) return done;
+    // The codes of what is wrong, but not in a text (fathom/scene.h).
+    bool usage = false;
+    for (const v1::Diagnostic &d : result.diagnostics) {
+        if (d.code == "unreadable" || d.code == "memory" || d.code == "internal")
+            return device_error;
+        if (d.code == "usage")
+            usage = true;
+        else if (d.severity == v1::Severity::Error)
+            return scene_error;
     }
-    print_diagnostics(compilation.diagnostics, compilation.sources, terminal);
-    for (const std::string &error : compilation.usage_errors) terminal.say("fathom: " + error);
-    if (compilation.diagnostics.has_errors()) return scene_error;
-    return compilation.usage_errors.empty() ? done : usage_error;
+    return usage ? usage_error : scene_error;
 }
 
-bool in_proved_time(const ir::Scene &scene, double first, double last, Terminal &terminal) {
-    const double end = scene.render.time_end;
-    if (first >= 0 && last <= end) return true;
-    if (!scene.graph.reads(scene.graph.function(scene.distance).result).time) return true;
+bool in_proved_time(const v1::Facts &facts, double first, double last, Terminal &terminal) {
+    const double end = facts.time_end;
+    if ((first >= 0 && last <= end) || !facts.reads_time) return true;
     terminal.say(fmt::format("fathom: --time {}: this scene is proved from 0 to {} seconds; "
                              "`render(time: …)` in it says to which time",
                              format_shortest(first < 0 ? first : last), format_shortest(end)));
     return false;
 }
 
-Exit watch_scene(const SceneArguments &scene, const driver::CompileOptions &options,
-                 Terminal &terminal, const std::function<Exit(const driver::Compilation &)> &act) {
-    driver::Watcher watcher;
+Exit watch_scene(const SceneArguments &scene, const v1::CompileOptions &options, Terminal &terminal,
+                 const std::function<Exit(const v1::CompileResult &)> &act) {
+    v1::Watcher watcher;
     std::string told;
     for (;;) {
         {
-            driver::Compilation compilation = driver::compile_file(scene.file, options);
-            Exit exit = act(compilation);
+            const v1::CompileResult result = v1::compile_file(scene.file, options);
+            Exit exit = act(result);
             if (terminal.flush() != done || terminal.reader_gone()) return exit;
-            watcher.watch(compilation.files);
+            watcher.watch(result);
         }
         if (watcher.polls_because() != told) {
             told = watcher.polls_because();

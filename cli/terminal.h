@@ -3,7 +3,8 @@
 #pragma once
 
 #include "cli/command.h"
-#include "driver/compile.h"
+
+#include <fathom/scene.h>
 
 #include <functional>
 #include <string>
@@ -49,22 +50,23 @@ class Terminal {
 
 std::string duration_words(double seconds); // "3 min 20 s"
 
-driver::CompileOptions compile_options(const SceneArguments &scene);
+v1::CompileOptions library_options(const SceneArguments &scene);
 // Proved for what is drawn: the params' values as given, and these times, in seconds.
-driver::CompileOptions compile_options(const SceneArguments &scene, double first, double last);
+v1::CompileOptions library_options(const SceneArguments &scene, double first, double last);
 
 // Prints all diagnostics, and what else keeps a compilation from being good, and says how the
 // command ends.
-Exit report(const driver::Compilation &compilation, const SceneArguments &scene,
-            Terminal &terminal);
+Exit report(const v1::CompileResult &result, Terminal &terminal);
 // What is proved of a scene that moves holds for the seconds that its `render(time: …)` says.
 // False, with the reason, where `first` to `last` leave them and the field reads the time.
-bool in_proved_time(const ir::Scene &scene, double first, double last, Terminal &terminal);
-void print_diagnostics(const Diagnostics &diagnostics, const Sources &sources, Terminal &terminal);
+bool in_proved_time(const v1::Facts &facts, double first, double last, Terminal &terminal);
+void print_diagnostics(const std::vector<v1::Diagnostic> &diagnostics, std::size_t dropped,
+                       const v1::Texts &texts, Terminal &terminal);
+bool has_errors(const std::vector<v1::Diagnostic> &diagnostics);
 
 // Compiles, acts, and does both again after every save of a file that the scene read; ends by an
 // interrupt alone.
-Exit watch_scene(const SceneArguments &scene, const driver::CompileOptions &options,
-                 Terminal &terminal, const std::function<Exit(const driver::Compilation &)> &act);
+Exit watch_scene(const SceneArguments &scene, const v1::CompileOptions &options, Terminal &terminal,
+                 const std::function<Exit(const v1::CompileResult &)> &act);
 
 } // namespace fathom::cli

@@ -1,5 +1,5 @@
 // fathom view: the window. What can be said before one opens is said here.
-#include "cli/terminal.h"
+#include "cli/compiled.h"
 #include "viewer/viewer.h"
 
 #include <fmt/format.h>

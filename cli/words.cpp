@@ -185,7 +185,7 @@ std::string read_region(const std::string &word, std::optional<std::array<int, 4
     return "";
 }
 
-std::string read_override(const std::string &word, std::vector<typecheck::Override> &overrides) {
+std::string read_override(const std::string &word, std::vector<Definition> &overrides) {
     std::size_t equals = word.find('=');
     if (equals == word.npos || equals == 0)
         return fmt::format("a param is set as -D name=value, not `{}`", word);

@@ -25,6 +25,6 @@ std::string read_tile(const std::string &word, std::optional<std::pair<int, int>
 // 0,100,640,20: x and y of the upper left pixel, width and height.
 std::string read_region(const std::string &word, std::optional<std::array<int, 4>> &region);
 // name=value, of `-D`; the value is an expression of the language, which is not read here.
-std::string read_override(const std::string &word, std::vector<typecheck::Override> &overrides);
+std::string read_override(const std::string &word, std::vector<Definition> &overrides);
 
 } // namespace fathom::cli

@@ -113,6 +113,83 @@ class Progress {
     bool cancelled_ = false;
 };
 
+// What a compilation asks and tells: callables of Python, or None. What they raise ends the compilation and is raised
+// after it; so does Ctrl-C, where one of them is given.
+class Listener {
+  public:
+    Listener(const py::object &cancelled, const py::object &entered)
+        : cancelled_(cancelled), entered_(entered) {}
+
+    void listen(fathom::CompileOptions &options) {
+        if (cancelled_.is_none() && entered_.is_none()) return;
+        options.cancelled = [this] {
+            if (raised_) return true;
+            return call([this] {
+                if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+                given_up_ = !cancelled_.is_none() && py::bool_(cancelled_());
+                return given_up_;
+            });
+        };
+        if (entered_.is_none()) return;
+        options.entered = [this](fathom::Phase phase) {
+            if (!raised_)
+                call([&] {
+                    entered_(name_of(phase));
+                    return false;
+                });
+        };
+    }
+
+    void raise() {
+        if (raised_) throw py::error_already_set(std::move(*raised_));
+        if (!given_up_) return;
+        PyErr_SetString(py::module_::import("fathom").attr("Cancelled").ptr(),
+                        "given up by `cancelled`");
+        throw py::error_already_set();
+    }
+
+  private:
+    static const char *name_of(fathom::Phase phase) {
+        switch (phase) {
+        case fathom::Phase::Read: return "read";
+        case fathom::Phase::Check: return "check";
+        case fathom::Phase::Prove: return "prove";
+        case fathom::Phase::Lower: return "lower";
+        case fathom::Phase::Done: return "done";
+        }
+        return "";
+    }
+    template <class Work> bool call(Work work) {
+        const py::gil_scoped_acquire lock;
+        try {
+            return work();
+        } catch (py::error_already_set &error) {
+            raised_ = std::make_unique<py::error_already_set>(std::move(error));
+            return true;
+        }
+    }
+
+    py::object cancelled_, entered_;
+    std::unique_ptr<py::error_already_set> raised_;
+    bool given_up_ = false;
+};
+
+// Compiles by `work`, without the interpreter's lock.
+template <class Work> PyScene compiled(fathom::CompileOptions options,
+                                       const fathom::ProofCache *cache, const py::object &cancelled,
+                                       const py::object &entered, Work work) {
+    Listener listener(cancelled, entered);
+    listener.listen(options);
+    if (cache) options.cache = *cache;
+    fathom::CompileResult result;
+    {
+        const py::gil_scoped_release release;
+        result = work(options);
+    }
+    listener.raise();
+    return scene_of(std::move(result));
+}
+
 // The last axis has `width` numbers; gives the shape without it.
 std::vector<py::ssize_t> shape_of(const Floats &array, py::ssize_t width, const char *what) {
     if (array.ndim() < 1 || array.shape(array.ndim() - 1) != width)
@@ -369,21 +446,30 @@ PYBIND11_MODULE(_core, m) {
     fathom_python::add_data(m);
     fathom_python::add_mesh(m);
     add_scene(m);
+    py::class_<fathom::ProofCache>(m, "ProofCache",
+                                   "What compilations found of fields, for the next ones of an "
+                                   "edited text: given to each, only "
+                                   "what an edit touches is proved anew. It changes nothing else.")
+        .def(py::init(
+                 [](std::size_t most_bytes) { return fathom::ProofCache::of_bytes(most_bytes); }),
+             "most_bytes"_a = std::size_t{32} << 20)
+        .def_property_readonly("searches", &fathom::ProofCache::searches,
+                               "How many bounds were not in it when they were wanted.")
+        .def_property_readonly("bytes", &fathom::ProofCache::bytes, "How many bytes it holds.");
     m.def(
         "compile",
         [](const std::string &text, const std::string &name,
            const std::vector<std::filesystem::path> &include, const Words &definitions,
-           const Words &limits, const py::object &files) {
-            const fathom::CompileOptions options = options_of(include, definitions, limits, files);
-            fathom::CompileResult result;
-            {
-                const py::gil_scoped_release release;
-                result = fathom::compile_text(name, text, options);
-            }
-            return scene_of(std::move(result));
+           const Words &limits, const py::object &files, const fathom::ProofCache *cache,
+           const py::object &cancelled, const py::object &entered) {
+            return compiled(options_of(include, definitions, limits, files), cache, cancelled,
+                            entered, [&](const fathom::CompileOptions &options) {
+                                return fathom::compile_text(name, text, options);
+                            });
         },
         "text"_a, "name"_a = "scene.sdf", "include"_a = std::vector<std::filesystem::path>(),
         "definitions"_a = Words(), "limits"_a = Words(), "files"_a = py::none(),
+        "cache"_a = nullptr, "cancelled"_a = py::none(), "entered"_a = py::none(),
         "Compiles text; raises Error where it has an error. `files` gives the bytes of a path or "
         "None; without it "
         "imports are files. `definitions` sets params by expressions, `limits` what a scene may "
@@ -391,20 +477,18 @@ PYBIND11_MODULE(_core, m) {
     m.def(
         "load",
         [](const std::filesystem::path &path, const std::vector<std::filesystem::path> &include,
-           const Words &definitions, const Words &limits) {
-            const fathom::CompileOptions options =
-                options_of(include, definitions, limits, py::none());
-            fathom::CompileResult result;
-            {
-                const py::gil_scoped_release release;
-                result = fathom::compile_file(path, options);
-            }
-            return scene_of(std::move(result));
+           const Words &definitions, const Words &limits, const fathom::ProofCache *cache,
+           const py::object &cancelled, const py::object &entered) {
+            return compiled(options_of(include, definitions, limits, py::none()), cache, cancelled,
+                            entered, [&](const fathom::CompileOptions &options) {
+                                return fathom::compile_file(path, options);
+                            });
         },
         "path"_a, "include"_a = std::vector<std::filesystem::path>(), "definitions"_a = Words(),
-        "limits"_a = Words(),
+        "limits"_a = Words(), "cache"_a = nullptr, "cancelled"_a = py::none(),
+        "entered"_a = py::none(),
         "Compiles a .sdf file or a save file (.yaml); raises Error where it has an error.");
-    m.def("format_text", &fathom::format_text, "text"_a,
+    m.def("format_text", py::overload_cast<std::string_view>(&fathom::format_text), "text"_a,
           "The text in its one form, or None where it cannot be parsed.");
     m.def("library_entries", &fathom::library_entries, "The functions of the standard library.");
     m.def("shader_targets", &fathom::shader_targets, "What `Scene.shader` can write.");

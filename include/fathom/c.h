@@ -41,7 +41,7 @@ extern "C" {
 
 /** The version of this interface. It grows by one with each change that adds functions; functions
  *  that are there keep their meaning. */
-#define FATHOM_C_VERSION 2
+#define FATHOM_C_VERSION 3
 FATHOM_C_API int fathom_c_version(void);
 /** The library's own: "0.1.0" */
 FATHOM_C_API const char *fathom_version(void);
@@ -84,6 +84,34 @@ typedef fathom_text *(*fathom_file_provider)(const char *path, void *own);
 /** Files come from the provider alone. */
 FATHOM_C_API int fathom_options_files(fathom_options *options, fathom_file_provider provider,
                                       void *own);
+/** What compilations found of fields, for the next ones: one that is given to all compilations of a
+ *  text that is edited makes each prove only what the edit touched, and changes nothing else. Any
+ *  number of threads may use one. `most_bytes`: how much it may hold; 0: 32 MiB. */
+typedef struct fathom_cache fathom_cache;
+FATHOM_C_API fathom_cache *fathom_cache_make(size_t most_bytes);
+FATHOM_C_API void fathom_cache_free(fathom_cache *cache);
+/** How many bounds were not in it when they were wanted, and how many bytes it holds. */
+FATHOM_C_API size_t fathom_cache_searches(const fathom_cache *cache);
+FATHOM_C_API size_t fathom_cache_bytes(const fathom_cache *cache);
+/** Options and scenes keep what the cache holds: it may be freed before them. */
+FATHOM_C_API int fathom_options_cache(fathom_options *options, const fathom_cache *cache);
+/** Asked about once a millisecond, by the thread that compiles; where it gives anything but 0 the
+ *  compilation ends within some milliseconds with the one error `cancelled`. */
+typedef int (*fathom_cancelled)(void *own);
+FATHOM_C_API int fathom_options_cancel(fathom_options *options, fathom_cancelled cancelled,
+                                       void *own);
+/** What a compilation does at present: reads the text, evaluates it, proves its bounds, makes the
+ *  functions that are evaluated. */
+enum fathom_phase {
+    FATHOM_READ = 0,
+    FATHOM_CHECK = 1,
+    FATHOM_PROVE = 2,
+    FATHOM_LOWER = 3,
+    FATHOM_DONE = 4
+};
+/** Told as each phase begins, by that thread. */
+typedef void (*fathom_entered)(int phase, void *own);
+FATHOM_C_API int fathom_options_entered(fathom_options *options, fathom_entered entered, void *own);
 
 /** `length`: bytes of `text`. Null only where there is no memory. */
 FATHOM_C_API fathom_result *fathom_compile_text(const char *name, const char *text, size_t length);

@@ -3,9 +3,13 @@
 #pragma once
 
 #include <fathom/diagnostic.h>
+#include <fathom/explain.h>
 #include <fathom/field.h>
+#include <fathom/files.h>
 #include <fathom/mesh.h>
 #include <fathom/picture.h>
+#include <fathom/reference.h>
 #include <fathom/save_format.h>
 #include <fathom/scene.h>
 #include <fathom/shader.h>
+#include <fathom/watch.h>

@@ -21,14 +21,28 @@
 
 namespace fathom::FATHOM_V1 {
 
+struct ImportOptions {
+    bool strict = false;      /**< what is wrong in the content is an error, not a warning */
+    std::string asset_prefix; /**< put before the relative paths of textures and grids: the way from
+                                   the text's folder to the save file's ("../saves/") */
+    /** Where the text will stand. Then what of the save file no compiler takes (a grid that is not
+     *  there) is left out alone; files that the scene names are read for that. Empty: not tried. */
+    std::filesystem::path scene;
+};
+
 struct Imported {
     std::string text;      /**< of the language; what could be read, where it is not complete */
     bool complete = false; /**< the file's structure was sound */
     std::vector<Diagnostic> diagnostics;
+    std::size_t dropped = 0; /**< diagnostics beyond the most that are kept */
+    std::size_t nodes = 0;   /**< of the scene's tree, that were read */
+    Texts texts{};
 };
 
 /** `strict`: what is wrong in the content is an error instead of a warning. */
 FATHOM_API Imported import_yaml(std::string_view name, std::string_view yaml, bool strict = false);
+FATHOM_API Imported import_yaml(std::string_view name, std::string_view yaml,
+                                const ImportOptions &options);
 
 /** The scene at the present values of its params and at time 0. */
 FATHOM_API std::string export_yaml(const Scene &scene,

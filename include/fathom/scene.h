@@ -90,6 +90,7 @@ struct Facts {
     std::vector<ShapeFacts> shapes;
     /** What the bound rests on beside the proof: "sphere: exact" (docs/trusted.md). */
     std::vector<std::string> axioms;
+    bool reads_time = false; /**< the distance depends on the time */
 };
 
 /** The bytes of the file that a scene names (by import, image or grid), or nothing. `path` is
@@ -138,6 +139,17 @@ struct CompileOptions {
     std::function<bool()> cancelled;
     /** Told as each phase begins, by that thread. Forgotten, too. */
     std::function<void(Phase)> entered;
+    /** A bound that is not proved, but assumed or estimated, is an error. What the library states of
+     *  its own shapes is no such bound. */
+    bool strict_proof = false;
+    /** None: the facts hold for all values that the params' ranges and the scene's times allow. Else
+     *  for the params' present values and from the first to the second of these times alone, in
+     *  seconds: for what is drawn once. */
+    std::optional<std::array<double, 2>> times;
+    /** For what is drawn: bounds by cells of what is steep, at most so many cells along a side, 4 or
+     *  more. A field then takes longer steps, and a compilation longer. The program takes 16 for
+     *  pictures and 8 for texts of shaders, which hold the cells. 0: none. */
+    int cells = 0;
 };
 
 struct CompileResult;
@@ -173,11 +185,13 @@ struct CompileResult {
     std::optional<Scene> scene;
     std::vector<Name> names;                  /**< as declared */
     std::vector<Diagnostic> diagnostics;      /**< by place */
-    std::vector<std::filesystem::path> files; /**< read or looked for: what to watch */
+    std::vector<std::filesystem::path> files; /**< read or looked for (fathom/watch.h) */
+    std::size_t dropped = 0;                  /**< diagnostics beyond the most that are kept */
+    Texts texts{};                            /**< that the places lie in */
     explicit operator bool() const { return scene.has_value(); }
 };
 
-/** Compiles a `.sdf` file or a save file (`.yaml`, `.yml`). Never throws: a file that cannot be
+/** Compiles a `.sdf` file or a save file (`.yaml`, `.yml`); `-` is standard input. Never throws: a file that cannot be
  *  read is a diagnostic (`unreadable`), and so is a lack of memory (`memory`). */
 FATHOM_API CompileResult compile_file(const std::filesystem::path &file,
                                       const CompileOptions &options = {});
@@ -187,13 +201,27 @@ FATHOM_API CompileResult compile_file(const std::filesystem::path &file,
 FATHOM_API CompileResult compile_text(std::string_view name, std::string_view text,
                                       const CompileOptions &options = {});
 
+/** The verdict on a scene as the JSON document that `fathom check --json` prints (docs/cli.md), with
+ *  a line end. Empty of a result that no compilation of a text gave, and without memory for it. */
+FATHOM_API std::string verdict_json(const CompileResult &result);
+
 /** The text in the one form that `fathom fmt` gives it, or nothing where it cannot be parsed. */
 FATHOM_API std::optional<std::string> format_text(std::string_view text);
+
+/** The same, with what is to be said of a text that cannot be parsed. */
+struct Formatted {
+    std::optional<std::string> text;
+    std::vector<Diagnostic> diagnostics;
+    std::size_t dropped = 0; /**< diagnostics beyond the most that are kept */
+    Texts texts{};
+};
+FATHOM_API Formatted format_text(std::string_view name, std::string_view text);
 
 /** A function of the standard library. A name may have several entries. */
 struct LibraryEntry {
     std::string name, signature, doc;
     std::string module; /**< to be imported; empty for what is visible everywhere */
+    std::string file;   /**< of the library that defines it; empty of what is built in */
 };
 FATHOM_API std::vector<LibraryEntry> library_entries();
 

@@ -30,12 +30,24 @@ namespace fathom::FATHOM_V1 {
 /** The names of the targets, as `fathom compile --target` takes them. */
 FATHOM_API std::vector<std::string> shader_targets();
 
+/** What a target gives. */
+struct ShaderTarget {
+    std::string name;
+    std::string suffix;       /**< of its files, with the dot: ".frag" */
+    std::string field_target; /**< of a page: the target that writes its field alone; else empty */
+    bool buffers = false;     /**< large tables may be a buffer (ShaderOptions::buffers) */
+    bool noise_cache = false; /**< ShaderOptions::noise_cache goes with it */
+};
+/** All targets, in the order of `shader_targets`. */
+FATHOM_API std::vector<ShaderTarget> shader_target_table();
+
 struct ShaderOptions {
     std::string target = "glsl330";
     bool field_only = false;     /**< `float sdf(vec3)` and the material alone, no marcher */
     bool buffers = false;        /**< large tables as a buffer (Shader::tables), not as text */
     double time = 0;             /**< the moment of the camera, for targets without a host */
     std::string title = "scene"; /**< of a page */
+    bool noise_cache = false;    /**< with the cache's hooks, and its passes (Shader::cache) */
 };
 
 /** A uniform of the text for a param of the scene. `location` is -1 unless the text gives one. */
@@ -63,6 +75,12 @@ struct ShaderInput {
     int place = -1; /**< its location, or a sampler's binding; -1 where the text has none */
 };
 
+/** The passes of the noise cache (docs/shaders.md), each a compute shader's text. All are empty where
+ *  no field of the scene is worth keeping; the picture's text then computes all. */
+struct CachePasses {
+    std::string reserve, fill, publish, sweep;
+};
+
 /** A checked shader. `text` is what docs/shaders.md describes; `words` is SPIR-V, for the target
  *  that is binary. */
 struct Shader {
@@ -73,6 +91,7 @@ struct Shader {
     std::vector<Texture> textures;
     std::vector<float> tables; /**< RGBA32F texels of `fathom_tables`, where buffers were allowed */
     bool reads_time = false;
+    CachePasses cache;      /**< where they were wanted */
     std::string reflection; /**< all of this but data and text, as JSON (docs/shaders.md) */
 };
 

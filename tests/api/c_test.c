@@ -70,6 +70,50 @@ static void options(void) {
     fathom_options_free(options);
 }
 
+static int yes(void *own) {
+    ++*(int *)own;
+    return 1;
+}
+
+static void note_phase(int phase, void *own) {
+    int *phases = own;
+    if (phases[0] < 8) phases[++phases[0]] = phase;
+}
+
+static void cache_cancellation_and_phases(void) {
+    const char *text = "implicit(p => p.x + 0.3 * sin(p.y) * sin(3 * p.z), within: ball(4))\n";
+    fathom_cache *cache = fathom_cache_make(0);
+    fathom_options *options = fathom_options_make();
+    int phases[9] = {0}; /* how many, then each */
+    CHECK(fathom_options_cache(options, cache) == FATHOM_OK);
+    CHECK(fathom_options_cache(options, NULL) == FATHOM_BAD_ARGUMENT);
+    CHECK(fathom_options_entered(options, note_phase, phases) == FATHOM_OK);
+    CHECK(fathom_options_entered(options, NULL, NULL) == FATHOM_BAD_ARGUMENT);
+    fathom_result *first = fathom_compile_text_with("a.sdf", text, strlen(text), options);
+    CHECK(fathom_result_scene(first));
+    const size_t searches = fathom_cache_searches(cache);
+    CHECK(searches > 0 && fathom_cache_bytes(cache) > 0);
+    CHECK(phases[0] > 0 && phases[phases[0]] == FATHOM_DONE);
+    for (int i = 2; i <= phases[0]; ++i) CHECK(phases[i - 1] < phases[i]);
+    fathom_result *second = fathom_compile_text_with("a.sdf", text, strlen(text), options);
+    CHECK(fathom_cache_searches(cache) == searches); /* all was found again */
+    CHECK(fathom_scene_lipschitz(fathom_result_scene(first)) ==
+          fathom_scene_lipschitz(fathom_result_scene(second)));
+    fathom_cache_free(cache); /* the options keep what it holds */
+
+    int asked = 0;
+    CHECK(fathom_options_cancel(options, NULL, NULL) == FATHOM_BAD_ARGUMENT);
+    CHECK(fathom_options_cancel(options, yes, &asked) == FATHOM_OK);
+    fathom_result *third = fathom_compile_text_with("a.sdf", text, strlen(text), options);
+    CHECK(asked > 0 && !fathom_result_scene(third));
+    CHECK(fathom_result_count(third) == 1);
+    CHECK(strcmp(fathom_result_code(third, 0), "cancelled") == 0);
+    fathom_options_free(options);
+    fathom_result_free(first);
+    fathom_result_free(second);
+    fathom_result_free(third);
+}
+
 static void params_and_facts(void) {
     fathom_result *result = compiled("param r = 1 in 0.5..2 \"Radius\"\nsphere(r)\n");
     const fathom_scene *scene = fathom_result_scene(result);
@@ -187,12 +231,15 @@ static void nothing(void) {
     fathom_mesh_free(NULL);
     fathom_text_free(NULL);
     fathom_options_free(NULL);
+    fathom_cache_free(NULL);
+    CHECK(fathom_cache_bytes(NULL) == 0);
     CHECK(fathom_c_version() == FATHOM_C_VERSION && fathom_version()[0] != 0);
 }
 
 int main(void) {
     diagnostics();
     options();
+    cache_cancellation_and_phases();
     params_and_facts();
     fields();
     pictures_and_meshes();

@@ -134,6 +134,43 @@ def test_giving_up():
         scene.mesh(progress=lambda done: False)
 
 
+WAVES = "implicit(p => p.x + 0.3 * sin(p.y) * sin(3 * p.z), within: ball(4))\n"
+
+
+def test_a_cache_proves_what_is_new():
+    cache = fathom.ProofCache()
+    assert cache.searches == 0 and cache.bytes == 0
+    first = fathom.compile(WAVES, cache=cache)
+    searches = cache.searches
+    assert searches > 0 and cache.bytes > 0
+    assert fathom.compile(WAVES, cache=cache).facts.lipschitz == first.facts.lipschitz
+    assert cache.searches == searches
+    fathom.compile(WAVES.replace("0.3", "0.2"), cache=cache)
+    assert cache.searches > searches
+
+
+def test_a_compilation_tells_its_phases_and_is_given_up():
+    phases = []
+    fathom.compile(WAVES, entered=phases.append)
+    assert phases == ["check", "prove", "lower", "done"]
+    phases.clear()
+    fathom.load(EXAMPLES / "gears.sdf", entered=phases.append)
+    assert phases == ["read", "check", "prove", "lower", "done"]
+    with pytest.raises(fathom.Cancelled, match="cancelled"):
+        fathom.compile(WAVES, cancelled=lambda: True)
+    assert fathom.compile(WAVES, cancelled=lambda: False)
+
+    def fails(*_):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        fathom.compile(WAVES, entered=fails)
+    with pytest.raises(KeyError, match="mine"):
+        fathom.load(EXAMPLES / "gears.sdf", cancelled=fails)
+    with pytest.raises(TypeError):
+        fathom.compile(WAVES, cache=3)
+
+
 def test_a_mesh_has_colours_where_they_are_wanted():
     scene = fathom.compile("sphere(1).paint(p => if p.y > 0 { #f00 } else { #00f })")
     assert scene.mesh(resolution=8).colors.shape == (0, 3)

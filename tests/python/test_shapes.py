@@ -80,6 +80,7 @@ def test_stubs_name_what_there_is():
     stub = (folder / "_core.pyi").read_text()
     for name, body in re.findall(r"^class (\w+):\n((?:    .*\n|\n)+)", stub, re.M):
         there = {n for n in dir(getattr(fathom._core, name)) if not n.startswith("__")}
-        assert set(re.findall(r"^    (?:def )?(\w+)[:(]", body, re.M)) == there, name
+        stubs = set(re.findall(r"^    (?:def )?(\w+)[:(]", body, re.M)) - {"__init__"}
+        assert stubs == there, name
     functions = set(re.findall(r"^def (\w+)", stub, re.M)) | set(re.findall(r"^class (\w+)", stub, re.M))
     assert functions == {n for n in dir(fathom._core) if not n.startswith("_")}

@@ -22,7 +22,7 @@ class Error(Exception):
 
 
 class Cancelled(Exception):
-    """Work that a `progress` gave up."""
+    """Work that a `progress`, or a compilation that its `cancelled`, gave up."""
 
 
 from ._core import (  # noqa: E402  the module raises the two above
@@ -33,6 +33,7 @@ from ._core import (  # noqa: E402  the module raises the two above
     MeshCertificate,
     Param,
     Place,
+    ProofCache,
     Scene,
     Shader,
     ShaderInput,

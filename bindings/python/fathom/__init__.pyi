@@ -6,6 +6,7 @@ from ._core import (
     MeshCertificate as MeshCertificate,
     Param as Param,
     Place as Place,
+    ProofCache as ProofCache,
     Scene as Scene,
     Shader as Shader,
     ShaderInput as ShaderInput,

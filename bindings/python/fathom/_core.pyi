@@ -135,6 +135,13 @@ class Scene:
     def _repr_png_(self) -> bytes: ...
     def _repr_html_(self) -> str | None: ...
 
+class ProofCache:
+    def __init__(self, most_bytes: int = 33554432) -> None: ...
+    @property
+    def searches(self) -> int: ...
+    @property
+    def bytes(self) -> int: ...
+
 def compile(
     text: str,
     name: str = "scene.sdf",
@@ -142,12 +149,18 @@ def compile(
     definitions: Mapping[str, object] = ...,
     limits: Mapping[str, object] = ...,
     files: Callable[[str], str | bytes | None] | None = None,
+    cache: ProofCache | None = None,
+    cancelled: Callable[[], bool] | None = None,
+    entered: Callable[[str], object] | None = None,
 ) -> Scene: ...
 def load(
     path: str | PathLike[str],
     include: Sequence[str | PathLike[str]] = ...,
     definitions: Mapping[str, object] = ...,
     limits: Mapping[str, object] = ...,
+    cache: ProofCache | None = None,
+    cancelled: Callable[[], bool] | None = None,
+    entered: Callable[[str], object] | None = None,
 ) -> Scene: ...
 def format_text(text: str) -> str | None: ...
 def library_entries() -> list[LibraryEntry]: ...
