@@ -42,15 +42,15 @@
 //       solid), 1 (it touches a sheet) or 0 (the surface is farther than d says)
 //     else if d < slack(t)/4 and touches > 0: touches += 1; beyond max_touches undecided at t
 //     else if d >= slack(t)/4: undecided at t if touches > 0; else touches = 0
-//     d = max(d, slack(t)/4), never less than float32 can move; tolerance(t) while it grazes
+//     d = max(d, slack(t)/4), never less than float32 can move; graze*tolerance(t) while
+//       it grazes
 //     next = d, aims = false
 //     if stride > 0: assume that f goes on along the ray as straight as over the last stride. The
 //       sphere that would touch this one has the radius d*(stride + d - before)/(stride - d +
 //       before): add relaxation times that (numerator at least 0, denominator at least
 //       flattest*stride). And where before > d: to = d*stride/(before - d) is the way to where that
-//       line is 0. If to + tolerance(t)/4 <= jump*tolerance(t), or far_jump*tolerance(t) where
-//       d <= tolerance(t) and no bound is above 1 (then half a pixel's height is all that a jump
-//       may miss): next = max(d, to + tolerance(t)/4), aims = true, so that the sign changes
+//       line is 0. If to + tolerance(t)/4 <= jump*tolerance(t): next = max(d, to + tolerance(t)/4),
+//       aims = true, so that the sign changes
 //     never past the end unproved, rounding or not: proved = max(end, t + d),
 //     next = min(next, proved - t), before = d, stride = next, t = min(t + next, proved)
 //   Out of way: a miss.
@@ -123,20 +123,26 @@
 //   reach = the light's distance from q; for a sun, the way from q out of the box along l, or `far`
 //   without a box
 //   angle = max(soft_shadows, min_angle): half the light's angular size
-//   closed(s) = near(q + s*l, h)/(angle*s): where that is below 1, something covers the light
-//   s = reach (what is left of the way), before = 0, shadow = 2; while s > margin,
+//   closed(s) = near(q + s*l, max(h, shadow_arm*g))/(angle*s): where that is below 1, something covers
+//   the light. The slope is that of as long a way as the value is of, not that of a grain of noise.
+//   Where it is looked at are marks, which no bound moves: the multiples of gap(s) = the greatest
+//   power of 2 that is not above marks*angle*s.
+//   s = reach (what is left of the way), shadow = closed_from; while s > margin,
 //   margin = shadow_bias*tolerance(t):
 //     the budget is spent: undecided; it counts as what it is so far
 //     d = f(q + s*l)
 //     if d <= 0: all dark, done
-//     where no bound is above 1, closed is taken without its slope, which is at most 1. Else it is
-//       not looked at while s is within `quiet` times the last near from where that was found.
-//     if d < shadow*angle*s and closed(s) < shadow: shadow = closed(s); at = s, with the strides
-//       before it and after it; where that is below 1/256 and closed has its slope: all dark, done
-//     before = d, s -= max(d, slack(s)/4)
-//   PENUMBRA, where shadow < 2: the least of closed between at + the stride before and at - the
-//   stride after, by penumbra_turns golden sections with the
-//   slope of `at`; at the least, closed is taken anew, with the slope there
+//     edge = shadow*angle*s: what is farther changes nothing
+//     if s is a mark, d < edge and s <= quiet: closed(s); where that is below 1/256 all dark, done.
+//       quiet = s - calm*(near - edge): what is so much farther than the edge is not looked at again
+//       before that. Where closed(s) < shadow: shadow = closed(s), at = s
+//     d = max(d, slack(s)/4). The ball of radius d about s is free; up to s - (d - edge), with the new
+//       edge, nothing in it is nearer than that. s = the greatest of s - d and the first mark that is
+//       before s, not above s - (d - edge) and not above quiet
+//   PENUMBRA, where shadow < closed_from: the least of closed between the marks beside `at`, by
+//   penumbra_turns golden sections with the slope of `at`; at the least, closed is taken anew, with
+//   the slope there. So a penumbra depends on the solid alone: another bound makes other steps, but
+//   the same marks, and those that it passes over are not near enough.
 //   shadow = min(shadow, 1); result: shadow^2*(3 - 2*shadow)
 //
 // UNDECIDED: shaded where the ray came to, as what it is nearest to.
@@ -164,10 +170,12 @@ inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.075f; // of half the height that is seen at the focus
 inline constexpr float nearly = 0.98f;
 inline constexpr int penumbra_turns = 7;
-inline constexpr float quiet = 0.25f;           // of a distance near a shadow ray
-inline constexpr float jump = 4, far_jump = 32; // tolerances
-inline constexpr int refinements = 8;
-inline constexpr float refined = 1.0f / 128; // of a tolerance
+inline constexpr float calm = 0.25f;
+inline constexpr float shadow_arm = 0.35f; // of the field's value beside a shadow ray
+inline constexpr float marks = 0.5f, closed_from = 1.0625f; // of what the light covers at s
+inline constexpr float jump = 2, graze = 1.0f / 16;         // tolerances
+inline constexpr int refinements = 12;
+inline constexpr float refined = 1.0f / 2048; // of a tolerance
 inline constexpr int max_touches = 8;
 inline constexpr int many_steps = 256; // red in a picture of steps
 inline constexpr int budget = 65536;   // evaluations a ray, where the scene does not say

@@ -180,14 +180,17 @@ Derived Prover::know_taper(ShapeId id, Derived k) {
         return k;
     }
     double norm = infinity;
-    if (straight.parts_exact && std::isfinite(r) && std::isfinite(v)) {
+    if (std::isfinite(r) && std::isfinite(v) && std::isfinite(straight.mean_slack)) {
         const double slant = up(steepness * r * options.rules[Rule::Taper]),
                      turn = up(most * rate * options.rules[Rule::Twist]);
         norm = lower_triangle_norm(
             up(most + steepness * v * options.rules[Rule::Taper]),
             std::min(up(std::hypot(slant, turn * r), 4),
                      up(slant + turn * std::min(straight.fact.moment_arm[a], r))));
-        norm = up(norm * straight.fact.lipschitz_sup / l);
+        norm = up((norm * straight.fact.lipschitz_sup +
+                   steepness * straight.mean_slack * options.rules[Rule::Taper]) /
+                      l,
+                  2);
     }
     Box inside = here;
     if (!std::isfinite(norm) && !here.finite() && own_box(shape, k)) {

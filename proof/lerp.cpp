@@ -98,6 +98,7 @@ Derived Prover::know_lerp(ShapeId id) {
                : up(range.magnitude() * la + rest.magnitude() * lb);
     if (!convex) sup = 1 + (sup - 1) * options.rules[Rule::LerpWeights];
     k.offset_slack = infinity;
+    if (varies || !convex) k.mean_slack = infinity;
     // t*a + (1-t)*b < 0 needs a < 0 or b < 0 while both weights are at least 0.
     unite(k, b);
     if (!convex) {

@@ -104,6 +104,7 @@ Derived Prover::know_scale(ShapeId id, Derived k) {
         k.parts = everywhere(k.parts) ? k.parts : times(k.parts, by);
         for (double &moment_arm : k.fact.moment_arm) moment_arm = up(moment_arm * most);
         k.offset_slack = up(k.offset_slack * most);
+        k.mean_slack = up(k.mean_slack * most);
     } else {
         // min|s| * |J^T g| <= min|s| / min|s| * L: the factor takes back what the map adds. Not
         // exact any more, and gradients no longer point from nearest points.

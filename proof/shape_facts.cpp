@@ -18,6 +18,11 @@ void forget_moment_arms(Derived &k) {
     k.fact.moment_arm = {infinity, infinity, infinity};
 }
 
+void differ_by(Derived &k, double by) {
+    k.offset_slack = up(k.offset_slack + by);
+    k.mean_slack = up(k.mean_slack + by);
+}
+
 void unite(Derived &k, const Derived &c) {
     k.fact.bounds = ir::hull(k.fact.bounds, c.fact.bounds);
     k.growth_rate = std::max(k.growth_rate, c.growth_rate);
@@ -30,6 +35,7 @@ void inherit(Derived &k, const Derived &c) {
     k.fact.status = std::max(k.fact.status, c.fact.status);
     k.parts = ir::hull(k.parts, c.parts);
     k.offset_slack = std::max(k.offset_slack, c.offset_slack);
+    k.mean_slack = std::max(k.mean_slack, c.mean_slack);
     k.lowered = std::max(k.lowered, c.lowered);
     for (std::size_t a = 0; a < 3; ++a) {
         k.fact.symmetric[a] = k.fact.symmetric[a] && c.fact.symmetric[a];

@@ -34,12 +34,18 @@ struct Derived {
     // By how much the field may differ from that of a part that makes its gradient: an offset by r
     // moves surfaces, and not what gradients point away from.
     double offset_slack = 0;
+    // By how much it may differ from the mean of its parts' values, L times, with the weights that its
+    // gradient has: at most offset_slack, and 0 of a mean by a constant.
+    double mean_slack = 0;
     double lowered = 0;  // outside, an exact field and at most this much (offsets by less than 0)
     NodeId leaf;         // of a field of one's own, that field
     bool failed = false; // reported, here or below
 };
 
 void forget_moment_arms(Derived &k); // gradients no longer point from parts in a known box
+
+// The field moves away from its parts' by at most `by`.
+void differ_by(Derived &k, double by);
 
 // Of a min of fields: {min < t} is in the hull of the children's; {min > -t} in the meet of theirs.
 void unite(Derived &k, const Derived &c);

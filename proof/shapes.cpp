@@ -45,8 +45,7 @@ void blend(Derived &k, const Derived &c, double r, ir::Profile profile) {
     unite(k, c);
     k.growth_rate = std::max(k.growth_rate, w);
     if (!both.empty()) k.fact.bounds = ir::hull(k.fact.bounds, both);
-    k.offset_slack =
-        up(k.offset_slack + 2 * r);        // a part decides only where it is within r of the least
+    differ_by(k, 2 * r);                   // a part decides only where it is within r of the least
     if (profile == ir::Profile::Columns) { // not a function of the difference alone
         k.fact.bounds = reached(k.fact.bounds, w, r);
         k.growth_rate = infinity;
@@ -59,7 +58,7 @@ void seam(Derived &k, const Derived &first, const Derived &c, double r, double d
           ir::SeamKind kind) {
     const double w = std::max(k.growth_rate, c.growth_rate);
     k.outer = Box::everything(), k.outer_growth_rate = 0;
-    k.offset_slack = infinity;
+    differ_by(k, infinity);
     switch (kind) {
     case ir::SeamKind::Pipe:
         k.fact.bounds = meeting(reached(first.fact.bounds, w, r), reached(c.fact.bounds, w, r));
@@ -89,7 +88,7 @@ void pseudo_norm(Derived &k, const Derived &c) {
     const double w = std::max(k.growth_rate, c.growth_rate);
     unite(k, c);
     k.fact.bounds = reached(k.fact.bounds, w, 0.5);
-    k.offset_slack = infinity;
+    differ_by(k, infinity);
     k.growth_rate = infinity;
     k.outer = Box::everything();
 }
@@ -264,14 +263,14 @@ Derived Prover::know_displaced(ShapeId id) {
         double half = std::max(amount.hi, 0.0) / 2;
         slope /= 2;
         k.fact.bounds = reached(k.fact.bounds, k.growth_rate, half);
-        k.offset_slack = up(k.offset_slack + half);
+        differ_by(k, half);
         k.outer = Box::everything();
         k.outer_growth_rate = 0;
         k.exact_outside = was_exact && !varies;
     } else {
         k.fact.bounds = reached(k.fact.bounds, k.growth_rate, amount.hi);
         k.outer = reached(k.outer, k.outer_growth_rate, -amount.lo);
-        k.offset_slack = up(k.offset_slack + amount.magnitude());
+        differ_by(k, amount.magnitude());
         k.lowered = up(k.lowered + std::max(-amount.lo, 0.0));
         k.exact_outside = k.exact_outside && !varies;
         // What moves inward only is still below the child's field: the shell begins at the surface
@@ -319,6 +318,7 @@ Derived Prover::know_extrude(ShapeId id) {
     // gradient: they differ by the offset_slack, along that gradient.
     k.parts = reached(k.parts, 1, k.offset_slack);
     k.offset_slack = 0;
+    k.mean_slack = k.parts_exact ? 0 : infinity;
     stand(k.parts);
     k.fact.symmetric[2] = true;
     for (int a = 0; a < 2; ++a)
@@ -348,7 +348,7 @@ Derived Prover::know_instances(ShapeId id) {
         if (instance_table.smooth) {
             const double smooth = std::max(number(shape.args[0]).hi, 0.0);
             k.fact.bounds = reached(k.fact.bounds, k.growth_rate, smooth);
-            k.offset_slack = up(k.offset_slack + 2 * smooth * instance_table.count);
+            differ_by(k, 2 * smooth * instance_table.count);
         }
     }
     // Symmetric copies need not be a symmetric whole.

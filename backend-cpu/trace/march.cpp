@@ -14,7 +14,7 @@ Lengths::Lengths(const Stage &stage)
       far(static_cast<float>(stage.frame.far)),
       base(static_cast<float>(stage.frame.tolerance_base)),
       slope(static_cast<float>(stage.frame.tolerance_slope)), fades(!stage.frame.boxed),
-      orthographic(stage.view.orthographic), proves_unit(!stage.shaded_apart) {}
+      orthographic(stage.view.orthographic) {}
 
 float Lengths::arm(float t) const {
     return shading::arm * tolerance(t) + shading::normal_slack * slack;

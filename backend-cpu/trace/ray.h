@@ -71,8 +71,8 @@ inline void go_back(Walk &walk, const Lengths &lengths, bool by_curvature) {
 }
 
 inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
-    const float least =
-        walk.touches < 0 ? lengths.tolerance(walk.t) : 0.25f * lengths.slack_at(walk.t);
+    const float least = walk.touches < 0 ? ir::shading::graze * lengths.tolerance(walk.t)
+                                         : 0.25f * lengths.slack_at(walk.t);
     const float d = std::max(walk.d, least);
     const float span = std::max(walk.span, d);
     float next = brute ? std::max(0.1f * d, 0.125f * lengths.tolerance(walk.t)) : d;
@@ -91,8 +91,7 @@ inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
     if (!brute && walk.stride > 0 && walk.before > walk.d) {
         const float tolerance = lengths.tolerance(walk.t);
         const float to = walk.d / slope_along(walk) + 0.25f * tolerance;
-        const bool near = lengths.proves_unit && walk.d <= tolerance;
-        if (to <= (near ? ir::shading::far_jump : ir::shading::jump) * tolerance) {
+        if (to <= ir::shading::jump * tolerance) {
             next = std::max(d, to);
             walk.aims = true;
         }

@@ -73,7 +73,6 @@ struct Lengths {
     float slack, pixel, far, base, slope;
     bool fades; // what lies far off, as rays have no box
     bool orthographic;
-    bool proves_unit; // no bound is above 1
     explicit Lengths(const Stage &stage);
     float tolerance(float t) const { return base + slope * t; }
     float arm(float t) const;

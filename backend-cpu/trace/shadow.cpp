@@ -5,6 +5,7 @@
 #include "ir/shading.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace fathom::cpu {
@@ -14,11 +15,11 @@ namespace shading = ir::shading;
 namespace {
 
 struct State {
-    float s, stride = 0;     // what is left of the way; how long the last step was
-    float shadow = 2;        // the least of `closed` so far, and
-    float at = 0, slope = 1; // where, and the gradient's length there
-    float lo = 0, hi = 0;    // the samples beside it
-    float quiet = 1e30f;     // from where on it is looked at again
+    float s;                             // what is left of the way
+    bool mark = false;                   // whether s is one of the marks
+    float shadow = shading::closed_from; // the least of `closed` at them so far, and
+    float at = 0, slope = 1;             // where, and the gradient's length there
+    float quiet = 1e30f;                 // from where on it is looked at again
 };
 
 class Shadows {
@@ -70,41 +71,57 @@ class Shadows {
             const State &state = states_[i];
             const float d = worker_.values[k];
             next_[k] = std::max(d, 0.25f * lengths_.slack_at(state.s));
-            if (!is_bound(worker_, k) && (d <= 0 || state.s < state.quiet) &&
-                d < state.shadow * angle_ * state.s)
-                close_.push_back({i, state.s, d, next_[k]});
+            if (d <= 0 || (state.mark && !is_bound(worker_, k) &&
+                           d < state.shadow * angle_ * state.s && state.s <= state.quiet))
+                close_.push_back({i, state.s, d});
         }
-        look(!worker_.stage.shaded_apart);
+        look();
         for (std::size_t k = 0; k < active.size(); ++k) {
             State &state = states_[active[k]];
-            state.stride = next_[k];
-            state.s = state.shadow > 0 ? state.s - next_[k] : 0;
+            if (!(state.shadow > 0)) {
+                state.s = 0;
+                continue;
+            }
+            const float next = state.s - next_[k], mark = next_mark(state, next_[k]);
+            state.mark = mark >= next;
+            state.s = std::max(next, mark);
         }
     }
 
+    // How far the marks about s are apart: the greatest power of 2 that is not above a share of the
+    // light's size, so that the same places are marked on every way to them.
+    float spacing(float s) const {
+        return std::bit_cast<float>(std::bit_cast<std::int32_t>(shading::marks * angle_ * s) &
+                                    0x7f800000);
+    }
+    // The first mark before s where what the ball of radius d about s leaves free may be less than
+    // the shadow so far, and not before it is quiet no more.
+    float next_mark(const State &state, float d) const {
+        const float gap = spacing(state.s);
+        const float to = std::min(state.s - (d - state.shadow * angle_ * state.s), state.quiet);
+        return gap * std::min(std::floor(to / gap), std::ceil(state.s / gap) - 1);
+    }
+
     // Where something may cover the light, the true distance decides.
-    void look(bool by_field) {
+    void look() {
         if (close_.empty()) return;
-        measure(by_field);
+        measure();
         for (std::size_t j = 0; j < close_.size(); ++j) {
             const Close &close = close_[j];
             State &state = states_[close.ray];
             const float closed = near_[j] / (angle_ * close.s);
-            const bool certain = !by_field || worker_.stage.frame.unit_slope;
-            if (!(close.d > 0) || (certain && closed < 0.00390625f)) state.shadow = 0;
-            if (worker_.stage.shaded_apart) state.quiet = close.s - shading::quiet * near_[j];
+            if (!(close.d > 0) || closed < 0.00390625f) state.shadow = 0;
+            state.quiet = close.s - shading::calm * (near_[j] - state.shadow * angle_ * close.s);
             if (state.shadow > 0 && closed < state.shadow) {
                 state.shadow = closed;
                 state.at = close.s;
                 state.slope = values_[j] > 0 ? values_[j] / near_[j] : 1.0f;
-                state.lo = std::max(close.s - close.next, rays_[close.ray].margin);
-                state.hi = std::min(close.s + state.stride, rays_[close.ray].reach);
             }
         }
     }
 
     // Of what is close: g in values_, the true distance in near_.
-    void measure(bool by_field) {
+    void measure() {
         const std::size_t n = close_.size();
         points_.resize(n), arms_.resize(n), values_.resize(n), near_.resize(n);
         for (std::size_t j = 0; j < n; ++j) {
@@ -113,10 +130,9 @@ class Shadows {
             values_[j] = close_[j].d;
         }
         if (worker_.stage.shaded_apart) evaluate_at(points_, values_);
-        if (by_field)
-            near_ = values_;
-        else
-            near(worker_, points_.data(), values_.data(), arms_.data(), near_.data(), n);
+        for (std::size_t j = 0; j < n; ++j)
+            arms_[j] = std::max(arms_[j], shading::shadow_arm * values_[j]);
+        near(worker_, points_.data(), values_.data(), arms_.data(), near_.data(), n);
     }
     void evaluate_at(const std::vector<Vec> &points, std::vector<float> &out) {
         out.resize(points.size());
@@ -133,9 +149,12 @@ class Shadows {
         std::vector<Search> searches;
         for (std::size_t i = 0; i < rays_.size(); ++i) {
             const State &state = states_[i];
-            if (!(state.shadow > 0 && state.shadow < 2)) continue;
-            const float part = golden * (state.hi - state.lo);
-            searches.push_back({i, state.lo, state.hi, state.hi - part, state.lo + part, 0, 0});
+            if (!(state.shadow > 0 && state.shadow < shading::closed_from)) continue;
+            const float gap = spacing(state.at);
+            const float lo = std::max(state.at - gap, rays_[i].margin),
+                        hi = std::min(state.at + gap, rays_[i].reach);
+            const float part = golden * (hi - lo);
+            searches.push_back({i, lo, hi, hi - part, lo + part, 0, 0});
         }
         if (searches.empty()) return;
         std::vector<Vec> points(searches.size());
@@ -172,21 +191,20 @@ class Shadows {
             });
         }
         close_.clear();
-        for (const Search &x : searches)
-            close_.push_back({x.ray, x.at_a < x.at_b ? x.a : x.b, 0, 0});
+        for (const Search &x : searches) close_.push_back({x.ray, x.at_a < x.at_b ? x.a : x.b, 0});
         for (std::size_t j = 0; j < close_.size(); ++j)
             points[j] = place(close_[j].ray, close_[j].s);
         evaluate_at(points, values);
         for (std::size_t j = 0; j < close_.size(); ++j) {
             close_[j].d = values[j];
-            states_[close_[j].ray].shadow = 2;
+            states_[close_[j].ray].shadow = shading::closed_from;
         }
-        look(false);
+        look();
     }
 
     struct Close {
         std::size_t ray;
-        float s, d, next;
+        float s, d;
     };
 
     Worker &worker_;

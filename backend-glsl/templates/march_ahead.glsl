@@ -1,5 +1,5 @@
 $# Statements: the next step of a ray that found d at t.
-            float ahead = max(d, mix(0.25 * fathom_slack_at(t), tolerance, touches < 0));
+            float ahead = max(d, mix(0.25 * fathom_slack_at(t), $GRAZE * tolerance, touches < 0));
             float next = ahead;
             bool straight = stride > 0.0;
 $if HAS_SAFE_RADIUS
@@ -21,11 +21,7 @@ $end
             aims = false;
             if (stride > 0.0 && before > d) { // where the line through both is 0
                 float to = d * stride / (before - d) + 0.25 * tolerance;
-$if SHADED_APART
                 aims = to <= $JUMP * tolerance;
-$else
-                aims = to <= (d <= tolerance ? $FAR_JUMP : $JUMP) * tolerance;
-$end
                 if (aims) next = max(ahead, to);
             }
             float proved = max(end, t + ahead);

@@ -2,25 +2,33 @@ $# Shading by ir/shading.h (SHADOW, OCCLUSION, SHADING); the sibling of backend-
 $# The scene: float $SHADED(vec3), Hit fathom_hit(vec3), fathom_material, fathom_lighting, fathom_light (marcher.h).
 $if !SKIP_SHADING
 
+// The greatest power of 2 that is not above x.
+float fathom_power(float x) { return intBitsToFloat(floatBitsToInt(x) & 0x7f800000); }
+
+// The first mark before s where what the ball of radius d about s leaves free may be less than `edge`, and not before
+// `quiet` is over.
+float fathom_mark(float s, float d, float edge, float quiet, float angle) {
+    float gap = fathom_power($MARKS * angle * s);
+    return gap * min(floor(min(s - (d - edge), quiet) / gap), ceil(s / gap) - 1.0);
+}
+
 // How much of a light arrives: marched from the light towards the point (thesis, 4.2.1).
 float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, float h) {
     float s = reach; // what is left of the way
-    float stride = 0.0;
-    float shadow = 2.0; // the least of `closed` so far, and the samples beside it
-    float lo = 0.0, hi = 0.0;
-    float quiet = 1e30; // from where on the shaded field is looked at again
+    bool mark = false; // whether s is one of the marks
+    float shadow = $CLOSED_FROM, at = 0.0; // the least of `closed` at them so far, and where
+    float quiet = 1e30; // from where on marks are looked at again
     int turn = $ZERO;
 $if PASSES
     int taken = 0;
     if (fathom_light_kept >= 0) {
         vec4 kept = fathom_kept(fathom_kept_0);
         s = kept.y;
-        stride = kept.z;
+        mark = kept.z > 0.0;
         shadow = kept.w;
         kept = fathom_kept(fathom_kept_1);
-        lo = kept.x;
-        hi = kept.y;
-        quiet = kept.z;
+        at = kept.x;
+        quiet = kept.y;
         taken = int(fathom_kept(fathom_kept_3).y);
         fathom_light_kept = -1;
     }
@@ -31,52 +39,29 @@ $end
     float x = s, value = 0.0, next = 0.0;
     int tap = -1;    // of the gradient at x; 0: the field itself, -1: none
     int search = -1; // evaluations for the penumbra; -1: the way is not done yet
-    float a = 0.0, b = 0.0, at_a = 0.0, at_b = 0.0;
+    float lo = 0.0, hi = 0.0, a = 0.0, b = 0.0, at_a = 0.0, at_b = 0.0;
     bool left = true;
     vec3 sum = vec3(0.0);
+$if !UNIT_SLOPE
+    float arm = h;
+$end
     while (true) {
         float f = 0.0;
         bool ahead = tap < 0 && search < 0;
 $if SHADED_APART
-        for (; ahead && turn < limit && s > margin; s -= stride) {
-$include shadow_ahead
-$if AROUND
-            fathom_exact = true;
-$end
-            f = sdf(q + s * l);
-$if AROUND
-            fathom_exact = false;
-$end
-$if CACHED
-            if (fathom_absent) return 1.0;
-$end
-            ++turn;
-            next = max(f, 0.25 * fathom_slack_at(s));
-            if (f < shadow * angle * s && (f <= 0.0 || s < quiet)) {
-                if (!(f > 0.0)) return 0.0;
-                tap = 0;
-                x = s;
-                ahead = false;
-                break;
-            }
-            stride = next;
-        }
-        if (!ahead) {
-            vec3 p = q + x * l;
-$if !UNIT_SLOPE
-            if (tap > 0) p += h * fathom_corner(tap - 1);
-$end
-            f = fathom_shaded(p);
-        }
+        while (ahead && turn < limit && s > margin) {
 $else
-        for (; !ahead || (turn < limit && s > margin); s -= stride) {
+        while (!ahead || (turn < limit && s > margin)) {
+$end
             if (ahead) {
                 x = s;
 $include shadow_ahead
             }
             vec3 p = q + x * l;
+$if !SHADED_APART
 $if !UNIT_SLOPE
-            if (tap > 0) p += h * fathom_corner(tap - 1);
+            if (tap > 0) p += arm * fathom_corner(tap - 1);
+$end
 $end
 $if AROUND
             fathom_exact = true;
@@ -92,16 +77,22 @@ $end
             if (!(f > 0.0)) return 0.0;
             ++turn;
             next = max(f, 0.25 * fathom_slack_at(s));
-            float closed = f / (angle * s);
-$if UNIT_SLOPE
-            if (closed < 0.00390625) return 0.0;
-$end
-            if (closed < shadow) {
-                shadow = closed;
-                lo = max(s - next, margin);
-                hi = min(s + stride, reach);
+            if (mark && s <= quiet && f < shadow * angle * s) {
+                tap = 0;
+                ahead = false;
+                break;
             }
-            stride = next;
+            float to = fathom_mark(s, next, shadow * angle * s, quiet, angle);
+            mark = to >= s - next;
+            s = max(s - next, to);
+        }
+$if SHADED_APART
+        if (!ahead) {
+            vec3 p = q + x * l;
+$if !UNIT_SLOPE
+            if (tap > 0) p += arm * fathom_corner(tap - 1);
+$end
+            f = fathom_shaded(p);
         }
 $end
 $if CACHED
@@ -111,15 +102,18 @@ $end
 $if PASSES
             if (s > margin && taken + turn < fathom_budget) {
                 fathom_goes_on = true;
-                fathom_keep_0 = vec4(0.0, s, stride, shadow);
-                fathom_keep_1 = vec4(lo, hi, quiet, 0.0);
+                fathom_keep_0 = vec4(0.0, s, mark ? 1.0 : 0.0, shadow);
+                fathom_keep_1 = vec4(at, quiet, 0.0, 0.0);
                 fathom_keep_3.y = float(taken + turn);
                 return 1.0;
             }
 $end
             if (s > margin) fathom_shadow_undecided = true;
-            if (!(shadow < 2.0)) break;
+            if (!(shadow < $CLOSED_FROM)) break;
             search = 0;
+            float gap = fathom_power($MARKS * angle * at);
+            lo = max(at - gap, margin);
+            hi = min(at + gap, reach);
             a = hi - $GOLDEN * (hi - lo);
             b = lo + $GOLDEN * (hi - lo);
             x = a;
@@ -159,13 +153,16 @@ $end
 $if UNIT_SLOPE
         float near = value;
 $else
-        if (tap == 0) sum = vec3(0.0);
+        if (tap == 0) {
+            sum = vec3(0.0);
+            arm = max(h, $SHADOW_ARM * value);
+        }
         if (tap > 0) sum += f * fathom_corner(tap - 1);
         if (tap < 4) {
             ++tap;
             continue;
         }
-        float near = value / max(length(0.75 / h * sum), $MIN_SLOPE);
+        float near = value / max(length(0.75 / arm * sum), $MIN_SLOPE);
 $end
         float closed = near / (angle * x);
         if (!(closed >= 0.00390625)) return 0.0;
@@ -173,17 +170,15 @@ $end
             shadow = closed;
             break;
         }
-$if SHADED_APART
-        quiet = x - $QUIET * near;
+        quiet = x - $CALM * (near - shadow * angle * x);
         if (closed < shadow) {
             shadow = closed;
-            lo = max(x - next, margin);
-            hi = min(x + stride, reach);
+            at = x;
         }
         tap = -1;
-        stride = next;
-        s -= stride;
-$end
+        float to = fathom_mark(s, next, shadow * angle * s, quiet, angle);
+        mark = to >= s - next;
+        s = max(s - next, to);
     }
 $if PASSES
     fathom_taken += turn;

@@ -3,7 +3,8 @@ $if FAR_CELLS
 $# What is farther than the shadow's edge as it is now changes nothing.
                 vec2 clear = fathom_clear(q + s * l, -l, max(shadow * angle * s, margin));
                 if (clear.y > 0.0) {
-                    stride = clear.y;
+                    s -= clear.y;
+                    mark = false;
                     continue;
                 }
 $end
@@ -13,7 +14,8 @@ $# Beyond the cells a value that is not exact shades nothing.
                     float off = fathom_off(q + s * l);
                     float edge = max(shadow * angle * s, margin);
                     if (off > 2.0 * edge && off < fathom_endless(q + s * l)) {
-                        stride = off - edge;
+                        s -= off - edge;
+                        mark = false;
                         continue;
                     }
                 }

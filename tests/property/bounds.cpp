@@ -1,5 +1,6 @@
 // A looser proof never changes a picture: each example drawn by the CPU with all its bounds as they
-// were proved and 2, 4 and 16 times as large. Rays take more steps; colours stay.
+// were proved and 2, 4 and 16 times as large. Rays take more steps; colours stay, but for one pixel in
+// a thousand and rays that are undecided.
 #include "backend-cpu/trace/march.h"
 #include "driver/compile.h"
 #include "ir/lower/lower.h"
@@ -9,7 +10,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
-#include <map>
 
 using namespace fathom;
 namespace fs = std::filesystem;
@@ -53,30 +53,6 @@ int different(const cpu::Picture &a, const cpu::Picture &b) {
     return count;
 }
 
-// What differs more, at pixels whose colour is decided by less than a pixel: holes and leaves as
-// small as that, the edges of hard shadows. The share is what was seen, and half as much again.
-double most(const std::string &name) {
-    static const std::map<std::string, double> known{{"08_rocky_icosahedron", 0.008},
-                                                     {"10_city", 0.010},
-                                                     {"11_well", 0.008},
-                                                     {"bolts", 0.0022},
-                                                     {"box_minus_sphere", 0.003},
-                                                     {"everything", 0.0074},
-                                                     {"folded_fractal", 0.004},
-                                                     {"gdf_gems", 0.016},
-                                                     {"menger_ruin", 0.0054},
-                                                     {"minimal_surfaces", 0.016},
-                                                     {"night_city", 0.0056},
-                                                     {"rough_icosahedron", 0.0125},
-                                                     {"scaled_boxes", 0.002},
-                                                     {"soft_well", 0.0046},
-                                                     {"temple", 0.003},
-                                                     {"tiled_garden", 0.0016},
-                                                     {"well", 0.002}};
-    const auto it = known.find(name);
-    return it == known.end() ? a_thousandth : it->second;
-}
-
 } // namespace
 
 TEST_CASE("looser bounds change no picture") {
@@ -101,7 +77,7 @@ TEST_CASE("looser bounds change no picture") {
                                 double(picture.work.evaluations) / double(right.work.evaluations),
                                 picture.work.undecided);
             INFO(name << ", bounds times " << times);
-            CHECK(differs <= most(name) * width * height);
+            CHECK(differs <= a_thousandth * width * height + double(picture.work.undecided));
         }
         if (all || only) fmt::print("{}\n", line);
     }

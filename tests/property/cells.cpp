@@ -30,7 +30,7 @@ const Steep scenes[] = {
      0.8},
     {"metaballs_random(20, [1.2, 1.2, 1.2], seed: 4, radius: 0.4).scale(1.5).translate([0.3, 0, "
      "0])"},
-    {"(sphere(0.5) | box(1)).shell(0.1).blend(sphere(0.4).translate(y: 0.4), 0.2).taper(0)", 0.4},
+    {"(sphere(0.5) | box(1)).displace(p => 0.03 * sin(7 * p.x)).taper(0)", 0.4},
     {"blend(torus(1, 0.3), box([2.6, 0.6, 2.6]), p => smoothstep(-0.2, 0.2, p.x))", 0.8},
     {"param k = 0.3 in 0.1..0.5\n"
      "blend(torus(1, 0.3), box([2.6, 0.6, 2.6]), p => smoothstep(-k, k, p.x)).translate(x: 0.2)"},

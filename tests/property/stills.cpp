@@ -273,7 +273,7 @@ TEST_CASE("two texts of one solid give one picture") {
         {"torus(1, 0.3)", "implicit(p => length([length(p.xz) - 1, p.y]) - 0.3, within: ball(3))"},
         {"box(1.5) | sphere(1)", "sphere(1) | (box(1.5) & box(9))"},
         {"box(2) - sphere(1.2)", "box(2) & implicit(p => 1.2 - length(p), within: everywhere)",
-         8 * few},
+         9 * few},
         {"cylinder(1, 1.5)", "circle(1).extrude(1.5).rotate(90deg, axis: X)"},
     };
     for (const auto &[one, other, differ] : pairs) {

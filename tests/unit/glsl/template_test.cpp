@@ -88,9 +88,12 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "NEARER_PART",
                                "BENT_RELAXATION",
                                "JUMP",
-                               "FAR_JUMP",
+                               "GRAZE",
                                "REFINED",
-                               "QUIET",
+                               "CALM",
+                               "CLOSED_FROM",
+                               "MARKS",
+                               "SHADOW_ARM",
                                "NEARLY",
                                "GOLDEN",
                                "OCCLUSION_TOTAL",
@@ -222,8 +225,8 @@ Frame frame_of(std::string_view name, const Values &values) {
                 "0.1;\n",
             "}\n" + end};
     if (name == "shadow_ahead")
-        return {marched + "void ahead(vec3 q, vec3 l, float s, float stride, float shadow, float "
-                          "angle, float margin) {\n    for (; s > margin; s -= stride) {\n",
+        return {marched + "void ahead(vec3 q, vec3 l, float s, bool mark, float shadow, float "
+                          "angle, float margin) {\n    while (s > margin) {\n",
                 "    }\n}\n" + end};
     if (name == "shade") return {marched, end};
     if (name == "picture") return {marched + expanded("shade"), end};

@@ -58,6 +58,17 @@ std::vector<float> drawn(const gl::Program &program, const Scene &scene, double 
     return all;
 }
 
+// Steps, distances and paints to the bit; colours to what a driver rounds otherwise in another text.
+void check_alike(const gl::Program &a, const gl::Program &b, const Scene &scene, double away) {
+    CHECK(drawn(a, scene, away, gl::Mode::Numbers) == drawn(b, scene, away, gl::Mode::Numbers));
+    const auto one = drawn(a, scene, away, gl::Mode::Linear),
+               other = drawn(b, scene, away, gl::Mode::Linear);
+    REQUIRE(one.size() == other.size());
+    float most = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) most = std::max(most, std::abs(one[i] - other[i]));
+    CHECK(most < 1e-6f);
+}
+
 // Of two pictures of the same: by pixel the largest difference of a colour, in descending order;
 // and the rays' ends that lie farther apart than the march's tolerance allows.
 struct Apart {
@@ -91,7 +102,7 @@ void require_pruning() {
 
 } // namespace
 
-TEST_CASE("what is drawn by lists of rows is the same to the bit") {
+TEST_CASE("what is drawn by lists of rows is the same") {
     require_pruning();
     for (bool smooth : {false, true})
         for (int count : {128, 500}) {
@@ -105,7 +116,7 @@ TEST_CASE("what is drawn by lists of rows is the same to the bit") {
             const gl::Program pruned = built(output, scene),
                               plain = built(emitted(scene, false), scene);
             for (double away : {1.0, 0.5, 3.0}) // from inside of the cells, too, and from far
-                CHECK(drawn(pruned, scene, away) == drawn(plain, scene, away));
+                check_alike(pruned, plain, scene, away);
             const gl::Pruning::Tally tally = pruned.pruning()->tally();
             CHECK(tally.side == 32);
             CHECK(tally.rows < 0.5 * tally.all);
