@@ -5,6 +5,7 @@
 
 #include "backend-glsl/targets.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <openexr.h>
 
@@ -40,7 +41,10 @@ std::vector<Rgba> exr_of(const OutputScenes &folder, const std::string &name, in
     REQUIRE(exr_get_data_window(file, 0, &window) == EXR_ERR_SUCCESS);
     REQUIRE((window.min.x == 0 && window.min.y == 0 && window.max.x == width - 1 &&
              window.max.y == height - 1));
-    std::vector<Rgba> pixels(static_cast<std::size_t>(width * height));
+    const std::size_t count = static_cast<std::size_t>(width * height);
+    // A, B, G, R, as they lie in the file; version 3.1.5 of the library exchanges interleaved ones
+    std::array<std::vector<float>, 4> planes;
+    for (std::vector<float> &plane : planes) plane.resize(count);
     int lines = 0;
     REQUIRE(exr_get_scanlines_per_chunk(file, 0, &lines) == EXR_ERR_SUCCESS);
     for (int y = 0; y < height; y += lines) {
@@ -53,18 +57,21 @@ std::vector<Rgba> exr_of(const OutputScenes &folder, const std::string &name, in
             exr_coding_channel_info_t &channel = pipeline.channels[i];
             CHECK(channel.channel_name == std::string(1, "ABGR"[i]));
             CHECK(channel.data_type == EXR_PIXEL_HALF);
-            channel.decode_to_ptr = reinterpret_cast<std::uint8_t *>(
-                &pixels[std::size_t(y) * std::size_t(width)].a - i);
+            float *to = planes[std::size_t(i)].data() + y * width;
+            channel.decode_to_ptr = reinterpret_cast<std::uint8_t *>(to);
             channel.user_data_type = EXR_PIXEL_FLOAT;
             channel.user_bytes_per_element = sizeof(float);
-            channel.user_pixel_stride = sizeof(Rgba);
-            channel.user_line_stride = width * static_cast<int>(sizeof(Rgba));
+            channel.user_pixel_stride = sizeof(float);
+            channel.user_line_stride = width * static_cast<int>(sizeof(float));
         }
         REQUIRE(exr_decoding_choose_default_routines(file, 0, &pipeline) == EXR_ERR_SUCCESS);
         CHECK(exr_decoding_run(file, 0, &pipeline) == EXR_ERR_SUCCESS);
         exr_decoding_destroy(file, &pipeline);
     }
     exr_finish(&file);
+    std::vector<Rgba> pixels(count);
+    for (std::size_t i = 0; i < count; ++i)
+        pixels[i] = {planes[3][i], planes[2][i], planes[1][i], planes[0][i]};
     return pixels;
 }
 
