@@ -191,8 +191,8 @@ struct CompileResult {
     explicit operator bool() const { return scene.has_value(); }
 };
 
-/** Compiles a `.sdf` file or a save file (`.yaml`, `.yml`); `-` is standard input. Never throws: a file that cannot be
- *  read is a diagnostic (`unreadable`), and so is a lack of memory (`memory`). */
+/** Compiles a `.sdf` file or a save file (`.yaml`, `.yml`); `-` is standard input. Never throws: a
+ *  file that cannot be read is a diagnostic (`unreadable`), and so is a lack of memory (`memory`). */
 FATHOM_API CompileResult compile_file(const std::filesystem::path &file,
                                       const CompileOptions &options = {});
 

@@ -75,7 +75,7 @@ struct ShaderInput {
     int place = -1; /**< its location, or a sampler's binding; -1 where the text has none */
 };
 
-/** The passes of the noise cache (docs/shaders.md), each a compute shader's text. All are empty where
+/** The passes of the noise cache (docs/noise-cache.md), each a fragment shader's text. All are empty where
  *  no field of the scene is worth keeping; the picture's text then computes all. */
 struct CachePasses {
     std::string reserve, fill, publish, sweep;
