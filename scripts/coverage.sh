@@ -3,7 +3,7 @@
 # typecheck/ and the total, by clang's source-based coverage in build-coverage/.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
 . "$root/scripts/setup.sh"
-install_packages "$build_packages" "$test_packages" clang llvm || exit 3
+install_packages "$build_packages" "$test_packages" llvm || exit 3
 use_ccache
 tests='lang ir check proof stdlib golden conformance'
 cd "$root" && cmake --preset coverage >&2 &&
