@@ -34,6 +34,15 @@ std::vector<LibraryConstant> library_constants() {
     });
 }
 
+std::vector<LibraryText> library_texts() {
+    return whole_or_empty([] {
+        std::vector<LibraryText> all;
+        for (const typecheck::LibraryFile &file : driver::standard_library())
+            all.push_back({std::string(file.name), std::string(file.text)});
+        return all;
+    });
+}
+
 std::vector<DiagnosticCode> diagnostic_codes() {
     return whole_or_empty([] {
         std::vector<DiagnosticCode> all;

@@ -121,18 +121,19 @@ std::optional<Picture> decode_png(std::string_view bytes) {
     return picture;
 }
 
-std::string encode_png(const Picture &picture, std::string_view note) {
+std::string encode_png(int width, int height, std::span<const std::uint8_t> rgba,
+                       std::string_view note) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
-    image.width = static_cast<png_uint_32>(picture.width);
-    image.height = static_cast<png_uint_32>(picture.height);
+    image.width = static_cast<png_uint_32>(width);
+    image.height = static_cast<png_uint_32>(height);
     image.format = PNG_FORMAT_RGBA;
     png_alloc_size_t size = 0;
-    if (picture.width <= 0 || picture.height <= 0 ||
-        !png_image_write_to_memory(&image, nullptr, &size, 0, picture.rgba.data(), 0, nullptr))
+    if (width <= 0 || height <= 0 ||
+        !png_image_write_to_memory(&image, nullptr, &size, 0, rgba.data(), 0, nullptr))
         return {};
     std::string bytes(size, '\0');
-    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.rgba.data(), 0, nullptr))
+    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, rgba.data(), 0, nullptr))
         return {};
     bytes.resize(size);
     if (!note.empty()) bytes.insert(header_end, text_chunk(note));

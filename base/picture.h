@@ -37,7 +37,11 @@ std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const fl
 
 // A whole PNG file; empty where the picture has no pixels or is larger than PNG allows. A `note` that
 // is not empty is kept in the file as a text of the keyword `fathom`; it is ASCII.
-std::string encode_png(const Picture &picture, std::string_view note = {});
+std::string encode_png(int width, int height, std::span<const std::uint8_t> rgba,
+                       std::string_view note = {});
+inline std::string encode_png(const Picture &picture, std::string_view note = {}) {
+    return encode_png(picture.width, picture.height, picture.rgba, note);
+}
 
 // The note of a PNG file that is whole: every chunk is there with its checksum, from the signature to
 // the end. Nothing where it is not; empty where it has no note.

@@ -1,11 +1,9 @@
 // fathom bench: what a scene costs, phase by phase: medians of several runs on this machine, and
 // counts that do not depend on it.
-#include "backend-cpu/trace/march.h"
-#include "backend-glsl/emit.h"
-#include "cli/compiled.h"
-#include "render-gl/context.h"
-#include "render-gl/pruning.h"
-#include "render-gl/render.h"
+#include "cli/terminal.h"
+
+#include <fathom/files.h>
+#include <fathom/gl.h>
 
 #include <algorithm>
 #include <chrono>
@@ -67,8 +65,7 @@ void row(Measures &measures, std::string_view what, double value, std::string_vi
 // What an earlier run wrote by --json; says what is wrong with it.
 Exit read_earlier(const std::string &file, Measures &measures) {
     std::string error;
-    const std::optional<std::string> text =
-        driver::read_file(file, driver::max_source_bytes, error);
+    const std::optional<std::string> text = v1::read_file(file, Limits{}.source * mebibyte, error);
     if (!text) {
         measures.terminal.say(fmt::format("fathom: cannot read `{}`: {}", file, error));
         return device_error;
@@ -85,122 +82,98 @@ Exit read_earlier(const std::string &file, Measures &measures) {
     return device_error;
 }
 
-std::string_view phase_name(driver::Phase phase) {
+std::string_view phase_name(v1::Phase phase) {
     switch (phase) {
-    case driver::Phase::Read: return "read";
-    case driver::Phase::Check: return "parse and check";
-    case driver::Phase::Prove: return "prove";
-    case driver::Phase::Lower: return "lower";
-    case driver::Phase::Done: return "";
+    case v1::Phase::Read: return "read";
+    case v1::Phase::Check: return "parse and check";
+    case v1::Phase::Prove: return "prove";
+    case v1::Phase::Lower: return "lower";
+    case v1::Phase::Done: return "";
     }
     return "";
 }
 
-driver::CompileOptions options_of_picture(const BenchCommand &command) {
-    driver::CompileOptions options = compile_options(command.scene, 0, 0);
-    if (!command.one_bound) options.cells = driver::cells_of_pictures;
+v1::CompileOptions options_of_picture(const BenchCommand &command) {
+    v1::CompileOptions options = library_options(command.scene, 0, 0);
+    if (!command.one_bound) options.cells = cells_of_pictures;
     return options;
 }
 
 void bench_front_end(const BenchCommand &command, Measures &measures) {
-    std::map<driver::Phase, std::vector<double>> times;
-    driver::CompileOptions options = compile_options(command.scene);
-    std::optional<driver::Phase> current;
+    std::map<v1::Phase, std::vector<double>> times;
+    v1::CompileOptions options = library_options(command.scene);
+    std::optional<v1::Phase> current;
     Clock::time_point entered;
-    options.entered = [&](driver::Phase phase) {
+    options.entered = [&](v1::Phase phase) {
         if (current) times[*current].push_back(milliseconds_since(entered));
-        current = phase == driver::Phase::Done ? std::nullopt : std::optional(phase);
+        current = phase == v1::Phase::Done ? std::nullopt : std::optional(phase);
         entered = Clock::now();
     };
-    double whole = measure([&] { driver::compile_file(command.scene.file, options); });
+    double whole = measure([&] { v1::compile_file(command.scene.file, options); });
     for (const auto &[phase, each] : times) row(measures, phase_name(phase), median(each), "ms");
     row(measures, "front end, all", whole, "ms");
-    const driver::CompileOptions for_pictures = options_of_picture(command);
+    const v1::CompileOptions for_pictures = options_of_picture(command);
     row(measures, "front end, for a picture",
-        measure([&] { driver::compile_file(command.scene.file, for_pictures); }), "ms");
+        measure([&] { v1::compile_file(command.scene.file, for_pictures); }), "ms");
 }
 
-void bench_gl(const BenchCommand &command, const ir::Scene &scene, Measures &measures) {
-    auto context = gl::Context::make();
-    Diagnostics diagnostics;
-    glsl::Options options;
-    options.target = glsl::Target::Glsl330;
-    options.passes = true;
-    options.buffers = true;
-    options.pruning = std::holds_alternative<gl::Context>(context) && gl::can_prune();
-    glsl::Output output;
-    double emitting = measure([&] { output = glsl::emit(scene, options, diagnostics); });
-    row(measures, "emit and validate", emitting, "ms");
-    row(measures, "shader", static_cast<double>(output.text.size()) / 1024, "KB");
-    if (diagnostics.has_errors()) return;
-    if (const std::string *why = std::get_if<std::string>(&context)) {
-        measures.terminal.say(fmt::format("fathom: nothing is measured by GL: {}", *why));
+v1::PictureOptions picture_of(const BenchCommand &command) {
+    v1::PictureOptions options;
+    options.width = command.width;
+    options.height = command.height;
+    options.samples = 1;
+    return options;
+}
+
+void bench_gl(const BenchCommand &command, const v1::Scene &scene, Measures &measures) {
+    v1::GlPainter gl;
+    const std::string closed = gl.open();
+    std::string text;
+    const double emitting = measure([&] { text = gl.text(scene); });
+    if (!text.empty()) {
+        row(measures, "emit and validate", emitting, "ms");
+        row(measures, "shader", static_cast<double>(text.size()) / 1024, "KB");
+    }
+    if (!closed.empty()) {
+        measures.terminal.say(fmt::format("fathom: nothing is measured by GL: {}", closed));
         return;
     }
-    if (!measures.json)
-        measures.terminal.put(
-            fmt::format("{:<26} {}\n", "GL", std::get<gl::Context>(context).describe()));
-    Clock::time_point start = Clock::now();
-    auto program = gl::Program::build(output, scene);
-    row(measures, "driver: compile and link", milliseconds_since(start),
+    if (!measures.json) measures.terminal.put(fmt::format("{:<26} {}\n", "GL", gl.describe()));
+    if (has_errors(gl.use(scene))) return;
+    row(measures, "driver: compile and link", 1000 * gl.driver_seconds(),
         "ms"); // once: drivers keep what they compiled
-    if (!std::holds_alternative<gl::Program>(program)) return;
-    gl::Request request;
-    request.width = command.width;
-    request.height = command.height;
-    auto draw = [&] { gl::draw(std::get<gl::Program>(program), scene, request, gl::Mode::Linear); };
-    start = Clock::now();
+    const v1::PictureOptions picture = picture_of(command);
+    const auto draw = [&] { gl.draw_for_nothing(picture); };
+    const Clock::time_point start = Clock::now();
     draw();
     row(measures, "first frame", milliseconds_since(start), "ms");
     row(measures, "frame", measure(draw), "ms");
-    gl::Pruning *pruning = std::get<gl::Program>(program).pruning();
-    if (!pruning) return;
-    row(measures, "  rows in a cell, mean", pruning->tally().rows, "");
-    row(measures, "  rows in all", pruning->tally().all, "");
-    row(measures, "  cells along an axis", pruning->tally().side, "");
-    row(measures, "  making the lists", measure([&] {
-            pruning->remake(scene.params, 0);
-            gl::finish();
-        }),
-        "ms");
+    const v1::GlLists lists = gl.lists();
+    if (lists.side == 0) return;
+    row(measures, "  rows in a cell, mean", lists.in_cell, "");
+    row(measures, "  rows in all", lists.all, "");
+    row(measures, "  cells along an axis", lists.side, "");
+    row(measures, "  making the lists", measure([&] { gl.remake_lists(); }), "ms");
 }
 
 // What all but one ray in a hundred take at most.
-double steps_of_most(const ir::Scene &scene, const BenchCommand &command) {
-    const double aspect = static_cast<double>(command.width) / command.height;
-    const cpu::Stage stage =
-        cpu::prepare(scene, ir::view_of(scene, 0, aspect), command.width, command.height, 0);
-    std::vector<cpu::Ray> rays;
-    for (int y = 0; y < command.height; ++y)
-        for (int x = 0; x < command.width; ++x)
-            rays.push_back(
-                cpu::eye_ray(stage, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
-    std::vector<int> steps;
-    for (const cpu::Landing &landing : cpu::cast(stage, rays)) steps.push_back(landing.steps);
+double steps_of_most(const v1::Scene &scene, const BenchCommand &command) {
+    std::vector<int> steps = v1::eye_steps(scene, picture_of(command));
+    if (steps.empty()) return 0;
     const auto at = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() * 99 / 100);
     std::nth_element(steps.begin(), at, steps.end());
     return *at;
 }
 
-void bench_cpu(const BenchCommand &command, const ir::Scene &scene, Measures &measures) {
-    double aspect = static_cast<double>(command.width) / command.height;
-    cpu::Work work;
-    double time = measure([&] {
-        cpu::Stage stage =
-            cpu::prepare(scene, ir::view_of(scene, 0, aspect), command.width, command.height, 0);
-        work = cpu::render(stage, {}).work;
-    });
+void bench_cpu(const BenchCommand &command, const v1::Scene &scene, Measures &measures) {
+    v1::Picture picture;
+    const double time = measure([&] { picture = v1::draw(scene, picture_of(command)); });
+    const auto rays = static_cast<double>(std::max<std::uint64_t>(picture.rays, 1));
     row(measures, "CPU frame", time, "ms");
-    row(measures, "steps a ray",
-        static_cast<double>(work.steps) /
-            static_cast<double>(std::max<std::uint64_t>(work.rays, 1)),
-        "");
+    row(measures, "steps a ray", static_cast<double>(picture.steps) / rays, "");
     row(measures, "steps, 99 of 100 rays", steps_of_most(scene, command), "");
-    row(measures, "undecided rays", static_cast<double>(work.undecided), "");
-    row(measures, "evaluations a pixel",
-        static_cast<double>(work.evaluations) /
-            static_cast<double>(std::max<std::uint64_t>(work.rays, 1)),
-        "");
+    row(measures, "undecided rays", static_cast<double>(picture.undecided), "");
+    row(measures, "evaluations a pixel", static_cast<double>(picture.evaluations) / rays, "");
 }
 
 } // namespace
@@ -213,16 +186,15 @@ Exit run(const BenchCommand &command, Terminal &terminal) {
     Measures measures{terminal, command.json, Json::array(), {}};
     if (!command.compare.empty())
         if (const Exit exit = read_earlier(command.compare, measures); exit != done) return exit;
-    driver::Compilation compilation =
-        driver::compile_file(command.scene.file, options_of_picture(command));
-    Exit exit = report(compilation, command.scene, terminal);
-    if (exit != done) return exit;
+    const v1::CompileResult result =
+        v1::compile_file(command.scene.file, options_of_picture(command));
+    if (const Exit exit = report(result, terminal); exit != done) return exit;
     if (!command.json)
         terminal.put(
             fmt::format("{} at {}x{}\n", command.scene.file, command.width, command.height));
     bench_front_end(command, measures);
-    bench_gl(command, compilation.scene, measures);
-    bench_cpu(command, compilation.scene, measures);
+    bench_gl(command, *result.scene, measures);
+    bench_cpu(command, *result.scene, measures);
     if (command.json)
         terminal.put(Json{{"file", command.scene.file},
                           {"size", {command.width, command.height}},

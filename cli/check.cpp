@@ -85,13 +85,6 @@ void explain(const v1::Scene &scene, Terminal &terminal) {
     explain_pruning(scene, terminal);
 }
 
-// Whether the result is no verdict on a text: there was none to read, or the command line is wrong.
-bool is_about_no_text(const v1::CompileResult &result) {
-    return std::ranges::any_of(result.diagnostics, [](const v1::Diagnostic &d) {
-        return d.code == "unreadable" || d.code == "usage";
-    });
-}
-
 Exit say(const CheckCommand &command, const SceneArguments &scene, const v1::CompileResult &result,
          Terminal &terminal) {
     if (!command.json || is_about_no_text(result)) {

@@ -7,8 +7,6 @@
 namespace fathom::cli {
 namespace {
 
-constexpr int cells_of_text = 8; // a text of a shader holds them as constants
-
 // The noise cache's passes, beside the picture's shader: OUT.frag, OUT.reserve.frag, …
 Exit write_passes(const std::string &out, const v1::CachePasses &passes, Terminal &terminal) {
     if (passes.fill.empty()) {

@@ -1,7 +1,6 @@
 #include "cli/delivery.h"
 
 #include "cli/exr.h"
-#include "driver/image.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -9,7 +8,7 @@
 namespace fathom::cli {
 namespace {
 
-std::string rgb_of(const Picture &picture) {
+std::string rgb_of(const v1::Picture &picture) {
     std::string bytes;
     bytes.reserve(picture.rgba.size() / 4 * 3);
     for (std::size_t i = 0; i < picture.rgba.size(); ++i)
@@ -17,9 +16,9 @@ std::string rgb_of(const Picture &picture) {
     return bytes;
 }
 
-std::string streamed(const Picture &picture, StreamFormat format, std::string_view note) {
+std::string streamed(const v1::Picture &picture, StreamFormat format, std::string_view note) {
     switch (format) {
-    case StreamFormat::Png: return encode_png(picture, note);
+    case StreamFormat::Png: return v1::encode_png(picture, note);
     case StreamFormat::Pam:
         return fmt::format("P7\nWIDTH {}\nHEIGHT {}\nDEPTH 3\nMAXVAL 255\nTUPLTYPE RGB\nENDHDR\n",
                            picture.width, picture.height) +
@@ -29,7 +28,7 @@ std::string streamed(const Picture &picture, StreamFormat format, std::string_vi
     return "";
 }
 
-void paste(const Picture &from, Picture &to, int x, int y) {
+void paste(const v1::Picture &from, v1::Picture &to, int x, int y) {
     for (int row = 0; row < from.height; ++row)
         std::copy_n(from.rgba.begin() + 4 * (static_cast<std::ptrdiff_t>(row) * from.width),
                     4 * from.width,
@@ -38,11 +37,10 @@ void paste(const Picture &from, Picture &to, int x, int y) {
 
 } // namespace
 
-std::string encoded(const Picture &picture, const std::string &out, int quality,
+std::string encoded(const v1::Picture &picture, const std::string &out, int quality,
                     std::string_view note) {
-    return picture_format(out) == PictureFormat::Jpeg
-               ? driver::encode_jpeg(picture.width, picture.height, picture.rgba, quality)
-               : encode_png(picture, note);
+    return picture_format(out) == PictureFormat::Jpeg ? v1::encode_jpeg(picture, quality)
+                                                      : v1::encode_png(picture, note);
 }
 
 Delivery::Delivery(const RenderCommand &command, Terminal &terminal)
@@ -65,7 +63,7 @@ Exit Delivery::refuse(const std::string &why) {
     return device_error;
 }
 
-Exit Delivery::add_to_film(const Picture &picture) {
+Exit Delivery::add_to_film(const v1::Picture &picture) {
     std::string error;
     if (!film_)
         film_ = Film::open(command_.out, picture.width, picture.height, command_.frame_rate, error);
@@ -73,12 +71,13 @@ Exit Delivery::add_to_film(const Picture &picture) {
     return error.empty() ? done : refuse(error);
 }
 
-Exit Delivery::add_to_sheet(const Picture &picture) {
+Exit Delivery::add_to_sheet(const v1::Picture &picture) {
     if (sheet_.rgba.empty()) {
         const int frames = static_cast<int>(frames_to_make(command_).size()),
                   columns = std::min(frames, command_.sheet.first),
                   rows = (frames + command_.sheet.first - 1) / command_.sheet.first;
-        sheet_ = {columns * picture.width, rows * picture.height, {}};
+        sheet_.width = columns * picture.width;
+        sheet_.height = rows * picture.height;
         sheet_.rgba.resize(4 * static_cast<std::size_t>(sheet_.width) *
                            static_cast<std::size_t>(sheet_.height));
         for (std::size_t i = 3; i < sheet_.rgba.size(); i += 4) sheet_.rgba[i] = 255;
@@ -89,28 +88,27 @@ Exit Delivery::add_to_sheet(const Picture &picture) {
     return done;
 }
 
-Exit Delivery::take(int frame, const Note &note, Painted painted) {
+Exit Delivery::take(int frame, const Note &note, v1::Picture picture) {
     switch (kind_) {
     case Kind::Files: {
         const std::string out = file_of(frame);
         if (picture_format(out) == PictureFormat::Exr) {
-            const std::string bytes =
-                encode_exr(painted.picture.width, painted.picture.height, painted.linear);
+            const std::string bytes = encode_exr(picture.width, picture.height, picture.linear);
             return bytes.empty() ? refuse("there is no memory for it")
                                  : write_result(out, bytes, terminal_);
         }
         if (!sums_)
-            return write_result(out, encoded(painted.picture, out, command_.quality, text_of(note)),
+            return write_result(out, encoded(picture, out, command_.quality, text_of(note)),
                                 terminal_);
-        const Sums sums{note, painted.undecided, painted.undecided_shadows,
-                        std::move(painted.sums)};
+        const Sums sums{note, picture.undecided, picture.undecided_shadows,
+                        std::move(picture.sums)};
         return write_result(out, write_sums(sums), terminal_);
     }
     case Kind::Stream:
-        terminal_.put(streamed(painted.picture, command_.stream, text_of(note)));
+        terminal_.put(streamed(picture, command_.stream, text_of(note)));
         return terminal_.flush();
-    case Kind::Film: return add_to_film(painted.picture);
-    case Kind::Sheet: return add_to_sheet(painted.picture);
+    case Kind::Film: return add_to_film(picture);
+    case Kind::Sheet: return add_to_sheet(picture);
     }
     return done;
 }

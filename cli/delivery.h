@@ -3,8 +3,9 @@
 
 #include "cli/film.h"
 #include "cli/outputs.h"
-#include "cli/painter.h"
 #include "cli/parts.h"
+
+#include <fathom/picture.h>
 
 #include <memory>
 #include <string>
@@ -23,26 +24,26 @@ class Delivery {
     bool wants_sums() const { return sums_; }
 
     // A frame that is made. Prints why it cannot be taken.
-    Exit take(int frame, const Note &note, Painted painted);
+    Exit take(int frame, const Note &note, v1::Picture picture);
     Exit finish(); // after the last
 
   private:
     enum class Kind { Files, Stream, Film, Sheet };
     Exit refuse(const std::string &why);
-    Exit add_to_film(const Picture &picture);
-    Exit add_to_sheet(const Picture &picture);
+    Exit add_to_film(const v1::Picture &picture);
+    Exit add_to_sheet(const v1::Picture &picture);
 
     const RenderCommand &command_;
     Terminal &terminal_;
     Kind kind_ = Kind::Files;
     bool sums_ = false;
     std::unique_ptr<Film> film_;
-    Picture sheet_;
+    v1::Picture sheet_;
     int on_sheet_ = 0;
 };
 
 // A picture's bytes in the format of the file's suffix, of a PNG or a JPEG; a PNG with the note.
-std::string encoded(const Picture &picture, const std::string &out, int quality,
+std::string encoded(const v1::Picture &picture, const std::string &out, int quality,
                     std::string_view note);
 
 } // namespace fathom::cli

@@ -65,12 +65,12 @@ std::string line_of(const RenderCommand &command) {
 }
 
 // Copies the scene and all that it reads into the folder.
-std::string copy_scene(const driver::Compilation &compilation, const SceneArguments &scene,
+std::string copy_scene(const v1::CompileResult &result, const SceneArguments &scene,
                        const fs::path &folder) {
     std::error_code error;
     for (std::size_t i = 0; i < scene.include_folders.size() && !error; ++i)
         fs::create_directories(folder / fmt::format("include{}", i), error);
-    for (const SceneFile &file : files_of(compilation, scene)) {
+    for (const SceneFile &file : files_of(result, scene)) {
         const fs::path to =
             folder / (file.include ? fmt::format("include{}", *file.include) : "scene") / file.name;
         if (!error) fs::create_directories(to.parent_path(), error);
@@ -396,19 +396,19 @@ Exit make(const FarmCommand &command, Job &job, Terminal &terminal) {
     if (!job.film.empty())
         if (const std::string why = refused_film(job.film, job.width, job.height); !why.empty())
             return refuse(terminal, device_error, why);
-    const driver::Compilation compilation = driver::compile_file(
-        render.scene.file, compile_options(render.scene, moment_of(render, job.frames.front()).time,
+    const v1::CompileResult result = v1::compile_file(
+        render.scene.file, library_options(render.scene, moment_of(render, job.frames.front()).time,
                                            latest_time(render, job.frames)));
-    if (const Exit exit = report(compilation, render.scene, terminal); exit != done) return exit;
+    if (const Exit exit = report(result, terminal); exit != done) return exit;
     std::string why;
     job.identity =
-        identity_of_film(compilation, render, render.backend == Backend::Gl ? "gl" : "cpu", why);
+        identity_of_film(result, render, render.backend == Backend::Gl ? "gl" : "cpu", why);
     for (const char *name : {"frames", "parts", "state", "logs", "scene"})
         if (why.empty() && !fs::is_directory(job.folder / name, error) &&
             !fs::create_directories(job.folder / name, error))
             why = error.message();
     if (why.empty()) job.folder = fs::canonical(job.folder, error);
-    if (why.empty()) why = copy_scene(compilation, render.scene, job.folder);
+    if (why.empty()) why = copy_scene(result, render.scene, job.folder);
     if (!why.empty())
         return refuse(terminal, device_error,
                       fmt::format("cannot make the job folder `{}`: {}", command.folder, why));

@@ -3,7 +3,6 @@
 #include "base/text.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <numbers>
 
@@ -41,11 +40,6 @@ Moment moment_of(const RenderCommand &command, int frame) {
 double latest_time(const RenderCommand &command, const std::vector<int> &frames) {
     const Moment moment = moment_of(command, frames.back());
     return moment.time + moment.open;
-}
-
-double time_of_sample(const Moment &moment, int k) {
-    const double golden = k / std::numbers::phi;
-    return moment.time + moment.open * (golden - std::floor(golden));
 }
 
 std::vector<Definition> swept(const RenderCommand &command, int frame) {

@@ -22,10 +22,6 @@ struct Moment {
 Moment moment_of(const RenderCommand &command, int frame);
 double latest_time(const RenderCommand &command, const std::vector<int> &frames);
 
-// The moment of sample k of a pixel: its times are spread over the opening by the golden ratio, so
-// that any number of them is spread evenly, and the first is at its beginning.
-double time_of_sample(const Moment &moment, int k);
-
 // The swept params' values at a frame, as `-D` writes them.
 std::vector<Definition> swept(const RenderCommand &command, int frame);
 

@@ -5,6 +5,7 @@
 
 #include "cli/parts.h"
 #include <fathom/files.h>
+#include <fathom/reference.h>
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -43,8 +44,7 @@ std::string fingerprint(std::string_view bytes) {
                        static_cast<std::uint64_t>(hash));
 }
 
-std::vector<SceneFile> files_of(const driver::Compilation &compilation,
-                                const SceneArguments &scene) {
+std::vector<SceneFile> files_of(const v1::CompileResult &result, const SceneArguments &scene) {
     // The scene's own folder, then those of -I.
     std::vector<fs::path> folders{scene.file == "-" ? fs::path()
                                                     : fs::path(scene.file).parent_path()};
@@ -62,7 +62,7 @@ std::vector<SceneFile> files_of(const driver::Compilation &compilation,
             }
         return false;
     };
-    for (const auto &[file, stamp] : compilation.files) {
+    for (const fs::path &file : result.files) {
         std::error_code error;
         if (!fs::is_regular_file(file, error)) continue;
         // By its name as it was looked up, so that symbolic links keep theirs; where that leads out of
@@ -76,12 +76,12 @@ std::vector<SceneFile> files_of(const driver::Compilation &compilation,
     return files;
 }
 
-std::string identity_of_film(const driver::Compilation &compilation, const RenderCommand &command,
+std::string identity_of_film(const v1::CompileResult &result, const RenderCommand &command,
                              std::string_view maker, std::string &error) {
     std::string bytes;
     append(bytes, FATHOM_VERSION);
-    for (const typecheck::LibraryFile &file : driver::standard_library()) append(bytes, file.text);
-    for (const SceneFile &file : files_of(compilation, command.scene)) {
+    for (const v1::LibraryText &file : v1::library_texts()) append(bytes, file.text);
+    for (const SceneFile &file : files_of(result, command.scene)) {
         const std::optional<std::string> text =
             v1::read_file(file.path, std::numeric_limits<std::size_t>::max() / 4, error);
         if (!text) {
@@ -93,8 +93,7 @@ std::string identity_of_film(const driver::Compilation &compilation, const Rende
         append(bytes, *text);
     }
     if (command.scene.file == "-")
-        for (std::uint32_t i = 0; i < compilation.sources.size(); ++i)
-            append(bytes, compilation.sources[SourceId{i}].text);
+        for (std::size_t i = 0; i < result.texts.count(); ++i) append(bytes, result.texts.text(i));
     else
         append(bytes, fs::path(command.scene.file).filename().string());
     for (const Definition &override : command.scene.overrides) {

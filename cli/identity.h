@@ -3,7 +3,8 @@
 #pragma once
 
 #include "cli/frames.h"
-#include "driver/compile.h"
+
+#include <fathom/scene.h>
 
 #include <array>
 #include <optional>
@@ -21,13 +22,12 @@ struct SceneFile {
     std::string name;                   // relative to it, with `/`
     std::filesystem::path path;         // absolute
 };
-std::vector<SceneFile> files_of(const driver::Compilation &compilation,
-                                const SceneArguments &scene);
+std::vector<SceneFile> files_of(const v1::CompileResult &result, const SceneArguments &scene);
 
 // The fingerprint of the film: the program, the scene's files, and the options but for which frames,
 // samples and pixels are made, and `maker`: what draws them (maker_of). `error` says why a file could
 // not be read.
-std::string identity_of_film(const driver::Compilation &compilation, const RenderCommand &command,
+std::string identity_of_film(const v1::CompileResult &result, const RenderCommand &command,
                              std::string_view maker, std::string &error);
 
 // What a file of pixels holds.

@@ -1,6 +1,7 @@
 // fathom merge: joins parts of a picture (tiles, ranges of samples) into the picture that one process
 // would have made, to the byte; or frames into a film. What is missing is named, and nothing is
 // written then.
+#include "base/picture.h"
 #include "cli/delivery.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
@@ -132,11 +133,15 @@ std::optional<Note> whole_of(const std::vector<Part> &parts, int samples, Termin
     return std::nullopt;
 }
 
-Picture joined(const std::vector<Part> &parts, const Note &whole) {
+v1::Picture joined(const std::vector<Part> &parts, const Note &whole) {
     const auto width = static_cast<std::size_t>(whole.width),
                pixels = width * static_cast<std::size_t>(whole.height);
-    Picture picture{whole.width, whole.height, std::vector<std::uint8_t>(4 * pixels)};
-    std::vector<double> sums(is_sums_part(parts.front()) ? 3 * pixels : 0);
+    const bool are_sums = is_sums_part(parts.front());
+    std::vector<double> sums(are_sums ? 3 * pixels : 0);
+    v1::Picture picture;
+    picture.width = whole.width;
+    picture.height = whole.height;
+    picture.rgba.resize(are_sums ? 0 : 4 * pixels);
     for (const Part &part : parts) {
         const Block block = block_of(part.note);
         const auto columns = static_cast<std::size_t>(block.width);
@@ -153,11 +158,7 @@ Picture joined(const std::vector<Part> &parts, const Note &whole) {
                             picture.rgba.begin() + static_cast<std::ptrdiff_t>(4 * to));
         }
     }
-    for (std::size_t row = 0; !sums.empty() && row < static_cast<std::size_t>(whole.height); ++row)
-        cpu::encode_sums(std::span(sums).subspan(3 * width * row, 3 * width), whole.samples, 0,
-                         static_cast<int>(row),
-                         std::span(picture.rgba).subspan(4 * width * row, 4 * width));
-    return picture;
+    return are_sums ? v1::picture_of_sums(whole.width, whole.height, sums, whole.samples) : picture;
 }
 
 Exit merge_picture(const MergeCommand &command, Terminal &terminal) {

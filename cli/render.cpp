@@ -2,6 +2,7 @@
 // of these. Every picture is whole before its file appears.
 #include "cli/delivery.h"
 #include "cli/interrupt.h"
+#include "cli/painter.h"
 #include "cli/progress.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace fathom::cli {
 namespace {
 
 // Says what was left undecided. Whether that is an error.
-bool is_undecided(const Painted &painted, const std::string &out, const RenderCommand &command,
+bool is_undecided(const v1::Picture &painted, const std::string &out, const RenderCommand &command,
                   Terminal &terminal) {
     if (painted.undecided + painted.undecided_shadows == 0) return false;
     std::string what;
@@ -28,21 +29,21 @@ bool is_undecided(const Painted &painted, const std::string &out, const RenderCo
 }
 
 // What is drawn of the picture; nothing, with the reason, where that is not in it.
-std::optional<cpu::Tile> region_of(const RenderCommand &command, Terminal &terminal) {
+std::optional<v1::Region> region_of(const RenderCommand &command, Terminal &terminal) {
     if (command.tile) {
         const auto [i, n] = *command.tile;
         const int first = tile_row(command.height, i, n);
         if (n <= command.height)
-            return cpu::Tile{0, first, command.width, tile_row(command.height, i + 1, n) - first};
+            return v1::Region{0, first, command.width, tile_row(command.height, i + 1, n) - first};
         terminal.say(fmt::format("fathom: --tile {}/{}: a tile has a row at least, and the picture "
                                  "has {}",
                                  i, n, command.height));
         return std::nullopt;
     }
-    if (!command.region) return cpu::Tile{0, 0, command.width, command.height};
+    if (!command.region) return v1::Region{0, 0, command.width, command.height};
     const auto [x, y, width, height] = *command.region;
     if (x + width <= command.width && y + height <= command.height)
-        return cpu::Tile{x, y, width, height};
+        return v1::Region{x, y, width, height};
     terminal.say(fmt::format("fathom: --region {},{},{},{} is not within the picture of {}x{}", x,
                              y, width, height, command.width, command.height));
     return std::nullopt;
@@ -50,7 +51,7 @@ std::optional<cpu::Tile> region_of(const RenderCommand &command, Terminal &termi
 
 // Room for the files is estimated: sums as they are, pictures at a fifth of three bytes a pixel,
 // which most pictures of the gallery do not reach. False, with both numbers, where there is less.
-bool has_room(const Delivery &delivery, const RenderCommand &command, const cpu::Tile &region,
+bool has_room(const Delivery &delivery, const RenderCommand &command, const v1::Region &region,
               std::size_t files, Terminal &terminal) {
     if (!delivery.has_files()) return true;
     std::filesystem::path folder = std::filesystem::path(command.out).parent_path();
@@ -72,10 +73,10 @@ struct Work {
     const RenderCommand &command;
     Terminal &terminal;
     std::vector<int> film, frames; // all; those that are made
-    cpu::Tile region;
+    v1::Region region;
     Delivery delivery;
-    Painter painter;
-    driver::Compilation compilation;
+    v1::GlPainter gl;
+    v1::CompileResult compiled;
     std::string identity; // of the film
 };
 
@@ -85,19 +86,19 @@ Exit compile(Work &work, const std::vector<int> &frames) {
     const RenderCommand &command = work.command;
     const double first = moment_of(command, frames.front()).time,
                  last = latest_time(command, frames);
-    driver::CompileOptions options = compile_options(command.scene, first, last);
-    options.cells = driver::cells_of_pictures;
+    v1::CompileOptions options = library_options(command.scene, first, last);
+    options.cells = cells_of_pictures;
     if (!command.sweeps.empty())
         for (const Definition &value : swept(command, frames.front()))
-            options.overrides.push_back({value.name, value.text});
-    work.compilation = driver::compile_file(command.scene.file, options);
+            options.definitions[value.name] = value.text;
+    work.compiled = v1::compile_file(command.scene.file, options);
     // What is no error was said of the first frame.
-    const bool again = !work.identity.empty() && work.compilation.good();
-    const Exit exit = again ? done : report(work.compilation, command.scene, work.terminal);
+    const bool again = !work.identity.empty() && work.compiled;
+    const Exit exit = again ? done : report(work.compiled, work.terminal);
     if (exit != done) return exit;
-    if (command.max_steps > 0) work.compilation.scene.render.max_steps = command.max_steps;
-    if (!in_proved_time(work.compilation.scene, first, last, work.terminal)) return usage_error;
-    return build(work.painter, work.compilation, command, work.terminal);
+    if (!in_proved_time(work.compiled.scene->facts(), first, last, work.terminal))
+        return usage_error;
+    return use(work.gl, work.compiled, command, work.terminal);
 }
 
 Note note_of(const Work &work, int frame) {
@@ -125,23 +126,21 @@ Exit make_frame(Work &work, int frame, const Note &note, Progress &progress) {
     const std::string out = work.delivery.file_of(frame);
     if (!command.sweeps.empty() && frame != work.frames.front())
         if (const Exit exit = compile(work, {frame}); exit != done) return exit;
-    std::string status; // what is worth knowing of how it was drawn
-    std::optional<Painted> made = paint(
-        work.painter, work.compilation.scene, command, work.region, work.delivery.wants_sums(),
-        moment_of(command, frame), [&](double share) { progress.share(out, share); }, status,
-        terminal);
+    v1::Picture made = paint(
+        work.gl, *work.compiled.scene, command, work.region, work.delivery.wants_sums(),
+        moment_of(command, frame), [&](double share) { progress.share(out, share); }, terminal);
     if (Interrupts::noticed()) obey_interrupt(terminal); // nothing of this picture is written
     // `--cached` is answered by what became of it.
-    if (!status.empty() &&
+    if (!made.remark.empty() &&
         (terminal.interactive() || (command.cache && command.frames.numbers.empty())))
-        terminal.say(out + ": " + status);
-    if (!made) {
+        terminal.say(out + ": " + made.remark);
+    if (!made.complete) {
         terminal.say(fmt::format("fathom: there is no memory for a picture of {}x{}", command.width,
                                  command.height));
         return device_error;
     }
-    if (is_undecided(*made, out, command, terminal)) return scene_error;
-    return work.delivery.take(frame, note, std::move(*made));
+    if (is_undecided(made, out, command, terminal)) return scene_error;
+    return work.delivery.take(frame, note, std::move(made));
 }
 
 // What can be refused before the scene is read.
@@ -180,7 +179,7 @@ Exit refused_early(const Work &work) {
 
 Exit run(const RenderCommand &command, Terminal &terminal) {
     end_by_term();
-    const std::optional<cpu::Tile> region = region_of(command, terminal);
+    const std::optional<v1::Region> region = region_of(command, terminal);
     if (!region) return usage_error;
     Work work{command,
               terminal,
@@ -192,15 +191,15 @@ Exit run(const RenderCommand &command, Terminal &terminal) {
               {},
               {}};
     Exit exit = refused_early(work);
-    if (exit == done) exit = begin(work.painter, command, terminal);
+    if (exit == done) exit = begin(work.gl, command, terminal);
     if (exit == done)
         exit = compile(work, command.sweeps.empty() ? work.film : std::vector{work.frames.front()});
     if (exit != done) return exit;
     for (const int frame : work.frames)
-        if (overwrites(work.compilation, work.delivery.file_of(frame), terminal))
+        if (overwrites(work.compiled.files, work.delivery.file_of(frame), terminal))
             return usage_error;
     std::string error;
-    work.identity = identity_of_film(work.compilation, command, maker_of(work.painter), error);
+    work.identity = identity_of_film(work.compiled, command, maker_of(work.gl), error);
     if (!error.empty()) {
         terminal.say("fathom: " + error);
         return device_error;

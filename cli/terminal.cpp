@@ -194,6 +194,12 @@ Exit report(const v1::CompileResult &result, Terminal &terminal) {
     return usage ? usage_error : scene_error;
 }
 
+bool is_about_no_text(const v1::CompileResult &result) {
+    return std::ranges::any_of(result.diagnostics, [](const v1::Diagnostic &d) {
+        return d.code == "unreadable" || d.code == "usage";
+    });
+}
+
 bool in_proved_time(const v1::Facts &facts, double first, double last, Terminal &terminal) {
     const double end = facts.time_end;
     if ((first >= 0 && last <= end) || !facts.reads_time) return true;

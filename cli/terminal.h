@@ -53,10 +53,14 @@ std::string duration_words(double seconds); // "3 min 20 s"
 v1::CompileOptions library_options(const SceneArguments &scene);
 // Proved for what is drawn: the params' values as given, and these times, in seconds.
 v1::CompileOptions library_options(const SceneArguments &scene, double first, double last);
+// CompileOptions::cells of what is drawn, and of a shader's text, which holds them as constants.
+inline constexpr int cells_of_pictures = 16, cells_of_text = 8;
 
 // Prints all diagnostics, and what else keeps a compilation from being good, and says how the
 // command ends.
 Exit report(const v1::CompileResult &result, Terminal &terminal);
+// Whether the result is no verdict on a text: there was none to read, or the command line is wrong.
+bool is_about_no_text(const v1::CompileResult &result);
 // What is proved of a scene that moves holds for the seconds that its `render(time: …)` says.
 // False, with the reason, where `first` to `last` leave them and the field reads the time.
 bool in_proved_time(const v1::Facts &facts, double first, double last, Terminal &terminal);

@@ -50,7 +50,7 @@ std::string drawn(const std::string &example, const std::string &module) {
     size.height = 120;
     fathom::v1::Picture picture = fathom::v1::draw(*result.scene, size);
     if (!picture.complete) return "";
-    return encode_png({picture.width, picture.height, std::move(picture.rgba)});
+    return v1::encode_png(picture);
 }
 
 } // namespace

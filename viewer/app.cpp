@@ -23,6 +23,15 @@ std::optional<Camera> camera_of_line(const std::string &line) {
 
 } // namespace
 
+driver::CompileOptions compile_options(const Settings &settings) {
+    driver::CompileOptions options;
+    options.include_folders = settings.include_folders;
+    for (const auto &[name, text] : settings.values) options.overrides.push_back({name, text});
+    options.limits = settings.limits;
+    options.strict_proof = settings.strict_proof;
+    return options;
+}
+
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
@@ -227,7 +236,7 @@ bool App::write_view() {
     const std::string error = edit_file(file, [&](const std::string &text) -> Edited {
         if (save_file)
             return driver::save_file_with_camera(text, camera, file.parent_path(),
-                                                 settings.options);
+                                                 compile_options(settings));
         if (!driver::can_be_read(text))
             return driver::EditError{"fix its errors first, so that a place for it is found"};
         std::vector<std::string> others;

@@ -20,6 +20,8 @@ struct GLFWwindow;
 
 namespace fathom::viewer {
 
+driver::CompileOptions compile_options(const Settings &settings);
+
 using Clock = std::chrono::steady_clock;
 // Clock time since `start`.
 double milliseconds_since(Clock::time_point start);

@@ -233,7 +233,8 @@ std::string run(const Settings &settings) {
             };
             hooks.leave_context = [] { glfwMakeContextCurrent(nullptr); };
         }
-        app.worker = std::make_unique<Worker>(settings.file, settings.options, std::move(hooks));
+        app.worker =
+            std::make_unique<Worker>(settings.file, compile_options(settings), std::move(hooks));
         if (!settings.editor.empty()) {
             app.editor = EditorLine::to(
                 settings.editor, [] { glfwPostEmptyEvent(); }, error);

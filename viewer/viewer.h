@@ -1,18 +1,23 @@
 // `fathom view`: a window that follows a scene's file. Knows no command line.
 #pragma once
 
-#include "driver/compile.h"
+#include "base/limits.h"
 
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace fathom::viewer {
 
 // What `fathom view` is told.
 struct Settings {
     std::filesystem::path file;
-    driver::CompileOptions options;
+    std::vector<std::filesystem::path> include_folders;
+    std::vector<std::pair<std::string, std::string>> values; // of params: name and text
+    Limits limits;
+    bool strict_proof = false;
     int width = 1280, height = 800;
     std::filesystem::path
         record; // a folder: a picture of the window goes there after every reload; empty: none

@@ -6,6 +6,7 @@
 #include <fathom/explain.h>
 #include <fathom/field.h>
 #include <fathom/files.h>
+#include <fathom/gl.h>
 #include <fathom/mesh.h>
 #include <fathom/picture.h>
 #include <fathom/reference.h>

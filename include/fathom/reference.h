@@ -44,6 +44,12 @@ struct LibraryConstant {
 };
 FATHOM_API std::vector<LibraryConstant> library_constants(); /**< by name */
 
+/** A file of the standard library, as the compiler reads it. */
+struct LibraryText {
+    std::string file, text; /**< file: "shapes.sdf", as LibraryEntry::file */
+};
+FATHOM_API std::vector<LibraryText> library_texts();
+
 /** A code of diagnostics, and its page of docs/diagnostics in Markdown. */
 struct DiagnosticCode {
     std::string name, summary, page;     /**< name: "unknown-name"; summary: one line */

@@ -29,23 +29,12 @@ const std::map<std::string, Names> sees{
     {"driver", {"base", "lang", "ir", "proof", "typecheck", "backend-cpu", "save-format"}},
     {"api",
      {"base", "lang", "ir", "proof", "typecheck", "backend-glsl", "backend-cpu", "mesh",
-      "save-format", "driver"}},
+      "save-format", "driver", "render-gl"}},
     {"render-gl", {"base", "ir", "backend-glsl"}},
     {"viewer", {"base", "ir", "backend-glsl", "save-format", "driver", "render-gl"}},
     {"lsp", {"base", "lang", "proof", "typecheck", "driver", "api"}}, // and the public headers
     {"bindings", {}},                   // the library's public headers alone
     {"cli", {"base", "viewer", "lsp"}}, // and the public headers
-};
-
-// Files that see more than their folder may, each with exactly what it sees besides: the commands
-// that draw are not on the library's API yet.
-const std::map<std::string, Names> exceptions{
-    {"cli/bench.cpp", {"backend-cpu", "backend-glsl", "render-gl"}},
-    {"cli/compiled.h", {"driver"}},
-    {"cli/delivery.cpp", {"driver"}},
-    {"cli/identity.h", {"driver"}},
-    {"cli/painter.cpp", {"render-gl"}},
-    {"cli/painter.h", {"backend-cpu", "render-gl"}},
 };
 
 // Foreign headers, by how their names begin, and the only folder (or file) that may see them.
@@ -118,20 +107,15 @@ std::string place(const Include &include) {
 
 TEST_CASE("a folder includes only what its layer may see") {
     std::size_t counted = 0;
-    std::map<std::string, Names> excepted;
     for (const SourceFile &file : read_sources())
         for (const Include &include : includes_of(file)) {
             ++counted;
             std::string folder = include.name.substr(0, include.name.find('/'));
             if (folder == include.name || !sees.count(folder) || folder == include.folder) continue;
-            if (sees.at(include.folder).count(folder) == 1) continue;
             INFO(place(include));
-            const auto exception = exceptions.find(include.file);
-            CHECK((exception != exceptions.end() && exception->second.count(folder) == 1));
-            excepted[include.file].insert(folder);
+            CHECK(sees.at(include.folder).count(folder) == 1);
         }
-    CHECK(excepted == exceptions); // none that is not needed any more
-    CHECK(counted > 100);          // the test reads what it means to read
+    CHECK(counted > 100); // the test reads what it means to read
 }
 
 TEST_CASE("a foreign library is seen by one folder") {

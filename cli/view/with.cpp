@@ -1,5 +1,5 @@
 // fathom view: the window. What can be said before one opens is said here.
-#include "cli/compiled.h"
+#include "cli/terminal.h"
 #include "viewer/viewer.h"
 
 #include <fmt/format.h>
@@ -25,20 +25,22 @@ Exit run(const ViewCommand &command, Terminal &terminal) {
         terminal.say("fathom: view follows a file, and standard input is none");
         return usage_error;
     }
-    {
-        // A wrong file name or -D is told at once; an error of the scene is shown in the window,
-        // until it is fixed.
-        driver::Compilation first =
-            driver::compile_file(command.scene.file, compile_options(command.scene));
-        if (to_come(command.scene.file))
-            terminal.say(fmt::format("fathom: there is no `{}` yet; the window waits for it",
-                                     command.scene.file));
-        else if (!first.unreadable.empty() || !first.usage_errors.empty())
-            return report(first, command.scene, terminal);
-    }
+    // A wrong file name or -D is told at once; an error of the scene is shown in the window, until it
+    // is fixed.
+    if (to_come(command.scene.file))
+        terminal.say(fmt::format("fathom: there is no `{}` yet; the window waits for it",
+                                 command.scene.file));
+    else if (const v1::CompileResult first =
+                 v1::compile_file(command.scene.file, library_options(command.scene));
+             !first && is_about_no_text(first))
+        return report(first, terminal);
     viewer::Settings settings;
     settings.file = command.scene.file;
-    settings.options = compile_options(command.scene);
+    settings.include_folders = command.scene.include_folders;
+    for (const Definition &value : command.scene.overrides)
+        settings.values.emplace_back(value.name, value.text);
+    settings.limits = command.scene.limits;
+    settings.strict_proof = command.scene.strict_proof;
     settings.width = command.width;
     settings.height = command.height;
     settings.record = command.record;

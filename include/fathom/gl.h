@@ -1,0 +1,90 @@
+/** @file
+ *  Pictures of a scene by OpenGL 3.3 or newer, without a window (by EGL). A library that was built
+ *  without OpenGL has all of this, and `open` says so.
+ *
+ *  @code
+ *  #include <fathom/gl.h>
+ *  #include <cstdio>
+ *
+ *  int main() {
+ *      const auto result = fathom::compile_text("ball.sdf", "sphere(1)\n");
+ *      if (!result) return 1;
+ *      fathom::GlPainter painter;
+ *      fathom::Picture picture;
+ *      fathom::PictureOptions options;
+ *      options.width = 32;
+ *      options.height = 24;
+ *      if (const std::string why = painter.open(); !why.empty()) {
+ *          std::printf("%s\n", why.c_str());
+ *          picture = fathom::draw(*result.scene, options); // by the CPU
+ *      } else if (painter.use(*result.scene).empty()) {
+ *          picture = painter.draw(options);
+ *      }
+ *      std::printf("%dx%d\n", picture.width, picture.height);
+ *      return picture.complete ? 0 : 1;
+ *  }
+ *  @endcode
+ */
+#pragma once
+
+#include <fathom/picture.h>
+
+namespace fathom::FATHOM_V1 {
+
+struct GlOptions {
+    int max_steps = 0; /**< as PictureOptions::max_steps, which it stands for */
+    bool noise_cache =
+        false;         /**< through the noise cache (docs/noise-cache.md), where it can be had */
+    bool still = true; /**< with it: each picture is drawn until the cache knows it; else once */
+};
+
+/** How many rows of its tables a scene's texts run over, by lists for cells of space; 0 without. */
+struct GlLists {
+    double in_cell = 0; /**< mean */
+    double all = 0;     /**< without lists */
+    int side = 0;       /**< cells along an axis */
+};
+
+/** Draws by OpenGL, in the thread that opened it, whose current context it becomes. None of its calls
+ *  throws. */
+class FATHOM_API GlPainter {
+  public:
+    GlPainter();
+    GlPainter(GlPainter &&) noexcept;
+    GlPainter &operator=(GlPainter &&) noexcept;
+    ~GlPainter();
+
+    /** Opens OpenGL. Empty; else a sentence that says what could not be had. */
+    std::string open();
+    bool is_open() const;
+    std::string describe() const; /**< the renderer's and the version's names */
+    int largest_side() const;     /**< of a picture, in pixels; 0 where it is not open */
+
+    /** The text that scenes are drawn by here, before the driver takes it. Empty where the scene has
+     *  none, which `use` says. */
+    std::string text(const Scene &scene) const;
+
+    /** Gives the driver what draws the scene. What is to be said of it; where no diagnostic is an error
+     *  it can be drawn. An error where it is not open. */
+    std::vector<Diagnostic> use(const Scene &scene, const GlOptions &options = {});
+    bool is_cached() const;            /**< through the noise cache */
+    std::string exact_because() const; /**< why not, where it was wanted; else empty */
+    double driver_seconds() const;     /**< that the driver took to build the scene's shader */
+
+    /** The scene in use. Of the options it knows the size, samples, time, `turned`, `linear` and
+     *  `progress`. One with a region, a first sample, sums, alpha or a shutter is not drawn: `remark`
+     *  says so. */
+    Picture draw(const PictureOptions &options = {});
+    /** Draws the same, and gives nothing of it back: to be measured. False where it cannot be. */
+    bool draw_for_nothing(const PictureOptions &options = {});
+
+    GlLists lists() const;
+    void remake_lists(); /**< to be measured */
+
+    struct Impl;
+
+  private:
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace fathom::FATHOM_V1
