@@ -6,6 +6,7 @@
 #include "ir/view.h"
 #include "save-format/export/appearance.h"
 #include "save-format/export/tree.h"
+#include "save-format/node_types.h"
 #include "save-format/program.h"
 #include "save-format/save_format.h"
 

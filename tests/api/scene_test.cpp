@@ -269,26 +269,6 @@ TEST_CASE("facts name what they rest on") {
     CHECK(std::ranges::count(scene.facts().axioms, "sphere: exact") == 1);
 }
 
-TEST_CASE("a picture is drawn, and can be given up") {
-    const fathom::Scene scene = compiled("sphere(1).paint(#ff0000)\nbackground(#000000)");
-    fathom::PictureOptions options;
-    options.width = 40;
-    options.height = 30;
-    const fathom::Picture picture = fathom::draw(scene, options);
-    REQUIRE(picture.complete);
-    REQUIRE(picture.rgba.size() == std::size_t{4} * 40 * 30);
-    const std::size_t middle = 4 * (15 * 40 + 20);
-    CHECK(picture.rgba[middle] > 50);
-    CHECK(picture.rgba[middle + 1] < picture.rgba[middle]);
-    CHECK(picture.rgba[0] == 0);
-
-    options.progress = [](double) { return false; };
-    options.samples = 4;
-    CHECK_FALSE(fathom::draw(scene, options).complete);
-    options.width = 0;
-    CHECK_FALSE(fathom::draw(scene, options).complete);
-}
-
 TEST_CASE("the save format goes out and comes back") {
     const fathom::Scene scene = compiled("box([1, 2, 3]).translate(x: 1)");
     std::vector<fathom::Diagnostic> said;
