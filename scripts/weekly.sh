@@ -24,6 +24,7 @@ try cuts env FATHOM_CUTS=all build/test_lsp 'a text that ends early is known abo
 try coverage scripts/coverage.sh
 try editors scripts/editors.sh
 try pages scripts/pages.sh
+try packages scripts/packages.sh
 try ops scripts/weekly-ops.sh
 try columns scripts/weekly-columns.sh
 exit $failed
