@@ -5,7 +5,6 @@
 #include "proof/prove.h"
 
 namespace fathom::v1 {
-namespace {
 
 Explanation translated(proof::Explanation from, const Sources &sources) {
     Explanation to{std::move(from.operation),
@@ -21,8 +20,6 @@ Explanation translated(proof::Explanation from, const Sources &sources) {
         to.children.push_back(translated(std::move(child), sources));
     return to;
 }
-
-} // namespace
 
 std::optional<Explanation> explain(const Scene &scene) {
     return guarded(

@@ -9,6 +9,10 @@
 #include <exception>
 #include <new>
 
+namespace fathom::proof {
+struct Explanation;
+}
+
 namespace fathom::v1 {
 
 // What a scene was compiled from, to compile it again where a structural param is set.
@@ -49,6 +53,7 @@ Severity severity_of(fathom::Severity severity);
 Place place_of(Span span, const Sources &sources);
 Diagnostic translated(const fathom::Diagnostic &diagnostic, const Sources &sources);
 std::vector<Diagnostic> translated(const Diagnostics &diagnostics, const Sources &sources);
+Explanation translated(proof::Explanation explanation, const Sources &sources);
 Diagnostic sentence(std::string code, std::string message); // an error without a place
 
 // What a call gives whose work could not be done, for lack of memory or by a fault of ours.

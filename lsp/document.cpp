@@ -16,11 +16,6 @@ std::size_t length_at(std::string_view text, std::size_t at) {
 
 int units(std::size_t length) { return length == 4 ? 2 : 1; } // of UTF-16
 
-bool in_name(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' ||
-           static_cast<unsigned char>(c) >= 0x80;
-}
-
 } // namespace
 
 std::size_t offset_at(std::string_view text, Position position) {
@@ -64,14 +59,6 @@ Range range_of(const Lines &lines, std::size_t begin, std::size_t end) {
 Range range_of(const fathom::v1::Place &place) {
     return {{std::max(place.line - 1, 0), std::max(place.column - 1, 0)},
             {std::max(place.end_line - 1, 0), std::max(place.end_column - 1, 0)}};
-}
-
-Word word_at(std::string_view text, std::size_t offset) {
-    Word word{std::min(offset, text.size()), std::min(offset, text.size())};
-    while (word.begin > 0 && in_name(text[word.begin - 1])) --word.begin;
-    while (word.end < text.size() && in_name(text[word.end])) ++word.end;
-    word.method = word.begin > 0 && text[word.begin - 1] == '.';
-    return word;
 }
 
 std::string uri_of(const std::string &path) {

@@ -34,13 +34,6 @@ Range range_of(const Lines &lines, std::size_t begin, std::size_t end);
 // A stretch of a text that is not at hand: exact where its lines hold no character beyond U+FFFF.
 Range range_of(const fathom::v1::Place &place);
 
-// The name (letters, digits, `_`) that a byte lies in or at the end of; empty where there is none.
-struct Word {
-    std::size_t begin = 0, end = 0;
-    bool method = false; // a dot stands before it
-};
-Word word_at(std::string_view text, std::size_t offset);
-
 // A path as a `file:` address, and back; empty where the address is no file's.
 std::string uri_of(const std::string &path);
 std::string path_of(std::string_view uri);

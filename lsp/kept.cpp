@@ -1,8 +1,5 @@
 #include "lsp/kept.h"
 
-#include "base/picture.h"
-#include "driver/files.h"
-
 #include <fathom/fathom.h>
 
 #include <cstdlib>
@@ -24,7 +21,7 @@ fs::path kept_path(const std::string &name) {
         folder = fs::path(home) / ".cache";
     else
         return {};
-    return folder / "fathom" / std::string(fathom::v1::version()) / name;
+    return folder / "fathom" / std::string(v1::version()) / name;
 }
 
 // The code of the line "Example: `sphere(1.2)`".
@@ -41,14 +38,14 @@ std::string drawn(const std::string &example, const std::string &module) {
     std::string text = module.empty() ? "" : "import \"" + module + "\" as " + module + "\n";
     text += example + "\nlighting(ambient: 0.25, ambient_occlusion: 1, shadow_darkness: 0.6)\n"
                       "background(#e9edf1)\n";
-    fathom::v1::CompileOptions options;
+    v1::CompileOptions options;
     options.files = [](const std::string &) { return std::nullopt; };
-    const auto result = fathom::v1::compile_text(example, text, options);
+    const auto result = v1::compile_text(example, text, options);
     if (!result || result.scene->facts().shapes.empty()) return "";
-    fathom::v1::PictureOptions size;
+    v1::PictureOptions size;
     size.width = 160;
     size.height = 120;
-    fathom::v1::Picture picture = fathom::v1::draw(*result.scene, size);
+    v1::Picture picture = v1::draw(*result.scene, size);
     if (!picture.complete) return "";
     return v1::encode_png(picture);
 }
@@ -63,9 +60,9 @@ std::optional<fs::path> kept_file(const std::string &name, std::string_view byte
     if (is_new) {
         std::string why;
         std::error_code error;
-        if (driver::read_file(file, bytes.size(), why) != bytes) {
+        if (v1::read_file(file, bytes.size(), why) != bytes) {
             fs::create_directories(file.parent_path(), error);
-            known->second = driver::write_file(file, bytes).empty();
+            known->second = v1::write_file(file, bytes).empty();
             fs::permissions(file,
                             fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read,
                             error);

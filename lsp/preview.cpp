@@ -1,9 +1,9 @@
 #include "lsp/preview.h"
 
-#include "lsp/syntax.h"
-
 #include "base/text.h"
-#include "driver/files.h"
+
+#include <fathom/files.h>
+#include <fathom/language.h>
 
 #include <algorithm>
 #include <array>
@@ -71,37 +71,7 @@ bool ready(int descriptor) {
     return descriptor >= 0 && ::poll(&one, 1, 0) > 0;
 }
 
-// The values of params that are written as one number, by where that stands.
-std::map<std::uint32_t, std::pair<std::string, double>> numbers_of_params(const lang::Ast &ast) {
-    std::map<std::uint32_t, std::pair<std::string, double>> all;
-    for (const lang::Stmt &stmt : ast.blocks[ast.root].stmts)
-        if (const auto *param = std::get_if<lang::Param>(&stmt.kind)) {
-            const lang::Expr &value = ast.exprs[param->value];
-            if (const auto *number = std::get_if<lang::Number>(&value.kind))
-                all[value.span.begin] = {param->name.text, number->value};
-        }
-    return all;
-}
-
 } // namespace
-
-std::vector<std::pair<std::string, double>> moved_params(const std::string &before,
-                                                         const std::string &after) {
-    const Syntax was = read_syntax(before), is = read_syntax(after);
-    std::vector<std::pair<std::string, double>> moved;
-    const std::vector<lang::Token> &old = was.words.tokens, &now = is.words.tokens;
-    if (!was.whole || !is.whole || old.size() != now.size()) return moved;
-    const auto old_numbers = numbers_of_params(was.ast), numbers = numbers_of_params(is.ast);
-    for (std::size_t i = 0; i < now.size(); ++i) {
-        if (was.text().substr(old[i].begin, old[i].end - old[i].begin) ==
-            is.text().substr(now[i].begin, now[i].end - now[i].begin))
-            continue;
-        const auto number = numbers.find(now[i].begin);
-        if (number == numbers.end() || !old_numbers.contains(old[i].begin)) return {};
-        moved.push_back(number->second);
-    }
-    return moved;
-}
 
 Previews::Previews(std::string program) : program_(std::move(program)) {}
 
@@ -133,7 +103,7 @@ std::string Previews::open(const std::string &uri, const std::string &text) {
     window.listening = listen_in(window.folder);
     int errors[2] = {-1, -1};
     if (window.listening < 0 || ::pipe2(errors, O_CLOEXEC) != 0) {
-        const std::string why = driver::error_words(errno);
+        const std::string why = fathom::v1::error_words(errno);
         close(window);
         return "cannot make a socket: " + why;
     }
@@ -154,7 +124,7 @@ std::string Previews::open(const std::string &uri, const std::string &text) {
     if (failed != 0) {
         window.process = 0;
         close(window);
-        return "cannot start the viewer: " + driver::error_words(failed);
+        return "cannot start the viewer: " + fathom::v1::error_words(failed);
     }
     windows_.push_back(std::move(window));
     return "";
@@ -173,7 +143,7 @@ static void tell(int &connected, const std::string &record) {
 }
 
 void Previews::show(Window &window, const std::string &text) {
-    const auto moved = moved_params(window.shown, text);
+    const auto moved = fathom::v1::moved_params(window.shown, text);
     window.shown = text;
     std::string records = fmt::format("text {}\n{}", text.size(), text);
     for (const auto &[name, value] : moved)

@@ -53,9 +53,4 @@ class Previews {
     int requests_ = 0;
 };
 
-// Params whose number alone differs between two texts that are the same otherwise, with their new
-// values (angles in radians); nothing where anything else differs, or nothing does.
-std::vector<std::pair<std::string, double>> moved_params(const std::string &before,
-                                                         const std::string &after);
-
 } // namespace fathom::lsp

@@ -9,7 +9,7 @@ namespace {
 
 struct Row {
     const char *method;
-    Json (*answer)(Workspace &, const Json &);
+    Json (*answer)(Session &, const Json &);
     const char *capability; // null: that of another row
     Json value;
 };
@@ -39,10 +39,6 @@ std::string failure(const Json &id, int code, const std::string &why) {
 
 } // namespace
 
-Server::Server() : workspace_(workspace_with_library()) {
-    workspace_.proofs = fathom::v1::ProofCache::of_bytes();
-}
-
 void Server::send(const char *method, Json params) {
     outbox_.push_back(
         written({{"jsonrpc", "2.0"}, {"method", method}, {"params", std::move(params)}}));
@@ -50,7 +46,7 @@ void Server::send(const char *method, Json params) {
 
 std::vector<std::string> Server::handle(const std::string &message) {
     outbox_.clear();
-    workspace_.said.clear();
+    session_.said.clear();
     const Json request = Json::parse(message, nullptr, false);
     if (request.is_discarded() || !request.is_object())
         return {failure(nullptr, parse_error, "this is no JSON object")};
@@ -70,7 +66,7 @@ std::vector<std::string> Server::handle(const std::string &message) {
         } else {
             bool known = true;
             Json result = answer(method, params, known);
-            for (auto &[said, what] : std::exchange(workspace_.said, {}))
+            for (auto &[said, what] : std::exchange(session_.said, {}))
                 send(said.c_str(), std::move(what));
             if (known)
                 outbox_.push_back(
@@ -106,16 +102,16 @@ void Server::foresee(const std::string &message) {
 std::vector<std::string> Server::idle() {
     outbox_.clear();
     cancelled_.clear(); // what was taken back too late
-    for (auto &[uri, document] : workspace_.documents) {
-        if (document.published) continue;
-        document.published = true;
+    for (auto &[uri, text] : session_.texts) {
+        if (text.published) continue;
+        text.published = true;
         try {
             send("textDocument/publishDiagnostics",
                  {{"uri", uri},
-                  {"version", document.version},
-                  {"diagnostics", diagnostics_of(workspace_, document)}});
+                  {"version", text.version},
+                  {"diagnostics", diagnostics_of(session_, text)}});
         } catch (const Outdated &) {
-            document.published = false;
+            text.published = false;
             break;
         }
     }
@@ -126,7 +122,7 @@ Json Server::answer(const std::string &method, const Json &params, bool &known) 
     if (method == "initialize") return initialize(params);
     if (method == "shutdown") return shut_down_ = true, Json();
     const auto row = std::ranges::find(rows(), method, &Row::method);
-    if (row != rows().end()) return row->answer(workspace_, params);
+    if (row != rows().end()) return row->answer(session_, params);
     known = false;
     return {};
 }
@@ -134,16 +130,18 @@ Json Server::answer(const std::string &method, const Json &params, bool &known) 
 Json Server::initialize(const Json &params) {
     const Json snippets = at_path(
         params, {"capabilities", "textDocument", "completion", "completionItem", "snippetSupport"});
-    workspace_.snippets = snippets == true;
+    session_.snippets = snippets == true;
     watches_ = at_path(params, {"capabilities", "workspace", "didChangeWatchedFiles",
                                 "dynamicRegistration"}) == true;
     const Json folders = at_path(params, {"workspaceFolders"}), root = at_path(params, {"rootUri"});
+    std::vector<std::string> roots;
     if (folders.is_array())
         for (const Json &folder : folders)
-            workspace_.roots.push_back(path_of(folder.at("uri").get<std::string>()));
+            roots.push_back(path_of(folder.at("uri").get<std::string>()));
     else if (root.is_string())
-        workspace_.roots.push_back(path_of(root.get<std::string>()));
-    std::erase(workspace_.roots, "");
+        roots.push_back(path_of(root.get<std::string>()));
+    std::erase(roots, "");
+    session_.workspace.set_folders(std::move(roots));
     Json capabilities{{"positionEncoding", "utf-16"},
                       {"textDocumentSync", {{"openClose", true}, {"change", 2}}}};
     for (const Row &row : rows())
@@ -165,47 +163,48 @@ void Server::notified(const std::string &method, const Json &params) {
                   {"method", "workspace/didChangeWatchedFiles"},
                   {"registerOptions",
                    {{"watchers", {{{"globPattern", "**/*.{sdf,png,jpg,jpeg,nrrd}"}}}}}}}}}}}}));
-    if (method == "workspace/didChangeWatchedFiles")
-        for (auto &[uri, document] : workspace_.documents) changed(document);
-    if (method == "textDocument/didOpen") {
-        const Json &opened = params.at("textDocument");
-        const std::string uri = opened.at("uri");
-        Document document;
-        document.uri = uri;
-        document.path = path_of(uri);
-        if (document.path.empty()) document.path = uri; // a text that is no file yet
-        document.text = opened.at("text");
-        document.version = opened.value("version", 0);
-        changed(workspace_.documents[uri] = std::move(document));
-    }
+    if (method == "workspace/didChangeWatchedFiles") changed(session_.workspace.files_changed());
+    if (method == "textDocument/didOpen") opened(params);
     if (method == "textDocument/didClose") {
         const std::string uri = params.at("textDocument").at("uri");
-        if (const auto closed = workspace_.documents.find(uri);
-            closed != workspace_.documents.end()) {
-            changed(closed->second); // who imports it sees the file again
-            workspace_.documents.erase(closed);
+        if (const auto closed = session_.texts.find(uri); closed != session_.texts.end()) {
+            const std::string path = closed->second.path;
+            session_.texts.erase(closed);
+            changed(session_.workspace.close(path));
         }
         send("textDocument/publishDiagnostics", {{"uri", uri}, {"diagnostics", Json::array()}});
     }
     if (method == "textDocument/didChange") edited(params);
 }
 
-void Server::edited(const Json &params) {
-    Document &document = document_of(workspace_, params);
-    change(document.text, params.at("contentChanges"));
-    document.version = params.at("textDocument").value("version", document.version + 1);
-    changed(document);
+void Server::opened(const Json &params) {
+    const Json &given = params.at("textDocument");
+    OpenText text;
+    text.uri = given.at("uri");
+    text.path = path_of(text.uri);
+    if (text.path.empty()) text.path = text.uri; // a text that is no file yet
+    text.version = given.value("version", 0);
+    const std::string path = text.path;
+    std::string words = given.at("text");
+    session_.texts[text.uri] = std::move(text);
+    changed(session_.workspace.set_text(path, std::move(words)));
 }
 
-// What imports the text may compile differently now.
-void Server::changed(Document &document) {
-    document.reading.reset();
-    for (auto &[uri, other] : workspace_.documents) {
-        if (&other != &document && !other.asked_for.contains(document.path)) continue;
-        if (other.compiled) other.replaced = std::move(other.compiled);
-        other.compiled.reset();
-        other.published = false;
-    }
+void Server::edited(const Json &params) {
+    OpenText &text = text_of(session_, params);
+    std::string words(session_.workspace.text(text.path).value_or(""));
+    change(words, params.at("contentChanges"));
+    text.version = params.at("textDocument").value("version", text.version + 1);
+    changed(session_.workspace.set_text(text.path, std::move(words)));
+}
+
+// The diagnostics of these are to be sent anew; and where their lines begin may have changed.
+void Server::changed(const std::vector<std::string> &paths) {
+    for (auto &[uri, text] : session_.texts)
+        if (std::ranges::find(paths, text.path) != paths.end()) {
+            text.published = false;
+            text.lines.reset();
+        }
 }
 
 } // namespace fathom::lsp

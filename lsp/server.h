@@ -1,11 +1,9 @@
-// A language server: one message in, some messages out. What it answers comes of the library
-// (include/fathom), of the compiler's own reading of the text, and of the open texts; unsaved texts
-// are what is compiled. Reads files that scenes import and the scenes of the client's folders;
+// A language server: one message in, some messages out. What it answers comes of the library's
+// workspace (fathom/language.h); unsaved texts are what is compiled. Reads files that scenes import and the scenes of the client's folders;
 // writes none but copies of the library's texts, for a client that wants to see them.
 #pragma once
 
-#include "lsp/json.h"
-#include "lsp/workspace.h"
+#include "lsp/session.h"
 
 #include <functional>
 #include <map>
@@ -20,7 +18,7 @@ enum class Wanted : char { Still = 's', TakenBack = 't', Modified = 'm' }; // th
 
 class Server {
   public:
-    Server();
+    Server() = default;
     Server(const Server &) = delete;
     Server &operator=(const Server &) = delete;
 
@@ -35,9 +33,8 @@ class Server {
     // Whether somebody still waits for what `handle` or `idle` is at: asked while a text is
     // compiled. If not, the request is answered with an error, and the diagnostics are left for later.
     void ask_whether_wanted(std::function<Wanted()> ask) {
-        workspace_.outdated = [this, ask = std::move(ask)] {
-            return (wanted_ = ask()) != Wanted::Still;
-        };
+        session_.workspace.set_outdated(
+            [this, ask = std::move(ask)] { return (wanted_ = ask()) != Wanted::Still; });
     }
 
     // Looks at a message that will be handled later: where it takes a request back, that is answered
@@ -52,10 +49,11 @@ class Server {
     Json initialize(const Json &params);
     void notified(const std::string &method, const Json &params);
     void edited(const Json &params);
-    void changed(Document &document);
+    void opened(const Json &params);
+    void changed(const std::vector<std::string> &paths);
     void send(const char *method, Json params);
 
-    Workspace workspace_;
+    Session session_;
     std::vector<std::string> outbox_; // what goes out before the answer
     std::set<std::string> cancelled_; // ids of requests, as JSON
     Wanted wanted_ = Wanted::Still;   // as last asked

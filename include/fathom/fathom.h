@@ -7,6 +7,7 @@
 #include <fathom/field.h>
 #include <fathom/files.h>
 #include <fathom/gl.h>
+#include <fathom/language.h>
 #include <fathom/mesh.h>
 #include <fathom/picture.h>
 #include <fathom/reference.h>

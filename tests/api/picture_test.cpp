@@ -76,9 +76,9 @@ TEST_CASE("a part of a picture is that part of the whole, to the byte") {
         CHECK(std::equal(part.rgba.begin() + 4 * 20 * y, part.rgba.begin() + 4 * 20 * (y + 1),
                          whole.rgba.begin() + 4 * (40 * (5 + y) + 7)));
     CHECK(seen == part.rgba);
-    for (const fathom::Region &none : {fathom::Region{0, 0, 0, 5}, fathom::Region{-1, 0, 5, 5},
-                                       fathom::Region{21, 0, 20, 5}, fathom::Region{0, 30, 5, 1},
-                                       fathom::Region{2147483647, 0, 2147483647, 5}}) {
+    for (const fathom::Region &none :
+         {fathom::Region{0, 0, 0, 5}, fathom::Region{-1, 0, 5, 5}, fathom::Region{21, 0, 20, 5},
+          fathom::Region{0, 30, 5, 1}, fathom::Region{2147483647, 0, 2147483647, 5}}) {
         options.region = none;
         CHECK(fathom::draw(scene, options).rgba.empty());
     }

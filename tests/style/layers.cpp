@@ -32,7 +32,7 @@ const std::map<std::string, Names> sees{
       "save-format", "driver", "render-gl"}},
     {"render-gl", {"base", "ir", "backend-glsl"}},
     {"viewer", {"base", "ir", "backend-glsl", "save-format", "driver", "render-gl"}},
-    {"lsp", {"base", "lang", "proof", "typecheck", "driver", "api"}}, // and the public headers
+    {"lsp", {"base"}},                  // and the public headers
     {"bindings", {}},                   // the library's public headers alone
     {"cli", {"base", "viewer", "lsp"}}, // and the public headers
 };

@@ -3,7 +3,7 @@
 #include "client.h"
 #include "scenes.h"
 
-#include "lsp/names.h"
+#include "api/language/names.h"
 
 #include <cstdlib>
 #include <set>
@@ -11,6 +11,7 @@
 namespace {
 
 using namespace fathom::lsp;
+using namespace fathom::language;
 using fathom::lang::Tok;
 
 std::string uri; // of the text that is open

@@ -2,11 +2,12 @@
 #include "client.h"
 #include "scenes.h"
 
-#include "lsp/refactor.h"
+#include "api/language/refactor.h"
 
 namespace {
 
 using namespace fathom::lsp;
+using fathom::language::edited, fathom::language::TextEdit;
 
 const std::string main_uri = "file:///scenes/a.sdf", part_uri = "file:///scenes/part.sdf";
 
@@ -14,8 +15,8 @@ const std::string main_uri = "file:///scenes/a.sdf", part_uri = "file:///scenes/
 std::string with_edits(const std::string &text, const Json &edits) {
     std::vector<TextEdit> all;
     for (const Json &edit : edits)
-        all.push_back({offset_at(text, position_of(edit.at("range").at("start"))),
-                       offset_at(text, position_of(edit.at("range").at("end"))),
+        all.push_back({{offset_at(text, position_of(edit.at("range").at("start"))),
+                        offset_at(text, position_of(edit.at("range").at("end")))},
                        edit.at("newText")});
     return edited(text, all);
 }
@@ -59,7 +60,7 @@ TEST_CASE("a rename goes through all files, and through none where it would chan
     client.open(text);
     CHECK(references(client, 1, 4, part_uri) == 3);
 
-    Workspace plain;
+    fathom::language::Workspace plain;
     const auto before = values_of(plain, "/scenes/a.sdf", text, {{"/scenes/part.sdf", part}});
     REQUIRE(before);
     for (const auto &[line, character, uri] : {std::tuple{1, 4, part_uri},
@@ -299,7 +300,7 @@ TEST_CASE("actions are offered where they compile, and their edits keep the fiel
                              "rounded_box([side, 2, 2], 0.1).rotate(30deg, Y)\n"
                              "torus(1, 0.1).translate([1, 2, 3])\n";
     client.open(text);
-    Workspace plain;
+    fathom::language::Workspace plain;
     const auto before = values_of(plain, "/scenes/a.sdf", text);
     REQUIRE(before);
     const auto offered = [&](int line, int from, int to, int trigger = 1) {

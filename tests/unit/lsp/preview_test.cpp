@@ -19,6 +19,7 @@
 namespace {
 
 using namespace fathom::lsp;
+using fathom::v1::moved_params;
 namespace fs = std::filesystem;
 
 const std::string a_uri = "file:///scenes/a.sdf";

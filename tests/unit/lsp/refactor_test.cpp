@@ -3,7 +3,7 @@
 #include "client.h"
 #include "scenes.h"
 
-#include "lsp/refactor.h"
+#include "api/language/refactor.h"
 #include "tests/support/effort.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace {
 
-using namespace fathom::lsp;
+using namespace fathom::language;
 using fathom::Span;
 
 struct Read {
@@ -32,7 +32,7 @@ struct Tally {
 
 // `same`: what has to hold of the values before and now.
 template <class Same> void try_out(Workspace &workspace, const SceneText &scene,
-                                   const Values &values, const std::optional<Refactoring> &one,
+                                   const Values &values, const std::optional<CodeAction> &one,
                                    Tally &tally, Same same) {
     if (!one) return;
     const std::string after = edited(scene.text, one->edits);
@@ -77,7 +77,8 @@ TEST_CASE("every declaration of a text can have another name") {
             const Declaration &declared = before.names.declarations[declaration];
             // a param's name is the shader's, a function's may be what -D or another file says
             if (declared.name.empty() || doubtful[declaration]) return;
-            edits.push_back({at.begin, at.end, declared.name + "_" + std::to_string(declaration)});
+            edits.push_back(
+                {{at.begin, at.end}, declared.name + "_" + std::to_string(declaration)});
         };
         for (std::size_t i = 0; i < before.names.declarations.size(); ++i)
             rename(before.names.declarations[i].at, i);
@@ -116,9 +117,9 @@ TEST_CASE("what is extracted and put back in has the same field") {
                     same_solid);
         }
         for (const fathom::lang::Expr &e : before.syntax.ast.exprs) {
-            const std::vector<Refactoring> other = convert_units(before.syntax, e.span.begin);
+            const std::vector<CodeAction> other = convert_units(before.syntax, e.span.begin);
             if (other.empty() || !std::holds_alternative<fathom::lang::Number>(e.kind)) continue;
-            for (const Refactoring &one : other)
+            for (const CodeAction &one : other)
                 try_out(workspace, scene, *values, one, units, same_solid);
             break; // one a scene
         }

@@ -2,7 +2,7 @@
 // field.
 #pragma once
 
-#include "lsp/workspace.h"
+#include "api/language/workspace.h"
 
 #include <catch2/catch.hpp>
 
@@ -44,10 +44,10 @@ struct Values {
 };
 
 // Nothing where the text does not compile.
-inline std::optional<Values> values_of(fathom::lsp::Workspace &workspace, const std::string &path,
-                                       const std::string &text,
+inline std::optional<Values> values_of(fathom::language::Workspace &workspace,
+                                       const std::string &path, const std::string &text,
                                        const std::map<std::string, std::string> &instead = {}) {
-    const auto result = fathom::lsp::compile_as(workspace, path, text, instead);
+    const auto result = fathom::language::compile_as(workspace, path, text, instead);
     if (!result) return std::nullopt;
     std::mt19937 random(1);
     std::vector<fathom::v1::Point> points(40);

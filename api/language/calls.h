@@ -1,9 +1,9 @@
 // What a call's arguments are called, of functions of the text, of imported ones and of the library.
 #pragma once
 
-#include "lsp/targets.h"
+#include "api/language/targets.h"
 
-namespace fathom::lsp {
+namespace fathom::language {
 
 // A function that a name may mean, in words.
 struct Form {
@@ -20,4 +20,4 @@ std::vector<Form> forms_named(Workspace &workspace, const File &file, const std:
 // sure. The object before a dot is the argument 0.
 std::string parameter_at(const std::vector<Form> &forms, std::size_t index, std::size_t count);
 
-} // namespace fathom::lsp
+} // namespace fathom::language

@@ -1,11 +1,12 @@
-#include "lsp/syntax.h"
+#include "api/language/syntax.h"
 
 #include "base/diagnostic.h"
 #include "lang/parse.h"
 
 #include <algorithm>
+#include <cctype>
 
-namespace fathom::lsp {
+namespace fathom::language {
 
 using lang::Tok;
 
@@ -17,6 +18,10 @@ Syntax read_syntax(std::string text) {
         lang::parse(syntax.sources, syntax.source, diagnostics, lang::usual_words, &syntax.words);
     syntax.whole = !diagnostics.has_errors();
     return syntax;
+}
+
+int line_of(const Syntax &syntax, std::size_t offset) {
+    return position(syntax.sources[syntax.source], static_cast<std::uint32_t>(offset)).line;
 }
 
 Inside inside(const lang::Expr &expr) {
@@ -184,6 +189,23 @@ std::optional<OpenCall> call_around(const Syntax &syntax, std::size_t offset) {
     return call;
 }
 
+namespace {
+
+bool in_name(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' ||
+           static_cast<unsigned char>(c) >= 0x80;
+}
+
+} // namespace
+
+Word word_at(std::string_view text, std::size_t offset) {
+    Word word{std::min(offset, text.size()), std::min(offset, text.size())};
+    while (word.begin > 0 && in_name(text[word.begin - 1])) --word.begin;
+    while (word.end < text.size() && in_name(text[word.end])) ++word.end;
+    word.method = word.begin > 0 && text[word.begin - 1] == '.';
+    return word;
+}
+
 bool in_comment_or_string(const Syntax &syntax, std::size_t offset) {
     for (const lang::Comment &comment : syntax.words.comments)
         if (comment.begin < offset && offset < comment.end + (comment.is_line ? 1u : 0u))
@@ -193,4 +215,4 @@ bool in_comment_or_string(const Syntax &syntax, std::size_t offset) {
     return false;
 }
 
-} // namespace fathom::lsp
+} // namespace fathom::language

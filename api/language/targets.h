@@ -1,9 +1,9 @@
 // What a name means across files: the declaration in this text, in an imported one, or none of ours.
 #pragma once
 
-#include "lsp/workspace.h"
+#include "api/language/workspace.h"
 
-namespace fathom::lsp {
+namespace fathom::language {
 
 struct Target {
     std::string path;
@@ -26,4 +26,4 @@ struct Mention {
 std::vector<Mention> mentions_of(Workspace &workspace, const Target &target,
                                  const std::vector<File> &files);
 
-} // namespace fathom::lsp
+} // namespace fathom::language

@@ -1,14 +1,14 @@
 // Rename, in all files of the workspace. The new text is read again before it is handed out: each
 // name has to mean what it meant, and what compiled has to compile.
-#include "lsp/requests.h"
-#include "lsp/targets.h"
+#include "api/language/features.h"
+#include "api/language/targets.h"
 
 #include "lang/vocabulary.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 
-namespace fathom::lsp {
+namespace fathom::language {
 namespace {
 
 bool is_name(std::string_view text) {
@@ -73,23 +73,17 @@ bool would_hide(Workspace &workspace, const File &file, const Target &target,
 
 } // namespace
 
-Json prepare_rename(Workspace &workspace, const Json &params) {
-    Document &document = document_of(workspace, params);
+std::optional<v1::Stretch> renamable(Workspace &workspace, Document &document, std::size_t at) {
     const File file = file_of(document);
-    const std::size_t offset = offset_of(document, params);
     const Names &names = file.reading->names;
-    if (!target_at(workspace, file, offset)) return nullptr;
-    const auto declared = names.declaration_at(offset);
-    const Span at = declared ? names.declarations[*declared].at : names.use_at(offset)->at;
-    return {{"range", range_json(file.reading->lines, at)},
-            {"placeholder", document.text.substr(at.begin, at.end - at.begin)}};
+    if (!target_at(workspace, file, at)) return std::nullopt;
+    const auto declared = names.declaration_at(at);
+    return stretch_of(declared ? names.declarations[*declared].at : names.use_at(at)->at);
 }
 
-Json rename(Workspace &workspace, const Json &params) {
-    Document &document = document_of(workspace, params);
-    const std::string new_name = params.at("newName");
-    const File file = file_of(document);
-    const auto target = target_at(workspace, file, offset_of(document, params));
+v1::WorkspaceEdit rename(Workspace &workspace, Document &document, std::size_t at,
+                         const std::string &new_name) {
+    const auto target = target_at(workspace, file_of(document), at);
     if (!target) throw Refusal("only names that a text declares can be renamed");
     if (!is_name(new_name)) throw Refusal(fmt::format("`{}` is no name", new_name));
     const auto home = file_at(workspace, target->path);
@@ -106,26 +100,23 @@ Json rename(Workspace &workspace, const Json &params) {
         if (mention.doubtful)
             throw Refusal(fmt::format(
                 "two declarations may be meant where `{}` stands in line {}", old_name,
-                position_at(file_at(workspace, mention.path)->reading->lines, mention.at.begin)
-                        .line +
-                    1));
+                line_of(file_at(workspace, mention.path)->reading->syntax, mention.at.begin)));
         Rewritten &part = rewritten[mention.path];
         part.at.push_back(mention.at);
     }
     std::map<std::string, std::string> texts;
-    Json changes = Json::object();
+    v1::WorkspaceEdit changes;
     for (auto &[path, part] : rewritten) {
         part.before = *file_at(workspace, path);
         part.after = part.before.text;
         std::ranges::sort(part.at);
-        Json edits = Json::array();
+        std::vector<v1::TextEdit> edits;
         for (std::size_t i = part.at.size(); i-- > 0;) {
             const Span at = part.at[i];
             part.after.replace(at.begin, at.end - at.begin, new_name);
-            edits.push_back(
-                {{"range", range_json(part.before.reading->lines, at)}, {"newText", new_name}});
+            edits.push_back({stretch_of(at), new_name});
         }
-        changes[uri_of(path)] = std::move(edits);
+        changes[path] = std::move(edits);
         texts[path] = part.after;
         if (!means_the_same(part, new_name, longer))
             throw Refusal(fmt::format("`{}` would mean something else then in {}", new_name, path));
@@ -134,7 +125,7 @@ Json rename(Workspace &workspace, const Json &params) {
         if (compile_as(workspace, path, part.before.text) &&
             !compile_as(workspace, path, part.after, texts))
             throw Refusal(fmt::format("{} would not compile any more", path));
-    return {{"changes", std::move(changes)}};
+    return changes;
 }
 
-} // namespace fathom::lsp
+} // namespace fathom::language

@@ -1,6 +1,6 @@
-#include "lsp/targets.h"
+#include "api/language/targets.h"
 
-namespace fathom::lsp {
+namespace fathom::language {
 namespace {
 
 constexpr int most_imports = 32; // one in the other, so that files that import each other end
@@ -75,4 +75,4 @@ std::vector<Mention> mentions_of(Workspace &workspace, const Target &target,
     return all;
 }
 
-} // namespace fathom::lsp
+} // namespace fathom::language

@@ -1,10 +1,10 @@
-#include "lsp/names.h"
+#include "api/language/names.h"
 
 #include <algorithm>
 #include <string_view>
 #include <unordered_map>
 
-namespace fathom::lsp {
+namespace fathom::language {
 namespace {
 
 bool is_components(std::string_view name) {
@@ -290,4 +290,4 @@ std::optional<std::size_t> Names::meant_at(std::size_t offset) const {
     return use ? use->declaration : std::nullopt;
 }
 
-} // namespace fathom::lsp
+} // namespace fathom::language

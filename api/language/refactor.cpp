@@ -1,4 +1,4 @@
-#include "lsp/refactor.h"
+#include "api/language/refactor.h"
 
 #include "base/text.h"
 #include "lang/vocabulary.h"
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-namespace fathom::lsp {
+namespace fathom::language {
 namespace {
 
 std::string slice(const Syntax &syntax, Span span) {
@@ -117,7 +117,7 @@ std::optional<std::string> indentation(std::string_view text, std::size_t begin)
 
 TextEdit statement_before(const Syntax &syntax, std::size_t at, const std::string &statement) {
     const auto indent = indentation(syntax.text(), at);
-    return {at, at, indent ? statement + "\n" + *indent : statement + "; "};
+    return {{at, at}, indent ? statement + "\n" + *indent : statement + "; "};
 }
 
 // The byte before a top-level statement and the `///` lines above it.
@@ -153,19 +153,19 @@ std::string in_place(const Syntax &syntax, Span at, const std::string &name) {
 } // namespace
 
 std::string edited(std::string_view text, std::vector<TextEdit> edits) {
-    std::ranges::stable_sort(edits, {}, &TextEdit::begin);
+    std::ranges::stable_sort(edits, {}, [](const TextEdit &edit) { return edit.at.begin; });
     std::string out;
     std::size_t at = 0;
     for (const TextEdit &edit : edits) {
-        out += text.substr(at, edit.begin - at);
+        out += text.substr(at, edit.at.begin - at);
         out += edit.text;
-        at = edit.end;
+        at = edit.at.end;
     }
     return out += text.substr(at);
 }
 
-std::optional<Refactoring> extract_let(const Syntax &syntax, const Names &names, std::size_t begin,
-                                       std::size_t end) {
+std::optional<CodeAction> extract_let(const Syntax &syntax, const Names &names, std::size_t begin,
+                                      std::size_t end) {
     const auto what = selected(syntax, begin, end);
     if (!what || refused(syntax, names, *what)) return std::nullopt;
     const Span span = syntax.ast.exprs[what->expr].span;
@@ -185,15 +185,15 @@ std::optional<Refactoring> extract_let(const Syntax &syntax, const Names &names,
     for (std::size_t used : used_in(names, span))
         if (within(names.declarations[used].at, stmt->span)) return std::nullopt;
     const std::string name = free_name(names, "value");
-    Refactoring out{"Extract into a `let`", "refactor.extract", {}};
+    CodeAction out{"Extract into a `let`", CodeAction::Kind::Extract, {}, {}};
     out.edits.push_back(statement_before(syntax, stmt->span.begin,
                                          fmt::format("let {} = {}", name, slice(syntax, span))));
-    out.edits.push_back({span.begin, span.end, in_place(syntax, span, name)});
+    out.edits.push_back({{span.begin, span.end}, in_place(syntax, span, name)});
     return out;
 }
 
-std::optional<Refactoring> extract_function(const Syntax &syntax, const Names &names,
-                                            std::size_t begin, std::size_t end) {
+std::optional<CodeAction> extract_function(const Syntax &syntax, const Names &names,
+                                           std::size_t begin, std::size_t end) {
     const auto what = selected(syntax, begin, end);
     if (!what || refused(syntax, names, *what) || !what->path.front().stmt) return std::nullopt;
     const Span span = syntax.ast.exprs[what->expr].span;
@@ -205,17 +205,17 @@ std::optional<Refactoring> extract_function(const Syntax &syntax, const Names &n
         // a name of the file that stands below is not there yet where the value stands above
     }
     const std::string name = free_name(names, "part");
-    Refactoring out{"Extract into a function", "refactor.extract", {}};
+    CodeAction out{"Extract into a function", CodeAction::Kind::Extract, {}, {}};
     const std::size_t at = above(syntax, stmt);
     const auto indent = indentation(syntax.text(), at);
     const std::string text = fmt::format("fn {}({}) = {}", name, parameters, slice(syntax, span));
-    out.edits.push_back({at, at, text + (indent ? "\n\n" + *indent : "; ")});
-    out.edits.push_back({span.begin, span.end, fmt::format("{}({})", name, parameters)});
+    out.edits.push_back({{at, at}, text + (indent ? "\n\n" + *indent : "; ")});
+    out.edits.push_back({{span.begin, span.end}, fmt::format("{}({})", name, parameters)});
     return out;
 }
 
-std::optional<Refactoring> extract_param(const Syntax &syntax, const Names &names,
-                                         std::size_t begin, std::size_t end) {
+std::optional<CodeAction> extract_param(const Syntax &syntax, const Names &names, std::size_t begin,
+                                        std::size_t end) {
     auto path = path_to(syntax.ast, static_cast<std::uint32_t>(begin),
                         static_cast<std::uint32_t>(std::max(begin, end)));
     if (path.empty() || !path.back().expr || !path.front().stmt) return std::nullopt;
@@ -245,12 +245,12 @@ std::optional<Refactoring> extract_param(const Syntax &syntax, const Names &name
     const std::string name = free_name(names, wanted);
     const std::size_t at = above(syntax, stmt);
     const auto indent = indentation(syntax.text(), at);
-    Refactoring out{"Make a `param` of it", "refactor.extract", {}};
+    CodeAction out{"Make a `param` of it", CodeAction::Kind::Extract, {}, {}};
     out.edits.push_back(
-        {at, at,
+        {{at, at},
          fmt::format("param {} = {}{}{}", name, text, range, indent ? "\n" + *indent : "; ")});
     out.edits.push_back(
-        {literal.span.begin, literal.span.end, in_place(syntax, literal.span, name)});
+        {{literal.span.begin, literal.span.end}, in_place(syntax, literal.span, name)});
     return out;
 }
 
@@ -276,17 +276,17 @@ TextEdit without(const Syntax &syntax, const lang::Stmt &stmt) {
     if (end < text.size() && text[end] == ';') {
         ++end;
         while (end < text.size() && text[end] == ' ') ++end;
-        return {begin, end, ""};
+        return {{begin, end}, ""};
     }
     const auto indent = indentation(text, begin);
     if (indent && end < text.size() && text[end] == '\n')
-        return {begin - indent->size(), end + 1, ""};
-    return {stmt.span.begin, stmt.span.end, ""};
+        return {{begin - indent->size(), end + 1}, ""};
+    return {{stmt.span.begin, stmt.span.end}, ""};
 }
 
 } // namespace
 
-std::optional<Refactoring> inline_let(const Syntax &syntax, const Names &names, std::size_t at) {
+std::optional<CodeAction> inline_let(const Syntax &syntax, const Names &names, std::size_t at) {
     const auto meant = names.meant_at(at);
     if (!meant) return std::nullopt;
     const Declaration &declared = names.declarations[*meant];
@@ -304,7 +304,7 @@ std::optional<Refactoring> inline_let(const Syntax &syntax, const Names &names, 
     std::string text = slice(syntax, value);
     if (text.find("//") != text.npos) return std::nullopt; // a comment would swallow what follows
     if (!stands_alone(syntax.ast, declared.value)) text = "(" + text + ")";
-    Refactoring out{fmt::format("Inline `{}`", declared.name), "refactor.inline", {}};
+    CodeAction out{fmt::format("Inline `{}`", declared.name), CodeAction::Kind::Inline, {}, {}};
     out.edits.push_back(without(syntax, *stmt));
     std::size_t count = 0;
     for (const Use &use : names.uses) {
@@ -313,7 +313,7 @@ std::optional<Refactoring> inline_let(const Syntax &syntax, const Names &names, 
             return std::nullopt;
         ++count;
         out.edits.push_back(
-            {use.at.begin, use.at.end,
+            {{use.at.begin, use.at.end},
              use.as == UsedAs::Callee && text[0] != '(' &&
                      !std::holds_alternative<lang::Name>(syntax.ast.exprs[declared.value].kind)
                  ? "(" + text + ")"
@@ -347,8 +347,8 @@ std::optional<Refactoring> inline_let(const Syntax &syntax, const Names &names, 
     return out;
 }
 
-std::vector<Refactoring> convert_units(const Syntax &syntax, std::size_t at) {
-    std::vector<Refactoring> all;
+std::vector<CodeAction> convert_units(const Syntax &syntax, std::size_t at) {
+    std::vector<CodeAction> all;
     const auto byte = static_cast<std::uint32_t>(at);
     const auto path = path_to(syntax.ast, byte, byte);
     if (path.empty() || !path.back().expr) return all;
@@ -367,14 +367,15 @@ std::vector<Refactoring> convert_units(const Syntax &syntax, std::size_t at) {
         }
         if (digits.find('e') != digits.npos) continue; // nobody writes an angle so
         all.push_back({fmt::format("Write as `{}{}`", digits, unit),
-                       "refactor.rewrite",
-                       {{e.span.begin, e.span.end, digits + unit}}});
+                       CodeAction::Kind::Rewrite,
+                       {},
+                       {{{e.span.begin, e.span.end}, digits + unit}}});
     }
     return all;
 }
 
-std::optional<Refactoring> name_argument(const Syntax &syntax, const Names &names, std::size_t at,
-                                         const ParameterName &parameter) {
+std::optional<CodeAction> name_argument(const Syntax &syntax, const Names &names, std::size_t at,
+                                        const ParameterName &parameter) {
     const lang::Ast &ast = syntax.ast;
     const auto byte = static_cast<std::uint32_t>(at);
     const auto path = path_to(ast, byte, byte);
@@ -395,7 +396,7 @@ std::optional<Refactoring> name_argument(const Syntax &syntax, const Names &name
         const auto use = std::ranges::find(names.uses, name, &Use::at);
         if (use == names.uses.end()) return std::nullopt;
         const std::size_t first = member && !use->module ? 1 : 0;
-        Refactoring out{"Name this argument", "refactor.rewrite", {}};
+        CodeAction out{"Name this argument", CodeAction::Kind::Rewrite, {}, {}};
         for (std::size_t k = chosen; k < call->arguments.size(); ++k) {
             if (call->arguments[k].name) continue; // those behind it have names, too
             const std::string called = parameter(*use, first + k, first + call->arguments.size());
@@ -403,7 +404,7 @@ std::optional<Refactoring> name_argument(const Syntax &syntax, const Names &name
             const lang::Expr &value = ast.exprs[call->arguments[k].value];
             std::size_t begin = value.span.begin;
             while (value.parenthesized && begin > 0 && syntax.text()[begin] != '(') --begin;
-            out.edits.push_back({begin, begin, called + ": "});
+            out.edits.push_back({{begin, begin}, called + ": "});
         }
         if (out.edits.size() > 1) out.title = "Name these arguments";
         return out;
@@ -411,4 +412,4 @@ std::optional<Refactoring> name_argument(const Syntax &syntax, const Names &name
     return std::nullopt;
 }
 
-} // namespace fathom::lsp
+} // namespace fathom::language

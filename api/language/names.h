@@ -3,14 +3,14 @@
 // imported file's or the library's.
 #pragma once
 
-#include "lsp/syntax.h"
+#include "api/language/syntax.h"
 
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace fathom::lsp {
+namespace fathom::language {
 
 enum class DeclaredBy { Let, Var, Function, Param, Parameter, Loop, Import };
 
@@ -53,4 +53,4 @@ struct Names {
 };
 Names names_of(const lang::Ast &ast);
 
-} // namespace fathom::lsp
+} // namespace fathom::language

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fathom::lsp {
+namespace fathom::language {
 
 struct Syntax {
     Sources sources;
@@ -23,6 +23,7 @@ struct Syntax {
     std::string_view text() const { return sources[source].text; }
 };
 Syntax read_syntax(std::string text);
+int line_of(const Syntax &syntax, std::size_t offset); // from 1
 
 // The expressions directly inside an expression or a statement, and the blocks and functions.
 struct Inside {
@@ -55,7 +56,14 @@ struct OpenCall {
 };
 std::optional<OpenCall> call_around(const Syntax &syntax, std::size_t offset);
 
+// The name (letters, digits, `_`) that a byte lies in or at the end of; empty where there is none.
+struct Word {
+    std::size_t begin = 0, end = 0;
+    bool method = false; // a dot stands before it
+};
+Word word_at(std::string_view text, std::size_t offset);
+
 // Whether a byte lies in a comment or a string.
 bool in_comment_or_string(const Syntax &syntax, std::size_t offset);
 
-} // namespace fathom::lsp
+} // namespace fathom::language

@@ -1,18 +1,15 @@
-#include "lsp/paths.h"
+#include "api/language/paths.h"
 
-#include "lsp/requests.h"
+#include "api/language/features.h"
 
 #include <algorithm>
 
-namespace fathom::lsp {
+namespace fathom::language {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A file or a folder that gets another name.
-struct Move {
-    std::string from, to;
-};
+using Move = v1::RenamedFile;
 
 std::string moved(const std::string &path, const std::vector<Move> &moves) {
     for (const Move &move : moves) {
@@ -24,13 +21,14 @@ std::string moved(const std::string &path, const std::vector<Move> &moves) {
 
 bool is_there(const Workspace &workspace, const std::string &path) {
     std::error_code error;
-    return workspace.documents.contains(uri_of(path)) || fs::is_regular_file(path, error);
+    return workspace.documents.contains(path) || fs::is_regular_file(path, error);
 }
 
 // The edits of a file's text after which it names what it named, once all is moved.
-Json edits_for(const Workspace &workspace, const File &file, const std::vector<Move> &moves) {
+std::vector<v1::TextEdit> edits_for(const Workspace &workspace, const File &file,
+                                    const std::vector<Move> &moves) {
     const fs::path home = fs::path(moved(file.path, moves)).parent_path();
-    Json edits = Json::array();
+    std::vector<v1::TextEdit> edits;
     for (const NamedFile &named : named_files(file)) {
         const std::string written = file.text.substr(named.at.begin, named.at.end - named.at.begin);
         const std::string target = moved(named.path, moves);
@@ -40,7 +38,7 @@ Json edits_for(const Workspace &workspace, const File &file, const std::vector<M
                                     ? target
                                     : fs::path(target).lexically_relative(home).generic_string();
         if (now.find_first_of("\"\\\n") != now.npos) continue; // no string can say it
-        edits.push_back({{"range", range_json(file.reading->lines, named.at)}, {"newText", now}});
+        edits.push_back({stretch_of(named.at), now});
     }
     return edits;
 }
@@ -82,30 +80,23 @@ std::vector<NamedFile> named_files(const File &file) {
 }
 
 // Those that are there.
-Json document_links(Workspace &workspace, const Json &params) {
-    const File file = file_of(document_of(workspace, params));
-    Json links = Json::array();
-    for (const NamedFile &named : named_files(file)) {
+std::vector<v1::DocumentLink> links(Document &document) {
+    std::vector<v1::DocumentLink> all;
+    for (const NamedFile &named : named_files(file_of(document))) {
         std::error_code error;
         if (fs::is_regular_file(named.path, error))
-            links.push_back({{"range", range_json(file.reading->lines, named.at)},
-                             {"target", uri_of(named.path)}});
+            all.push_back({stretch_of(named.at), named.path});
     }
-    return links;
+    return all;
 }
 
-// Before files and folders get other names: what names them, or stands in them, is written anew.
-Json will_rename_files(Workspace &workspace, const Json &params) {
-    std::vector<Move> moves;
-    for (const Json &one : params.at("files"))
-        moves.push_back({path_of(one.at("oldUri").get<std::string>()),
-                         path_of(one.at("newUri").get<std::string>())});
-    std::erase_if(moves, [](const Move &move) { return move.from.empty() || move.to.empty(); });
-    Json changes = Json::object();
+v1::WorkspaceEdit rename_files(Workspace &workspace, std::vector<v1::RenamedFile> files) {
+    std::erase_if(files, [](const Move &move) { return move.from.empty() || move.to.empty(); });
+    v1::WorkspaceEdit changes;
     for (const File &file : all_files(workspace))
-        if (Json edits = edits_for(workspace, file, moves); !edits.empty())
-            changes[uri_of(file.path)] = std::move(edits);
-    return {{"changes", std::move(changes)}};
+        if (auto edits = edits_for(workspace, file, files); !edits.empty())
+            changes[file.path] = std::move(edits);
+    return changes;
 }
 
-} // namespace fathom::lsp
+} // namespace fathom::language

@@ -1,10 +1,10 @@
 // The one form of `fathom fmt` as edits. The formatter keeps all words and comments and changes what
 // is between them, so an edit replaces the space between two; of a range, those within it.
-#include "lsp/requests.h"
+#include "api/language/features.h"
 
 #include <algorithm>
 
-namespace fathom::lsp {
+namespace fathom::language {
 namespace {
 
 struct Piece {
@@ -33,14 +33,14 @@ std::vector<Piece> pieces_of(const Syntax &syntax) {
 
 // Edits of the stretch [from, to) that give the formatted text there; none where the text cannot be
 // read.
-Json edits_within(const Reading &read, std::size_t from, std::size_t to) {
-    Json edits = Json::array();
+std::vector<v1::TextEdit> edits_within(const Reading &read, std::size_t from, std::size_t to) {
+    std::vector<v1::TextEdit> edits;
     const std::string old(read.syntax.text());
-    const std::optional<std::string> formatted = fathom::v1::format_text(old);
+    const std::optional<std::string> formatted = v1::format_text(old);
     if (!formatted || *formatted == old) return edits;
     const auto replace = [&](std::size_t begin, std::size_t end, std::string_view with) {
         if (std::string_view(old).substr(begin, end - begin) == with) return;
-        edits.push_back({{"range", json_of(range_of(read.lines, begin, end))}, {"newText", with}});
+        edits.push_back({{begin, end}, std::string(with)});
     };
     const Syntax after = read_syntax(*formatted);
     const std::vector<Piece> was = pieces_of(read.syntax), is = pieces_of(after);
@@ -67,39 +67,36 @@ Json edits_within(const Reading &read, std::size_t from, std::size_t to) {
 
 } // namespace
 
-Json formatting(Workspace &workspace, const Json &params) {
-    const Reading &read = reading(document_of(workspace, params));
-    return edits_within(read, 0, read.syntax.text().size());
+// Whole lines: those that the stretch touches.
+std::vector<v1::TextEdit> format(Document &document, v1::Stretch within) {
+    const Reading &read = reading(document);
+    const std::string_view text = read.syntax.text();
+    const auto begin_of_line = [&](std::size_t at) {
+        const std::size_t before = at > 0 ? text.rfind('\n', at - 1) : text.npos;
+        return before == text.npos ? 0 : before + 1;
+    };
+    const std::size_t from = begin_of_line(within.begin);
+    std::size_t to = within.end;
+    if (begin_of_line(to) != to || from == to) {
+        const std::size_t end = text.find('\n', to);
+        to = end == text.npos ? text.size() : end + 1;
+    }
+    return edits_within(read, from > 0 ? from - 1 : 0, to);
 }
 
-// Whole lines: those that the range touches.
-Json range_formatting(Workspace &workspace, const Json &params) {
-    const Reading &read = reading(document_of(workspace, params));
+std::vector<v1::TextEdit> format_typed(Document &document, std::size_t offset, char typed) {
+    const Reading &read = reading(document);
     const std::string_view text = read.syntax.text();
-    Position start = position_of(params.at("range").at("start")),
-             end = position_of(params.at("range").at("end"));
-    if (end.character > 0 || end.line == start.line) ++end.line;
-    start.character = end.character = 0;
-    const std::size_t from = offset_at(text, start);
-    return edits_within(read, from > 0 ? from - 1 : 0, offset_at(text, end));
-}
-
-// After a `}` its block, after a new line the statement above.
-Json on_type_formatting(Workspace &workspace, const Json &params) {
-    const Reading &read = reading(document_of(workspace, params));
-    const std::string_view text = read.syntax.text();
-    const std::size_t offset = offset_of(document_of(workspace, params), params);
-    const bool brace = params.at("ch") == "}";
     const std::size_t at =
         std::min(text.find_last_not_of(" \t\r\n", offset ? offset - 1 : 0), text.size());
-    if (at == text.size()) return Json::array();
+    if (at == text.size()) return {};
     std::size_t from = at;
     const lang::Block &root = read.syntax.ast.blocks[read.syntax.ast.root];
     for (const lang::Stmt &stmt : root.stmts)
         if (stmt.span.begin <= at && at < stmt.span.end) from = stmt.span.begin;
-    if (from == at) return Json::array();
+    if (from == at) return {};
     // the line that is being typed stays as it is
-    return edits_within(read, from, brace ? offset : at + 1);
+    return edits_within(read, from, typed == '}' ? offset : at + 1);
 }
 
-} // namespace fathom::lsp
+} // namespace fathom::language

@@ -1,6 +1,5 @@
-#include "lsp/workspace.h"
+#include "api/language/workspace.h"
 
-#include "api/impl.h"
 #include "typecheck/check.h"
 
 #include <algorithm>
@@ -8,7 +7,7 @@
 #include <iterator>
 #include <set>
 
-namespace fathom::lsp {
+namespace fathom::language {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,22 +28,22 @@ std::shared_ptr<const Reading> read_text(const std::string &text) {
     auto made = std::make_shared<Reading>();
     made->syntax = read_syntax(text);
     made->names = names_of(made->syntax.ast);
-    made->lines = lines_of(made->syntax.text());
     return made;
 }
 
 // What a text imports: `instead`, else what is open, else the files beside it.
-fathom::v1::FileProvider files_beside(Workspace &workspace, const fs::path &folder,
-                                      const std::map<std::string, std::string> &instead,
-                                      std::set<std::string> *asked_for) {
+v1::FileProvider files_beside(Workspace &workspace, const fs::path &folder,
+                              const std::map<std::string, std::string> &instead,
+                              std::set<std::string> *asked_for) {
     return [&workspace, instead, asked_for,
             folder](const std::string &name) -> std::optional<std::string> {
         const fs::path file = folder / name;
         if (asked_for) asked_for->insert(file.string());
         if (const auto found = instead.find(file.string()); found != instead.end())
             return found->second;
-        for (const auto &[uri, open] : workspace.documents)
-            if (open.path == file.string()) return open.text;
+        if (const auto open = workspace.documents.find(file.string());
+            open != workspace.documents.end())
+            return open->second.text;
         std::error_code error; // a link that leads out of the folder is not followed
         const fs::path real = fs::weakly_canonical(file, error),
                        root = fs::weakly_canonical(folder, error);
@@ -57,20 +56,19 @@ fathom::v1::FileProvider files_beside(Workspace &workspace, const fs::path &fold
 // A fault of ours, or a lack of memory, is the only thing that is said of the text then.
 Compiled compile(Workspace &workspace, Document &document) {
     const auto work = [&] {
-        const fathom::v1::FileProvider files =
+        const v1::FileProvider files =
             files_beside(workspace, fs::path(document.path).parent_path(), {}, &document.asked_for);
         driver::CompileOptions options;
         if (workspace.proofs.impl()) options.bounds = &workspace.proofs.impl()->bounds;
         options.cancelled = workspace.outdated;
-        Compiled made{driver::compile_loaded(document.path, document.text,
-                                             fathom::v1::loader_of(files), options),
-                      {},
-                      {}};
-        made.diagnostics =
-            fathom::v1::translated(made.compilation.diagnostics, made.compilation.sources);
+        Compiled made{
+            driver::compile_loaded(document.path, document.text, v1::loader_of(files), options),
+            {},
+            {}};
+        made.diagnostics = v1::translated(made.compilation.diagnostics, made.compilation.sources);
         return made;
     };
-    return fathom::v1::guarded(work, [](fathom::v1::Diagnostic why) {
+    return v1::guarded(work, [](v1::Diagnostic why) {
         Compiled made;
         made.compilation.unreadable = why.message;
         made.diagnostics.push_back(std::move(why));
@@ -82,7 +80,7 @@ Compiled compile(Workspace &workspace, Document &document) {
 
 static Workspace made_from_library() {
     Workspace workspace;
-    workspace.library = fathom::v1::library_entries();
+    workspace.library = v1::library_entries();
     for (std::size_t i = 0; i < workspace.library.size(); ++i)
         workspace.entries.emplace(workspace.library[i].name, i);
     for (typecheck::LibraryConstant &constant : typecheck::library_constants())
@@ -97,20 +95,13 @@ Workspace workspace_with_library() {
     return made;
 }
 
-Document &document_at(Workspace &workspace, const std::string &uri) {
-    const auto found = workspace.documents.find(uri);
-    if (found == workspace.documents.end()) throw UnknownDocument();
-    return found->second;
-}
-
-fathom::v1::CompileResult compile_as(Workspace &workspace, const std::string &path,
-                                     const std::string &text,
-                                     const std::map<std::string, std::string> &instead) {
-    fathom::v1::CompileOptions options;
+v1::CompileResult compile_as(Workspace &workspace, const std::string &path, const std::string &text,
+                             const std::map<std::string, std::string> &instead) {
+    v1::CompileOptions options;
     options.files = files_beside(workspace, fs::path(path).parent_path(), instead, nullptr);
     options.cache = workspace.proofs;
     options.cancelled = workspace.outdated;
-    fathom::v1::CompileResult result = fathom::v1::compile_text(path, text, options);
+    v1::CompileResult result = v1::compile_text(path, text, options);
     if (std::ranges::any_of(result.diagnostics,
                             [](const auto &said) { return said.code == "cancelled"; }))
         throw Outdated();
@@ -147,11 +138,8 @@ const Reading &reading(Document &document) {
 }
 
 std::optional<File> file_at(Workspace &workspace, const std::string &path) {
-    for (auto &[uri, open] : workspace.documents) {
-        if (open.path != path) continue;
-        (void)reading(open);
-        return File{path, open.text, open.reading};
-    }
+    if (const auto open = workspace.documents.find(path); open != workspace.documents.end())
+        return file_of(open->second);
     std::error_code error;
     const fs::file_time_type time = fs::last_write_time(path, error);
     if (error) return std::nullopt;
@@ -177,9 +165,9 @@ std::vector<File> all_files(Workspace &workspace) {
     constexpr std::size_t most_files = 2000;
     std::set<std::string> paths;
     std::set<fs::path> folders(workspace.roots.begin(), workspace.roots.end());
-    for (const auto &[uri, document] : workspace.documents) {
-        paths.insert(document.path);
-        if (workspace.roots.empty()) folders.insert(fs::path(document.path).parent_path());
+    for (const auto &[path, document] : workspace.documents) {
+        paths.insert(path);
+        if (workspace.roots.empty()) folders.insert(fs::path(path).parent_path());
     }
     for (const fs::path &folder : folders) {
         std::error_code error;
@@ -200,9 +188,9 @@ std::vector<File> all_files(Workspace &workspace) {
     return files;
 }
 
-std::vector<const fathom::v1::LibraryEntry *>
+std::vector<const v1::LibraryEntry *>
 library_forms(const Workspace &workspace, const std::string &name, const std::string &module) {
-    std::vector<const fathom::v1::LibraryEntry *> forms;
+    std::vector<const v1::LibraryEntry *> forms;
     const auto [first, last] = workspace.entries.equal_range(name);
     for (auto entry = first; entry != last; ++entry)
         if (workspace.library[entry->second].module == module)
@@ -244,4 +232,4 @@ Signature read_signature(const std::string &signature) {
     return read;
 }
 
-} // namespace fathom::lsp
+} // namespace fathom::language

@@ -1,8 +1,8 @@
-#include "lsp/calls.h"
+#include "api/language/calls.h"
 
 #include <algorithm>
 
-namespace fathom::lsp {
+namespace fathom::language {
 namespace {
 
 Form form_of(std::string signature, std::string doc) {
@@ -23,7 +23,7 @@ std::string one_line(std::string_view text) {
 std::vector<Form> library(const Workspace &workspace, const std::string &name,
                           const std::string &module) {
     std::vector<Form> forms;
-    for (const fathom::v1::LibraryEntry *entry : library_forms(workspace, name, module))
+    for (const v1::LibraryEntry *entry : library_forms(workspace, name, module))
         if (entry->signature.find('(') != std::string::npos)
             forms.push_back(form_of(entry->signature, entry->doc));
     return forms;
@@ -73,4 +73,4 @@ std::string parameter_at(const std::vector<Form> &forms, std::size_t index, std:
     return name;
 }
 
-} // namespace fathom::lsp
+} // namespace fathom::language

@@ -1,11 +1,11 @@
 // The files that a text names: what it imports, its images and its grids.
 #pragma once
 
-#include "lsp/workspace.h"
+#include "api/language/workspace.h"
 
 #include <string_view>
 
-namespace fathom::lsp {
+namespace fathom::language {
 
 // What a string of a text names, by where it stands.
 enum class Named { Nothing, Scene, Image, Grid };
@@ -18,4 +18,4 @@ struct NamedFile {
 };
 std::vector<NamedFile> named_files(const File &file);
 
-} // namespace fathom::lsp
+} // namespace fathom::language
