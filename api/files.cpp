@@ -3,6 +3,9 @@
 
 #include "driver/watch.h"
 
+#include <algorithm>
+#include <thread>
+
 namespace fathom::v1 {
 namespace {
 
@@ -38,19 +41,49 @@ std::string error_words(int error) { return driver::error_words(error); }
 
 struct Watcher::Impl {
     driver::Watcher watcher;
+    bool failed = false; // it could not be told what to watch
 };
 
-Watcher::Watcher() : impl_(std::make_unique<Impl>()) {}
+namespace {
+
+// In place of what was to be watched: something may have changed.
+bool changed_perhaps(std::chrono::milliseconds timeout) {
+    std::this_thread::sleep_for(std::min(timeout, std::chrono::milliseconds(500)));
+    return true;
+}
+
+} // namespace
+
+Watcher::Watcher()
+    : impl_(guarded([] { return std::make_unique<Impl>(); },
+                    [](const Diagnostic &) { return std::unique_ptr<Impl>(); })) {}
 Watcher::~Watcher() = default;
 
 void Watcher::watch(const CompileResult &result) {
-    static const driver::Stamps none;
-    const auto &texts = result.texts.impl();
-    impl_->watcher.watch(texts && texts->compilation ? texts->compilation->files : none);
+    if (!impl_) return;
+    impl_->failed = guarded(
+        [&] {
+            static const driver::Stamps none;
+            const auto &texts = result.texts.impl();
+            impl_->watcher.watch(texts && texts->compilation ? texts->compilation->files : none);
+            return false;
+        },
+        [](const Diagnostic &) { return true; });
 }
 
-bool Watcher::wait(std::chrono::milliseconds timeout) { return impl_->watcher.wait(timeout); }
-void Watcher::wake() { impl_->watcher.wake(); }
-std::string Watcher::polls_because() const { return impl_->watcher.polls_because(); }
+bool Watcher::wait(std::chrono::milliseconds timeout) {
+    if (!impl_ || impl_->failed) return changed_perhaps(timeout);
+    return guarded([&] { return impl_->watcher.wait(timeout); },
+                   [&](const Diagnostic &) { return changed_perhaps(timeout); });
+}
+
+void Watcher::wake() {
+    if (impl_) impl_->watcher.wake();
+}
+
+std::string Watcher::polls_because() const {
+    return guarded([&] { return impl_ ? impl_->watcher.polls_because() : std::string(); },
+                   [](const Diagnostic &) { return std::string(); });
+}
 
 } // namespace fathom::v1

@@ -203,7 +203,9 @@ struct ActionKinds {
 /** Open texts, the files beside them, and what editors ask of them. Texts are named by their paths,
  *  places in them by bytes. A text is read and compiled when that is first wanted, and again after it
  *  changed; it is answered as well as it can be where it has errors. What texts import is read from
- *  the open ones, else from files; nothing is written. For one thread at a time. */
+ *  the open ones, else from files; nothing is written. For one
+ *  thread at a time. No call throws; one that was made without memory, or moved from, answers
+ *  nothing. */
 class FATHOM_API Workspace {
   public:
     Workspace();

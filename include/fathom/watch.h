@@ -29,8 +29,8 @@
 
 namespace fathom::FATHOM_V1 {
 
-/** Waits until a file is saved. One thread at a time uses it, but for `wake`. Making one, `watch`
- *  and `wait` throw std::bad_alloc where there is no memory. */
+/** Waits until a file is saved. One thread at a time uses it, but for `wake`. Without memory to watch
+ *  with it takes it, twice a second, that something has changed. */
 class FATHOM_API Watcher {
   public:
     Watcher();
