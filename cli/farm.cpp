@@ -4,6 +4,7 @@
 #include "cli/delivery.h"
 #include "cli/job.h"
 #include "cli/option_rows.h"
+#include "system/system.h"
 
 #include <fathom/files.h>
 
@@ -43,7 +44,7 @@ RenderCommand command_of(const RenderCommand &render, const Job &job, const fs::
 
 std::string own_program() {
     std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    const fs::path program = fs::read_symlink(system::own_program(), error);
     return error ? "fathom" : program.string();
 }
 

@@ -2,6 +2,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
+#include "system/system.h"
 
 #include <fathom/files.h>
 
@@ -13,7 +14,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -127,8 +127,8 @@ std::unique_ptr<Film> Film::open(const std::string &out, int width, int height, 
     (void)::fchmod(film->lock_, 0666 & ~mask);
     ::flock(film->lock_, LOCK_EX | LOCK_NB);
     std::array<int, 2> frames{-1, -1};
-    film->words_ = ::memfd_create("ffmpeg's words", MFD_CLOEXEC); // who writes there never waits
-    if (film->words_ < 0 || ::pipe2(frames.data(), O_CLOEXEC) != 0) {
+    film->words_ = system::open_memory(); // who writes there never waits
+    if (film->words_ < 0 || !system::open_pipe(frames)) {
         error = v1::error_words(errno);
         return nullptr;
     }

@@ -1,6 +1,7 @@
 #include "lsp/preview.h"
 
 #include "base/text.h"
+#include "system/system.h"
 
 #include <fathom/files.h>
 #include <fathom/language.h>
@@ -43,19 +44,12 @@ int listen_in(std::string &folder) {
     const std::string path = folder + "/editor";
     if (path.size() >= sizeof address.sun_path) return -1;
     std::strcpy(address.sun_path, path.c_str());
-    int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    int descriptor = system::open_socket();
     if (descriptor >= 0 &&
         (::bind(descriptor, reinterpret_cast<sockaddr *>(&address), sizeof address) != 0 ||
          ::listen(descriptor, 1) != 0))
         shut(descriptor);
     return descriptor;
-}
-
-bool of_this_user(int descriptor) {
-    ucred who{};
-    socklen_t size = sizeof who;
-    return ::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &who, &size) == 0 &&
-           who.uid == ::getuid();
 }
 
 // What can be read without waiting, added to `bytes`; false at the end.
@@ -101,8 +95,8 @@ std::string Previews::open(const std::string &uri, const std::string &text) {
     window.uri = uri;
     window.shown = text;
     window.listening = listen_in(window.folder);
-    int errors[2] = {-1, -1};
-    if (window.listening < 0 || ::pipe2(errors, O_CLOEXEC) != 0) {
+    std::array<int, 2> errors{-1, -1};
+    if (window.listening < 0 || !system::open_pipe(errors)) {
         const std::string why = fathom::v1::error_words(errno);
         close(window);
         return "cannot make a socket: " + why;
@@ -116,8 +110,8 @@ std::string Previews::open(const std::string &uri, const std::string &text) {
     std::vector<char *> arguments;
     for (std::string &word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
-    const int failed = ::posix_spawn(&window.process, program_.c_str(), &files, nullptr,
-                                     arguments.data(), environ);
+    const int failed = ::posix_spawnp(&window.process, program_.c_str(), &files, nullptr,
+                                      arguments.data(), environ);
     posix_spawn_file_actions_destroy(&files);
     ::close(errors[1]);
     window.errors = errors[0];
@@ -244,8 +238,8 @@ std::vector<std::string> Previews::heard() {
     for (auto window = windows_.begin(); window != windows_.end();) {
         const auto here = window++;
         if (ready(here->listening)) {
-            int connected = ::accept4(here->listening, nullptr, nullptr, SOCK_CLOEXEC);
-            if (connected >= 0 && (here->connected >= 0 || !of_this_user(connected)))
+            int connected = system::accept_connection(here->listening);
+            if (connected >= 0 && (here->connected >= 0 || !system::is_of_this_user(connected)))
                 shut(connected);
             if (connected >= 0) {
                 here->connected = connected;

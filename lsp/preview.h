@@ -5,6 +5,7 @@
 #pragma once
 
 #include "lsp/json.h"
+#include "system/system.h"
 
 #include <list>
 #include <map>
@@ -18,7 +19,7 @@ namespace fathom::lsp {
 
 class Previews {
   public:
-    explicit Previews(std::string program = "/proc/self/exe");
+    explicit Previews(std::string program = system::own_program());
     ~Previews(); // the windows close
     Previews(const Previews &) = delete;
     Previews &operator=(const Previews &) = delete;

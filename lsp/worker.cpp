@@ -1,5 +1,8 @@
 #include "lsp/worker.h"
 
+#include "system/system.h"
+
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -61,8 +64,8 @@ Worker::~Worker() {
 bool Worker::start() {
     if (process_ != 0) return true;
     std::signal(SIGPIPE, SIG_IGN); // an end that is gone is seen where it is written to
-    int ends[2] = {-1, -1};
-    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return false;
+    std::array<int, 2> ends{-1, -1};
+    if (!system::open_socket_pair(ends)) return false;
     const pid_t process = ::fork();
     if (process == 0) {
         ::close(ends[0]);

@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 #include "driver/files.h"
+#include "system/system.h"
 
 #include <array>
 #include <cerrno>
@@ -35,7 +36,7 @@ std::unique_ptr<EditorLine> EditorLine::to(const std::filesystem::path &socket,
         return nullptr;
     }
     std::strcpy(address.sun_path, socket.c_str());
-    const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const int descriptor = system::open_socket();
     if (descriptor < 0 ||
         ::connect(descriptor, reinterpret_cast<sockaddr *>(&address), sizeof address) != 0) {
         error = driver::error_words(errno);

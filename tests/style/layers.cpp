@@ -31,10 +31,11 @@ const std::map<std::string, Names> sees{
      {"base", "lang", "ir", "proof", "typecheck", "backend-glsl", "backend-cpu", "mesh",
       "save-format", "driver", "render-gl"}},
     {"render-gl", {"base", "ir", "backend-glsl"}},
-    {"viewer", {"base", "ir", "backend-glsl", "save-format", "driver", "render-gl"}},
-    {"lsp", {"base"}},                  // and the public headers
-    {"bindings", {}},                   // the library's public headers alone
-    {"cli", {"base", "viewer", "lsp"}}, // and the public headers
+    {"viewer", {"base", "ir", "backend-glsl", "save-format", "driver", "render-gl", "system"}},
+    {"system", {}},
+    {"lsp", {"base", "system"}},                  // and the public headers
+    {"bindings", {}},                             // the library's public headers alone
+    {"cli", {"base", "viewer", "lsp", "system"}}, // and the public headers
 };
 
 // Foreign headers, by how their names begin, and the only folder (or file) that may see them.
@@ -194,4 +195,33 @@ TEST_CASE("a switch over ops, kinds or codes has no default") {
             CHECK_FALSE((enumeration && fallback > 0));
         }
     CHECK(switches > 50); // the test reads what it means to read
+}
+
+// What only Linux has stands in one file each, which has a fallback: its names, and that file.
+TEST_CASE("no other file calls what only Linux has") {
+    const std::map<std::string, std::string> calls{{"inotify_", "driver/folder_events.cpp"},
+                                                   {"EGL_PLATFORM", "render-gl/context.cpp"},
+                                                   {"pipe2(", "system/system.cpp"},
+                                                   {"accept4(", "system/system.cpp"},
+                                                   {"SOCK_CLOEXEC", "system/system.cpp"},
+                                                   {"SO_PEERCRED", "system/system.cpp"},
+                                                   {"memfd_create(", "system/system.cpp"},
+                                                   {"/proc/", "system/system.cpp"},
+                                                   {"epoll_", "none"},
+                                                   {"eventfd(", "none"},
+                                                   {"signalfd(", "none"},
+                                                   {"prctl(", "none"},
+                                                   {"gettid(", "none"},
+                                                   {"sched_", "none"}};
+    std::set<std::string> seen;
+    for (const SourceFile &file : read_sources())
+        for (const std::string &line : file.lines)
+            for (const auto &[name, owner] : calls) {
+                const std::size_t at = line.find(name);
+                if (at == line.npos || at > line.find("//")) continue;
+                INFO(file.file << ": " << line);
+                CHECK(file.file.starts_with(owner.substr(0, owner.rfind('.'))));
+                seen.insert(name);
+            }
+    CHECK(seen.size() == 8); // all but what nothing calls
 }
