@@ -9,7 +9,7 @@ import {difference, launch, picture, serve} from "./chromium.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url)), root = join(here, "../.."), fathom = process.argv[2];
 const folder = mkdtempSync(join(tmpdir(), "fathom-hosts-")), size = {width: 320, height: 180};
-for (const file of ["examples/hosts/element.html", "examples/hosts/three.html", "web/fathom-view.js"]) copyFileSync(join(root, file), join(folder, file.split("/").pop()));
+for (const file of ["examples/hosts/element.html", "examples/hosts/webgl.html", "examples/hosts/three.html", "web/fathom-view.js"]) copyFileSync(join(root, file), join(folder, file.split("/").pop()));
 for (const file of ["three.module.js", "three.core.js"]) copyFileSync(join(here, "node_modules/three/build", file), join(folder, file));
 writeFileSync(join(folder, "scene.sdf"), "param radius = 1 in 0.5..2 \"Radius\"\nbox(radius).rotate(0.4, axis: Y).paint(tomato)\nplane(Y, -0.6)\n");
 const run = (...words) => execFileSync(fathom, words, {cwd: folder, stdio: "pipe"});
@@ -33,6 +33,18 @@ try {
   await new Promise(r => setTimeout(r, 2000));
   await near(three, await three.shot(), "three.html");
   await three.close();
+
+  const plain = await browser.open(size);
+  await plain.go(site.address + "webgl.html");
+  await plain.until(() => document.querySelector("canvas").width === 320 && document.querySelector("input"), 20);
+  await plain.run(() => { document.querySelector("form").hidden = true; });
+  await new Promise(r => setTimeout(r, 2000));
+  await near(plain, await plain.shot(), "webgl.html");
+  await plain.run(() => { const s = document.querySelector("input"); s.value = 0.5; s.dispatchEvent(new Event("input")); });
+  await new Promise(r => setTimeout(r, 1000));
+  must(await difference(plain, await plain.shot(), expected) > 2, "the slider of webgl.html sets no param");
+  must(plain.said.length === 0, "webgl.html says " + plain.said.join("; "));
+  await plain.close();
 
   const page = await browser.open({width: 800, height: 800});
   await page.go(site.address + "element.html");
