@@ -55,6 +55,7 @@ using WorkspaceEdit = std::map<std::string, std::vector<TextEdit>>;
  *  ours. */
 enum class Outcome { Answered, NotOpen, Refused, Outdated, Failed };
 
+/** What was asked for, or why there is none. */
 template <class T> struct Answer {
     T value{};
     Outcome outcome = Outcome::Answered;
@@ -86,6 +87,7 @@ struct ArgumentName {
     std::string name;
 };
 
+/** Something that may stand at a place. */
 struct CompletionItem {
     enum class Kind {
         Method,
@@ -138,6 +140,7 @@ struct WorkspaceSymbol {
     Location at;
 };
 
+/** A place of the text that says a name. */
 struct Highlight {
     Stretch at;
     bool written = false; /**< declared or assigned here; else read */
@@ -184,11 +187,13 @@ struct FoldingRange {
     Kind kind = Kind::Brackets;
 };
 
+/** A colour that a text says, by numbers or by name. */
 struct ColorAt {
     Stretch at;
     std::array<double, 4> rgba{}; /**< sRGB, 0 to 1 */
 };
 
+/** Edits that one may want, and what they are called. */
 struct CodeAction {
     enum class Kind { Fix, Extract, Inline, Rewrite };
     std::string title;
@@ -196,6 +201,7 @@ struct CodeAction {
     std::optional<Diagnostic> fixes; /**< what a fix is for */
     std::vector<TextEdit> edits;
 };
+/** Which of them are looked for. */
 struct ActionKinds {
     bool fixes = true, extractions = true, inlinings = true, rewritings = true;
 };
