@@ -5,9 +5,10 @@ root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
 . "$root/scripts/setup.sh"
 install_packages "$build_packages" debhelper dh-python build-essential fakeroot lintian || exit 3
 work=$root/build-packages
+commit=$(git -C "$root" rev-parse HEAD) || exit 3
 rm -rf "$work"
 build() { # FOLDER NAME: the tree is build-packages/FOLDER/NAME, its packages lie beside it
-    mkdir -p "$work/$1/$2" && git -C "$root" archive HEAD | tar -x -C "$work/$1/$2" || exit 3
+    mkdir -p "$work/$1/$2" && git -C "$root" archive "$commit" | tar -x -C "$work/$1/$2" || exit 3
     (cd "$work/$1/$2" && env -u CCACHE_DIR CCACHE_DISABLE=1 dpkg-buildpackage -b -uc -us) >"$work/$1/log" 2>&1 || {
         tail -n 50 "$work/$1/log" >&2
         exit 1
