@@ -1,8 +1,9 @@
 #!/bin/sh
-# The checks that take too long for every change: the tests by clang++, the sanitizers, clang-tidy,
-# ten minutes of each fuzzer, the coverage of the front end, the editors and the pages in real
-# programs, two ops more, and the columns of the op table. Each leaves its output in build-weekly/;
-# the last lines say what passed. Takes some hours on two cores.
+# The checks that take too long for every change: the tests by clang++, each file compiled by itself,
+# the sanitizers, clang-tidy, ten minutes of each fuzzer, the coverage of the front end, the editors and
+# the pages in real programs, the Debian packages built twice, two ops more, and the columns of the op
+# table. Each leaves its output in build-weekly/; the last lines say what passed. Takes some hours on
+# two cores.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
 cd "$root" && mkdir -p build-weekly || exit 3
 failed=0
@@ -14,6 +15,7 @@ try() { # NAME COMMAND…
 }
 : >build-weekly/summary
 try clang scripts/clang.sh
+try apart sh -c 'cmake -G Ninja -S . -B build-apart && cmake --build build-apart -- -k 0'
 try effort env FATHOM_EFFORT=4 ctest --test-dir build --output-on-failure -E fuzz
 try sanitize scripts/sanitize.sh
 try tidy scripts/tidy.sh
