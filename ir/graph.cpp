@@ -33,9 +33,8 @@ int components(Type type) {
 }
 
 Type vector_type(int size) {
-    constexpr Type types[] = {Type::Float, Type::Vec2, Type::Vec3, Type::Vec4};
     assert(size >= 1 && size <= 4);
-    return types[size - 1];
+    return size == 2 ? Type::Vec2 : size == 3 ? Type::Vec3 : size == 4 ? Type::Vec4 : Type::Float;
 }
 
 Type matrix_type(int size) {
