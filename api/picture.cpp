@@ -132,18 +132,8 @@ double aspect_of(const PictureOptions &options) {
 }
 
 ir::View view_of(const ir::Scene &scene, const PictureOptions &options, double time) {
-    ir::View view = ir::view_of(scene, time, aspect_of(options));
-    if (options.turned == 0) return view;
-    const double c = std::cos(options.turned), s = std::sin(options.turned);
-    const auto turned = [&](const glm::dvec3 &v) {
-        return glm::dvec3{c * v.x + s * v.z, v.y, c * v.z - s * v.x};
-    };
-    const glm::dvec3 target = view.origin + view.focus * view.forward;
-    view.origin = target + turned(view.origin - target);
-    view.right = turned(view.right);
-    view.up = turned(view.up);
-    view.forward = turned(view.forward);
-    return view;
+    const ir::View view = ir::view_of(scene, time, aspect_of(options));
+    return options.turned == 0 ? view : ir::turned(view, options.turned, 0, 1);
 }
 
 Picture draw(const Scene &scene, const PictureOptions &options) {

@@ -1,9 +1,11 @@
 #include "api/impl.h"
 
 #include "backend-glsl/reflection.h"
+#include "ir/view.h"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <glm/gtc/type_ptr.hpp>
 
 namespace fathom::v1 {
 namespace {
@@ -130,6 +132,38 @@ std::optional<Shader> make_shader(const Scene &scene, const ShaderOptions &optio
                                            });
     if (diagnostics) *diagnostics = std::move(said);
     return shader;
+}
+
+std::vector<ShaderInput> turned_camera(const Shader &shader, double around, double above,
+                                       double distance) {
+    ir::View view;
+    double orthographic = 0;
+    struct Row {
+        const char *name;
+        double *values;
+        std::size_t count;
+    };
+    const Row rows[] = {{"fathom_origin", glm::value_ptr(view.origin), 3},
+                        {"fathom_right", glm::value_ptr(view.right), 3},
+                        {"fathom_up", glm::value_ptr(view.up), 3},
+                        {"fathom_forward", glm::value_ptr(view.forward), 3},
+                        {"fathom_extent", &view.extent, 1},
+                        {"fathom_focus", &view.focus, 1},
+                        {"fathom_orthographic", &orthographic, 1}};
+    std::vector<ShaderInput> camera;
+    std::vector<Row> rows_of_it;
+    for (const ShaderInput &input : shader.inputs)
+        for (const Row &row : rows)
+            if (input.name == row.name && input.value.size() == row.count) {
+                std::ranges::copy(input.value, row.values);
+                camera.push_back(input);
+                rows_of_it.push_back(row);
+            }
+    view.orthographic = orthographic != 0;
+    view = ir::turned(view, around, above, distance);
+    for (std::size_t i = 0; i < camera.size(); ++i)
+        camera[i].value.assign(rows_of_it[i].values, rows_of_it[i].values + rows_of_it[i].count);
+    return camera;
 }
 
 } // namespace fathom::v1

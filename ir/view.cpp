@@ -145,6 +145,26 @@ View look_at(glm::dvec3 position, glm::dvec3 target, double extent, bool orthogr
     return view;
 }
 
+View turned(View view, double around, double above, double distance) {
+    const glm::dvec3 target = view.origin + view.focus * view.forward;
+    constexpr double up = std::numbers::pi / 2;
+    const double from = std::asin(std::clamp(-view.forward.y, -1.0, 1.0));
+    above = std::clamp(from + above, -up, up) - from;
+    const double ca = std::cos(around), sa = std::sin(around);
+    const auto about_y = [&](const glm::dvec3 &v) {
+        return glm::dvec3{ca * v.x + sa * v.z, v.y, ca * v.z - sa * v.x};
+    };
+    const double cb = std::cos(above), sb = std::sin(above);
+    const glm::dvec3 forward = cb * view.forward - sb * view.up;
+    view.up = about_y(cb * view.up + sb * view.forward);
+    view.forward = about_y(forward);
+    view.right = about_y(view.right);
+    view.focus *= distance;
+    if (view.orthographic) view.extent *= distance;
+    view.origin = target - view.focus * view.forward;
+    return view;
+}
+
 View frame_sphere(View view, glm::dvec3 center, double radius, double aspect) {
     const double narrow = std::min(aspect, 1.0);
     if (view.orthographic) {

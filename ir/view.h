@@ -32,6 +32,10 @@ View view_of(const Scene &scene, double time, double aspect);
 // Frames a sphere from the direction in which a view already looks.
 View frame_sphere(View view, glm::dvec3 center, double radius, double aspect);
 
+// Gone around what it looks at, in radians: about y, and upwards, where straight up and down are the
+// ends; and `distance` times as far from it.
+View turned(View view, double around, double above, double distance);
+
 // The ray of a place in the picture, x and y in pixels from the top left (a pixel's middle is at
 // +0.5):
 //   u = (2x/width - 1) * width/height, v = 1 - 2y/height

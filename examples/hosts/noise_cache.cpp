@@ -30,6 +30,36 @@ GLuint texture(GLenum kind, GLenum format, int width, int height, int depth, GLi
     return name;
 }
 
+// A texture and the uniform that it goes by: a sampler or, with `format`, an image as well.
+struct Bound {
+    std::string name;
+    GLenum kind;
+    GLuint texture;
+    GLenum format = GL_NONE;
+};
+
+// Gives the program in use those that it reads, each on a unit of its own, from `unit` on.
+void bind(GLuint program, const std::vector<Bound> &all, GLuint unit) {
+    GLuint image = 0;
+    for (const Bound &one : all) {
+        const char *name = one.name.c_str();
+        GLuint index = 0;
+        glGetUniformIndices(program, 1, &name, &index);
+        if (index == GL_INVALID_INDEX) continue;
+        GLint type = 0;
+        glGetActiveUniformsiv(program, 1, &index, GL_UNIFORM_TYPE, &type);
+        const GLint at = glGetUniformLocation(program, name);
+        if (type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY) {
+            glBindImageTexture(image, one.texture, 0, GL_TRUE, 0, GL_READ_WRITE, one.format);
+            glUniform1i(at, static_cast<GLint>(image++));
+        } else {
+            glActiveTexture(GL_TEXTURE0 + unit);
+            glBindTexture(one.kind, one.texture);
+            glUniform1i(at, static_cast<GLint>(unit++));
+        }
+    }
+}
+
 // What lives from frame to frame.
 struct Cache {
     std::vector<Bound> bound;
@@ -67,7 +97,8 @@ Cache make_cache(int bits) {
     cube("fathom_cache_wide", GL_RGBA32F, 2 * side, GL_LINEAR);
     std::array<GLuint, words> counts{};
     counts[ring_end] = static_cast<GLuint>(cells);
-    const GLuint name = buffer_texture(GL_R32UI, sizeof counts, counts.data(), &cache.counts);
+    const auto [buffer, name] = buffer_texture(GL_R32UI, sizeof counts, counts.data());
+    cache.counts = buffer;
     cache.bound.push_back({"fathom_cache_counts", GL_TEXTURE_BUFFER, name, GL_R32UI});
     const GLuint pixels = texture(GL_TEXTURE_2D, GL_R8, side * side, side, 1, GL_NEAREST);
     glGenFramebuffers(1, &cache.sweep);
@@ -145,23 +176,23 @@ struct Host {
     Programs programs;
     Cache cache;
     Targets targets;
-    std::vector<Bound> data; // the scene's own
+    std::vector<fathom::ShaderInput> data; // the units of the scene's own textures
     unsigned frame = 0;
     int crowded = 0; // frames one after another whose cells lacked places
 };
 
 void use(const Host &host, GLuint program) {
     glUseProgram(program);
-    std::vector<Bound> all = host.data;
-    all.insert(all.end(), host.cache.bound.begin(), host.cache.bound.end());
+    std::vector<Bound> all = host.cache.bound;
     all.insert(all.end(), host.targets.bound.begin(), host.targets.bound.end());
-    bind(program, all);
+    bind(program, all, static_cast<GLuint>(host.data.size()));
+    set(program, host.data);
     const double width = host.targets.width, height = host.targets.height;
-    set(program, "vec2", "fathom_resolution", {width, height});
-    set(program, "int", "fathom_cache_width", {width});
-    set(program, "int", "fathom_cache_height", {height});
-    set(program, "int", "fathom_cache_bits", {static_cast<double>(host.cache.bits)});
-    set(program, "int", "fathom_cache_ages", {ages});
+    set(program, {{"vec2", "fathom_resolution", {width, height}},
+                  {"int", "fathom_cache_width", {width}},
+                  {"int", "fathom_cache_height", {height}},
+                  {"int", "fathom_cache_bits", {1.0 * host.cache.bits}},
+                  {"int", "fathom_cache_ages", {ages}}});
     glUniform1ui(glGetUniformLocation(program, "fathom_cache_frame"), host.frame);
     // A number for each cached field: its own. More than there are do no harm.
     std::array<GLint, 256> fields{};
@@ -200,17 +231,21 @@ void forget(const Host &host) {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, host.cache.sweep);
     glViewport(0, 0, host.cache.side * host.cache.side, host.cache.side);
     use(host, program);
-    set(program, "int", "fathom_cache_width",
-        {static_cast<double>(host.cache.side * host.cache.side)});
-    set(program, "int", "fathom_cache_gone", {-1});
+    set(program, {{"int", "fathom_cache_width", {1.0 * host.cache.side * host.cache.side}},
+                  {"int", "fathom_cache_gone", {-1}}});
     draw(images_written);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     publish(host);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
+// What a frame shows.
+struct Seen {
+    std::vector<fathom::ShaderInput> params, camera;
+};
+
 // A picture, and the cells of it for the next ones.
-void draw_frame(Host &host, const State &state) {
+void draw_frame(Host &host, const Seen &seen) {
     const Programs &programs = host.programs;
     const Targets &targets = host.targets;
     glViewport(0, 0, targets.width, targets.height);
@@ -221,8 +256,8 @@ void draw_frame(Host &host, const State &state) {
     glDepthFunc(GL_ALWAYS);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets.picture);
     use(host, programs.cached);
-    set_params(programs.cached, state);
-    set_view(programs.cached, state.view);
+    set(programs.cached, seen.params);
+    set(programs.cached, seen.camera);
     draw();
 
     // The pixels that missed, computed: the triangle lies at a depth between.
@@ -230,8 +265,8 @@ void draw_frame(Host &host, const State &state) {
     glDepthMask(GL_FALSE);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets.rest);
     use(host, programs.computed);
-    set_params(programs.computed, state);
-    set_view(programs.computed, state.view);
+    set(programs.computed, seen.params);
+    set(programs.computed, seen.camera);
     draw();
     glDepthMask(GL_TRUE);
     glDisable(GL_DEPTH_TEST);
@@ -245,7 +280,7 @@ void draw_frame(Host &host, const State &state) {
     draw(images_written);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE); // the others write images alone
     use(host, programs.fill);
-    set_params(programs.fill, state);
+    set(programs.fill, seen.params);
     draw(images_written);
     publish(host);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -285,8 +320,8 @@ void show(const Host &host) {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-Tally draw_and_tell(Host &host, const State &state) {
-    draw_frame(host, state);
+Tally draw_and_tell(Host &host, const Seen &seen) {
+    draw_frame(host, seen);
     const Tally tally = tally_of(host);
     std::printf("frame %u: %d of %d pixels missed a value, %u cells were filled\n", host.frame,
                 tally.missed, host.targets.width * host.targets.height, tally.filled);
@@ -303,17 +338,17 @@ Tally draw_and_tell(Host &host, const State &state) {
 }
 
 // Until next to no pixel misses; some views never come so far.
-void draw_still(Host &host, const State &state) {
+void draw_still(Host &host, const Seen &seen) {
     const int few = host.targets.width * host.targets.height / 1000;
     for (int frame = 0; frame < 40; ++frame)
-        if (draw_and_tell(host, state).missed <= few) return;
+        if (draw_and_tell(host, seen).missed <= few) return;
 }
 
 // "name=1.5": false where there is no such param of one number.
-bool set_param(State &state, const char *words) {
+bool set_param(Controls &controls, const char *words) {
     const char *value = std::strchr(words, '=');
     if (!value) return false;
-    for (fathom::ShaderInput &param : state.params)
+    for (fathom::ShaderInput &param : controls.params)
         if (param.param == std::string(words, value) && param.value.size() == 1) {
             param.value[0] = std::atof(value + 1);
             return true;
@@ -329,32 +364,33 @@ int main(int count, char **arguments) {
     fathom::ShaderOptions options;
     options.target = "glsl450";
     options.noise_cache = true;
-    const auto [scene, shader] = compiled(arguments[1], options);
+    const auto [scene, shader] = compile(arguments[1], options);
     if (shader.cache.fill.empty()) fail("no field of this scene is worth keeping");
 
     GLFWwindow *window = open_window(arguments[1], 4, 2, !still);
     int width = 0, height = 0;
     glfwGetFramebufferSize(window, &width, &height);
     Host host{make_programs(shader), make_cache(least_bits), make_targets(width, height),
-              data_of(shader)};
-    State state = first_state(scene, shader);
-    listen(window, state);
+              bind_data(shader)};
+    Controls controls = controls_of(scene, shader);
+    const auto seen = [&, &picture = shader] {
+        return Seen{controls.params,
+                    turned_camera(picture, controls.around, controls.above, controls.distance)};
+    };
     if (still) {
-        draw_still(host, state);
+        draw_still(host, seen());
         if (count > 3) {
-            if (!set_param(state, arguments[3])) fail("there is no such param of one number");
+            if (!set_param(controls, arguments[3])) fail("there is no such param of one number");
             forget(host);
-            draw_still(host, state);
+            draw_still(host, seen());
         }
         write_frame(window, arguments[2]);
     }
     while (!still && !glfwWindowShouldClose(window)) {
-        if (state.moved) forget(host);
-        state.moved = false;
-        state.view.around += 0.005;
-        draw_and_tell(host, state);
+        controls.around += 0.005;
+        draw_and_tell(host, seen());
         glfwSwapBuffers(window);
-        glfwPollEvents();
+        if (poll(window, controls)) forget(host);
     }
     glfwTerminate();
     return 0;

@@ -68,10 +68,10 @@ struct Texture {
 
 /** Any uniform of the text, in its order: what the host sets for a frame, a param or a sampler. */
 struct ShaderInput {
-    std::string type, name;    /**< GLSL's type, as `vec3` or `sampler2D` */
-    std::vector<double> value; /**< for the scene's first view; empty of a sampler */
-    std::string meaning;       /**< of the frame's: what it is, with its unit; else empty */
-    std::string param;         /**< the param's name; else empty */
+    std::string type{}, name{};  /**< GLSL's type, as `vec3` or `sampler2D` */
+    std::vector<double> value{}; /**< for the scene's first view; empty of a sampler */
+    std::string meaning{};       /**< of the frame's: what it is, with its unit; else empty */
+    std::string param{};         /**< the param's name; else empty */
     int place = -1; /**< its location, or a sampler's binding; -1 where the text has none */
 };
 
@@ -99,5 +99,11 @@ struct Shader {
  *  if given, then says why. */
 FATHOM_API std::optional<Shader> make_shader(const Scene &scene, const ShaderOptions &options = {},
                                              std::vector<Diagnostic> *diagnostics = nullptr);
+
+/** The inputs of the camera for a view of one's own: the shader's, gone around what it looks at by
+ *  `around` radians about y and by `above` upwards (no farther than straight up or down), from
+ *  `distance` times as far. Empty where the text has no camera, as a field alone. */
+FATHOM_API std::vector<ShaderInput> turned_camera(const Shader &shader, double around, double above,
+                                                  double distance = 1);
 
 } // namespace fathom::FATHOM_V1

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <numbers>
 #include <sstream>
 #include <thread>
 
@@ -244,6 +245,38 @@ TEST_CASE("a shader's inputs are its uniforms, with the first view's values") {
         REQUIRE(shader->uniforms.size() == 1);
         CHECK(shader->uniforms[0].location == r->place);
     }
+}
+
+TEST_CASE("a shader's camera goes around, up and away from what it looks at") {
+    const auto shader =
+        fathom::make_shader(compiled("sphere(1)\ncamera(at: [0, 0, 5], look_at: [0, 0, 1])\n"));
+    REQUIRE(shader);
+    const auto value = [&](double around, double above, double distance, const char *name) {
+        for (const auto &input : fathom::turned_camera(*shader, around, above, distance))
+            if (input.name == name) return input.value;
+        return std::vector<double>{};
+    };
+    const auto near = [](const std::vector<double> &a, const std::vector<double> &b) {
+        return std::ranges::equal(a, b, [](double x, double y) { return std::abs(x - y) < 1e-9; });
+    };
+    constexpr double quarter = std::numbers::pi / 2;
+    for (const fathom::ShaderInput &input : fathom::turned_camera(*shader, 0, 0)) {
+        const auto first =
+            std::ranges::find(shader->inputs, input.name, &fathom::ShaderInput::name);
+        CHECK((first != shader->inputs.end() && near(input.value, first->value)));
+    }
+    CHECK(near(value(quarter, 0, 1, "fathom_origin"), {4, 0, 1}));
+    CHECK(near(value(0, quarter / 3, 2, "fathom_origin"), {0, 4, 1 + 8 * std::cos(quarter / 3)}));
+    CHECK(near(value(0, 0, 2, "fathom_focus"), {8}));
+    CHECK(near(value(0, 9, 1, "fathom_forward"), {0, -1, 0})); // no farther than straight down
+    CHECK(near(value(0, 9, 1, "fathom_up"), {0, 0, -1}));
+    CHECK(near(value(quarter, -9, 1, "fathom_forward"), {0, 1, 0}));
+
+    fathom::ShaderOptions field;
+    field.field_only = true;
+    const auto alone = fathom::make_shader(compiled("sphere(1)"), field);
+    REQUIRE(alone);
+    CHECK(fathom::turned_camera(*alone, 1, 1).empty());
 }
 
 TEST_CASE("a volume is the distances at its lattice") {

@@ -5,6 +5,8 @@ import inspect
 import operator
 import pathlib
 import re
+import subprocess
+import sys
 
 import fathom
 import numpy as np
@@ -73,6 +75,13 @@ def test_strings_cannot_leave_their_quotes():
 def test_docs_are_the_library_s():
     assert "A ball" in inspect.getdoc(sphere) and "radius: float = 1" in inspect.getdoc(sphere)
     assert "gyroid" in dir(shapes) and "map" not in shapes.__all__
+
+
+def test_shapes_need_no_import_of_their_own():
+    program = "import fathom; print(fathom.shapes.sphere(1)); fathom.shape"
+    ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert ran.stdout.strip() == "sphere(1)"
+    assert "module 'fathom' has no attribute 'shape'" in ran.stderr
 
 
 def test_stubs_name_what_there_is():

@@ -9,6 +9,7 @@
 """
 
 import html as _html
+import importlib as _importlib
 import struct as _struct
 import zlib as _zlib
 
@@ -44,6 +45,12 @@ from ._core import (  # noqa: E402  the module raises the two above
     load,
     shader_targets,
 )
+
+
+def __getattr__(name):  # `fathom.shapes` without an import of its own; it takes some milliseconds to make
+    if name == "shapes":
+        return _importlib.import_module("fathom.shapes")
+    raise AttributeError(f"module 'fathom' has no attribute '{name}'")
 
 
 def png(picture):

@@ -16,6 +16,7 @@ from ._core import (
     load as load,
     shader_targets as shader_targets,
 )
+from . import shapes as shapes
 from numpy.typing import NDArray
 import numpy as np
 
