@@ -358,7 +358,7 @@ int fathom_scene_draw_with(const fathom_scene *scene, int width, int height, int
                            double time, fathom_progress progress, void *own, unsigned char *rgba) {
     constexpr int max_side = 65536;
     if (!scene || !rgba || width < 1 || height < 1 || width > max_side || height > max_side ||
-        samples < 0)
+        samples < 0 || !hold_at(scene->value.facts(), time))
         return FATHOM_BAD_ARGUMENT;
     bool cancelled = false;
     int status = FATHOM_OK;

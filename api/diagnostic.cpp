@@ -1,8 +1,10 @@
 #include "api/impl.h"
 
 #include "base/encode.h"
+#include "base/text.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace fathom::v1 {
 Severity severity_of(fathom::Severity severity) {
@@ -125,6 +127,11 @@ std::string printed(const Diagnostic &diagnostic, const Texts &texts, bool color
             return for_terminal("fathom: " + diagnostic.message) + "\n"; // of no text: `usage`, …
         },
         [](const Diagnostic &) { return std::string(); });
+}
+
+std::string beyond_proof(const Facts &facts) {
+    return fmt::format("time: the scene is proved from 0 to {} seconds",
+                       format_shortest(facts.time_end));
 }
 
 Diagnostic sentence(std::string code, std::string message) {

@@ -173,6 +173,7 @@ bool Field::volume(const Box &box, const std::array<std::size_t, 3> &counts,
 std::optional<Field> make_field(const Scene &scene, double time) noexcept {
     return guarded(
         [&]() -> std::optional<Field> {
+            if (!hold_at(scene.facts(), time)) return std::nullopt;
             return Field(std::make_shared<const Field::Impl>(ir_of(scene), time));
         },
         [](const Diagnostic &) { return std::optional<Field>(); });

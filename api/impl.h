@@ -55,6 +55,7 @@ Diagnostic translated(const fathom::Diagnostic &diagnostic, const Sources &sourc
 std::vector<Diagnostic> translated(const Diagnostics &diagnostics, const Sources &sources);
 Explanation translated(proof::Explanation explanation, const Sources &sources);
 Diagnostic sentence(std::string code, std::string message); // an error without a place
+std::string beyond_proof(const Facts &facts);               // of a time at which they do not hold
 
 // What a call gives whose work could not be done, for lack of memory or by a fault of ours.
 template <class Work, class Failed> auto guarded(Work work, Failed failed) noexcept {

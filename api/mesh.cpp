@@ -85,7 +85,6 @@ bool good(const MeshOptions &options) {
     if (!(options.tolerance >= 0 && std::isfinite(options.tolerance))) return false;
     if (options.tolerance == 0 && (options.resolution < 1 || options.resolution > most_cells))
         return false;
-    if (!std::isfinite(options.time)) return false;
     for (std::size_t i = 0; options.bounds && i < 3; ++i) {
         const float lo = options.bounds->lo[i], hi = options.bounds->hi[i];
         if (!(std::isfinite(lo) && std::isfinite(hi) && lo < hi)) return false;
@@ -123,9 +122,11 @@ fathom::mesh::Unit inner(MeshUnit unit) {
 
 Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
     if (!good(options))
-        return without_mesh(MeshStatus::TooFine,
+        return without_mesh(MeshStatus::BadOptions,
                             "a tolerance is a number above 0, a resolution 1 to 8,000, and bounds "
                             "are finite, the lower ones first");
+    if (!hold_at(scene.facts(), options.time))
+        return without_mesh(MeshStatus::BadOptions, beyond_proof(scene.facts()));
     return guarded(
         [&] {
             fathom::mesh::Settings settings;

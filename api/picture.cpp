@@ -12,20 +12,6 @@
 namespace fathom::v1 {
 namespace {
 
-bool fits(const PictureOptions &options) {
-    const auto is_side = [](int pixels) { return pixels >= 1 && pixels <= 65536; };
-    if (!is_side(options.width) || !is_side(options.height)) return false;
-    if (options.samples < 0 || options.first_sample < 0) return false;
-    if (!(options.shutter >= 0) || !std::isfinite(options.shutter)) return false;
-    if ((options.sums || options.shutter > 0) &&
-        (options.samples < 1 || options.samples > cpu::max_samples))
-        return false;
-    if (!options.region) return true;
-    const Region &part = *options.region;
-    return part.x >= 0 && part.y >= 0 && part.width >= 1 && part.height >= 1 &&
-           part.width <= options.width - part.x && part.height <= options.height - part.y;
-}
-
 cpu::Stage stage_of(const ir::Scene &scene, const PictureOptions &options, double time) {
     cpu::Stage stage =
         cpu::prepare(scene, view_of(scene, options, time), options.width, options.height, time);
@@ -127,6 +113,34 @@ Picture traced_open(const ir::Scene &scene, const PictureOptions &options) {
 
 } // namespace
 
+std::string refused(const Facts &facts, const PictureOptions &options) {
+    const auto is_side = [](int pixels) { return pixels >= 1 && pixels <= 65536; };
+    if (!is_side(options.width) || !is_side(options.height))
+        return "a picture is 1 to 65,536 pixels wide and high";
+    if (options.samples < 0 || options.first_sample < 0)
+        return "the samples of a pixel are counted from 0";
+    if (!(options.shutter >= 0)) return "a shutter is open for 0 seconds or more";
+    if (!hold_at(facts, options.time) || !hold_at(facts, options.time + options.shutter))
+        return beyond_proof(facts);
+    if (!std::isfinite(options.turned)) return "the camera goes around by a finite angle";
+    if ((options.sums || options.shutter > 0) &&
+        (options.samples < 1 || options.samples > cpu::max_samples))
+        return fmt::format("sums, and pictures with an open shutter, have 1 to {} samples",
+                           cpu::max_samples);
+    if (!options.region) return "";
+    const Region &part = *options.region;
+    const bool within = part.x >= 0 && part.y >= 0 && part.width >= 1 && part.height >= 1 &&
+                        part.width <= options.width - part.x &&
+                        part.height <= options.height - part.y;
+    return within ? "" : "the part lies beyond the picture";
+}
+
+Picture without_picture(std::string why) {
+    Picture none;
+    none.remark = std::move(why);
+    return none;
+}
+
 double aspect_of(const PictureOptions &options) {
     return static_cast<double>(options.width) / options.height;
 }
@@ -137,17 +151,18 @@ ir::View view_of(const ir::Scene &scene, const PictureOptions &options, double t
 }
 
 Picture draw(const Scene &scene, const PictureOptions &options) {
-    if (!fits(options)) return {};
+    if (std::string why = refused(scene.facts(), options); !why.empty())
+        return without_picture(std::move(why));
     return guarded(
         [&] {
             return options.shutter > 0 ? traced_open(ir_of(scene), options)
                                        : traced(ir_of(scene), options, options.time);
         },
-        [&](const Diagnostic &) { return Picture(); });
+        [](Diagnostic why) { return without_picture(std::move(why.message)); });
 }
 
 std::vector<int> eye_steps(const Scene &scene, const PictureOptions &options) {
-    if (!fits(options)) return {};
+    if (!refused(scene.facts(), options).empty()) return {};
     return guarded(
         [&] {
             const cpu::Stage stage = stage_of(ir_of(scene), options, options.time);

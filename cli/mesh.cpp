@@ -18,7 +18,8 @@ Exit exit_of(v1::MeshStatus status) {
     case v1::MeshStatus::Empty:
     case v1::MeshStatus::Endless:
     case v1::MeshStatus::Contradicted: return scene_error;
-    case v1::MeshStatus::TooFine: return usage_error;
+    case v1::MeshStatus::TooFine:
+    case v1::MeshStatus::BadOptions: return usage_error;
     case v1::MeshStatus::TooLarge: return device_error;
     }
     return done;
@@ -108,12 +109,8 @@ Exit run(const MeshCommand &command, Terminal &terminal) {
         v1::compile_file(command.scene.file, library_options(command.scene));
     if (const Exit exit = report(result, terminal); exit != done) return exit;
     if (overwrites(result.files, command.out, terminal)) return usage_error;
-    if (command.time < 0 || command.time > result.scene->facts().time_end) {
-        terminal.say(fmt::format("fathom: --time {}: this scene is proved from 0 to {} seconds; "
-                                 "`render(time: …)` in it says to which time",
-                                 command.time, result.scene->facts().time_end));
+    if (!in_proved_time(result.scene->facts(), command.time, command.time, terminal))
         return usage_error;
-    }
     v1::MeshOptions options = mesh_options(command);
     options.colors = format != v1::MeshFormat::Stl;
     const Interrupts interrupts;

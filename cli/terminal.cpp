@@ -202,7 +202,7 @@ bool is_about_no_text(const v1::CompileResult &result) {
 
 bool in_proved_time(const v1::Facts &facts, double first, double last, Terminal &terminal) {
     const double end = facts.time_end;
-    if ((first >= 0 && last <= end) || !facts.reads_time) return true;
+    if (v1::hold_at(facts, first) && v1::hold_at(facts, last)) return true;
     terminal.say(fmt::format("fathom: --time {}: this scene is proved from 0 to {} seconds; "
                              "`render(time: …)` in it says to which time",
                              format_shortest(first < 0 ? first : last), format_shortest(end)));

@@ -71,12 +71,17 @@ constexpr const OpInfo &info(Op op) { return op_infos[static_cast<std::size_t>(o
 template <class T> class OpTable {
   public:
     consteval OpTable(std::initializer_list<std::pair<Op, T>> rows) {
-        for (const auto &[op, value] : rows) values_[static_cast<std::size_t>(op)] = value;
+        for (const auto &[op, value] : rows) {
+            values_[static_cast<std::size_t>(op)] = value;
+            named_[static_cast<std::size_t>(op)] = true;
+        }
     }
     constexpr const T &operator[](Op op) const { return values_[static_cast<std::size_t>(op)]; }
+    constexpr bool names(Op op) const { return named_[static_cast<std::size_t>(op)]; }
 
   private:
     std::array<T, op_count> values_{};
+    std::array<bool, op_count> named_{};
 };
 
 // Some ops: whether an op is one of them.

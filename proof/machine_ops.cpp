@@ -156,7 +156,7 @@ constexpr ir::OpTable<OpRule> rule_of_op{
 
 consteval bool each_op_has_a_rule() {
     for (std::size_t i = 0; i < ir::op_count; ++i)
-        if (!rule_of_op[static_cast<Op>(i)]) return false;
+        if (!rule_of_op.names(static_cast<Op>(i))) return false;
     return true;
 }
 static_assert(each_op_has_a_rule(), "an op of ir/ops.def is missing in rule_of_op");

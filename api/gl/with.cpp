@@ -113,8 +113,7 @@ std::optional<gl::Pixels> draw_exactly(GlPainter::Impl &impl, const ir::Scene &s
 
 std::string beyond(const GlPainter::Impl *impl, const PictureOptions &options) {
     if (!impl || !impl->program) return "no scene is in use";
-    if (options.width < 1 || options.height < 1 || options.samples < 0)
-        return "a picture has a pixel at least";
+    if (std::string why = refused(impl->scene->facts(), options); !why.empty()) return why;
     if (std::max(options.width, options.height) > gl::largest_side())
         return fmt::format("this GL draws at most {0}x{0} pixels", gl::largest_side());
     if (options.region || options.first_sample > 0 || options.alpha || options.sums ||
@@ -254,18 +253,11 @@ std::vector<Diagnostic> GlPainter::use(const Scene &scene, const GlOptions &opti
 Picture GlPainter::draw(const PictureOptions &options) {
     return guarded(
         [&] {
-            if (const std::string why = beyond(impl_.get(), options); !why.empty()) {
-                Picture none;
-                none.remark = why;
-                return none;
-            }
+            if (std::string why = beyond(impl_.get(), options); !why.empty())
+                return without_picture(std::move(why));
             return drawn(*impl_, options);
         },
-        [](const Diagnostic &why) {
-            Picture none;
-            none.remark = why.message;
-            return none;
-        });
+        [](Diagnostic why) { return without_picture(std::move(why.message)); });
 }
 
 bool GlPainter::draw_for_nothing(const PictureOptions &options) {

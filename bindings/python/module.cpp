@@ -215,10 +215,10 @@ Floats target_of(const py::object &out, const std::vector<py::ssize_t> &shape) {
 }
 
 void check_time(const PyScene &scene, double time) {
-    const double end = scene.scene.facts().time_end;
-    if (!(time >= 0 && time <= end))
+    if (!fathom::hold_at(scene.scene.facts(), time))
         throw py::value_error("time: the scene is proved from 0 to " +
-                              std::string(py::str(py::float_(end))) + " seconds");
+                              std::string(py::str(py::float_(scene.scene.facts().time_end))) +
+                              " seconds");
 }
 
 Floats distance(PyScene &scene, const Floats &points, double time, const py::object &out) {

@@ -170,7 +170,8 @@ FATHOM_C_API void fathom_scene_param_range(const fathom_scene *scene, size_t ind
 FATHOM_C_API fathom_result *fathom_scene_with(const fathom_scene *scene, const char *name,
                                               const double *value, int components);
 
-/** The marched distance at one time (fathom/field.h). Null without memory or a scene. */
+/** The marched distance at one time (fathom/field.h). Null without memory or a scene, and
+ *  at a time for which the facts do not hold. */
 FATHOM_C_API fathom_field *fathom_field_make(const fathom_scene *scene, double time);
 FATHOM_C_API void fathom_field_free(fathom_field *field);
 /** `points`: x, y, z of each of `count`; `gradients` and the ends of boxes too. */

@@ -63,8 +63,8 @@ class FATHOM_API Field {
     std::shared_ptr<const Impl> impl_;
 };
 
-/** The field of a scene with the params' present values. `time`: seconds, in [0, Facts::time_end].
- *  Nothing where there is no memory for it. */
+/** The field of a scene with the params' present values. `time`: seconds, at which its
+ *  facts hold (`hold_at`). Nothing at another, or where there is no memory for it. */
 FATHOM_API std::optional<Field> make_field(const Scene &scene, double time = 0) noexcept;
 
 } // namespace fathom::FATHOM_V1

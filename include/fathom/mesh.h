@@ -35,7 +35,7 @@ struct MeshOptions {
     double tolerance = 0;
     int resolution = 128;      /**< cells along the longest side of the solid's box, 1 to 8,000 */
     std::optional<Box> bounds; /**< finite: the solid is cut off there */
-    double time = 0;           /**< seconds, in [0, Facts::time_end] */
+    double time = 0;           /**< seconds, at which the scene's facts hold (`hold_at`) */
     unsigned threads = 0;      /**< 0: as many as the machine has cores */
     bool certify = false;      /**< prove what `Mesh::certificate` says; takes longer */
     bool colors = false;       /**< also `Mesh::colors` */
@@ -47,11 +47,12 @@ struct MeshOptions {
 enum class MeshStatus {
     Done,
     Cancelled,
-    Empty,       /**< no point lies in the solid */
-    Endless,     /**< no box holds the solid: `bounds` cuts it off */
-    TooFine,     /**< more than 8,192 cells a side, or single precision cannot tell them apart */
-    TooLarge,    /**< more cells than are counted, or than there is memory for */
-    Contradicted /**< signs of the field are not as was stated: `estimate:` or `lipschitz:` is wrong */
+    Empty,        /**< no point lies in the solid */
+    Endless,      /**< no box holds the solid: `bounds` cuts it off */
+    TooFine,      /**< more than 8,192 cells a side, or single precision cannot tell them apart */
+    TooLarge,     /**< more cells than are counted, or than there is memory for */
+    Contradicted, /**< signs of the field are not as was stated: `estimate:` or `lipschitz:` is wrong */
+    BadOptions /**< no mesh can have these options */
 };
 
 /** What is proved of a mesh, and what of it is a number of the mesh alone. docs/meshes.md has the

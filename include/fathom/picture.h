@@ -34,7 +34,7 @@ struct Region {
 struct PictureOptions {
     int width = 640, height = 360; /**< pixels, 1 to 65,536 each */
     int samples = 0;      /**< rays a pixel; 0: one, and 4 where it differs from those beside it */
-    double time = 0;      /**< seconds, in [0, Facts::time_end] */
+    double time = 0;      /**< seconds, at which the scene's facts hold (`hold_at`) */
     unsigned threads = 0; /**< 0: as many as the machine has cores */
     int max_steps = 0; /**< evaluations that a ray may take; 0: what the scene says, else 65,536 */
     /** Called now and then by one thread at a time, with the share that is done; false cancels. */
@@ -58,7 +58,8 @@ struct PictureOptions {
 };
 
 /** `rgba`: rows from the top, 8 bits a channel, sRGB. Without memory for it, or after a
- *  cancellation, `complete` is false and what is missing is 0. A ray that is `undecided` ended
+ *  cancellation, `complete` is false and what is missing is 0. Of options that no picture can have
+ *  it is empty, and `remark` says why. A ray that is `undecided` ended
  *  neither in a hit nor in a miss: its steps were spent, or it touched a surface that it did not
  *  cross. It shows what it is nearest to. */
 struct Picture {

@@ -26,6 +26,7 @@
 #include <fathom/diagnostic.h>
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -92,6 +93,11 @@ struct Facts {
     std::vector<std::string> axioms;
     bool reads_time = false; /**< the distance depends on the time */
 };
+
+/** Whether facts hold at a time, in seconds: at any where the distance does not depend on it. */
+inline bool hold_at(const Facts &facts, double time) {
+    return std::isfinite(time) && (!facts.reads_time || (time >= 0 && time <= facts.time_end));
+}
 
 /** The bytes of the file that a scene names (by import, image or grid), or nothing. `path` is
  *  relative to the scene's text, with `/`, without `..`. */

@@ -58,13 +58,19 @@ TEST_CASE("a mesh that cannot be made is empty and says why") {
     options.tolerance = 1e-9;
     refused(ball, fathom::MeshStatus::TooFine);
     options.tolerance = std::numeric_limits<double>::quiet_NaN();
-    refused(ball, fathom::MeshStatus::TooFine);
+    refused(ball, fathom::MeshStatus::BadOptions);
     options = {};
     options.resolution = 0;
-    refused(ball, fathom::MeshStatus::TooFine);
+    refused(ball, fathom::MeshStatus::BadOptions);
     options = {};
     options.bounds = fathom::Box{{1, 1, 1}, {0, 0, 0}};
-    refused(ball, fathom::MeshStatus::TooFine);
+    refused(ball, fathom::MeshStatus::BadOptions);
+    options = {};
+    options.time = 11; // nothing would be proved of it
+    const fathom::Scene moving = scene_of("sphere(1 + time / 10)\nrender(time: 10)\n");
+    refused(moving, fathom::MeshStatus::BadOptions);
+    options.time = 9;
+    CHECK(fathom::make_mesh(moving, options));
     options.bounds.reset();
     int calls = 0;
     options.progress = [&](double share) {

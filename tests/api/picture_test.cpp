@@ -4,7 +4,9 @@
 #include <fathom/gl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 
 namespace {
 
@@ -165,6 +167,57 @@ TEST_CASE("a picture is a file of either kind, or none") {
     CHECK(fathom::encode_jpeg(wrong).empty());
     CHECK(fathom::encode_jpeg(picture, 0).empty());
     CHECK(fathom::encode_png({}).empty());
+}
+
+TEST_CASE("a picture that there cannot be is empty and says why") {
+    const fathom::Scene moves = moving(), rests = compiled("sphere(1)");
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const auto with = [](auto change) {
+        fathom::PictureOptions options = sized(8, 6);
+        change(options);
+        return options;
+    };
+    fathom::GlPainter gl;
+    REQUIRE(gl.open().empty());
+    const auto refused = [&](const fathom::Scene &scene, const fathom::PictureOptions &options,
+                             const char *why) {
+        INFO(why);
+        const fathom::Picture none = fathom::draw(scene, options);
+        CHECK((!none.complete && none.rgba.empty() && none.width == 0));
+        CHECK(none.remark.find(why) != std::string::npos);
+        CHECK(fathom::eye_steps(scene, options).empty());
+        REQUIRE(gl.use(scene).empty());
+        CHECK_FALSE(gl.draw(options).complete);
+        CHECK_FALSE(gl.draw(options).remark.empty());
+    };
+    using Options = fathom::PictureOptions;
+    for (const int side : {0, -1, 65537, std::numeric_limits<int>::min()}) {
+        refused(rests, with([&](Options &o) { o.width = side; }), "pixels wide");
+        refused(rests, with([&](Options &o) { o.height = side; }), "pixels wide");
+    }
+    refused(rests, with([](Options &o) { o.samples = -1; }), "samples");
+    refused(rests, with([](Options &o) { o.first_sample = -1; }), "samples");
+    refused(rests, with([](Options &o) { o.sums = true, o.samples = 0; }), "1 to 256 samples");
+    for (const double number : {infinite, -infinite, std::nan("")}) {
+        refused(rests, with([&](Options &o) { o.turned = number; }), "finite angle");
+        refused(moves, with([&](Options &o) { o.time = number; }), "is proved from 0 to");
+        refused(rests, with([&](Options &o) { o.time = number; }), "is proved from 0 to");
+    }
+    refused(moves, with([](Options &o) { o.time = -0.1; }), "is proved from 0 to");
+    refused(moves, with([](Options &o) {
+                o.time = 3599.5;
+                o.shutter = 1;
+                o.samples = 2;
+            }),
+            "is proved from 0 to");
+    for (const double open : {-1.0, std::nan("")})
+        refused(rests, with([&](Options &o) { o.shutter = open; }), "shutter");
+    constexpr int most = std::numeric_limits<int>::max();
+    for (const fathom::Region part :
+         {fathom::Region{0, 0, 0, 0}, fathom::Region{-1, 0, 2, 2}, fathom::Region{7, 5, 2, 1},
+          fathom::Region{1, 1, most, most}, fathom::Region{most, 0, most, 1}})
+        refused(rests, with([&](Options &o) { o.region = part; }), "part");
+    CHECK(fathom::draw(rests, with([](Options &o) { o.time = -5; })).complete); // nothing moves
 }
 
 TEST_CASE("GL draws what the CPU draws, and says what it does not draw") {

@@ -135,6 +135,17 @@ TEST_CASE("facts say what was proved") {
     CHECK_FALSE(wave.facts().bounds);
 }
 
+TEST_CASE("there is no field where the facts do not hold") {
+    const fathom::Scene moves = compiled("sphere(1 + time)\nrender(time: 2)"),
+                        rests = compiled("sphere(1)\nrender(time: 2)");
+    for (const double time : {-0.1, 2.1, std::nan(""), -std::numeric_limits<double>::infinity()}) {
+        CHECK_FALSE(fathom::hold_at(moves.facts(), time));
+        CHECK_FALSE(fathom::make_field(moves, time));
+        CHECK(fathom::make_field(rests, time).has_value() == std::isfinite(time));
+    }
+    CHECK(fathom::make_field(moves, 2));
+}
+
 TEST_CASE("distances, gradients and intervals agree") {
     const fathom::Scene scene = compiled(
         "smooth_union(0.3, sphere(1), box(1.5).rotate(30deg, axis: X)) - cylinder(0.3, 4)");

@@ -57,6 +57,7 @@ TEST_CASE("what has no mesh says why, and writes nothing") {
     ScratchFolder folder;
     folder.write("ground.sdf", "plane(Y, 0)\n");
     folder.write("nothing.sdf", "sphere(1) & sphere(1).translate(x: 5)\n");
+    folder.write("moves.sdf", "sphere(1 + time / 3600)\n");
     folder.write("ball.sdf", "sphere(1)\n");
     folder.write("wrong.sdf", "shpere(1)\n");
     const auto fails = [&](const std::string &arguments, int exit, const std::string &words) {
@@ -80,7 +81,7 @@ TEST_CASE("what has no mesh says why, and writes nothing") {
     fails("ball.sdf -o a.stl --resolution 0", 2, "--resolution");
     fails("ball.sdf -o a.stl --bounds 1,1,1,0,0,0", 2, "least corner");
     fails("ball.sdf -o a.stl --bounds 1,1", 2, "X,Y,Z,X,Y,Z");
-    fails("ball.sdf -o a.stl --time -1", 2, "--time");
+    fails("moves.sdf -o a.stl --time -1", 2, "--time");
     fails("ball.sdf", 2, "-o");
     fails("ball.sdf -o a.png", 2, "`fathom render`");
     fails("ball.sdf -o a.txt", 2, ".glb or .3mf");

@@ -206,6 +206,7 @@ def test_time():
     assert scene.distance([0, 0, 0], time=1) == -2
     with pytest.raises(ValueError, match="time"):
         scene.distance([0, 0, 0], time=3)
+    assert fathom.compile("sphere(1)").distance([0, 0, 0], time=1e6) == -1
 
 
 def test_threads_share_a_scene_while_the_lock_is_released():
