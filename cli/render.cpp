@@ -130,15 +130,17 @@ Exit make_frame(Work &work, int frame, const Note &note, Progress &progress) {
         work.gl, *work.compiled.scene, command, work.region, work.delivery.wants_sums(),
         moment_of(command, frame), [&](double share) { progress.share(out, share); }, terminal);
     if (Interrupts::noticed()) obey_interrupt(terminal); // nothing of this picture is written
+    if (!made.complete) {
+        terminal.say(made.remark.empty()
+                         ? fmt::format("fathom: there is no memory for a picture of {}x{}",
+                                       command.width, command.height)
+                         : fmt::format("fathom: {}: {}", out, made.remark));
+        return device_error;
+    }
     // `--cached` is answered by what became of it.
     if (!made.remark.empty() &&
         (terminal.interactive() || (command.cache && command.frames.numbers.empty())))
         terminal.say(out + ": " + made.remark);
-    if (!made.complete) {
-        terminal.say(fmt::format("fathom: there is no memory for a picture of {}x{}", command.width,
-                                 command.height));
-        return device_error;
-    }
     if (is_undecided(made, out, command, terminal)) return scene_error;
     return work.delivery.take(frame, note, std::move(made));
 }

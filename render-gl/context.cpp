@@ -14,7 +14,8 @@ struct Context::State {
     EGLContext context = EGL_NO_CONTEXT;
     ~State() {
         if (display == EGL_NO_DISPLAY) return;
-        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        if (eglGetCurrentContext() == context)
+            eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
         // The display stays initialised: EGL hands the same one to every context of the process.
     }
@@ -114,6 +115,24 @@ std::string Context::describe() const {
 }
 
 int Context::version() const { return epoxy_gl_version(); }
+
+bool Context::make_current() const {
+    return eglGetCurrentContext() == state_->context ||
+           (eglBindAPI(EGL_OPENGL_API) &&
+            eglMakeCurrent(state_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, state_->context));
+}
+
+KeptCurrent::KeptCurrent()
+    : display_(eglGetCurrentDisplay()), context_(eglGetCurrentContext()),
+      draw_(eglGetCurrentSurface(EGL_DRAW)), read_(eglGetCurrentSurface(EGL_READ)) {}
+
+KeptCurrent::~KeptCurrent() {
+    if (eglGetCurrentContext() == context_) return;
+    if (context_ == EGL_NO_CONTEXT)
+        eglMakeCurrent(eglGetCurrentDisplay(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    else
+        eglMakeCurrent(display_, draw_, read_, context_);
+}
 
 Context::Context(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Context::Context(Context &&) noexcept = default;

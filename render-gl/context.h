@@ -19,6 +19,9 @@ class Context {
     std::string describe() const; // the renderer's and the version's names
     int version() const;          // 45 is 4.5
 
+    // Makes it current on this thread. False where it is current on another.
+    bool make_current() const;
+
     Context(Context &&) noexcept;
     Context &operator=(Context &&) noexcept;
     ~Context();
@@ -27,6 +30,18 @@ class Context {
     struct State;
     explicit Context(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
+};
+
+// What EGL has current on this thread, which is so again where this ends.
+class KeptCurrent {
+  public:
+    KeptCurrent();
+    ~KeptCurrent();
+    KeptCurrent(const KeptCurrent &) = delete;
+    KeptCurrent &operator=(const KeptCurrent &) = delete;
+
+  private:
+    void *display_, *context_, *draw_, *read_; // EGL's handles
 };
 
 } // namespace fathom::gl

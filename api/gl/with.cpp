@@ -16,7 +16,6 @@
 namespace fathom::v1 {
 
 struct GlPainter::Impl {
-    // Programs are deleted while their context is there.
     gl::Context context;
     std::optional<Scene> scene;
     std::optional<gl::Program> program;
@@ -24,9 +23,31 @@ struct GlPainter::Impl {
     std::string exact_because;
     GlOptions options;
     double driver_seconds = 0;
+
+    ~Impl() { // programs are deleted while their context is current
+        const gl::KeptCurrent kept;
+        context.make_current();
+        cache.reset();
+        program.reset();
+    }
 };
 
 namespace {
+
+// What `work` gives with the painter's context current, else what stands for it: where it is not open,
+// where it is current on another thread, or for lack of memory.
+template <class Work, class Failed>
+auto inside(GlPainter::Impl *impl, Work work, Failed failed) noexcept {
+    return guarded(
+        [&]() -> decltype(work(*impl)) {
+            if (!impl) return failed(sentence("usage", "OpenGL is not open"));
+            const gl::KeptCurrent kept;
+            if (!impl->context.make_current())
+                return failed(sentence("usage", "the painter draws on another thread"));
+            return work(*impl);
+        },
+        failed);
+}
 
 // A still picture is drawn through the cache until less than a twentieth of it misses, or a frame
 // learnt less than a quarter of what was missing, or look-ups do not pay; what the last frame
@@ -111,9 +132,9 @@ std::optional<gl::Pixels> draw_exactly(GlPainter::Impl &impl, const ir::Scene &s
     return gl::draw(*impl.program, scene, request, gl::Mode::Linear);
 }
 
-std::string beyond(const GlPainter::Impl *impl, const PictureOptions &options) {
-    if (!impl || !impl->program) return "no scene is in use";
-    if (std::string why = refused(impl->scene->facts(), options); !why.empty()) return why;
+std::string beyond(const GlPainter::Impl &impl, const PictureOptions &options) {
+    if (!impl.program) return "no scene is in use";
+    if (std::string why = refused(impl.scene->facts(), options); !why.empty()) return why;
     if (std::max(options.width, options.height) > gl::largest_side())
         return fmt::format("this GL draws at most {0}x{0} pixels", gl::largest_side());
     if (options.region || options.first_sample > 0 || options.alpha || options.sums ||
@@ -180,10 +201,14 @@ std::vector<Diagnostic> used(GlPainter::Impl &impl, const Scene &scene, const Gl
 Picture drawn(GlPainter::Impl &impl, const PictureOptions &options) {
     Picture picture;
     const ir::Scene scene = limited(*impl.scene, impl.options.max_steps);
+    PictureOptions watched = options;
+    bool cancelled = false;
+    if (options.progress)
+        watched.progress = [&](double done) { return !(cancelled = !options.progress(done)); };
     std::optional<gl::Pixels> pixels = impl.cache
-                                           ? draw_cached(impl, scene, options, picture.remark)
-                                           : draw_exactly(impl, scene, options);
-    if (!pixels) return picture;
+                                           ? draw_cached(impl, scene, watched, picture.remark)
+                                           : draw_exactly(impl, scene, watched);
+    if (!pixels) return without_picture(cancelled ? "cancelled" : "OpenGL has no memory for it");
     picture.width = pixels->width;
     picture.height = pixels->height;
     picture.rgba = picture_of_linear(pixels->width, pixels->height, pixels->rgba).rgba;
@@ -209,6 +234,7 @@ std::string GlPainter::open() {
     return guarded(
         [&]() -> std::string {
             if (impl_) return "";
+            const gl::KeptCurrent kept;
             auto context = gl::Context::make();
             if (const std::string *why = std::get_if<std::string>(&context)) return *why;
             impl_.reset(new Impl{std::move(std::get<gl::Context>(context)), {}, {}, {}, {}, {}, 0});
@@ -218,13 +244,19 @@ std::string GlPainter::open() {
 }
 
 bool GlPainter::is_open() const { return impl_ != nullptr; }
-int GlPainter::largest_side() const { return impl_ ? gl::largest_side() : 0; }
 bool GlPainter::is_cached() const { return impl_ && impl_->cache; }
 double GlPainter::driver_seconds() const { return impl_ ? impl_->driver_seconds : 0; }
 
+int GlPainter::largest_side() const {
+    return inside(
+        impl_.get(), [](Impl &) { return gl::largest_side(); },
+        [](const Diagnostic &) { return 0; });
+}
+
 std::string GlPainter::describe() const {
-    return guarded([&] { return impl_ ? impl_->context.describe() : std::string(); },
-                   [](const Diagnostic &) { return std::string(); });
+    return inside(
+        impl_.get(), [](Impl &impl) { return impl.context.describe(); },
+        [](const Diagnostic &) { return std::string(); });
 }
 
 std::string GlPainter::exact_because() const {
@@ -233,10 +265,11 @@ std::string GlPainter::exact_because() const {
 }
 
 std::string GlPainter::text(const Scene &scene) const {
-    return guarded(
-        [&] {
+    return inside(
+        impl_.get(),
+        [&](Impl &) {
             glsl::Options options = text_options();
-            options.pruning = impl_ && gl::can_prune();
+            options.pruning = gl::can_prune();
             Diagnostics diagnostics;
             glsl::Output output = glsl::emit(ir_of(scene), options, diagnostics);
             return diagnostics.has_errors() ? std::string() : std::move(output.text);
@@ -245,43 +278,54 @@ std::string GlPainter::text(const Scene &scene) const {
 }
 
 std::vector<Diagnostic> GlPainter::use(const Scene &scene, const GlOptions &options) {
-    if (!impl_) return {sentence("usage", "OpenGL is not open")};
-    return guarded([&] { return used(*impl_, scene, options); },
-                   [](const Diagnostic &why) { return std::vector{why}; });
+    return inside(
+        impl_.get(), [&](Impl &impl) { return used(impl, scene, options); },
+        [](Diagnostic why) { return std::vector{std::move(why)}; });
 }
 
 Picture GlPainter::draw(const PictureOptions &options) {
-    return guarded(
-        [&] {
-            if (std::string why = beyond(impl_.get(), options); !why.empty())
-                return without_picture(std::move(why));
-            return drawn(*impl_, options);
+    return inside(
+        impl_.get(),
+        [&](Impl &impl) {
+            std::string why = beyond(impl, options);
+            return why.empty() ? drawn(impl, options) : without_picture(std::move(why));
         },
         [](Diagnostic why) { return without_picture(std::move(why.message)); });
 }
 
 bool GlPainter::draw_for_nothing(const PictureOptions &options) {
-    return guarded(
-        [&] {
-            if (!beyond(impl_.get(), options).empty()) return false;
-            const ir::Scene scene = limited(*impl_->scene, impl_->options.max_steps);
-            return draw_exactly(*impl_, scene, options).has_value();
+    return inside(
+        impl_.get(),
+        [&](Impl &impl) {
+            if (!beyond(impl, options).empty()) return false;
+            const ir::Scene scene = limited(*impl.scene, impl.options.max_steps);
+            return draw_exactly(impl, scene, options).has_value();
         },
         [](const Diagnostic &) { return false; });
 }
 
 GlLists GlPainter::lists() const {
-    const gl::Pruning *pruning = impl_ && impl_->program ? impl_->program->pruning() : nullptr;
-    if (!pruning) return {};
-    const gl::Pruning::Tally tally = pruning->tally();
-    return {tally.rows, tally.all, tally.side};
+    return inside(
+        impl_.get(),
+        [](Impl &impl) {
+            const gl::Pruning *pruning = impl.program ? impl.program->pruning() : nullptr;
+            if (!pruning) return GlLists();
+            const gl::Pruning::Tally tally = pruning->tally();
+            return GlLists{tally.rows, tally.all, tally.side};
+        },
+        [](const Diagnostic &) { return GlLists(); });
 }
 
 void GlPainter::remake_lists() {
-    gl::Pruning *pruning = impl_ && impl_->program ? impl_->program->pruning() : nullptr;
-    if (!pruning) return;
-    pruning->remake(ir_of(*impl_->scene).params, 0);
-    gl::finish();
+    inside(
+        impl_.get(),
+        [](Impl &impl) {
+            gl::Pruning *pruning = impl.program ? impl.program->pruning() : nullptr;
+            if (!pruning) return;
+            pruning->remake(ir_of(*impl.scene).params, 0);
+            gl::finish();
+        },
+        [](const Diagnostic &) {});
 }
 
 } // namespace fathom::v1

@@ -45,8 +45,8 @@ struct GlLists {
     int side = 0;       /**< cells along an axis */
 };
 
-/** Draws by OpenGL, in the thread that opened it, whose current context it becomes. None of its calls
- *  throws. */
+/** Draws by OpenGL, in a context of its own that its calls make current; what EGL had current on the
+ *  thread before is so again after each. Used by one thread at a time. None of its calls throws. */
 class FATHOM_API GlPainter {
   public:
     GlPainter();

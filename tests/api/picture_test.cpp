@@ -1,12 +1,15 @@
 // Pictures of the library, whole and in parts, by the CPU and by GL.
 #include <catch2/catch.hpp>
 
+#include <epoxy/egl.h>
 #include <fathom/gl.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <thread>
 
 namespace {
 
@@ -265,6 +268,59 @@ TEST_CASE("GL draws what the CPU draws, and says what it does not draw") {
     }
     options.progress = [](double) { return false; };
     CHECK_FALSE(taken.draw(options).complete);
+}
+
+TEST_CASE("painters do not disturb each other, nor who has a context of EGL") {
+    const fathom::Scene ball = compiled("sphere(1)"), cube = compiled("box(2)");
+    fathom::GlPainter first, second;
+    REQUIRE((first.open().empty() && first.use(ball).empty()));
+    const std::vector<std::uint8_t> of_ball = first.draw(sized(40, 30)).rgba;
+    REQUIRE((second.open().empty() && second.use(cube).empty()));
+    const std::vector<std::uint8_t> of_cube = second.draw(sized(40, 30)).rgba;
+    REQUIRE(of_ball != of_cube);
+    CHECK(first.draw(sized(40, 30)).rgba == of_ball);
+    {
+        fathom::GlPainter third;
+        REQUIRE((third.open().empty() && third.use(cube).empty()));
+        second = std::move(third); // what `second` had is deleted, and nothing of `first`
+    }
+    CHECK(second.draw(sized(40, 30)).rgba == of_cube);
+    CHECK(first.draw(sized(40, 30)).rgba == of_ball);
+
+    // On another thread, and there while a context of somebody else's is current.
+    const EGLDisplay display =
+        eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    REQUIRE((eglInitialize(display, nullptr, nullptr) && eglBindAPI(EGL_OPENGL_API)));
+    const EGLContext theirs = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, nullptr);
+    REQUIRE(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, theirs));
+    CHECK(first.draw(sized(40, 30)).rgba == of_ball);
+    second = fathom::GlPainter();
+    CHECK(eglGetCurrentContext() == theirs);
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, theirs);
+    std::vector<std::uint8_t> elsewhere;
+    std::thread([&] { elsewhere = first.draw(sized(40, 30)).rgba; }).join();
+    CHECK(elsewhere == of_ball);
+    std::vector<std::thread> threads;
+    std::atomic<int> right = 0;
+    for (int i = 0; i < 3; ++i)
+        threads.emplace_back([&] {
+            fathom::GlPainter own;
+            if (own.open().empty() && own.use(cube).empty())
+                for (int k = 0; k < 3; ++k) right += own.draw(sized(40, 30)).rgba == of_cube;
+        });
+    for (std::thread &thread : threads) thread.join();
+    CHECK(right == 9);
+
+    // What the thread that draws has current is no other's meanwhile.
+    fathom::PictureOptions slow = sized(40, 30);
+    std::string told;
+    slow.progress = [&](double) {
+        std::thread([&] { told = first.draw(sized(4, 3)).remark; }).join();
+        return false;
+    };
+    CHECK(first.draw(slow).remark == "cancelled");
+    CHECK(told == "the painter draws on another thread");
 }
 
 TEST_CASE("one painter draws one scene after another, with limits of their own") {
