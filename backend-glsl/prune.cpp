@@ -24,15 +24,18 @@ using ir::Type;
 namespace {
 
 // The distance of a hit's expression; none where it is not plain.
-NodeId distance_of(Graph &graph, NodeId id) {
+NodeId distance_of(Graph &graph, NodeId id, int depth = 0) {
+    constexpr int max_depth = 12; // a hit may stand in both arms of another, again and again
     const ir::Node node = graph[id];
     if (node.type == Type::Float) return id;
+    if (depth > max_depth) return {};
     const std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
     if (node.op == Op::MakeHit) return args[0];
     if (node.op == Op::HitWith) return args[1];
-    if (node.op == Op::FillPaint) return distance_of(graph, args[0]);
+    if (node.op == Op::FillPaint) return distance_of(graph, args[0], depth + 1);
     if (node.op == Op::Select) {
-        const NodeId yes = distance_of(graph, args[1]), no = distance_of(graph, args[2]);
+        const NodeId yes = distance_of(graph, args[1], depth + 1),
+                     no = distance_of(graph, args[2], depth + 1);
         return yes && no ? graph.make(Op::Select, {args[0], yes, no}) : NodeId{};
     }
     return {};

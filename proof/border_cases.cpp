@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <unordered_set>
 
 namespace fathom::proof {
 namespace {
@@ -23,7 +24,7 @@ bool Cases::hold(const Claim &claim) {
 }
 
 bool Cases::hold(const Case &given, int depth) {
-    if (++count_ > max_cases || depth > max_forks) return false;
+    if (++count_ > max_cases || depth > max_forks || looked_.work.spent()) return false;
     case_ = given;
     fork_.reset();
     const std::optional<bool> answer = attempt();
@@ -55,7 +56,7 @@ bool Cases::hold(const Case &given, int depth) {
 
 std::optional<bool> Cases::attempt() {
     side_.reset();
-    done_.clear();
+    forget();
     if (!case_.border_solved) {
         const auto u = value(claim_.u), v = u ? value(claim_.v) : std::nullopt;
         if (!v) return {};
@@ -64,14 +65,14 @@ std::optional<bool> Cases::attempt() {
         solve(gap);
         follow_roots(case_);
         case_.border_solved = true;
-        done_.clear();
+        forget();
         if (impossible(case_, {})) return true;
     }
     if (claim_.comparison) { // does the condition turn with it?
         std::array<bool, 2> truths{};
         for (const bool turned : {false, true}) {
             turned_ = turned;
-            done_.clear();
+            forget();
             const auto t = truth(graph_.arg(claim_.choice, 0));
             turned_.reset();
             if (!t) return {};
@@ -83,7 +84,7 @@ std::optional<bool> Cases::attempt() {
     const int sides = graph_[claim_.choice].op == Op::Sign ? 3 : 2;
     for (int side = 0; side < sides; ++side) {
         side_ = side;
-        done_.clear();
+        forget();
         const int components = ir::components(graph_[claim_.of].type);
         if (components != 1) return vectors_agree(sides);
         const auto x = value(claim_.of);
@@ -101,7 +102,7 @@ std::optional<bool> Cases::vectors_agree(int sides) {
         std::optional<Sum> first;
         for (int side = 0; side < sides; ++side) {
             side_ = side;
-            done_.clear();
+            forget();
             const auto x = value(claim_.of, i);
             if (!x) return {};
             if (!first)
@@ -201,7 +202,10 @@ bool Cases::impossible(const Case &c, const Inequality &more) {
         }
     std::sort(positive.begin(), positive.end());
     positive.erase(std::unique(positive.begin(), positive.end()), positive.end());
-    return contradict(std::move(all), positive);
+    std::size_t steps = 0;
+    const bool out = contradict(std::move(all), positive, steps);
+    looked_.work.take(steps);
+    return out;
 }
 
 bool Cases::never_negative(const Product &m) const {
@@ -269,16 +273,28 @@ Sum Cases::reduced(const Sum &sum, const Case &c) const {
     return out;
 }
 
-bool is_count(const Graph &graph, NodeId id) {
+bool is_count(const Graph &graph, NodeId root) {
     constexpr ir::OpSet turning{Op::Sign, Op::Step},
         made{Op::Less, Op::LessEqual, Op::Add, Op::Sub, Op::Mul, Op::Neg};
-    const ir::Node node = graph[id];
-    const auto of = [&](int i) { return is_count(graph, graph.arg(id, i)); };
-    if (graph.is_constant(id) || turning[node.op]) return true;
-    if (node.op == Op::ToFloat) return graph[graph.arg(id, 0)].type == ir::Type::Bool || of(0);
-    if (node.op == Op::Select) return of(1) && of(2);
-    if (!made[node.op]) return false;
-    return of(0) && (node.count < 2 || of(1));
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        const ir::Node node = graph[id];
+        if (graph.is_constant(id) || turning[node.op] || !seen.insert(id).second) continue;
+        const auto args = graph.args(id);
+        if (node.op == Op::ToFloat) {
+            if (graph[args[0]].type != ir::Type::Bool) todo.push_back(args[0]);
+        } else if (node.op == Op::Select) {
+            todo.insert(todo.end(), args.begin() + 1, args.end());
+        } else if (made[node.op]) {
+            todo.insert(todo.end(), args.begin(), args.end());
+        } else {
+            return false;
+        }
+    }
+    return true;
 }
 
 bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ir/graph.h"
+#include "proof/work.h"
 
 namespace fathom::proof {
 
@@ -13,8 +14,9 @@ struct Claim {
     ir::NodeId comparison, u, v; // comparison: of a Select
 };
 
-// What proofs have looked at so far.
+// What proofs have looked at so far, and what they take their steps off.
 struct Looked {
+    Work &work;
     int cases = 0, on_lines = 0;
     bool near = false; // a proof holds where no coordinate is above `near_enough` alone (on_line.h)
 };

@@ -4,6 +4,7 @@
 
 #include "ir/graph.h"
 #include "ir/interval.h"
+#include "proof/work.h"
 
 #include <map>
 #include <optional>
@@ -38,6 +39,10 @@ struct Canonical {
     // The Int that a Float is made of, where it is whole by its making.
     std::optional<NodeId> whole(NodeId id);
     NodeId as_float(NodeId id); // of an Int: sums and products outside of the conversion
+    std::optional<NodeId> whole_of(NodeId id);
+    NodeId float_of(NodeId id);
+    std::map<NodeId, std::optional<NodeId>> wholes{};
+    std::map<NodeId, NodeId> floats{};
 
     NodeId scalar(NodeId id);
     std::optional<NodeId> entry(NodeId matrix, int row, int column);
@@ -100,6 +105,7 @@ struct Border {
     const Side side;
     const Counts &counts;
     Met &met;
+    Work &work;
     Canonical limit{graph, this, false}, moving{graph, this, true};
 
     // What is known there of coordinates, and of the group's own arguments.

@@ -8,6 +8,8 @@
 #include "proof/discontinuities.h"
 
 #include <algorithm>
+#include <optional>
+#include <unordered_set>
 #include <vector>
 
 namespace fathom::proof {
@@ -48,18 +50,27 @@ void look_at(Field &field, NodeId root) {
         }
 }
 
-void comparisons_of(const Graph &graph, NodeId condition, std::vector<NodeId> &out, bool &all) {
-    const ir::Node node = graph[condition];
-    if (!graph.reads(condition).point && !graph.reads(condition).free_vars) return;
-    if (node.op == Op::Less || node.op == Op::LessEqual) {
-        all = all && graph[graph.arg(condition, 0)].type == ir::Type::Float;
-        out.push_back(condition);
-    } else if (node.op == Op::And || node.op == Op::Or || node.op == Op::Not ||
-               node.op == Op::Select) { // of truths, as early returns make them
-        for (NodeId a : graph.args(condition)) comparisons_of(graph, a, out, all);
-    } else {
-        all = false;
+// The comparisons of numbers that a condition is made of; nothing where it is made of more.
+std::optional<std::vector<NodeId>> comparisons_of(const Graph &graph, NodeId condition) {
+    constexpr ir::OpSet of_truths{Op::And, Op::Or, Op::Not, Op::Select}; // as early returns make
+    std::vector<NodeId> out, todo{condition};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!graph.reads(id).point && !graph.reads(id).free_vars) continue;
+        if (!seen.insert(id).second) continue;
+        const ir::Node node = graph[id];
+        if (of_truths[node.op]) {
+            for (int i = int(node.count); i-- > 0;) todo.push_back(graph.arg(id, i));
+        } else if ((node.op == Op::Less || node.op == Op::LessEqual) &&
+                   graph[graph.arg(id, 0)].type == ir::Type::Float) {
+            out.push_back(id);
+        } else {
+            return {};
+        }
     }
+    return out;
 }
 
 // Does `of` have one value on every border of the choice?
@@ -67,11 +78,9 @@ bool meets(Graph &graph, NodeId choice, NodeId of, Looked &looked) {
     const ir::Node node = graph[choice];
     std::vector<Claim> claims;
     if (node.op == Op::Select) {
-        std::vector<NodeId> comparisons;
-        bool all = true;
-        comparisons_of(graph, graph.arg(choice, 0), comparisons, all);
-        if (!all || comparisons.empty() || comparisons.size() > 8) return false;
-        for (NodeId c : comparisons)
+        const auto comparisons = comparisons_of(graph, graph.arg(choice, 0));
+        if (!comparisons || comparisons->empty() || comparisons->size() > 8) return false;
+        for (NodeId c : *comparisons)
             claims.push_back({of, choice, c, graph.arg(c, 0), graph.arg(c, 1)});
     } else if (node.op == Op::Step) {
         if (node.type != ir::Type::Float) return false;
@@ -104,11 +113,9 @@ bool turns_unseen(Field &field, NodeId comparison, NodeId root, Looked &looked) 
 // By each of its condition's comparisons.
 bool turns_unseen(Field &field, NodeId select, NodeId root,
                   std::unordered_map<NodeId, bool> &by_comparison, Looked &looked) {
-    std::vector<NodeId> comparisons;
-    bool all = true;
-    comparisons_of(field.graph, field.graph.arg(select, 0), comparisons, all);
-    if (!all || comparisons.empty() || comparisons.size() > 8) return false;
-    return std::ranges::all_of(comparisons, [&](NodeId c) {
+    const auto comparisons = comparisons_of(field.graph, field.graph.arg(select, 0));
+    if (!comparisons || comparisons->empty() || comparisons->size() > 8) return false;
+    return std::ranges::all_of(*comparisons, [&](NodeId c) {
         const auto [known, fresh] = by_comparison.try_emplace(c, false);
         if (fresh) known->second = turns_unseen(field, c, root, looked);
         return by_comparison[c];
@@ -120,20 +127,26 @@ bool turns_unseen(Field &field, NodeId select, NodeId root,
 // then does not change.
 bool turns_by_counts(const Graph &graph, NodeId choice) {
     if (graph[choice].op != Op::Select) return false;
-    std::vector<NodeId> comparisons;
-    bool all = true;
-    comparisons_of(graph, graph.arg(choice, 0), comparisons, all);
-    return all && !comparisons.empty() &&
-           std::ranges::all_of(comparisons, [&](NodeId c) { return is_count(graph, c); });
+    const auto comparisons = comparisons_of(graph, graph.arg(choice, 0));
+    return comparisons && !comparisons->empty() &&
+           std::ranges::all_of(*comparisons, [&](NodeId c) { return is_count(graph, c); });
 }
-std::vector<NodeId> counted(const Graph &graph, NodeId id) { // the choices in a condition of counts
-    const ir::Node node = graph[id];
-    if (is_choice[node.op]) return {id};
-    if (node.op == Op::ToFloat && graph[graph.arg(id, 0)].type == ir::Type::Bool) return {id};
-    std::vector<NodeId> out;
-    for (NodeId a : graph.args(id)) {
-        const std::vector<NodeId> more = counted(graph, a);
-        out.insert(out.end(), more.begin(), more.end());
+
+// The choices in a condition of counts.
+std::vector<NodeId> counted(const Graph &graph, NodeId condition) {
+    std::vector<NodeId> out, todo{condition};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        const ir::Node node = graph[id];
+        const bool of_truth =
+            node.op == Op::ToFloat && graph[graph.arg(id, 0)].type == ir::Type::Bool;
+        if (is_choice[node.op] || of_truth)
+            out.push_back(id);
+        else
+            todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
     }
     return out;
 }
@@ -167,7 +180,7 @@ Meeting find_choices(Flattening &context, NodeId root) {
             for (NodeId inside : in_body(graph, id)) std::erase(choices, inside);
     if (choices.size() > max_choices) return {};
     Meeting out;
-    Looked looked;
+    Looked looked{context.work};
     std::unordered_map<NodeId, bool> by_comparison;
     std::vector<NodeId> by_counts; // turn only where the choices do that they count
     for (NodeId choice : choices) {

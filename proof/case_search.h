@@ -52,12 +52,14 @@ class Cases {
     std::optional<int> side_;                    // of the choice, while one is evaluated
     std::optional<bool> turned_;                 // of the comparison
     std::map<std::pair<NodeId, int>, Sum> done_; // values under side_
+    std::map<NodeId, bool> truths_;              // likewise
     std::map<std::pair<NodeId, NodeId>, bool> reads_;
     std::map<AtomKey, std::uint32_t> index_;
     std::vector<Atom> atoms_;
-    int count_ = 0, depth_ = 0, squares_ = 0;
+    int count_ = 0, depth_ = 0, squares_ = 0, roots_ = 0;
 
     bool hold(const Case &given, int depth);
+    void forget() { done_.clear(), truths_.clear(); }
 
     // true, false, or nothing where the case has to be split first (fork_) or is too large.
     std::optional<bool> attempt();
@@ -105,6 +107,7 @@ class Cases {
     std::optional<Sum> root_of(NodeId at, const Sum &x, int i, bool of_squares);
     std::uint32_t root_atom(const Sum &below, bool of_squares);
     bool is_square_sum(NodeId id) const;
+    std::optional<bool> truth_of(NodeId id);
     // x*x + y*y as r*r where r is a root of it that stands in the sum: so that r*r - 2r + 1 is seen.
     Sum squares_known(const Sum &x) const;
 

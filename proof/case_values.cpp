@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace fathom::proof {
 namespace {
@@ -89,6 +90,8 @@ std::optional<Sum> Cases::size_of(NodeId id, int i, const Sum &x) {
 }
 
 std::optional<Sum> Cases::root(NodeId at, NodeId below, int i) {
+    constexpr int most_roots = 10'000; // of a claim: an extreme may stand in both arms of another
+    if (++roots_ > most_roots) return {};
     const ir::Node node = graph_[below];
     if (below == claim_.choice && side_ && node.op == Op::Select)
         return root(at, graph_.arg(below, 1 + *side_), i);
@@ -130,11 +133,19 @@ std::uint32_t Cases::root_atom(const Sum &below, bool of_squares) {
 }
 
 bool Cases::is_square_sum(NodeId id) const {
-    const ir::Node node = graph_[id];
-    if (node.op == Op::Mul || node.op == Op::Dot) return graph_.arg(id, 0) == graph_.arg(id, 1);
-    if (node.op == Op::Add)
-        return is_square_sum(graph_.arg(id, 0)) && is_square_sum(graph_.arg(id, 1));
-    return false;
+    std::vector<NodeId> todo{id};
+    std::set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId part = todo.back();
+        todo.pop_back();
+        if (!seen.insert(part).second) continue;
+        const Op op = graph_[part].op;
+        const NodeId a =
+            op == Op::Add || op == Op::Mul || op == Op::Dot ? graph_.arg(part, 0) : NodeId{};
+        if (!a || (op != Op::Add && a != graph_.arg(part, 1))) return false;
+        if (op == Op::Add) todo.insert(todo.end(), {a, graph_.arg(part, 1)});
+    }
+    return true;
 }
 
 Sum Cases::squares_known(const Sum &x) const {
@@ -291,6 +302,13 @@ std::optional<Sum> Cases::cross(NodeId id, int i) {
 }
 
 std::optional<bool> Cases::truth(NodeId id) {
+    if (const auto it = truths_.find(id); it != truths_.end()) return it->second;
+    const auto out = truth_of(id);
+    if (out) truths_.emplace(id, *out);
+    return out;
+}
+
+std::optional<bool> Cases::truth_of(NodeId id) {
     const ir::Node node = graph_[id];
     if (turned_ && id == claim_.comparison) return *turned_;
     if (side_ && id == claim_.choice) return *side_ == 1;

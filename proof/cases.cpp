@@ -203,7 +203,9 @@ void add_to_key(std::vector<double> &key, const Sum &sum) {
     }
 }
 
-bool contradict(std::vector<Inequality> all, const std::vector<Product> &never_negative) {
+bool contradict(std::vector<Inequality> all, const std::vector<Product> &never_negative,
+                std::size_t &steps) {
+    constexpr std::size_t of_term = 8; // each is looked up in a map
     for (const Product &m : never_negative) all.push_back({Sum{{m, 1.0}}, false});
     for (Inequality &row : all)
         if (const auto it = row.sum.find({}); it != row.sum.end()) row.size = std::fabs(it->second);
@@ -211,6 +213,7 @@ bool contradict(std::vector<Inequality> all, const std::vector<Product> &never_n
         std::map<Product, std::pair<std::size_t, std::size_t>, ByDegree> uses;
         std::vector<Inequality> open;
         for (Inequality &row : all) {
+            steps += of_term * (row.sum.size() + 1);
             normalize(row);
             if (is_number(row)) {
                 if (is_false(row)) return true;
@@ -235,6 +238,7 @@ bool contradict(std::vector<Inequality> all, const std::vector<Product> &never_n
                 if (a == low.sum.end() || b == high.sum.end() || a->second <= 0 || b->second >= 0)
                     continue;
                 all.push_back(without(low, high, m));
+                steps += of_term * all.back().sum.size();
                 if (all.size() > max_inequalities) return false;
             }
     }

@@ -46,6 +46,8 @@ struct Inequality {
 };
 // Is there certainly no point at which all hold? Products are taken for numbers of their own, of
 // which `never_negative` are at least 0: true is a proof (of Fourier and Motzkin), false is none.
-bool contradict(std::vector<Inequality> all, const std::vector<Product> &never_negative);
+// Counts what it did in `steps`.
+bool contradict(std::vector<Inequality> all, const std::vector<Product> &never_negative,
+                std::size_t &steps);
 
 } // namespace fathom::proof

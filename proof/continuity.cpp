@@ -9,6 +9,8 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace fathom::proof {
@@ -35,24 +37,54 @@ NodeId rebuilt(Graph &graph, const Polynomial &polynomial) {
     return sum;
 }
 
-std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth = 0);
+// Writes nodes as polynomials, each node once. Sums and products beyond these numbers are nothing that
+// is worth comparing, nor is what takes longer.
+class Expansion {
+  public:
+    explicit Expansion(Graph &graph, Work *work = nullptr) : graph_(graph), work_(work) {}
+    std::optional<Polynomial> of(NodeId id);
+    std::optional<Polynomial> multiply(const Polynomial &a, const Polynomial &b);
+
+  private:
+    std::optional<Polynomial> written(NodeId id);
+    std::optional<Polynomial> squared(NodeId factor);
+    std::optional<Polynomial> sum_of(NodeId a, double by, NodeId b);
+    bool take(std::size_t steps);
+
+    Graph &graph_;
+    Work *work_;
+    std::unordered_map<NodeId, std::optional<Polynomial>> known_;
+    std::size_t left_ = 50'000; // nodes and products of terms
+    int depth_ = 0;
+};
+
+std::optional<Polynomial> polynomial(Graph &graph, NodeId id, Work *work = nullptr) {
+    return Expansion(graph, work).of(id);
+}
+
+bool Expansion::take(std::size_t steps) {
+    constexpr std::size_t dearer = 16; // than an operation on intervals
+    left_ -= std::min(left_, steps);
+    if (work_) work_->take(dearer * steps);
+    return left_ > 0 && !(work_ && work_->spent());
+}
 
 // A factor that stands twice in a product, and what its square is: |a|^2 = a^2, cos^2 = 1 - sin^2.
-std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Polynomial &b);
 bool has_square(const Graph &graph, NodeId factor) {
     return graph[factor].op == Op::Abs || graph[factor].op == Op::Cos;
 }
-std::optional<Polynomial> squared(Graph &graph, NodeId factor) {
-    const NodeId x = graph.arg(factor, 0);
-    if (graph[factor].op == Op::Cos) {
-        const NodeId sine = graph.make(Op::Sin, {x});
+std::optional<Polynomial> Expansion::squared(NodeId factor) {
+    const NodeId x = graph_.arg(factor, 0);
+    if (graph_[factor].op == Op::Cos) {
+        const NodeId sine = graph_.make(Op::Sin, {x});
         return Polynomial{{{}, 1.0}, {{sine, sine}, -1.0}};
     }
-    const auto inner = polynomial(graph, x);
-    return inner ? multiply(graph, *inner, *inner) : std::nullopt;
+    const auto inner = of(x);
+    return inner ? multiply(*inner, *inner) : std::nullopt;
 }
 
-std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Polynomial &b) {
+std::optional<Polynomial> Expansion::multiply(const Polynomial &a, const Polynomial &b) {
+    if (!take(a.size() * b.size())) return {};
     Polynomial out;
     for (const auto &[m, x] : a)
         for (const auto &[n, y] : b) {
@@ -61,14 +93,14 @@ std::optional<Polynomial> multiply(Graph &graph, const Polynomial &a, const Poly
             std::sort(product.begin(), product.end());
             const auto twice =
                 std::adjacent_find(product.begin(), product.end(), [&](NodeId u, NodeId v) {
-                    return u == v && has_square(graph, u);
+                    return u == v && has_square(graph_, u);
                 });
             if (twice != product.end()) {
                 const NodeId factor = *twice;
                 product.erase(twice, twice + 2);
-                const auto square = squared(graph, factor);
+                const auto square = squared(factor);
                 if (!square) return {};
-                auto whole = multiply(graph, *square, Polynomial{{product, x * y}});
+                auto whole = multiply(*square, Polynomial{{product, x * y}});
                 if (!whole) return {};
                 for (const auto &[k, z] : *whole) out[k] += z;
             } else {
@@ -90,80 +122,89 @@ bool leads_below_zero(const Polynomial &sum) {
     return lead != sum.end() && lead->second < 0;
 }
 
-std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
-    const ir::Node node = graph[id];
-    if (auto c = graph.as_number(id)) return Polynomial{{{}, *c}};
-    if (depth > 32) return {};
-    auto sub = [&](int i) { return polynomial(graph, graph.arg(id, i), depth + 1); };
-    if (node.type == ir::Type::Float) {
-        if (node.op == Op::Neg) {
-            auto a = sub(0);
+std::optional<Polynomial> Expansion::of(NodeId id) {
+    if (auto c = graph_.as_number(id)) return Polynomial{{{}, *c}};
+    if (const auto it = known_.find(id); it != known_.end()) return it->second;
+    if (depth_ >= 256 || !take(1)) return {};
+    ++depth_;
+    auto out = written(id);
+    --depth_;
+    known_.emplace(id, out);
+    return out;
+}
+
+// a + by*b.
+std::optional<Polynomial> Expansion::sum_of(NodeId a, double by, NodeId b) {
+    auto sum = of(a);
+    const auto more = of(b);
+    if (!sum || !more || !take(more->size())) return {};
+    for (const auto &[m, x] : *more) (*sum)[m] += by * x;
+    return sum->size() > max_terms ? std::optional<Polynomial>() : sum;
+}
+
+std::optional<Polynomial> Expansion::written(NodeId id) {
+    const ir::Node node = graph_[id];
+    const auto alone = Polynomial{{{id}, 1.0}};
+    if (node.type != ir::Type::Float) return alone;
+    const auto arg = [&](int i) { return graph_.arg(id, i); };
+    const auto times = [](std::optional<Polynomial> sum, double by) {
+        if (sum)
+            for (auto &[m, x] : *sum) x *= by;
+        return sum;
+    };
+    if (node.op == Op::Neg) return times(of(arg(0)), -1);
+    if (node.op == Op::Add || node.op == Op::Sub)
+        return sum_of(arg(0), node.op == Op::Add ? 1 : -1, arg(1));
+    if (node.op == Op::Mul) {
+        const auto a = of(arg(0)), b = of(arg(1));
+        return a && b ? multiply(*a, *b) : std::nullopt;
+    }
+    if (node.op == Op::Div)
+        if (auto c = graph_.as_number(arg(1)); c && *c != 0) {
+            auto a = of(arg(0));
             if (!a) return {};
-            for (auto &[m, x] : *a) x = -x;
+            for (auto &[m, x] : *a) x /= *c;
             return a;
         }
-        if (node.op == Op::Add || node.op == Op::Sub) {
-            auto a = sub(0), b = sub(1);
+    if (node.op == Op::Pow)
+        if (auto c = graph_.as_number(arg(1)); c && std::floor(*c) == *c && *c >= 1 && *c <= 6) {
+            const auto a = of(arg(0));
+            auto out = a;
+            for (int i = 1; a && out && i < int(*c); ++i) out = multiply(*out, *a);
+            return out;
+        }
+    if (node.op == Op::Dot) {
+        const NodeId u = arg(0), v = arg(1);
+        Polynomial sum;
+        for (int i = 0; i < ir::components(graph_[u].type); ++i) {
+            const auto a = of(component_of(graph_, u, i)), b = of(component_of(graph_, v, i));
             if (!a || !b) return {};
-            for (auto &[m, x] : *b) (*a)[m] += node.op == Op::Add ? x : -x;
-            return a->size() > max_terms ? std::optional<Polynomial>() : a;
+            const auto product = multiply(*a, *b);
+            if (!product) return {};
+            for (const auto &[m, x] : *product) sum[m] += x;
         }
-        if (node.op == Op::Mul) {
-            auto a = sub(0), b = sub(1);
-            if (!a || !b) return {};
-            return multiply(graph, *a, *b);
-        }
-        if (node.op == Op::Div)
-            if (auto c = graph.as_number(graph.arg(id, 1)); c && *c != 0) {
-                auto a = sub(0);
-                if (!a) return {};
-                for (auto &[m, x] : *a) x /= *c;
-                return a;
-            }
-        if (node.op == Op::Pow)
-            if (auto c = graph.as_number(graph.arg(id, 1));
-                c && std::floor(*c) == *c && *c >= 1 && *c <= 6) {
-                auto a = sub(0);
-                auto out = a;
-                for (int i = 1; a && out && i < int(*c); ++i) out = multiply(graph, *out, *a);
-                return out;
-            }
-        if (node.op == Op::Dot) {
-            NodeId u = graph.arg(id, 0), v = graph.arg(id, 1);
-            Polynomial sum;
-            for (int i = 0; i < ir::components(graph[u].type); ++i) {
-                auto a = polynomial(graph, component_of(graph, u, i), depth + 1);
-                auto b = polynomial(graph, component_of(graph, v, i), depth + 1);
-                if (!a || !b) return {};
-                auto product = multiply(graph, *a, *b);
-                if (!product) return {};
-                for (const auto &[m, x] : *product) sum[m] += x;
-            }
-            return sum;
-        }
-        if (node.op == Op::Swizzle) {
-            NodeId inner =
-                component_of(graph, graph.arg(id, 0), ir::swizzle_component(node.payload, 0));
-            if (inner != id) return polynomial(graph, inner, depth + 1);
-        }
-        if (by_component(node.op) && node.count > 0) { // the same function of arguments in one form
-            constexpr ir::OpSet mirrored{Op::Abs, Op::Cos, Op::Sin}; // f(-x) is f(x) or -f(x)
-            std::vector<NodeId> args;
-            double sign = 1;
-            for (int i = 0; i < int(node.count); ++i) {
-                auto a = sub(i);
-                if (a && !a->empty() && mirrored[node.op] && leads_below_zero(*a)) {
-                    for (auto &[m, x] : *a) x = -x;
-                    sign = node.op == Op::Sin ? -sign : sign;
-                }
-                args.push_back(a ? rebuilt(graph, *a) : graph.arg(id, i));
-            }
-            const NodeId made = graph.make(node.op, node.type, args, node.payload);
-            if (const auto c = graph.as_number(made)) return Polynomial{{{}, sign * *c}};
-            return Polynomial{{{made}, sign}};
-        }
+        return sum;
     }
-    return Polynomial{{{id}, 1.0}};
+    if (node.op == Op::Swizzle) {
+        const NodeId inner = component_of(graph_, arg(0), ir::swizzle_component(node.payload, 0));
+        if (inner != id) return of(inner);
+    }
+    if (!by_component(node.op) || node.count == 0) return alone;
+    // The same function of arguments in one form.
+    constexpr ir::OpSet mirrored{Op::Abs, Op::Cos, Op::Sin}; // f(-x) is f(x) or -f(x)
+    std::vector<NodeId> args;
+    double sign = 1;
+    for (int i = 0; i < int(node.count); ++i) {
+        auto a = of(arg(i));
+        if (a && !a->empty() && mirrored[node.op] && leads_below_zero(*a)) {
+            for (auto &[m, x] : *a) x = -x;
+            sign = node.op == Op::Sin ? -sign : sign;
+        }
+        args.push_back(a && take(a->size()) ? rebuilt(graph_, *a) : arg(i));
+    }
+    const NodeId made = graph_.make(node.op, node.type, args, node.payload);
+    if (const auto c = graph_.as_number(made)) return Polynomial{{{}, sign * *c}};
+    return Polynomial{{{made}, sign}};
 }
 
 } // namespace
@@ -172,7 +213,7 @@ std::optional<Polynomial> polynomial(Graph &graph, NodeId id, int depth) {
 // relative size.
 constexpr double rounding = 1e-12;
 
-bool same(Graph &graph, NodeId a, NodeId b) {
+bool same(Graph &graph, NodeId a, NodeId b, Work *work) {
     if (a == b) return true;
     const ir::Node x = graph[a], y = graph[b];
     if (x.type != y.type) return false;
@@ -181,11 +222,12 @@ bool same(Graph &graph, NodeId a, NodeId b) {
     if (alike && (x.count == 1 || x.type != ir::Type::Float)) {
         bool all = true;
         for (int i = 0; i < int(x.count); ++i)
-            all = all && same(graph, graph.arg(a, i), graph.arg(b, i));
+            all = all && same(graph, graph.arg(a, i), graph.arg(b, i), work);
         if (all) return true;
     }
     if (x.type != ir::Type::Float) return false;
-    auto p = polynomial(graph, a), q = polynomial(graph, b);
+    Expansion expansion(graph, work);
+    auto p = expansion.of(a), q = expansion.of(b);
     if (!p || !q) return false;
     double size = 0;
     for (const auto &[m, c] : *p) size = std::max(size, std::fabs(c));
@@ -208,9 +250,9 @@ bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b, Wor
         const NodeId first = ir::substitute(graph, a, map, visited),
                      second = ir::substitute(graph, b, map, visited);
         work.take(2 * visited); // dearer than an operation on intervals
-        return same(graph, first, second);
+        return same(graph, first, second, &work);
     };
-    if (same(graph, a, b)) return true;
+    if (same(graph, a, b, &work)) return true;
     if (!graph.is_constant(u) && agree(u, v)) return true;
     if (!graph.is_constant(v) && agree(v, u)) return true;
     auto p = polynomial(graph, u), q = polynomial(graph, v);
@@ -302,7 +344,7 @@ std::optional<std::vector<Term>> terms_of(Graph &graph, NodeId scalar) {
     return out;
 }
 
-bool same_with_mixes_as_sums(Graph &graph, NodeId a, NodeId b) {
+bool same_with_mixes_as_sums(Graph &graph, NodeId a, NodeId b, Work *work) {
     std::unordered_map<NodeId, NodeId> known;
     const auto written = [&](auto &&self, NodeId id) -> NodeId {
         if (const auto it = known.find(id); it != known.end()) return it->second;
@@ -316,7 +358,7 @@ bool same_with_mixes_as_sums(Graph &graph, NodeId a, NodeId b) {
             out = graph.make(node.op, node.type, args, node.payload);
         return known[id] = out;
     };
-    return same(graph, written(written, a), written(written, b));
+    return same(graph, written(written, a), written(written, b), work);
 }
 
 std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {
@@ -326,29 +368,41 @@ std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {
     return rebuilt(graph, *p);
 }
 
-NodeId component_of(Graph &graph, NodeId vector, int i) {
+namespace {
+
+NodeId component_of(Graph &graph, NodeId vector, int i, int &left) {
     const ir::Node node = graph[vector];
     if (node.op == Op::Swizzle)
-        return component_of(graph, graph.arg(vector, 0), ir::swizzle_component(node.payload, i));
+        return component_of(graph, graph.arg(vector, 0), ir::swizzle_component(node.payload, i),
+                            left);
     if (node.op == Op::Splat) return graph.arg(vector, 0);
-    if (ir::is_vector(node.type) && node.count > 0 &&
+    if (ir::is_vector(node.type) && node.count > 0 && left > 0 &&
         ir::info(node.op).rule == ir::TypeRule::Same && node.op != Op::Cross &&
         node.op != Op::Normalize) {
+        --left;
         std::vector<NodeId> parts;
         for (int k = 0; k < int(node.count); ++k)
-            parts.push_back(component_of(graph, graph.arg(vector, k), i));
+            parts.push_back(component_of(graph, graph.arg(vector, k), i, left));
         return graph.make(node.op, ir::Type::Float, parts, node.payload);
     }
     return graph.component(vector, i);
 }
 
-NodeId in_one_form(Graph &graph, NodeId scalar) {
-    auto p = polynomial(graph, scalar);
+} // namespace
+
+NodeId component_of(Graph &graph, NodeId vector, int i) {
+    int left =
+        1000; // vectors that are written so: one may stand in both parts of another, again and again
+    return component_of(graph, vector, i, left);
+}
+
+NodeId in_one_form(Graph &graph, NodeId scalar, Work *work) {
+    auto p = polynomial(graph, scalar, work);
     return p ? rebuilt(graph, *p) : scalar;
 }
 
-NodeId without_rounding(Graph &graph, NodeId scalar) {
-    auto sum = polynomial(graph, scalar);
+NodeId without_rounding(Graph &graph, NodeId scalar, Work *work) {
+    auto sum = polynomial(graph, scalar, work);
     if (!sum) return scalar;
     double size = 0;
     for (const auto &[factors, c] : *sum) size = std::max(size, std::fabs(c));
@@ -392,12 +446,12 @@ std::optional<double> number_of(Graph &graph, NodeId scalar) {
 
 bool keeps_length(Graph &graph, NodeId q) {
     NodeId p = graph.point(graph[q].type);
+    Expansion expansion(graph);
     Polynomial sum;
     for (int i = 0; i < ir::components(graph[q].type); ++i) {
-        auto a = polynomial(graph, component_of(graph, q, i)),
-             b = polynomial(graph, graph.component(p, i));
+        auto a = expansion.of(component_of(graph, q, i)), b = expansion.of(graph.component(p, i));
         if (!a || !b) return false;
-        auto x = multiply(graph, *a, *a), y = multiply(graph, *b, *b);
+        auto x = expansion.multiply(*a, *a), y = expansion.multiply(*b, *b);
         if (!x || !y) return false;
         for (const auto &[m, c] : *x) sum[m] += c;
         for (const auto &[m, c] : *y) sum[m] -= c;
@@ -408,29 +462,36 @@ bool keeps_length(Graph &graph, NodeId q) {
 }
 
 bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b, Work &work) {
-    const ir::Node node = graph[condition];
-    if (node.op == Op::Less || node.op == Op::LessEqual) {
-        NodeId u = graph.arg(condition, 0), v = graph.arg(condition, 1);
+    const auto agree_on_border = [&](const ir::Node &node, NodeId id) {
+        constexpr ir::OpSet ordered{Op::Less, Op::LessEqual}, equal{Op::Equal, Op::NotEqual};
+        if (!ordered[node.op] && !equal[node.op]) return false; // not given by a comparison
+        const NodeId u = graph.arg(id, 0), v = graph.arg(id, 1);
+        const int parts = ir::components(graph[a].type);
         if (graph[u].type != ir::Type::Float) return false;
+        if (equal[node.op]) // one arm is met on the border alone
+            return parts == 1 && agree_where_equal(graph, u, v, a, b, work);
         if (agree_where_equal(graph, u, v, a, b, work)) return true;
-        if (!ir::is_vector(graph[a].type)) return false;
-        for (int i = 0; i < ir::components(graph[a].type); ++i)
+        for (int i = 0; i < parts && parts > 1; ++i)
             if (!agree_where_equal(graph, u, v, component_of(graph, a, i),
                                    component_of(graph, b, i), work))
                 return false;
-        return true;
+        return parts > 1;
+    };
+    constexpr ir::OpSet of_truths{Op::And, Op::Or,
+                                  Op::Not}; // the border is part of theirs together
+    std::vector<NodeId> todo{condition};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        const ir::Node node = graph[id];
+        if (of_truths[node.op])
+            todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+        else if (!agree_on_border(node, id))
+            return false;
     }
-    if (node.op == Op::Not) return arms_agree(graph, graph.arg(condition, 0), b, a, work);
-    if (node.op == Op::Equal || node.op == Op::NotEqual) { // one arm is met on the border alone
-        const NodeId u = graph.arg(condition, 0), v = graph.arg(condition, 1);
-        return graph[u].type == ir::Type::Float && ir::components(graph[a].type) == 1 &&
-               agree_where_equal(graph, u, v, a, b, work);
-    }
-    if (node.op == Op::And || node.op == Op::Or) { // the border is part of the two together
-        NodeId left = graph.arg(condition, 0), right = graph.arg(condition, 1);
-        return arms_agree(graph, left, a, b, work) && arms_agree(graph, right, a, b, work);
-    }
-    return false; // a border that is not given by a comparison
+    return true;
 }
 
 } // namespace fathom::proof

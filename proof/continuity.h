@@ -18,9 +18,9 @@ bool arms_agree(ir::Graph &graph, ir::NodeId condition, ir::NodeId a, ir::NodeId
 // One component of a vector, written with scalars as far as that goes.
 ir::NodeId component_of(ir::Graph &graph, ir::NodeId vector, int i);
 // The same number as a sum of products: equal sums become one node.
-ir::NodeId in_one_form(ir::Graph &graph, ir::NodeId scalar);
+ir::NodeId in_one_form(ir::Graph &graph, ir::NodeId scalar, Work *work = nullptr);
 // … without what is no more than rounding beside its other terms: for comparing.
-ir::NodeId without_rounding(ir::Graph &graph, ir::NodeId scalar);
+ir::NodeId without_rounding(ir::Graph &graph, ir::NodeId scalar, Work *work = nullptr);
 // The same angle in one form, with whole turns left out: of a + 3 pi, a + pi; of 2 pi n with n
 // whole, 0. Numbers are rounded to 2^-32 on the way, so this is for comparing.
 ir::NodeId without_iterations(ir::Graph &graph, ir::NodeId angle);
@@ -32,7 +32,7 @@ bool keeps_length(ir::Graph &graph, ir::NodeId q);
 
 // Are both the same number (or vector) in exact arithmetic, as polynomials in whatever they are
 // made of?
-bool same(ir::Graph &graph, ir::NodeId a, ir::NodeId b);
+bool same(ir::Graph &graph, ir::NodeId a, ir::NodeId b, Work *work = nullptr);
 
 // A coordinate (a component of a vector that is not made of scalars) in which `scalar` is linear,
 // and what it is where `scalar` has the value `is`: of 2 x + y, x is (is - y) / 2.
@@ -64,7 +64,7 @@ struct Term {
 std::optional<std::vector<Term>> terms_of(ir::Graph &graph, ir::NodeId scalar);
 
 // Are two scalars the same (same(), above), with each mix(a, b, t) as a + t (b - a)?
-bool same_with_mixes_as_sums(ir::Graph &graph, ir::NodeId a, ir::NodeId b);
+bool same_with_mixes_as_sums(ir::Graph &graph, ir::NodeId a, ir::NodeId b, Work *work = nullptr);
 
 // a - b as a sum in which equal terms have cancelled; nothing where the expressions are too large.
 std::optional<ir::NodeId> difference(ir::Graph &graph, ir::NodeId a, ir::NodeId b);

@@ -41,7 +41,7 @@ constexpr std::size_t max_groups = 48;
 
 // Is the field the same on all sides of the borders with these K?
 bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, const Counts &counts,
-             Met &met) {
+             Met &met, Work &work) {
     const bool one = counts.range.is_point();
     const NodeId whole = one ? graph.number(counts.range.lo)
                              : graph.make(Op::ToFloat, ir::Type::Float,
@@ -53,22 +53,23 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
     std::vector<NodeId> sides;
     bool same_for_all = true;
     for (const Side side : {Side::Before, Side::At, Side::After}) {
-        Border border{graph,  group,   seen, whole, little, little_angle,
-                      radius, unknown, half, side,  counts, met};
+        Border border{graph,   group, seen, whole,  little, little_angle, radius,
+                      unknown, half,  side, counts, met,    work};
         border.enter(border.limit, false);
         border.enter(border.moving, true);
         sides.push_back(border.limit.of(seen.through));
         if (border.limit.failed || border.moving.failed) return false;
         same_for_all =
-            same_for_all && (same(graph, sides.front(), sides.back()) ||
-                             same_with_mixes_as_sums(graph, sides.front(), sides.back()));
+            same_for_all && (same(graph, sides.front(), sides.back(), &work) ||
+                             same_with_mixes_as_sums(graph, sides.front(), sides.back(), &work));
         if (!same_for_all && met.thresholds.empty() && !met.parity) return false;
     }
     return same_for_all;
 }
 
 // By cases for K: even and odd, and beside each number that it is compared with.
-bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool half, Met met) {
+bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool half, Met met,
+                      Work &work) {
     constexpr std::size_t most_thresholds = 8;
     if (met.thresholds.empty() && !met.parity) return false;
     std::vector<double> whole;
@@ -90,19 +91,19 @@ bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool h
             const bool odd = std::fmod(std::fabs(range.lo), 2) == 1;
             if (range.is_point() && odd != (parity == 1)) continue;
             Met more;
-            if (!cancels(graph, seen, group, half, {parity, range}, more)) return false;
+            if (!cancels(graph, seen, group, half, {parity, range}, more, work)) return false;
         }
     return true;
 }
 
-bool cancels(Graph &graph, const Seen &seen, const Group &group) {
+bool cancels(Graph &graph, const Seen &seen, const Group &group, Work &work) {
     bool halves = false, wholes = false;
     for (NodeId step : group.steps) (graph[step].op == Op::Round ? halves : wholes) = true;
     for (const bool half : {false, true}) {
         if (half ? !halves : !wholes) continue;
         Met met;
-        if (!cancels(graph, seen, group, half, {}, met) &&
-            !cancels_by_cases(graph, seen, group, half, met))
+        if (!cancels(graph, seen, group, half, {}, met, work) &&
+            !cancels_by_cases(graph, seen, group, half, met, work))
             return false;
     }
     return true;
@@ -187,19 +188,19 @@ std::unordered_map<NodeId, NodeId> throughs(const Graph &graph, NodeId root,
 // The least expression that all uses of a group's steps go through, then larger ones, up to the
 // whole field.
 bool cancels_somewhere(Graph &graph, NodeId root, const Group &group,
-                       const std::unordered_map<NodeId, NodeId> &through) {
+                       const std::unordered_map<NodeId, NodeId> &through, Work &work) {
     NodeId of = through.at(group.steps.front());
     for (NodeId step : group.steps) of = common_through(through, of, through.at(step));
     for (int climb = 1;; climb *= 2) {
-        if (cancels(graph, {of, through}, group)) return true;
-        if (of == root) return false;
+        if (cancels(graph, {of, through}, group, work)) return true;
+        if (of == root || work.spent()) return false;
         for (int i = 0; i < climb; ++i) of = through.at(of);
     }
 }
 
 } // namespace
 
-std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
+std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, Work &work) {
     const std::vector<NodeId> nodes = reached(graph, root, false);
     if (nodes.size() > max_nodes) return {};
     std::map<std::pair<NodeId, int>, Group> groups;
@@ -227,7 +228,7 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root) {
     if (groups.size() > max_groups) return {};
     const std::unordered_map<NodeId, NodeId> through = throughs(graph, root, nodes);
     for (const auto &[key, group] : groups)
-        if (!cancels_somewhere(graph, root, group, through))
+        if (!cancels_somewhere(graph, root, group, through, work))
             for (NodeId step : group.steps) steps.erase(step);
     for (NodeId id : nodes) // in a loop's body no border is entered
         if (graph[id].op == Op::Loop)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "ir/graph.h"
+#include "proof/work.h"
 
 #include <unordered_set>
 #include <vector>
@@ -13,7 +14,7 @@ namespace fathom::proof {
 // The steps (Floor, Ceil, Round, Fract, Mod, Atan2) below `root` whose jumps `root` is proved not
 // to see: it has one value on both sides of each border. Enters no loops; calls should have been
 // written out before (written_out).
-std::unordered_set<ir::NodeId> cancelling_steps(ir::Graph &graph, ir::NodeId root);
+std::unordered_set<ir::NodeId> cancelling_steps(ir::Graph &graph, ir::NodeId root, Work &work);
 
 // Does the expression, its calls included, hold such a step?
 bool has_steps(const ir::Graph &graph, ir::NodeId root);

@@ -41,6 +41,7 @@ struct FieldBound {
     std::array<double, 3> where{};
     std::array<double, 3> side_a{}, side_b{}; // of a jump: two near points and the values there
     double value_a = 0, value_b = 0;
+    bool seen_jump = false; // they differ as much however near they are taken
     std::size_t evaluations = 0;
 };
 

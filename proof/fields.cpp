@@ -38,6 +38,15 @@ std::string point_text(const std::array<double, 3> &p, int dims) {
     return out + "]";
 }
 
+// Two numbers with as many digits as it takes to tell them apart.
+static std::pair<std::string, std::string> two_numbers(double a, double b) {
+    constexpr int all_digits = 17;
+    std::pair<std::string, std::string> out{number_text(a), number_text(b)};
+    for (int digits = 4; digits <= all_digits && out.first == out.second; ++digits)
+        out = {fmt::format("{:.{}g}", a, digits), fmt::format("{:.{}g}", b, digits)};
+    return out;
+}
+
 // Two points that are not one, with as many digits as it takes to tell them apart.
 static std::pair<std::string, std::string> two_points(const std::array<double, 3> &a,
                                                       const std::array<double, 3> &b, int dims) {
@@ -78,15 +87,20 @@ struct Scaled {
     double by = 1;
     NodeId rest; // invalid: 1
 };
-Scaled split(ir::Graph &graph, NodeId id) {
+constexpr int max_depth_of_product =
+    12; // a factor may stand in both parts of another, again and again
+
+Scaled split(ir::Graph &graph, NodeId id, int depth = 0) {
     if (auto number = graph.as_number(id)) return {*number, {}};
     const ir::Node node = graph[id];
+    if (depth > max_depth_of_product) return {1, id};
     if (node.type == ir::Type::Float && node.op == Op::Neg) {
-        Scaled out = split(graph, graph.arg(id, 0));
+        Scaled out = split(graph, graph.arg(id, 0), depth + 1);
         return {-out.by, out.rest};
     }
     if (node.type == ir::Type::Float && node.op == Op::Mul) {
-        const Scaled a = split(graph, graph.arg(id, 0)), b = split(graph, graph.arg(id, 1));
+        const Scaled a = split(graph, graph.arg(id, 0), depth + 1),
+                     b = split(graph, graph.arg(id, 1), depth + 1);
         return {a.by * b.by, !a.rest ? b.rest : !b.rest ? a.rest : graph.mul(a.rest, b.rest)};
     }
     return {1, id};
@@ -295,14 +309,13 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             "go from one entry of a list to the next without a jump, with the place limited before "
             "`floor`: `let x = clamp(…, 0, last)`, then `mix(list[int(floor(x))], "
             "list[int(floor(x)) + 1], fract(x))`; ";
-        bool seen = std::fabs(b.value_a - b.value_b) >
-                    1e-4 * std::max({1.0, std::fabs(b.value_a), std::fabs(b.value_b)});
         const auto [one_side, other_side] = two_points(b.side_a, b.side_b, dims);
-        if (seen) {
+        const auto [one, other] = two_numbers(b.value_a, b.value_b);
+        if (b.seen_jump) {
             if (Diagnostic *d =
                     report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))
-                d->note("it is " + number_text(b.value_a) + " at " + one_side + " and " +
-                        number_text(b.value_b) + " at " + other_side + ": " + cause)
+                d->note("it is " + one + " at " + one_side + " and " + other + " at " + other_side +
+                        ": " + cause)
                     .help((by_list ? between : "make both sides agree there, ") +
                           "keep the jump out of the region with " +
                           (has_region ? "`within:`, " : "`.within(…)`, ") + assume);

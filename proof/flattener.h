@@ -68,7 +68,7 @@ struct Flattener {
 
     // Does the step that a wave is made with? x - m*round(x/m), held or not, x % m - m/2, …
     bool step_cancels(NodeId wave) const;
-    std::optional<NodeId> rounding_in(NodeId id) const;
+    std::optional<NodeId> rounding_in(NodeId id, int depth = 0) const;
 
     Slot sum(Scope &scope, NodeId id, Instruction out);
 

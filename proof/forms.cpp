@@ -42,10 +42,11 @@ std::optional<NodeId> above_zero(Graph &graph, Op op, NodeId id) {
     return {};
 }
 void greatest_of(Graph &graph, NodeId id, std::vector<NodeId> &out, Op op = Op::Max) {
+    if (out.size() >= 4) return;
     if (graph[id].op == op && graph[id].type == ir::Type::Float) {
         greatest_of(graph, graph.arg(id, 0), out, op);
         greatest_of(graph, graph.arg(id, 1), out, op);
-    } else if (out.size() < 4) {
+    } else {
         out.push_back(id);
     }
 }
@@ -179,24 +180,27 @@ struct PowerOf {
     NodeId base;
     double exponent = 1;
 };
-PowerOf power_of(Graph &graph, NodeId id) {
+PowerOf power_of(Graph &graph, NodeId id, int depth = 0) {
+    constexpr int max_depth = 10; // a factor may stand in both parts of another, again and again
     const ir::Node node = graph[id];
+    if (depth > max_depth) return {id, 1};
+    const auto of = [&](NodeId part) { return power_of(graph, part, depth + 1); };
     if (node.op == Op::Mul && graph.arg(id, 0) == graph.arg(id, 1)) {
-        const PowerOf inner = power_of(graph, graph.arg(id, 0));
+        const PowerOf inner = of(graph.arg(id, 0));
         return {inner.base, 2 * inner.exponent};
     }
     if (node.op == Op::Mul) {
-        const PowerOf a = power_of(graph, graph.arg(id, 0)), b = power_of(graph, graph.arg(id, 1));
+        const PowerOf a = of(graph.arg(id, 0)), b = of(graph.arg(id, 1));
         if (a.base == b.base) return {a.base, a.exponent + b.exponent};
     }
     if (node.op == Op::Pow)
         if (const auto n = number(graph, graph.arg(id, 1)); n && *n > 0) {
-            const PowerOf inner = power_of(graph, graph.arg(id, 0));
+            const PowerOf inner = of(graph.arg(id, 0));
             if (*n == std::floor(*n) || graph[inner.base].op == Op::Abs)
                 return {inner.base, *n * inner.exponent};
         }
     if (node.op == Op::Swizzle && node.type == ir::Type::Float)
-        if (const NodeId own = component_of(graph, id, 0); own != id) return power_of(graph, own);
+        if (const NodeId own = component_of(graph, id, 0); own != id) return of(own);
     return {id, 1};
 }
 

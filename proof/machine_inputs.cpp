@@ -1,5 +1,6 @@
 // What is read: the point, params, tables, noise, images. Proofs: docs/lipschitz.md, 2.
 #include "ir/noise.h"
+#include "ir/passes/fold.h"
 #include "proof/instruction_rules.h"
 
 #include <algorithm>
@@ -74,6 +75,14 @@ void Step::hash() {
     bool fixed = true;
     for (int c = 0; c < size(0); ++c) fixed = fixed && zero(grad(0, c));
     set(0, {0, 1}, none);
+    if (machine.reads_hashes_) {
+        const ir::Graph &graph = machine.ranges_.scene->graph;
+        ir::Constant arg{graph[graph.arg(in.node, 0)].type, {}};
+        for (int c = 0; c < size(0); ++c)
+            arg.value[static_cast<std::size_t>(c)] = value(0, c).middle();
+        if (const auto made = ir::evaluate_single(Op::Hash, in.type, {&arg, 1}, in.payload))
+            set(0, made->value[0], none);
+    }
     if (!fixed || norm(0) > 0) return fail(Trouble::Jump);
     finish(0, any_odd);
 }

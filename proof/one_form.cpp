@@ -20,6 +20,11 @@ std::optional<double> Canonical::number(NodeId id) const {
 }
 
 std::optional<NodeId> Canonical::whole(NodeId id) {
+    const auto it = wholes.find(id);
+    return it != wholes.end() ? it->second : wholes[id] = whole_of(id);
+}
+
+std::optional<NodeId> Canonical::whole_of(NodeId id) {
     const ir::Node node = graph[id];
     if (node.type != ir::Type::Float) return {};
     if (auto c = graph.as_number(id))
@@ -40,6 +45,11 @@ std::optional<NodeId> Canonical::whole(NodeId id) {
 }
 
 NodeId Canonical::as_float(NodeId id) {
+    const auto it = floats.find(id);
+    return it != floats.end() ? it->second : floats[id] = float_of(id);
+}
+
+NodeId Canonical::float_of(NodeId id) {
     const ir::Node node = graph[id];
     if (auto c = graph.as_number(id)) return graph.number(*c);
     if (node.op == Op::Add || node.op == Op::Sub || node.op == Op::Mul || node.op == Op::Neg) {
@@ -123,7 +133,11 @@ NodeId Canonical::step(NodeId id, const ir::Node &node, int depth) {
 }
 
 NodeId Canonical::scalar(NodeId id) {
-    return border && border->by_angle ? without_rounding(graph, id) : in_one_form(graph, id);
+    Work *const work = border ? &border->work : nullptr;
+    failed = failed || (work && work->spent());
+    if (failed) return id;
+    return border && border->by_angle ? without_rounding(graph, id, work)
+                                      : in_one_form(graph, id, work);
 }
 
 // The entry of a matrix that is a constant, or made of scalars or of columns.

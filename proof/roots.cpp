@@ -131,7 +131,9 @@ std::optional<std::vector<NodeId>> completed_squares(Graph &graph, NodeId id) {
 
 // The parts whose squares the sum is made of; a constant c >= 0 is the square of its root.
 bool squares_as_written(Graph &graph, NodeId sum, std::vector<NodeId> &parts) {
+    constexpr std::size_t most = 64; // a sum may stand in both parts of another, again and again
     const ir::Node node = graph[sum];
+    if (parts.size() > most) return false;
     if (node.op == Op::Add)
         return squares_as_written(graph, graph.arg(sum, 0), parts) &&
                squares_as_written(graph, graph.arg(sum, 1), parts);

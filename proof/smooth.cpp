@@ -22,8 +22,11 @@ struct Product {
     std::vector<NodeId> factors;
 };
 void gather(Graph &graph, NodeId id, Product &out) {
+    constexpr std::size_t most = 32; // a factor may stand in both parts of another, again and again
     const ir::Node node = graph[id];
-    if (auto c = graph.as_number(id)) {
+    if (out.factors.size() >= most) {
+        out.factors.push_back(id);
+    } else if (auto c = graph.as_number(id)) {
         out.number *= *c;
     } else if (node.op == Op::Mul) {
         gather(graph, graph.arg(id, 0), out);

@@ -265,7 +265,7 @@ Tape flatten(Flattening &context, NodeId root) {
         NodeId whole = with_signed_roots(context.graph, written);
         const bool has_signed_roots = whole != written;
         if (steps) {
-            flattener.cancelling = cancelling_steps(context.graph, whole);
+            flattener.cancelling = cancelling_steps(context.graph, whole, context.work);
             const Turned turned = without_angles(context.graph, whole);
             for (const auto &[wave, step] : turned.steps)
                 if (flattener.cancelling.contains(wave)) flattener.cancelling.insert(step);

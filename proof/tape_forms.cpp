@@ -96,12 +96,14 @@ bool Flattener::step_cancels(NodeId wave) const {
     });
 }
 
-std::optional<NodeId> Flattener::rounding_in(NodeId id) const {
+std::optional<NodeId> Flattener::rounding_in(NodeId id, int depth) const {
+    constexpr int max_depth = 8; // a factor may stand in both parts of another, again and again
     if (graph[id].op == Op::Round) return id;
-    if (graph[id].op == Op::Clamp) return rounding_in(graph.arg(id, 0));
+    if (depth > max_depth) return {};
+    if (graph[id].op == Op::Clamp) return rounding_in(graph.arg(id, 0), depth + 1);
     if (graph[id].op != Op::Mul) return {};
     for (NodeId factor : graph.args(id))
-        if (const auto found = rounding_in(factor)) return found;
+        if (const auto found = rounding_in(factor, depth + 1)) return found;
     return {};
 }
 

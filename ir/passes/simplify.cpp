@@ -187,9 +187,10 @@ NodeId sine_ratio_by_cases(Graph &graph, NodeId condition, NodeId yes, NodeId no
 }
 
 bool exponents_of(const Graph &graph, NodeId sum, Op exponential, std::vector<NodeId> &out) {
+    constexpr std::size_t most = 256; // a sum may stand in both parts of another, again and again
     if (graph[sum].op == exponential)
         out.push_back(graph.arg(sum, 0));
-    else if (graph[sum].op != Op::Add)
+    else if (graph[sum].op != Op::Add || out.size() > most)
         return false;
     else
         return exponents_of(graph, graph.arg(sum, 0), exponential, out) &&

@@ -153,6 +153,47 @@ TEST_CASE("each hostile scene is answered within 10 s of processor time and 1 GB
     }
 }
 
+TEST_CASE("numbers that stand twice in the next ones are looked at once") {
+    // What is walked as a tree is 2^40 nodes large.
+    struct Chain {
+        const char *first, *next, *last;
+        bool often = true; // false: weekly
+    };
+    const Chain chains[] = {
+        {"p.x", "c - 0.5 * floor(c) + 0.2 * fract(c)", "c"},
+        {"p.x", "c - round(c) + 0.1 * c * p.y", "c"},
+        {"p.x", "sign(c) * sqrt(abs(c))", "c"},
+        {"p.x", "0.5 * (c % 1) + 0.5 * c", "c", false},
+        {"p.x", "hash(floor(c)) * 0.1 + c * 0.3", "c", false},
+        {"p", "fract(c) - 0.5 * c", "length(c)"},
+        {"p", "c - 2 * round(c / 2)", "length(c)", false},
+        {"p", "[length(c.xy), atan(c.y, c.x), c.z]", "length(c)", false},
+        {"p", "c * c + c", "length(c)", false},
+        {"p", "(-1 + 2 * fract(0.5 * c + 0.5)) / dot(c, c)", "length(c)"},
+        {"int(floor(2 * p.x)) + int(round(p.y))", "c * c - c", "float(c)"},
+        {"int(floor(2 * p.x)) + int(round(p.y))", "c + c", "float(c)"},
+        {"atan(p.y, p.x)", "atan(sin(c), cos(c)) + 0.1 * c", "c"},
+        {"p.x > 0", "c and (p.y > 0 or c)", "float(c)"},
+        {"p.x > 0", "not c or (c and p.z > 0)", "float(c)"},
+        {"sign(p.x) + sign(p.y)", "c * c - c", "c"},
+        {"sign(p.x) + sign(p.y)", "if c > 1 { c - 1 } else { c }", "c"},
+        {"p.x", "c * (1 + c)", "c", false},
+        {"abs(p.x) + 1", "sqrt(c * c + c * c)", "c", false},
+        {"p.x", "max(c, max(c - 0.1, 0.5 * c))", "c", false},
+    };
+    for (const Chain &chain : chains) {
+        if (!chain.often && test::effort(1) == 1) continue;
+        const Cost cost = check_alone(
+            fmt::format("implicit(p => {{\n  var c = {}\n", chain.first) +
+            lines(40, [&](int) { return fmt::format("  c = {}", chain.next); }) +
+            fmt::format("  length(p) - 1 + 0.1 * {}\n}}, within: ball(2))\n", chain.last));
+        INFO(chain.next << ": " << cost.words.substr(0, 500));
+        CHECK((cost.exit == 0 || cost.exit == 1));
+        CHECK(cost.seconds < 10);
+        CHECK(cost.mebibytes < 1000);
+    }
+}
+
 TEST_CASE("an image counts once, however its name is spelled") {
     ScratchFolder folder;
     const int side = 2048;
