@@ -45,6 +45,7 @@ struct Canonical {
     std::map<NodeId, NodeId> floats{};
 
     NodeId scalar(NodeId id);
+    NodeId under(NodeId id);
     std::optional<NodeId> entry(NodeId matrix, int row, int column);
     std::optional<NodeId> written_product(NodeId a, NodeId b);
     std::optional<NodeId> turned(Op op, NodeId angle);

@@ -21,6 +21,8 @@ ir::NodeId component_of(ir::Graph &graph, ir::NodeId vector, int i);
 ir::NodeId in_one_form(ir::Graph &graph, ir::NodeId scalar, Work *work = nullptr);
 // … without what is no more than rounding beside its other terms: for comparing.
 ir::NodeId without_rounding(ir::Graph &graph, ir::NodeId scalar, Work *work = nullptr);
+// … with numbers of 44 bits: for comparing roots and sizes of sums that differ by rounding alone.
+ir::NodeId with_round_numbers(ir::Graph &graph, ir::NodeId scalar);
 // The same angle in one form, with whole turns left out: of a + 3 pi, a + pi; of 2 pi n with n
 // whole, 0. Numbers are rounded to 2^-32 on the way, so this is for comparing.
 ir::NodeId without_iterations(ir::Graph &graph, ir::NodeId angle);

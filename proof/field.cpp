@@ -2,6 +2,7 @@
 // largest slope seen.
 #include "proof/field.h"
 
+#include "proof/jumps.h"
 #include "proof/question.h"
 
 #include <algorithm>
@@ -90,9 +91,6 @@ std::array<double, 3> beside_middle(const Cell &cell) {
         if (cell.p[i].finite()) out[i] += beside[i] * cell.p[i].width();
     return out;
 }
-Cell at_point(const std::array<double, 3> &p) {
-    return {{Interval(p[0]), Interval(p[1]), Interval(p[2])}};
-}
 
 double widest(const Cell &cell, const std::array<bool, 3> &reads, int *axis) {
     double most = -1;
@@ -142,97 +140,6 @@ bool misses(const Zone &zone, const Cell &cell) {
 }
 
 namespace {
-
-// Two points and the field's values there.
-struct Sides {
-    std::array<double, 3> a{}, b{};
-    double value_a = 0, value_b = 0;
-    double gap() const { return std::fabs(value_a - value_b); }
-};
-
-std::optional<double> value_at(Machine &machine, const std::array<double, 3> &p) {
-    machine.run(at_point(p));
-    const Interval value = machine.value(0);
-    return value.finite() ? std::optional(value.middle()) : std::nullopt;
-}
-
-std::optional<Sides> sides_at(Machine &machine, const std::array<double, 3> &a,
-                              const std::array<double, 3> &b) {
-    const auto x = value_at(machine, a), y = value_at(machine, b);
-    if (!x || !y) return {};
-    return Sides{a, b, *x, *y};
-}
-
-// The half of the way between two points that has the greater part of their gap.
-bool halve(Machine &machine, Sides &sides) {
-    std::array<double, 3> middle{};
-    for (std::size_t i = 0; i < 3; ++i) middle[i] = (sides.a[i] + sides.b[i]) / 2;
-    const auto value = value_at(machine, middle);
-    if (!value) return false;
-    if (std::fabs(*value - sides.value_a) > std::fabs(*value - sides.value_b))
-        sides.b = middle, sides.value_b = *value;
-    else
-        sides.a = middle, sides.value_a = *value;
-    return true;
-}
-
-// A jump keeps its gap as the way over it is halved; that of a slope, however steep, goes with it.
-bool jumps(Machine &machine, Sides sides) {
-    constexpr int halvings = 10;
-    const double before = sides.gap();
-    for (int k = 0; k < halvings; ++k)
-        if (!halve(machine, sides)) return false;
-    return sides.gap() > before / 4 &&
-           sides.gap() > 1e-4 * std::max({1.0, std::fabs(sides.value_a), std::fabs(sides.value_b)});
-}
-
-// Two near points on both sides of a jump, for its report: about `out.where`, else about one of some
-// hundred places of the box; without a jump that is seen, the nearest pair of the former.
-void find_sides(Machine &machine, FieldBound &out, double scale, const std::array<bool, 3> &reads,
-                const Cell &box, const Zone *zone) {
-    const auto take = [&](const Sides &sides) {
-        out.side_a = sides.a, out.side_b = sides.b;
-        out.value_a = sides.value_a, out.value_b = sides.value_b;
-    };
-    machine.read_hashes();
-    std::optional<Sides> widest;
-    for (std::size_t i = 0; i < 3; ++i) {
-        if (!reads[i]) continue;
-        std::array<double, 3> a = out.where, b = out.where;
-        a[i] -= scale, b[i] += scale;
-        const auto sides = sides_at(machine, a, b);
-        if (sides && (!widest || sides->gap() > widest->gap())) widest = sides;
-    }
-    if (widest) take(*widest);
-    out.seen_jump = widest && jumps(machine, *widest);
-    if (out.seen_jump) return;
-    // Places spread evenly by the multiples of the plastic number's kin in three dimensions (Roberts 2018).
-    constexpr std::array<double, 3> spread{0.8191725133961645, 0.6710436067037893,
-                                           0.5497004779019703};
-    constexpr int places = 400;
-    for (int k = 1; k <= places; ++k) {
-        std::array<double, 3> a{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (!box.p[i].finite()) return;
-            const double way = k * spread[i];
-            a[i] = box.p[i].lo + (way - std::floor(way)) * box.p[i].width();
-        }
-        const std::size_t axis = static_cast<std::size_t>(k % 3);
-        if (!reads[axis]) continue;
-        std::array<double, 3> b = a;
-        b[axis] += box.p[axis].width() / 8;
-        if (b[axis] > box.p[axis].hi) continue;
-        if (zone && (misses(*zone, at_point(a)) || misses(*zone, at_point(b)))) continue;
-        auto sides = sides_at(machine, a, b);
-        bool known = sides.has_value();
-        while (known && sides->b[axis] - sides->a[axis] > 2 * scale) known = halve(machine, *sides);
-        if (!known || !jumps(machine, *sides)) continue;
-        take(*sides);
-        out.seen_jump = true;
-        for (std::size_t i = 0; i < 3; ++i) out.where[i] = (sides->a[i] + sides->b[i]) / 2;
-        return;
-    }
-}
 
 // Along each axis that the domain is longer than a period, one period; says along which.
 std::array<bool, 3> to_one_period(const Periods &periods, Cell &whole) {
@@ -371,7 +278,8 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, NodeId field,
             if (machine.cause()) out.cause = context.graph[machine.cause()].op;
             out.where = centre;
             if (!endless)
-                find_sides(machine, out, std::max(1e-5 * size, width), periods.reads, whole, zone);
+                find_sides(tape, ranges, out, std::max(1e-5 * size, width), periods.reads, whole,
+                           zone);
             out.value = Interval::everything();
             return out;
         }

@@ -41,7 +41,10 @@ struct FieldBound {
     std::array<double, 3> where{};
     std::array<double, 3> side_a{}, side_b{}; // of a jump: two near points and the values there
     double value_a = 0, value_b = 0;
-    bool seen_jump = false; // they differ as much however near they are taken
+    bool known_sides = false; // there are such points
+    bool seen_jump = false;   // they differ as much however near they are taken
+    bool held_params =
+        false; // with params in the middle of their ranges, and the time at its begin
     std::size_t evaluations = 0;
 };
 

@@ -24,46 +24,6 @@ using ir::ShapeId;
 using ir::ShapeKind;
 using ir::rounding::infinity;
 
-std::string number_text(double x) {
-    if (std::isinf(x)) return x > 0 ? "infinity" : "-infinity";
-    if (x == 0 || std::fabs(x) < 1e-12) return "0";
-    return fmt::format("{:.3g}", x);
-}
-std::string point_text(const std::array<double, 3> &p, int dims) {
-    // What is nothing beside the others is the width of the cell where a search ended.
-    const double nothing = 1e-6 * std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
-    std::string out = "[";
-    for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
-        out += (i > 0 ? ", " : "") + number_text(std::fabs(p[i]) < nothing ? 0 : p[i]);
-    return out + "]";
-}
-
-// Two numbers with as many digits as it takes to tell them apart.
-static std::pair<std::string, std::string> two_numbers(double a, double b) {
-    constexpr int all_digits = 17;
-    std::pair<std::string, std::string> out{number_text(a), number_text(b)};
-    for (int digits = 4; digits <= all_digits && out.first == out.second; ++digits)
-        out = {fmt::format("{:.{}g}", a, digits), fmt::format("{:.{}g}", b, digits)};
-    return out;
-}
-
-// Two points that are not one, with as many digits as it takes to tell them apart.
-static std::pair<std::string, std::string> two_points(const std::array<double, 3> &a,
-                                                      const std::array<double, 3> &b, int dims) {
-    constexpr int all_digits = 17;
-    std::pair<std::string, std::string> out{point_text(a, dims), point_text(b, dims)};
-    for (int digits = 4; digits <= all_digits && out.first == out.second; ++digits) {
-        const auto written = [&](const std::array<double, 3> &p) {
-            std::string text = "[";
-            for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
-                text += fmt::format("{}{:.{}g}", i > 0 ? ", " : "", p[i], digits);
-            return text + "]";
-        };
-        out = {written(a), written(b)};
-    }
-    return out;
-}
-
 Diagnostic *Prover::report(ShapeId id, Code code, std::string message) {
     if (!place(id).reported) return nullptr;
     if (work.spent()) { // what was not proved might be with more of it
@@ -311,20 +271,24 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             "list[int(floor(x)) + 1], fract(x))`; ";
         const auto [one_side, other_side] = two_points(b.side_a, b.side_b, dims);
         const auto [one, other] = two_numbers(b.value_a, b.value_b);
+        const std::string held =
+            b.held_params ? ", with each param in the middle of its range, at time 0" : "";
         if (b.seen_jump) {
             if (Diagnostic *d =
                     report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))
                 d->note("it is " + one + " at " + one_side + " and " + other + " at " + other_side +
-                        ": " + cause)
+                        held + ": " + cause)
                     .help((by_list ? between : "make both sides agree there, ") +
                           "keep the jump out of the region with " +
                           (has_region ? "`within:`, " : "`.within(…)`, ") + assume);
         } else if (Diagnostic *d = report(id, Code::LipschitzUnbounded,
                                           "it cannot be proved that " + what +
                                               " does not jump near " + point_text(b.where, dims)))
-            d->note(cause + " chooses there; its sides meet where they were tried (" +
-                    number_text(b.value_a) + " and " + number_text(b.value_b) +
-                    "), but that they meet everywhere is not seen")
+            d->note(cause + " chooses there" +
+                    (b.known_sides ? "; its sides meet where they were tried (" +
+                                         number_text(b.value_a) + " and " + number_text(b.value_b) +
+                                         held + "), but that they meet everywhere is not seen"
+                                   : ", and that its sides meet is not seen"))
                 .help((by_list ? between
                                : "write it with `min`, `max`, `clamp` or `abs`, whose continuity "
                                  "is known, ") +

@@ -53,6 +53,7 @@ struct Step {
     void param();
     void variable();
     void table_read();
+    void read();
     void hash();
     void perlin();
     void simplex();

@@ -71,9 +71,9 @@ class Machine {
     // its points and what no choice takes stays as it is (machine_needed.cpp).
     Steps needed(const Steps &steps) const;
 
-    // From here on a hash is that of the middle of what it is of: for what is told of single points,
-    // and for no bound, since it is not known which bits single precision hashes.
-    void read_hashes() { reads_hashes_ = true; }
+    // From here on hashes and noise have the values at the middle of what they are of, not their
+    // ranges: for what is told of single points, and for no bound.
+    void read_values() { reads_values_ = true; }
 
     int size() const { return tape_.size[tape_.result]; }
     Interval value(int i) const {
@@ -141,7 +141,7 @@ class Machine {
     const Ranges &ranges_;
     Cell cell_;
     bool near_ = false; // no coordinate of the cell is above `near_enough`
-    bool reads_hashes_ = false;
+    bool reads_values_ = false;
     bool in_reach_ = false; // the cell is where rays go, and values may leave single precision
     std::vector<Interval> value_;
     std::vector<Row> grad_;

@@ -71,18 +71,26 @@ void Step::table_read() {
     finish(0, any_odd);
 }
 
+// The value itself of what is else known by its range alone.
+void Step::read() {
+    constexpr ir::OpSet ranged{Op::Hash,       Op::Perlin, Op::Simplex,
+                               Op::ValueNoise, Op::Worley, Op::SpotNoise};
+    if (!ranged[in.op]) return;
+    const ir::Graph &graph = machine.ranges_.scene->graph;
+    std::vector<ir::Constant> args;
+    for (int a = 0; a < int(in.args.size()); ++a) {
+        args.push_back({graph[graph.arg(in.node, a)].type, {}});
+        for (int c = 0; c < size(a); ++c)
+            args.back().value[static_cast<std::size_t>(c)] = value(a, c).middle();
+    }
+    if (const auto made = ir::evaluate_single(in.op, in.type, args, in.payload))
+        machine.value_[at] = made->value[0];
+}
+
 void Step::hash() {
     bool fixed = true;
     for (int c = 0; c < size(0); ++c) fixed = fixed && zero(grad(0, c));
     set(0, {0, 1}, none);
-    if (machine.reads_hashes_) {
-        const ir::Graph &graph = machine.ranges_.scene->graph;
-        ir::Constant arg{graph[graph.arg(in.node, 0)].type, {}};
-        for (int c = 0; c < size(0); ++c)
-            arg.value[static_cast<std::size_t>(c)] = value(0, c).middle();
-        if (const auto made = ir::evaluate_single(Op::Hash, in.type, {&arg, 1}, in.payload))
-            set(0, made->value[0], none);
-    }
     if (!fixed || norm(0) > 0) return fail(Trouble::Jump);
     finish(0, any_odd);
 }

@@ -101,8 +101,10 @@ NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
             NodeId part = scalar(component_of(graph, args[0], i));
             sum = graph.add(sum, graph.mul(part, part));
         }
-        return graph.make(Op::Sqrt, ir::Type::Float, {scalar(sum)});
+        return graph.make(Op::Sqrt, ir::Type::Float, {under(scalar(sum))});
     }
+    if (node.type == ir::Type::Float && (node.op == Op::Abs || node.op == Op::Sqrt))
+        args[0] = under(args[0]);
     if (node.op == Op::MatMul && ir::is_vector(node.type))
         if (const auto product = written_product(args[0], args[1])) return *product;
     NodeId made = graph.make(node.op, node.type, args, node.payload);
@@ -138,6 +140,11 @@ NodeId Canonical::scalar(NodeId id) {
     if (failed) return id;
     return border && border->by_angle ? without_rounding(graph, id, work)
                                       : in_one_form(graph, id, work);
+}
+
+// What a root or a size is of.
+NodeId Canonical::under(NodeId id) {
+    return border && border->by_angle ? with_round_numbers(graph, id) : id;
 }
 
 // The entry of a matrix that is a constant, or made of scalars or of columns.

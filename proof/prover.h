@@ -184,6 +184,10 @@ struct Prover {
 
 std::string number_text(double x); // three significant digits: "2.37", "1.2e+03"
 std::string point_text(const std::array<double, 3> &p, int dims = 3);
+// Two with as many digits as it takes to tell them apart.
+std::pair<std::string, std::string> two_numbers(double a, double b);
+std::pair<std::string, std::string> two_points(const std::array<double, 3> &a,
+                                               const std::array<double, 3> &b, int dims);
 std::string operation_name(const ir::Scene &scene, ir::ShapeId id); // "twist", "sphere", …
 
 } // namespace fathom::proof

@@ -46,11 +46,19 @@ void Prover::check_size(ShapeId id, Derived &k) {
                                  shape.kind == ShapeKind::Library))
         wrong = name + " is " + short_text(thin) + " wide, and a shape is at least " +
                 short_text(shortest) + " wide";
-    else if (k.fact.lipschitz_sup > longest)
+    const bool steep = wrong.empty() && k.fact.lipschitz_sup > longest;
+    if (steep)
         wrong = name + " has a bound of " + short_text(k.fact.lipschitz_sup) +
                 ", and a bound is at most " + short_text(longest);
     if (wrong.empty()) return;
-    if (Diagnostic *d = report(id, Code::NumberRange, wrong))
+    Diagnostic *d = report(id, Code::NumberRange, wrong);
+    if (d && steep)
+        d->note("no step could be divided by that")
+            .help(std::string("choose a smaller region, fewer turns of a loop or smaller numbers") +
+                  (shape.kind == ShapeKind::Leaf ? ", or state a bound that you know with "
+                                                   "`lipschitz:`, which is then tested"
+                                                 : ""));
+    else if (d)
         d->note("fields are computed in single precision, which has to hold the squares of "
                 "lengths")
             .help("choose another unit of length, so that sizes are near to 1");

@@ -4,6 +4,7 @@
 
 #include "proof/continuity.h"
 #include "proof/forms.h"
+#include "proof/guarded.h"
 #include "proof/linear_maps.h"
 #include "proof/segments.h"
 #include "proof/smooth.h"
@@ -182,7 +183,8 @@ NodeId Flattener::by_component(const std::vector<NodeId> &choice) {
 
 Slot Flattener::choice(Scope &scope, NodeId id, Instruction out) {
     const std::vector<NodeId> args = args_of(id);
-    for (NodeId a : args) out.args.push_back(slot(scope, a));
+    out.args = {slot(scope, args[0]), slot(scope, on_its_side(graph, args[0], true, args[1])),
+                slot(scope, on_its_side(graph, args[0], false, args[2]))};
     if (!varies[out.args[0]]) {
         out.form = Form::Joined; // either arm, the same for all points
     } else if (out.cancels) {

@@ -1,0 +1,84 @@
+#include "proof/guarded.h"
+
+#include "ir/passes/walk.h"
+
+#include <algorithm>
+#include <unordered_set>
+#include <vector>
+
+namespace fathom::proof {
+namespace {
+
+using ir::Graph;
+using ir::NodeId;
+using ir::Op;
+
+constexpr std::size_t most_nodes = 2'000, most_orders = 16;
+
+// number <= limit or number >= limit, where limit does not vary with the point.
+struct Order {
+    NodeId number, limit;
+    bool at_least;
+};
+
+// The orders that a condition says where it holds, or does not.
+std::vector<Order> orders_of(const Graph &graph, NodeId condition, bool holds) {
+    std::vector<Order> out;
+    std::vector<std::pair<NodeId, bool>> todo{{condition, holds}};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty() && out.size() < most_orders) {
+        const auto [id, is_true] = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        const ir::Node node = graph[id];
+        if (node.op == Op::Not) todo.emplace_back(graph.arg(id, 0), !is_true);
+        if (node.op == (is_true ? Op::And : Op::Or))
+            for (NodeId a : graph.args(id)) todo.emplace_back(a, is_true);
+        if (node.op != Op::Less && node.op != Op::LessEqual) continue;
+        const NodeId less = graph.arg(id, 0), more = graph.arg(id, 1);
+        if (graph[less].type != ir::Type::Float) continue;
+        if (!graph.reads(more).point) out.push_back({less, more, !is_true});
+        if (!graph.reads(less).point) out.push_back({more, less, is_true});
+    }
+    return out;
+}
+
+// The argument in which an op has a pole or an end of what it takes; -1 without one.
+int edged_argument(Op op) {
+    constexpr ir::OpSet of_first{Op::Sqrt, Op::InverseSqrt, Op::Log, Op::Log2, Op::Pow};
+    return op == Op::Div ? 1 : of_first[op] ? 0 : -1;
+}
+
+} // namespace
+
+NodeId on_its_side(Graph &graph, NodeId condition, bool holds, NodeId arm) {
+    const std::vector<Order> orders = orders_of(graph, condition, holds);
+    if (orders.empty()) return arm;
+    ir::Substitution kept;
+    std::vector<NodeId> todo{arm};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        if (seen.size() > most_nodes) return arm;
+        const ir::Node node = graph[id];
+        const int edged = edged_argument(node.op);
+        std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
+        todo.insert(todo.end(), args.begin(), args.end());
+        if (edged < 0) continue;
+        NodeId &at = args[static_cast<std::size_t>(edged)];
+        const bool splat = graph[at].op == Op::Splat;
+        NodeId number = splat ? graph.arg(at, 0) : at;
+        const NodeId before = number;
+        for (const Order &order : orders)
+            if (order.number == before)
+                number = graph.make(order.at_least ? Op::Max : Op::Min, {number, order.limit});
+        if (number == before) continue;
+        at = splat ? graph.make(Op::Splat, graph[at].type, {number}) : number;
+        kept[id] = graph.make(node.op, node.type, args, node.payload);
+    }
+    return kept.empty() ? arm : ir::substitute(graph, arm, kept);
+}
+
+} // namespace fathom::proof

@@ -1,0 +1,49 @@
+// Numbers and places as reports write them.
+#include "proof/prover.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::proof {
+
+std::string number_text(double x) {
+    if (std::isinf(x)) return x > 0 ? "infinity" : "-infinity";
+    if (x == 0 || std::fabs(x) < 1e-12) return "0";
+    return fmt::format("{:.3g}", x);
+}
+std::string point_text(const std::array<double, 3> &p, int dims) {
+    // What is nothing beside the others is the width of the cell where a search ended.
+    const double nothing = 1e-6 * std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+    std::string out = "[";
+    for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
+        out += (i > 0 ? ", " : "") + number_text(std::fabs(p[i]) < nothing ? 0 : p[i]);
+    return out + "]";
+}
+
+std::pair<std::string, std::string> two_numbers(double a, double b) {
+    constexpr int all_digits = 17;
+    std::pair<std::string, std::string> out{number_text(a), number_text(b)};
+    for (int digits = 4; digits <= all_digits && out.first == out.second; ++digits)
+        out = {fmt::format("{:.{}g}", a, digits), fmt::format("{:.{}g}", b, digits)};
+    return out;
+}
+
+std::pair<std::string, std::string> two_points(const std::array<double, 3> &a,
+                                               const std::array<double, 3> &b, int dims) {
+    constexpr int all_digits = 17;
+    std::pair<std::string, std::string> out{point_text(a, dims), point_text(b, dims)};
+    for (int digits = 4; digits <= all_digits && out.first == out.second; ++digits) {
+        const auto written = [&](const std::array<double, 3> &p) {
+            std::string text = "[";
+            for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
+                text += fmt::format("{}{:.{}g}", i > 0 ? ", " : "", p[i], digits);
+            return text + "]";
+        };
+        out = {written(a), written(b)};
+    }
+    return out;
+}
+
+} // namespace fathom::proof
