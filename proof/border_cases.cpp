@@ -56,6 +56,7 @@ bool Cases::hold(const Case &given, int depth) {
 
 std::optional<bool> Cases::attempt() {
     side_.reset();
+    roots_ = 0;
     forget();
     if (!case_.border_solved) {
         const auto u = value(claim_.u), v = u ? value(claim_.v) : std::nullopt;

@@ -90,7 +90,7 @@ std::optional<Sum> Cases::size_of(NodeId id, int i, const Sum &x) {
 }
 
 std::optional<Sum> Cases::root(NodeId at, NodeId below, int i) {
-    constexpr int most_roots = 10'000; // of a claim: an extreme may stand in both arms of another
+    constexpr int most_roots = 10'000; // of a case: an extreme may stand in both arms of another
     if (++roots_ > most_roots) return {};
     const ir::Node node = graph_[below];
     if (below == claim_.choice && side_ && node.op == Op::Select)
