@@ -47,8 +47,8 @@ struct Scaled {
     double by = 1;
     NodeId rest; // invalid: 1
 };
-constexpr int max_depth_of_product =
-    12; // a factor may stand in both parts of another, again and again
+// A factor may stand in both parts of another, again and again.
+constexpr int max_depth_of_product = 12;
 
 Scaled split(ir::Graph &graph, NodeId id, int depth = 0) {
     if (auto number = graph.as_number(id)) return {*number, {}};

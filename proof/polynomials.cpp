@@ -7,7 +7,27 @@
 
 namespace fathom::proof {
 
+namespace {
+
 constexpr std::size_t max_terms = 64;
+
+// A factor that stands twice in a product, and what its square is: |a|^2 = a^2, cos^2 = 1 - sin^2.
+bool has_square(const Graph &graph, NodeId factor) {
+    return graph[factor].op == Op::Abs || graph[factor].op == Op::Cos;
+}
+
+bool by_component(Op op) {
+    return ir::info(op).rule == ir::TypeRule::Same && op != Op::Cross && op != Op::Normalize &&
+           op != Op::Transpose;
+}
+
+// Is the first coefficient negative? Of a sum and its negative one is, and equal ones are alike.
+bool leads_below_zero(const Polynomial &sum) {
+    const auto lead = std::ranges::find_if(sum, [](const auto &term) { return term.second != 0; });
+    return lead != sum.end() && lead->second < 0;
+}
+
+} // namespace
 
 NodeId rebuilt(Graph &graph, const Polynomial &polynomial) {
     NodeId sum = graph.number(0);
@@ -31,10 +51,6 @@ bool Expansion::take(std::size_t steps) {
     return left_ > 0 && !(work_ && work_->spent());
 }
 
-// A factor that stands twice in a product, and what its square is: |a|^2 = a^2, cos^2 = 1 - sin^2.
-bool has_square(const Graph &graph, NodeId factor) {
-    return graph[factor].op == Op::Abs || graph[factor].op == Op::Cos;
-}
 std::optional<Polynomial> Expansion::squared(NodeId factor) {
     const NodeId x = graph_.arg(factor, 0);
     if (graph_[factor].op == Op::Cos) {
@@ -71,17 +87,6 @@ std::optional<Polynomial> Expansion::multiply(const Polynomial &a, const Polynom
             if (out.size() > max_terms || product.size() > 8) return {};
         }
     return out;
-}
-
-bool by_component(Op op) {
-    return ir::info(op).rule == ir::TypeRule::Same && op != Op::Cross && op != Op::Normalize &&
-           op != Op::Transpose;
-}
-
-// Is the first coefficient negative? Of a sum and its negative one is, and equal ones are alike.
-bool leads_below_zero(const Polynomial &sum) {
-    const auto lead = std::ranges::find_if(sum, [](const auto &term) { return term.second != 0; });
-    return lead != sum.end() && lead->second < 0;
 }
 
 std::optional<Polynomial> Expansion::of(NodeId id) {

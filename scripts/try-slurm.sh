@@ -18,21 +18,21 @@ export FATHOM=$program
 frames=${FRAMES:-1000}
 [ $# -gt 0 ] || set -- slurm parallel
 
-work=$(mktemp -d) || exit 3
-disk=$work/disk
+folder=$(mktemp -d) || exit 3
+disk=$folder/disk
 mkdir "$disk" && mount -t tmpfs -o size=400m tmpfs "$disk" 2>/dev/null || { rm -rf "$disk"; mkdir "$disk"; no_disk=1; }
 [ -z "${no_disk:-}" ] || say "no disk of its own can be mounted here: it is not filled"
 started=""
 stop() {
     [ -z "$started" ] || { kill $started; wait $started; } 2>/dev/null
     [ -n "${no_disk:-}" ] || umount -l "$disk"
-    rm -rf "$work"
+    rm -rf "$folder"
 }
 trap stop EXIT
 since() { echo "$1 $(date +%s.%N)" | awk '{ printf "%.1f", $2 - $1 }'; }
 fail() { say "FAILED: $*"; failed=1; }
 
-cat >"$work/film.sdf" <<'SDF'
+cat >"$folder/film.sdf" <<'SDF'
 sphere(0.8 + 0.1 * sin(time)).translate(y: keyframes([[0, 0], [20, 1], [40, -0.5]], time))
 box([3, 0.3, 1]).twist(0.02 * time, axis: X).translate(y: -1.2).paint(tomato)
 camera(at: [0, 1, 6], look_at: [0, 0, 0])
@@ -49,20 +49,20 @@ setup_slurm() {
         su -s /bin/sh munge -c munged || return 1
         started="$started $(pgrep -x munged)"
     }
-    mkdir -p "$work/ctl" "$work/n1" "$work/n2"
-    cat >"$work/slurm.conf" <<CONF
+    mkdir -p "$folder/ctl" "$folder/n1" "$folder/n2"
+    cat >"$folder/slurm.conf" <<CONF
 ClusterName=try
 SlurmctldHost=$host
 SlurmUser=root
 SlurmdUser=root
 AuthType=auth/munge
 CryptoType=crypto/munge
-StateSaveLocation=$work/ctl
-SlurmdSpoolDir=$work/%n
-SlurmctldPidFile=$work/ctl.pid
-SlurmdPidFile=$work/%n.pid
-SlurmctldLogFile=$work/ctl.log
-SlurmdLogFile=$work/%n.log
+StateSaveLocation=$folder/ctl
+SlurmdSpoolDir=$folder/%n
+SlurmctldPidFile=$folder/ctl.pid
+SlurmdPidFile=$folder/%n.pid
+SlurmctldLogFile=$folder/ctl.log
+SlurmdLogFile=$folder/%n.log
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 SelectType=select/cons_tres
@@ -76,7 +76,7 @@ SchedulerParameters=batch_sched_delay=0,sched_min_interval=0
 NodeName=n[1-2] NodeHostname=$host NodeAddr=127.0.0.1 Port=[17001-17002] CPUs=$1 State=UNKNOWN
 PartitionName=all Nodes=n[1-2] Default=YES MaxTime=INFINITE State=UP
 CONF
-    export SLURM_CONF=$work/slurm.conf
+    export SLURM_CONF=$folder/slurm.conf
     slurmctld -D >/dev/null 2>&1 & started="$started $!"
     slurmd -D -N n1 >/dev/null 2>&1 & started="$started $!"
     slurmd -D -N n2 >/dev/null 2>&1 & started="$started $!"
@@ -85,7 +85,7 @@ CONF
         [ "$(sinfo -h -N -o %t 2>/dev/null | grep -c idle)" = 2 ] && return 0
         sleep 1
     done
-    tail -5 "$work/ctl.log" "$work/n1.log" >&2
+    tail -5 "$folder/ctl.log" "$folder/n1.log" >&2
     return 1
 }
 
@@ -148,7 +148,7 @@ check() {
     local number made
     for number in $(seq 0 $((frames - 1))); do
         number=$(printf %04d "$number")
-        cmp -s "$1/frames/frame_$number.png" "$work/whole/frame_$number.png" || fail "frame $number differs"
+        cmp -s "$1/frames/frame_$number.png" "$folder/whole/frame_$number.png" || fail "frame $number differs"
     done
     made=$(cat "$1"/logs/[0-9]* | grep -c '"made"')
     say "$2: $(cat "$1"/state/[0-9]* | grep -c "^begin") begins of $(wc -l <"$1/units") units, $(cat "$1"/state/[0-9]* | grep -c "^end 3") ended with status 3"
@@ -165,27 +165,27 @@ overhead() {
     local begin hand farm
     setup_slurm 1 || { fail "Slurm does not start"; return; }
     begin=$(date +%s.%N)
-    "$program" render "$scene" $film --only 1..48 -o "$work/hand/f_####.png" & local first=$!
-    "$program" render "$scene" $film --only 49..95 -o "$work/hand/f_####.png"
+    "$program" render "$scene" $film --only 1..48 -o "$folder/hand/f_####.png" & local first=$!
+    "$program" render "$scene" $film --only 49..95 -o "$folder/hand/f_####.png"
     wait $first
     hand=$(since "$begin")
-    "$program" farm slurm "$scene" $film --chunk 24 --out "$work/farm" || { fail "not submitted"; return; }
+    "$program" farm slurm "$scene" $film --chunk 24 --out "$folder/farm" || { fail "not submitted"; return; }
     begin=$(date +%s.%N)
-    until [ "$(done_frames "$work/farm")" = 96 ]; do sleep 0.5; done
+    until [ "$(done_frames "$folder/farm")" = 96 ]; do sleep 0.5; done
     farm=$(since "$begin")
-    say "93 frames: $hand s by hand, $farm s by Slurm, in $(wc -l <"$work/farm/units") units"
+    say "93 frames: $hand s by hand, $farm s by Slurm, in $(wc -l <"$folder/farm/units") units"
     echo "$hand $farm" | awk '{ exit !($2 <= 1.05 * $1) }' || fail "that is more than 5 % over"
     while [ -n "$(squeue -h)" ]; do sleep 1; done
 }
 if [ "$1" = overhead ]; then
-    mkdir "$work/hand"
+    mkdir "$folder/hand"
     overhead
     exit ${failed:-0}
 fi
 
-mkdir "$work/whole"
+mkdir "$folder/whole"
 begin=$(date +%s.%N)
-"$program" render "$work/film.sdf" ${options% --chunk*} --backend cpu -o "$work/whole/frame_####.png" || exit 1
+"$program" render "$folder/film.sdf" ${options% --chunk*} --backend cpu -o "$folder/whole/frame_####.png" || exit 1
 say "one process with all cores takes $(since "$begin") s for $frames frames"
 
 for engine in "$@"; do
@@ -194,13 +194,13 @@ for engine in "$@"; do
     [ "$engine" != slurm ] || setup_slurm 3 || { fail "Slurm does not start"; continue; }
     begin=$(date +%s.%N)
     if [ "$engine" = slurm ]; then
-        "$program" farm slurm "$work/film.sdf" $options --out "$job" || { fail "not submitted"; continue; }
+        "$program" farm slurm "$folder/film.sdf" $options --out "$job" || { fail "not submitted"; continue; }
     else
-        "$program" farm parallel "$work/film.sdf" $options --out "$job" -- -j 6 & controller=$!
+        "$program" farm parallel "$folder/film.sdf" $options --out "$job" -- -j 6 & controller=$!
     fi
     until_done "$job" 15
     # A second controller on the same folder, while the first is at work.
-    "$program" farm collect "$job" >"$work/second" 2>&1 & second=$!
+    "$program" farm collect "$job" >"$folder/second" 2>&1 & second=$!
     until_done "$job" 30
     kill_third "$job"
     until_done "$job" 50
