@@ -6,6 +6,7 @@
 #include "backend-glsl/clone_loops.h"
 #include "backend-glsl/module.h"
 #include "backend-glsl/schedule.h"
+#include "ir/powers.h"
 
 #include <algorithm>
 #include <cassert>
@@ -462,11 +463,8 @@ class Writer {
                 return {"smoothstep(" + list(id) + ")", Primary};
             return {filled_by_helper(id, "fathom_smoothstep"), Primary};
         case Op::Pow:
-            if (const double n = known_.whole_power(arg(1));
-                !ir::is_matrix(node.type) && (n == 2 || n == 3))
-                return {helper(n == 2 ? "fathom_square" : "fathom_cube", glsl_type(node.type)) +
-                            "(" + value(arg(0)) + ")",
-                        Primary};
+            if (!ir::is_matrix(node.type))
+                if (Text made = power(id, known_.exponent(arg(1))); !made.text.empty()) return made;
             return by_table(id);
         case Op::Min:
         case Op::Max:
@@ -513,6 +511,18 @@ class Writer {
 
     Text saturating(NodeId id, const char *name) {
         return {helper(name, "int") + "(" + list(id) + ")", Primary};
+    }
+
+    // x^n; where n is a whole constant by products (ir/powers.h). Empty where it is not.
+    Text power(NodeId id, double n) {
+        const std::string type = glsl_type(graph_[id].type), x = value(graph_.arg(id, 0));
+        if (n == 0.5) return {helper("fathom_sqrt", type) + "(" + x + ")", Primary};
+        std::string text = x;
+        for (const int factor : ir::power_factors(std::abs(n)))
+            text = helper(fmt::format("fathom_power_{}", factor), type) + "(" + text + ")";
+        if (text == x && n != -1) return {};
+        if (n > 0) return {text, Primary};
+        return {"1.0 / " + (n == -1 ? "(" + text + ")" : text), Product};
     }
 
     std::string filled_by_helper(NodeId id, const std::string &name) {

@@ -40,7 +40,7 @@ struct Certain {
     }
 
     // The exponent where it is one constant in all components, else 0.
-    double whole_power(NodeId id) const {
+    double exponent(NodeId id) const {
         const auto c = constant(id);
         if (!c) return 0;
         for (int i = 1; i < ir::components(c->type); ++i)

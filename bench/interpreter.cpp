@@ -64,6 +64,17 @@ FunctionId blended(Scene &scene, const Spheres &s, double k) {
         {"blended", {}, {p}, g.make(Op::Blend, Type::Float, args, std::uint32_t(Profile::Smooth))});
 }
 
+// The sharp minimum of fields with exponentials: -k log sum exp(-f/k).
+FunctionId summed(Scene &scene, const Spheres &s, double k) {
+    Graph &g = scene.graph;
+    NodeId p = g.fresh_var(Type::Vec3), sum = g.number(0);
+    for (std::size_t i = 0; i < s.x.size(); ++i) {
+        const NodeId f = ball(g, p, g.vec3(s.x[i], s.y[i], s.z[i]), g.number(s.r[i]));
+        sum = g.add(sum, g.make(Op::Exp, {g.mul(f, g.number(-1 / k))}));
+    }
+    return g.add_function({"summed", {}, {p}, g.mul(g.make(Op::Log, {sum}), g.number(-k))});
+}
+
 // As a loop over a table.
 FunctionId looped(Scene &scene, const Spheres &s, double k) {
     Graph &g = scene.graph;
@@ -160,6 +171,24 @@ void measure_interpreter(Table &table) {
     table.push_back({"Menger sponge, level 3, 219 holes",
                      rate(points * million, [&] { sponge(cloud); }), "M points/s",
                      "libfive as recorded, by the hand-fused loop's rate here", libfive, 3});
+    {
+        Run run(scene, summed(scene, spheres, k));
+        const auto by_library = [&] {
+            for (std::size_t i = 0; i < points; ++i) {
+                float sum = 0;
+                for (std::size_t j = 0; j < spheres.x.size(); ++j) {
+                    const float x = cloud.x[i] - spheres.x[j], y = cloud.y[i] - spheres.y[j],
+                                z = cloud.z[i] - spheres.z[j];
+                    sum += std::exp((std::sqrt(x * x + y * y + z * z) - spheres.r[j]) / -k);
+                }
+                cloud.out[i] = -k * std::log(sum);
+            }
+        };
+        const Rates both = rates(
+            points * million, [&] { run(cloud); }, points * million, by_library);
+        table.push_back({"log-sum-exp of 100 spheres", both.first, "M points/s",
+                         "a loop with the C library's exp", both.second, 2});
+    }
     for (int octaves : {1, 4}) {
         Run run(scene, noise(scene, octaves));
         auto scalar = [&] {

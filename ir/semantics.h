@@ -86,18 +86,21 @@ template <class T> T smoothstep(T lo, T hi, T x) {
 
 // -- powers and roots
 
+// x^y from |x|^y.
+template <class T> T power_of(T x, T y, T power) {
+    using std::floor;
+    const T half = y * T(0.5);
+    const bool whole = floor(y) == y, even = floor(half) == half;
+    return x < T(0) ? (whole ? (even ? power : -power) : T(0)) : power;
+}
 // Defined for all arguments:
 //   x > 0   exp(y log x)
 //   x = 0   1 for y = 0, 0 for y > 0, +infinity for y < 0
 //   x < 0   whole y: |x|^y, negated where y is odd (so x^2 and x^3 are what they look like);
 //           other y: 0
 template <class T> T pow(T x, T y) {
-    using std::floor;
     using std::pow;
-    const T size = abs(x), half = y * T(0.5);
-    const T power = pow(size, y);
-    const bool whole = floor(y) == y, even = floor(half) == half;
-    return x < T(0) ? (whole ? (even ? power : -power) : T(0)) : power;
+    return power_of(x, y, pow(abs(x), y));
 }
 
 template <class T> T sqrt(T x) { // 0 below 0

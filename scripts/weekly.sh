@@ -17,6 +17,7 @@ try() { # NAME COMMAND…
 try clang scripts/clang.sh
 try apart sh -c 'cmake -G Ninja -S . -B build-apart && cmake --build build-apart -- -k 0'
 try effort env FATHOM_EFFORT=4 ctest --test-dir build --output-on-failure -E fuzz
+try floats env FATHOM_EFFORT=997 build/test_cpu 'exp, log and hyperbolic functions*'
 try sanitize scripts/sanitize.sh
 try tidy scripts/tidy.sh
 try argument_order scripts/argument_order.sh

@@ -3,7 +3,10 @@
 // would by hand.
 #include "backend-cpu/compile/select.h"
 
+#include "ir/powers.h"
+
 #include <cassert>
+#include <cmath>
 
 namespace fathom::cpu {
 
@@ -89,6 +92,21 @@ Values blend(Builder &builder, Profile profile, Arguments args) {
     return {sum};
 }
 
+// x^y; where y is a whole constant by products (ir/powers.h).
+Value power(Builder &builder, Value x, Value y) {
+    constexpr std::array<Kernel, largest_power - 1> rows{
+        Kernel::Power2, Kernel::Power3, Kernel::Power4, Kernel::Power5,
+        Kernel::Power6, Kernel::Power7, Kernel::Power8};
+    const float n = builder.number_of(y).value_or(0);
+    if (n == 0.5f) return builder.make(Kernel::SqrtF, {x});
+    if (n == -1) return builder.make(Kernel::DivF, {builder.number(1), x});
+    const std::vector<int> factors = power_factors(std::abs(n));
+    if (factors.empty()) return builder.make(Kernel::PowF, {x, y});
+    for (const int factor : factors)
+        x = builder.make(rows[static_cast<std::size_t>(factor) - 2], {x});
+    return n > 0 ? x : builder.make(Kernel::DivF, {builder.number(1), x});
+}
+
 Value choose(Builder &builder, Value condition, Value yes, Value no, bool is_float) {
     return builder.make(is_float ? Kernel::SelectF : Kernel::SelectI, {condition, yes, no});
 }
@@ -149,7 +167,12 @@ std::vector<Value> select(Builder &builder, const Node &node, Arguments args,
     case Op::Abs: return either(Kernel::AbsF, Kernel::AbsI);
     case Op::Sign: return either(Kernel::SignF, Kernel::SignI);
     case Op::Clamp: return either(Kernel::ClampF, Kernel::ClampI);
-    case Op::Pow: return each(Kernel::PowF);
+    case Op::Pow: {
+        Values out;
+        for (std::size_t i = 0; i < size; ++i)
+            out.push_back(power(builder, args[0][i], args[1][i]));
+        return out;
+    }
     case Op::Step: return each(Kernel::StepF);
     case Op::Atan2: return each(Kernel::Atan2F);
     case Op::Floor: return each(Kernel::FloorF);

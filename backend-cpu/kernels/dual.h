@@ -7,7 +7,9 @@
 // that gradients are always finite there.
 #pragma once
 
+#include "backend-cpu/kernels/elementary.h"
 #include "backend-cpu/kernels/kernels.h"
+#include "backend-cpu/kernels/trigonometry.h"
 #include "ir/semantics.h"
 
 #include <bit>
@@ -92,44 +94,49 @@ inline Dual length(Dual x, Dual y, Dual z) {
 inline Dual length(Dual x, Dual y, Dual z, Dual w) {
     return length_at_zero(sqrt(x * x + y * y + z * z + w * w), {x, y, z, w});
 }
-inline Dual exp(Dual a) {
-    float e = std::exp(a.value);
+// The functions by the names that kernel_rows.h looks up: values are those of the point kernels.
+inline Dual exponential(Dual a) {
+    const float e = base::exponential(a.value);
     return chain(e, a, e);
 }
-inline Dual exp2(Dual a) {
-    float e = std::exp2(a.value);
+inline Dual exponential2(Dual a) {
+    const float e = base::exponential2(a.value);
     return chain(e, a, e * 0.69314718056f);
 }
-inline Dual log(Dual a) { return chain(std::log(a.value), a, 1 / a.value); }
-inline Dual log2(Dual a) { return chain(std::log2(a.value), a, 1.44269504089f / a.value); }
-inline Dual sin(Dual a) { return chain(std::sin(a.value), a, std::cos(a.value)); }
-inline Dual cos(Dual a) { return chain(std::cos(a.value), a, -std::sin(a.value)); }
+inline Dual logarithm_e(Dual a) { return chain(base::logarithm_e(a.value), a, 1 / a.value); }
+inline Dual logarithm_2(Dual a) {
+    return chain(base::logarithm_2(a.value), a, 1.44269504089f / a.value);
+}
+inline Dual sin(Dual a) { return chain(base::sine(a.value), a, base::cosine(a.value)); }
+inline Dual cos(Dual a) { return chain(base::cosine(a.value), a, -base::sine(a.value)); }
 inline Dual tan(Dual a) {
-    float t = std::tan(a.value);
+    const float t = base::tangent(a.value);
     return chain(t, a, 1 + t * t);
 }
-inline Dual asin(Dual a) {
-    return chain(std::asin(a.value), a, 1 / std::sqrt(1 - a.value * a.value));
+inline float other_side(float x) { return std::sqrt((1 - x) * (1 + x)); } // of a right triangle
+inline Dual asin(Dual a) { return chain(base::arcsine(a.value), a, 1 / other_side(a.value)); }
+inline Dual acos(Dual a) { return chain(base::arccosine(a.value), a, -1 / other_side(a.value)); }
+inline Dual atan(Dual a) {
+    return chain(base::arctangent(a.value), a, 1 / (1 + a.value * a.value));
 }
-inline Dual acos(Dual a) {
-    return chain(std::acos(a.value), a, -1 / std::sqrt(1 - a.value * a.value));
+inline Dual sine_hyperbolic(Dual a) {
+    return chain(base::sine_hyperbolic(a.value), a, base::cosine_hyperbolic(a.value));
 }
-inline Dual atan(Dual a) { return chain(std::atan(a.value), a, 1 / (1 + a.value * a.value)); }
-inline Dual sinh(Dual a) { return chain(std::sinh(a.value), a, std::cosh(a.value)); }
-inline Dual cosh(Dual a) { return chain(std::cosh(a.value), a, std::sinh(a.value)); }
-inline Dual tanh(Dual a) {
-    float t = std::tanh(a.value);
+inline Dual cosine_hyperbolic(Dual a) {
+    return chain(base::cosine_hyperbolic(a.value), a, base::sine_hyperbolic(a.value));
+}
+inline Dual tangent_hyperbolic(Dual a) {
+    const float t = base::tangent_hyperbolic(a.value);
     return chain(t, a, 1 - t * t);
 }
 inline Dual atan2(Dual y, Dual x) {
-    float square = x.value * x.value + y.value * y.value;
-    return chain(std::atan2(y.value, x.value), y, x.value / square, x, -y.value / square);
+    const float square = x.value * x.value + y.value * y.value;
+    return chain(base::arctangent(y.value, x.value), y, x.value / square, x, -y.value / square);
 }
-// For bases of 0 and above (ir/semantics.h takes the rest to these).
-inline Dual pow(Dual a, Dual b) {
-    float power = std::pow(a.value, b.value);
-    float by_a = b.value == 0 ? 0.0f : b.value * std::pow(a.value, b.value - 1);
-    float by_b = a.value > 0 ? power * std::log(a.value) : 0.0f;
+inline Dual power_of_size(Dual a, Dual b) {
+    const float power = base::power_of_size(a.value, b.value);
+    const float by_a = b.value == 0 ? 0.0f : b.value * base::power_of_size(a.value, b.value - 1);
+    const float by_b = a.value > 0 ? power * base::logarithm_e(a.value) : 0.0f;
     return chain(power, a, by_a, b, by_b);
 }
 

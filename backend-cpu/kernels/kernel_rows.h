@@ -3,6 +3,7 @@
 // linker can merge their instantiations (CMakeLists.txt renames ir::sem alike).
 #pragma once
 
+#include "backend-cpu/kernels/elementary.h"
 #include "backend-cpu/kernels/kernels.h"
 #include "backend-cpu/kernels/trigonometry.h"
 #include "ir/semantics.h"
@@ -50,12 +51,36 @@ template <class F, class... X> F hash(X... components) {
     return sem::unit<F>(h);
 }
 
-// The functions of the op table: ir::sem's, but for those that trigonometry.h computes.
+// x^n, n > 0; each product rounds once.
+template <int n, class F> F power(F x) {
+    if constexpr (n == 1) {
+        return x;
+    } else if constexpr (n % 2 == 0) {
+        const F root = power<n / 2>(x);
+        return root * root;
+    } else {
+        return power<n - 1>(x) * x;
+    }
+}
+
+// The functions of the op table: ir::sem's, but for those that elementary.h and trigonometry.h
+// compute.
 namespace functions {
 using namespace sem;
 template <class F> F sin(F x) { return sine(x); }
 template <class F> F cos(F x) { return cosine(x); }
+template <class F> F tan(F x) { return tangent(x); }
+template <class F> F asin(F x) { return arcsine(sem::clamp(x, F(-1), F(1))); }
+template <class F> F acos(F x) { return arccosine(sem::clamp(x, F(-1), F(1))); }
 template <class F> F atan(F x) { return arctangent(x); }
+template <class F> F exp(F x) { return exponential(x); }
+template <class F> F exp2(F x) { return exponential2(x); }
+template <class F> F log(F x) { return logarithm_e(sem::max(x, F(0))); }
+template <class F> F log2(F x) { return logarithm_2(sem::max(x, F(0))); }
+template <class F> F sinh(F x) { return sine_hyperbolic(x); }
+template <class F> F cosh(F x) { return cosine_hyperbolic(x); }
+template <class F> F tanh(F x) { return tangent_hyperbolic(x); }
+template <class F> F pow(F x, F y) { return sem::power_of(x, y, power_of_size(sem::abs(x), y)); }
 } // namespace functions
 
 #define FATHOM_KERNEL(name, parameters, expression, ...)                                           \

@@ -1,19 +1,18 @@
 // The same kernels over dual numbers.
 #include "backend-cpu/kernels/dual.h"
 
-#define FATHOM_ISA gradient
 #include "backend-cpu/kernels/loops.h"
 
 namespace fathom::cpu {
 
-namespace gradient {
+namespace base {
 
 namespace {
-constexpr auto loops = all_loops<Dual, DualCell>();
+constexpr auto gradients = all_loops<Dual, DualCell>();
 }
 
-} // namespace gradient
+} // namespace base
 
-Loops<DualCell> gradient_loops() { return gradient::loops; }
+Loops<DualCell> gradient_loops() { return base::gradients; }
 
 } // namespace fathom::cpu

@@ -1,6 +1,6 @@
-// sin, cos, atan and atan2 of floats as straight arithmetic, so that loops over them vectorise: the
-// C library's are calls, which take most of the time of scenes with rotations by angle or polar
-// repetition. Each is right to about 1e-7 (the polynomials are minimax fits of ours, their errors
+// sin, cos, tan and their inverses of floats as straight arithmetic, so that loops over them
+// vectorise: the C library's are calls, which take most of the time of scenes with rotations by
+// angle or polar repetition. Each is right to about 1e-7 (the polynomials are minimax fits of ours, their errors
 // given), and the same in every instruction set, since nothing here may be contracted or reordered.
 // Other number types go to the functions of <cmath> or to those found by ADL.
 #pragma once
@@ -71,6 +71,18 @@ template <class F> F cosine(F x) {
     }
 }
 
+template <class F> F tangent(F x) {
+    if constexpr (std::is_same_v<F, float>) {
+        const Quadrant q = quadrant(x);
+        const bool odd = q.quarter * q.quarter == 1;
+        const float s = sine_part(q.rest), c = cosine_part(q.rest);
+        return (odd ? -c : s) / (odd ? s : c);
+    } else {
+        using std::tan;
+        return tan(x);
+    }
+}
+
 // atan of a fraction in 0..1. Above tan(pi/8) it is pi/4 + atan((y - 1) / (y + 1)); for |y| <=
 // tan(pi/8), atan y = y + y^3 A(y^2), error 2e-8 y.
 inline float angle_of_fraction(float fraction) {
@@ -114,6 +126,24 @@ template <class F> F arctangent(F y, F x) {
     } else {
         using std::atan2;
         return atan2(y + F(0), x + F(0));
+    }
+}
+
+// Of x in -1..1, by the other side of the triangle.
+template <class F> F arcsine(F x) {
+    if constexpr (std::is_same_v<F, float>) {
+        return arctangent(x, std::sqrt((1 - x) * (1 + x)));
+    } else {
+        using std::asin;
+        return asin(x);
+    }
+}
+template <class F> F arccosine(F x) {
+    if constexpr (std::is_same_v<F, float>) {
+        return arctangent(std::sqrt((1 - x) * (1 + x)), x);
+    } else {
+        using std::acos;
+        return acos(x);
     }
 }
 

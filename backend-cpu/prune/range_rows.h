@@ -40,6 +40,13 @@ FATHOM_RANGE(FractF, (R a), const float n = std::floor(a.lo);
              return one ? tidy(a.lo - n, a.hi - n) : (size(a) < endless ? R{0, 1} : everything());)
 #define FATHOM_FUNCTION(name, function, ...) FATHOM_RANGE(name##F, (R a), return function(a);)
 #include "ir/ops.def"
+FATHOM_RANGE(Power2, (R a), return power<2>(a);)
+FATHOM_RANGE(Power3, (R a), return power<3>(a);)
+FATHOM_RANGE(Power4, (R a), return power<4>(a);)
+FATHOM_RANGE(Power5, (R a), return power<5>(a);)
+FATHOM_RANGE(Power6, (R a), return power<6>(a);)
+FATHOM_RANGE(Power7, (R a), return power<7>(a);)
+FATHOM_RANGE(Power8, (R a), return power<8>(a);)
 FATHOM_RANGE(ClampF, (R a, R b, R c),
              return R{sem::clamp(a.lo, b.lo, c.lo), sem::clamp(a.hi, b.hi, c.hi)};)
 FATHOM_RANGE(MixF, (R a, R b, R c), return mix(a, b, c);)

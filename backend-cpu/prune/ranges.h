@@ -5,8 +5,8 @@
 //   Rounding is monotone. So where an operation is correctly rounded and monotone in each input
 //   (+ - * / sqrt min max floor), the same operation on the right ends of the ranges encloses its
 //   floats to the bit, and nothing has to be rounded outward. What is built from several such, and
-//   only as a real function monotone, or comes from the C library, is widened by `few` parts of its
-//   size, several times its error.
+//   only as a real function monotone, or is computed by a polynomial, is widened by `few` parts of
+//   its size, several times its error.
 //
 // Ints and truths are ranges of numbers too: of ints only those up to 2^24 are kept apart (a float
 // holds them exactly), a truth is 0..1. A range with an end that is no number is everything, and
@@ -79,7 +79,7 @@ inline Range ball(Range x, Range y, Range z, Range cx, Range cy, Range cz, Range
     return sub(length(sub(x, cx), sub(y, cy), sub(z, cz)), r);
 }
 
-// A function of the C library, or one of ours as good, that rises or falls.
+// One of our functions, which are right to a few units, that rises or falls.
 template <class F> Range rising(F f, Range a) { return widen(tidy(f(a.lo), f(a.hi))); }
 template <class F> Range falling(F f, Range a) { return widen(tidy(f(a.hi), f(a.lo))); }
 
@@ -99,8 +99,8 @@ inline Range mod(Range x, Range y) {
 // extreme at corners. Other bases: whole exponents alone.
 inline Range pow(Range x, Range y) {
     const auto positive = [&](Range base) {
-        const float p = std::pow(base.lo, y.lo), q = std::pow(base.lo, y.hi),
-                    r = std::pow(base.hi, y.lo), s = std::pow(base.hi, y.hi);
+        const float p = power_of_size(base.lo, y.lo), q = power_of_size(base.lo, y.hi),
+                    r = power_of_size(base.hi, y.lo), s = power_of_size(base.hi, y.hi);
         if (p != p || q != q || r != r || s != s) return everything();
         return widen({lesser(lesser(p, q), lesser(r, s)), greater(greater(p, q), greater(r, s))});
     };
@@ -110,6 +110,12 @@ inline Range pow(Range x, Range y) {
     if (std::floor(y.lo * 0.5f) == y.lo * 0.5f) return size;
     const Range below = positive({0, -x.lo}), above = positive({0, greater(x.hi, 0)});
     return {-below.hi, x.hi < 0 ? -positive({-x.hi, -x.lo}).lo : above.hi};
+}
+
+// Products are correctly rounded, so whole powers rise to the bit with |x|.
+template <int n> Range power(Range a) {
+    const Range x = n % 2 == 0 ? abs(a) : a;
+    return {cpu::FATHOM_ISA::power<n>(x.lo), cpu::FATHOM_ISA::power<n>(x.hi)};
 }
 
 // Over a box without the origin the angle is extreme at corners, unless the box crosses the
@@ -144,39 +150,39 @@ inline Range tan(Range a) { // rises between its poles at pi/2 + k pi
     constexpr double pi = 3.14159265358979323846;
     const double from = std::floor(a.lo / pi + 0.5 - 1e-6), to = std::floor(a.hi / pi + 0.5 + 1e-6);
     if (from != to || size(a) > 1e4f) return everything();
-    return rising([](float x) { return std::tan(x); }, a);
+    return rising([](float x) { return functions::tan(x); }, a);
 }
 
 inline Range inversesqrt(Range a) { return {sem::inversesqrt(a.hi), sem::inversesqrt(a.lo)}; }
 inline Range exp(Range a) {
-    return rising([](float x) { return std::exp(x); }, a);
+    return rising([](float x) { return functions::exp(x); }, a);
 }
 inline Range exp2(Range a) {
-    return rising([](float x) { return std::exp2(x); }, a);
+    return rising([](float x) { return functions::exp2(x); }, a);
 }
 inline Range log(Range a) {
-    return widen(rising([](float x) { return sem::log(x); }, a), few);
+    return widen(rising([](float x) { return functions::log(x); }, a), few);
 }
 inline Range log2(Range a) {
-    return widen(rising([](float x) { return sem::log2(x); }, a), few);
+    return widen(rising([](float x) { return functions::log2(x); }, a), few);
 }
 inline Range asin(Range a) {
-    return rising([](float x) { return sem::asin(x); }, a);
+    return rising([](float x) { return functions::asin(x); }, a);
 }
 inline Range acos(Range a) {
-    return widen(falling([](float x) { return sem::acos(x); }, a), few);
+    return widen(falling([](float x) { return functions::acos(x); }, a), few);
 }
 inline Range atan(Range a) {
     return rising([](float x) { return arctangent(x); }, a);
 }
 inline Range sinh(Range a) {
-    return rising([](float x) { return std::sinh(x); }, a);
+    return rising([](float x) { return functions::sinh(x); }, a);
 }
 inline Range cosh(Range a) {
-    return rising([](float x) { return std::cosh(x); }, abs(a));
+    return rising([](float x) { return functions::cosh(x); }, abs(a));
 }
 inline Range tanh(Range a) {
-    return rising([](float x) { return std::tanh(x); }, a);
+    return rising([](float x) { return functions::tanh(x); }, a);
 }
 
 inline Range mix(Range a, Range b, Range t) {

@@ -23,14 +23,46 @@ float fathom_pow(float x, float y) {
     return mix(mix(below, 0.0, floor(y) != y), power, x >= 0.0);
 }
 
-$helper fathom_square:T
-$T fathom_square($T x) {
+$# Whole powers, by the products of backend-cpu/kernels/kernel_rows.h.
+$helper fathom_power_2:T
+$T fathom_power_2($T x) {
     return x * x;
 }
 
-$helper fathom_cube:T
-$T fathom_cube($T x) {
+$helper fathom_power_3:T
+$T fathom_power_3($T x) {
     return x * x * x;
+}
+
+$helper fathom_power_4:T
+$T fathom_power_4($T x) {
+    $T square = x * x;
+    return square * square;
+}
+
+$helper fathom_power_5:T
+$T fathom_power_5($T x) {
+    $T square = x * x;
+    return square * square * x;
+}
+
+$helper fathom_power_6:T
+$T fathom_power_6($T x) {
+    $T cube = x * x * x;
+    return cube * cube;
+}
+
+$helper fathom_power_7:T
+$T fathom_power_7($T x) {
+    $T cube = x * x * x;
+    return cube * cube * x;
+}
+
+$helper fathom_power_8:T
+$T fathom_power_8($T x) {
+    $T square = x * x;
+    $T fourth = square * square;
+    return fourth * fourth;
 }
 
 $helper fathom_smoothstep:each

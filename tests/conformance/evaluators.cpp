@@ -56,7 +56,8 @@ std::vector<Constant> on_tape(const Question &question, std::size_t batch) {
         }
     }
     const NodeId result =
-        scene.graph.make(question.c.op, question.c.result, params, question.payload);
+        scene.graph.make(question.c.op, question.c.result,
+                         with_fixed(question, scene.graph, params), question.payload);
     const cpu::Program program = cpu::compile(scene, params, std::span(&result, 1));
     cpu::Scratch scratch = cpu::make_scratch(program, {});
     const auto size = static_cast<std::size_t>(ir::components(question.c.result));
@@ -91,7 +92,8 @@ std::vector<Constant> on_duals(const Question &question) {
         }
     }
     const NodeId result =
-        scene.graph.make(question.c.op, question.c.result, params, question.payload);
+        scene.graph.make(question.c.op, question.c.result,
+                         with_fixed(question, scene.graph, params), question.payload);
     const cpu::Program program = cpu::compile(scene, params, std::span(&result, 1));
     cpu::GradientScratch scratch = cpu::make_gradient_scratch(program, {});
     std::vector<const float *> from;

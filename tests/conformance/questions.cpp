@@ -68,11 +68,40 @@ std::string Question::name() const {
     std::string text = ir::info(c.op).name;
     for (Type type : c.args) text += std::string(" ") + ir::type_name(type);
     if (payload != 0) text += fmt::format(" ({})", payload);
+    if (fixed) text += fmt::format(" by {}", rows[0].back().value[0]);
     return text;
 }
 
+std::vector<ir::NodeId> with_fixed(const Question &question, ir::Graph &graph,
+                                   std::vector<ir::NodeId> args) {
+    if (question.fixed) args.back() = graph.constant(question.rows[0].back());
+    return args;
+}
+
+namespace {
+
+// Constant exponents, some of which are computed by products and roots (ir/powers.h).
+void add_powers(std::vector<Question> &all) {
+    for (const Type type : {Type::Float, Type::Vec3})
+        for (const float exponent :
+             {-20.0f, -4.0f, -3.0f, -2.0f, -1.0f, -0.5f, 0.0f, 0.05f, 0.5f,  1.0f,  1.5f,  2.0f,
+              3.0f,   4.0f,  5.0f,  6.0f,  7.0f,  8.0f,  9.0f, 11.0f, 12.0f, 20.0f, 64.0f, 65.0f}) {
+            Question question{{Op::Pow, {type, type}, type}, 0, {}, true};
+            Random random{static_cast<std::uint32_t>(exponent * 100 + 7777)};
+            Constant last{type, {}};
+            for (int i = 0; i < ir::components(type); ++i)
+                last.value[static_cast<std::size_t>(i)] = exponent;
+            for (int row = 0; row < 203; ++row)
+                question.rows.push_back({argument(random, Op::Pow, type), last});
+            all.push_back(std::move(question));
+        }
+}
+
+} // namespace
+
 std::vector<Question> questions() {
     std::vector<Question> all;
+    add_powers(all);
     for (std::size_t i = 0; i < ir::op_count; ++i) {
         const Op op = static_cast<Op>(i);
         for (const scenes::Case &c : scenes::cases_of(op))

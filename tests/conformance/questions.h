@@ -15,10 +15,14 @@ struct Question {
     scenes::Case c;
     std::uint32_t payload = 0;
     std::vector<std::vector<ir::Constant>> rows; // every float among them is a float32
-    std::string name() const;                    // "Add vec3 vec3"
+    bool fixed = false; // the last argument is the same in all rows, and a constant of the graph
+    std::string name() const; // "Add vec3 vec3"
 };
 
 std::vector<Question> questions();
+// The arguments to ask for with, where `args` are what the rows say.
+std::vector<ir::NodeId> with_fixed(const Question &question, ir::Graph &graph,
+                                   std::vector<ir::NodeId> args);
 // The canonical answer (ir/passes/fold.h), in double.
 ir::Constant canonical(const Question &question, const std::vector<ir::Constant> &row);
 // Why the answer is wrong; empty if it is not.

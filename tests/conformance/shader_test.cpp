@@ -81,6 +81,7 @@ std::vector<Constant> in_shader(const Question &question) {
                     : read(type, column));
             column += columns_of(type);
         }
+        args = with_fixed(question, g, args);
         const std::vector<NodeId> parts =
             numbers_of(g, g.make(question.c.op, question.c.result, args, question.payload));
         count = static_cast<int>(parts.size());
