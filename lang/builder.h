@@ -170,6 +170,7 @@ class Builder {
     void for_loop(Index first, Index last);
     void while_loop(Index first, Index last);
     void break_loop(Index at);
+    void catch_breaks(Index first);
     void return_value(Index first, Index last);
     void assignment();
     void plain_value();
@@ -266,6 +267,7 @@ class Builder {
     bool foreign_import(Index at);
     bool foreign_slice(Index at);
     std::string transform_text(Index name) const;
+    bool lisp_call(Index at);
     bool joined_by_space(Index at, bool list);
 
     // Words and blocks of theirs (foreign_words.cpp).
@@ -320,6 +322,7 @@ class Builder {
     bool body_missing_ = false;         // of an `if` that was just abandoned: an `else` may follow
     bool expression_body_ = false;      // of the function whose body was just read
     std::uint32_t last_too_tall_ = ~0u; // where the chain began that was reported
+    std::vector<Span> loose_breaks_;    // of `break`s, those that no loop that was read holds
     std::vector<Index> lost_;           // names that it would have declared, beside its first
     Index failed_ = 0;                  // where the statement that is being abandoned broke
 

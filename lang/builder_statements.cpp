@@ -143,6 +143,7 @@ void Builder::for_loop(Index first, Index last) {
     const Item sequence = pop_item();
     add_stmt(For{pop_name(), sequence.id, body}, span(first, last),
              1 + std::max(height(sequence.id), height(body)));
+    catch_breaks(first);
 }
 
 void Builder::while_loop(Index first, Index last) {
@@ -157,9 +158,18 @@ void Builder::while_loop(Index first, Index last) {
         tallest = std::max(tallest, height(limit->id));
     }
     add_stmt(loop, span(first, last), 1 + tallest);
+    catch_breaks(first);
 }
 
-void Builder::break_loop(Index at) { add_stmt(Break{}, span(at), 1); }
+void Builder::break_loop(Index at) {
+    add_stmt(Break{}, span(at), 1);
+    loose_breaks_.push_back(span(at));
+}
+
+// Those in the loop that begins at `first` leave it.
+void Builder::catch_breaks(Index first) {
+    std::erase_if(loose_breaks_, [&](const Span &s) { return s.begin >= token(first).begin; });
+}
 
 void Builder::return_value(Index first, Index last) {
     const std::optional<Item> value = pop_maybe_item();
@@ -307,7 +317,8 @@ void Builder::replace_bad_statement(Index first) {
         while (kind(name + 1) == Tok::Name) ++name;
     const Tok behind = kind(name + 1);
     const bool declares =
-        kind(first) != Tok::Name || behind == Tok::Assign || (name > first && behind == Tok::Open);
+        kind(first) != Tok::Name || behind == Tok::Assign ||
+        (name > first && behind == Tok::Open && text(name - 1) != "default"); // JavaScript's export
     if (kind(first) == Tok::Name && name == first && declares && kind(name) == Tok::Name &&
         !is_declared(std::string(text(name)))) {
         declare_poison(name);
@@ -336,6 +347,9 @@ Builder::Index Builder::junk(const Mark &mark, Index first, Index at) {
 
 Ast Builder::finish() {
     settle_foreign_names();
+    for (const Span &place : loose_breaks_)
+        diagnostics_.add(Code::WrongPlace, place, "`break` stands in a loop")
+            .help("leave it away, or end a function by `return`");
     const auto size = static_cast<std::uint32_t>(source_.text.size());
     ast_.root = add_block(0, {id_, 0, size});
     return std::move(ast_);

@@ -41,6 +41,11 @@ bool begins_operand(Tok kind) {
                             Tok::ListOpen, Tok::FreshListOpen, Tok::If, Tok::Not});
 }
 
+bool begins_statement(Tok kind) {
+    return is_one_of(kind, {Tok::Let, Tok::Var, Tok::Fn, Tok::Param, Tok::Import, Tok::For,
+                            Tok::While, Tok::Break, Tok::Return});
+}
+
 bool is_keyword(Tok kind) {
     return is_one_of(kind, {Tok::Let, Tok::Var, Tok::Fn, Tok::Param, Tok::Import, Tok::For, Tok::In,
                             Tok::If, Tok::Else, Tok::While, Tok::Break, Tok::Return, Tok::And,
@@ -148,7 +153,7 @@ void Builder::generic_failure(Wanted wanted, Index at) {
             d.help("statements stand on lines of their own, without commas",
                    {{span(at), last ? "" : ";"}});
         }
-        if (begins_operand(found) && kind(at - 1) != Tok::Name) {
+        if ((begins_operand(found) || begins_statement(found)) && kind(at - 1) != Tok::Name) {
             const std::uint32_t end = token(at - 1).end;
             d.help("begin a new line, or part statements by `;`", {{{id_, end, end}, ";"}});
         }

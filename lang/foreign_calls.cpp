@@ -147,6 +147,33 @@ bool Builder::foreign_import(Index at) {
     return true;
 }
 
+// `(sphere 100)`, also within `(union (sphere 100) …)`, at the argument.
+bool Builder::lisp_call(Index at) {
+    const Index open = enclosing(at), close = tokens_.match[open], name = open + 1;
+    if (name + 1 != at || kind(close) != Tok::Close) return false;
+    const auto stands_apart = [&](Index i) { // no call's bracket, or one behind a space
+        return i == 0 || kind(i - 1) != Tok::Name || token(i - 1).end < token(i).begin;
+    };
+    if (!stands_apart(open)) return false;
+    std::string call = std::string(text(name)) + "(";
+    bool values = true; // with nothing between them
+    for (Index i = at; i<close; i = tokens_.match[i]> i ? tokens_.match[i] + 1 : i + 1) {
+        const Index last = tokens_.match[i] > i ? tokens_.match[i] : i;
+        values = values && (last > i ||
+                            is_one_of(kind(i), {Tok::Number, Tok::Name, Tok::String, Tok::Color}));
+        call += (i == at ? "" : ", ") + std::string(text(token(i).begin, token(last).end));
+    }
+    call += ")";
+    const Tok before = open == 0 ? Tok::End : kind(open - 1); // Curv's `f 1 (g 2)` keeps them
+    if (is_one_of(before, {Tok::Number, Tok::Close, Tok::ListClose})) call = "(" + call + ")";
+    Diagnostic &d = foreign(span(open, name), "a call's name stands before its parentheses");
+    if (values)
+        d.help("write " + in_code(call), {{span(open, close), call}});
+    else
+        d.help("write " + in_code(std::string(text(name)) + "(" + std::string(text(at)) + ")"));
+    return true;
+}
+
 // Two values with nothing between them: `translate(y 1)`, `[sphere 1, box 2]`, `f"text"`.
 bool Builder::joined_by_space(Index at, bool list) {
     const Tok found = kind(at);
@@ -165,6 +192,7 @@ bool Builder::joined_by_space(Index at, bool list) {
             .help("leave it away", {{{id_, token(name).begin, token(at).begin}, ""}});
         return true;
     }
+    if (lisp_call(at)) return true;
     if (found == Tok::Name || (before != Tok::Comma && before != Tok::Open &&
                                before != Tok::ListOpen && before != Tok::FreshListOpen))
         return false;

@@ -143,6 +143,19 @@ bool Builder::foreign_binding(Index at) {
     const Tok found = kind(at);
     const Index before = at > 0 ? at - 1 : 0;
     if (found == Tok::EqualEqual) return foreign_instead(at, "a name is bound with one `=`", "=");
+    if (found == Tok::Comma && kind(at + 1) == Tok::Name) {
+        for (Index i = at + 1; kind(i) == Tok::Name; i += 2) lost_.push_back(i);
+        foreign(span(before, at + 1), "each name is bound by a `let` of its own")
+            .help("write `let " + std::string(text(before)) + " = …; let " +
+                  std::string(text(at + 1)) + " = …`");
+        return true;
+    }
+    if (found == Tok::In && kind(at - 2) == Tok::Param) {
+        const std::string name(text(before));
+        diagnostics_.add(Code::ParamRange, span(before), "a param has a value beside its range")
+            .help("write " + in_code("param " + name + " = 1 in 0..2"));
+        return true;
+    }
     if (found == Tok::Open && kind(at - 2) == Tok::Let) {
         foreign(span(at - 2), "a function is declared with `fn`")
             .help("write `fn`", {{span(at - 2), "fn"}});
@@ -166,6 +179,11 @@ bool Builder::foreign_binding(Index at) {
 bool Builder::foreign_name(Index at) {
     const Tok found = kind(at);
     const Index before = at > 0 ? at - 1 : 0;
+    if (kind(before) == Tok::Fn && (found == Tok::Open || found == Tok::LambdaOpen)) {
+        foreign(span(before), "a function without a name is written `x => …`")
+            .help("name it, as in `fn f(x) = 2 * x`, or write `x => 2 * x`");
+        return true;
+    }
     if (kind(before) == Tok::Let && at < tokens_.tokens.size() &&
         (found == Tok::End || found == Tok::Open)) {
         const Index close = tokens_.match[at];

@@ -94,6 +94,13 @@ bool Builder::foreign_statement(Index first) {
         return false;
     }
     if (kind(first) != Tok::Name) return false;
+    if (text(first) == "export" && kind(first + 1) == Tok::Name && text(first + 1) == "default") {
+        failed_ = first + 1;
+        foreign(span(first, first + 1), "the shapes of a file are the scene")
+            .help("leave `export default` away",
+                  {{{id_, token(first).begin, token(first + 2).begin}, ""}});
+        return true;
+    }
     const auto *row = std::ranges::find(statement_words, text(first), &ForeignWord::word);
     if (row == std::end(statement_words) || is_declared(std::string(text(first)))) return false;
     const Tok next = kind(first + 1);

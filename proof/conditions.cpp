@@ -151,11 +151,14 @@ void Prover::test_conditions() {
                    always(flattening, ranges, in_differences(graph, node), over.unknowns);
         };
         if (holds(over.holds)) continue;
+        const bool by_time =
+            std::ranges::any_of(over.unknowns, [](const Unknown &one) { return one.time; });
+        const std::string range = by_time ? "of the time that is covered " : "of a param's range ";
         if (holds(nearly(graph, over.holds)))
             diagnostics
-                .add(Code::DegenerateRange, condition.at,
-                     "at an end of a param's range " + condition.wanted)
-                .help("let the range begin a little further in");
+                .add(Code::DegenerateRange, condition.at, "at an end " + range + condition.wanted)
+                .help(by_time ? "keep the argument off its limit, as with `0.01 + time`"
+                              : "let the range begin a little further in");
         else
             diagnostics
                 .add(Code::BadArgument, condition.at,

@@ -50,10 +50,12 @@ void Prover::run() {
             if (repetition.polar) {
                 id[0] = Interval(0, std::max(number(shape.args[0]).hi - 1, 0.0));
             } else {
-                Vec counts = vector(shape.args[1]);
+                const Vec cells = vector(shape.args[0]), counts = vector(shape.args[1]);
                 for (std::size_t a = 0; a < 3; ++a) {
                     if (!repetition.along[a]) continue;
-                    id[a] = counts[a].hi >= 1e8 ? Interval::everything()
+                    // Without an end, as far as lengths go: of larger ids the square is no number.
+                    const double last = up(longest / std::max(cells[a].lo, shortest));
+                    id[a] = counts[a].hi >= 1e8 ? Interval(-last, last)
                                                 : Interval(0, std::max(counts[a].hi - 1, 0.0));
                 }
             }

@@ -35,6 +35,24 @@ static void report_unknown_arguments(Interpreter &ev, std::string_view name,
     d.note(fmt::format("it is `{}`", signature_text(name, formals)));
 }
 
+// `s.scale(1, 2, 3)`, `s.rotate(90, 0, 0)`: numbers behind the shape that are one vector.
+static void help_with_row(Interpreter &ev, Diagnostic &d, std::string_view name,
+                          std::span<const Formal> formals, std::span<const Argument> args) {
+    const auto row = args.subspan(1);
+    if (row.size() < 2 || !std::ranges::all_of(row, [&](const Argument &b) {
+            return !b.name && !b.trailing && is_scalar(ev, b.value);
+        }))
+        return;
+    if (name == "rotate" && row.size() == 3)
+        d.help(
+            "angles about all three axes are one vector: `rotate_euler([x, y, z])`; about one it "
+            "is `rotate(90deg, axis: X)`");
+    else if (formals.size() > 1 && formals[1].vector_size > 0) {
+        const Fix fix = remedy_of_row(row, formals[1].vector_size);
+        d.help(fix.message, fix.edits);
+    }
+}
+
 static void report_too_many(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
                             std::span<const Argument> args, const Argument &first) {
     std::size_t given = 0;
@@ -43,14 +61,18 @@ static void report_too_many(Interpreter &ev, std::string_view name, std::span<co
                            fmt::format("`{}` takes {} argument{}, not {}", name, formals.size(),
                                        formals.size() == 1 ? "" : "s", given))
                         .note(fmt::format("it is `{}`", signature_text(name, formals)));
-    if (args[0].value.kind == ValueKind::Shape)
+    if (args[0].value.kind == ValueKind::Shape) {
         help_with_shape(d, name);
-    else if (!formals.empty() && formals[0].vector_size > 0 &&
-             std::ranges::all_of(
-                 args, [&](const Argument &b) { return !b.name && is_scalar(ev, b.value); })) {
+        help_with_row(ev, d, name, formals, args);
+    } else if (!formals.empty() && formals[0].vector_size > 0 &&
+               std::ranges::all_of(
+                   args, [&](const Argument &b) { return !b.name && is_scalar(ev, b.value); })) {
         const Fix fix = remedy_of_row(args, formals[0].vector_size);
         d.help(fix.message, fix.edits);
-    } else if (name == "cylinder")
+    } else if (name == "background")
+        d.help("a gradient is a function of the direction: "
+               "`background(d => mix(white, skyblue, saturate(d.y)))`");
+    else if (name == "cylinder")
         d.help("a cone without its tip is `capped_cone(bottom, top, height)`");
 }
 

@@ -85,11 +85,11 @@ static Value finish(Interpreter &ev, const Closure &c, Value v, const lang::Func
     Span place = f.span;
     if (v.kind == ValueKind::Unit && !c.library && report_unfinished(ev, c, f, name))
         return poison();
+    const bool unread = std::ranges::any_of(c.ast->blocks[f.body].stmts, [](const auto &stmt) {
+        return std::holds_alternative<lang::Bad>(stmt.kind);
+    });
+    if (v.kind == ValueKind::Unit && unread) return poison(); // it may be what could not be read
     if (v.kind == ValueKind::Unit && f.result) {
-        const bool unread = std::ranges::any_of(c.ast->blocks[f.body].stmts, [](const auto &stmt) {
-            return std::holds_alternative<lang::Bad>(stmt.kind);
-        });
-        if (unread) return poison(); // the value may be what could not be read
         report(ev, Code::MissingValue, f.head.source ? f.head : place,
                fmt::format("`{}` promises a `{}` and ends without a value", name,
                            type_text(*f.result)));

@@ -47,7 +47,8 @@ bool check_type(Interpreter &ev, const lang::TypeExpr &type) {
         "mat4",  "color", "shape", "shape2", "material", "light", "region", "angle", "angles"};
     Diagnostic &d = ev.diagnostics.add(Code::UnknownName, type.span,
                                        fmt::format("there is no type `{}`", type.name));
-    const std::string near = nearest_name(type.name, names);
+    std::string near(type_from_elsewhere(type.name));
+    if (near.empty()) near = nearest_name(type.name, names);
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{type.span, near}});
     return false;
 }
@@ -182,6 +183,12 @@ static std::optional<Value> as_named(Interpreter &ev, const Value &raw,
     return std::nullopt;
 }
 
+static bool is_vector_type(const lang::TypeExpr &type) {
+    return type.kind == lang::TypeExpr::Kind::Name &&
+           (type.named == lang::TypeName::Vec2 || type.named == lang::TypeName::Vec3 ||
+            type.named == lang::TypeName::Vec4);
+}
+
 static std::optional<Value> as_type(Interpreter &ev, const Value &v, const lang::TypeExpr &type) {
     if (is_poison(v)) return v;
     switch (type.kind) {
@@ -206,6 +213,11 @@ static std::optional<Value> as_type(Interpreter &ev, const Value &v, const lang:
         } else if (v.kind == ValueKind::Shape)
             items = {v};
         else
+            return std::nullopt;
+        // `polygon([0, 0, 1, 0])`: a number fills one vector, not each of a list
+        const auto is_number = [&](const Value &item) { return is_scalar(ev, item); };
+        if (is_vector_type(type.items[0]) && !items.empty() &&
+            std::ranges::all_of(items, is_number))
             return std::nullopt;
         bool changed = v.kind != ValueKind::List;
         for (Value &item : items) {
@@ -241,6 +253,10 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
     if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Int &&
         is_numeric(v))
         d.help("`int(x)` cuts the fraction off");
+    if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Region)
+        d.note("a region is `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or `everywhere`");
+    if (type.kind == lang::TypeExpr::Kind::List && is_vector_type(type.items[0]))
+        d.help("each vector stands in brackets of its own: `[[0, 0], [1, 0], [1, 1]]`");
     if (v.kind == ValueKind::Shape) help_with_shape(d, what.of);
     if (type.kind == lang::TypeExpr::Kind::Name) help_with_value(ev, d, v, type.named, place);
     if (what.of == "rotate" && what.name == "angle" && v.kind == ValueKind::Vec)

@@ -76,6 +76,13 @@ static Value combine(Interpreter &ev, ir::ShapeKind kind, const std::vector<Valu
                                                     : "conditions are joined with `and`");
             return poison();
         }
+        if (dims != 0 && values[i].size != dims) {
+            report(ev, Code::FlatShape, places[i],
+                   dims == 2 ? "a solid is combined with a flat shape"
+                             : "a flat shape is combined with a solid")
+                .help("make the flat one solid with `.extrude(height)` or `.revolve()`");
+            return poison();
+        }
         auto shape = want_shape(ev, values[i], places[i], "this combination", dims);
         if (!shape) return poison();
         if (ev.scene.shapes[*shape].kind != ir::ShapeKind::Empty) dims = values[i].size;
@@ -213,7 +220,10 @@ static Value eval_index(Interpreter &ev, const File &ast, const lang::Index &nod
                is_scalar(ev, object) || object.kind == ValueKind::String) {
         report(ev, Code::TypeMismatch, ast.exprs[node.object].span,
                fmt::format("only lists, vectors and matrices have elements, this is {}",
-                           describe(ev, object)));
+                           describe(ev, object)))
+            .help(object.kind == ValueKind::Closure
+                      ? "a call's arguments stand in parentheses: `f(x)`"
+                      : "a list is made by brackets: `[a, b]`");
         return poison();
     }
     if (!field_index) {

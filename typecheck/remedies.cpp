@@ -135,6 +135,19 @@ std::string_view way_from_elsewhere(std::string_view name) {
     return it == ways.end() ? std::string_view() : it->second;
 }
 
+std::string_view type_from_elsewhere(std::string_view name) {
+    static const std::unordered_map<std::string_view, std::string_view> ours = {
+        {"number", "float"},  {"num", "float"},     {"real", "float"},   {"double", "float"},
+        {"scalar", "float"},  {"integer", "int"},   {"uint", "int"},     {"boolean", "bool"},
+        {"str", "string"},    {"String", "string"}, {"Vector2", "vec2"}, {"Vector3", "vec3"},
+        {"Vector4", "vec4"},  {"vector", "vec3"},   {"float2", "vec2"},  {"float3", "vec3"},
+        {"float4", "vec4"},   {"point", "vec3"},    {"point3", "vec3"},  {"colour", "color"},
+        {"solid", "shape"},   {"sdf", "shape"},     {"SDF", "shape"},    {"geometry", "shape"},
+        {"sketch", "shape2"}, {"shape3", "shape"},  {"matrix", "mat3"}};
+    const auto it = ours.find(name);
+    return it == ours.end() ? std::string_view() : it->second;
+}
+
 void help_with_shape(Diagnostic &d, std::string_view name) {
     constexpr const char *painted = "a shape is given a colour or a material by `.paint(…)`";
     constexpr std::pair<std::string_view, std::string_view> ways[] = {

@@ -8,6 +8,8 @@ namespace fathom::typecheck {
 
 // What other languages and libraries call what is here; empty: nothing is known.
 std::string_view name_from_elsewhere(std::string_view name);
+// The same of types.
+std::string_view type_from_elsewhere(std::string_view name);
 // How that is done here which they have a name for and the library has not; empty: nothing is known.
 std::string_view way_from_elsewhere(std::string_view name);
 

@@ -32,7 +32,7 @@ class PartMaker {
         for (std::uint32_t b = 0; b < program_.blocks.size(); ++b) // callees and bodies first
             for (std::uint32_t i = program_.blocks[b].first; i < program_.blocks[b].last; ++i)
                 made_.parts[i] = part(program_.steps[i]);
-        for (std::uint32_t i = 0; i < own; ++i) find_choice(i);
+        find_choices();
         for (std::size_t l = 0; l < program_.loops.size(); ++l) find_rows(l);
         find_ranges();
         return std::move(made_);
@@ -148,23 +148,39 @@ class PartMaker {
                    once, keep({out, from}));
     }
 
+    // Each block's steps in their order, by which the last writers are known.
+    void find_choices() {
+        last_writer_.resize(made_.slot_count, no_part);
+        for (const Program::Block &block : program_.blocks) {
+            block_begin_ = block.first;
+            for (std::uint32_t i = block.first; i < block.last; ++i) {
+                find_choice(i);
+                const Part &made = made_.parts[i];
+                for (std::uint32_t k = 0; k < made.writes; ++k)
+                    last_writer_[made_.slots[made.first_slot + k]] = i;
+            }
+        }
+    }
+
+    // The last step of the present block, before the one whose choice is sought, that writes there.
+    std::uint32_t last_writer(std::uint32_t address) const {
+        const std::uint32_t step = last_writer_[slot(address)];
+        return step != no_part && step >= block_begin_ ? step : no_part; // else of another block
+    }
+
     // less(x, y) ? x : y is the lesser, less(x, y) ? y : x the greater.
     std::optional<Kernel> lesser_or_greater(std::uint32_t id) {
-        const auto block = static_cast<std::uint32_t>(
-            std::ranges::find_if(program_.blocks,
-                                 [&](const Program::Block &b) { return id < b.last; }) -
-            program_.blocks.begin()); // blocks lie in the order of their steps
         const std::uint32_t *o = made_.operands.data() + made_.table[id].operands;
-        const std::uint32_t condition = writer(block, id, o[1]).first;
+        const std::uint32_t condition = last_writer(o[1]);
         if (condition == no_part || program_.steps[condition].kind != StepKind::Run ||
             kernel_of_variant(program_.steps[condition].target) != Kernel::LessF)
             return {};
         const std::uint32_t *compared =
             program_.operands.data() + program_.steps[condition].operands + 1;
-        for (std::uint32_t i = condition; i < id; ++i) // since then they have not changed
-            if (writes_address(program_.steps[i], compared[0]) ||
-                writes_address(program_.steps[i], compared[1]))
-                return {};
+        for (const std::uint32_t address : {compared[0], compared[1]}) {
+            const std::uint32_t changed = last_writer(address); // not since then
+            if (changed != no_part && changed >= condition) return {};
+        }
         if (compared[0] == o[2] && compared[1] == o[3]) return Kernel::MinF;
         if (compared[0] == o[3] && compared[1] == o[2]) return Kernel::MaxF;
         return {};
@@ -358,6 +374,8 @@ class PartMaker {
     const Program &program_;
     PruneProgram made_;
     std::vector<Uses> block_of_;
+    std::vector<std::uint32_t> last_writer_; // by slot, of all blocks so far
+    std::uint32_t block_begin_ = 0;          // the first step of the present one
 };
 
 void splice(const PruneProgram &parts, std::uint32_t block, ShortTape &tape) {

@@ -113,8 +113,8 @@ TEST_CASE("functions") {
     CHECK(tree_of("fn f(s: shape<1.5>, l: [vec2], g: (int, [T]) -> () -> float) -> shape<1> = s") ==
           "fn f -> shape<1>(parameter s: shape<1.5>, parameter l: [vec2], "
           "parameter g: (int, [T]) -> () -> float, value(name s))");
-    CHECK(tree_of("fn f(x) { return x; return\nbreak }") ==
-          "fn f(parameter x, body(return(name x), return, break))");
+    CHECK(tree_of("fn f(x) { return x; return }") ==
+          "fn f(parameter x, body(return(name x), return))");
 }
 
 TEST_CASE("doc comments belong to what stands below them") {
@@ -138,6 +138,7 @@ TEST_CASE("choice") {
 
 TEST_CASE("headers take no trailing block outside parentheses") {
     CHECK(tree_of("if f { 1 }") == "if(condition(name f), then(int 1))");
+    CHECK(tree_of("for i in l { return\nbreak }") == "for i(name l, body(return, break))");
     CHECK(tree_of("for i in union { 1 }") == "for i(name union, body(int 1))");
     CHECK(tree_of("for i in g(union { a }) { i }") ==
           "for i(call(name g, argument(call without parentheses(name union, block(name a)))), "
