@@ -29,6 +29,7 @@ struct Scene::Impl {
     ir::Scene scene; // the compilation's, with the present values of its params
     std::vector<Param> params;
     Facts facts;
+    std::string part; // of which it is that one alone; empty: all of it
 };
 
 struct ProofCache::Impl {
@@ -47,6 +48,7 @@ Texts texts_of(Sources sources);
 
 inline const ir::Scene &ir_of(const Scene &scene) { return scene.impl().scene; }
 
+Facts facts_of(const ir::Scene &scene, const Sources &sources);
 // What a scene names, from the provider alone.
 typecheck::Loader loader_of(const FileProvider &provider);
 Severity severity_of(fathom::Severity severity);

@@ -1,4 +1,4 @@
-#include "api/impl.h"
+#include "api/mesh.h"
 
 #include "mesh/certify.h"
 #include "mesh/colors.h"
@@ -21,34 +21,8 @@ Mesh without_mesh(MeshStatus status, std::string message) {
 }
 
 Mesh refused(const fathom::mesh::Made &made) {
-    using fathom::mesh::Failure;
-    switch (made.failure) {
-    case Failure::None: break;
-    case Failure::Cancelled: return without_mesh(MeshStatus::Cancelled, "cancelled");
-    case Failure::Empty:
-        return without_mesh(MeshStatus::Empty,
-                            "this scene is empty: no point lies in the solid; look for an "
-                            "intersection or a difference that leaves nothing over");
-    case Failure::Endless:
-        return without_mesh(MeshStatus::Endless,
-                            "the solid has no end: cut it off by bounds, or in the scene, as with "
-                            "`& box(10)`");
-    case Failure::TooFine:
-        return without_mesh(MeshStatus::TooFine,
-                            "that is too fine: a mesh has at most 8,192 cells a side, and single "
-                            "precision has to tell them apart where the solid is; take a larger "
-                            "tolerance, or move the solid to the origin");
-    case Failure::TooMany:
-        return without_mesh(MeshStatus::TooLarge,
-                            "that takes too many cells: take a larger tolerance");
-    case Failure::Contradicted:
-        return without_mesh(
-            MeshStatus::Contradicted,
-            fmt::format("near [{}, {}, {}] the field's sign contradicts its bound; where the bound "
-                        "is stated (`lipschitz:`, `estimate:`), state a larger one",
-                        made.place[0], made.place[1], made.place[2]));
-    }
-    return without_mesh(MeshStatus::Empty, "");
+    Refusal why = refusal_of(made.failure, made.place);
+    return without_mesh(why.status, std::move(why.message));
 }
 
 void list_undecided(const fathom::mesh::Octree &octree,
@@ -76,8 +50,7 @@ MeshCertificate certificate_of(const fathom::mesh::Certificate &found) {
     made.largest_volume = found.largest_volume;
     made.mesh_volume = found.mesh_volume;
     made.mesh_area = found.mesh_area;
-    made.rests_on = {"intervals", "single-precision"};
-    if (found.used_bound) made.rests_on.push_back("bound");
+    made.rests_on = rests_on(found.used_bound);
     return made;
 }
 
@@ -104,6 +77,8 @@ fathom::mesh::Format inner(MeshFormat format) {
     return Format::Stl;
 }
 
+} // namespace
+
 fathom::mesh::Unit inner(MeshUnit unit) {
     using fathom::mesh::Unit;
     switch (unit) {
@@ -118,32 +93,80 @@ fathom::mesh::Unit inner(MeshUnit unit) {
     return Unit::Unsaid;
 }
 
-} // namespace
+Refusal refusal_of(fathom::mesh::Failure failure, const fathom::mesh::Point &place) {
+    using fathom::mesh::Failure;
+    switch (failure) {
+    case Failure::None: break;
+    case Failure::Cancelled: return {MeshStatus::Cancelled, "cancelled"};
+    case Failure::Empty:
+        return {MeshStatus::Empty, "this scene is empty: no point lies in the solid; look for an "
+                                   "intersection or a difference that leaves nothing over"};
+    case Failure::Unseen:
+        return {MeshStatus::TooCoarse,
+                "the solid is thinner than the finest cells, if there is one: take a smaller "
+                "tolerance or a larger resolution"};
+    case Failure::Endless:
+        return {MeshStatus::Endless,
+                "the solid has no end: cut it off by bounds, or in the scene, as with "
+                "`& box(10)`"};
+    case Failure::TooFine:
+        return {MeshStatus::TooFine,
+                "that is too fine: a mesh has at most 8,192 cells a side, and single "
+                "precision has to tell them apart where the solid is; take a larger "
+                "tolerance, or move the solid to the origin"};
+    case Failure::TooMany:
+        return {MeshStatus::TooLarge, "that takes too many cells: take a larger tolerance"};
+    case Failure::Contradicted:
+        return {MeshStatus::Contradicted,
+                fmt::format("near [{}, {}, {}] the field's sign contradicts its bound; where the "
+                            "bound is stated (`lipschitz:`, `estimate:`), state a larger one",
+                            place[0], place[1], place[2])};
+    }
+    return {};
+}
+
+Refusal refusal_of(const Scene &scene, const MeshOptions &options) {
+    if (!good(options))
+        return {MeshStatus::BadOptions,
+                "a tolerance is a number above 0, a resolution 1 to 8,000, and bounds "
+                "are finite, the lower ones first"};
+    if (!hold_at(scene.facts(), options.time))
+        return {MeshStatus::BadOptions, beyond_proof(scene.facts())};
+    return {};
+}
+
+std::vector<std::string> rests_on(bool used_bound) {
+    std::vector<std::string> names{"intervals", "single-precision"};
+    if (used_bound) names.push_back("bound");
+    return names;
+}
+
+fathom::mesh::Settings settings_of(const MeshOptions &options, double share) {
+    fathom::mesh::Settings settings;
+    settings.side = options.tolerance;
+    settings.resolution = options.resolution;
+    settings.time = options.time;
+    settings.threads = options.threads;
+    if (options.progress)
+        settings.progress = [report = options.progress, share](double done) {
+            return report(share * done);
+        };
+    if (!options.bounds) return settings;
+    settings.bounds.emplace();
+    for (std::size_t i = 0; i < 3; ++i) {
+        settings.bounds->lo[i] = options.bounds->lo[i];
+        settings.bounds->hi[i] = options.bounds->hi[i];
+    }
+    return settings;
+}
 
 Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
-    if (!good(options))
-        return without_mesh(MeshStatus::BadOptions,
-                            "a tolerance is a number above 0, a resolution 1 to 8,000, and bounds "
-                            "are finite, the lower ones first");
-    if (!hold_at(scene.facts(), options.time))
-        return without_mesh(MeshStatus::BadOptions, beyond_proof(scene.facts()));
+    if (Refusal why = refusal_of(scene, options))
+        return without_mesh(why.status, std::move(why.message));
     return guarded(
         [&] {
-            fathom::mesh::Settings settings;
-            settings.side = options.tolerance;
-            settings.resolution = options.resolution;
-            settings.time = options.time;
-            settings.threads = options.threads;
             const double share = options.certify ? 0.6 : 1; // of the time
-            if (options.progress)
-                settings.progress = [&](double done) { return options.progress(share * done); };
-            if (options.bounds) {
-                settings.bounds.emplace();
-                for (std::size_t i = 0; i < 3; ++i) {
-                    settings.bounds->lo[i] = options.bounds->lo[i];
-                    settings.bounds->hi[i] = options.bounds->hi[i];
-                }
-            }
+            const fathom::mesh::Settings settings = settings_of(options, share);
             fathom::mesh::Made made = fathom::mesh::make_mesh(ir_of(scene), settings);
             if (made.failure != fathom::mesh::Failure::None) return refused(made);
             Mesh mesh;

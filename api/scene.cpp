@@ -6,6 +6,8 @@
 #include "lang/format.h"
 #include "lang/parse.h"
 
+#include <fathom/parts.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -60,25 +62,6 @@ Box outward(const ir::Box &box) {
     return out;
 }
 
-Facts facts_of(const driver::Compilation &compilation) {
-    const ir::Scene &scene = compilation.scene;
-    const driver::Verdict verdict = driver::judge(scene);
-    Facts facts;
-    facts.lipschitz = verdict.lipschitz;
-    facts.status = status_of(verdict.status);
-    facts.exact = verdict.exact;
-    if (scene.bounds.finite()) facts.bounds = outward(scene.bounds);
-    facts.time_end = scene.render.time_end;
-    facts.reads_time = scene.graph.reads(scene.graph.function(scene.distance).result).time;
-    for (const ir::Axiom &axiom : scene.axioms) facts.axioms.push_back(axiom.says);
-    for (const ir::TopLevel &top : scene.top_level) {
-        const ir::ShapeFact &fact = scene.facts[top.shape.index];
-        facts.shapes.push_back({place_of(top.span, compilation.sources), fact.lipschitz_sup,
-                                status_of(fact.status), fact.kind == ir::FieldKind::Exact});
-    }
-    return facts;
-}
-
 // Standard input was read to its end, so that another compilation takes its text from the first.
 std::shared_ptr<const Origin> repeatable(std::shared_ptr<const Origin> origin,
                                          const Sources &sources) {
@@ -118,7 +101,7 @@ CompileResult result_of(driver::Compilation compilation, std::shared_ptr<const O
     impl->origin = repeatable(std::move(origin), whole->sources);
     impl->scene = whole->scene;
     impl->params = params_of(whole->scene);
-    impl->facts = facts_of(*whole);
+    impl->facts = facts_of(whole->scene, whole->sources);
     impl->compilation = whole;
     result.scene.emplace(std::move(impl));
     return result;
@@ -213,6 +196,24 @@ std::string refusal(const Param &param, const std::vector<double> &value) {
 
 } // namespace
 
+Facts facts_of(const ir::Scene &scene, const Sources &sources) {
+    const driver::Verdict verdict = driver::judge(scene);
+    Facts facts;
+    facts.lipschitz = verdict.lipschitz;
+    facts.status = status_of(verdict.status);
+    facts.exact = verdict.exact;
+    if (scene.bounds.finite()) facts.bounds = outward(scene.bounds);
+    facts.time_end = scene.render.time_end;
+    facts.reads_time = scene.graph.reads(scene.graph.function(scene.distance).result).time;
+    for (const ir::Axiom &axiom : scene.axioms) facts.axioms.push_back(axiom.says);
+    for (const ir::TopLevel &top : scene.top_level) {
+        const ir::ShapeFact &fact = scene.facts[top.shape.index];
+        facts.shapes.push_back({place_of(top.span, sources), fact.lipschitz_sup,
+                                status_of(fact.status), fact.kind == ir::FieldKind::Exact});
+    }
+    return facts;
+}
+
 typecheck::Loader loader_of(const FileProvider &provider) {
     using typecheck::LoadError;
     const auto identity = [](const std::string &path,
@@ -282,7 +283,13 @@ CompileResult Scene::with(const std::map<std::string, std::vector<double>> &valu
             if (param.value != param.initial)
                 origin.options.definitions[param.name] = expression_of(
                     param, {param.value.begin(), param.value.begin() + components(param.type)});
-        return compile(std::make_shared<const Origin>(std::move(origin)));
+        CompileResult result = compile(std::make_shared<const Origin>(std::move(origin)));
+        if (changed->part.empty() || !result.scene) return result;
+        result.scene = part_of(*result.scene, changed->part);
+        if (!result.scene)
+            return failed(sentence(
+                "usage", fmt::format("with these values there is no part `{}`", changed->part)));
+        return result;
     };
     return guarded(work, failed);
 }

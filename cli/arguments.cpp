@@ -124,6 +124,7 @@ struct Reader {
     MergeCommand merge;
     FarmCommand farm;
     MeshCommand mesh;
+    MeasureCommand measure;
     EvalCommand eval;
     ViewCommand view;
     ImportCommand import;
@@ -198,6 +199,7 @@ struct Reader {
         add_merge();
         add_farm();
         add_mesh();
+        add_measure();
         add_eval();
         add_import();
         add_export();
@@ -340,43 +342,30 @@ struct Reader {
         sub->add_flag("--dry-run", farm.dry_run, "make the folder, print the units, start nothing");
     }
 
+    void add_solid(CLI::App *sub, SolidArguments &solid) {
+        add_scene(sub, solid.scene);
+        for (const OptionRow &row : solid_rows(solid)) add_row(sub, row);
+    }
+
     void add_mesh() {
         CLI::App *sub = command("mesh", "write the scene's surface as triangles", mesh);
-        add_scene(sub, mesh.scene);
         add_out(sub, mesh.out,
                 "the mesh, by its suffix: .stl, .obj, .ply, .glb or .3mf (`-`: an STL to standard "
                 "output)")
             ->type_name("OUT.stl")
             ->required();
-        option(
-            sub, "--tolerance",
-            [this](const std::string &word) {
-                const std::optional<double> number = parse_number(word);
-                if (!number || !(*number > 0) || !fits_single(*number))
-                    return fmt::format("wants a length above 0, as 0.01, not `{}`", word);
-                mesh.tolerance = *number;
-                return std::string();
-            },
-            "the side of the cells that the surface is drawn by, in the scene's units")
-            ->type_name("T");
-        sub->add_option("--resolution", mesh.resolution,
-                        fmt::format("instead: cells along the longest side of the solid's box, "
-                                    "{} unless said",
-                                    mesh.resolution))
-            ->check(quiet(CLI::Range(1, 8000)))
-            ->type_name("N");
-        option(
-            sub, "--bounds",
-            [this](const std::string &word) { return read_box(word, mesh.bounds.emplace()); },
-            "cut the solid off at a box: its least corner, then its greatest")
-            ->type_name("X,Y,Z,X,Y,Z");
-        add_time(sub, mesh.time, "seconds");
-        sub->add_option("--units", mesh.units,
-                        "what a length of 1 is, for .3mf (mm unless said) and .glb (m unless said)")
-            ->check(quiet(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"})))
-            ->type_name("UNIT");
+        add_solid(sub, mesh.solid);
+        add_row(sub, units_row(mesh.solid, "for .3mf (mm unless said) and .glb (m unless said)"));
         sub->add_flag("--json", mesh.json,
                       "prove what can be proved of the mesh: one JSON document on standard output");
+    }
+
+    void add_measure() {
+        CLI::App *sub = command("measure", "print volume, area, box, mass and clearances", measure);
+        add_solid(sub, measure.solid);
+        for (const OptionRow &row : measure_rows(measure)) add_row(sub, row);
+        add_row(sub, units_row(measure.solid, "to print numbers in it"));
+        sub->add_flag("--json", measure.json, "one JSON document on standard output");
     }
 
     void add_eval() {

@@ -122,16 +122,29 @@ struct FarmCommand {
     bool dry_run = false; // prints what would be done
     std::vector<std::string> options; // of the engine
 };
-// `fathom mesh`.
-struct MeshCommand {
+// The solid that `mesh`, `measure`, `slice` and `volume` look at, and how finely.
+struct SolidArguments {
     SceneArguments scene;
-    std::string out;
-    double tolerance = 0; // 0: by resolution
-    int resolution = 128;
+    std::string part;     // of the scene, alone; empty: all of it
+    double tolerance = 0; // the side of the cells; 0: by resolution
+    int resolution = 128; // cells along the longest side of the solid's box
     std::optional<std::array<std::array<double, 3>, 2>> bounds;
     double time = 0;
-    std::string units; // a word of unit_words(); empty: unsaid
+    std::string units; // what a length of 1 is, a word of unit_names(); empty: unsaid
+};
+// `fathom mesh`.
+struct MeshCommand {
+    SolidArguments solid;
+    std::string out;
     bool json = false; // the certificate
+};
+// `fathom measure`.
+struct MeasureCommand {
+    SolidArguments solid;
+    std::optional<double> density;
+    bool parts = false;                                       // each part, too
+    std::vector<std::pair<std::string, std::string>> between; // parts, whose clearance is wanted
+    bool json = false;
 };
 // `fathom eval`.
 struct EvalCommand {
@@ -185,9 +198,10 @@ struct BenchCommand {
     std::string compare;    // a file that --json wrote; empty: none
 };
 
-using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, MergeCommand, FarmCommand,
-                             MeshCommand, EvalCommand, ViewCommand, ImportCommand, ExportCommand,
-                             FmtCommand, DocCommand, ExplainCommand, LspCommand, BenchCommand>;
+using Command =
+    std::variant<CheckCommand, CompileCommand, RenderCommand, MergeCommand, FarmCommand,
+                 MeshCommand, MeasureCommand, EvalCommand, ViewCommand, ImportCommand,
+                 ExportCommand, FmtCommand, DocCommand, ExplainCommand, LspCommand, BenchCommand>;
 
 // A command with the options that all commands share.
 struct Invocation {
@@ -212,6 +226,7 @@ Exit run(const RenderCommand &, Terminal &);
 Exit run(const MergeCommand &, Terminal &);
 Exit run(const FarmCommand &, Terminal &);
 Exit run(const MeshCommand &, Terminal &);
+Exit run(const MeasureCommand &, Terminal &);
 Exit run(const EvalCommand &, Terminal &);
 Exit run(const ViewCommand &, Terminal &);
 Exit run(const ImportCommand &, Terminal &);

@@ -156,12 +156,22 @@ std::string of(const FarmCommand &farm, const Given &given) {
     });
 }
 
+std::string of_cells(const Given &given) {
+    return given("--tolerance") && given("--resolution")
+               ? "--tolerance and --resolution both say how fine the cells are: give one of them"
+               : "";
+}
+
 std::string of(const MeshCommand &mesh, const Given &given) {
     if (mesh.json && mesh.out == "-")
         return "--json and the mesh cannot both go to standard output: name a file by -o";
-    if (given("--tolerance") && given("--resolution"))
-        return "--tolerance and --resolution both say how fine a mesh is: give one of them";
-    return "";
+    return of_cells(given);
+}
+
+std::string of(const MeasureCommand &measure, const Given &given) {
+    if (!measure.solid.part.empty() && (measure.parts || !measure.between.empty()))
+        return "--part measures one part alone, --parts and --between several: give one of them";
+    return of_cells(given);
 }
 
 std::string of(const EvalCommand &eval, const Given &) {

@@ -1,55 +1,12 @@
 // fathom mesh: the surface as triangles, in a file. The mesh is whole before its file appears.
 #include "cli/interrupt.h"
-#include "cli/outputs.h"
-
-#include <fathom/mesh.h>
+#include "cli/solid.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace fathom::cli {
 namespace {
-
-// How a command ends that made no mesh.
-Exit exit_of(v1::MeshStatus status) {
-    switch (status) {
-    case v1::MeshStatus::Done:
-    case v1::MeshStatus::Cancelled: return done;
-    case v1::MeshStatus::Empty:
-    case v1::MeshStatus::Endless:
-    case v1::MeshStatus::Contradicted: return scene_error;
-    case v1::MeshStatus::TooFine:
-    case v1::MeshStatus::BadOptions: return usage_error;
-    case v1::MeshStatus::TooLarge: return device_error;
-    }
-    return done;
-}
-
-v1::MeshUnit unit_of(std::string_view word) {
-    using enum v1::MeshUnit;
-    return word == "um"   ? Micron
-           : word == "mm" ? Millimetre
-           : word == "cm" ? Centimetre
-           : word == "m"  ? Metre
-           : word == "in" ? Inch
-           : word == "ft" ? Foot
-                          : Unsaid;
-}
-
-v1::MeshOptions mesh_options(const MeshCommand &command) {
-    v1::MeshOptions options;
-    options.tolerance = command.tolerance;
-    options.resolution = command.resolution;
-    options.time = command.time;
-    options.certify = command.json;
-    if (!command.bounds) return options;
-    options.bounds.emplace();
-    for (std::size_t i = 0; i < 3; ++i) {
-        options.bounds->lo[i] = static_cast<float>((*command.bounds)[0][i]);
-        options.bounds->hi[i] = static_cast<float>((*command.bounds)[1][i]);
-    }
-    return options;
-}
 
 // What may be there and is not in the mesh.
 void say_undecided(const v1::Mesh &mesh, const MeshCommand &command, Terminal &terminal) {
@@ -61,7 +18,7 @@ void say_undecided(const v1::Mesh &mesh, const MeshCommand &command, Terminal &t
                              "(`--resolution {}`) or a tighter "
                              "bound tells more",
                              command.out, mesh.undecided_cells, box.lo[0], box.lo[1], box.lo[2],
-                             box.hi[0], box.hi[1], box.hi[2], 2 * command.resolution));
+                             box.hi[0], box.hi[1], box.hi[2], 2 * command.solid.resolution));
 }
 
 // The certificate as a document; distances are null where they do not hold everywhere.
@@ -93,47 +50,44 @@ std::string json_of(const v1::Mesh &mesh) {
 } // namespace
 
 Exit run(const MeshCommand &command, Terminal &terminal) {
-    if (overwrites(command.scene.file, command.out, terminal) ||
-        misnamed(command.out, Content::Mesh, terminal))
+    const std::string &file = command.solid.scene.file;
+    if (overwrites(file, command.out, terminal) || misnamed(command.out, Content::Mesh, terminal))
         return usage_error;
     const v1::MeshFormat format =
         v1::mesh_format(command.out).value_or(v1::MeshFormat::Stl); // a stream has no suffix
-    if (!command.units.empty() && format != v1::MeshFormat::ThreeMf &&
+    if (!command.solid.units.empty() && format != v1::MeshFormat::ThreeMf &&
         format != v1::MeshFormat::Glb) {
         terminal.say(fmt::format("fathom: --units: `{}` says nothing of units; .3mf and .glb do",
                                  command.out));
         return usage_error;
     }
     if (unwritable(command.out, terminal)) return device_error;
-    const v1::CompileResult result =
-        v1::compile_file(command.scene.file, library_options(command.scene));
-    if (const Exit exit = report(result, terminal); exit != done) return exit;
-    if (overwrites(result.files, command.out, terminal)) return usage_error;
-    if (!in_proved_time(result.scene->facts(), command.time, command.time, terminal))
-        return usage_error;
-    v1::MeshOptions options = mesh_options(command);
+    const Solid solid = open_solid(command.solid, terminal);
+    if (!solid.scene) return solid.exit;
+    if (overwrites(solid.files, command.out, terminal)) return usage_error;
+    v1::MeshOptions options = options_of(command.solid);
+    options.certify = command.json;
     options.colors = format != v1::MeshFormat::Stl;
     const Interrupts interrupts;
     options.progress = [&](double share) {
         terminal.progress(command.out, share);
         return !Interrupts::noticed();
     };
-    const v1::Mesh mesh = v1::make_mesh(*result.scene, options);
+    const v1::Mesh mesh = v1::make_mesh(*solid.scene, options);
     terminal.finish_progress();
     if (Interrupts::noticed()) { // nothing is written
         terminal.flush();
         Interrupts::obey();
     }
-    if (!mesh) {
-        const bool endless = mesh.status == v1::MeshStatus::Endless;
-        terminal.say(fmt::format("fathom: {}: no mesh: {}{}", command.scene.file, mesh.message,
-                                 endless ? "; here `--bounds X,Y,Z,X,Y,Z` does it" : ""));
-        return exit_of(mesh.status);
-    }
+    if (!mesh) return say_refusal(file, "mesh", mesh.status, mesh.message, terminal);
     say_undecided(mesh, command, terminal);
-    const std::string name = std::filesystem::path(command.scene.file).stem().string();
+    const std::string stem = std::filesystem::path(file).stem().string();
+    const std::string name = !command.solid.part.empty() ? command.solid.part
+                             : stem == "-"               ? "scene"
+                                                         : stem;
+    const UnitRow *unit = unit_named(command.solid.units);
     const std::string bytes =
-        v1::mesh_file(mesh, format, name == "-" ? "scene" : name, unit_of(command.units));
+        v1::mesh_file(mesh, format, name, unit ? unit->unit : v1::MeshUnit::Unsaid);
     if (bytes.empty()) {
         terminal.say(fmt::format("fathom: {} triangles are more than `{}` can hold, or than there "
                                  "is memory for",

@@ -26,4 +26,9 @@ OptionRow quality_row(int &quality);
 // The words of the rows of pictures and films, which read back as the command has them.
 std::vector<std::string> words_of_pictures(const RenderCommand &command);
 
+// Of what looks at a solid (solid_rows.cpp): which, how finely, and when.
+std::vector<OptionRow> solid_rows(SolidArguments &solid);
+OptionRow units_row(SolidArguments &solid, const std::string &what_for);
+std::vector<OptionRow> measure_rows(MeasureCommand &command);
+
 } // namespace fathom::cli

@@ -1,5 +1,7 @@
 #include "mesh/certify.h"
 
+#include "mesh/measure.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -361,29 +363,6 @@ void certify_mesh(const Inquiry &inquiry, unsigned threads, Progress &progress,
     if (!left.empty()) certify_left(inquiry, left, certificate);
 }
 
-void count(const Mesh &mesh, Certificate &certificate) {
-    std::vector<std::uint32_t> parent(mesh.vertices.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](std::uint32_t v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
-    for (const auto &t : mesh.triangles) {
-        parent[root(t[0])] = root(t[1]);
-        parent[root(t[1])] = root(t[2]);
-        const Real3 a = real(mesh.vertices[t[0]]), b = real(mesh.vertices[t[1]]),
-                    c = real(mesh.vertices[t[2]]);
-        const Real3 n = outer(minus(b, a), minus(c, a));
-        certificate.mesh_area += 0.5 * std::sqrt(inner(n, n));
-        certificate.mesh_volume += inner(a, outer(b, c)) / 6;
-    }
-    for (std::uint32_t v = 0; v < parent.size(); ++v) certificate.components += root(v) == v;
-    // Closed: three edges for two triangles. All vertices are used.
-    const long euler =
-        static_cast<long>(mesh.vertices.size()) - static_cast<long>(mesh.triangles.size()) / 2;
-    certificate.genus = static_cast<long>(certificate.components) - euler / 2;
-}
-
 // What is inside for sure, and what may be.
 void enclose_volume(const Octree &octree, Certificate &certificate) {
     double inside = 0, open = 0;
@@ -406,10 +385,29 @@ void enclose_volume(const Octree &octree, Certificate &certificate) {
 
 } // namespace
 
+Form form_of(const Mesh &mesh) {
+    std::vector<std::uint32_t> parent(mesh.vertices.size());
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root = [&](std::uint32_t v) {
+        while (parent[v] != v) v = parent[v] = parent[parent[v]];
+        return v;
+    };
+    for (const auto &t : mesh.triangles) {
+        parent[root(t[0])] = root(t[1]);
+        parent[root(t[1])] = root(t[2]);
+    }
+    Form form;
+    for (std::uint32_t v = 0; v < parent.size(); ++v) form.components += root(v) == v;
+    // Closed: three edges for two triangles. All vertices are used.
+    const long euler =
+        static_cast<long>(mesh.vertices.size()) - static_cast<long>(mesh.triangles.size()) / 2;
+    form.genus = static_cast<long>(form.components) - euler / 2;
+    return form;
+}
+
 Certificate certify(const ir::Scene &scene, const Settings &settings, const Made &made,
                     Progress &progress) {
-    const unsigned threads =
-        settings.threads > 0 ? settings.threads : std::max(std::thread::hardware_concurrency(), 1u);
+    const unsigned threads = threads_of(settings);
     Certificate certificate;
     const Field field(scene, settings.time, settings.bounds);
     const Lattice &lattice = made.octree.lattice;
@@ -438,7 +436,12 @@ Certificate certify(const ir::Scene &scene, const Settings &settings, const Made
     if (progress.cancelled) return certificate;
     progress.phase(to);
     certify_mesh(inquiry, threads, progress, certificate);
-    count(made.mesh, certificate);
+    const Form form = form_of(made.mesh);
+    certificate.components = form.components;
+    certificate.genus = form.genus;
+    const MeshSums sums = sums_of(made.mesh);
+    certificate.mesh_volume = sums.volume;
+    certificate.mesh_area = sums.area;
     enclose_volume(made.octree, certificate);
     return certificate;
 }

@@ -21,6 +21,13 @@ struct Certificate {
     bool certified() const { return undecided.empty() && unproved.empty(); }
 };
 
+// In how many pieces a closed mesh is, and how many handles they have.
+struct Form {
+    std::size_t components = 0;
+    long genus = 0;
+};
+Form form_of(const Mesh &mesh);
+
 // Of a mesh of that scene and those settings.
 Certificate certify(const ir::Scene &scene, const Settings &settings, const Made &made,
                     Progress &progress);

@@ -9,20 +9,6 @@ namespace {
 
 constexpr double box_work = 200e6; // operations on boxes, to find the solid's
 
-// The box of the solid in its cut, or why there is none.
-Failure box_of(const ir::Scene &scene, const Settings &settings, ir::Box &box) {
-    constexpr double far = cpu::endless_from;
-    ir::Box space{{-far, -far, -far}, {far, far, far}};
-    const bool known = settings.bounds || (!scene.endless && scene.bounds.finite());
-    if (known) space = settings.bounds ? *settings.bounds : scene.bounds;
-    double work = box_work;
-    box = cpu::solid_box(scene, scene.distance, space, settings.time, work);
-    if (box.empty()) return Failure::Empty;
-    for (std::size_t i = 0; i < 3; ++i)
-        if (!known && !(box.lo[i] > -far / 2 && box.hi[i] < far / 2)) return Failure::Endless;
-    return Failure::None;
-}
-
 // Cells that are tangled are divided until none is, or their parts are the finest.
 Failure untangle(Made &made, const Field &field, const OctreeSettings &settings,
                  Progress &progress) {
@@ -43,6 +29,24 @@ Failure untangle(Made &made, const Field &field, const OctreeSettings &settings,
 
 } // namespace
 
+Failure box_of(const ir::Scene &scene, const Settings &settings, ir::Box &box) {
+    constexpr double far = cpu::endless_from;
+    ir::Box space{{-far, -far, -far}, {far, far, far}};
+    const bool known = settings.bounds || (!scene.endless && scene.bounds.finite());
+    if (known) space = settings.bounds ? *settings.bounds : scene.bounds;
+    double work = box_work;
+    box = cpu::solid_box(scene, scene.distance, space, settings.time, work);
+    if (box.empty()) return Failure::Empty;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!known && !(box.lo[i] > -far / 2 && box.hi[i] < far / 2)) return Failure::Endless;
+    return Failure::None;
+}
+
+unsigned threads_of(const Settings &settings) {
+    return settings.threads > 0 ? settings.threads
+                                : std::max(std::thread::hardware_concurrency(), 1u);
+}
+
 Made make_mesh(const ir::Scene &scene, const Settings &settings) {
     Made made;
     const auto fail = [&](Failure failure) {
@@ -61,8 +65,7 @@ Made make_mesh(const ir::Scene &scene, const Settings &settings) {
 
     const Field field(scene, settings.time, settings.bounds);
     OctreeSettings octree;
-    octree.threads =
-        settings.threads > 0 ? settings.threads : std::max(std::thread::hardware_concurrency(), 1u);
+    octree.threads = threads_of(settings);
     Progress progress;
     progress.report = settings.progress;
     progress.to = 0.5;
@@ -78,7 +81,8 @@ Made make_mesh(const ir::Scene &scene, const Settings &settings) {
     made.mesh = make_polygons(made.octree.lattice, made.loops, vertices);
     made.roots = std::move(vertices.roots);
     made.root_slack = std::move(vertices.root_slack);
-    if (made.mesh.triangles.empty()) return fail(Failure::Empty);
+    if (made.mesh.triangles.empty())
+        return fail(made.octree.undecided.empty() ? Failure::Empty : Failure::Unseen);
     return made;
 }
 

@@ -18,11 +18,14 @@ struct Settings {
     std::function<bool(double done)> progress; // as Progress::report
 };
 
+unsigned threads_of(const Settings &settings); // at least 1
+
 // Why there is no mesh.
 enum class Failure : std::uint8_t {
     None,
     Cancelled,
     Empty,       // no point lies in the solid
+    Unseen,      // something may lie in it, but no corner of the finest cells
     Endless,     // no box holds the solid
     TooFine,     // more than 8,192 cells a side, or floats cannot tell such cells apart
     TooMany,     // cells or triangles than can be counted
@@ -39,6 +42,9 @@ struct Made {
     std::vector<float> root_slack; // … no farther from there than this
     ir::Box box;                   // that holds the solid
 };
+
+// A box that holds the solid as it is cut off, or why there is none.
+Failure box_of(const ir::Scene &scene, const Settings &settings, ir::Box &box);
 
 Made make_mesh(const ir::Scene &scene, const Settings &settings);
 

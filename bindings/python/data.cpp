@@ -140,6 +140,37 @@ void add_data(py::module_ &m) {
 }
 
 void add_mesh(py::module_ &m) {
+    const auto ends = [](const fathom::Enclosure &e) { return std::pair(e.lo, e.hi); };
+    const auto rows_of = [ends](const std::array<fathom::Enclosure, 3> &rows) {
+        return std::array{ends(rows[0]), ends(rows[1]), ends(rows[2])};
+    };
+    using fathom::Measures, fathom::Clearance;
+    py::class_<Measures>(m, "Measures",
+                         "What a solid measures: pairs are proved, what is named mesh is not.")
+        .def_property_readonly(
+            "volume", [ends](const Measures &of) { return ends(of.volume); },
+            "the least that it can be, and the most")
+        .def_property_readonly(
+            "center", [rows_of](const Measures &of) { return rows_of(of.center); },
+            "such a pair for x, y and z")
+        .def_property_readonly(
+            "least", [rows_of](const Measures &of) { return rows_of(of.least); },
+            "of the box's least corner, for x, y and z")
+        .def_property_readonly(
+            "greatest", [rows_of](const Measures &of) { return rows_of(of.greatest); },
+            "of the box's greatest corner, for x, y and z")
+        .def_readonly("mesh_volume", &Measures::mesh_volume)
+        .def_readonly("mesh_area", &Measures::mesh_area)
+        .def_readonly("mesh_center", &Measures::mesh_center)
+        .def_readonly("components", &Measures::components)
+        .def_readonly("genus", &Measures::genus)
+        .def_readonly("rests_on", &Measures::rests_on);
+    py::class_<Clearance>(m, "Clearance", "How far two solids are apart.")
+        .def_property_readonly(
+            "distance", [ends](const Clearance &of) { return ends(of.distance); },
+            "the least that it can be, and the most; (0, 0) where they have points in common")
+        .def_readonly("near", &Clearance::near, "a point of each, so far apart as the most")
+        .def_readonly("rests_on", &Clearance::rests_on);
     py::class_<fathom::Mesh>(m, "Mesh",
                              "A closed mesh; its arrays are the mesh's own memory, not copies.")
         .def_property_readonly(

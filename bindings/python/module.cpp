@@ -1,8 +1,6 @@
 // The Python module fathom._core, over the public headers alone. Arrays go in and out without a copy where they are
 // C-contiguous float32; the interpreter's lock is released while anything is computed.
-#include "data.h"
-
-#include <fathom/fathom.h>
+#include "scene.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -16,28 +14,11 @@
 namespace py = pybind11;
 using namespace pybind11::literals;
 
+using namespace fathom_python;
+
 namespace {
 
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
-
-// A scene with the field of the time that was asked for last.
-struct PyScene {
-    fathom::Scene scene;
-    std::vector<fathom::Diagnostic> diagnostics;
-    std::vector<std::filesystem::path> files;
-    std::shared_ptr<std::mutex> mutex = std::make_shared<std::mutex>();
-    std::optional<std::pair<double, fathom::Field>> field{};
-
-    fathom::Field field_at(double time) {
-        const std::lock_guard lock(*mutex);
-        if (!field || field->first != time) {
-            std::optional<fathom::Field> made = fathom::make_field(scene, time);
-            if (!made) throw std::bad_alloc();
-            field.emplace(time, std::move(*made));
-        }
-        return field->second;
-    }
-};
 
 // Raises fathom.Error with the diagnostics, or gives the scene.
 PyScene scene_of(fathom::CompileResult result) {
@@ -75,43 +56,6 @@ fathom::CompileOptions options_of(const std::vector<std::filesystem::path> &incl
     };
     return options;
 }
-
-// A callback of Python as one of the library's. What it raises cancels the work and is raised after it; so does Ctrl-C.
-class Progress {
-  public:
-    explicit Progress(const py::object &function) : function_(function) {}
-    std::function<bool(double)> callback() {
-        return [this](double done) {
-            if (raised_) return false;
-            const py::gil_scoped_acquire lock;
-            try {
-                if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-                if (function_.is_none()) return true;
-                const py::object answer = function_(done);
-                cancelled_ = !answer.is_none() && !answer.cast<bool>();
-                return !cancelled_;
-            } catch (py::error_already_set &error) {
-                raised_ = std::make_unique<py::error_already_set>(std::move(error));
-                return false;
-            } catch (const py::cast_error &) {
-                cancelled_ = true;
-                return false;
-            }
-        };
-    }
-    void raise() {
-        if (raised_) throw py::error_already_set(std::move(*raised_));
-        if (!cancelled_) return;
-        PyErr_SetString(py::module_::import("fathom").attr("Cancelled").ptr(),
-                        "given up by `progress`");
-        throw py::error_already_set();
-    }
-
-  private:
-    py::object function_;
-    std::unique_ptr<py::error_already_set> raised_;
-    bool cancelled_ = false;
-};
 
 // What a compilation asks and tells: callables of Python, or None. What they raise ends the compilation and is raised
 // after it; so does Ctrl-C, where one of them is given.
@@ -214,13 +158,6 @@ Floats target_of(const py::object &out, const std::vector<py::ssize_t> &shape) {
     return array;
 }
 
-void check_time(const PyScene &scene, double time) {
-    if (!fathom::hold_at(scene.scene.facts(), time))
-        throw py::value_error("time: the scene is proved from 0 to " +
-                              std::string(py::str(py::float_(scene.scene.facts().time_end))) +
-                              " seconds");
-}
-
 Floats distance(PyScene &scene, const Floats &points, double time, const py::object &out) {
     check_time(scene, time);
     Floats distances = target_of(out, shape_of(points, 3, "points"));
@@ -261,19 +198,6 @@ Floats interval(PyScene &scene, const Floats &boxes, double time) {
     const py::gil_scoped_release release;
     if (!scene.field_at(time).intervals(in, to)) throw std::bad_alloc();
     return intervals;
-}
-
-// Numbers of a box and of a lattice, as sequences or one number for all axes.
-template <class Number> std::array<Number, 3> three(const py::object &value, const char *what) {
-    if (py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value)) {
-        const auto number = value.cast<Number>();
-        return {number, number, number};
-    }
-    try {
-        return value.cast<std::array<Number, 3>>();
-    } catch (const py::cast_error &) {
-        throw py::type_error(std::string(what) + ": wants three numbers, or one for all axes");
-    }
 }
 
 py::array volume(PyScene &scene, const py::object &counts, const py::object &lo,
@@ -342,31 +266,6 @@ py::array render(PyScene &scene, int width, int height, int samples, double time
     return py::array_t<std::uint8_t>(std::vector<py::ssize_t>{height, width, 4}, bytes, owner);
 }
 
-fathom::Mesh mesh(PyScene &scene, int resolution, double tolerance, double time,
-                  const py::object &lo, const py::object &hi, bool certify, bool colors,
-                  unsigned threads, const py::object &progress) {
-    check_time(scene, time);
-    if (lo.is_none() != hi.is_none()) throw py::value_error("lo and hi: give both, or none");
-    Progress told(progress);
-    fathom::MeshOptions options;
-    options.resolution = resolution;
-    options.tolerance = tolerance;
-    options.time = time;
-    options.certify = certify;
-    options.colors = colors;
-    options.threads = threads;
-    options.progress = told.callback();
-    if (!lo.is_none()) options.bounds = fathom::Box{three<float>(lo, "lo"), three<float>(hi, "hi")};
-    fathom::Mesh made;
-    {
-        const py::gil_scoped_release release;
-        made = fathom::make_mesh(scene.scene, options);
-    }
-    told.raise();
-    if (!made) throw py::value_error("no mesh: " + made.message);
-    return made;
-}
-
 fathom::Shader shader(const PyScene &scene, const std::string &target, bool field_only,
                       bool buffers, double time, const std::string &title) {
     fathom::ShaderOptions options{target, field_only, buffers, time, title};
@@ -397,8 +296,10 @@ PyScene with_params(const PyScene &scene, const py::kwargs &values) {
 }
 
 void add_scene(py::module_ &m) {
-    py::class_<PyScene>(m, "Scene",
-                        "A scene that compiled. It never changes; threads may share it.")
+    py::class_<PyScene> scenes(m, "Scene",
+                               "A scene that compiled. It never changes; threads may share it.");
+    add_solids(scenes);
+    scenes
         .def_property_readonly(
             "params", [](const PyScene &s) { return s.scene.params(); }, "the params, in order")
         .def_property_readonly(
@@ -428,10 +329,6 @@ void add_scene(py::module_ &m) {
              "A picture: (height, width, 4) uint8, sRGB, rows from the top. `progress` is called "
              "with the share that "
              "is done; False gives up (Cancelled).")
-        .def("mesh", &mesh, "resolution"_a = 128, "tolerance"_a = 0.0, "time"_a = 0.0,
-             "lo"_a = py::none(), "hi"_a = py::none(), "certify"_a = false, "colors"_a = false,
-             "threads"_a = 0, "progress"_a = py::none(),
-             "The surface as triangles. Raises ValueError where there is none, and says why.")
         .def("shader", &shader, "target"_a = "glsl330", "field_only"_a = false, "buffers"_a = false,
              "time"_a = 0.0, "title"_a = "scene", "The scene as a shader for a target.")
         .def(

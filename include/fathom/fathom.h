@@ -8,7 +8,9 @@
 #include <fathom/files.h>
 #include <fathom/gl.h>
 #include <fathom/language.h>
+#include <fathom/measure.h>
 #include <fathom/mesh.h>
+#include <fathom/parts.h>
 #include <fathom/picture.h>
 #include <fathom/reference.h>
 #include <fathom/save_format.h>

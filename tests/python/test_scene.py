@@ -179,6 +179,19 @@ def test_a_mesh_has_colours_where_they_are_wanted():
     assert np.all(mesh.colors[above] == [1, 0, 0]) and np.all(mesh.colors[~above] == [0, 0, 1])
 
 
+def test_measures_are_enclosed_and_parts_have_names():
+    scene = fathom.compile("box([1, 2, 3])\nsphere(1).translate(x: 4)\nsphere(0.5).translate(x: 9)")
+    assert scene.parts == ["box", "sphere", "sphere#2"]
+    box, ball = scene.part("box"), scene.part("sphere")
+    of = box.measure(resolution=24)
+    assert of.volume[0] <= 6 <= of.volume[1]
+    assert of.greatest[2][0] <= 1.5 <= of.greatest[2][1]
+    apart = box.clearance(ball, tolerance=0.02)
+    assert apart.distance[0] <= 2.5 <= apart.distance[1] < 2.6
+    with pytest.raises(ValueError, match="this scene has box, sphere"):
+        scene.part("cone")
+
+
 def test_a_mesh_is_closed():
     mesh = fathom.compile("torus(1, 0.3)").mesh(resolution=24, certify=True)
     edges = np.concatenate([mesh.triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])

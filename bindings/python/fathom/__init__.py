@@ -27,9 +27,11 @@ class Cancelled(Exception):
 
 
 from ._core import (  # noqa: E402  the module raises the two above
+    Clearance,
     Diagnostic,
     Facts,
     LibraryEntry,
+    Measures,
     Mesh,
     MeshCertificate,
     Param,

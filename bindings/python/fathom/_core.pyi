@@ -78,6 +78,25 @@ class Mesh:
     certificate: MeshCertificate | None
     def file(self, suffix: str, name: str = "scene") -> bytes: ...
 
+_Enclosure = tuple[float, float]
+
+class Measures:
+    volume: _Enclosure
+    center: list[_Enclosure]
+    least: list[_Enclosure]
+    greatest: list[_Enclosure]
+    mesh_volume: float
+    mesh_area: float
+    mesh_center: list[float]
+    components: int
+    genus: int
+    rests_on: list[str]
+
+class Clearance:
+    distance: _Enclosure
+    near: list[list[float]]
+    rests_on: list[str]
+
 _Corner = Sequence[float] | float
 _Progress = Callable[[float], bool | None]
 
@@ -123,6 +142,25 @@ class Scene:
         threads: int = 0,
         progress: _Progress | None = None,
     ) -> Mesh: ...
+    parts: list[str]
+    def part(self, name: str) -> Scene: ...
+    def measure(
+        self,
+        resolution: int = 128,
+        tolerance: float = 0.0,
+        time: float = 0.0,
+        lo: _Corner | None = None,
+        hi: _Corner | None = None,
+        threads: int = 0,
+        progress: _Progress | None = None,
+    ) -> Measures: ...
+    def clearance(
+        self,
+        other: Scene,
+        tolerance: float,
+        time: float = 0.0,
+        progress: _Progress | None = None,
+    ) -> Clearance: ...
     def shader(
         self,
         target: str = "glsl330",

@@ -1,0 +1,280 @@
+// fathom measure: what a solid measures, as numbers of a mesh and as proved enclosures.
+#include "base/text.h"
+#include "cli/interrupt.h"
+#include "cli/solid.h"
+
+#include <fathom/measure.h>
+#include <fathom/parts.h>
+
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace fathom::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A number of the mesh, and between what the solid's is proved to lie.
+struct Row {
+    std::string name, unit;
+    double value = 0;
+    std::optional<v1::Enclosure> proved;
+};
+
+// The power of the unit that a number has: 1 a length, 2 an area, 3 a volume.
+std::string unit_of(const MeasureCommand &command, int power) {
+    if (command.solid.units.empty()) return "";
+    return power == 1 ? command.solid.units : fmt::format("{}{}", command.solid.units, power);
+}
+
+// The mass of a volume of 1: grams where the unit is known, for a density in g/cm3.
+double mass_of_one(const MeasureCommand &command) {
+    const UnitRow *unit = unit_named(command.solid.units);
+    return *command.density * (unit ? std::pow(unit->metres * 100, 3) : 1);
+}
+
+v1::Enclosure times(const v1::Enclosure &e, double factor) {
+    return {e.lo * factor * (1 - 1e-15), e.hi * factor * (1 + 1e-15)};
+}
+
+std::vector<Row> rows_of(const v1::Measures &of, const MeasureCommand &command) {
+    const std::string length = unit_of(command, 1);
+    std::vector<Row> rows{{"volume", unit_of(command, 3), of.mesh_volume, of.volume},
+                          {"area", unit_of(command, 2), of.mesh_area, {}}};
+    if (command.density) {
+        const double one = mass_of_one(command);
+        rows.push_back(
+            {"mass", length.empty() ? "" : "g", one * of.mesh_volume, times(of.volume, one)});
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        const char axis = "xyz"[i];
+        const double lo = of.mesh_box.lo[i], hi = of.mesh_box.hi[i];
+        rows.push_back({fmt::format("size {}", axis), length, hi - lo,
+                        v1::Enclosure{std::max(0.0, of.greatest[i].lo - of.least[i].hi),
+                                      of.greatest[i].hi - of.least[i].lo}});
+        rows.push_back({fmt::format("from {}", axis), length, lo, of.least[i]});
+        rows.push_back({fmt::format("to {}", axis), length, hi, of.greatest[i]});
+        rows.push_back({fmt::format("centre {}", axis), length, of.mesh_center[i], of.center[i]});
+    }
+    return rows;
+}
+
+// Seven digits, and no more than matter beside the solid's size.
+std::string printed(double number, double scale) {
+    if (std::fabs(number) < 1e-9 * scale) number = 0;
+    return fmt::format("{:.7g}", number);
+}
+// Of an enclosure's ends, rounded outward.
+std::string printed_end(double number, double scale, bool up) {
+    std::string text = printed(number, scale);
+    const double read = parse_number(text).value_or(number);
+    if (up ? read >= number : read <= number) return text;
+    const double step = std::pow(10.0, std::floor(std::log10(std::fabs(number))) - 6);
+    return fmt::format("{:.7g}", up ? read + step : read - step);
+}
+
+void put_table(const std::string &title, const std::vector<Row> &rows, double scale,
+               Terminal &terminal) {
+    terminal.put(fmt::format("{}\n{:24}{:>14}{:>16}{:>14}\n", title, "", "of the mesh", "at least",
+                             "at most"));
+    for (const Row &row : rows) {
+        const std::string name =
+            row.unit.empty() ? row.name : fmt::format("{} ({})", row.name, row.unit);
+        terminal.put(row.proved ? fmt::format("  {:22}{:>14}{:>16}{:>14}\n", name,
+                                              printed(row.value, scale),
+                                              printed_end(row.proved->lo, scale, false),
+                                              printed_end(row.proved->hi, scale, true))
+                                : fmt::format("  {:22}{:>14}{:>16}{:>14}\n", name,
+                                              printed(row.value, scale), "-", "-"));
+    }
+}
+
+Json json_of(const v1::Enclosure &e) {
+    const auto end = [](double d) { return std::isfinite(d) ? Json(d) : Json(); };
+    return {{"least", end(e.lo)}, {"most", end(e.hi)}};
+}
+Json json_of(double value, const std::optional<v1::Enclosure> &proved) {
+    Json json{{"value", value}};
+    if (proved) json.update(json_of(*proved));
+    return json;
+}
+
+Json json_of(const v1::Measures &of, const MeasureCommand &command) {
+    Json json;
+    json["volume"] = json_of(of.mesh_volume, of.volume);
+    json["area"] = json_of(of.mesh_area, {});
+    if (command.density) {
+        const double one = mass_of_one(command);
+        json["mass"] = json_of(one * of.mesh_volume, times(of.volume, one));
+    }
+    for (const char *name : {"center", "from", "to"}) json[name] = Json::array();
+    for (std::size_t i = 0; i < 3; ++i) {
+        json["center"].push_back(json_of(of.mesh_center[i], of.center[i]));
+        json["from"].push_back(json_of(of.mesh_box.lo[i], of.least[i]));
+        json["to"].push_back(json_of(of.mesh_box.hi[i], of.greatest[i]));
+    }
+    json["components"] = of.components;
+    json["genus"] = of.genus;
+    json["rests_on"] = of.rests_on;
+    return json;
+}
+
+// What is measured one after the other, on one bar.
+class Work {
+  public:
+    Work(const MeasureCommand &command, std::size_t pieces, Terminal &terminal)
+        : command_(command), pieces_(pieces), terminal_(terminal) {}
+    std::function<bool(double)> next() {
+        return [this, before = begun_++](double share) {
+            terminal_.progress(command_.solid.scene.file, (static_cast<double>(before) + share) /
+                                                              static_cast<double>(pieces_));
+            return !Interrupts::noticed();
+        };
+    }
+
+  private:
+    const MeasureCommand &command_;
+    std::size_t pieces_, begun_ = 0;
+    Terminal &terminal_;
+};
+
+struct Between {
+    const std::pair<std::string, std::string> *names;
+    v1::Clearance of;
+};
+
+double size_of(const v1::Measures &of) {
+    double size = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        size = std::max<double>({size, std::fabs(of.mesh_box.lo[i]), std::fabs(of.mesh_box.hi[i])});
+    return size;
+}
+
+// How narrow clearances are enclosed, unless said: a 2,000th of the smaller part's box.
+double tolerance_of(const MeasureCommand &command, const v1::Scene &a, const v1::Scene &b) {
+    if (command.solid.tolerance > 0) return command.solid.tolerance;
+    double least = 2;
+    for (const v1::Scene *scene : {&a, &b}) {
+        if (!scene->facts().bounds) continue;
+        const v1::Box &box = *scene->facts().bounds;
+        double longest = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+            longest = std::max<double>(longest, box.hi[i] - box.lo[i]);
+        if (longest > 0) least = std::min(least, longest);
+    }
+    return least / 2000;
+}
+
+void put_clearance(const Between &between, const MeasureCommand &command, Terminal &terminal) {
+    const auto &[a, b] = *between.names;
+    const v1::Clearance &c = between.of;
+    const std::string length = unit_of(command, 1);
+    terminal.put(fmt::format("{} and {}{}\n", a, b, length.empty() ? "" : " (" + length + ")"));
+    if (c.distance.hi == 0) {
+        terminal.put(fmt::format("  they have points in common: [{:.6g}, {:.6g}, {:.6g}]\n",
+                                 c.near[0][0], c.near[0][1], c.near[0][2]));
+    } else if (!std::isfinite(c.distance.hi)) {
+        terminal.put(fmt::format("  apart by {} at least; no point of one of them was found\n",
+                                 printed_end(c.distance.lo, c.distance.lo, false)));
+    } else {
+        terminal.put(fmt::format("  apart by {} at least and {} at most, from [{:.6g}, {:.6g}, "
+                                 "{:.6g}] to [{:.6g}, {:.6g}, {:.6g}]\n",
+                                 printed_end(c.distance.lo, c.distance.hi, false),
+                                 printed_end(c.distance.hi, c.distance.hi, true), c.near[0][0],
+                                 c.near[0][1], c.near[0][2], c.near[1][0], c.near[1][1],
+                                 c.near[1][2]));
+    }
+}
+
+Json json_of(const Between &between) {
+    Json json{{"between", {between.names->first, between.names->second}}};
+    json.update(json_of(between.of.distance));
+    json["near"] = std::isfinite(between.of.distance.hi) ? Json(between.of.near) : Json();
+    json["rests_on"] = between.of.rests_on;
+    return json;
+}
+
+} // namespace
+
+Exit run(const MeasureCommand &command, Terminal &terminal) {
+    const std::string &file = command.solid.scene.file;
+    const Solid solid = open_solid(command.solid, terminal);
+    if (!solid.scene) return solid.exit;
+    struct Subject {
+        std::string name;
+        int line = 0;
+        v1::Scene scene;
+        v1::Measures of;
+    };
+    std::vector<Subject> subjects{
+        {command.solid.part.empty() ? file : command.solid.part, 0, *solid.scene, {}}};
+    if (command.parts)
+        for (const v1::Part &part : v1::parts_of(*solid.scene)) {
+            std::optional<v1::Scene> scene = part_named(*solid.scene, part.name, terminal);
+            if (!scene) return device_error;
+            subjects.push_back({part.name, part.at.line, std::move(*scene), {}});
+        }
+    std::vector<std::array<v1::Scene, 2>> pairs;
+    for (const auto &[a, b] : command.between) {
+        std::optional<v1::Scene> first = part_named(*solid.scene, a, terminal),
+                                 second = part_named(*solid.scene, b, terminal);
+        if (!first || !second) return usage_error;
+        pairs.push_back({std::move(*first), std::move(*second)});
+    }
+
+    const Interrupts interrupts;
+    Work work(command, subjects.size() + pairs.size(), terminal);
+    const auto heed_interrupts = [&] {
+        if (!Interrupts::noticed()) return;
+        terminal.finish_progress();
+        Interrupts::obey();
+    };
+    for (Subject &subject : subjects) {
+        v1::MeshOptions options = options_of(command.solid);
+        options.progress = work.next();
+        subject.of = v1::measure(subject.scene, options);
+        heed_interrupts();
+        if (!subject.of) {
+            terminal.finish_progress();
+            return say_refusal(file, fmt::format("measures of `{}`", subject.name),
+                               subject.of.status, subject.of.message, terminal);
+        }
+    }
+    std::vector<Between> clearances;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const auto &[a, b] = pairs[k];
+        clearances.push_back({&command.between[k], v1::clearance(a, b, tolerance_of(command, a, b),
+                                                                 command.solid.time, work.next())});
+        heed_interrupts();
+        const v1::Clearance &c = clearances.back().of;
+        if (!c) {
+            terminal.finish_progress();
+            return say_refusal(file, "clearance", c.status, c.message, terminal);
+        }
+    }
+    terminal.finish_progress();
+
+    if (command.json) {
+        Json json = json_of(subjects[0].of, command);
+        json["unit"] = command.solid.units.empty() ? Json() : Json(command.solid.units);
+        if (command.parts) json["parts"] = Json::array();
+        for (std::size_t k = 1; k < subjects.size(); ++k) {
+            Json part{{"name", subjects[k].name}, {"line", subjects[k].line}};
+            part.update(json_of(subjects[k].of, command));
+            json["parts"].push_back(std::move(part));
+        }
+        if (!clearances.empty()) json["clearances"] = Json::array();
+        for (const Between &between : clearances) json["clearances"].push_back(json_of(between));
+        terminal.put(json.dump() + "\n");
+        return done;
+    }
+    for (const Subject &subject : subjects)
+        put_table(subject.line > 0 ? fmt::format("{}, line {}", subject.name, subject.line)
+                                   : subject.name,
+                  rows_of(subject.of, command), size_of(subject.of), terminal);
+    for (const Between &between : clearances) put_clearance(between, command, terminal);
+    return done;
+}
+
+} // namespace fathom::cli

@@ -1,0 +1,35 @@
+// What can be enclosed of a solid by cells of space that are in it, out of it, or open: its volume,
+// its centre, its box (docs/measure.md, 1).
+#pragma once
+
+#include "mesh/mesh.h"
+
+namespace fathom::mesh {
+
+// A number that is proved to lie between two others.
+struct Enclosure {
+    double lo = 0, hi = 0;
+};
+
+struct Measures {
+    Enclosure volume;
+    std::array<Enclosure, 3> center;
+    std::array<Enclosure, 3> least, greatest; // the ends of the solid's box
+    bool used_bound = false;                  // the proved bound, besides intervals
+};
+
+inline constexpr double usual_work = 1.2e9; // kernels over boxes: some seconds
+
+// By the cells of a mesh of that scene and those settings, which are divided further as far as the
+// work goes.
+Measures measure(const ir::Scene &scene, const Settings &settings, const Made &made,
+                 Progress &progress, double work = usual_work);
+
+// The volume and the area of a closed mesh, and the centre of what it bounds.
+struct MeshSums {
+    double volume = 0, area = 0;
+    std::array<double, 3> center{};
+};
+MeshSums sums_of(const Mesh &mesh);
+
+} // namespace fathom::mesh

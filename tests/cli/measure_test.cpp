@@ -1,0 +1,97 @@
+// `fathom measure` as scripts see it.
+#include "shell.h"
+
+#include <catch2/catch.hpp>
+
+#include <nlohmann/json.hpp>
+
+using Json = nlohmann::json;
+
+namespace {
+
+bool holds(const Json &row, double value) {
+    return row["least"].get<double>() <= value && value <= row["most"].get<double>();
+}
+
+} // namespace
+
+TEST_CASE("a solid's measures as a table and as JSON") {
+    ScratchFolder folder;
+    folder.write("block.sdf", "param d = 3 in 1..4\nbox([1, 2, d]).translate(x: 10)\n");
+    const Result table = shell(folder, "fathom measure block.sdf --resolution 24");
+    CHECK(table.exit == 0);
+    CHECK(table.err.empty());
+    for (const char *part : {"at least", "at most", "volume  ", "area  ", "size x  ", "centre z  "})
+        CHECK(contains(table.out, part));
+    const Result made = shell(folder, "fathom measure block.sdf --resolution 24 --density 7.85 "
+                                      "--units cm --json");
+    CHECK(made.exit == 0);
+    const Json json = Json::parse(made.out);
+    CHECK(holds(json["volume"], 6));
+    CHECK(holds(json["mass"], 47.1));
+    CHECK(json["area"]["value"].get<double>() == Approx(22).epsilon(1e-3));
+    CHECK_FALSE(json["area"].contains("least")); // nothing is proved of it
+    CHECK(holds(json["center"][0], 10));
+    CHECK(holds(json["from"][2], -1.5));
+    CHECK(holds(json["to"][1], 1));
+    CHECK(json["unit"] == "cm");
+    CHECK((json["components"] == 1 && json["genus"] == 0));
+    const Json deeper = Json::parse(
+        shell(folder, "cat block.sdf | fathom measure - -D d=4 --resolution 24 --json").out);
+    CHECK(holds(deeper["volume"], 8));
+    CHECK(deeper["unit"].is_null());
+}
+
+TEST_CASE("parts are measured by their names, and how far they are apart") {
+    ScratchFolder folder;
+    folder.write("pair.sdf", "let peg = sphere(1)\npeg\nbox(1).translate(x: 3)\n"
+                             "for i in 0..2 { box(0.5).translate(y: 3 + i) }\n"
+                             "peg.translate(x: 1.5)\n");
+    const Result made = shell(folder, "fathom measure pair.sdf --resolution 24 --parts --json "
+                                      "--between peg,box --between 'peg,peg#2'");
+    REQUIRE(made.exit == 0);
+    const Json json = Json::parse(made.out);
+    REQUIRE(json["parts"].size() == 4);
+    const char *names[] = {"peg", "box", "box#2", "peg#2"};
+    for (std::size_t k = 0; k < 4; ++k) CHECK(json["parts"][k]["name"] == names[k]);
+    CHECK(json["parts"][1]["line"] == 3);
+    CHECK(holds(json["parts"][1]["volume"], 1));
+    CHECK(json["parts"][2]["components"] == 2); // all passes of the loop
+    CHECK(holds(json["clearances"][0], 1.5));
+    CHECK(json["clearances"][1]["most"] == 0); // they have points in common
+    const Json alone =
+        Json::parse(shell(folder, "fathom measure pair.sdf --part box --resolution 24 --json").out);
+    CHECK(alone["volume"] == json["parts"][1]["volume"]);
+    const Result mesh = shell(folder, "fathom mesh pair.sdf --part box --resolution 12 -o -"),
+                 all = shell(folder, "fathom mesh pair.sdf --resolution 12 -o -");
+    CHECK((mesh.exit == 0 && mesh.out != all.out));
+}
+
+TEST_CASE("what cannot be measured says why") {
+    ScratchFolder folder;
+    folder.write("ground.sdf", "plane(Y, 0)\n");
+    folder.write("nothing.sdf", "sphere(1) & sphere(1).translate(x: 5)\n");
+    folder.write("ball.sdf", "sphere(1)\n");
+    folder.write("wrong.sdf", "shpere(1)\n");
+    const auto fails = [&](const std::string &arguments, int exit, const std::string &words) {
+        INFO(arguments);
+        const Result made = shell(folder, "fathom measure " + arguments);
+        CHECK(made.exit == exit);
+        INFO(made.err);
+        CHECK(contains(made.err, words));
+        CHECK(made.out.empty());
+    };
+    fails("ground.sdf", 1, "`--bounds X,Y,Z,X,Y,Z`");
+    fails("nothing.sdf", 1, "empty");
+    fails("wrong.sdf", 1, "unknown-name");
+    fails("none.sdf", 3, "none.sdf");
+    fails("ball.sdf --part egg", 2, "there is no part `egg`; this scene has sphere");
+    fails("ball.sdf --between sphere", 2, "wants two parts");
+    fails("ball.sdf --between sphere,egg", 2, "there is no part `egg`");
+    fails("ball.sdf --part sphere --parts", 2, "one of them");
+    fails("ball.sdf --density 0", 2, "above 0");
+    fails("ball.sdf --units furlong", 2, "um, mm, cm, m, in or ft");
+    fails("ball.sdf --tolerance 1e-9", 2, "too fine");
+    CHECK(shell(folder, "fathom measure ground.sdf --resolution 16 --bounds=-1,-1,-1,1,1,1").exit ==
+          0);
+}
