@@ -3,9 +3,11 @@
 #pragma once
 
 #include "driver/compile.h"
+#include "ir/view.h"
 
 #include <fathom/fathom.h>
 
+#include <array>
 #include <exception>
 #include <new>
 
@@ -58,6 +60,14 @@ std::vector<Diagnostic> translated(const Diagnostics &diagnostics, const Sources
 Explanation translated(proof::Explanation explanation, const Sources &sources);
 Diagnostic sentence(std::string code, std::string message); // an error without a place
 std::string beyond_proof(const Facts &facts);               // of a time at which they do not hold
+
+// Where a uniform of the frame has its values on the host.
+struct FrameRow {
+    const char *name;
+    double *values;
+    std::size_t count;
+};
+std::array<FrameRow, 7> rows_of(ir::View &view, double &orthographic); // all that a view has
 
 // What a call gives whose work could not be done, for lack of memory or by a fault of ours.
 template <class Work, class Failed> auto guarded(Work work, Failed failed) noexcept {

@@ -1,6 +1,7 @@
 #include "api/impl.h"
 
 #include "backend-glsl/reflection.h"
+#include "ir/passes/cost.h"
 #include "ir/view.h"
 
 #include <algorithm>
@@ -22,6 +23,28 @@ Texture texture_of(const ir::ImageData &image, std::string name) {
 
 Texture texture_of(const ir::GridData &grid, std::string name) {
     return {std::move(name), true, grid.size[0], grid.size[1], grid.size[2], grid.values};
+}
+
+CachePasses cache_of(const ir::Scene &scene, glsl::CachePasses passes,
+                     const std::vector<glsl::CachedField> &fields) {
+    const ir::Graph &graph = scene.graph;
+    const auto cost = [&](ir::FunctionId f) {
+        return f ? ir::cost_of(graph, graph.function(f).result) : 0;
+    };
+    CachePasses cache{std::move(passes.reserve),
+                      std::move(passes.fill.text),
+                      std::move(passes.publish),
+                      std::move(passes.sweep),
+                      {},
+                      cost(scene.distance)};
+    for (const glsl::CachedField &field : fields) {
+        CachedField to{
+            field.wide, {}, cost(graph.cache(ir::CacheId{field.cache}).field), field.meaning};
+        for (const std::uint32_t param : field.params)
+            to.params.push_back(scene.params[param].name);
+        cache.fields.push_back(std::move(to));
+    }
+    return cache;
 }
 
 std::optional<Shader> shader_of(const Scene &scene, const ShaderOptions &options,
@@ -74,8 +97,7 @@ std::optional<Shader> shader_of(const Scene &scene, const ShaderOptions &options
             return std::nullopt;
         }
         if (!passes.fill.text.empty())
-            shader.cache = {std::move(passes.reserve), std::move(passes.fill.text),
-                            std::move(passes.publish), std::move(passes.sweep)};
+            shader.cache = cache_of(ir_scene, std::move(passes), output.cached);
     }
     shader.reflection = glsl::reflection_json(ir_scene, to, output);
     shader.text = std::move(output.text);
@@ -134,26 +156,24 @@ std::optional<Shader> make_shader(const Scene &scene, const ShaderOptions &optio
     return shader;
 }
 
+std::array<FrameRow, 7> rows_of(ir::View &view, double &orthographic) {
+    return {{{"fathom_origin", glm::value_ptr(view.origin), 3},
+             {"fathom_right", glm::value_ptr(view.right), 3},
+             {"fathom_up", glm::value_ptr(view.up), 3},
+             {"fathom_forward", glm::value_ptr(view.forward), 3},
+             {"fathom_extent", &view.extent, 1},
+             {"fathom_focus", &view.focus, 1},
+             {"fathom_orthographic", &orthographic, 1}}};
+}
+
 std::vector<ShaderInput> turned_camera(const Shader &shader, double around, double above,
                                        double distance) {
     ir::View view;
     double orthographic = 0;
-    struct Row {
-        const char *name;
-        double *values;
-        std::size_t count;
-    };
-    const Row rows[] = {{"fathom_origin", glm::value_ptr(view.origin), 3},
-                        {"fathom_right", glm::value_ptr(view.right), 3},
-                        {"fathom_up", glm::value_ptr(view.up), 3},
-                        {"fathom_forward", glm::value_ptr(view.forward), 3},
-                        {"fathom_extent", &view.extent, 1},
-                        {"fathom_focus", &view.focus, 1},
-                        {"fathom_orthographic", &orthographic, 1}};
     std::vector<ShaderInput> camera;
-    std::vector<Row> rows_of_it;
+    std::vector<FrameRow> rows_of_it;
     for (const ShaderInput &input : shader.inputs)
-        for (const Row &row : rows)
+        for (const FrameRow &row : rows_of(view, orthographic))
             if (input.name == row.name && input.value.size() == row.count) {
                 std::ranges::copy(input.value, row.values);
                 camera.push_back(input);

@@ -4,6 +4,7 @@
 #include <epoxy/gl.h>
 
 #include <array>
+#include <dlfcn.h>
 #include <string_view>
 #include <vector>
 
@@ -120,6 +121,20 @@ bool Context::make_current() const {
     return eglGetCurrentContext() == state_->context ||
            (eglBindAPI(EGL_OPENGL_API) &&
             eglMakeCurrent(state_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, state_->context));
+}
+
+// What a program has of GLX it has loaded itself: it is looked for, and not loaded here.
+bool any_is_current() {
+    if (eglGetCurrentContext() != EGL_NO_CONTEXT) return true;
+    for (const char *name : {"libGLX.so.0", "libGL.so.1"}) {
+        void *library = dlopen(name, RTLD_LAZY | RTLD_NOLOAD);
+        if (!library) continue;
+        const auto current = reinterpret_cast<void *(*)()>(dlsym(library, "glXGetCurrentContext"));
+        const bool any = current && current();
+        dlclose(library);
+        if (any) return true;
+    }
+    return false;
 }
 
 KeptCurrent::KeptCurrent()

@@ -32,6 +32,9 @@ class Context {
     std::unique_ptr<State> state_;
 };
 
+// Whether any context of OpenGL is current on this thread, by EGL or by GLX.
+bool any_is_current();
+
 // What EGL has current on this thread, which is so again where this ends.
 class KeptCurrent {
   public:

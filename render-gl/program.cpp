@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -33,6 +34,23 @@ void unfiltered(GLenum target) {
     glTexParameteri(target, GL_TEXTURE_MAX_LEVEL, 0);
 }
 
+// The text of ES links with one of ES alone.
+std::string triangle_for(const std::string &text) {
+    const std::string triangle = covering_triangle, version = text.substr(0, text.find('\n'));
+    return version.ends_with(" es") ? version + triangle.substr(triangle.find('\n')) : triangle;
+}
+
+std::optional<ProgramError> too_large(GLenum limit, std::span<const int> sides) {
+    GLint largest = 0;
+    glGetIntegerv(limit, &largest);
+    if (std::ranges::max(sides) <= largest) return std::nullopt;
+    return ProgramError{
+        0,
+        fmt::format("the scene has an image or a grid of {} on a side, and this GL holds {}",
+                    std::ranges::max(sides), largest),
+        ""};
+}
+
 } // namespace
 
 std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
@@ -41,7 +59,7 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
     result.uniforms_ = output.uniforms;
     result.budget_ = output.budget;
     result.most_turns_ = turns_within(output.turns);
-    if (auto error = link(result.program_, {{GL_VERTEX_SHADER, covering_triangle},
+    if (auto error = link(result.program_, {{GL_VERTEX_SHADER, triangle_for(output.text)},
                                             {GL_FRAGMENT_SHADER, output.text}}))
         return *error;
     glUseProgram(result.program_);
@@ -51,6 +69,8 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
     GLint unit = 1;
     for (const glsl::Sampler &sampler : output.images) {
         const ir::ImageData &image = scene.images[sampler.index];
+        if (auto error = too_large(GL_MAX_TEXTURE_SIZE, std::array{image.width, image.height}))
+            return *error;
         GLuint texture = 0;
         glGenTextures(1, &texture);
         glBindTexture(GL_TEXTURE_2D, texture);
@@ -62,6 +82,7 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
     }
     for (const glsl::Sampler &sampler : output.grids) {
         const ir::GridData &grid = scene.grids[sampler.index];
+        if (auto error = too_large(GL_MAX_3D_TEXTURE_SIZE, grid.size)) return *error;
         GLuint texture = 0;
         glGenTextures(1, &texture);
         glBindTexture(GL_TEXTURE_3D, texture);

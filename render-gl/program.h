@@ -38,7 +38,7 @@ struct FrameInputs {
 // A linked scene shader with its data on the card.
 class Program {
   public:
-    // `output` is of Target::Glsl330 or Glsl450; the images and grids that it names are taken from
+    // `output` is of Target::Glsl330, Glsl450 or Es300; the images and grids that it names are taken from
     // `scene`.
     static std::variant<Program, ProgramError> build(const glsl::Output &output,
                                                      const ir::Scene &scene);

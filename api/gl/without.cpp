@@ -36,4 +36,16 @@ bool GlPainter::draw_for_nothing(const PictureOptions &) { return false; }
 GlLists GlPainter::lists() const { return {}; }
 void GlPainter::remake_lists() {}
 
+struct GlShader::Impl {};
+
+GlShader::GlShader() = default;
+GlShader::GlShader(GlShader &&) noexcept = default;
+GlShader &GlShader::operator=(GlShader &&) noexcept = default;
+GlShader::~GlShader() = default;
+
+std::string GlShader::load(const Shader &) { return why; }
+void GlShader::set(const std::vector<ShaderInput> &) {}
+bool GlShader::draw(int, int) { return false; }
+double GlShader::cached_share() const { return 0; }
+
 } // namespace fathom::v1

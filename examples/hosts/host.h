@@ -1,4 +1,5 @@
-// What the hosts of this folder share: a scene, a window, a program with its uniforms and data, keys and the mouse.
+// What a host does by hand that leaves nothing to the library but the shader: a window, a program with its uniforms and
+// data by reflection, keys and the mouse. (fathom::GlShader does the GL of it: window.cpp.)
 #pragma once
 
 #include <fathom/files.h>

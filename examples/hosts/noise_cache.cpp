@@ -1,4 +1,5 @@
-// The noise cache in a program of one's own (docs/noise-cache.md): noise_cache SCENE.sdf [PICTURE.ppm [PARAM=VALUE]]
+// The noise cache by hand (docs/noise-cache.md): noise_cache SCENE.sdf [PICTURE.ppm [PARAM=VALUE]]
+// For engines and APIs of one's own; in OpenGL fathom::GlShader does all of it (window.cpp).
 // Shows a scene that has `cached(…)`, turning, and prints how many pixels of each frame missed a value and how many cells
 // were filled for the next ones. With PICTURE.ppm the view stands still, frames are drawn until next to no pixel misses,
 // and the last is written there; nothing is shown. With PARAM=VALUE all of that is done first, and again with that value.

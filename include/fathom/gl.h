@@ -1,6 +1,6 @@
 /** @file
- *  Pictures of a scene by OpenGL 3.3 or newer, without a window (by EGL). A library that was built
- *  without OpenGL has all of this, and `open` says so.
+ *  Pictures of a scene by OpenGL 3.3 or newer: without a window (by EGL), or in the host's own
+ *  context. A library that was built without OpenGL has all of this, and `open` and `load` say so.
  *
  *  @code
  *  #include <fathom/gl.h>
@@ -28,6 +28,7 @@
 #pragma once
 
 #include <fathom/picture.h>
+#include <fathom/shader.h>
 
 namespace fathom::FATHOM_V1 {
 
@@ -80,6 +81,45 @@ class FATHOM_API GlPainter {
 
     GlLists lists() const;
     void remake_lists(); /**< to be measured */
+
+    struct Impl;
+
+  private:
+    std::unique_ptr<Impl> impl_;
+};
+
+/** A shader of make_shader in a context of the host's own, as a window's: its textures, tables and
+ *  uniforms are made by its reflection. One with the passes of the noise cache is drawn through a
+ *  cache of its own, which it fills from frame to frame. For GL 3.3 and newer, and OpenGL ES 3.0.
+ *
+ *  All calls, and its end, want the context to be current in which it was loaded. What they change of
+ *  the context's state is put back, but for what is bound to units of textures and images, and to the
+ *  targets of copies and of texture buffers. None throws. */
+class FATHOM_API GlShader {
+  public:
+    GlShader();
+    GlShader(GlShader &&) noexcept;
+    GlShader &operator=(GlShader &&) noexcept;
+    ~GlShader();
+
+    /** Builds a shader of `glsl330`, `glsl450` or `es300` in the current context, with its uniforms as
+     *  the scene has them, in place of the one before. Cells of the cache that mean the same are kept.
+     *  Empty; else why it cannot be drawn here, in the driver's words where it refuses it. What was
+     *  loaded before stays then, but for lack of memory. */
+    std::string load(const Shader &shader);
+
+    /** Values of uniforms, by their names, from now on; of none that the shader does not have.
+     *  `fathom_resolution` is set by `draw`. */
+    void set(const std::vector<ShaderInput> &inputs);
+
+    /** Draws over the lower left `width` by `height` pixels of the framebuffer that is bound. False
+     *  where nothing is loaded or current, the size is below 1 or more than GL draws, or there is no
+     *  memory. */
+    bool draw(int width, int height);
+
+    /** The share of the last frame's pixels that were drawn by cached values; 0 without the cache.
+     *  Waits until the frame is drawn. */
+    double cached_share() const;
 
     struct Impl;
 

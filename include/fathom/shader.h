@@ -75,10 +75,21 @@ struct ShaderInput {
     int place = -1; /**< its location, or a sampler's binding; -1 where the text has none */
 };
 
+/** A field that a text reads through the noise cache. */
+struct CachedField {
+    bool wide = false;               /**< of vectors or colours, which lie in `fathom_cache_wide` */
+    std::vector<std::string> params; /**< that it reads: where one moves, its cells are stale */
+    double cost = 0;                 /**< of its value at a point, in nanoseconds on one machine */
+    std::uint64_t meaning =
+        0; /**< equal where fields, of any scenes, compute the same from these */
+};
+
 /** The passes of the noise cache (docs/noise-cache.md), each a fragment shader's text. All are empty where
  *  no field of the scene is worth keeping; the picture's text then computes all. */
 struct CachePasses {
     std::string reserve, fill, publish, sweep;
+    std::vector<CachedField> fields; /**< in the order of `fathom_cache_fields` */
+    double scene_cost = 0;           /**< of the scene's distance at a point, all computed */
 };
 
 /** A checked shader. `text` is what docs/shaders.md describes; `words` is SPIR-V, for the target
