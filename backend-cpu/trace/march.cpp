@@ -75,14 +75,18 @@ void shaded_values(Worker &worker, const Columns &points, float *out, std::size_
 }
 
 void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std::size_t n) {
-    std::fill(out, out + n, Vec{});
-    for (int i = 0; i < 4; ++i) {
-        auto sign = [](int bit) { return 2.0f * static_cast<float>(bit & 1) - 1.0f; };
-        const Vec e = 0.577350269f * Vec{sign((i + 3) >> 1), sign(i >> 1), sign(i)};
-        for (std::size_t k = 0; k < n; ++k) worker.taps.set(0, k, points[k] + h[k] * e);
-        shaded_values(worker, worker.taps, worker.tap_values.data(), n);
-        for (std::size_t k = 0; k < n; ++k) out[k] = out[k] + worker.tap_values[k] * e;
+    std::array<Vec, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto sign = [](std::size_t bit) { return 2.0f * static_cast<float>(bit & 1) - 1.0f; };
+        corners[i] = 0.577350269f * Vec{sign((i + 3) >> 1), sign(i >> 1), sign(i)};
+        for (std::size_t k = 0; k < n; ++k)
+            worker.taps.set(0, i * n + k, points[k] + h[k] * corners[i]);
     }
+    shaded_values(worker, worker.taps, worker.tap_values.data(), 4 * n);
+    std::fill(out, out + n, Vec{});
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t k = 0; k < n; ++k)
+            out[k] = out[k] + worker.tap_values[i * n + k] * corners[i];
     for (std::size_t k = 0; k < n; ++k) out[k] = (0.75f / h[k]) * out[k];
 }
 
@@ -98,28 +102,50 @@ void near(Worker &worker, const Vec *points, const float *g, const float *h, flo
         out[k] = g[k] / std::max(length(slopes[k]), shading::min_slope);
 }
 
-int touches(Worker &worker, const RayState &ray, float t, float d, float along) {
+void find_touches(Worker &worker, std::span<const RayState> rays, std::span<Touch> found) {
+    constexpr std::size_t places = 8;
     const Lengths lengths(worker.stage);
-    const float slack = lengths.slack_at(t);
-    const Vec way = ray.direction;
-    const Vec u =
-        glm::normalize(glm::cross(way, std::fabs(way.x) < 0.5f ? Vec{1, 0, 0} : Vec{0, 1, 0}));
-    const Vec v = glm::cross(way, u);
-    const auto around = [&](float away) { // the least and the greatest of eight places
-        std::array<float, 8> values{};
-        for (std::size_t k = 0; k < values.size(); ++k) {
-            const float angle = 0.785398163f * static_cast<float>(k);
-            const Vec beside = std::cos(angle) * u + std::sin(angle) * v;
-            worker.taps.set(0, k, ray.origin + t * way + away * beside);
+    // The least and the greatest value of eight places about the way of each.
+    const auto around = [&](std::span<Touch *const> which, auto away, auto result) {
+        for (std::size_t j = 0; j < which.size(); ++j) {
+            const Touch &touch = *which[j];
+            const RayState &ray = rays[touch.ray];
+            const Vec way = ray.direction;
+            const Vec u = glm::normalize(
+                glm::cross(way, std::fabs(way.x) < 0.5f ? Vec{1, 0, 0} : Vec{0, 1, 0}));
+            const Vec v = glm::cross(way, u);
+            for (std::size_t k = 0; k < places; ++k) {
+                const float angle = 0.785398163f * static_cast<float>(k);
+                const Vec beside = std::cos(angle) * u + std::sin(angle) * v;
+                worker.taps.set(0, places * j + k,
+                                ray.origin + touch.t * way + away(touch) * beside);
+            }
         }
-        distances(worker, worker.taps, values.data(), values.size());
-        return std::ranges::minmax(values);
+        distances(worker, worker.taps, worker.tap_values.data(), places * which.size());
+        for (std::size_t j = 0; j < which.size(); ++j)
+            result(*which[j],
+                   std::ranges::minmax(std::span(worker.tap_values).subspan(places * j, places)));
     };
-    const auto [least, greatest] = around(4 * slack);
-    if (!(least > 0)) return -1;
-    const float across = (greatest - least) / (8 * slack);
-    if (d > 2 * slack * std::hypot(across, along)) return 0;
-    return around(0.25f * lengths.tolerance(t)).min > 0 ? 1 : -1;
+    const std::size_t most = worker.taps.most() / places;
+    for (; !found.empty(); found = found.subspan(std::min(found.size(), most))) {
+        std::vector<Touch *> first, second;
+        for (Touch &touch : found.first(std::min(found.size(), most))) first.push_back(&touch);
+        const auto slack = [&](const Touch &touch) { return lengths.slack_at(touch.t); };
+        around(
+            first, [&](const Touch &touch) { return 4 * slack(touch); },
+            [&](Touch &touch, auto ends) {
+                const auto [least, greatest] = ends;
+                touch.touches = -1;
+                if (!(least > 0)) return;
+                const float across = (greatest - least) / (8 * slack(touch));
+                touch.touches = 0;
+                if (!(touch.d > 2 * slack(touch) * std::hypot(across, touch.along)))
+                    second.push_back(&touch);
+            });
+        around(
+            second, [&](const Touch &touch) { return 0.25f * lengths.tolerance(touch.t); },
+            [](Touch &touch, auto ends) { touch.touches = ends.min > 0 ? 1 : -1; });
+    }
 }
 
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,
@@ -180,6 +206,7 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
     const int budget = worker.stage.budget * (brute ? 100 : 1);
     std::vector<Walk> walks(rays.size());
     std::vector<std::size_t> active;
+    std::vector<Touch> touching;
     std::vector<Crossing> crossings;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         walks[i].t = rays[i].begin;
@@ -200,8 +227,7 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
             crossings.push_back(crossing(walk, i));
             return true;
         case Verdict::Touches:
-            walk.touches = touches(worker, rays[i], walk.t, walk.d, slope_along(walk));
-            advance(walk, rays[i].end, lengths, brute);
+            touching.push_back({i, walk.t, walk.d, slope_along(walk)});
             return false;
         case Verdict::Undecided: break;
         }
@@ -233,6 +259,12 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
             ++walk.steps;
         }
         std::erase_if(active, judged);
+        find_touches(worker, rays, touching);
+        for (const Touch &touch : touching) {
+            walks[touch.ray].touches = touch.touches;
+            advance(walks[touch.ray], rays[touch.ray].end, lengths, brute);
+        }
+        touching.clear();
     }
     refine(worker, rays, crossings, landings);
 }

@@ -174,34 +174,36 @@ Vec heat(const Landing &landing) {
             clamp(1.0f - 2.2f * x, 0, 1)};
 }
 
-// Places of the picture that a sample is taken of.
+// Samples of pixels: which pixel, and which of its samples.
 struct Places {
-    std::vector<int> x, y;
+    std::vector<int> x, y, sample;
     std::size_t size() const { return x.size(); }
-    void add(int px, int py) { x.push_back(px), y.push_back(py); }
+    void add(int px, int py, int s) { x.push_back(px), y.push_back(py), sample.push_back(s); }
+    void clear() { x.clear(), y.clear(), sample.clear(); }
 };
 
-Places all_of(const Tile &tile) {
+Places first_of(const Tile &tile) {
     Places places;
     for (int y = tile.y; y < tile.y + tile.height; ++y)
-        for (int x = tile.x; x < tile.x + tile.width; ++x) places.add(x, y);
+        for (int x = tile.x; x < tile.x + tile.width; ++x) places.add(x, y, 0);
     return places;
 }
 
-// Where one sample of each pixel lands, and in colour what it sees there. With alpha `cover` is how
+// Where samples land, at most max_rays, and in colour what they see there. With alpha `cover` is how
 // much of that is no background.
 struct Seen {
     std::vector<Landing> landings;
     std::vector<Vec> colors;
     std::vector<float> cover;
 };
-Seen look(Worker &worker, const Places &places, int sample, const PictureOptions &options) {
+Seen look(Worker &worker, const Places &places, const PictureOptions &options) {
     const Stage &stage = worker.stage;
     std::vector<RayState> rays;
-    const auto offset = ir::sample_offset(sample);
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto offset = ir::sample_offset(places.sample[i]);
         rays.push_back(eye(stage, static_cast<float>(places.x[i] + offset[0]),
                            static_cast<float>(places.y[i] + offset[1])));
+    }
     Seen seen{std::vector<Landing>(places.size()), std::vector<Vec>(places.size()),
               std::vector<float>(options.alpha ? places.size() : 0)};
     march(worker, rays, seen.landings, false);
@@ -243,11 +245,35 @@ struct PartPicture {
     }
 };
 
+// Samples on the way to their pixels' sums, as many at once as a worker takes.
+class Summing {
+  public:
+    Summing(Worker &worker, const PictureOptions &options, std::vector<Sum> &sums)
+        : worker_(worker), options_(options), sums_(sums) {}
+    void add(std::size_t pixel, int x, int y, int sample) {
+        pixels_.push_back(pixel);
+        places_.add(x, y, sample);
+        if (places_.size() == max_rays) finish();
+    }
+    void finish() {
+        const Seen seen = look(worker_, places_, options_);
+        for (std::size_t i = 0; i < pixels_.size(); ++i) sums_[pixels_[i]].add(seen, i);
+        pixels_.clear(), places_.clear();
+    }
+
+  private:
+    Worker &worker_;
+    const PictureOptions &options_;
+    std::vector<Sum> &sums_;
+    Places places_;
+    std::vector<std::size_t> pixels_; // by place
+};
+
 // All samples of a tile, which lies in the region.
 void draw(Worker &worker, const PictureOptions &options, const Tile &tile, PartPicture &part) {
-    const Places places = all_of(tile);
+    const Places places = first_of(tile);
     if (options.mode == PictureMode::Steps) {
-        const Seen seen = look(worker, places, 0, options);
+        const Seen seen = look(worker, places, options);
         for (std::size_t i = 0; i < places.size(); ++i) {
             std::uint8_t *pixel = part.pixel(places.x[i], places.y[i]);
             const Vec c = heat(seen.landings[i]);
@@ -258,10 +284,11 @@ void draw(Worker &worker, const PictureOptions &options, const Tile &tile, PartP
     }
     std::vector<Sum> sums(places.size());
     const int samples = std::max(options.samples, 1);
-    for (int sample = 0; sample < samples; ++sample) {
-        const Seen seen = look(worker, places, options.first_sample + sample, options);
-        for (std::size_t i = 0; i < places.size(); ++i) sums[i].add(seen, i);
-    }
+    Summing summing(worker, options, sums);
+    for (int sample = 0; sample < samples; ++sample)
+        for (std::size_t i = 0; i < places.size(); ++i)
+            summing.add(i, places.x[i], places.y[i], options.first_sample + sample);
+    summing.finish();
     for (std::size_t i = 0; i < places.size(); ++i)
         part.put(places.x[i], places.y[i], sums[i], samples);
 }
@@ -280,8 +307,8 @@ class Smooth {
     }
     const Tile &area() const { return area_; } // what has to be drawn once
     void draw_first(Worker &worker, const Tile &tile) {
-        const Places places = all_of(tile);
-        const Seen seen = look(worker, places, 0, part_.options);
+        const Places places = first_of(tile);
+        const Seen seen = look(worker, places, part_.options);
         for (std::size_t i = 0; i < places.size(); ++i) {
             const int x = places.x[i], y = places.y[i];
             float *color = first_.data() + 4 * place(x, y);
@@ -299,17 +326,17 @@ class Smooth {
         Places places;
         for (int y = tile.y; y < tile.y + tile.height; ++y)
             for (int x = tile.x; x < tile.x + tile.width; ++x)
-                if (is_inside(x, y) && rough_[place(x, y)]) places.add(x, y);
+                if (is_inside(x, y) && rough_[place(x, y)]) places.add(x, y, 0);
         if (places.size() == 0) return;
         std::vector<Sum> sums(places.size());
+        Summing summing(worker, part_.options, sums);
         for (std::size_t i = 0; i < places.size(); ++i) {
             const float *first = first_.data() + 4 * place(places.x[i], places.y[i]);
             for (std::size_t c = 0; c < 4; ++c) sums[i].numbers[c] = summand(first[c]);
+            for (int sample = 1; sample < ir::shading::rough_samples; ++sample)
+                summing.add(i, places.x[i], places.y[i], sample);
         }
-        for (int sample = 1; sample < ir::shading::rough_samples; ++sample) {
-            const Seen seen = look(worker, places, sample, part_.options);
-            for (std::size_t i = 0; i < places.size(); ++i) sums[i].add(seen, i);
-        }
+        summing.finish();
         for (std::size_t i = 0; i < places.size(); ++i)
             part_.put(places.x[i], places.y[i], sums[i], ir::shading::rough_samples);
     }
@@ -330,14 +357,19 @@ class Smooth {
     std::vector<std::uint8_t> rough_;
 };
 
-std::vector<Tile> tiles_of(const Tile &area) {
-    std::vector<Tile> tiles;
+std::vector<Tile> tiles_of(const Tile &area, unsigned threads) {
+    const auto tiles = [&](int side) {
+        return static_cast<unsigned>((area.width + side - 1) / side) *
+               static_cast<unsigned>((area.height + side - 1) / side);
+    };
+    int side = max_tile_side;
+    while (side > min_tile_side && tiles(side) < tiles_a_thread * threads) side /= 2;
+    std::vector<Tile> made;
     const int right = area.x + area.width, bottom = area.y + area.height;
-    for (int y = area.y; y < bottom; y += tile_side)
-        for (int x = area.x; x < right; x += tile_side)
-            tiles.push_back(
-                {x, y, std::min(tile_side, right - x), std::min(tile_side, bottom - y)});
-    return tiles;
+    for (int y = area.y; y < bottom; y += side)
+        for (int x = area.x; x < right; x += side)
+            made.push_back({x, y, std::min(side, right - x), std::min(side, bottom - y)});
+    return made;
 }
 
 // What of a tile lies in the region, from the region's corner.
@@ -411,8 +443,10 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
     std::mutex report;
 
     // Every tile of an area once, by all threads. Whether the caller wants to go on.
+    const unsigned jobs =
+        options.jobs > 0 ? options.jobs : std::max(std::thread::hardware_concurrency(), 1u);
     const auto each_tile = [&](const Tile &area, double begin, double end, const auto &draw_tile) {
-        const std::vector<Tile> tiles = tiles_of(area);
+        const std::vector<Tile> tiles = tiles_of(area, jobs);
         std::atomic<std::size_t> next{0};
         std::atomic<bool> cancelled{false};
         std::size_t finished = 0;
@@ -439,8 +473,6 @@ Picture render(const Stage &stage, const PictureOptions &options, const Progress
             }
             picture.work += worker.work;
         };
-        const unsigned jobs =
-            options.jobs > 0 ? options.jobs : std::max(std::thread::hardware_concurrency(), 1u);
         std::vector<std::thread> threads;
         for (unsigned j = 1; j < std::min<std::size_t>(jobs, tiles.size()); ++j)
             threads.emplace_back(work);

@@ -45,8 +45,10 @@ class Columns {
     std::vector<float *> pointers_;
 };
 
-inline constexpr int tile_side = 32;
-inline constexpr std::size_t max_rays = tile_side * tile_side;
+// A picture's tiles are as large as its threads allow: rays that take long are few in each, and the
+// last ones of a tile leave the vectors empty.
+inline constexpr int max_tile_side = 128, min_tile_side = 32, tiles_a_thread = 6;
+inline constexpr std::size_t max_rays = max_tile_side * max_tile_side;
 
 struct CellMarch;
 
@@ -61,8 +63,8 @@ struct Worker {
     Columns points{3, max_rays};
     std::vector<float> values = std::vector<float>(max_rays);
     std::vector<float> spans = std::vector<float>(max_rays);
-    Columns taps{3, max_rays};
-    std::vector<float> tap_values = std::vector<float>(max_rays);
+    Columns taps{3, 4 * max_rays};
+    std::vector<float> tap_values = std::vector<float>(4 * max_rays);
     Columns hits{9, max_rays};
     std::shared_ptr<CellMarch> cell_march; // made when first needed
     Work work;
@@ -107,8 +109,14 @@ void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std:
 void near(Worker &worker, const Vec *points, const float *g, const float *h, float *out,
           std::size_t n);
 
-// What a ray touches, as Walk::touches (shading.h, BESIDE), with the slope along it.
-int touches(Worker &worker, const RayState &ray, float t, float d, float along);
+// What a ray touches, as Walk::touches (shading.h, BESIDE): at t, where the field is d and falls by
+// `along` a unit of the way.
+struct Touch {
+    std::size_t ray;
+    float t, d, along;
+    int touches = 0; // found
+};
+void find_touches(Worker &worker, std::span<const RayState> rays, std::span<Touch> found);
 
 // A hit's place: between the last two samples of its walk (shading.h, REFINED).
 struct Crossing {

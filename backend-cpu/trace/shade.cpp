@@ -136,48 +136,60 @@ std::vector<float> find_occlusion(Worker &worker, const Points &at) {
     return sum;
 }
 
+// A point that faces a light.
 struct Facing {
-    std::size_t point;
+    std::size_t light, point;
     Vec l;
     float facing;
 };
 
-void add_light(Worker &worker, std::span<const RayState> rays, const Points &at,
-               const ir::LightValue &light, std::span<Vec> colors) {
+// Who faces which light, light by light, and the ways there.
+std::vector<Facing> find_facing(const Worker &worker, const Points &at,
+                                std::vector<ShadowRay> &ways) {
     const Stage &stage = worker.stage;
     const Lengths lengths(stage);
-    const Stage::Shading &lighting = stage.shading;
     std::vector<Facing> lit;
-    std::vector<ShadowRay> shadow_rays;
-    for (std::size_t k = 0; k < at.size(); ++k) {
-        const float margin = shading::shadow_bias * lengths.tolerance(at.t[k]);
-        const Vec q = at.p[k] + margin * at.n[k];
-        const Vec way = light.directional ? vec(light.position) : vec(light.position) - q;
-        const float away = length(way);
-        const Vec l = away > 0 ? way / away : at.n[k];
-        const float facing = dot(at.n[k], l);
-        if (!(facing > 0)) continue;
-        lit.push_back({k, l, facing});
-        const float sun_reach =
-            stage.frame.boxed ? std::max(box(stage.frame, q, l).last, 0.0f) : lengths.far;
-        shadow_rays.push_back({q, l, light.directional ? sun_reach : away, margin, at.h[k]});
-    }
-    std::vector<float> seen(lit.size(), 1.0f);
-    if (lighting.shadow_darkness > 0) {
-        std::vector<float> shadow(lit.size());
-        shadows(worker, shadow_rays, std::max(lighting.soft_shadows, shading::min_angle), shadow);
-        for (std::size_t i = 0; i < lit.size(); ++i)
-            seen[i] -= lighting.shadow_darkness * (1.0f - shadow[i]);
-    }
-    const Vec color = vec(light.color);
+    for (std::size_t i = 0; i < stage.lights.size(); ++i)
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            const ir::LightValue &light = stage.lights[i];
+            const float margin = shading::shadow_bias * lengths.tolerance(at.t[k]);
+            const Vec q = at.p[k] + margin * at.n[k];
+            const Vec way = light.directional ? vec(light.position) : vec(light.position) - q;
+            const float away = length(way);
+            const Vec l = away > 0 ? way / away : at.n[k];
+            const float facing = dot(at.n[k], l);
+            if (!(facing > 0)) continue;
+            lit.push_back({i, k, l, facing});
+            const float sun_reach =
+                stage.frame.boxed ? std::max(box(stage.frame, q, l).last, 0.0f) : lengths.far;
+            ways.push_back({q, l, light.directional ? sun_reach : away, margin, at.h[k]});
+        }
+    return lit;
+}
+
+void add_lights(Worker &worker, std::span<const RayState> rays, const Points &at,
+                std::span<Vec> colors) {
+    const Stage::Shading &lighting = worker.stage.shading;
+    std::vector<ShadowRay> ways;
+    const std::vector<Facing> lit = find_facing(worker, at, ways);
+    std::vector<float> shadow(lit.size(), 1.0f);
+    if (lighting.shadow_darkness > 0)
+        for (std::size_t first = 0; first < lit.size(); first += max_rays) {
+            const std::size_t count = std::min(max_rays, lit.size() - first);
+            shadows(worker, std::span(ways).subspan(first, count),
+                    std::max(lighting.soft_shadows, shading::min_angle),
+                    std::span(shadow).subspan(first, count));
+        }
     for (std::size_t i = 0; i < lit.size(); ++i) {
-        const auto [k, l, facing] = lit[i];
+        const auto [light, k, l, facing] = lit[i];
         const Material &m = at.material[k];
+        const float seen = 1.0f - lighting.shadow_darkness * (1.0f - shadow[i]);
         const Vec r = 2.0f * facing * at.n[k] - l;
         float gleam = std::max(-dot(r, rays[at.ray[k]].direction), 0.0f);
         gleam = gleam > 0 ? lighting.specular_intensity * std::pow(gleam, m.exponent) : 0.0f;
         Vec &sum = colors[at.ray[k]];
-        sum = sum + seen[i] * color * (facing * m.diffuse + gleam * m.specular);
+        sum = sum + seen * vec(worker.stage.lights[light].color) *
+                        (facing * m.diffuse + gleam * m.specular);
     }
 }
 
@@ -256,7 +268,7 @@ void shade_hits(Worker &worker, std::span<const RayState> rays, std::span<const 
         colors[at.ray[k]] =
             open[k] * m.diffuse * (around + Vec(stage.shading.fill * facing)) + m.emission;
     }
-    for (const ir::LightValue &light : stage.lights) add_light(worker, rays, at, light, colors);
+    add_lights(worker, rays, at, colors);
     if (classic) return;
     for (std::size_t ray : at.ray)
         colors[ray] = {soft(colors[ray].x), soft(colors[ray].y), soft(colors[ray].z)};

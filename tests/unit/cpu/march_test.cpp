@@ -114,4 +114,13 @@ TEST_CASE("the picture does not depend on how many threads draw it, and can be c
     CHECK(a.work.evaluations == b.work.evaluations);
     Picture c = render(stage, one, [](double, const Tile &, const Picture &) { return false; });
     CHECK(!c.complete);
+    // Tiles of 128 pixels and of 32; all samples, and those of rough pixels alone.
+    stage = prepare(scene.scene, scene.view(), 300, 200, 0);
+    for (const int samples : {0, 3}) {
+        PictureOptions few, many;
+        few.samples = many.samples = samples;
+        few.jobs = 1;
+        many.jobs = 9;
+        CHECK(render(stage, few).rgba == render(stage, many).rgba);
+    }
 }
