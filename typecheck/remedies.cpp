@@ -137,13 +137,10 @@ std::string_view way_from_elsewhere(std::string_view name) {
 
 std::string_view type_from_elsewhere(std::string_view name) {
     static const std::unordered_map<std::string_view, std::string_view> ours = {
-        {"number", "float"},  {"num", "float"},     {"real", "float"},   {"double", "float"},
-        {"scalar", "float"},  {"integer", "int"},   {"uint", "int"},     {"boolean", "bool"},
-        {"str", "string"},    {"String", "string"}, {"Vector2", "vec2"}, {"Vector3", "vec3"},
-        {"Vector4", "vec4"},  {"vector", "vec3"},   {"float2", "vec2"},  {"float3", "vec3"},
-        {"float4", "vec4"},   {"point", "vec3"},    {"point3", "vec3"},  {"colour", "color"},
-        {"solid", "shape"},   {"sdf", "shape"},     {"SDF", "shape"},    {"geometry", "shape"},
-        {"sketch", "shape2"}, {"shape3", "shape"},  {"matrix", "mat3"}};
+        {"number", "float"}, {"real", "float"},  {"double", "float"},  {"integer", "int"},
+        {"boolean", "bool"}, {"str", "string"},  {"String", "string"}, {"Vector2", "vec2"},
+        {"Vector3", "vec3"}, {"float2", "vec2"}, {"float3", "vec3"},   {"point", "vec3"},
+        {"colour", "color"}, {"solid", "shape"}, {"SDF", "shape"},     {"matrix", "mat3"}};
     const auto it = ours.find(name);
     return it == ours.end() ? std::string_view() : it->second;
 }
