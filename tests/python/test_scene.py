@@ -272,3 +272,14 @@ def test_the_notebook_runs():
     for cell in cells:
         exec("".join(cell["source"]), names)
     assert len(cells) == 5 and names["mesh"].certificate.certified
+
+
+def test_a_console_shows_what_there_is():
+    scene = fathom.compile("param r = 1 in 0.5..2\nsphere(r)")
+    assert repr(scene) == "<Scene(r=1.0): proved, lipschitz 1.0>"
+    assert repr(scene.params[0]).startswith("Param(name='r', label='r', color=False, structural=False, value=1.0")
+    assert "range=(0.5, 2.0)" in repr(scene.params[0])
+    assert repr(scene.facts).startswith("Facts(lipschitz=1.0, status='proved', exact=True")
+    mesh = scene.mesh(resolution=8)
+    assert repr(mesh) == f"<Mesh of {len(mesh.vertices)} vertices and {len(mesh.triangles)} triangles>"
+    assert "shapes" in dir(fathom)

@@ -55,6 +55,10 @@ def __getattr__(name):  # `fathom.shapes` without an import of its own; it takes
     raise AttributeError(f"module 'fathom' has no attribute '{name}'")
 
 
+def __dir__():
+    return sorted([*globals(), "shapes"])
+
+
 def png(picture):
     """The bytes of a PNG of a picture as `Scene.render` gives it."""
     height, width, _ = picture.shape
@@ -73,6 +77,22 @@ def png(picture):
     )
 
 
+def _data(of):
+    """As a console shows what is data: `Param(name='r', label='', …)`."""
+    names = [name for name, member in vars(type(of)).items() if isinstance(member, property)]
+    return f"{type(of).__name__}({', '.join(f'{name}={getattr(of, name)!r}' for name in names)})"
+
+
+def _scene(scene):
+    facts = scene.facts
+    params = ", ".join(f"{param.name}={param.value!r}" for param in scene.params)
+    return f"<Scene({params}): {facts.status}, lipschitz {facts.lipschitz}>"
+
+
+def _mesh(mesh):
+    return f"<Mesh of {len(mesh.vertices)} vertices and {len(mesh.triangles)} triangles>"
+
+
 def _picture_of_scene(scene):
     return png(scene.render(480, 320))
 
@@ -89,5 +109,9 @@ def _page_of_scene(scene):
     )
 
 
+for _type in (Clearance, Facts, LibraryEntry, Measures, MeshCertificate, Param, Place, ShaderInput):
+    _type.__repr__ = _data
+Scene.__repr__ = _scene
+Mesh.__repr__ = _mesh
 Scene._repr_png_ = _picture_of_scene
 Scene._repr_html_ = _page_of_scene
