@@ -176,7 +176,7 @@ void Layout::report_unclosed(const Level &open, const Token *instead) {
         diagnostics_.add(Code::UnclosedBracket, span(token), "this `" + sign + "` is never closed");
     const std::string closer(1, static_cast<char>(closer_of(open.bracket)));
     if (instead) d.label(span(*instead), "`" + closer + "` is wanted before this");
-    const std::string_view rest = source_.text.substr(token.end);
+    const std::string_view rest = std::string_view(source_.text).substr(token.end);
     const std::string_view line = rest.substr(0, rest.find('\n'));
     if (const std::size_t comment = line.find("//");
         comment != std::string_view::npos && line.find(closer, comment) != std::string_view::npos)
