@@ -24,7 +24,7 @@ bool Cases::hold(const Claim &claim) {
 }
 
 bool Cases::hold(const Case &given, int depth) {
-    if (++count_ > max_cases || depth > max_forks || looked_.work.spent()) return false;
+    if (++count_ > max_cases || depth > max_forks || looked_.spent()) return false;
     case_ = given;
     fork_.reset();
     const std::optional<bool> answer = attempt();
@@ -138,7 +138,11 @@ bool Cases::are_equal_on_line(const Sum &a, const Sum &b) {
     for (std::uint32_t r = 0; !holds && r < atoms.size(); ++r) { // x*x + y*y as r*r
         if (!atoms[r].square || atoms[r].square->size() < 2) continue;
         const Sum square = *atoms[r].square;
-        const auto rewrite = [&](Sum &sum) { sum = reduced(with_square(sum, r, square), case_); };
+        const auto rewrite = [&](Sum &sum) {
+            looked_.take(16 * (sum.size() + 1));
+            sum = reduced(with_square(sum, r, square), case_);
+        };
+        if (looked_.spent()) return false;
         std::ranges::for_each(rows, rewrite);
         rewrite(one), rewrite(other);
         for (std::uint32_t k = 0; k < atoms.size(); ++k)
@@ -205,7 +209,7 @@ bool Cases::impossible(const Case &c, const Inequality &more) {
     positive.erase(std::unique(positive.begin(), positive.end()), positive.end());
     std::size_t steps = 0;
     const bool out = contradict(std::move(all), positive, steps);
-    looked_.work.take(steps);
+    looked_.take(steps);
     return out;
 }
 
@@ -269,8 +273,12 @@ void Cases::follow_roots(Case &c) {
 }
 
 Sum Cases::reduced(const Sum &sum, const Case &c) const {
+    constexpr std::size_t of_term = 16; // dearer than an operation on intervals
     Sum out = sum;
-    for (const auto &[a, is] : c.solved) out = with_atom(out, a, is);
+    for (const auto &[a, is] : c.solved) {
+        looked_.take(of_term * (out.size() + 1));
+        out = with_atom(out, a, is);
+    }
     return out;
 }
 

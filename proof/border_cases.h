@@ -4,6 +4,8 @@
 #include "ir/graph.h"
 #include "proof/work.h"
 
+#include <algorithm>
+
 namespace fathom::proof {
 
 // `of` has one value for all sides of the choice (a Select, Sign or Step, or a comparison, which is
@@ -18,6 +20,12 @@ struct Claim {
 struct Looked {
     Work &work;
     int cases = 0, on_lines = 0;
+    std::size_t left = 6'000'000; // steps of the algebra: beyond, nothing more is proved
+    void take(std::size_t steps) {
+        work.take(steps);
+        left -= std::min(left, steps);
+    }
+    bool spent() const { return left == 0 || work.spent(); }
     bool near = false; // a proof holds where no coordinate is above `near_enough` alone (on_line.h)
 };
 

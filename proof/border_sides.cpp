@@ -206,11 +206,19 @@ NodeId Border::unknown_of(NodeId step, int component, int depth) {
     }
     if (!moves && graph[step].op == Op::Mod)
         if (const auto parity = parity_of(args[0], args[1])) return *parity;
-    if (!moves) return graph.make(graph[step].op, ir::Type::Float, args, graph[step].payload);
+    if (!moves) { // a number of its own, as rounding has it
+        for (int i = 0; i < int(graph[step].count); ++i)
+            args[std::size_t(i)] = limit.exact(graph.arg(step, i), component, depth + 1);
+        return graph.make(graph[step].op, ir::Type::Float, args, graph[step].payload);
+    }
+    constexpr ir::OpSet rounds{Op::Floor, Op::Ceil, Op::Round};
     const double offset = group.is_angle ? whole_offset(step, args) : 0;
     if (group.is_angle) key[1] = args[0].index;
     const auto [it, fresh] = unknown.try_emplace(key);
-    if (fresh) it->second = graph.fresh_var(ir::Type::Float);
+    if (fresh)
+        it->second = rounds[graph[step].op] ? graph.make(Op::ToFloat, ir::Type::Float,
+                                                         {graph.fresh_var(ir::Type::Int)})
+                                            : graph.fresh_var(ir::Type::Float);
     return offset != 0 ? graph.add(it->second, graph.number(offset)) : it->second;
 }
 

@@ -56,6 +56,13 @@ struct Canonical {
     std::optional<NodeId> read_of(const ir::Node &node, NodeId index);
 
     NodeId rewritten(NodeId id, const ir::Node &node, int depth);
+
+    // One component, written as it is computed but for exact numbers: what tells numbers apart has
+    // this for its arguments (exact.h).
+    NodeId exact(NodeId id, int component, int depth);
+    NodeId exact_argument(NodeId id, int depth); // all components
+    NodeId as_computed(NodeId id, int component, int depth);
+    std::map<std::pair<NodeId, int>, NodeId> exacts{};
 };
 
 // Steps of one component that turn where `turning` is a whole number (of an Atan2: where its first

@@ -1,6 +1,7 @@
 // What nodes are in a case: sums of products, by component. A choice that is met has gone one way in
 // the case, or splits it.
 #include "proof/case_search.h"
+#include "proof/exact.h"
 #include "proof/tape.h"
 
 #include <algorithm>
@@ -30,7 +31,12 @@ std::optional<Sum> Cases::unknown(NodeId id, int i) {
     const ir::Node node = graph_[id];
     if (node.count == 0) return leaf(id, i);
     AtomKey key{double(node.op), double(node.payload), double(node.type), double(i)};
-    for (int k = 0; k < int(node.count); ++k) {
+    if (tells_apart[node.op]) { // one number while nothing below it turns, whatever is near
+        if (side_ && reads(id, claim_.choice)) key.push_back(*side_);
+        if (turned_ && reads(id, claim_.comparison)) key.push_back(*turned_ ? 3 : 2);
+        key.push_back(double(id.index));
+    }
+    for (int k = 0; k < int(node.count) && !tells_apart[node.op]; ++k) {
         const NodeId a = graph_.arg(id, k);
         for (int c = 0; c < ir::components(graph_[a].type); ++c) {
             const auto x = value(a, c);
@@ -62,7 +68,8 @@ std::optional<int> Cases::way(NodeId id, int i, std::vector<std::vector<Sum>> wa
 
 std::optional<Sum> Cases::value(NodeId id, int i) {
     if (const auto it = done_.find({id, i}); it != done_.end()) return it->second;
-    if (fork_ || depth_ > max_depth_of_cases) return {};
+    if (fork_ || depth_ > max_depth_of_cases || looked_.spent()) return {};
+    looked_.take(1);
     ++depth_;
     std::optional<Sum> out = value_of(id, i);
     --depth_;
@@ -175,6 +182,8 @@ std::optional<Sum> Cases::lesser(NodeId id, int i, const Sum &a, const Sum &b, b
 }
 
 std::optional<Sum> Cases::times(const Sum &a, const Sum &b) {
+    constexpr std::size_t of_term = 4;
+    looked_.take(of_term * a.size() * b.size());
     const auto out = multiply(a, b);
     if (!out) return {};
     Sum sum; // r*r is what is below the root r

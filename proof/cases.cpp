@@ -115,7 +115,7 @@ std::optional<Sum> root_of_square(const Sum &a) {
         if (!square) return {};
         Sum rest = a;
         for (const auto &[m, x] : *square) rest[m] -= x;
-        drop_rounding(rest, 4 * size * granted / rounding_of_cases);
+        drop_rounding(rest, 4 * size); // a root turns an error e into sqrt(e)
         if (rest.empty()) return root;
         const auto &[m, x] = *rest.begin();
         Product term;
@@ -199,7 +199,7 @@ void add_to_key(std::vector<double> &key, const Sum &sum) {
         for (std::uint32_t a : m) key.push_back(a);
         int exponent = 0;
         const double mantissa = std::frexp(c, &exponent);
-        key.push_back(std::ldexp(std::round(std::ldexp(mantissa, 22)), exponent - 22));
+        key.push_back(std::ldexp(std::round(std::ldexp(mantissa, 44)), exponent - 44));
     }
 }
 
@@ -230,16 +230,21 @@ bool contradict(std::vector<Inequality> all, const std::vector<Product> &never_n
             });
         const Product m = next->first;
         all.clear();
-        for (const Inequality &row : open)
-            if (!row.sum.contains(m)) all.push_back(row);
-        for (const Inequality &low : open)
-            for (const Inequality &high : open) {
-                const auto a = low.sum.find(m), b = high.sum.find(m);
-                if (a == low.sum.end() || b == high.sum.end() || a->second <= 0 || b->second >= 0)
-                    continue;
-                all.push_back(without(low, high, m));
+        std::vector<const Inequality *> lows,
+            highs; // in which it is at least, and at most, something
+        for (Inequality &row : open) {
+            steps += of_term;
+            const auto it = row.sum.find(m);
+            if (it == row.sum.end())
+                all.push_back(std::move(row));
+            else
+                (it->second > 0 ? lows : highs).push_back(&row);
+        }
+        if (all.size() + lows.size() * highs.size() > max_inequalities) return false;
+        for (const Inequality *low : lows)
+            for (const Inequality *high : highs) {
+                all.push_back(without(*low, *high, m));
                 steps += of_term * all.back().sum.size();
-                if (all.size() > max_inequalities) return false;
             }
     }
 }

@@ -3,6 +3,7 @@
 #include "proof/continuity.h"
 
 #include "ir/passes/walk.h"
+#include "proof/exact.h"
 #include "proof/polynomials.h"
 
 #include <algorithm>
@@ -28,8 +29,10 @@ bool same(Graph &graph, NodeId a, NodeId b, Work *work) {
     // of one op of one argument, or of vectors: the same of the same
     if (alike && (x.count == 1 || x.type != ir::Type::Float)) {
         bool all = true;
-        for (int i = 0; i < int(x.count); ++i)
-            all = all && same(graph, graph.arg(a, i), graph.arg(b, i), work);
+        for (int i = 0; i < int(x.count); ++i) {
+            const NodeId u = graph.arg(a, i), v = graph.arg(b, i);
+            all = all && (tells_apart[x.op] ? exactly_same(graph, u, v) : same(graph, u, v, work));
+        }
         if (all) return true;
     }
     if (x.type != ir::Type::Float) return false;

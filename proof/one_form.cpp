@@ -2,6 +2,7 @@
 // are, `mix` at its ends, lengths as roots of sums, sines of counts by those of their parts.
 #include "proof/border_sides.h"
 #include "proof/continuity.h"
+#include "proof/exact.h"
 
 #include <array>
 #include <cmath>
@@ -77,7 +78,9 @@ NodeId Canonical::of(NodeId id, int depth) {
 NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
     std::vector<NodeId> args;
     for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
-        args.push_back(of(a, depth + 1));
+        args.push_back(border && tells_apart[node.op] && graph[a].type != ir::Type::Int
+                           ? exact_argument(a, depth + 1)
+                           : of(a, depth + 1));
     if (node.op == Op::Mix)
         if (auto t = number(args[2]); t && (*t == 0 || *t == 1)) return args[*t == 0 ? 0 : 1];
     if (const auto known_one = decided(node, args)) return *known_one;
@@ -124,6 +127,46 @@ NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
         return graph.make(Op::Make, node.type, parts);
     }
     return made;
+}
+
+NodeId Canonical::exact_argument(NodeId id, int depth) {
+    const ir::Type type = graph[id].type;
+    if (type != ir::Type::Float && !ir::is_vector(type)) return of(id, depth);
+    std::vector<NodeId> parts;
+    for (int i = 0; i < ir::components(type); ++i) parts.push_back(exact(id, i, depth));
+    return parts.size() == 1 ? parts[0] : graph.make(Op::Make, type, parts);
+}
+
+NodeId Canonical::exact(NodeId id, int component, int depth) {
+    if (auto it = exacts.find({id, component}); it != exacts.end()) return it->second;
+    const NodeId form = component_of(graph, of(id, depth + 1), component);
+    if (failed || is_exact(graph, form)) return form;
+    const NodeId out = as_computed(id, component, depth + 1);
+    if (is_exact(graph, out)) return exacts[{id, component}] = scalar(out);
+    // a K that is a number is computed with here, in another precision
+    failed = failed || (border && border->counts.range.is_point());
+    return exacts[{id, component}] = out;
+}
+
+NodeId Canonical::as_computed(NodeId id, int component, int depth) {
+    const ir::Node node = graph[id];
+    if (node.op == Op::Swizzle)
+        return exact(graph.arg(id, 0), ir::swizzle_component(node.payload, component), depth);
+    if (node.op == Op::Splat) return exact(graph.arg(id, 0), 0, depth);
+    if (node.op == Op::Make && ir::is_vector(node.type))
+        return exact(graph.arg(id, component), 0, depth);
+    const bool known_there = node.count == 0 || (is_step[node.op] && node.type != ir::Type::Int);
+    if (known_there || (node.type != ir::Type::Float && !ir::is_vector(node.type)))
+        return component_of(graph, of(id, depth), component);
+    constexpr ir::OpSet mixes{Op::Cross, Op::Normalize, Op::MatMul, Op::Dot, Op::Length};
+    const bool parted = ir::info(node.op).rule == ir::TypeRule::Same && !mixes[node.op];
+    std::vector<NodeId> args;
+    for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
+        args.push_back(parted ? exact(a, ir::is_vector(graph[a].type) ? component : 0, depth)
+                              : exact_argument(a, depth));
+    if (failed) return id;
+    if (parted) return graph.make(node.op, ir::Type::Float, args, node.payload);
+    return component_of(graph, graph.make(node.op, node.type, args, node.payload), component);
 }
 
 NodeId Canonical::step(NodeId id, const ir::Node &node, int depth) {

@@ -1,6 +1,7 @@
 #include "proof/polynomials.h"
 
 #include "proof/continuity.h"
+#include "proof/exact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -163,6 +164,7 @@ std::optional<Polynomial> Expansion::written(NodeId id) {
     double sign = 1;
     for (int i = 0; i < int(node.count); ++i) {
         auto a = of(arg(i));
+        if (tells_apart[node.op] && !(a && is_exact(graph_, *a))) return alone;
         if (a && !a->empty() && mirrored[node.op] && leads_below_zero(*a)) {
             for (auto &[m, x] : *a) x = -x;
             sign = node.op == Op::Sin ? -sign : sign;

@@ -220,14 +220,15 @@ Slot Flattener::loop(Scope &scope, NodeId id) {
         inner.slots[var] = s;
         inner.depends[var] = true;
     }
-    std::vector<NodeId> roots = loop.next;
+    std::vector<NodeId> roots;
+    for (NodeId next : loop.next) roots.push_back(written_out(graph, next));
     plan.has_condition = static_cast<bool>(loop.condition);
-    if (plan.has_condition) roots.push_back(loop.condition);
+    if (plan.has_condition) roots.push_back(written_out(graph, loop.condition));
     walk(inner, roots);
     if (tape.too_large) return 0;
-    for (NodeId next : loop.next) plan.next.push_back(slot(inner, next));
+    for (std::size_t i = 0; i < loop.next.size(); ++i) plan.next.push_back(slot(inner, roots[i]));
     if (plan.has_condition) {
-        plan.condition = slot(inner, loop.condition);
+        plan.condition = slot(inner, roots.back());
         plan.condition_varies = varies[plan.condition];
     }
 
@@ -258,12 +259,12 @@ std::size_t Tape::length() const {
 Tape flatten(Flattening &context, NodeId root) {
     Flattener flattener(context);
     if (const auto it = context.written.find(root); it != context.written.end()) root = it->second;
+    root = written_out(context.graph, root); // forms are seen through calls
     const bool steps = has_steps(context.graph, root),
                choices = context.borders && has_choices(context.graph, root);
     if (steps || choices) {
-        const NodeId written = written_out(context.graph, root);
-        NodeId whole = with_signed_roots(context.graph, written);
-        const bool has_signed_roots = whole != written;
+        NodeId whole = with_signed_roots(context.graph, root);
+        const bool has_signed_roots = whole != root;
         if (steps) {
             flattener.cancelling = cancelling_steps(context.graph, whole, context.work);
             const Turned turned = without_angles(context.graph, whole);

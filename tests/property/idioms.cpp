@@ -221,6 +221,22 @@ constexpr std::array near_misses = {
     "[-sin(round(atan(p.z, p.x) * 6 / tau)), cos(round(atan(p.z, p.x) * 6 / tau))]) * p.xz - 1)",
     "length(rotate2(p.xz, round(atan(p.z, p.x) * 6 / tau) * tau / 6) - vec2(1, 0))",
     "length(rotate2(p.xz, -round(atan(p.z, p.x) * 6 / tau) * tau / 6) - vec2(1, 0.01))",
+    // hashes and steps of numbers that rounding alone makes other ones
+    "p.y + 0.3 * (if p.x < p.z { hash(time) } else { hash(time * 1.0000002) })",
+    "p.y + 0.3 * (if abs(p.x) < 0.5 { hash(time) } else { hash(time * 1.0000002) })",
+    "p.y + 0.3 * (if p.x < p.z { hash(3 * (time + 0.1)) } else { hash(3 * time + 0.3) })",
+    "p.y + 0.3 * (if p.x < 0 { hash(time * 0.1 + time * 0.2) } else { hash(time * 0.3) })",
+    "p.y + (if p.x < p.z { floor(time * 0.1 + time * 0.2) } else { floor(time * 0.3) })",
+    "p.y + (if p.x < p.z { fract(43758.54 * sin(time)) } else { fract(43758.55 * sin(time)) })",
+    "mix(hash(0.1 * floor(p.x)), hash(0.1 * floor(p.x) + 0.1), fract(p.x))",
+    "mix(fract(sin(12.9898 * floor(p.x)) * 43758.5453), "
+    "fract(sin(12.9898 * floor(p.x) + 12.9898) * 43758.5453), fract(p.x))",
+    "mix(hash(0.3 * floor(p)), hash(0.3 * floor(p) + vec3(0.3, 0, 0)), fract(p.x))",
+    // roots of sums that hold a small square more
+    "if p.z < 0 { length(vec2(p.x, 0.0006)) } else { abs(p.x) }",
+    "p.x + (if p.z < 0 { length(vec2(p.x - p.y, 0.0007 * p.y)) } else { abs(p.x - p.y) })",
+    "if p.z < 0 { sqrt(p.x * p.x - 1.9999998 * p.x * p.y + p.y * p.y) } else { abs(p.x - p.y) }",
+    "p.y - 0.2 * (if p.x < 0 { length(vec3(p.x, p.z, 0.0007)) } else { length(p.xz) })",
     // norms of powers: two powers, no size
     "pow(pow(abs(p.x), 2.5) + pow(abs(p.y), 2.4), 1 / 2.5)",
     "pow(pow(p.x, 2.5) + pow(p.y, 2.5), 1 / 2.5)",
@@ -271,6 +287,12 @@ constexpr std::array steep = {
     Steep{"sign(if p.x < 0 { -4 * p.x * p.x } else { 4 * p.x * p.x }) * "
           "sqrt(abs(if p.x < 0 { -4 * p.x * p.x } else { 4 * p.x * p.x }))",
           2},
+    // what single precision has exactly
+    Steep{"p.y + mix(hash(floor(p.x)), hash(floor(p.x) + 1), fract(p.x))", 1.4142136},
+    Steep{"p.y + mix(hash(0.5 * floor(p.x)), hash(0.5 * floor(p.x) + 0.5), fract(p.x))", 1.4142136},
+    Steep{"p.y + 0.1 * mix(fract(sin(12.9898 * floor(p.x)) * 43758.5453), "
+          "fract(sin(12.9898 * (floor(p.x) + 1)) * 43758.5453), fract(p.x))",
+          1.0049},
     Steep{"if sign(p.x) + sign(p.y) < 1 { p.z } else { p.z + min(p.x, p.y) }", 1.4142136},
     Steep{"length(max(vec2(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)) + "
           "min(max(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)",
@@ -334,6 +356,30 @@ TEST_CASE("what agrees up to a distance alone is proved up to there") {
     CHECK(good(field, "ball(2)"));
     CHECK(good(jumps, "ball(2)"));
     CHECK_FALSE(good(jumps, "ball(5000)"));
+}
+
+// The algebra of cases counts: the work that is allowed is not used up, nor minutes.
+TEST_CASE("a field of many cases is answered by little work") {
+    driver::CompileOptions options;
+    options.limits.proof = 15'000'000;
+    const driver::Compilation c =
+        driver::compile_text("cases.sdf",
+                             "param k = 0.5 in 0..1\n"
+                             "implicit(p => {\n"
+                             "  var q = cross(p, vec3(0.6, 0.6, 0.6))\n"
+                             "  q = (q + 0.575) % 0.75 - 0.375\n"
+                             "  for i in 0..4 {\n"
+                             "    q = abs(q) - vec3(0.5, 0.3, 0.1 * i)\n"
+                             "    q.xy = rotate2(q.xy, i)\n"
+                             "  }\n"
+                             "  if not (length(q.xy) > k) { return (q.y - 0.2 * q.x) }\n"
+                             "  let s = (if q.y <= 0 { -1 } else { 1 }) * length(vec2(q.y, 0))\n"
+                             "  if q.x < k or q.x > 1 { atan(s) }\n"
+                             "  else { atan(s) + min(q.x - k, 1 - q.x) }\n"
+                             "}, within: ball(2))\n",
+                             "", options);
+    REQUIRE_FALSE(c.good());
+    for (const Diagnostic &d : c.diagnostics.items()) CHECK(d.code == Code::LipschitzUnbounded);
 }
 
 TEST_CASE("the bound by pieces is the steepest slope") {

@@ -56,7 +56,8 @@ struct Verdict {
 inline bool is_of_the_proof(Code code) {
     return code == Code::LipschitzUnbounded || code == Code::FieldJump ||
            code == Code::FieldSingular || code == Code::NeedsRegion || code == Code::BadArgument ||
-           code == Code::RepeatLimit || code == Code::StageMismatch || code == Code::NumberRange;
+           code == Code::RepeatLimit || code == Code::StageMismatch || code == Code::NumberRange ||
+           code == Code::ProofLimit;
 }
 
 // Points next to where things turn: coordinates are often a multiple of 1/8, or off by little, but

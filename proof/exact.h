@@ -1,0 +1,20 @@
+// Numbers that single precision computes exactly. What tells numbers apart that rounding alone makes
+// different ones (a hash, a step) may count as equal of those alone, or of what is the same node:
+// `hash(n + 0.3)` is another number than `hash(0.1 * (k + 3))` where n is 0.1 k.
+#pragma once
+
+#include "proof/polynomials.h"
+
+namespace fathom::proof {
+
+// Ops whose values may differ by much for arguments that differ by rounding.
+constexpr ir::OpSet tells_apart{ir::Op::Hash,  ir::Op::Floor, ir::Op::Ceil, ir::Op::Round,
+                                ir::Op::Trunc, ir::Op::Fract, ir::Op::Mod,  ir::Op::ToInt};
+
+// Whole numbers (below 2^24) and their products, each times a number of few bits.
+bool is_exact(const ir::Graph &graph, const Polynomial &sum);
+bool is_exact(ir::Graph &graph, ir::NodeId scalar);
+// The same node, or the same exact number, by component.
+bool exactly_same(ir::Graph &graph, ir::NodeId a, ir::NodeId b);
+
+} // namespace fathom::proof
