@@ -16,7 +16,7 @@ template <class Result> Result without(Refusal why) {
     return result;
 }
 
-Enclosure translated(const fathom::mesh::Enclosure &of) { return {of.lo, of.hi}; }
+Enclosure enclosure_of(const fathom::mesh::Enclosure &of) { return {of.lo, of.hi}; }
 
 Box box_of(const std::vector<fathom::mesh::Point> &points) {
     Box box{points[0], points[0]};
@@ -41,11 +41,11 @@ Measures measured(const Scene &scene, const MeshOptions &options) {
         fathom::mesh::measure(ir_of(scene), settings, made, progress);
     if (progress.cancelled) return without<Measures>(refusal_of(fathom::mesh::Failure::Cancelled));
     Measures result;
-    result.volume = translated(found.volume);
+    result.volume = enclosure_of(found.volume);
     for (std::size_t i = 0; i < 3; ++i) {
-        result.center[i] = translated(found.center[i]);
-        result.least[i] = translated(found.least[i]);
-        result.greatest[i] = translated(found.greatest[i]);
+        result.center[i] = enclosure_of(found.center[i]);
+        result.least[i] = enclosure_of(found.least[i]);
+        result.greatest[i] = enclosure_of(found.greatest[i]);
     }
     const fathom::mesh::MeshSums sums = fathom::mesh::sums_of(made.mesh);
     result.mesh_volume = sums.volume;
@@ -86,7 +86,7 @@ Clearance clearance(const Scene &a, const Scene &b, double tolerance, double tim
                 fathom::mesh::clearance(ir_of(a), ir_of(b), time, tolerance, told);
             if (Refusal why = refusal_of(found.failure)) return without<Clearance>(std::move(why));
             Clearance result;
-            result.distance = translated(found.distance);
+            result.distance = enclosure_of(found.distance);
             result.near = found.near;
             result.rests_on = rests_on(found.used_bound);
             return result;

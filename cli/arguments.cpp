@@ -125,6 +125,7 @@ struct Reader {
     FarmCommand farm;
     MeshCommand mesh;
     MeasureCommand measure;
+    SliceCommand slice;
     EvalCommand eval;
     ViewCommand view;
     ImportCommand import;
@@ -200,6 +201,7 @@ struct Reader {
         add_farm();
         add_mesh();
         add_measure();
+        add_slice();
         add_eval();
         add_import();
         add_export();
@@ -366,6 +368,22 @@ struct Reader {
         for (const OptionRow &row : measure_rows(measure)) add_row(sub, row);
         add_row(sub, units_row(measure.solid, "to print numbers in it"));
         sub->add_flag("--json", measure.json, "one JSON document on standard output");
+    }
+
+    void add_slice() {
+        slice.solid.resolution = 512;
+        CLI::App *sub = command("slice", "write where planes cut the solid, as contours", slice);
+        add_solid(sub, slice.solid);
+        for (const OptionRow &row : slice_rows(slice)) add_row(sub, row);
+        add_out(sub, slice.out,
+                "a .svg, .dxf or .png (`-`: an SVG to standard output); `#`s or %04d stand for the "
+                "slice's number")
+            ->type_name("OUT.svg")
+            ->required();
+        add_size(sub, slice.width, slice.height);
+        add_row(sub, units_row(slice.solid, "which .svg and .dxf say"));
+        sub->add_flag("--json", slice.json,
+                      "say what is proved of each slice: one JSON document on standard output");
     }
 
     void add_eval() {

@@ -146,6 +146,15 @@ struct MeasureCommand {
     std::vector<std::pair<std::string, std::string>> between; // parts, whose clearance is wanted
     bool json = false;
 };
+// `fathom slice`.
+struct SliceCommand {
+    SolidArguments solid;
+    std::string out;                 // `#`s, or %04d, stand for the slice's number
+    char axis = 0;                   // x, y or z; 0: none was said
+    std::vector<double> heights;     // along it
+    int width = 1024, height = 1024; // of a PNG
+    bool json = false;
+};
 // `fathom eval`.
 struct EvalCommand {
     SceneArguments scene;
@@ -200,7 +209,7 @@ struct BenchCommand {
 
 using Command =
     std::variant<CheckCommand, CompileCommand, RenderCommand, MergeCommand, FarmCommand,
-                 MeshCommand, MeasureCommand, EvalCommand, ViewCommand, ImportCommand,
+                 MeshCommand, MeasureCommand, SliceCommand, EvalCommand, ViewCommand, ImportCommand,
                  ExportCommand, FmtCommand, DocCommand, ExplainCommand, LspCommand, BenchCommand>;
 
 // A command with the options that all commands share.
@@ -227,6 +236,7 @@ Exit run(const MergeCommand &, Terminal &);
 Exit run(const FarmCommand &, Terminal &);
 Exit run(const MeshCommand &, Terminal &);
 Exit run(const MeasureCommand &, Terminal &);
+Exit run(const SliceCommand &, Terminal &);
 Exit run(const EvalCommand &, Terminal &);
 Exit run(const ViewCommand &, Terminal &);
 Exit run(const ImportCommand &, Terminal &);

@@ -174,6 +174,16 @@ std::string of(const MeasureCommand &measure, const Given &given) {
     return of_cells(given);
 }
 
+std::string of(const SliceCommand &slice, const Given &given) {
+    if (given("--x") + given("--y") + given("--z") != 1)
+        return "slices lie across one axis: give one of --x, --y and --z, as --z 0..10:0.2";
+    if (slice.json && slice.out == "-")
+        return "--json and the slice cannot both go to standard output: name a file by -o";
+    if (given("--size") && suffix_of(slice.out) != ".png")
+        return "--size is of a PNG: -o OUT.png writes one";
+    return of_cells(given);
+}
+
 std::string of(const EvalCommand &eval, const Given &) {
     if (eval.coordinates.size() % 3 != 0)
         return fmt::format("points are three numbers each, and these are {}",

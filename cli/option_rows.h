@@ -30,5 +30,6 @@ std::vector<std::string> words_of_pictures(const RenderCommand &command);
 std::vector<OptionRow> solid_rows(SolidArguments &solid);
 OptionRow units_row(SolidArguments &solid, const std::string &what_for);
 std::vector<OptionRow> measure_rows(MeasureCommand &command);
+std::vector<OptionRow> slice_rows(SliceCommand &command);
 
 } // namespace fathom::cli

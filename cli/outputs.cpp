@@ -17,15 +17,15 @@ struct Suffix {
 };
 
 // The suffixes that promise what a file holds. Others promise nothing and are free.
-constexpr std::array<Suffix, 22> suffixes{
-    {{".png", Content::Picture}, {".jpg", Content::Picture}, {".jpeg", Content::Picture},
-     {".exr", Content::Picture}, {".mp4", Content::Film},    {".webm", Content::Film},
-     {".gif", Content::Film},    {".apng", Content::Film},   {".sums", Content::Sums},
-     {".glsl", Content::Shader}, {".frag", Content::Shader}, {".spv", Content::SpirV},
-     {".html", Content::Page},   {".htm", Content::Page},    {".stl", Content::Mesh},
-     {".obj", Content::Mesh},    {".ply", Content::Mesh},    {".glb", Content::Mesh},
-     {".3mf", Content::Mesh},    {".sdf", Content::Scene},   {".yaml", Content::SaveFile},
-     {".yml", Content::SaveFile}}};
+constexpr std::array<Suffix, 24> suffixes{
+    {{".png", Content::Picture}, {".jpg", Content::Picture},   {".jpeg", Content::Picture},
+     {".exr", Content::Picture}, {".mp4", Content::Film},      {".webm", Content::Film},
+     {".gif", Content::Film},    {".apng", Content::Film},     {".sums", Content::Sums},
+     {".glsl", Content::Shader}, {".frag", Content::Shader},   {".spv", Content::SpirV},
+     {".html", Content::Page},   {".htm", Content::Page},      {".stl", Content::Mesh},
+     {".obj", Content::Mesh},    {".ply", Content::Mesh},      {".glb", Content::Mesh},
+     {".3mf", Content::Mesh},    {".svg", Content::Slice},     {".dxf", Content::Slice},
+     {".sdf", Content::Scene},   {".yaml", Content::SaveFile}, {".yml", Content::SaveFile}}};
 
 const Suffix *known_suffix(std::string_view suffix) {
     const auto *known = std::find_if(suffixes.begin(), suffixes.end(),
@@ -42,6 +42,7 @@ std::string_view name_of(Content content) {
     case Content::SpirV: return "a SPIR-V file";
     case Content::Page: return "a web page";
     case Content::Mesh: return "a mesh";
+    case Content::Slice: return "a slice";
     case Content::Scene: return "a scene";
     case Content::SaveFile: return "a save file";
     }
@@ -68,6 +69,7 @@ std::string writer_of(Content content) {
     case Content::SpirV:
     case Content::Page: return compiler_of(content);
     case Content::Mesh: return "`fathom mesh`";
+    case Content::Slice: return "`fathom slice`";
     case Content::Scene: return "`fathom import`";
     case Content::SaveFile: return "`fathom export`";
     }
@@ -134,6 +136,7 @@ bool misnamed(const std::string &out, Content content, Terminal &terminal) {
     if (is_stream(out)) return false;
     const std::string suffix = suffix_of(out);
     const Suffix *known = known_suffix(suffix);
+    if (content == Content::Slice && suffix == ".png") return false;
     if (known && known->content != content) {
         terminal.say(fmt::format("fathom: -o {}: `{}` is {}, and this writes {}; {} writes {}", out,
                                  suffix, name_of(known->content), name_of(content),
@@ -153,6 +156,10 @@ bool misnamed(const std::string &out, Content content, Terminal &terminal) {
     if (content == Content::Mesh && !known) {
         terminal.say(fmt::format(
             "fathom: -o {}: meshes are written as .stl, .obj, .ply, .glb or .3mf", out));
+        return true;
+    }
+    if (content == Content::Slice && !known) {
+        terminal.say(fmt::format("fathom: -o {}: slices are written as .svg, .dxf or .png", out));
         return true;
     }
     return false;

@@ -57,6 +57,20 @@ OptionRow units_row(SolidArguments &solid, const std::string &what_for) {
             }};
 }
 
+std::vector<OptionRow> slice_rows(SliceCommand &command) {
+    std::vector<OptionRow> rows;
+    for (const char axis : {'x', 'y', 'z'})
+        rows.push_back({fmt::format("--{}", axis), "HEIGHTS",
+                        fmt::format("across {}: A..B:STEP leaves B out, A..=B:STEP takes it in; "
+                                    "one number; lists by commas",
+                                    axis),
+                        [&command, axis](const std::string &word) {
+                            command.axis = axis;
+                            return read_heights(word, command.heights);
+                        }});
+    return rows;
+}
+
 std::vector<OptionRow> measure_rows(MeasureCommand &command) {
     return {{"--density", "D",
              "also the mass: of a volume of 1, or in g/cm3 where --units says what a length is",

@@ -1,6 +1,7 @@
 // See words.h.
 #include "cli/words.h"
 
+#include "base/single.h"
 #include "base/text.h"
 
 #include <algorithm>
@@ -191,6 +192,42 @@ std::string read_override(const std::string &word, std::vector<Definition> &over
         return fmt::format("a param is set as -D name=value, not `{}`", word);
     overrides.push_back({word.substr(0, equals), word.substr(equals + 1)});
     return "";
+}
+
+std::string read_heights(const std::string &word, std::vector<double> &heights) {
+    constexpr std::size_t most = 100'000;
+    const std::string wrong = fmt::format(
+        "wants heights, as 1.5, 0..10:0.2 or 0..=10:0.2, or a list of them by commas, not `{}`",
+        word);
+    const auto good = [](std::optional<double> n) { return n && fits_single(*n); };
+    for (std::string_view rest = word; !rest.empty();) {
+        const std::string_view part = rest.substr(0, rest.find(','));
+        rest.remove_prefix(std::min(part.size() + 1, rest.size()));
+        const std::optional<Range> range = range_of(part);
+        if (!range) {
+            const std::optional<double> one = parse_number(part);
+            if (!good(one)) return wrong;
+            heights.push_back(*one);
+            continue;
+        }
+        const std::size_t colon = range->last.find(':');
+        if (colon == range->last.npos)
+            return fmt::format("wants a step: {}:0.2, if a slice is to lie every 0.2", part);
+        const std::optional<double> from = parse_number(range->first),
+                                    to = parse_number(range->last.substr(0, colon)),
+                                    step = parse_number(range->last.substr(colon + 1));
+        if (!good(from) || !good(to) || !good(step) || !(*step > 0) || !(*from <= *to))
+            return wrong;
+        // A number of steps that is whole but for rounding is taken for whole.
+        const double steps = (*to - *from) / *step, whole = std::round(steps);
+        const bool even = std::fabs(steps - whole) < 1e-6;
+        const double count = even ? whole + (range->inclusive ? 1 : 0) : std::floor(steps) + 1;
+        if (!(static_cast<double>(heights.size()) + count <= most))
+            return fmt::format("wants at most {} heights", most);
+        for (double k = 0; k < count; ++k) heights.push_back(*from + k * *step);
+    }
+    if (heights.empty() || word.back() == ',') return wrong;
+    return heights.size() > most ? fmt::format("wants at most {} heights", most) : "";
 }
 
 } // namespace fathom::cli

@@ -17,6 +17,8 @@ std::string read_point(const std::string &word, std::array<double, 3> &point); /
 std::string read_box(const std::string &word, std::array<std::array<double, 3>, 2> &box);
 // 0..48, 0..=47, 0..=240:2, 7, and lists of them by commas: frames from 0 to 1,000,000.
 std::string read_frames(const std::string &word, FrameList &frames);
+// 1.5, 0..10:0.2, 0..=10:0.2, and lists of them by commas: 1 to 100,000 finite numbers.
+std::string read_heights(const std::string &word, std::vector<double> &heights);
 // name=0..1 and name=0..=1: two finite numbers.
 std::string read_sweep(const std::string &word, std::vector<Sweep> &sweeps);
 // 16, or 4..8 and 4..=7: samples of a pixel, 0 to 256.

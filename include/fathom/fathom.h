@@ -16,4 +16,5 @@
 #include <fathom/save_format.h>
 #include <fathom/scene.h>
 #include <fathom/shader.h>
+#include <fathom/slice.h>
 #include <fathom/watch.h>

@@ -1,0 +1,147 @@
+// fathom slice: where planes cut a solid, as files of contours or pictures.
+#include "base/text.h"
+#include "cli/frames.h"
+#include "cli/interrupt.h"
+#include "cli/solid.h"
+
+#include <fathom/slice.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace fathom::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string bytes_of(const v1::Slices &cut, std::size_t k, const SliceCommand &command,
+                     const std::string &suffix) {
+    const UnitRow *unit = unit_named(command.solid.units);
+    const v1::MeshUnit of = unit ? unit->unit : v1::MeshUnit::Unsaid;
+    if (suffix == ".dxf") return v1::dxf_file(cut, k, of);
+    if (suffix == ".png")
+        return v1::encode_png(v1::slice_picture(cut, k, command.width, command.height));
+    return v1::svg_file(cut, k, of,
+                        fmt::format("{} at {} = {}", command.solid.scene.file, command.axis,
+                                    format_shortest(cut.slices[k].at)));
+}
+
+// %04d as ####, which frames are named by.
+std::string with_places(const std::string &out) {
+    const std::size_t begin = out.rfind('%'), end = out.find('d', begin);
+    if (begin == out.npos || end == out.npos || out.find('#') != out.npos) return out;
+    const std::string_view digits = std::string_view(out).substr(begin + 1, end - begin - 1);
+    const std::optional<double> count = digits.empty() ? 1 : parse_number(digits);
+    if (!count || !(*count >= 1 && *count <= 12) ||
+        digits.find_first_not_of("0123456789") != digits.npos)
+        return out;
+    return out.substr(0, begin) + std::string(static_cast<std::size_t>(*count), '#') +
+           out.substr(end + 1);
+}
+
+std::string file_of(const SliceCommand &command, std::size_t k) {
+    const std::string out = with_places(command.out);
+    return command.heights.size() == 1 && out.find('#') == out.npos
+               ? out
+               : frame_name(out, static_cast<int>(k));
+}
+
+Json json_of(const v1::Slice &slice, const std::string &file) {
+    Json json{
+        {"at", slice.at},
+        {"file", file},
+        {"status", slice.certified ? "certified" : "partial"},
+        {"contours", slice.contours.size()},
+        {"area",
+         {{"value", slice.contours_area}, {"least", slice.area.lo}, {"most", slice.area.hi}}}};
+    const auto everywhere = [&](double d) { return slice.certified ? Json(d) : Json(); };
+    json["contours_to_border"] = everywhere(slice.contours_to_border);
+    json["border_to_contours"] = everywhere(slice.border_to_contours);
+    json["undecided_squares"] = slice.undecided_squares;
+    return json;
+}
+
+void say_undecided(const v1::Slices &cut, const SliceCommand &command, Terminal &terminal) {
+    std::size_t slices = 0, squares = 0;
+    const v1::Slice *first = nullptr;
+    for (const v1::Slice &slice : cut.slices) {
+        if (slice.certified) continue;
+        if (!first) first = &slice;
+        ++slices;
+        squares += slice.undecided_squares;
+    }
+    if (!first) return;
+    const v1::PlaneBox &box = first->undecided.front();
+    terminal.say(fmt::format(
+        "{}: {} squares of {} slices may hold border that the contours do not show, the first of "
+        "them at {} = {} from [{:.6g}, {:.6g}] to [{:.6g}, {:.6g}]; another height, if a face "
+        "lies in the plane, or a larger `--resolution` tells more",
+        command.out, squares, slices, command.axis, format_shortest(first->at), box.lo[0],
+        box.lo[1], box.hi[0], box.hi[1]));
+}
+
+// Refused before any work is done.
+Exit refused(const SliceCommand &command, Terminal &terminal) {
+    if (misnamed(command.out, Content::Slice, terminal)) return usage_error;
+    if (command.out == "-" && command.heights.size() > 1) {
+        terminal.say(
+            "fathom: -o -: standard output takes one slice: name files, as layer_####.svg");
+        return usage_error;
+    }
+    for (const std::size_t k : {std::size_t{0}, command.heights.size() - 1}) {
+        if (overwrites(command.solid.scene.file, file_of(command, k), terminal)) return usage_error;
+        if (unwritable(file_of(command, k), terminal)) return device_error;
+    }
+    return done;
+}
+
+} // namespace
+
+Exit run(const SliceCommand &command, Terminal &terminal) {
+    if (const Exit exit = refused(command, terminal); exit != done) return exit;
+    const Solid solid = open_solid(command.solid, terminal);
+    if (!solid.scene) return solid.exit;
+    for (std::size_t k = 0; k < command.heights.size(); ++k)
+        if (overwrites(solid.files, file_of(command, k), terminal)) return usage_error;
+    const v1::Axis axis = command.axis == 'x'   ? v1::Axis::X
+                          : command.axis == 'y' ? v1::Axis::Y
+                                                : v1::Axis::Z;
+    v1::MeshOptions options = options_of(command.solid);
+    const Interrupts interrupts;
+    options.progress = [&](double share) {
+        terminal.progress(command.out, share);
+        return !Interrupts::noticed();
+    };
+    std::vector<float> heights(command.heights.begin(), command.heights.end());
+    const v1::Slices cut = v1::slice(*solid.scene, axis, heights, options);
+    terminal.finish_progress();
+    if (Interrupts::noticed()) { // nothing is written
+        terminal.flush();
+        Interrupts::obey();
+    }
+    if (!cut)
+        return say_refusal(command.solid.scene.file, "slices", cut.status, cut.message, terminal);
+    say_undecided(cut, command, terminal);
+    Json json{{"axis", std::string(1, command.axis)}, {"side", cut.side}};
+    json["slices"] = Json::array();
+    std::size_t empty = 0;
+    for (std::size_t k = 0; k < cut.slices.size(); ++k) {
+        const std::string file = file_of(command, k);
+        const std::string bytes =
+            bytes_of(cut, k, command, command.out == "-" ? ".svg" : suffix_of(file));
+        if (bytes.empty()) throw std::bad_alloc();
+        if (const Exit exit = write_result(file, bytes, terminal); exit != done) return exit;
+        if (Interrupts::noticed()) Interrupts::obey(); // between files, each of them whole
+        json["slices"].push_back(json_of(cut.slices[k], file));
+        empty += cut.slices[k].contours.empty();
+    }
+    if (empty == cut.slices.size())
+        terminal.say(fmt::format("{}: no plane meets the solid, which lies from {} = {} to {}",
+                                 command.out, command.axis, format_shortest(cut.along[0]),
+                                 format_shortest(cut.along[1])));
+    json["rests_on"] = cut.rests_on;
+    if (command.json) terminal.put(json.dump() + "\n");
+    return done;
+}
+
+} // namespace fathom::cli

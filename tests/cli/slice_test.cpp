@@ -1,0 +1,90 @@
+// `fathom slice` as scripts see it.
+#include "shell.h"
+
+#include <catch2/catch.hpp>
+
+#include <nlohmann/json.hpp>
+
+using Json = nlohmann::json;
+
+TEST_CASE("slices are files of one frame, by number and suffix") {
+    ScratchFolder folder;
+    folder.write("ring.sdf", "param r = 1 in 0.5..2\ntorus(r, 0.3).rotate(90deg, axis: X)\n");
+    const Result made = shell(folder, "fathom slice ring.sdf --z 0..0.3:0.1 -o layer_%04d.svg "
+                                      "--resolution 64 --units mm --json");
+    CHECK(made.exit == 0);
+    CHECK(made.err.empty());
+    const Json json = Json::parse(made.out);
+    REQUIRE(json["slices"].size() == 3);
+    std::string frame;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::string name = "layer_000" + std::to_string(k) + ".svg",
+                          svg = folder.read(name.c_str());
+        CHECK(json["slices"][k]["file"] == name);
+        CHECK(json["slices"][k]["status"] == "certified");
+        CHECK(json["slices"][k]["contours"] == 2);
+        CHECK(contains(svg, "fill-rule=\"evenodd\""));
+        const std::string head = svg.substr(0, svg.find("<title>"));
+        if (k > 0) CHECK(head == frame);
+        frame = head;
+    }
+    CHECK(contains(frame, "mm\""));
+    CHECK(shell(folder, "fathom slice ring.sdf --z 0 -o a.dxf --resolution 32").exit == 0);
+    CHECK(folder.read("a.dxf").starts_with("0\nSECTION\n"));
+    CHECK(shell(folder, "fathom slice ring.sdf --y 0,0.2 -o b.png --resolution 32 --size 64x48")
+              .exit == 0);
+    CHECK((fs::exists(folder / "b_0000.png") && fs::exists(folder / "b_0001.png")));
+    const Result one = shell(folder, "cat ring.sdf | fathom slice - --z 0.1 -o - --resolution 64");
+    CHECK((one.exit == 0 && one.out.starts_with("<svg ")));
+    // What the ends of a range are.
+    const Json closed = Json::parse(
+        shell(folder, "fathom slice ring.sdf --z 0..=0.3:0.1 -o l_##.svg --resolution 16 --json")
+            .out);
+    CHECK(closed["slices"].size() == 4);
+}
+
+TEST_CASE("a plane that misses the solid gives a file without contours, and says where it lies") {
+    ScratchFolder folder;
+    folder.write("ball.sdf", "sphere(1)\n");
+    const Result made = shell(folder, "fathom slice ball.sdf --z 7 -o a.svg");
+    CHECK(made.exit == 0);
+    CHECK(contains(made.err, "no plane meets the solid, which lies from z = "));
+    CHECK(contains(folder.read("a.svg"), "d=\"\""));
+}
+
+TEST_CASE("what cannot be sliced says why, and writes nothing") {
+    ScratchFolder folder;
+    folder.write("ground.sdf", "plane(Y, 0)\n");
+    folder.write("nothing.sdf", "sphere(1) & sphere(1).translate(x: 5)\n");
+    folder.write("ball.sdf", "sphere(1)\n");
+    folder.write("wrong.sdf", "shpere(1)\n");
+    fs::create_directory(folder / "d.svg");
+    const auto fails = [&](const std::string &arguments, int exit, const std::string &words) {
+        INFO(arguments);
+        const Result made = shell(folder, "fathom slice " + arguments);
+        CHECK(made.exit == exit);
+        INFO(made.err);
+        CHECK(contains(made.err, words));
+        CHECK_FALSE(fs::exists(folder / "a.svg"));
+    };
+    fails("ground.sdf --y 0.5 -o a.svg", 1, "`--bounds X,Y,Z,X,Y,Z`");
+    fails("nothing.sdf --z 0 -o a.svg", 1, "empty");
+    fails("wrong.sdf --z 0 -o a.svg", 1, "unknown-name");
+    fails("none.sdf --z 0 -o a.svg", 3, "none.sdf");
+    fails("ball.sdf -o a.svg", 2, "one of --x, --y and --z");
+    fails("ball.sdf --x 0 --z 0 -o a.svg", 2, "one of --x, --y and --z");
+    fails("ball.sdf --z 0..1 -o a.svg", 2, "wants a step");
+    fails("ball.sdf --z 0..1:0 -o a.svg", 2, "wants heights");
+    fails("ball.sdf --z nan -o a.svg", 2, "wants heights");
+    fails("ball.sdf --z 0..1e9:1e-9 -o a.svg", 2, "100000");
+    fails("ball.sdf --z 0, -o a.svg", 2, "wants heights");
+    fails("ball.sdf --z 0 -o a.stl", 2, "`fathom mesh`");
+    fails("ball.sdf --z 0 -o a.txt", 2, ".svg, .dxf or .png");
+    fails("ball.sdf --z 0 -o none/a.svg", 3, "none");
+    fails("ball.sdf --z 0 -o d.svg", 3, "is a directory");
+    fails("ball.sdf --z 0 -o a.svg --size 8x8", 2, "of a PNG");
+    fails("ball.sdf --z 0,1 -o -", 2, "takes one slice");
+    CHECK(shell(folder, "fathom slice ground.sdf --y=-0.5 --bounds=-1,-1,-1,1,1,1 -o a.svg").exit ==
+          0);
+    CHECK(shell(folder, "fathom mesh ball.sdf -o b.svg").exit == 2);
+}
