@@ -11,6 +11,23 @@ constexpr float short_enough = 32; // kernels
 // How far a coordinate is beyond the nearer end, negative between them.
 float beyond(float x, float lo, float hi) { return std::max(lo - x, x - hi); }
 
+// The ranges of the cut-off field, from those of the field.
+void cut_ranges(Evaluator &evaluator, const cpu::Boxes &boxes) {
+    const Field &field = evaluator.field;
+    if (!field.cut) return;
+    const auto &[lo, hi] = *field.cut;
+    for (std::size_t k = 0; k < boxes.count; ++k)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float a = boxes.lo[i][k], b = boxes.hi[i][k];
+            const float middle = std::clamp(0.5f * (lo[i] + hi[i]), a, b);
+            float &least = evaluator.ranges.result_lo[k], &most = evaluator.ranges.result_hi[k];
+            // It is least at the middle or the end next to it; rounding is monotone.
+            least = std::max(least, std::min({beyond(a, lo[i], hi[i]), beyond(b, lo[i], hi[i]),
+                                              beyond(middle, lo[i], hi[i])}));
+            most = std::max({most, beyond(a, lo[i], hi[i]), beyond(b, lo[i], hi[i])});
+        }
+}
+
 } // namespace
 
 Field::Field(const ir::Scene &scene, double time, const std::optional<ir::Box> &box)
@@ -70,18 +87,21 @@ void gradients_at(Evaluator &evaluator, const cpu::ShortTape &tape, const Points
 void ranges_over(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::Boxes &boxes) {
     const Field &field = evaluator.field;
     cpu::run_over(field.parts, evaluator.ranges, tape.selection(field.parts), boxes);
-    if (!field.cut) return;
-    const auto &[lo, hi] = *field.cut;
+    cut_ranges(evaluator, boxes);
+    const auto is_point = [&](std::size_t k) {
+        for (std::size_t i = 0; i < 3; ++i)
+            if (boxes.lo[i][k] != boxes.hi[i][k]) return false;
+        return true;
+    };
+    evaluator.points.clear();
     for (std::size_t k = 0; k < boxes.count; ++k)
-        for (std::size_t i = 0; i < 3; ++i) {
-            const float a = boxes.lo[i][k], b = boxes.hi[i][k];
-            const float middle = std::clamp(0.5f * (lo[i] + hi[i]), a, b);
-            float &least = evaluator.ranges.result_lo[k], &most = evaluator.ranges.result_hi[k];
-            // It is least at the middle or the end next to it; rounding is monotone.
-            least = std::max(least, std::min({beyond(a, lo[i], hi[i]), beyond(b, lo[i], hi[i]),
-                                              beyond(middle, lo[i], hi[i])}));
-            most = std::max({most, beyond(a, lo[i], hi[i]), beyond(b, lo[i], hi[i])});
-        }
+        if (is_point(k)) evaluator.points.add({boxes.lo[0][k], boxes.lo[1][k], boxes.lo[2][k]});
+    if (evaluator.points.size() == 0) return;
+    values_at(evaluator, tape, evaluator.points, evaluator.point_values);
+    for (std::size_t k = 0, n = 0; k < boxes.count; ++k)
+        if (is_point(k))
+            evaluator.ranges.result_lo[k] = evaluator.ranges.result_hi[k] =
+                evaluator.point_values[n++];
 }
 
 TapePtr shortened(Evaluator &evaluator, const TapePtr &tape, std::size_t box) {

@@ -51,6 +51,8 @@ struct Evaluator {
     cpu::GradientScratch gradients;
     cpu::Shortener ranges;
     cpu::ShortTape made;
+    Points points; // of boxes that are points, and their values
+    std::vector<float> point_values;
 };
 
 // `out`: one number a point.
@@ -59,7 +61,8 @@ void values_at(Evaluator &evaluator, const cpu::ShortTape &tape, const Points &p
 // `out`: the value and its derivatives. At a kink those of one side.
 void gradients_at(Evaluator &evaluator, const cpu::ShortTape &tape, const Points &points,
                   std::array<std::vector<float>, 4> &out);
-// Into evaluator.ranges.result_lo and result_hi: what the values in each box lie within.
+// Into evaluator.ranges.result_lo and result_hi: what the values in each box lie within. Of a box that
+// is a point, the value there, which its range may be wider than.
 void ranges_over(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::Boxes &boxes);
 // After ranges_over, with the same tape: a tape that holds in one of the boxes; the same one where a
 // shorter one does not pay.
