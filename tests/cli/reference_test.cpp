@@ -84,10 +84,10 @@ TEST_CASE("help lists every command") {
     const Result help = shell(folder, "fathom help");
     CHECK(help.exit == 0);
     CHECK(help.err.empty());
-    CHECK(commands_in_help(folder) == std::set<std::string>{"view", "check", "compile", "render",
-                                                            "mesh", "eval", "import", "export",
-                                                            "fmt", "doc", "explain", "lsp", "bench",
-                                                            "help", "merge", "farm"});
+    CHECK(commands_in_help(folder) ==
+          std::set<std::string>{"view", "check", "compile", "render", "mesh", "eval", "import",
+                                "export", "fmt", "doc", "explain", "lsp", "bench", "help", "merge",
+                                "farm", "measure", "slice"});
     for (const char *same : {"fathom --help", "fathom -h"}) {
         INFO(same);
         CHECK(shell(folder, same).out == help.out);
