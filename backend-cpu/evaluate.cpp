@@ -36,7 +36,11 @@ template <class Cell> class Runner {
         const Program::Block range = program_.blocks[block];
         for (std::uint32_t i = range.first; i < range.last; ++i) {
             const Step &step = program_.steps[i];
-            if (!one(step, program_.operands.data() + step.operands)) return false;
+            const std::uint32_t *operands = program_.operands.data() + step.operands;
+            if (step.kind == StepKind::Run)
+                loops_[step.target](cells_, operands, step.once ? 1 : n_);
+            else if (!one(step, operands))
+                return false;
         }
         return true;
     }

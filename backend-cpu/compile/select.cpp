@@ -17,12 +17,12 @@ namespace {
 using Values = std::vector<Value>;
 using Arguments = std::span<const Values>;
 
-Values by_component(Builder &builder, Kernel kernel, Arguments args) {
+Values by_component(Builder &builder, Kernel kernel, Arguments args, std::size_t output = 0) {
     Values out;
     for (std::size_t i = 0; i < args[0].size(); ++i) {
         Values in;
         for (const Values &arg : args) in.push_back(arg[i]);
-        out.push_back(builder.outputs(kernel, in)[0]);
+        out.push_back(builder.outputs(kernel, in)[output]);
     }
     return out;
 }
@@ -155,6 +155,8 @@ std::vector<Value> select(Builder &builder, const Node &node, Arguments args,
     auto together = [&](Kernel kernel) { return builder.outputs(kernel, joined(args)); };
     const std::size_t size = args.empty() ? 0 : args[0].size();
 
+    if (node.op == Op::Sin || node.op == Op::Cos) // the other one is often wanted, too
+        return by_component(builder, Kernel::SinCos, args, node.op == Op::Sin ? 0 : 1);
     switch (node.op) {
     case Op::Neg: return either(Kernel::NegF, Kernel::NegI);
     case Op::Add: return either(Kernel::AddF, Kernel::AddI);

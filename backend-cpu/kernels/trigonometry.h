@@ -5,6 +5,7 @@
 // Other number types go to the functions of <cmath> or to those found by ADL.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -68,6 +69,21 @@ template <class F> F cosine(F x) {
     } else {
         using std::cos;
         return cos(x);
+    }
+}
+
+// Both, which rotations want: as long as one of them takes. Signs by one condition each, so that
+// loops over it vectorise.
+template <class F> std::array<F, 2> sine_cosine(F x) {
+    if constexpr (std::is_same_v<F, float>) {
+        const Quadrant q = quadrant(x);
+        const float square = q.quarter * q.quarter;
+        const float s = sine_part(q.rest), c = cosine_part(q.rest);
+        const float high = square == 1 ? c : s, wide = square == 1 ? s : c;
+        const bool below = (q.quarter < 0) | (square == 4), left = (q.quarter > 0) | (square == 4);
+        return {below ? -high : high, left ? -wide : wide};
+    } else {
+        return {sine(x), cosine(x)};
     }
 }
 

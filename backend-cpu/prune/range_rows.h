@@ -40,6 +40,7 @@ FATHOM_RANGE(FractF, (R a), const float n = std::floor(a.lo);
              return one ? tidy(a.lo - n, a.hi - n) : (size(a) < endless ? R{0, 1} : everything());)
 #define FATHOM_FUNCTION(name, function, ...) FATHOM_RANGE(name##F, (R a), return function(a);)
 #include "ir/ops.def"
+FATHOM_RANGE(SinCos, (R a), return std::array<R, 2>{sin(a), cos(a)};)
 FATHOM_RANGE(Power2, (R a), return power<2>(a);)
 FATHOM_RANGE(Power3, (R a), return power<3>(a);)
 FATHOM_RANGE(Power4, (R a), return power<4>(a);)

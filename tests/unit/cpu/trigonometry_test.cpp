@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 using namespace fathom::cpu::base;
@@ -21,6 +22,18 @@ TEST_CASE("sine and cosine are right to a float's precision, for large angles to
     CHECK(sine(0.0f) == 0.0f);
     CHECK(cosine(0.0f) == 1.0f);
     CHECK(sine(1e-20f) == 1e-20f);
+}
+
+TEST_CASE("sine and cosine together are what they are alone, to the bit") {
+    std::size_t wrong = 0;
+    for (std::uint32_t i = 0; i < 1'000'000; ++i) {
+        const auto x = std::bit_cast<float>(i * 4294u); // of every size and sign
+        if (!(std::abs(x) < 3e15f)) continue;           // beyond, a sine is that of some angle
+        const auto [s, c] = sine_cosine(x);
+        wrong += std::bit_cast<std::uint32_t>(s) != std::bit_cast<std::uint32_t>(sine(x)) ||
+                 std::bit_cast<std::uint32_t>(c) != std::bit_cast<std::uint32_t>(cosine(x));
+    }
+    CHECK(wrong == 0);
 }
 
 TEST_CASE("sine and cosine stay within -1 and 1 for any number, and are none of none") {
