@@ -135,6 +135,7 @@ class Machine {
     void keep_sign(Slot s, int c, bool negative);
     std::uint32_t origin(Slot s, int component) const;
     double component_norm(Slot s, int component) const;
+    double relative_norm(const Instruction &instruction) const;
     std::optional<std::pair<std::uint32_t, std::uint32_t>> difference(Slot s, int c) const;
 
     const Tape &tape_;
@@ -147,6 +148,7 @@ class Machine {
     std::vector<Row> grad_;
     std::vector<std::uint8_t> odd_; // by component: may jump, but only from x to -x
     std::vector<double> norm_;      // by slot
+    std::vector<double> relative_;  // by slot: of a scalar v >= 0, what |grad v| is at most, of v
     std::vector<double> bend_;      // by slot, or none
     std::vector<Trouble> trouble_;
     std::vector<NodeId> cause_;

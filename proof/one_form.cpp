@@ -164,7 +164,7 @@ NodeId Canonical::as_computed(NodeId id, int component, int depth) {
     for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
         args.push_back(parted ? exact(a, ir::is_vector(graph[a].type) ? component : 0, depth)
                               : exact_argument(a, depth));
-    if (failed) return id;
+    if (failed) return component_of(graph, id, component);
     if (parted) return graph.make(node.op, ir::Type::Float, args, node.payload);
     return component_of(graph, graph.make(node.op, node.type, args, node.payload), component);
 }

@@ -1,6 +1,7 @@
 // Cheap identities, applied as nodes are made. Each keeps the value for all finite arguments (x*0
 // is 0, also for an infinite x: an infinity that survives to a product with 0 is no number that a
 // scene means).
+// Long: one function an identity, and the table that names them.
 #include "ir/passes/simplify.h"
 
 #include <cassert>
@@ -313,7 +314,65 @@ NodeId simple_pow(const Made &n) {
     return {};
 }
 
-NodeId simple_extremum(const Made &n) { return n.args[0] == n.args[1] ? n.args[0] : NodeId{}; }
+// Whatever its arguments are.
+bool is_never_negative(const Graph &graph, NodeId id) {
+    constexpr OpSet sizes{Op::Length, Op::Abs, Op::Exp, Op::Exp2, Op::Sqrt},
+        products{Op::Dot, Op::Mul};
+    const Node node = graph[id];
+    if (const auto number = graph.as_number(id)) return *number >= 0;
+    if (sizes[node.op]) return true;
+    if (products[node.op] && graph.arg(id, 0) == graph.arg(id, 1)) return true;
+    if (node.op == Op::Max)
+        return is_never_negative(graph, graph.arg(id, 0)) ||
+               is_never_negative(graph, graph.arg(id, 1));
+    return node.op == Op::Add && is_never_negative(graph, graph.arg(id, 0)) &&
+           is_never_negative(graph, graph.arg(id, 1));
+}
+
+// c/u of which no more than `most` is seen, c > 0, u >= 0, is c/max(u, c/most): the same number, and
+// at u = 0, where a quotient has none, the most. Nothing where it is not of this form.
+NodeId kept_off_zero(Graph &graph, NodeId id, double most) {
+    const Node node = graph[id];
+    if (node.type != Type::Float || node.count != 2) return {};
+    const NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
+    if (node.op == Op::Div) {
+        const auto c = graph.as_number(a);
+        constexpr double smallest = 1e-30, largest = 1e30;
+        if (!c || *c <= 0 || graph.is_constant(b) || !is_never_negative(graph, b)) return {};
+        const double least = *c / most;
+        if (!(least > smallest && least < largest)) return {};
+        if (graph[b].op == Op::Max)
+            for (int i = 0; i < 2; ++i)
+                if (const auto limit = graph.as_number(graph.arg(b, i)); limit && *limit > 0)
+                    return {};
+        return graph.div(a, graph.make(Op::Max, {b, graph.number(least)}));
+    }
+    if (node.op != Op::Max && node.op != Op::Min) return {};
+    for (int i = 0; i < 2; ++i) {
+        if (!graph.is_constant(i == 0 ? b : a)) continue;
+        if (const NodeId inner = kept_off_zero(graph, i == 0 ? a : b, most))
+            return graph.make(node.op, {inner, i == 0 ? b : a});
+    }
+    return {};
+}
+
+NodeId simple_extremum(const Made &n) {
+    if (n.args[0] == n.args[1]) return n.args[0];
+    if (n.op != Op::Min || n.type != Type::Float) return {};
+    for (std::size_t i = 0; i < 2; ++i)
+        if (const auto most = n.graph.as_number(n.args[i]); most && *most > 0)
+            if (const NodeId inner = kept_off_zero(n.graph, n.args[1 - i], *most))
+                return n.make(Op::Min, {inner, n.args[i]});
+    return {};
+}
+
+NodeId simple_clamp(const Made &n) {
+    if (n.type != Type::Float) return {};
+    const auto most = n.graph.as_number(n.args[2]);
+    if (!most || *most <= 0) return {};
+    const NodeId inner = kept_off_zero(n.graph, n.args[0], *most);
+    return inner ? n.make(Op::Clamp, {inner, n.args[1], n.args[2]}) : NodeId{};
+}
 
 NodeId simple_abs(const Made &n) {
     if (n.op_of(0) == Op::Abs) return n.args[0];
@@ -418,6 +477,7 @@ constexpr OpTable<Rule> rules{
     {Op::Div, simple_div},
     {Op::Pow, simple_pow},
     {Op::Min, simple_extremum},
+    {Op::Clamp, simple_clamp},
     {Op::Max, simple_extremum},
     {Op::Abs, simple_abs},
     {Op::Mix, simple_mix},

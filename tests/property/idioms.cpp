@@ -232,6 +232,12 @@ constexpr std::array near_misses = {
     "mix(fract(sin(12.9898 * floor(p.x)) * 43758.5453), "
     "fract(sin(12.9898 * floor(p.x) + 12.9898) * 43758.5453), fract(p.x))",
     "mix(hash(0.3 * floor(p)), hash(0.3 * floor(p) + vec3(0.3, 0, 0)), fract(p.x))",
+    // logarithms and quotients of what may be 0, or less
+    "log(exp(p.x) - 0.5)",
+    "log(exp(p.x) * p.y)",
+    "p.y + 0.1 * clamp(1 / p.x, 0, 4)",
+    "p.y + 0.1 * max(1 / dot(p, p), 1)",
+    "p.y + 0.1 * min(1 / (p.x * p.y), 4)",
     // roots of sums that hold a small square more
     "if p.z < 0 { length(vec2(p.x, 0.0006)) } else { abs(p.x) }",
     "p.x + (if p.z < 0 { length(vec2(p.x - p.y, 0.0007 * p.y)) } else { abs(p.x - p.y) })",
@@ -287,6 +293,11 @@ constexpr std::array steep = {
     Steep{"sign(if p.x < 0 { -4 * p.x * p.x } else { 4 * p.x * p.x }) * "
           "sqrt(abs(if p.x < 0 { -4 * p.x * p.x } else { 4 * p.x * p.x }))",
           2},
+    // exponentials: the slope of a logarithm is what they change by, of themselves
+    Steep{"log(2 * exp(2 * p.x) + 3 * exp(p.y) + exp(-p.z))", 2},
+    Steep{"-log(exp(-3 * length(p)) * exp(p.x))", 4},
+    Steep{"log2(sqrt(exp2(2 * p.x) + exp2(p.y) / 7) + 1e-3)", 1},
+    Steep{"log(exp(p.x) + exp(3 * p.x - 6))", 3},
     // what single precision has exactly
     Steep{"p.y + mix(hash(floor(p.x)), hash(floor(p.x) + 1), fract(p.x))", 1.4142136},
     Steep{"p.y + mix(hash(0.5 * floor(p.x)), hash(0.5 * floor(p.x) + 0.5), fract(p.x))", 1.4142136},
