@@ -22,7 +22,7 @@ try sanitize scripts/sanitize.sh
 try tidy scripts/tidy.sh
 try argument_order scripts/argument_order.sh
 try same_text scripts/same_text.sh build/fathom build-clang/fathom
-for target in parse_fuzz compile_fuzz yaml_fuzz image_fuzz lsp_fuzz; do try $target scripts/fuzz.sh $target 600; done
+for target in parse_fuzz compile_fuzz agree_fuzz yaml_fuzz save_fuzz image_fuzz lsp_fuzz; do try $target scripts/fuzz.sh $target 600; done
 try cuts env FATHOM_CUTS=all build/test_lsp 'a text that ends early is known above its end'
 try coverage scripts/coverage.sh
 try editors scripts/editors.sh

@@ -39,8 +39,11 @@ Value node_value(const TreeNode &node, std::map<std::string, int> &ordinals) {
     if (!node.varying.empty()) properties.entries.emplace_back("Varying", varying_value(node));
     std::vector<Value> children;
     for (const TreeNode &child : node.children) children.push_back(node_value(child, ordinals));
-    if (!children.empty() || !row || row->children != Arity::Leaf)
+    if (!children.empty() || !row || row->children != Arity::Leaf) {
+        // beside them a kept one that was no list would be read as the children next time
+        std::erase_if(properties.entries, [](const Entry &e) { return e.first == "Children"; });
         properties.entries.emplace_back("Children", yaml_list(std::move(children)));
+    }
     std::string name = node.name;
     if (!node.head) { // as import/tree.cpp counts
         const int ordinal = ++ordinals[node.type];

@@ -31,6 +31,12 @@ std::optional<double> hyperized_by(ir::Graph &graph, NodeId q, NodeId p) {
     return std::nullopt;
 }
 
+// 1 / x; of a scale that was read from factors, these.
+NodeId reciprocal(ir::Graph &graph, NodeId one, NodeId x) {
+    if (graph[x].op == ir::Op::Div && graph.arg(x, 0) == one) return graph.arg(x, 1);
+    return graph.make(ir::Op::Div, {one, x});
+}
+
 } // namespace
 
 // 30, where the arithmetic left 29.999999999999996.
@@ -190,15 +196,22 @@ void TreeWriter::map(ShapeId id, const Paint &paint, std::vector<TreeNode> &out)
             const double exact = 1 / scale, near = shortest_near(exact);
             return 1 / near == scale || 1 / exact != scale ? near : exact;
         };
-        if (result)
+        if (!result) return push(std::move(result));
+        if (!varies) {
             add(*result, "Factors", yaml_xyz(factor((*by)[0]), factor((*by)[1]), factor((*by)[2])));
-        if (result && varies) { // one number where all three are the same
-            NodeId scale = numbers_.reduced(s.args[2]);
-            const NodeId x = graph.component(scale, 0);
-            if (x == graph.component(scale, 1) && x == graph.component(scale, 2)) scale = x;
-            const NodeId one = scale == x ? graph.number(1) : graph.vec3(1, 1, 1);
-            vary(*result, "Factors", graph.make(ir::Op::Div, {one, scale}));
+            return push(std::move(result));
         }
+        NodeId scale = numbers_.reduced(s.args[2]); // one number where all three are the same
+        const NodeId x = graph.component(scale, 0);
+        if (x == graph.component(scale, 1) && x == graph.component(scale, 2)) scale = x;
+        const NodeId one = scale == x ? graph.number(1) : graph.vec3(1, 1, 1);
+        const NodeId factors = reciprocal(graph, one, scale);
+        std::array<double, 3> now{};
+        for (int i = 0; i < 3; ++i)
+            now[static_cast<std::size_t>(i)] =
+                numbers_.number(scale == x ? factors : graph.component(factors, i)).value_or(1);
+        add(*result, "Factors", yaml_xyz(now[0], now[1], now[2]));
+        vary(*result, "Factors", factors);
         return push(std::move(result));
     }
     case ir::MapKind::Twist: {

@@ -10,6 +10,7 @@
 #include "ir/passes/verify.h"
 #include "lang/format.h"
 #include "lang/parse.h"
+#include "tests/support/agree.h"
 #include "tests/support/effort.h"
 #include "tests/support/reference_eval.h"
 
@@ -60,27 +61,6 @@ float tape_value(const cpu::Program &program, cpu::Scratch &scratch, const std::
     return out[result];
 }
 
-// The tape computes in float32, the walk over the graph in double; where a jump lies between the
-// two, or a number is badly conditioned, the walk itself moves as much near the point: that is how
-// far they may differ.
-template <typename F> bool agree(double found, const std::array<double, 3> &p, const F &truth) {
-    const double exact = truth(p);
-    if (std::isnan(exact) && std::isnan(found)) return true;
-    double spread = 1e-4 * (1 + std::abs(exact));
-    if (std::abs(found - exact) <= spread) return true;
-    for (double step : {1e-6, 1e-5, 1e-4})
-        for (int i = 0; i < 14; ++i) {
-            std::array<double, 3> near = p;
-            for (std::size_t k = 0; k < 3; ++k) {
-                if (i < 6 && static_cast<std::size_t>(i / 2) != k) continue;
-                near[k] += ((i < 6 ? i : i >> k) & 1 ? step : -step) * (1 + std::abs(p[k]));
-            }
-            spread = std::max(spread, 2 * std::abs(truth(near) - exact));
-            if (std::isnan(spread)) return true;
-        }
-    return std::abs(found - exact) <= spread;
-}
-
 } // namespace
 
 TEST_CASE("a program that checks emits valid GLSL, evaluates as the graph says, and is formatted "
@@ -123,8 +103,8 @@ TEST_CASE("a program that checks emits valid GLSL, evaluates as the graph says, 
             const float found = tape_value(distance, scratch, in, 0);
             INFO("at " << p[0] << ", " << p[1] << ", " << p[2] << ": " << found << ", not "
                        << reference.distance(p));
-            CHECK(agree(found, p,
-                        [&](const std::array<double, 3> &q) { return reference.distance(q); }));
+            CHECK(test::agree(
+                found, p, [&](const std::array<double, 3> &q) { return reference.distance(q); }));
         }
         for (std::size_t s = 0; s < std::min<std::size_t>(c.scene.surfaces.size(), 3); ++s) {
             const ir::Surface &surface = c.scene.surfaces[s];
@@ -146,7 +126,7 @@ TEST_CASE("a program that checks emits valid GLSL, evaluates as the graph says, 
                 };
                 INFO("surface " << s << " at " << p[0] << ", " << p[1] << ", " << p[2] << ": "
                                 << found << ", not " << truth(p));
-                CHECK(agree(found, p, truth));
+                CHECK(test::agree(found, p, truth));
             }
         }
 
@@ -190,7 +170,8 @@ TEST_CASE("a function means the same at scene time and at field time") {
         };
         const std::array<double, 3> p{0.3125, 1.5, -0.75};
         INFO("at scene time " << values(p)[1] << ", at field time " << values(p)[0]);
-        CHECK(agree(values(p)[1], p, [&](const std::array<double, 3> &q) { return values(q)[0]; }));
+        CHECK(test::agree(values(p)[1], p,
+                          [&](const std::array<double, 3> &q) { return values(q)[0]; }));
     }
     CHECK(good * 2 > tried);
 }

@@ -247,3 +247,33 @@ TEST_CASE("generated trees come back whole", "[save]") {
         REQUIRE(lost(file_of(nodes)) == "");
     }
 }
+
+TEST_CASE("what a scene exports, it exports again to the same bytes", "[save]") {
+    // sizes that differ from copy to copy, by one number and by three
+    for (const char *text :
+         {"sphere(1).repeat([2, 0, 2], copies: (_, id) => box(1).scale(0.5 + 0.4 * hash(id)))\n",
+          "sphere(1).repeat([2, 0, 2], copies: (_, id) => box(1).scale([0.5, 0.5 + 0.4 * hash(id), "
+          "1]))\n"}) {
+        INFO(text);
+        const CheckedText first = check_text(text);
+        REQUIRE(first.errors() == "");
+        const std::string yaml = export_text(first.checked.scene);
+        CHECK(yaml.find("Varying") != std::string::npos);
+        const CheckedText second = check_text(import_text(yaml).result.sdf);
+        REQUIRE(second.errors() == "");
+        CHECK(export_text(second.checked.scene) == yaml);
+    }
+}
+
+TEST_CASE("children that are given twice, once as none, are not lost on the way", "[save]") {
+    std::string exported =
+        "---\n- 0.3\n- {}\n- []\n"
+        "- [Generic, Field, {Children: [[Sphere, Ball, {Radius: 2}]], Children: ~}]\n";
+    for (int trip = 0; trip < 3; ++trip) {
+        const CheckedText checked = check_text(import_text(exported).result.sdf);
+        REQUIRE(checked.errors() == "");
+        exported = export_text(checked.checked.scene);
+        INFO(exported);
+        CHECK(exported.find("Ball") != std::string::npos);
+    }
+}
