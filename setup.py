@@ -16,7 +16,7 @@ VERSION = re.search(r"project\(fathom VERSION (\S+)", (ROOT / "CMakeLists.txt").
 class CMakeBuild(build_ext):
     def build_extension(self, extension):
         build = pathlib.Path(self.build_temp).resolve()
-        off = ["PROGRAM", "TESTS", "SHARED", "GL", "WERROR"]  # the package draws by the CPU
+        off = ["PROGRAM", "TESTS", "SHARED", "GL", "VDB", "WERROR"]  # the package draws by the CPU
         subprocess.run(
             ["cmake", "-G", "Ninja", "-S", ROOT, "-B", build, "-DFATHOM_PYTHON=ON", "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_BUILD_TYPE=Release"]
             + [f"-DFATHOM_{name}=OFF" for name in off]

@@ -126,6 +126,7 @@ struct Reader {
     MeshCommand mesh;
     MeasureCommand measure;
     SliceCommand slice;
+    VolumeCommand volume;
     EvalCommand eval;
     ViewCommand view;
     ImportCommand import;
@@ -202,6 +203,7 @@ struct Reader {
         add_mesh();
         add_measure();
         add_slice();
+        add_volume();
         add_eval();
         add_import();
         add_export();
@@ -384,6 +386,20 @@ struct Reader {
         add_row(sub, units_row(slice.solid, "which .svg and .dxf say"));
         sub->add_flag("--json", slice.json,
                       "say what is proved of each slice: one JSON document on standard output");
+    }
+
+    void add_volume() {
+        CLI::App *sub = command("volume", "write true distances on a lattice", volume);
+        add_scene(sub, volume.solid.scene);
+        add_out(sub, volume.out, "a .vdb, .nrrd or .npy (`-`: an NRRD to standard output)")
+            ->type_name("OUT.vdb")
+            ->required();
+        for (const OptionRow &row : volume_rows(volume)) add_row(sub, row);
+        choice<bool>(sub, "--certify", volume.certify, {{"on", true}, {"off", false}},
+                     "prove how far distances are off: on, or off for speed")
+            ->type_name("WHETHER");
+        sub->add_flag("--json", volume.json,
+                      "say where it lies and what is proved: one JSON document on standard output");
     }
 
     void add_eval() {

@@ -155,6 +155,14 @@ struct SliceCommand {
     int width = 1024, height = 1024; // of a PNG
     bool json = false;
 };
+// `fathom volume`.
+struct VolumeCommand {
+    SolidArguments solid;
+    std::string out;
+    double voxel = 0; // its side; 0: by resolution
+    double band = 3;  // voxels to each side of the surface, of a .vdb
+    bool certify = true, json = false;
+};
 // `fathom eval`.
 struct EvalCommand {
     SceneArguments scene;
@@ -207,10 +215,10 @@ struct BenchCommand {
     std::string compare;    // a file that --json wrote; empty: none
 };
 
-using Command =
-    std::variant<CheckCommand, CompileCommand, RenderCommand, MergeCommand, FarmCommand,
-                 MeshCommand, MeasureCommand, SliceCommand, EvalCommand, ViewCommand, ImportCommand,
-                 ExportCommand, FmtCommand, DocCommand, ExplainCommand, LspCommand, BenchCommand>;
+using Command = std::variant<CheckCommand, CompileCommand, RenderCommand, MergeCommand, FarmCommand,
+                             MeshCommand, MeasureCommand, SliceCommand, VolumeCommand, EvalCommand,
+                             ViewCommand, ImportCommand, ExportCommand, FmtCommand, DocCommand,
+                             ExplainCommand, LspCommand, BenchCommand>;
 
 // A command with the options that all commands share.
 struct Invocation {
@@ -237,6 +245,7 @@ Exit run(const FarmCommand &, Terminal &);
 Exit run(const MeshCommand &, Terminal &);
 Exit run(const MeasureCommand &, Terminal &);
 Exit run(const SliceCommand &, Terminal &);
+Exit run(const VolumeCommand &, Terminal &);
 Exit run(const EvalCommand &, Terminal &);
 Exit run(const ViewCommand &, Terminal &);
 Exit run(const ImportCommand &, Terminal &);

@@ -184,6 +184,16 @@ std::string of(const SliceCommand &slice, const Given &given) {
     return of_cells(given);
 }
 
+std::string of(const VolumeCommand &volume, const Given &given) {
+    if (given("--voxel") && given("--resolution"))
+        return "--voxel and --resolution both say how fine a volume is: give one of them";
+    if (given("--band") && suffix_of(volume.out) != ".vdb")
+        return "--band is of a .vdb: .nrrd and .npy hold all voxels";
+    if (volume.json && volume.out == "-")
+        return "--json and the volume cannot both go to standard output: name a file by -o";
+    return "";
+}
+
 std::string of(const EvalCommand &eval, const Given &) {
     if (eval.coordinates.size() % 3 != 0)
         return fmt::format("points are three numbers each, and these are {}",

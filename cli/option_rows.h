@@ -31,5 +31,6 @@ std::vector<OptionRow> solid_rows(SolidArguments &solid);
 OptionRow units_row(SolidArguments &solid, const std::string &what_for);
 std::vector<OptionRow> measure_rows(MeasureCommand &command);
 std::vector<OptionRow> slice_rows(SliceCommand &command);
+std::vector<OptionRow> volume_rows(VolumeCommand &command);
 
 } // namespace fathom::cli

@@ -17,7 +17,7 @@ struct Suffix {
 };
 
 // The suffixes that promise what a file holds. Others promise nothing and are free.
-constexpr std::array<Suffix, 24> suffixes{
+constexpr std::array<Suffix, 27> suffixes{
     {{".png", Content::Picture}, {".jpg", Content::Picture},   {".jpeg", Content::Picture},
      {".exr", Content::Picture}, {".mp4", Content::Film},      {".webm", Content::Film},
      {".gif", Content::Film},    {".apng", Content::Film},     {".sums", Content::Sums},
@@ -25,7 +25,8 @@ constexpr std::array<Suffix, 24> suffixes{
      {".html", Content::Page},   {".htm", Content::Page},      {".stl", Content::Mesh},
      {".obj", Content::Mesh},    {".ply", Content::Mesh},      {".glb", Content::Mesh},
      {".3mf", Content::Mesh},    {".svg", Content::Slice},     {".dxf", Content::Slice},
-     {".sdf", Content::Scene},   {".yaml", Content::SaveFile}, {".yml", Content::SaveFile}}};
+     {".sdf", Content::Scene},   {".vdb", Content::Volume},    {".nrrd", Content::Volume},
+     {".npy", Content::Volume},  {".yaml", Content::SaveFile}, {".yml", Content::SaveFile}}};
 
 const Suffix *known_suffix(std::string_view suffix) {
     const auto *known = std::find_if(suffixes.begin(), suffixes.end(),
@@ -43,6 +44,7 @@ std::string_view name_of(Content content) {
     case Content::Page: return "a web page";
     case Content::Mesh: return "a mesh";
     case Content::Slice: return "a slice";
+    case Content::Volume: return "a volume";
     case Content::Scene: return "a scene";
     case Content::SaveFile: return "a save file";
     }
@@ -70,6 +72,7 @@ std::string writer_of(Content content) {
     case Content::Page: return compiler_of(content);
     case Content::Mesh: return "`fathom mesh`";
     case Content::Slice: return "`fathom slice`";
+    case Content::Volume: return "`fathom volume`";
     case Content::Scene: return "`fathom import`";
     case Content::SaveFile: return "`fathom export`";
     }
@@ -156,6 +159,10 @@ bool misnamed(const std::string &out, Content content, Terminal &terminal) {
     if (content == Content::Mesh && !known) {
         terminal.say(fmt::format(
             "fathom: -o {}: meshes are written as .stl, .obj, .ply, .glb or .3mf", out));
+        return true;
+    }
+    if (content == Content::Volume && !known) {
+        terminal.say(fmt::format("fathom: -o {}: volumes are written as .vdb, .nrrd or .npy", out));
         return true;
     }
     if (content == Content::Slice && !known) {

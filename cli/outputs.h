@@ -9,7 +9,19 @@
 namespace fathom::cli {
 
 // What a command writes.
-enum class Content { Picture, Film, Sums, Shader, SpirV, Page, Mesh, Slice, Scene, SaveFile };
+enum class Content {
+    Picture,
+    Film,
+    Sums,
+    Shader,
+    SpirV,
+    Page,
+    Mesh,
+    Slice,
+    Volume,
+    Scene,
+    SaveFile
+};
 
 Content content_of(const v1::ShaderTarget &target); // by its suffix
 

@@ -71,6 +71,29 @@ std::vector<OptionRow> slice_rows(SliceCommand &command) {
     return rows;
 }
 
+std::vector<OptionRow> volume_rows(VolumeCommand &command) {
+    std::vector<OptionRow> rows{
+        {"--voxel", "S", "the side of a voxel, in the scene's units",
+         [&](const std::string &word) {
+             const std::optional<double> number = parse_number(word);
+             if (!number || !(*number > 0) || !fits_single(*number))
+                 return fmt::format("wants a length above 0, as 0.01, not `{}`", word);
+             command.voxel = *number;
+             return std::string();
+         }},
+        {"--band", "N", "of a .vdb: voxels to each side of the surface, 3 unless said",
+         [&](const std::string &word) {
+             const std::optional<double> number = parse_number(word);
+             if (!number || !(*number >= 1 && *number <= 1000))
+                 return fmt::format("wants a number from 1 to 1000, not `{}`", word);
+             command.band = *number;
+             return std::string();
+         }}};
+    for (OptionRow &row : solid_rows(command.solid))
+        if (row.name != "--tolerance") rows.push_back(std::move(row));
+    return rows;
+}
+
 std::vector<OptionRow> measure_rows(MeasureCommand &command) {
     return {{"--density", "D",
              "also the mass: of a volume of 1, or in g/cm3 where --units says what a length is",

@@ -17,4 +17,5 @@
 #include <fathom/scene.h>
 #include <fathom/shader.h>
 #include <fathom/slice.h>
+#include <fathom/volume.h>
 #include <fathom/watch.h>

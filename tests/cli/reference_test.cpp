@@ -87,7 +87,7 @@ TEST_CASE("help lists every command") {
     CHECK(commands_in_help(folder) ==
           std::set<std::string>{"view", "check", "compile", "render", "mesh", "eval", "import",
                                 "export", "fmt", "doc", "explain", "lsp", "bench", "help", "merge",
-                                "farm", "measure", "slice"});
+                                "farm", "measure", "slice", "volume"});
     for (const char *same : {"fathom --help", "fathom -h"}) {
         INFO(same);
         CHECK(shell(folder, same).out == help.out);

@@ -1,0 +1,91 @@
+// fathom volume: true distances on a lattice, as an OpenVDB, NRRD or NumPy file.
+#include "cli/interrupt.h"
+#include "cli/solid.h"
+
+#include <fathom/volume.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace fathom::cli {
+namespace {
+
+v1::VolumeOptions volume_options(const VolumeCommand &command) {
+    const v1::MeshOptions solid = options_of(command.solid);
+    v1::VolumeOptions options;
+    options.side = command.voxel;
+    options.resolution = solid.resolution;
+    options.bounds = solid.bounds;
+    options.time = solid.time;
+    options.certify = command.certify;
+    if (suffix_of(command.out) != ".vdb") return options;
+    options.band = command.band;
+    options.colors = true;
+    return options;
+}
+
+// What is to be written, or why there is nothing.
+std::string bytes_of(const v1::Volume &volume, const std::string &suffix, std::string &why) {
+    if (suffix == ".npy") return v1::npy_file(volume);
+    if (suffix != ".vdb") return v1::nrrd_file(volume);
+    v1::VdbFile file = v1::vdb_file(volume);
+    why = std::move(file.message);
+    return std::move(file.bytes);
+}
+
+std::string json_of(const v1::Volume &volume) {
+    nlohmann::ordered_json json;
+    json["voxels"] = volume.distances.size();
+    json["counts"] = volume.counts;
+    json["origin"] = volume.origin;
+    json["side"] = volume.side;
+    json["band"] = volume.band > 0 ? nlohmann::ordered_json(volume.band) : nlohmann::ordered_json();
+    json["error"] = volume.error ? nlohmann::ordered_json(*volume.error) : nlohmann::ordered_json();
+    json["undecided_cells"] = volume.undecided_cells;
+    json["colors"] = !volume.colors.empty();
+    json["rests_on"] = volume.rests_on;
+    return json.dump() + "\n";
+}
+
+} // namespace
+
+Exit run(const VolumeCommand &command, Terminal &terminal) {
+    const std::string &scene = command.solid.scene.file;
+    if (overwrites(scene, command.out, terminal) ||
+        misnamed(command.out, Content::Volume, terminal))
+        return usage_error;
+    if (unwritable(command.out, terminal)) return device_error;
+    const Solid solid = open_solid(command.solid, terminal);
+    if (!solid.scene) return solid.exit;
+    if (overwrites(solid.files, command.out, terminal)) return usage_error;
+    const Interrupts interrupts;
+    v1::VolumeOptions options = volume_options(command);
+    options.progress = [&](double share) {
+        terminal.progress(command.out, share);
+        return !Interrupts::noticed();
+    };
+    const v1::Volume volume = v1::make_volume(*solid.scene, options);
+    terminal.finish_progress();
+    if (Interrupts::noticed()) { // nothing is written
+        terminal.flush();
+        Interrupts::obey();
+    }
+    if (!volume) return say_refusal(scene, "volume", volume.status, volume.message, terminal);
+    if (volume.undecided_cells > 0)
+        terminal.say(fmt::format(
+            "{}: no error is proved: {} cells may hold surface that the distances do not know of; "
+            "a smaller voxel or a tighter bound tells more",
+            command.out, volume.undecided_cells));
+    std::string why;
+    const std::string bytes = bytes_of(volume, suffix_of(command.out), why);
+    if (bytes.empty()) {
+        terminal.say(fmt::format("fathom: {}: {}", command.out,
+                                 why.empty() ? "there is not enough memory" : why));
+        return device_error;
+    }
+    const Exit exit = write_result(command.out, bytes, terminal);
+    if (exit == done && command.json) terminal.put(json_of(volume));
+    return exit;
+}
+
+} // namespace fathom::cli

@@ -1,0 +1,132 @@
+#include "mesh/nearest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace fathom::mesh {
+namespace {
+
+using Real3 = std::array<double, 3>;
+
+constexpr std::uint32_t few_triangles = 4;
+
+double squared_way(const Point &p, const Point &lo, const Point &hi) {
+    double squares = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double way = std::max({0.0, double(lo[i]) - p[i], double(p[i]) - hi[i]});
+        squares += way * way;
+    }
+    return squares;
+}
+
+double scalar(const Real3 &a, const Real3 &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// The nearest point of a triangle, as weights of its corners: by the region of the plane in which
+// the foot lies (Ericson 2005, 5.1.5).
+Real3 nearest_shares(const Real3 &p, const Real3 &a, const Real3 &b, const Real3 &c) {
+    const auto minus = [](const Real3 &x, const Real3 &y) {
+        return Real3{x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+    };
+    const Real3 ab = minus(b, a), ac = minus(c, a), ap = minus(p, a), bp = minus(p, b),
+                cp = minus(p, c);
+    const double d1 = scalar(ab, ap), d2 = scalar(ac, ap), d3 = scalar(ab, bp), d4 = scalar(ac, bp),
+                 d5 = scalar(ab, cp), d6 = scalar(ac, cp);
+    if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+    if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+    if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+    const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        const double t = (d4 - d3) / (d4 - d3 + d5 - d6);
+        return {0, 1 - t, t};
+    }
+    const double sum = va + vb + vc;
+    return sum > 0 ? Real3{va / sum, vb / sum, vc / sum} : Real3{1, 0, 0};
+}
+
+} // namespace
+
+TriangleTree::TriangleTree(const Mesh &mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    std::vector<Point> middles;
+    for (const auto &t : mesh.triangles) {
+        Point m{};
+        for (const std::uint32_t v : t)
+            for (std::size_t i = 0; i < 3; ++i) m[i] += mesh.vertices[v][i] / 3;
+        middles.push_back(m);
+    }
+    if (order_.empty()) return;
+    branches_.push_back({{}, {}, 0, static_cast<std::uint32_t>(order_.size()), 0});
+    for (std::uint32_t k = 0; k < branches_.size(); ++k) divide(k, middles);
+}
+
+void TriangleTree::divide(std::uint32_t number, std::vector<Point> &middles) {
+    Branch branch = branches_[number];
+    branch.lo = branch.hi = mesh_.vertices[mesh_.triangles[order_[branch.first]][0]];
+    for (std::uint32_t k = branch.first; k < branch.first + branch.count; ++k)
+        for (const std::uint32_t v : mesh_.triangles[order_[k]])
+            for (std::size_t i = 0; i < 3; ++i) {
+                branch.lo[i] = std::min(branch.lo[i], mesh_.vertices[v][i]);
+                branch.hi[i] = std::max(branch.hi[i], mesh_.vertices[v][i]);
+            }
+    if (branch.count > few_triangles) {
+        std::size_t axis = 0;
+        for (std::size_t i = 1; i < 3; ++i)
+            if (branch.hi[i] - branch.lo[i] > branch.hi[axis] - branch.lo[axis]) axis = i;
+        const auto begin = order_.begin() + branch.first;
+        const std::uint32_t half = branch.count / 2;
+        std::nth_element(
+            begin, begin + half, begin + branch.count, [&](std::uint32_t a, std::uint32_t b) {
+                return middles[a][axis] != middles[b][axis] ? middles[a][axis] < middles[b][axis]
+                                                            : a < b;
+            });
+        branch.children = static_cast<std::uint32_t>(branches_.size());
+        branches_.push_back({{}, {}, branch.first, half, 0});
+        branches_.push_back({{}, {}, branch.first + half, branch.count - half, 0});
+        branch.count = 0;
+    }
+    branches_[number] = branch;
+}
+
+std::optional<Nearest> TriangleTree::nearest(const Point &to, double within) const {
+    std::optional<Nearest> found;
+    if (branches_.empty()) return found;
+    double best = within * within;
+    const Real3 p{to[0], to[1], to[2]};
+    std::array<std::uint32_t, 128> stack; // the tree is no deeper: each half has half of them
+    std::size_t depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        const Branch &branch = branches_[stack[--depth]];
+        if (!(squared_way(to, branch.lo, branch.hi) < best)) continue;
+        if (branch.count == 0) {
+            const std::uint32_t a = branch.children, b = a + 1;
+            const bool first = squared_way(to, branches_[a].lo, branches_[a].hi) <
+                               squared_way(to, branches_[b].lo, branches_[b].hi);
+            stack[depth++] = first ? b : a;
+            stack[depth++] = first ? a : b;
+            continue;
+        }
+        for (std::uint32_t k = branch.first; k < branch.first + branch.count; ++k) {
+            const auto &t = mesh_.triangles[order_[k]];
+            std::array<Real3, 3> corner;
+            for (std::size_t c = 0; c < 3; ++c)
+                for (std::size_t i = 0; i < 3; ++i) corner[c][i] = mesh_.vertices[t[c]][i];
+            const Real3 shares = nearest_shares(p, corner[0], corner[1], corner[2]);
+            double squares = 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const double x =
+                    shares[0] * corner[0][i] + shares[1] * corner[1][i] + shares[2] * corner[2][i];
+                squares += (x - p[i]) * (x - p[i]);
+            }
+            if (!(squares < best)) continue;
+            best = squares;
+            found = Nearest{std::sqrt(squares), order_[k], shares};
+        }
+    }
+    return found;
+}
+
+} // namespace fathom::mesh

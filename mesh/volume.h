@@ -1,0 +1,44 @@
+// True distances to a solid's surface at the points of a lattice: all of them, or those of a band
+// about the surface (docs/volumes.md).
+#pragma once
+
+#include "mesh/mesh.h"
+
+#include <optional>
+#include <span>
+
+namespace fathom::mesh {
+
+// Points at origin + side * (i, j, k), 0 <= i < counts[0] and so on.
+struct VoxelGrid {
+    std::array<double, 3> origin{};
+    double side = 1;
+    std::array<std::int32_t, 3> counts{};
+    Point point(const Index &at) const {
+        Point p;
+        for (std::size_t i = 0; i < 3; ++i) p[i] = static_cast<float>(origin[i] + side * at[i]);
+        return p;
+    }
+};
+
+// About a box, with so many voxels to each side. Points lie at whole multiples of the side. None:
+// more than 2^31 - 1 points, or such that floats cannot tell apart.
+std::optional<VoxelGrid> make_grid(const ir::Box &box, double side, int padding);
+
+struct Voxel {
+    Index at{};
+    float distance = 0; // negative in the solid
+    Point color{};      // of the nearest point, where colours were given
+};
+
+// The voxels that are nearer to the mesh than `band`, in the order of blocks of eight a side. Signs are
+// the field's. `colors`: by vertex of the mesh, or none.
+std::vector<Voxel> band_of(const ir::Scene &scene, const Settings &settings, const Mesh &mesh,
+                           const VoxelGrid &grid, double band, std::span<const Point> colors,
+                           Progress &progress);
+
+// At all points, x the fastest.
+std::vector<float> distances_of(const ir::Scene &scene, const Settings &settings, const Mesh &mesh,
+                                const VoxelGrid &grid, Progress &progress);
+
+} // namespace fathom::mesh
