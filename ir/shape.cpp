@@ -136,6 +136,10 @@ ShapeId Shapes::add(Shape shape) {
             return it->second;
         }
     listed_ += shape.children.size() + shape.args.size();
+    std::uint32_t below = 0;
+    for (ShapeId child : shape.children) below = std::max(below, heights_[child.index]);
+    heights_.push_back(below + 1);
+    tallest_ = std::max<std::size_t>(tallest_, below + 1);
     const ShapeId id = shapes_.add(std::move(shape));
     interned_.emplace(h, id);
     return id;

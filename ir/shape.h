@@ -216,6 +216,7 @@ class Shapes {
     const Shape &operator[](ShapeId id) const { return shapes_[id]; }
     std::size_t size() const { return shapes_.size(); }
     std::size_t bytes() const; // of memory, about, with what passes keep beside each shape
+    std::size_t tallest() const { return tallest_; } // the longest way from a shape down to a leaf
 
     std::vector<Region> regions;
     std::vector<Repetition> repetitions;
@@ -233,6 +234,8 @@ class Shapes {
     Arena<Shape> shapes_;
     std::unordered_multimap<std::uint64_t, ShapeId> interned_;
     std::size_t listed_ = 0; // children and arguments of all
+    std::vector<std::uint32_t> heights_;
+    std::size_t tallest_ = 0;
 };
 
 // Their names in dumps and explanations: "smooth", "twist", "pipe".

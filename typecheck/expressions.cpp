@@ -164,10 +164,19 @@ static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b
     }
     Value total = eval(ev, ast, b.operands[0], frame);
     Span total_place = ast.exprs[b.operands[0]].span;
+    std::vector<Value>
+        kept; // of `a - b - c` what is common to all: a, and the space around b and c
+    std::vector<Span> kept_places;
+    const auto cut = [&] {
+        if (!kept.empty())
+            total = combine(ev, ir::ShapeKind::Intersection, std::exchange(kept, {}),
+                            std::exchange(kept_places, {}), total_place);
+    };
     for (std::size_t i = 0; i < b.ops.size(); ++i) {
         Span right_place = ast.exprs[b.operands[i + 1]].span;
         Value right = eval(ev, ast, b.operands[i + 1], frame);
         Span whole = join(total_place, right_place);
+        if (b.ops[i] != BinaryOp::Sub || !is_shape_op(right)) cut();
         if (b.ops[i] == BinaryOp::Sub && (is_shape_op(total) || is_shape_op(right))) {
             if (is_poison(total) || is_poison(right))
                 total = is_poison(right) ? total : poison();
@@ -177,10 +186,11 @@ static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b
                        fmt::format("`-` cuts a shape out of a shape, this is {}",
                                    describe(ev, wrong)));
                 total = poison();
-            } else if (ev.scene.shapes[shape_of(right)].kind != ir::ShapeKind::Empty)
-                total = combine(ev, ir::ShapeKind::Intersection,
-                                {total, shape_complement(ev, right, right_place)},
-                                {total_place, right_place}, whole);
+            } else if (ev.scene.shapes[shape_of(right)].kind != ir::ShapeKind::Empty) {
+                if (kept.empty()) kept = {total}, kept_places = {total_place};
+                kept.push_back(shape_complement(ev, right, right_place));
+                kept_places.push_back(right_place);
+            }
         } else if (b.ops[i] == BinaryOp::Sub && total.kind == ValueKind::Region &&
                    right.kind == ValueKind::Region) {
             const std::size_t size =
@@ -198,6 +208,7 @@ static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b
         }
         total_place = whole;
     }
+    cut();
     return total;
 }
 

@@ -280,7 +280,8 @@ void shape_nodes(const ir::Scene &scene, ShapeId id, std::vector<NodeId> &out) {
 
 // Order matters to colours only on ties, so a plain union may gather its like members from anywhere
 // in the list.
-std::vector<ShapeId> gather_instances(Interpreter &ev, std::vector<ShapeId> shapes, int dims) {
+std::vector<ShapeId> gather_instances(Interpreter &ev, std::vector<ShapeId> shapes, int dims,
+                                      Span place) {
     if (shapes.size() < min_instances) return shapes;
     struct Group {
         std::vector<std::size_t> members;
@@ -306,6 +307,8 @@ std::vector<ShapeId> gather_instances(Interpreter &ev, std::vector<ShapeId> shap
         if (taken[i]) continue;
         SkeletonBuilder builder{ev.scene};
         builder.shape(shapes[i]);
+        constexpr std::size_t words_of_a_step = 32; // in time
+        if (!spend(ev, place, builder.tree.words.size() / words_of_a_step)) return shapes;
         if (builder.too_large || builder.tree.row.empty()) continue;
         Group &g = groups[builder.tree.words];
         g.members.push_back(i);
@@ -374,10 +377,11 @@ ShapeId unite(Interpreter &ev, std::vector<ShapeId> shapes, int dims, Span origi
             listed.insert(listed.end(), all.begin(), all.end());
         } else
             listed.push_back(id);
+        if (!spend(ev, origin, parts.size() / 2)) return id; // each is looked up and copied
         for (ShapeId part : parts)
             if (!std::exchange(seen[part.index], true)) flat.push_back(part);
     }
-    flat = gather_instances(ev, std::move(flat), dims);
+    flat = gather_instances(ev, std::move(flat), dims, origin);
     const bool gathered = flat != listed;
     ir::Shape out;
     out.dims = static_cast<std::uint8_t>(dims);

@@ -19,7 +19,7 @@ void note_iterations(
 void shape_nodes(const ir::Scene &scene, ir::ShapeId id, std::vector<ir::NodeId> &out);
 // The shapes with those of one form, eight or more, replaced by a table of them.
 std::vector<ir::ShapeId> gather_instances(Interpreter &ev, std::vector<ir::ShapeId> shapes,
-                                          int dims);
+                                          int dims, Span place);
 // A smooth union of width k of shapes of one form, as a table; none where they are not.
 std::optional<ir::ShapeId> smooth_instances(Interpreter &ev, const std::vector<ir::ShapeId> &shapes,
                                             ir::NodeId k, int dims);

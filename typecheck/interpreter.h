@@ -265,6 +265,7 @@ struct Interpreter {
 constexpr int max_call_depth = 1000;
 constexpr int max_depth = 40000; // nested evaluations, as far as the stack reaches
 constexpr int max_list_height = 256;
+constexpr std::size_t max_shape_height = 1000; // passes over shapes go as deep
 constexpr int max_unrolled = 4096;
 constexpr std::size_t max_remembered = 100'000; // calls of the library
 constexpr int max_loop_iterations = 100'000;

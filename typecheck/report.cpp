@@ -254,6 +254,10 @@ bool spend(Interpreter &ev, Span place, std::size_t amount) {
     if (ev.list_height > max_list_height)
         return refuse(ev, Code::RecursionLimit, place, "lists are nested too deep here", nullptr,
                       "a list in a list in a list ends after 256; `concat` joins lists");
+    if (ev.scene.shapes.tallest() > max_shape_height)
+        return refuse(ev, Code::RecursionLimit, place, "shapes are nested too deep here", nullptr,
+                      "a shape made of a shape, and so on, ends after 1000; `union { … }` and "
+                      "`difference { … }` take many at once");
     constexpr std::size_t often = 64; // counting has a price of its own
     return before / often == ev.evaluations / often || has_room(ev, place, 0);
 }

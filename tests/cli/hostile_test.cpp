@@ -132,9 +132,15 @@ std::vector<Hostile> hostile_scenes() {
         {"100,000 names in one block", "loop-limit",
          "fn f() {\n" + lines(100'000, [](int i) { return fmt::format("  let a{} = 1", i); }) +
              "  a9\n}\nsphere(f())\n"},
-        {"shapes in shapes", "memory-limit",
+        {"shapes in shapes", "recursion-limit",
          "fn f() {\n  var s = sphere(1)\n  for i in 0..100000 {\n"
          "    s = (s & box(i + 2)).translate([0.001, 0, 0])\n  }\n  s\n}\nf()\n"},
+        {"a shape moved again and again", "recursion-limit",
+         "fold(0..100000, sphere(1), (s, i) => s.translate(x: 0.001))\n"},
+        {"cuts in one line", "", lines(20000, [](int) { return "sphere(1) -"; }) + "sphere(1)\n"},
+        {"a union that grows by one", "loop-limit",
+         "fold(0..100000, sphere(1), (s, i) => s | sphere(1).translate(x: i))\n"},
+        {"mirrors of mirrors", "loop-limit", "fold(0..3000, sphere(1), (s, i) => s.mirror(X))\n"},
         {"a default that calls itself", "recursion-limit", "fn f(x = f()) = x\nsphere(f())\n"},
     };
 }
