@@ -94,7 +94,7 @@ Lines straightened(const Plane2 &plane, const Squares &squares, const Ways &ways
         std::vector<Way> way = way_of(plane, squares, ways, static_cast<std::int32_t>(k), seen);
         // It begins where a vertex is kept, if there is one, and ends there again.
         const auto kept = std::ranges::find_if(way, [](const Way &w) { return w.kept; });
-        if (kept != way.end()) std::ranges::rotate(way, kept);
+        if (kept != way.end()) std::rotate(way.begin(), kept, way.end());
         way[0].kept = true;
         way.push_back(way[0]);
         std::vector<Flat> contour;
