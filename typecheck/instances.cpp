@@ -377,7 +377,7 @@ ShapeId unite(Interpreter &ev, std::vector<ShapeId> shapes, int dims, Span origi
             listed.insert(listed.end(), all.begin(), all.end());
         } else
             listed.push_back(id);
-        if (!spend(ev, origin, parts.size() / 2)) return id; // each is looked up and copied
+        if (!spend(ev, origin, 4 * parts.size())) return id; // each is looked up and copied
         for (ShapeId part : parts)
             if (!std::exchange(seen[part.index], true)) flat.push_back(part);
     }

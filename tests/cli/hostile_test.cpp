@@ -140,7 +140,8 @@ std::vector<Hostile> hostile_scenes() {
         {"cuts in one line", "", lines(20000, [](int) { return "sphere(1) -"; }) + "sphere(1)\n"},
         {"a union that grows by one", "loop-limit",
          "fold(0..100000, sphere(1), (s, i) => s | sphere(1).translate(x: i))\n"},
-        {"mirrors of mirrors", "loop-limit", "fold(0..3000, sphere(1), (s, i) => s.mirror(X))\n"},
+        {"mirrors of mirrors", "recursion-limit",
+         "fold(0..3000, sphere(1), (s, i) => s.mirror(X))\n"},
         {"a default that calls itself", "recursion-limit", "fn f(x = f()) = x\nsphere(f())\n"},
     };
 }
