@@ -128,6 +128,11 @@ std::optional<TreeNode> TreeWriter::otherwise(ShapeId id, const Paint &paint,
         add(result, "Within",
             yaml_mapping(
                 {{"Low", yaml_xyz(lo[0], lo[1], lo[2])}, {"High", yaml_xyz(hi[0], hi[1], hi[2])}}));
+        unsaved(diagnostics_, shape(id).origin,
+                "the save format has no words for " + what +
+                    ": it is written as a function of the "
+                    "point within its box")
+            .note("its surface is the same; away from it, the file has the distance to the box");
     }
     add(result, "Assumed", yaml_scalar(fact.lipschitz_sup));
     if (!paint.fill.empty()) add(result, "Material", yaml_word(paint.fill));

@@ -3,6 +3,7 @@
 // (import/tree.cpp), and record the rest.
 #include "save-format/export/tree.h"
 
+#include "ir/passes/inline.h"
 #include "ir/passes/walk.h"
 #include "save-format/export/appearance.h"
 #include "save-format/export/tree_writer.h"
@@ -337,7 +338,9 @@ NodeId Numbers::reduced(NodeId id) {
 }
 
 NodeId Numbers::present(NodeId id) {
-    return values_.empty() ? id : ir::substitute(graph_, id, values_);
+    constexpr std::size_t max_nodes = 20000; // of what calls and loops become
+    if (!values_.empty()) id = ir::substitute(graph_, id, values_);
+    return graph_.is_constant(id) ? id : ir::without_loops(graph_, id, max_nodes).root;
 }
 
 bool Numbers::varies(NodeId id) {

@@ -214,6 +214,8 @@ TEST_CASE("numbers that follow something come back following it", "[save][exampl
              "box(0.4).translate(x: 1).repeat_polar(5, copies: (s, id) => s.rotate(a * id.x, axis: "
              "X))",
              "box(0.5).repeat([2, 0, 2], copies: (s, id) => s.rotate(hash(id) + time))",
+             "box(0.5).repeat([2, 0, 2], copies: (s, id) => s.scale([1, 1 + saturate(0.1 * id.x), "
+             "1]).translate(y: value_noise(0.3 * id)))",
              "sphere(0.2).repeat([0.8, 0, 0], count: [2, 1, 1], copies: (s, i) => s.scale(0.5 + "
              "0.3 * i.x)).repeat([0, 0, 3], count: [1, 1, 2], copies: (s, j) => s.translate(y: 0.2 "
              "* j.z * a))",
