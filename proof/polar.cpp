@@ -160,7 +160,6 @@ Turned without_angles(Graph &graph, NodeId root) {
 
 std::unordered_set<NodeId> stepped_angles(const Graph &graph, NodeId root,
                                           const std::unordered_set<NodeId> &steps) {
-    std::unordered_set<NodeId> bare; // what reads an angle, and is no step yet
     std::vector<NodeId> nodes = all_below(graph, root);
     if (nodes.size() > max_nodes_of_angles) return {};
     std::sort(nodes.begin(), nodes.end()); // arguments first
@@ -168,11 +167,6 @@ std::unordered_set<NodeId> stepped_angles(const Graph &graph, NodeId root,
     std::unordered_map<NodeId, std::unordered_set<NodeId>> reads; // of each node: angles as such
     for (NodeId id : nodes) {
         const ir::Node node = graph[id];
-        if (node.op == Op::Atan2) {
-            out.insert(id);
-            reads[id] = {id};
-            continue;
-        }
         std::unordered_set<NodeId> all;
         for (NodeId a : graph.args(id)) all.insert(reads[a].begin(), reads[a].end());
         constexpr ir::OpSet linear{Op::Add, Op::Sub, Op::Neg, Op::Mul, Op::Div},
@@ -183,6 +177,9 @@ std::unordered_set<NodeId> stepped_angles(const Graph &graph, NodeId root,
             continue;
         }
         for (NodeId angle : all) out.erase(angle);
+        if (node.op != Op::Atan2) continue;
+        out.insert(id);
+        reads[id] = {id};
     }
     for (NodeId angle : reads[root]) out.erase(angle);
     return out;
