@@ -256,7 +256,7 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, NodeId field,
     std::size_t limit = std::max(budget.instructions, 200 * tape.length());
     while (!queue.empty()) {
         Candidate top = queue.top();
-        if (top.bound <= std::max(out.sampled * budget.tolerance, settled)) break;
+        if (top.bound <= std::max({out.sampled * budget.tolerance, settled, budget.enough})) break;
         if (out.sampled > budget.hopeless) break;
         if (top.bound != infinity && machine.work() > limit) break;
         queue.pop();

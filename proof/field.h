@@ -27,6 +27,7 @@ struct Domain {
 struct Budget {
     std::size_t instructions = 250'000;
     double tolerance = 1.05; // the bound over the largest slope seen, at which to stop
+    double enough = 0;       // a bound than which none need be less
     double hopeless = ir::rounding::infinity; // a slope seen from which on the bound is of no use
 };
 

@@ -70,6 +70,7 @@ struct Flattener {
     bool step_cancels(NodeId wave) const;
     std::optional<NodeId> rounding_in(NodeId id, int depth = 0) const;
 
+    void find_mean(Scope &scope, NodeId id, Instruction &out);
     Slot sum(Scope &scope, NodeId id, Instruction out);
 
     Slot product(Scope &scope, NodeId id, Instruction out);

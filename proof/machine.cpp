@@ -339,6 +339,26 @@ void Machine::finish(const Instruction &instruction, double rule, bool odd_used)
     if (norm_[s] == infinity) fail(instruction, Trouble::Singular);
 }
 
+// What a value's gradient is, as a mean of two others (means.h), beside what its own rule says.
+void Machine::hold_mean(const Instruction &instruction) {
+    const Slot out = instruction.out;
+    const auto [a, b, by_a, by_b, beyond] = *instruction.mean;
+    const std::uint32_t at_a = tape_.first[a], at_b = tape_.first[b];
+    if (norm_[out] == infinity || norm_[a] == infinity || norm_[b] == infinity) return;
+    if (odd_[at_a] || odd_[at_b]) return;
+    if (value_[at_a].magnitude() > mean_reach || value_[at_b].magnitude() > mean_reach) return;
+    for (std::size_t j = 0; j < 3; ++j) {
+        const Interval of_a = Interval(by_a) * grad_[at_a][j],
+                       of_b = Interval(by_b) * grad_[at_b][j];
+        const Interval way = Interval(-beyond, beyond) * Interval((of_a - of_b).magnitude());
+        Interval &own = grad_[tape_.first[out]][j];
+        own = meet(own, hull(of_a, of_b) + (beyond > 0 ? way : Interval(0.0)));
+    }
+    const double most =
+        std::max(times(std::fabs(by_a), norm_[a]), times(std::fabs(by_b), norm_[b]));
+    norm_[out] = std::min(norm_[out], up(times(most, 1 + 2 * beyond + 1e-9), 4));
+}
+
 // |grad v| <= c v, v >= 0: of exp(u) with c the norm of u, of sums with the greater of both, of
 // products with the sum (docs/lipschitz.md, 2.16).
 double Machine::relative_norm(const Instruction &instruction) const {

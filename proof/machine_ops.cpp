@@ -36,6 +36,7 @@ Step::Step(Machine &of, const Instruction &instruction)
 void Machine::step(const Instruction &instruction) {
     Step step(*this, instruction);
     step.run();
+    if (instruction.mean) hold_mean(instruction);
     if (reads_values_) step.read();
     if (!bend_.empty()) bend_[instruction.out] = step.bend();
 }

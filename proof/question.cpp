@@ -43,6 +43,7 @@ void Question::add(const Zone *zone) {
 void Question::add(const Budget &budget) {
     add(static_cast<double>(budget.instructions));
     add(budget.tolerance);
+    add(budget.enough);
     add(budget.hopeless);
 }
 
@@ -91,6 +92,7 @@ FieldBound Question::searched(const Search &search, Work &work) const {
     Ranges ranges = own_;
     ranges.scene = &scene;
     ranges.work = &work;
+    context.ranges = &ranges;
     return search(context, ranges, field);
 }
 

@@ -8,6 +8,7 @@
 #include "proof/pieces.h"
 #include "proof/work.h"
 
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -38,6 +39,15 @@ enum class Form : std::uint8_t {
 
 using Slot = std::uint32_t; // a value: components(type) numbers at Tape::first[slot]
 
+// A scalar whose gradient is t by_a grad a + (1 - t) by_b grad b, with t in 0..1 or no further
+// beyond (means.h). Id: of a node, or of its slot.
+template <class Id> struct MeanOf {
+    Id a{}, b{};
+    double by_a = 1, by_b = 1, beyond = 0;
+};
+using Mean = MeanOf<NodeId>;
+constexpr double mean_reach = 1e6; // the sizes of a and b up to which it is proved
+
 struct Instruction {
     Op op = Op::Const;
     Form form = Form::Plain;
@@ -53,6 +63,7 @@ struct Instruction {
     std::vector<Slot> turned;
     // … and of a matrix product: a bound of the matrix' norm, whatever its numbers are.
     double norm = ir::rounding::infinity;
+    std::optional<MeanOf<Slot>> mean; // of a scalar
     NodeId node;
 };
 
@@ -87,6 +98,7 @@ struct Meeting {
 };
 
 class BoundCache;
+struct Ranges;
 
 // Border questions: is this Select continuous (continuity.h)? Answered once a Select that varies.
 struct Flattening {
@@ -100,8 +112,10 @@ struct Flattening {
     std::unordered_map<NodeId, std::optional<Pieces>> pieces{}; // by node, remembered over fields
     // By field: the same with its loops written out, where borders in their bodies have to be seen.
     std::unordered_map<NodeId, NodeId> written{};
-    std::vector<bool> cached{};  // by cached field: known by its bounds alone (Ranges::caches)
-    BoundCache *cache = nullptr; // of answers to whole questions (question.h), or none
+    std::vector<bool> cached{}; // by cached field: known by its bounds alone (Ranges::caches)
+    std::unordered_map<NodeId, std::optional<Mean>> means{}; // by node, remembered over fields
+    const Ranges *ranges = nullptr; // of all that the fields read, or none: then no mean is found
+    BoundCache *cache = nullptr;    // of answers to whole questions (question.h), or none
 };
 
 Tape flatten(Flattening &context, NodeId root);

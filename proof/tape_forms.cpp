@@ -6,6 +6,7 @@
 #include "proof/forms.h"
 #include "proof/guarded.h"
 #include "proof/linear_maps.h"
+#include "proof/means.h"
 #include "proof/segments.h"
 #include "proof/smooth.h"
 
@@ -137,7 +138,14 @@ Slot Flattener::sum(Scope &scope, NodeId id, Instruction out) {
     if (const auto v = corner(graph, id)) return emit(scope, out, Form::Corner, {*v});
     for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
     if (out.type != ir::Type::Float) return emit(scope, std::move(out));
+    find_mean(scope, id, out);
     return emit_by_pieces(scope, id, std::move(out), {id});
+}
+
+void Flattener::find_mean(Scope &scope, NodeId id, Instruction &out) {
+    if (const auto mean = mean_of(context, id))
+        out.mean = {slot(scope, mean->a), slot(scope, mean->b), mean->by_a, mean->by_b,
+                    mean->beyond};
 }
 
 Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
@@ -203,6 +211,7 @@ Slot Flattener::choice(Scope &scope, NodeId id, Instruction out) {
         else if (ir::is_vector(out.type))
             return slot(scope, by_component(args));
     }
+    find_mean(scope, id, out);
     return emit(scope, std::move(out));
 }
 

@@ -175,6 +175,8 @@ constexpr std::array near_misses = {
     "length(p.xy - 0.1) * cos((atan(p.y, p.x) % (pi / 3)) - pi / 6) + p.z",
     "p.z + 0.1 * floor(atan(p.y, p.x) * 3 / pi)",
     "p.z * (1 + floor(atan(p.y, p.x) * 3 / pi) % 2)",
+    "atan(pow(atan(p.z, p.x), 2), 1)", // an angle of an angle
+    "p.y + 0.1 * abs(atan(abs(atan(p.z, p.x)), 2) - 0.3)",
     // squares that are not complete: less by a little, of a product, of a linear term
     "sqrt(dot(p, p) + 0.809 - 1.8 * length(p.xy))",
     "sqrt(dot(p, p) + 0.80999990 - 1.8 * length(p.xy))",
@@ -308,6 +310,17 @@ constexpr std::array steep = {
     Steep{"length(max(vec2(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)) + "
           "min(max(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)",
           2},
+    // what moves along with two numbers: a mean of them, one that goes beyond either, three times one
+    Steep{"min(p.x, p.y) - 0.025 * pow(max(1 - 2.5 * abs(p.x - p.y), 0), 3) * "
+          "(4 - max(1 - 2.5 * abs(p.x - p.y), 0))",
+          1},
+    Steep{"min(p.x, p.y) - 0.4 * pow(max(1 - 2.5 * abs(p.x - p.y), 0), 2)", 2.236068},
+    Steep{"min(p.x, -p.x) - 0.208 * pow(max(1 - 2.5 * abs(2 * p.x), 0), 2)", 1.08},
+    Steep{"min(p.x, p.y) - 0.8 * max(1 - 2.5 * abs(p.x - p.y), 0)", 2.236068},
+    Steep{"min(p.x, p.y) - 0.4 * max(1 - 2.5 * abs(p.x - p.y), 0)", 1},
+    Steep{"1.5 * (p.x + p.y - sqrt((p.x - p.y) * (p.x - p.y) + 0.04))", 3},
+    Steep{"-(p.x - p.y - sqrt((p.x + p.y) * (p.x + p.y) + 0.04)) / 2", 1},
+    Steep{"-(p.x - p.y - 1.1 * sqrt((p.x + p.y) * (p.x + p.y) + 0.04)) / 2", 1.05119},
 };
 
 } // namespace
