@@ -67,8 +67,9 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
     return same_for_all;
 }
 
-// By cases for K: even and odd, and beside each number that it is compared with.
-bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool half, Met met,
+// By cases for K: even and odd, and beside each number that it is compared with. `met` gets those
+// that it is compared with in some cases alone.
+bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool half, Met &met,
                       Work &work) {
     constexpr std::size_t most_thresholds = 8;
     if (met.thresholds.empty() && !met.parity) return false;
@@ -91,20 +92,30 @@ bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool h
             const bool odd = std::fmod(std::fabs(range.lo), 2) == 1;
             if (range.is_point() && odd != (parity == 1)) continue;
             Met more;
-            if (!cancels(graph, seen, group, half, {parity, range}, more, work)) return false;
+            if (cancels(graph, seen, group, half, {parity, range}, more, work)) continue;
+            met.parity = met.parity || more.parity;
+            for (double t : more.thresholds)
+                if (std::ranges::find(met.thresholds, t) == met.thresholds.end())
+                    met.thresholds.push_back(t);
+            return false;
         }
     return true;
 }
 
 bool cancels(Graph &graph, const Seen &seen, const Group &group, Work &work) {
+    constexpr int most_rounds = 3; // of cases that lead to further ones
     bool halves = false, wholes = false;
     for (NodeId step : group.steps) (graph[step].op == Op::Round ? halves : wholes) = true;
     for (const bool half : {false, true}) {
         if (half ? !halves : !wholes) continue;
         Met met;
-        if (!cancels(graph, seen, group, half, {}, met, work) &&
-            !cancels_by_cases(graph, seen, group, half, met, work))
-            return false;
+        bool known = cancels(graph, seen, group, half, {}, met, work);
+        std::size_t before = std::size_t(-1);
+        for (int i = 0; i < most_rounds && !known && met.thresholds.size() != before; ++i) {
+            before = met.thresholds.size();
+            known = cancels_by_cases(graph, seen, group, half, met, work);
+        }
+        if (!known) return false;
     }
     return true;
 }

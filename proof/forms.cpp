@@ -180,6 +180,7 @@ struct PowerOf {
     NodeId base;
     double exponent = 1;
 };
+std::optional<PowerOf> norm_below(Graph &graph, NodeId sum, int depth);
 PowerOf power_of(Graph &graph, NodeId id, int depth = 0) {
     constexpr int max_depth = 10; // a factor may stand in both parts of another, again and again
     const ir::Node node = graph[id];
@@ -198,31 +199,82 @@ PowerOf power_of(Graph &graph, NodeId id, int depth = 0) {
             const PowerOf inner = of(graph.arg(id, 0));
             if (*n == std::floor(*n) || graph[inner.base].op == Op::Abs)
                 return {inner.base, *n * inner.exponent};
+            if (const auto sum = norm_below(graph, graph.arg(id, 0), depth + 1))
+                return {sum->base, *n * sum->exponent};
         }
     if (node.op == Op::Swizzle && node.type == ir::Type::Float)
         if (const NodeId own = component_of(graph, id, 0); own != id) return of(own);
     return {id, 1};
 }
 
-bool powers(Graph &graph, NodeId sum, std::vector<PowerOf> &out) {
+bool powers(Graph &graph, NodeId sum, std::vector<PowerOf> &out, int depth = 0) {
     const ir::Node node = graph[sum];
     if (node.op == Op::Add)
-        return powers(graph, graph.arg(sum, 0), out) && powers(graph, graph.arg(sum, 1), out);
+        return powers(graph, graph.arg(sum, 0), out, depth) &&
+               powers(graph, graph.arg(sum, 1), out, depth);
     if (node.op == Op::Dot && graph.arg(sum, 0) == graph.arg(sum, 1)) {
         for (int i = 0; i < ir::components(graph[graph.arg(sum, 0)].type); ++i) {
-            PowerOf part = power_of(graph, component_of(graph, graph.arg(sum, 0), i));
+            PowerOf part = power_of(graph, component_of(graph, graph.arg(sum, 0), i), depth);
             part.exponent *= 2;
             out.push_back(part);
         }
         return true;
     }
-    out.push_back(power_of(graph, sum));
+    out.push_back(power_of(graph, sum, depth));
     return out.size() <= 15;
+}
+
+// The exponent that all terms have, of sizes or even; nothing where there is no such one.
+std::optional<double> one_exponent(const Graph &graph, const std::vector<PowerOf> &terms) {
+    const double n = terms[0].exponent;
+    const bool even = std::fmod(n, 2) == 0;
+    const bool all = std::ranges::all_of(terms, [&](const PowerOf &term) {
+        return term.exponent == n && (even || graph[term.base].op == Op::Abs);
+    });
+    return terms.size() > 1 && all && n >= 1 ? std::optional(n) : std::nullopt;
+}
+
+// A sum of sizes to one power n as (their norm)^n.
+std::optional<PowerOf> norm_below(Graph &graph, NodeId sum, int depth) {
+    std::vector<PowerOf> terms;
+    if (graph[sum].op != Op::Add || !powers(graph, sum, terms, depth)) return {};
+    const auto n = one_exponent(graph, terms);
+    if (!n) return {};
+    const NodeId norm = graph.make(Op::Pow, {sum, graph.number(1 / *n)});
+    return PowerOf{graph.make(Op::Abs, {norm}), *n};
+}
+
+// |x|, |y|, … of (|x|^n + |y|^n + …)^(1/n), where n does not vary but is no number.
+std::optional<PNormParts> norm_of_unknown(Graph &graph, NodeId id) {
+    if (graph[id].op != Op::Pow) return {};
+    const NodeId below = graph.arg(id, 1);
+    if (graph[below].op != Op::Div || graph.as_number(graph.arg(below, 0)) != 1.0) return {};
+    PNormParts out;
+    out.power = graph.arg(below, 1);
+    if (graph.reads(out.power).point || graph.reads(out.power).free_vars) return {};
+    std::vector<NodeId> todo{graph.arg(id, 0)};
+    while (!todo.empty()) {
+        NodeId term = todo.back();
+        todo.pop_back();
+        if (graph[term].op == Op::Swizzle) term = component_of(graph, term, 0);
+        const ir::Node node = graph[term];
+        if (node.op != Op::Add && node.op != Op::Pow) return {};
+        const NodeId first = graph.arg(term, 0), second = graph.arg(term, 1);
+        if (node.op == Op::Add) {
+            todo.insert(todo.end(), {second, first});
+            continue;
+        }
+        if (second != out.power || graph[first].op != Op::Abs || out.parts.size() == 15) return {};
+        out.parts.push_back(first);
+    }
+    return out.parts.size() > 1 ? std::optional(out) : std::nullopt;
 }
 
 } // namespace
 
 std::optional<PNormParts> p_norm(Graph &graph, NodeId id) {
+    if (graph[id].type != ir::Type::Float) return {};
+    if (const auto parts = norm_of_unknown(graph, id)) return parts;
     double exponent = 1; // of the roots, one of another
     NodeId sum = id;
     while (exponent > 1e-3) {
@@ -234,18 +286,13 @@ std::optional<PNormParts> p_norm(Graph &graph, NodeId id) {
         exponent *= *e;
         sum = graph.arg(sum, 0);
     }
-    if (exponent == 1 || graph[id].type != ir::Type::Float) return {};
     std::vector<PowerOf> terms;
-    if (!powers(graph, sum, terms) || terms.size() < 2) return {};
+    if (exponent == 1 || !powers(graph, sum, terms)) return {};
+    const auto n = one_exponent(graph, terms);
+    if (!n || std::fabs(*n * exponent - 1) > 2e-7) return {};
     PNormParts out;
-    const double n = terms[0].exponent;
-    for (const PowerOf &term : terms) {
-        const bool even = std::fmod(n, 2) == 0;
-        if (term.exponent != n || !(even || graph[term.base].op == Op::Abs)) return {};
-        out.parts.push_back(term.base);
-    }
-    if (!(n > 2) || std::fabs(n * exponent - 1) > 2e-7) return {};
-    out.power = graph.number(n);
+    for (const PowerOf &term : terms) out.parts.push_back(term.base);
+    out.power = graph.number(*n);
     return out;
 }
 

@@ -31,7 +31,8 @@ std::optional<HeldWaveParts> held_wave(ir::Graph &graph, NodeId id);
 // k*fract(x) - k/2 as k*(fract(x) - 1/2).
 std::optional<NodeId> scaled_wave(ir::Graph &graph, NodeId id);
 
-// The parts of (x^n + y^n + …)^(1/n), n >= 2: n is even, or each part a size |x|.
+// The parts of (x^n + y^n + …)^(1/n), n >= 1: n is even, or each part a size |x|. n may be a param,
+// of which only its range says whether it is at least 1.
 struct PNormParts {
     std::vector<NodeId> parts;
     NodeId power;

@@ -87,12 +87,18 @@ void Step::p_norm() {
             least = std::max(least, value(a, c).mignitude());
             most = std::max(most, value(a, c).magnitude());
         }
-    const double norms = together();
+    if (!(power.lo >= 1)) {
+        set(0, Interval::everything(), none);
+        return fail(Trouble::Singular);
+    }
+    const double weight = // |w|_2 of the weights w of the parts' gradients
+        power.lo < 2 ? up(std::pow(double(components), 1 / power.lo - 0.5), 8) : 1;
+    const double norms = times(weight, together());
     for (std::size_t j = 0; j < 3; ++j) {
         double column = 0;
         for (int a = 0; a < last; ++a)
             for (int c = 0; c < size(a); ++c) column += std::pow(grad(a, c)[j].magnitude(), 2);
-        const double m = column == 0 ? 0 : std::min(up(std::sqrt(column), 4), norms);
+        const double m = column == 0 ? 0 : std::min(times(weight, up(std::sqrt(column), 4)), norms);
         g[j] = {-m, m};
     }
     set(0, {least, up(times(most, std::pow(double(components), 1 / power.lo)), 8)}, g);

@@ -127,13 +127,19 @@ std::optional<Polynomial> Expansion::written(NodeId id) {
         const auto a = of(arg(0)), b = of(arg(1));
         return a && b ? multiply(*a, *b) : std::nullopt;
     }
-    if (node.op == Op::Div)
-        if (auto c = graph_.as_number(arg(1)); c && *c != 0) {
+    if (node.op == Op::Div) {
+        const auto c = graph_.as_number(arg(1));
+        if (c && *c != 0) {
             auto a = of(arg(0));
             if (!a) return {};
             for (auto &[m, x] : *a) x /= *c;
             return a;
         }
+        const auto above = of(arg(0));
+        const bool nothing =
+            above && std::ranges::all_of(*above, [](const auto &term) { return term.second == 0; });
+        if (nothing) return Polynomial(); // wherever it is a number
+    }
     if (node.op == Op::Pow)
         if (auto c = graph_.as_number(arg(1)); c && std::floor(*c) == *c && *c >= 1 && *c <= 6) {
             const auto a = of(arg(0));

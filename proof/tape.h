@@ -30,7 +30,7 @@ enum class Form : std::uint8_t {
     OddPower, // x*|x|^c, c > 0, whose slope (c + 1)*|x|^c is finite at 0 where that of |x|^c is not
     Smooth,   // smooth_extremum: of x, y, k; payload: 1 greater + 2 divides + 4 clipped
     LogSum,   // log(exp(a) + exp(b)); the op says of which base
-    PNorm,    // (sum of |x|^n)^(1/n) of all arguments' components but the last, which is n >= 2
+    PNorm,    // (sum of |x|^n)^(1/n) of all arguments' components but the last, which is n
     HeldWave, // x - m*clamp(round(x/m), lo, hi), lo and hi whole: a Wave where the clamp is not
     Joined,   // a Select whose arms were proved to agree on the border
     Opposite, // a Select whose arms were proved to be each other's negatives there

@@ -36,14 +36,15 @@ std::optional<NodeId> whole_param(const ir::Graph &graph, NodeId root) {
 
 FieldBound Prover::bound_written(NodeId field, const Domain &domain, const Budget &budget) {
     const FieldBound out = bound_field(flattening, ranges, field, domain, budget);
-    const auto refused = [](const FieldBound &bound) {
-        return !std::isfinite(bound.lipschitz) && bound.trouble == Trouble::Jump;
-    };
-    if (!refused(out) || flattening.written.contains(field)) return out;
+    if (std::isfinite(out.lipschitz) || flattening.written.contains(field)) return out;
+    // of each power that a whole param can be it may be known that it is not singular
+    const bool jumps = out.trouble == Trouble::Jump,
+               has_powers = out.trouble == Trouble::Singular && out.cause == Op::Pow;
+    if (!jumps && !has_powers) return out;
     work.take(max_nodes_written);
     const ir::WithoutCalls written = ir::without_loops(graph, field, max_nodes_written);
     if (!written.all) return out;
-    if (written.root != field) {
+    if (jumps && written.root != field) {
         flattening.written[field] = written.root;
         const FieldBound again = bound_field(flattening, ranges, field, domain, budget);
         if (std::isfinite(again.lipschitz)) return again;

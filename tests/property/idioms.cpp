@@ -158,6 +158,8 @@ constexpr std::array near_misses = {
     "if round(p.x) % 2 == 0 { p.x - round(p.x) } else { round(p.x) - p.x + 0.001 }",
     "if round(p.x) % 3 == 0 { p.x - round(p.x) } else { round(p.x) - p.x }",
     "if round(p.x) > 1 { p.x - round(p.x) } else { round(p.x) - p.x }",
+    "abs(p.x - round(p.x) + (if round(p.x) > 2 { round(p.x) - 2 } else { 0 }) + "
+    "(if (if round(p.x) > 2 { 2 } else { round(p.x) }) < -1 { round(p.x) + 2.1 } else { 0 }))",
     "abs(((p.x + 0.25) % 0.5) - 0.25 + (if floor((p.x + 0.25) / 0.5) > 2 "
     "{ 0.51 * (floor((p.x + 0.25) / 0.5) - 2) } else { 0 }))",
     "abs(((p.x + 0.25) % 0.5) - 0.25 + (if floor((p.x + 0.25) / 0.5) > 2 "
@@ -248,6 +250,15 @@ constexpr std::array near_misses = {
     // norms of powers: two powers, no size
     "pow(pow(abs(p.x), 2.5) + pow(abs(p.y), 2.4), 1 / 2.5)",
     "pow(pow(p.x, 2.5) + pow(p.y, 2.5), 1 / 2.5)",
+    "pow(pow(abs(p.x), 0.9) + pow(abs(p.y), 0.9), 1 / 0.9)",
+    "pow(pow(pow(abs(p.x), 4) + pow(abs(p.z), 4), 0.7) + pow(abs(p.y), 3), 1 / 3)",
+    "pow(pow(abs(p.x), 1.2 + sin(time)) + pow(abs(p.y), 1.2 + sin(time)), 1 / (1.2 + sin(time)))",
+    "pow(pow(abs(p.x), 3 + sin(time)) + pow(abs(p.y), 3 - sin(time)), 1 / (3 + sin(time)))",
+    "pow(pow(abs(p.x), 3 + sin(time)) + pow(p.y, 3 + sin(time)), 1 / (3 + sin(time)))",
+    // a quotient that is nothing on the border, nearly
+    "if length(p) < 1 { 0 } else { (length(p) - 0.999) / max(length(p.xy), 0.3) }",
+    "if length(p) < 1 { 0 } else { length(p) * (length(p) - 1.001) / max(length(p.xy), 0.3) }",
+    "if p.x < 1 { 0 } else { (p.x - 1) / p.y }",
     // vectors by component
     "length(if p.x > 1 { vec2(p.x - 2.1, p.y) } else { p.xy })",
     "length((if p.x > 1 { vec2(p.x - 2, p.y) } else { p.xy }) - vec2(0.1, 0))",
@@ -310,6 +321,15 @@ constexpr std::array steep = {
     Steep{"length(max(vec2(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)) + "
           "min(max(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)",
           2},
+    // norms of powers below 2, of norms, and of a power that time moves
+    Steep{"pow(pow(abs(p.x), 1.5) + pow(abs(p.y), 1.5) + pow(abs(p.z), 1.5), 1 / 1.5)", 1.2009369},
+    Steep{"pow(pow(pow(abs(p.x), 4) + pow(abs(p.z), 4), 3 / 4) + pow(abs(p.y), 3), 1 / 3)", 1},
+    Steep{
+        "pow(pow(pow(abs(p.x), 3) + pow(abs(p.y), 3), 1.5 / 3) + pow(abs(2 * p.x), 1.5), 1 / 1.5)",
+        2.447},
+    Steep{
+        "pow(pow(abs(p.x), 3 + sin(time)) + pow(abs(2 * p.y), 3 + sin(time)), 1 / (3 + sin(time)))",
+        2},
     // what moves along with two numbers: a mean of them, one that goes beyond either, three times one
     Steep{"min(p.x, p.y) - 0.025 * pow(max(1 - 2.5 * abs(p.x - p.y), 0), 3) * "
           "(4 - max(1 - 2.5 * abs(p.x - p.y), 0))",

@@ -97,8 +97,9 @@ struct Pair {
 
     double way() const { return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]); }
     double rise() const { return std::fabs(double(a) - double(b)); }
-    bool is_wrong() const {
-        const double rounding = 6e-5 + 2e-6 * std::fabs(double(a));
+    // `off`: what each value may be wrong by in single precision, where that is warned of.
+    bool is_wrong(double off) const {
+        const double rounding = 6e-5 + 2e-6 * std::fabs(double(a)) + 2 * off;
         return !std::isfinite(a) || !std::isfinite(b) || rise() > way() * 1.002 + rounding;
     }
     std::string text() const {
@@ -150,7 +151,7 @@ inline std::string measured(const ir::Scene &scene, double time, Chance &random,
     const auto compare = [&](const std::vector<Pair> &pairs) {
         compared += long(pairs.size());
         for (const Pair &pair : pairs)
-            if (wrong.empty() && pair.is_wrong()) wrong = pair.text();
+            if (wrong.empty() && pair.is_wrong(scene.rounding.subtracted)) wrong = pair.text();
         return wrong.empty();
     };
     std::vector<Pair> pairs;
