@@ -4,6 +4,7 @@
 #include "driver/framing.h"
 #include "driver/scene_files.h"
 #include "ir/lower/lower.h"
+#include "ir/passes/early_exit.h"
 #include "ir/passes/operations.h"
 #include "ir/passes/verify.h"
 #include "proof/prove.h"
@@ -186,6 +187,7 @@ void run_phases(Compilation &out, const typecheck::Loader &loader, const std::st
             proof::bound_rounding(out.scene, out.diagnostics, proof_options.times);
         }
         if (options.strict_proof) refuse_unproved(out);
+        ir::end_loops_early(out.scene.graph);
         assert(ir::verify(out.scene).empty());
     }
     enter(options, Phase::Done);

@@ -174,7 +174,8 @@ class Graph {
 
     FunctionId add_function(Function function);
     LoopId add_loop(Loop loop);
-    TableId add_table(Table table); // or finds the equal one
+    void change_loop(LoopId id, Loop loop); // to one with the same values and free variables
+    TableId add_table(Table table);         // or finds the equal one
     CacheId add_cache(Cache cache);
     const Function &function(FunctionId id) const { return functions_[id]; }
     const Loop &loop(LoopId id) const { return loops_[id]; }
