@@ -359,6 +359,19 @@ void Machine::hold_mean(const Instruction &instruction) {
     norm_[out] = std::min(norm_[out], up(times(most, 1 + 2 * beyond + 1e-9), 4));
 }
 
+// A product about an axis on which its angle is singular, and it is not (around.h).
+void Machine::hold_around(const Instruction &instruction) {
+    const Slot out = instruction.out, vector = instruction.around->vector;
+    const std::uint32_t at = tape_.first[out], part = tape_.first[vector];
+    const double most = up(times(instruction.around->by, norm_[vector]), 4);
+    if (!(most < norm_[out]) || trouble_[out] == Trouble::Overflow) return;
+    if ((tape_.near && !near_) || odd_[part] || odd_[part + 1]) return;
+    norm_[out] = most;
+    trouble_[out] = Trouble::None;
+    cause_[out] = NodeId();
+    for (Interval &own : grad_[at]) own = meet(own, Interval(-most, most));
+}
+
 // |grad v| <= c v, v >= 0: of exp(u) with c the norm of u, of sums with the greater of both, of
 // products with the sum (docs/lipschitz.md, 2.16).
 double Machine::relative_norm(const Instruction &instruction) const {

@@ -37,6 +37,7 @@ void Machine::step(const Instruction &instruction) {
     Step step(*this, instruction);
     step.run();
     if (instruction.mean) hold_mean(instruction);
+    if (instruction.around) hold_around(instruction);
     if (reads_values_) step.read();
     if (!bend_.empty()) bend_[instruction.out] = step.bend();
 }

@@ -64,6 +64,12 @@ struct Instruction {
     // … and of a matrix product: a bound of the matrix' norm, whatever its numbers are.
     double norm = ir::rounding::infinity;
     std::optional<MeanOf<Slot>> mean; // of a scalar
+    // Of a product that turns about an axis (around.h): it is no steeper than `by` times `vector`.
+    struct AroundAxis {
+        Slot vector = 0;
+        double by = 1;
+    };
+    std::optional<AroundAxis> around;
     NodeId node;
 };
 

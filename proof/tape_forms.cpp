@@ -2,6 +2,7 @@
 // they are turned from, and the pieces that they are affine in.
 #include "proof/flattener.h"
 
+#include "proof/around.h"
 #include "proof/continuity.h"
 #include "proof/forms.h"
 #include "proof/guarded.h"
@@ -156,6 +157,8 @@ Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
         return emit(scope, out, Form::OddPower, {parts->x, parts->exponent});
     for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
     if (out.type != ir::Type::Float && !ir::is_vector(out.type)) return emit(scope, std::move(out));
+    if (const auto around = around_axis(context, id); around && cancelling.contains(around->angle))
+        out.around = {slot(scope, around->vector), around->by};
     return emit_by_pieces(scope, id, std::move(out), {id});
 }
 

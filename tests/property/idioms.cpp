@@ -177,6 +177,17 @@ constexpr std::array near_misses = {
     "length(p.xy - 0.1) * cos((atan(p.y, p.x) % (pi / 3)) - pi / 6) + p.z",
     "p.z + 0.1 * floor(atan(p.y, p.x) * 3 / pi)",
     "p.z * (1 + floor(atan(p.y, p.x) * 3 / pi) % 2)",
+    // what vanishes on another axis, not quite, or turns by another count
+    "length(p.xz) * sin(2.5 * atan(p.z, p.x))",
+    "length(p.xy) * sin(5 * atan(p.z, p.x))",
+    "length(p.xz - 0.01) * sin(5 * atan(p.z, p.x))",
+    "max(length(p.xz), 0.01) * sin(5 * atan(p.z, p.x))",
+    "smoothstep(-0.1, 0.5, length(p.xz)) * sin(5 * atan(p.z, p.x))",
+    "min(length(p.xz), -0.1) * sin(5 * atan(p.z, p.x))",
+    "length(p.xz) * floor(atan(p.z, p.x))",
+    "length(p.xz) * atan(p.z, p.x)",
+    "length(fract(p.xz) - 0.5) * sin(5 * atan(fract(p.z) - 0.5, fract(p.x) - 0.5))",
+    "sqrt(length(p.xz)) * sin(5 * atan(p.z, p.x))",
     "atan(pow(atan(p.z, p.x), 2), 1)", // an angle of an angle
     "p.y + 0.1 * abs(atan(abs(atan(p.z, p.x)), 2) - 0.3)",
     // squares that are not complete: less by a little, of a product, of a linear term
@@ -321,6 +332,10 @@ constexpr std::array steep = {
     Steep{"length(max(vec2(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)) + "
           "min(max(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)",
           2},
+    // about an axis
+    Steep{"length(p.xz) * sin(3 * atan(p.z, p.x))", 3},
+    Steep{"3 * min(length(vec2(p.x, 2 * p.z)), 0.3) * cos(4 * atan(2 * p.z, p.x))", 24},
+    Steep{"p.y + 0.3 * smoothstep(0, 0.2, length(p.xz)) * sin(20 * atan(p.z, p.x))", 33.7},
     // norms of powers below 2, of norms, and of a power that time moves
     Steep{"pow(pow(abs(p.x), 1.5) + pow(abs(p.y), 1.5) + pow(abs(p.z), 1.5), 1 / 1.5)", 1.2009369},
     Steep{"pow(pow(pow(abs(p.x), 4) + pow(abs(p.z), 4), 3 / 4) + pow(abs(p.y), 3), 1 / 3)", 1},

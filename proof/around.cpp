@@ -1,0 +1,128 @@
+// F = m(r) g(a), a the angle and r the length of q = [x, y]: along r it changes by m' g, across by
+// m g'/r. Where |m| <= k r and |m'| <= c both are bounded, though g'/r is not.
+#include "proof/around.h"
+
+#include "proof/continuity.h"
+#include "proof/field.h"
+
+#include "ir/passes/walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fathom::proof {
+namespace {
+
+using ir::Graph;
+
+constexpr std::size_t max_nodes = 60, max_instructions = 20'000;
+
+// Does an expression change with the point through this angle alone?
+bool reads_alone(const Graph &graph, NodeId root, NodeId angle) {
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (id == angle || !seen.insert(id).second) continue;
+        const ir::Graph::Reads reads = graph.reads(id);
+        if (!reads.point && !reads.free_vars) continue;
+        constexpr ir::OpSet opaque{Op::Point, Op::Var,        Op::Loop,
+                                   Op::Call,  Op::LoopResult, Op::Cached};
+        if (opaque[graph[id].op] || seen.size() > max_nodes) return false;
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    return true;
+}
+
+std::optional<NodeId> angle_in(const Graph &graph, NodeId root) {
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty() && seen.size() <= max_nodes) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        if (graph[id].op == Op::Atan2 && graph[id].type == ir::Type::Float) return id;
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    return {};
+}
+
+// A number that is at most `size` r, and has at most `slope` by r; `radial`: of r alone.
+struct Vanishing {
+    double size = 1, slope = 1;
+    bool radial = true;
+};
+struct Axis {
+    Graph &graph;
+    NodeId x, y;
+
+    std::optional<Vanishing> of(NodeId id, int depth = 0) const {
+        constexpr int max_depth = 12;
+        if (depth > max_depth) return {};
+        if (id == x || id == y) return Vanishing{1, 1, false};
+        const ir::Node node = graph[id];
+        const auto arg = [&](int i) { return graph.arg(id, i); };
+        const auto scaled = [](std::optional<Vanishing> v, double by, double slope) {
+            if (v) v->size *= by, v->slope *= slope;
+            return v;
+        };
+        if (node.op == Op::Length && graph[arg(0)].type == ir::Type::Vec2) {
+            const NodeId a = component_of(graph, arg(0), 0), b = component_of(graph, arg(0), 1);
+            const bool own = (a == x && b == y) || (a == y && b == x);
+            return own ? std::optional(Vanishing()) : std::nullopt;
+        }
+        if (node.op == Op::Neg || node.op == Op::Abs) return of(arg(0), depth + 1);
+        if (node.op == Op::Mul)
+            for (int i = 0; i < 2; ++i)
+                if (const auto by = graph.as_number(arg(i)))
+                    return scaled(of(arg(1 - i), depth + 1), std::fabs(*by), std::fabs(*by));
+        if (node.op == Op::Div)
+            if (const auto by = graph.as_number(arg(1)); by && *by != 0)
+                return scaled(of(arg(0), depth + 1), 1 / std::fabs(*by), 1 / std::fabs(*by));
+        if (node.op == Op::Min) // with what is not below 0, at most the greater of both
+            for (int i = 0; i < 2; ++i)
+                if (const auto most = graph.as_number(arg(i)); most && *most >= 0)
+                    return of(arg(1 - i), depth + 1);
+        if (node.op == Op::Smoothstep && graph.as_number(arg(0)) == 0.0)
+            if (const auto end = graph.as_number(arg(1)); end && *end > 0)
+                return scaled(of(arg(2), depth + 1), 1.125 / *end, 1.5 / *end);
+        return {};
+    }
+};
+
+std::optional<Around> found_around(Flattening &context, NodeId m, NodeId g) {
+    Graph &graph = context.graph;
+    const auto angle = angle_in(graph, g);
+    if (!angle || !reads_alone(graph, g, *angle)) return {};
+    const NodeId y = graph.arg(*angle, 0), x = graph.arg(*angle, 1);
+    const auto vanishing = Axis{graph, x, y}.of(m);
+    if (!vanishing) return {};
+    const NodeId turn = graph.component(graph.point(), 0);
+    const NodeId along = ir::substitute(graph, g, {{*angle, turn}});
+    Domain line;
+    constexpr double half_turn = std::numbers::pi * (1 + 1e-6);
+    line.box.p = {Interval(-half_turn, half_turn), Interval(0.0), Interval(0.0)};
+    Budget budget;
+    budget.instructions = max_instructions;
+    const double steep = bound_field(context, *context.ranges, along, line, budget).lipschitz,
+                 most = bound_magnitude(context, *context.ranges, along, line, budget);
+    const double radial = most * vanishing->slope, across = steep * vanishing->size;
+    const double by = vanishing->radial ? std::hypot(radial, across) : radial + across;
+    if (!std::isfinite(by)) return {};
+    return Around{*angle, graph.make(Op::Make, ir::Type::Vec2, {x, y}), ir::rounding::up(by, 16)};
+}
+
+} // namespace
+
+std::optional<Around> around_axis(Flattening &context, NodeId product) {
+    Graph &graph = context.graph;
+    if (!context.ranges || graph[product].type != ir::Type::Float || graph[product].op != Op::Mul)
+        return {};
+    const NodeId a = graph.arg(product, 0), b = graph.arg(product, 1);
+    if (const auto found = found_around(context, a, b)) return found;
+    return found_around(context, b, a);
+}
+
+} // namespace fathom::proof

@@ -1,0 +1,19 @@
+// A function of an angle times what vanishes on the angle's axis, as r*sin(5*a): it turns about the
+// axis ever faster, and is ever less (docs/lipschitz.md, 2.19).
+#pragma once
+
+#include "proof/tape.h"
+
+#include <optional>
+
+namespace fathom::proof {
+
+// The product is no steeper than `by` times [x, y], whose angle it is, wherever the cut of `angle`
+// is not seen, for all params and times of the context. Nothing where it is no such product.
+struct Around {
+    NodeId angle, vector;
+    double by = 1;
+};
+std::optional<Around> around_axis(Flattening &context, NodeId product);
+
+} // namespace fathom::proof
