@@ -229,7 +229,12 @@ class Writer {
             std::unordered_map<NodeId, bool> known;
             for (NodeId s : all) (needs(loop.condition, s, known) ? before : after).push_back(s);
             statements(before, indent + 1);
-            line(indent + 1, "if (!" + at_least(expression(loop.condition), Primary) + ") break;");
+            const bool negated =
+                graph_[loop.condition].op == Op::Not && !name_.contains(loop.condition);
+            line(indent + 1, "if (" +
+                                 (negated ? expression(graph_.arg(loop.condition, 0)).text
+                                          : "!" + at_least(expression(loop.condition), Primary)) +
+                                 ") break;");
             statements(after, indent + 1);
         } else {
             statements(all, indent + 1);

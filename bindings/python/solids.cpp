@@ -6,21 +6,30 @@ using namespace pybind11::literals;
 namespace fathom_python {
 namespace {
 
-fathom::Mesh mesh(PyScene &scene, int resolution, double tolerance, double time,
-                  const py::object &lo, const py::object &hi, bool certify, bool colors,
-                  unsigned threads, const py::object &progress) {
+// What a mesh and its measures share. `told` has to outlive the options.
+fathom::MeshOptions mesh_options(PyScene &scene, int resolution, double tolerance, double time,
+                                 const py::object &lo, const py::object &hi, unsigned threads,
+                                 Progress &told) {
     check_time(scene, time);
     if (lo.is_none() != hi.is_none()) throw py::value_error("lo and hi: give both, or none");
-    Progress told(progress);
     fathom::MeshOptions options;
     options.resolution = resolution;
     options.tolerance = tolerance;
     options.time = time;
-    options.certify = certify;
-    options.colors = colors;
     options.threads = threads;
     options.progress = told.callback();
     if (!lo.is_none()) options.bounds = fathom::Box{three<float>(lo, "lo"), three<float>(hi, "hi")};
+    return options;
+}
+
+fathom::Mesh mesh(PyScene &scene, int resolution, double tolerance, double time,
+                  const py::object &lo, const py::object &hi, bool certify, bool colors,
+                  unsigned threads, const py::object &progress) {
+    Progress told(progress);
+    fathom::MeshOptions options =
+        mesh_options(scene, resolution, tolerance, time, lo, hi, threads, told);
+    options.certify = certify;
+    options.colors = colors;
     fathom::Mesh made;
     {
         const py::gil_scoped_release release;
@@ -43,16 +52,9 @@ PyScene part(const PyScene &scene, const std::string &name) {
 fathom::Measures measure(PyScene &scene, int resolution, double tolerance, double time,
                          const py::object &lo, const py::object &hi, unsigned threads,
                          const py::object &progress) {
-    check_time(scene, time);
-    if (lo.is_none() != hi.is_none()) throw py::value_error("lo and hi: give both, or none");
     Progress told(progress);
-    fathom::MeshOptions options;
-    options.resolution = resolution;
-    options.tolerance = tolerance;
-    options.time = time;
-    options.threads = threads;
-    options.progress = told.callback();
-    if (!lo.is_none()) options.bounds = fathom::Box{three<float>(lo, "lo"), three<float>(hi, "hi")};
+    const fathom::MeshOptions options =
+        mesh_options(scene, resolution, tolerance, time, lo, hi, threads, told);
     fathom::Measures made;
     {
         const py::gil_scoped_release release;
