@@ -283,6 +283,19 @@ bool keeps_length(Graph &graph, NodeId q) {
     return true;
 }
 
+namespace {
+
+// |q| of dot(q, q) and q*q.
+std::optional<NodeId> length_of_square(Graph &graph, NodeId id) {
+    const ir::Node node = graph[id];
+    if (node.type != ir::Type::Float || (node.op != Op::Dot && node.op != Op::Mul)) return {};
+    const NodeId q = graph.arg(id, 0);
+    if (q != graph.arg(id, 1)) return {};
+    return graph.make(node.op == Op::Dot ? Op::Length : Op::Abs, {q});
+}
+
+} // namespace
+
 bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b, Work &work) {
     const auto agree_on_border = [&](const ir::Node &node, NodeId id) {
         constexpr ir::OpSet ordered{Op::Less, Op::LessEqual}, equal{Op::Equal, Op::NotEqual};
@@ -293,6 +306,8 @@ bool arms_agree(Graph &graph, NodeId condition, NodeId a, NodeId b, Work &work) 
         if (equal[node.op]) // one arm is met on the border alone
             return parts == 1 && agree_where_equal(graph, u, v, a, b, work);
         if (agree_where_equal(graph, u, v, a, b, work)) return true;
+        const auto long_u = length_of_square(graph, u), long_v = length_of_square(graph, v);
+        if (long_u && long_v && agree_where_equal(graph, *long_u, *long_v, a, b, work)) return true;
         for (int i = 0; i < parts && parts > 1; ++i)
             if (!agree_where_equal(graph, u, v, component_of(graph, a, i),
                                    component_of(graph, b, i), work))

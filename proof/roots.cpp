@@ -246,11 +246,12 @@ std::optional<std::vector<NodeId>> norm_parts(Graph &graph, NodeId id) {
     return root ? squares(graph, graph.arg(id, 0)) : std::nullopt;
 }
 
-NodeId with_signed_roots(Graph &graph, NodeId root) {
+namespace {
+
+std::vector<NodeId> nodes_below(const Graph &graph, NodeId root) {
     constexpr std::size_t max_nodes = 1500;
     std::vector<NodeId> todo{root}, nodes;
     std::map<NodeId, bool> seen;
-    ir::Substitution map;
     while (!todo.empty() && nodes.size() <= max_nodes) {
         const NodeId id = todo.back();
         todo.pop_back();
@@ -258,7 +259,29 @@ NodeId with_signed_roots(Graph &graph, NodeId root) {
         nodes.push_back(id);
         todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
     }
-    for (NodeId id : nodes) {
+    return nodes;
+}
+
+} // namespace
+
+NodeId with_chosen_lengths(Graph &graph, NodeId root, Work &work) {
+    ir::Substitution map;
+    for (NodeId id : nodes_below(graph, root)) {
+        if (graph[id].op != Op::Length || graph[graph.arg(id, 0)].op != Op::Select) continue;
+        const NodeId of = graph.arg(id, 0), condition = graph.arg(of, 0), first = graph.arg(of, 1),
+                     second = graph.arg(of, 2);
+        if (!graph.reads(condition).point || arms_agree(graph, condition, first, second, work))
+            continue;
+        const NodeId a = graph.make(Op::Length, {first}), b = graph.make(Op::Length, {second});
+        if (arms_agree(graph, condition, a, b, work))
+            map[id] = graph.make(Op::Select, {condition, a, b});
+    }
+    return map.empty() ? root : ir::substitute(graph, root, map);
+}
+
+NodeId with_signed_roots(Graph &graph, NodeId root) {
+    ir::Substitution map;
+    for (NodeId id : nodes_below(graph, root)) {
         const ir::Node node = graph[id];
         if (node.op != Op::Mul || node.type != ir::Type::Float) continue;
         for (int i = 0; i < 2; ++i) {

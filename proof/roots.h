@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ir/graph.h"
+#include "proof/work.h"
 
 #include <optional>
 #include <vector>
@@ -23,5 +24,9 @@ std::optional<std::vector<ir::NodeId>> norm_parts(ir::Graph &graph, ir::NodeId i
 // sign(d)*sqrt(|d|), which rises with d, of choices, of sums of squares and of their negatives: as
 // the choice of lengths and their negatives, all over the expression below `root`.
 ir::NodeId with_signed_roots(ir::Graph &graph, ir::NodeId root);
+
+// The length of one of two vectors, whose lengths alone agree where the choice turns, as the choice
+// of the lengths, all over the expression below `root`.
+ir::NodeId with_chosen_lengths(ir::Graph &graph, ir::NodeId root, Work &work);
 
 } // namespace fathom::proof

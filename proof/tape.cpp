@@ -260,6 +260,7 @@ Tape flatten(Flattening &context, NodeId root) {
     Flattener flattener(context);
     if (const auto it = context.written.find(root); it != context.written.end()) root = it->second;
     root = written_out(context.graph, root); // forms are seen through calls
+    root = with_chosen_lengths(context.graph, root, context.work);
     const bool steps = has_steps(context.graph, root),
                choices = context.borders && has_choices(context.graph, root);
     if (steps || choices) {

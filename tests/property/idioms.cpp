@@ -270,6 +270,13 @@ constexpr std::array near_misses = {
     "if length(p) < 1 { 0 } else { (length(p) - 0.999) / max(length(p.xy), 0.3) }",
     "if length(p) < 1 { 0 } else { length(p) * (length(p) - 1.001) / max(length(p.xy), 0.3) }",
     "if p.x < 1 { 0 } else { (p.x - 1) / p.y }",
+    // lengths of a choice: another vector, another length, a sign, a component
+    "length(if dot(p.xy, p.xy) < dot(p.xz, p.xz) { p.xy } else { p.xz + 0.001 })",
+    "length(if dot(p.xy, p.xy) < 2 * dot(p.xz, p.xz) { p.xy } else { p.xz })",
+    "if dot(p.xy, p.xy) < dot(p.xz, p.xz) { length(p.xy) } else { length(p) }",
+    "if p.x * p.x < p.y * p.y { p.x } else { p.y }",
+    "length((if dot(p.xy, p.xy) < dot(p.xz, p.xz) { p.xy } else { p.xz }) - 0.1)",
+    "(if dot(p.xy, p.xy) < dot(p.xz, p.xz) { p.xy } else { p.xz }).y",
     // vectors by component
     "length(if p.x > 1 { vec2(p.x - 2.1, p.y) } else { p.xy })",
     "length((if p.x > 1 { vec2(p.x - 2, p.y) } else { p.xy }) - vec2(0.1, 0))",
@@ -332,6 +339,8 @@ constexpr std::array steep = {
     Steep{"length(max(vec2(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)) + "
           "min(max(-length(p.xy) - 0.3, 2 * length(p.xy) - 1), 0)",
           2},
+    Steep{"length(if dot(p.xy, p.xy) < dot(p.xz, p.xz) { p.xy } else { p.xz })", 1},
+    Steep{"length(if dot(p.xy, p.xy) < dot(2 * p.xz, 2 * p.xz) { p.xy } else { 2 * p.xz })", 2},
     // about an axis
     Steep{"length(p.xz) * sin(3 * atan(p.z, p.x))", 3},
     Steep{"3 * min(length(vec2(p.x, 2 * p.z)), 0.3) * cos(4 * atan(2 * p.z, p.x))", 24},
