@@ -33,11 +33,15 @@ void Prover::name_axioms() {
         const auto claim = [&](bool made, const char *what) {
             if (made) add(Axiom::Kind::Library, library.name + ": " + what, shape.origin);
         };
-        claim(claims.kind == ir::FieldKind::Exact, "exact");
+        const bool exact = claims.kind == ir::FieldKind::Exact;
+        claim(exact, "exact");
         claim(claims.kind == ir::FieldKind::Estimate, "estimate");
-        claim(static_cast<bool>(claims.lipschitz), "bound");
+        claim(claims.lipschitz && !exact, "bound"); // a distance has slope 1
         claim(claims.lo || claims.hi, "box");
-        claim(claims.symmetric != std::array<bool, 3>{}, "symmetry");
+        bool symmetry = false; // that the field does not show by itself
+        for (std::size_t a = 0; a < 3; ++a)
+            symmetry = symmetry || (claims.symmetric[a] && !child(shape).fact.symmetric[a]);
+        claim(symmetry, "symmetry");
         claim(claims.moment_arm[0] || claims.moment_arm[1] || claims.moment_arm[2], "moment arm");
     }
 }

@@ -105,7 +105,7 @@ TEST_CASE("no bound of an example or a library entry grows unnoticed") {
                 rests.library.size(), now.size(), rests.rounding.size(), rests.stated.size());
     for (const std::string &name : rests.rounding)
         std::printf("  rounding not bounded: %s\n", name.c_str());
-    CHECK(rests.library.size() <= 162);
+    CHECK(rests.library.size() <= 108);
     // 36: since its bound follows a param, rough_icosahedron is divided by less at small values.
     CHECK(rests.rounding.size() <= 36);
     CHECK(rests.stated.size() <= 1);
