@@ -1,7 +1,7 @@
 #include "api/mesh.h"
 
-#include "mesh/certify.h"
 #include "mesh/colors.h"
+#include "mesh/mend.h"
 #include "mesh/write.h"
 
 #include <fmt/format.h>
@@ -165,20 +165,18 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
         return without_mesh(why.status, std::move(why.message));
     return guarded(
         [&] {
-            const double share = options.certify ? 0.6 : 1; // of the time
-            const fathom::mesh::Settings settings = settings_of(options, share);
-            fathom::mesh::Made made = fathom::mesh::make_mesh(ir_of(scene), settings);
-            if (made.failure != fathom::mesh::Failure::None) return refused(made);
+            fathom::mesh::Made made;
             Mesh mesh;
             if (options.certify) {
-                fathom::mesh::Progress progress;
-                progress.report = options.progress;
-                progress.from = share;
-                const auto found = certify(ir_of(scene), settings, made, progress);
-                if (progress.cancelled) return without_mesh(MeshStatus::Cancelled, "cancelled");
-                mesh.certificate = certificate_of(found);
-                list_undecided(made.octree, found.undecided, mesh);
+                fathom::mesh::Mended mended =
+                    make_certified_mesh(ir_of(scene), settings_of(options));
+                made = std::move(mended.made);
+                if (made.failure != fathom::mesh::Failure::None) return refused(made);
+                mesh.certificate = certificate_of(mended.certificate);
+                list_undecided(made.octree, mended.certificate.undecided, mesh);
             } else {
+                made = fathom::mesh::make_mesh(ir_of(scene), settings_of(options));
+                if (made.failure != fathom::mesh::Failure::None) return refused(made);
                 list_undecided(made.octree, made.octree.undecided, mesh);
             }
             if (options.colors) {

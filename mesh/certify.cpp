@@ -1,100 +1,19 @@
 #include "mesh/certify.h"
 
+#include "mesh/grid.h"
 #include "mesh/measure.h"
+#include "mesh/nearest.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <unordered_map>
 
 namespace fathom::mesh {
 namespace {
 
-using Real3 = std::array<double, 3>;
-
 constexpr double outward = 1 + 1e-9; // what rounding in double precision may take
 constexpr int finest_box = 4;        // divisions of a leaf by halves
 constexpr int finest_piece = 4;      // divisions of a triangle into four
-
-Real3 real(const Point &p) { return {p[0], p[1], p[2]}; }
-Real3 minus(const Real3 &a, const Real3 &b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Real3 along(const Real3 &a, const Real3 &d, double t) {
-    return {a[0] + t * d[0], a[1] + t * d[1], a[2] + t * d[2]};
-}
-double inner(const Real3 &a, const Real3 &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Real3 outer(const Real3 &a, const Real3 &b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double distance(const Real3 &a, const Real3 &b) {
-    const Real3 d = minus(a, b);
-    return std::sqrt(inner(d, d));
-}
-
-double to_segment(const Real3 &p, const Real3 &a, const Real3 &b) {
-    const Real3 d = minus(b, a);
-    const double squares = inner(d, d);
-    const double t = squares > 0 ? std::clamp(inner(minus(p, a), d) / squares, 0.0, 1.0) : 0;
-    return distance(p, along(a, d, t));
-}
-
-// No less than the distance: to the foot on the plane where that is in the triangle, else to a side.
-double to_triangle(const Real3 &p, const std::array<Real3, 3> &t) {
-    double best =
-        std::min({to_segment(p, t[0], t[1]), to_segment(p, t[1], t[2]), to_segment(p, t[2], t[0])});
-    const Real3 u = minus(t[1], t[0]), v = minus(t[2], t[0]), w = minus(p, t[0]);
-    const Real3 n = outer(u, v);
-    const double squares = inner(n, n);
-    if (!(squares > 0)) return best;
-    const double b = inner(outer(w, v), n) / squares, c = inner(outer(u, w), n) / squares;
-    if (b >= 0 && c >= 0 && b + c <= 1)
-        best = std::min(best, distance(p, along(along(t[0], u, b), v, c)));
-    return best;
-}
-
-// Things by the cells of a grid that they touch.
-class Grid {
-  public:
-    Grid(const Point &origin, double side) : origin_(origin), side_(side) {}
-    void add(const Real3 &lo, const Real3 &hi, std::uint32_t what) {
-        each(lo, hi, [&](std::uint64_t key) { entries_.push_back({key, what}); });
-    }
-    void sort() {
-        std::ranges::sort(entries_);
-        for (std::size_t k = 0; k < entries_.size(); ++k)
-            if (k == 0 || entries_[k].first != entries_[k - 1].first)
-                begins_[entries_[k].first] = static_cast<std::uint32_t>(k);
-    }
-    // All that touch a box, each once.
-    void find(const Real3 &lo, const Real3 &hi, std::vector<std::uint32_t> &found) const {
-        found.clear();
-        each(lo, hi, [&](std::uint64_t key) {
-            const auto at = begins_.find(key);
-            if (at == begins_.end()) return;
-            for (std::size_t k = at->second; k < entries_.size() && entries_[k].first == key; ++k)
-                found.push_back(entries_[k].second);
-        });
-        std::ranges::sort(found);
-        found.erase(std::unique(found.begin(), found.end()), found.end());
-    }
-
-  private:
-    template <class Do> void each(const Real3 &lo, const Real3 &hi, Do what) const {
-        std::array<std::int64_t, 3> from{}, to{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            from[i] = static_cast<std::int64_t>(std::floor((lo[i] - origin_[i]) / side_));
-            to[i] = static_cast<std::int64_t>(std::floor((hi[i] - origin_[i]) / side_));
-        }
-        for (std::int64_t x = from[0]; x <= to[0]; ++x)
-            for (std::int64_t y = from[1]; y <= to[1]; ++y)
-                for (std::int64_t z = from[2]; z <= to[2]; ++z)
-                    what(std::uint64_t(x + 8) << 42 | std::uint64_t(y + 8) << 21 |
-                         std::uint64_t(z + 8));
-    }
-    Point origin_;
-    double side_;
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;
-    std::unordered_map<std::uint64_t, std::uint32_t> begins_;
-};
 
 struct Box {
     Point lo, hi;
@@ -110,16 +29,16 @@ struct Inquiry {
     const Made &made;
     const Field &field;
     bool trusts;
-    double allowed; // the side of a drawing cell
-    std::vector<std::array<Real3, 3>> triangles;
-    Grid by_triangle, by_root;
-};
+    double allowed;         // the side of a drawing cell
+    const Earlier *earlier; // or null
+    std::vector<Triangle3> triangles{};
+    std::optional<TriangleTree> tree{};
+    Grid by_root;
+    // The triangles at vertex v: at_vertex[first_at[v]] and on, below first_at[v + 1].
+    std::vector<std::uint32_t> first_at{}, at_vertex{};
+    std::vector<std::pair<std::int32_t, std::uint32_t>> patches{}; // by node, sorted
 
-struct Certifier {
-    explicit Certifier(const Field &field) : evaluator(field) {}
-    Evaluator evaluator;
-    cpu::Boxes boxes;
-    std::vector<std::uint32_t> near;
+    bool proved_before(const Real3 &at) const { return earlier && !earlier->changed.beside(at); }
 };
 
 // The parts of some boxes in which surface may be.
@@ -157,17 +76,39 @@ std::vector<Box> open_parts(const Inquiry &inquiry, Evaluator &evaluator, cpu::B
     return open;
 }
 
+// What may be near: first what belongs to the leaf or triangle itself, then, only where that does not
+// do, all that is about.
+struct Candidates {
+    std::vector<std::uint32_t> own, near;
+    bool found_near = false;
+};
+
+void find_own(const Inquiry &inquiry, const Cell &leaf, Candidates &candidates) {
+    candidates.own.clear();
+    const auto at = std::ranges::lower_bound(inquiry.patches, std::pair{leaf.node, 0u});
+    for (auto p = at; p != inquiry.patches.end() && p->first == leaf.node; ++p)
+        for (std::uint32_t k = inquiry.first_at[p->second]; k < inquiry.first_at[p->second + 1];
+             ++k)
+            candidates.own.push_back(inquiry.at_vertex[k]);
+}
+
+// The distance of a triangle that is near enough, or else of the nearest.
+double first_near(const Inquiry &inquiry, const std::vector<std::uint32_t> &triangles,
+                  const Real3 &to, double enough) {
+    double d = 2 * inquiry.allowed;
+    for (std::size_t k = 0; k < triangles.size() && d > enough; ++k)
+        d = std::min(d, to_triangle(to, inquiry.triangles[triangles[k]]));
+    return d;
+}
+
 // How far surface in a leaf may be from the mesh; none where that is more than is allowed.
 std::optional<double> farthest_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
-                                  std::vector<std::uint32_t> &near, const Cell &leaf,
-                                  bool searched) {
+                                  Candidates &candidates, const Cell &leaf, bool searched) {
     const Octree &octree = inquiry.made.octree;
     const std::int32_t side = octree.lattice.cells(leaf.level);
     const Box whole{point_of(octree.lattice, leaf.at),
                     point_of(octree.lattice, corner(leaf.at, side, 7))};
-    Real3 lo = real(whole.lo), hi = real(whole.hi);
-    for (std::size_t i = 0; i < 3; ++i) lo[i] -= inquiry.allowed, hi[i] += inquiry.allowed;
-    inquiry.by_triangle.find(lo, hi, near);
+    find_own(inquiry, leaf, candidates);
     const std::int32_t task = octree.nodes[static_cast<std::size_t>(leaf.node)].task;
     std::vector<Box> open{whole};
     double farthest = 0;
@@ -178,9 +119,11 @@ std::optional<double> farthest_in(const Inquiry &inquiry, Evaluator &evaluator, 
             const double half = 0.5 * distance(real(box.lo), real(box.hi));
             // The first that is near enough will do: the claim is no more than what is allowed.
             const double enough = inquiry.allowed - half;
-            double d = 2 * inquiry.allowed;
-            for (std::size_t k = 0; k < near.size() && d > enough; ++k)
-                d = to_triangle(middle, inquiry.triangles[near[k]]);
+            double d = enough < 0 ? 2 * inquiry.allowed
+                                  : first_near(inquiry, candidates.own, middle, enough);
+            if (d > enough && enough >= 0)
+                if (const auto near = inquiry.tree->nearest(middle, inquiry.allowed, enough))
+                    d = near->distance;
             if (d <= enough)
                 farthest = std::max(farthest, (d + half) * outward);
             else
@@ -196,9 +139,20 @@ std::optional<double> farthest_in(const Inquiry &inquiry, Evaluator &evaluator, 
 
 constexpr std::size_t piece_of_work = 512;
 
+struct Certifier {
+    explicit Certifier(const Field &field) : evaluator(field) {}
+    Evaluator evaluator;
+    cpu::Boxes boxes;
+    Candidates candidates;
+};
+
 void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progress,
                      Certificate &certificate) {
-    const std::vector<Cell> leaves = open_leaves(inquiry.made.octree);
+    const Lattice &lattice = inquiry.made.octree.lattice;
+    std::vector<Cell> leaves = open_leaves(inquiry.made.octree);
+    std::erase_if(leaves, [&](const Cell &leaf) {
+        return inquiry.proved_before(real(point_of(lattice, leaf.at)));
+    });
     // What was searched for in vain is not searched again.
     std::vector<std::int32_t> searched;
     for (const Cell &cell : inquiry.made.octree.undecided) searched.push_back(cell.node);
@@ -214,8 +168,8 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
             const std::size_t end = std::min(leaves.size(), (number + 1) * piece_of_work);
             for (std::size_t k = number * piece_of_work; k < end; ++k) {
                 const std::optional<double> far =
-                    farthest_in(inquiry, memory.evaluator, memory.boxes, memory.near, leaves[k],
-                                std::ranges::binary_search(searched, leaves[k].node));
+                    farthest_in(inquiry, memory.evaluator, memory.boxes, memory.candidates,
+                                leaves[k], std::ranges::binary_search(searched, leaves[k].node));
                 if (far)
                     found[number].farthest = std::max(found[number].farthest, *far);
                 else
@@ -229,39 +183,75 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
     }
 }
 
-Real3 sum_of(const std::array<Real3, 3> &piece) {
-    return along(along(piece[0], piece[1], 1), piece[2], 1);
+Real3 sum_of(const Triangle3 &piece) { return along(along(piece[0], piece[1], 1), piece[2], 1); }
+
+Real3 middle_of(const Inquiry &inquiry, std::uint32_t triangle) {
+    return along({}, sum_of(inquiry.triangles[triangle]), 1.0 / 3);
+}
+
+struct Shard {
+    Triangle3 corners;
+    std::uint32_t triangle = 0; // whose piece it is
+};
+
+// The crossed edges of the patches that a triangle goes through.
+void find_own_roots(const Inquiry &inquiry, std::uint32_t triangle,
+                    std::vector<std::uint32_t> &roots) {
+    roots.clear();
+    const Loops &loops = inquiry.made.loops;
+    for (const std::uint32_t v : inquiry.made.mesh.triangles[triangle]) {
+        if (v >= loops.patches.size()) continue; // on an edge or a face
+        const Patch &patch = loops.patches[v];
+        for (std::uint32_t k = patch.first; k < patch.first + patch.count; ++k)
+            roots.push_back(static_cast<std::uint32_t>(loops.members[k]));
+    }
+}
+
+double first_root(const Inquiry &inquiry, const std::vector<std::uint32_t> &roots, const Real3 &to,
+                  double enough) {
+    double d = 2 * inquiry.allowed;
+    for (std::size_t k = 0; k < roots.size() && d > enough; ++k)
+        d = std::min(d, distance(to, real(inquiry.made.roots[roots[k]])) +
+                            inquiry.made.root_slack[roots[k]]);
+    return d;
 }
 
 // How far a triangle may be from the surface: its pieces from the places where it crosses edges.
 // Pieces that are farther than is allowed are left over.
-double farthest_on(const Inquiry &inquiry, const std::array<Real3, 3> &triangle,
-                   std::vector<std::uint32_t> &near, std::vector<std::array<Real3, 3>> &left) {
-    Real3 lo = triangle[0], hi = triangle[0];
-    for (const Real3 &p : triangle)
-        for (std::size_t i = 0; i < 3; ++i)
-            lo[i] = std::min(lo[i], p[i]), hi[i] = std::max(hi[i], p[i]);
-    for (std::size_t i = 0; i < 3; ++i) lo[i] -= inquiry.allowed, hi[i] += inquiry.allowed;
-    inquiry.by_root.find(lo, hi, near);
+double farthest_on(const Inquiry &inquiry, std::uint32_t number, Candidates &candidates,
+                   std::vector<Shard> &left) {
+    const Triangle3 &triangle = inquiry.triangles[number];
+    find_own_roots(inquiry, number, candidates.own);
+    candidates.found_near = false;
     double farthest = 0;
-    std::vector<std::array<Real3, 3>> pieces{triangle}, next;
+    std::vector<Triangle3> pieces{triangle}, next;
     for (int depth = 0; !pieces.empty(); ++depth, std::swap(pieces, next)) {
         next.clear();
-        for (const std::array<Real3, 3> &piece : pieces) {
+        for (const Triangle3 &piece : pieces) {
             const Real3 middle = along({}, sum_of(piece), 1.0 / 3);
             const double radius = std::max({distance(middle, piece[0]), distance(middle, piece[1]),
                                             distance(middle, piece[2])});
             const double enough = inquiry.allowed - radius;
-            double d = 2 * inquiry.allowed;
-            for (std::size_t k = 0; k < near.size() && d > enough; ++k)
-                d = distance(middle, real(inquiry.made.roots[near[k]])) +
-                    inquiry.made.root_slack[near[k]];
+            double d = first_root(inquiry, candidates.own, middle, enough);
+            if (d > enough && enough >= 0) {
+                if (!candidates.found_near) {
+                    Real3 lo = triangle[0], hi = triangle[0];
+                    for (const Real3 &p : triangle)
+                        for (std::size_t i = 0; i < 3; ++i)
+                            lo[i] = std::min(lo[i], p[i]), hi[i] = std::max(hi[i], p[i]);
+                    for (std::size_t i = 0; i < 3; ++i)
+                        lo[i] -= inquiry.allowed, hi[i] += inquiry.allowed;
+                    inquiry.by_root.find(lo, hi, candidates.near);
+                    candidates.found_near = true;
+                }
+                d = first_root(inquiry, candidates.near, middle, enough);
+            }
             if (d <= enough) {
                 farthest = std::max(farthest, (d + radius) * outward);
             } else if (depth == finest_piece) {
-                left.push_back(piece);
+                left.push_back({piece, number});
             } else {
-                std::array<Real3, 3> m; // the middles of its sides
+                Triangle3 m; // the middles of its sides
                 for (std::size_t k = 0; k < 3; ++k)
                     for (std::size_t i = 0; i < 3; ++i)
                         m[k][i] = 0.5 * (piece[k][i] + piece[(k + 1) % 3][i]);
@@ -279,7 +269,7 @@ constexpr std::size_t ways = 16;
 constexpr std::array<double, 3> steps{0.125, 0.25, 0.5}; // of what is allowed
 
 // Along the piece's normal, the axes and the diagonals, both ways.
-std::array<Real3, ways> ways_from(const std::array<Real3, 3> &piece) {
+std::array<Real3, ways> ways_from(const Triangle3 &piece) {
     std::array<Real3, ways> found{};
     const Real3 n = outer(minus(piece[1], piece[0]), minus(piece[2], piece[0]));
     const double length = std::sqrt(inner(n, n));
@@ -296,7 +286,7 @@ std::array<Real3, ways> ways_from(const std::array<Real3, 3> &piece) {
 
 // Pieces far from all edges that the surface crosses: it lies between the middle of such a piece and
 // a point with another sign.
-void certify_left(const Inquiry &inquiry, const std::vector<std::array<Real3, 3>> &left,
+void certify_left(const Inquiry &inquiry, const std::vector<Shard> &left,
                   Certificate &certificate) {
     constexpr std::size_t group = 256;
     Evaluator evaluator(inquiry.field);
@@ -309,7 +299,7 @@ void certify_left(const Inquiry &inquiry, const std::vector<std::array<Real3, 3>
                 {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])});
         };
         for (std::size_t k = 0; k < count; ++k) {
-            const std::array<Real3, 3> &piece = left[begin + k];
+            const Triangle3 &piece = left[begin + k].corners;
             const Real3 middle = along({}, sum_of(piece), 1.0 / 3);
             add(middle);
             for (const double step : steps)
@@ -318,7 +308,7 @@ void certify_left(const Inquiry &inquiry, const std::vector<std::array<Real3, 3>
         }
         values_at(evaluator, *inquiry.field.whole, points, values);
         for (std::size_t k = 0; k < count; ++k) {
-            const std::array<Real3, 3> &piece = left[begin + k];
+            const Triangle3 &piece = left[begin + k].corners;
             const double size =
                 std::max({distance(piece[0], piece[1]), distance(piece[1], piece[2]),
                           distance(piece[2], piece[0])}) +
@@ -333,7 +323,8 @@ void certify_left(const Inquiry &inquiry, const std::vector<std::array<Real3, 3>
             if (far <= inquiry.allowed)
                 certificate.mesh_to_surface = std::max(certificate.mesh_to_surface, far);
             else
-                certificate.unproved.push_back(points[k * (1 + ways * steps.size())]);
+                certificate.unproved.push_back({points[k * (1 + ways * steps.size())],
+                                                middle_of(inquiry, left[begin + k].triangle)});
         }
     }
 }
@@ -342,20 +333,22 @@ void certify_mesh(const Inquiry &inquiry, unsigned threads, Progress &progress,
                   Certificate &certificate) {
     struct Found {
         double farthest = 0;
-        std::vector<std::array<Real3, 3>> left;
+        std::vector<Shard> left;
     };
     std::vector<Found> found((inquiry.triangles.size() + piece_of_work - 1) / piece_of_work);
     in_parallel(
-        found.size(), threads, progress, [] { return std::vector<std::uint32_t>(); },
-        [&](std::vector<std::uint32_t> &near, std::size_t number) {
+        found.size(), threads, progress, [] { return Candidates(); },
+        [&](Candidates &candidates, std::size_t number) {
             const std::size_t end =
                 std::min(inquiry.triangles.size(), (number + 1) * piece_of_work);
             for (std::size_t k = number * piece_of_work; k < end; ++k)
-                found[number].farthest =
-                    std::max(found[number].farthest,
-                             farthest_on(inquiry, inquiry.triangles[k], near, found[number].left));
+                if (const auto t = static_cast<std::uint32_t>(k);
+                    !inquiry.proved_before(middle_of(inquiry, t)))
+                    found[number].farthest =
+                        std::max(found[number].farthest,
+                                 farthest_on(inquiry, t, candidates, found[number].left));
         });
-    std::vector<std::array<Real3, 3>> left;
+    std::vector<Shard> left;
     for (const Found &some : found) {
         certificate.mesh_to_surface = std::max(certificate.mesh_to_surface, some.farthest);
         left.insert(left.end(), some.left.begin(), some.left.end());
@@ -383,6 +376,52 @@ void enclose_volume(const Octree &octree, Certificate &certificate) {
     certificate.largest_volume = (inside + open) * outward;
 }
 
+// What holds of the places that have not changed. Distances are the largest of all: they hold too.
+Certificate kept_of(const Earlier &earlier, const Octree &octree) {
+    Certificate kept;
+    kept.mesh_to_surface = earlier.certificate.mesh_to_surface;
+    kept.surface_to_mesh = earlier.certificate.surface_to_mesh;
+    for (const Cell &cell : earlier.certificate.undecided)
+        if (!earlier.changed.beside(real(point_of(octree.lattice, cell.at))))
+            kept.undecided.push_back(cell);
+    for (const Unproved &place : earlier.certificate.unproved)
+        if (!earlier.changed.beside(place.triangle)) kept.unproved.push_back(place);
+    return kept;
+}
+
+// What is looked up by its place, as far as the proofs will ask.
+void fill(Inquiry &inquiry) {
+    const Made &made = inquiry.made;
+    const auto wanted = [&](const Real3 &at) {
+        return !inquiry.earlier || inquiry.earlier->changed.around(at);
+    };
+    inquiry.first_at.resize(made.mesh.vertices.size() + 1);
+    std::vector<std::uint32_t> among;
+    for (const auto &t : made.mesh.triangles) {
+        Triangle3 triangle;
+        for (std::size_t k = 0; k < 3; ++k) triangle[k] = real(made.mesh.vertices[t[k]]);
+        if (wanted(triangle[0]))
+            among.push_back(static_cast<std::uint32_t>(inquiry.triangles.size()));
+        inquiry.triangles.push_back(triangle);
+        for (const std::uint32_t v : t) ++inquiry.first_at[v + 1];
+    }
+    for (std::size_t v = 1; v < inquiry.first_at.size(); ++v)
+        inquiry.first_at[v] += inquiry.first_at[v - 1];
+    inquiry.at_vertex.resize(3 * made.mesh.triangles.size());
+    std::vector<std::uint32_t> next = inquiry.first_at;
+    for (std::size_t t = 0; t < made.mesh.triangles.size(); ++t)
+        for (const std::uint32_t v : made.mesh.triangles[t])
+            inquiry.at_vertex[next[v]++] = static_cast<std::uint32_t>(t);
+    for (std::size_t p = 0; p < made.loops.patches.size(); ++p)
+        inquiry.patches.push_back({made.loops.patches[p].cell.node, static_cast<std::uint32_t>(p)});
+    std::ranges::sort(inquiry.patches);
+    for (std::size_t k = 0; k < made.roots.size(); ++k)
+        if (const Real3 at = real(made.roots[k]); wanted(at))
+            inquiry.by_root.add(at, at, static_cast<std::uint32_t>(k));
+    inquiry.tree.emplace(made.mesh, std::move(among));
+    inquiry.by_root.sort();
+}
+
 } // namespace
 
 Form form_of(const Mesh &mesh) {
@@ -405,31 +444,21 @@ Form form_of(const Mesh &mesh) {
     return form;
 }
 
-Certificate certify(const ir::Scene &scene, const Settings &settings, const Made &made,
-                    Progress &progress) {
+Certificate certify(const Field &field, const Settings &settings, const Made &made,
+                    const Earlier *earlier, Progress &progress) {
     const unsigned threads = threads_of(settings);
-    Certificate certificate;
-    const Field field(scene, settings.time, settings.bounds);
+    Certificate certificate = earlier ? kept_of(*earlier, made.octree) : Certificate{};
     const Lattice &lattice = made.octree.lattice;
     const double side = lattice.side(lattice.level);
     const Point origin = point_of(lattice, {0, 0, 0});
-    Inquiry inquiry{made, field, true, side, {}, Grid(origin, side), Grid(origin, side)};
+    Inquiry inquiry{.made = made,
+                    .field = field,
+                    .trusts = true,
+                    .allowed = side,
+                    .earlier = earlier,
+                    .by_root = Grid(origin, side)};
     certificate.used_bound = field.proved;
-    for (const auto &t : made.mesh.triangles) {
-        std::array<Real3, 3> triangle;
-        for (std::size_t k = 0; k < 3; ++k) triangle[k] = real(made.mesh.vertices[t[k]]);
-        Real3 lo = triangle[0], hi = triangle[0];
-        for (const Real3 &p : triangle)
-            for (std::size_t i = 0; i < 3; ++i)
-                lo[i] = std::min(lo[i], p[i]), hi[i] = std::max(hi[i], p[i]);
-        inquiry.by_triangle.add(lo, hi, static_cast<std::uint32_t>(inquiry.triangles.size()));
-        inquiry.triangles.push_back(triangle);
-    }
-    for (std::size_t k = 0; k < made.roots.size(); ++k)
-        inquiry.by_root.add(real(made.roots[k]), real(made.roots[k]),
-                            static_cast<std::uint32_t>(k));
-    inquiry.by_triangle.sort();
-    inquiry.by_root.sort();
+    fill(inquiry);
     const double from = progress.from, to = progress.to;
     progress.to = 0.5 * (from + to);
     certify_surface(inquiry, threads, progress, certificate);
@@ -444,6 +473,11 @@ Certificate certify(const ir::Scene &scene, const Settings &settings, const Made
     certificate.mesh_area = sums.area;
     enclose_volume(made.octree, certificate);
     return certificate;
+}
+
+Certificate certify(const ir::Scene &scene, const Settings &settings, const Made &made,
+                    Progress &progress) {
+    return certify(Field(scene, settings.time, settings.bounds), settings, made, nullptr, progress);
 }
 
 } // namespace fathom::mesh

@@ -2,18 +2,25 @@
 // how many pieces it is, and what volume the solid has (docs/meshes.md, 6).
 #pragma once
 
+#include "mesh/grid.h"
 #include "mesh/mesh.h"
 
 namespace fathom::mesh {
+
+// A piece of a triangle without surface found near it: its middle, and that of the triangle.
+struct Unproved {
+    Point at{};
+    Real3 triangle{};
+};
 
 struct Certificate {
     // Every point of the mesh has surface as near as this, and every point of the surface in the
     // cells that are not undecided has mesh as near as that. At most the side of a drawing cell.
     double mesh_to_surface = 0, surface_to_mesh = 0;
     std::vector<Cell> undecided; // leaves that may hold surface farther from the mesh
-    std::vector<Point> unproved; // pieces of triangles without surface found near them: middles
-    std::size_t components = 0;  // of the mesh
-    long genus = 0;              // of all of them together
+    std::vector<Unproved> unproved;
+    std::size_t components = 0;                  // of the mesh
+    long genus = 0;                              // of all of them together
     double least_volume = 0, largest_volume = 0; // the solid's lies between them
     double mesh_volume = 0, mesh_area = 0;
     // Whether the proofs used the proved bound, besides intervals.
@@ -28,6 +35,16 @@ struct Form {
 };
 Form form_of(const Mesh &mesh);
 
+// A certificate of the mesh before some of its cells were divided.
+struct Earlier {
+    const Certificate &certificate;
+    const Region &changed; // the cells that were divided since
+};
+
+// Of a mesh of that field and those settings; where there is an earlier certificate, only what has
+// changed since is proved again.
+Certificate certify(const Field &field, const Settings &settings, const Made &made,
+                    const Earlier *earlier, Progress &progress);
 // Of a mesh of that scene and those settings.
 Certificate certify(const ir::Scene &scene, const Settings &settings, const Made &made,
                     Progress &progress);

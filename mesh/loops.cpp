@@ -156,7 +156,7 @@ void join_faces(const Octree &octree, Loops &loops, std::vector<Cell> &tangled) 
             loops.torn_at = crossing.low;
         }
         const Cell owner = face_of(crossing, passes[first].face).owner;
-        if (last - first > 2 && owner.level < octree.lattice.depth) tangled.push_back(owner);
+        if (last - first > 2 && owner.level < octree.settled) tangled.push_back(owner);
     }
 }
 
@@ -195,6 +195,15 @@ void follow(Loops &loops, std::int32_t crossing, int quarter) {
     loops.patches.push_back(patch);
 }
 
+// Whether a patch crosses edges of its cell alone: none of a smaller one beside it.
+bool whole_edges(const Octree &octree, const Loops &loops, const Patch &patch) {
+    for (std::uint32_t k = patch.first; k < patch.first + patch.count; ++k)
+        if (loops.crossings[static_cast<std::size_t>(loops.members[k])].length !=
+            octree.lattice.cells(patch.cell.level))
+            return false;
+    return true;
+}
+
 void find_patches(const Octree &octree, Loops &loops, std::vector<Cell> &tangled) {
     for (std::size_t c = 0; c < loops.crossings.size(); ++c)
         for (int quarter = 0; quarter < 4; ++quarter)
@@ -209,8 +218,11 @@ void find_patches(const Octree &octree, Loops &loops, std::vector<Cell> &tangled
             continue;
         }
         patch.alone = loops.patches[static_cast<std::size_t>(first)].alone = false;
-        if (patch.cell.level < octree.lattice.depth) tangled.push_back(patch.cell);
     }
+    for (const Patch &patch : loops.patches)
+        if (!patch.alone &&
+            (patch.cell.level < octree.settled || !whole_edges(octree, loops, patch)))
+            tangled.push_back(patch.cell);
 }
 
 } // namespace

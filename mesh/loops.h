@@ -45,8 +45,9 @@ struct Loops {
     std::vector<Segment> segments;
     std::vector<Patch> patches;
     std::vector<std::int32_t> members; // of patches: crossings
-    // Leaves above the finest level whose surface is in more than one piece, or crosses a face more
-    // than once: to be divided.
+    // Leaves above the settled level whose surface is in more than one piece, or crosses a face more
+    // than once, and those below it with several pieces and smaller leaves beside them: to be
+    // divided.
     std::vector<Cell> tangled;
     std::size_t torn = 0; // faces whose signs contradict what was proved: no surface can be made
     Index torn_at{};

@@ -10,11 +10,11 @@ namespace {
 constexpr double box_work = 200e6; // operations on boxes, to find the solid's
 
 // Cells that are tangled are divided until none is, or their parts are the finest.
-Failure untangle(Made &made, const Field &field, const OctreeSettings &settings,
-                 Progress &progress) {
+Failure untangle(Made &made, const Field &field, const OctreeSettings &settings, std::size_t most,
+                 std::vector<Cell> &divided, Progress &progress) {
     constexpr int most_rounds = 64;
     for (int round = 0; round < most_rounds; ++round) {
-        if (made.octree.nodes.size() > 2 * most_nodes) return Failure::TooMany;
+        if (made.octree.nodes.size() > most) return Failure::TooMany;
         made.loops = find_loops(made.octree, settings.threads, progress);
         if (progress.cancelled) return Failure::Cancelled;
         if (made.loops.torn > 0) {
@@ -22,9 +22,17 @@ Failure untangle(Made &made, const Field &field, const OctreeSettings &settings,
             return Failure::Contradicted;
         }
         if (made.loops.tangled.empty()) return Failure::None;
+        divided.insert(divided.end(), made.loops.tangled.begin(), made.loops.tangled.end());
         divide(made.octree, field, made.loops.tangled, settings, progress);
     }
     return Failure::None;
+}
+
+OctreeSettings octree_settings(const Settings &settings) {
+    OctreeSettings octree;
+    octree.threads = threads_of(settings);
+    octree.extra = settings.extra;
+    return octree;
 }
 
 } // namespace
@@ -60,30 +68,40 @@ Made make_mesh(const ir::Scene &scene, const Settings &settings) {
         longest = std::max(longest, made.box.hi[i] - made.box.lo[i]);
     const double side =
         settings.side > 0 ? settings.side : longest / std::max(settings.resolution, 1);
-    const std::optional<Lattice> lattice = make_lattice(made.box, side, settings.extra);
+    const std::optional<Lattice> lattice =
+        make_lattice(made.box, side, settings.extra + settings.deeper);
     if (!lattice) return fail(Failure::TooFine);
 
     const Field field(scene, settings.time, settings.bounds);
-    OctreeSettings octree;
-    octree.threads = threads_of(settings);
     Progress progress;
     progress.report = settings.progress;
     progress.to = 0.5;
-    made.octree = make_octree(field, *lattice, octree, progress);
+    made.octree = make_octree(field, *lattice, octree_settings(settings), progress);
     if (progress.cancelled) return fail(Failure::Cancelled);
     if (made.octree.full) return fail(Failure::TooMany);
-    progress.phase(0.6);
-    if (const Failure failure = untangle(made, field, octree, progress); failure != Failure::None)
-        return fail(failure);
-    progress.phase(0.9);
+    progress.phase(1);
+    std::vector<Cell> divided;
+    const Failure failure = finish_mesh(made, field, settings, 2 * most_nodes, divided, progress);
+    if (failure != Failure::None) return fail(failure);
+    return made;
+}
+
+Failure finish_mesh(Made &made, const Field &field, const Settings &settings, std::size_t most,
+                    std::vector<Cell> &divided, Progress &progress) {
+    const double from = progress.from, to = progress.to;
+    progress.to = from + 0.2 * (to - from);
+    const OctreeSettings octree = octree_settings(settings);
+    const Failure failure = untangle(made, field, octree, most, divided, progress);
+    if (failure != Failure::None) return failure;
+    progress.phase(from + 0.8 * (to - from));
     Vertices vertices = place_vertices(made.octree, field, made.loops, octree.threads, progress);
-    if (progress.cancelled) return fail(Failure::Cancelled);
+    if (progress.cancelled) return Failure::Cancelled;
     made.mesh = make_polygons(made.octree.lattice, made.loops, vertices);
     made.roots = std::move(vertices.roots);
     made.root_slack = std::move(vertices.root_slack);
-    if (made.mesh.triangles.empty())
-        return fail(made.octree.undecided.empty() ? Failure::Empty : Failure::Unseen);
-    return made;
+    progress.phase(to);
+    if (!made.mesh.triangles.empty()) return Failure::None;
+    return made.octree.undecided.empty() ? Failure::Empty : Failure::Unseen;
 }
 
 } // namespace fathom::mesh

@@ -12,6 +12,7 @@ struct Settings {
     double side = 0;      // of a cell that the surface is drawn by, at most; or
     int resolution = 128; // cells along the longest side of the solid's box, where `side` is 0
     int extra = 3;        // levels below, where something may be hidden between corners
+    int deeper = 0;       // levels below these, for mending (mend.h)
     double time = 0;      // seconds
     std::optional<ir::Box> bounds;             // the solid is cut off at it
     unsigned threads = 0;                      // 0: as many as the machine has cores
@@ -47,5 +48,10 @@ struct Made {
 Failure box_of(const ir::Scene &scene, const Settings &settings, ir::Box &box);
 
 Made make_mesh(const ir::Scene &scene, const Settings &settings);
+
+// From an octree to the rest of what is made: divides its tangled cells, which are added to `divided`,
+// as long as it has no more nodes than `most`. The phases of the progress are up to where it ends.
+Failure finish_mesh(Made &made, const Field &field, const Settings &settings, std::size_t most,
+                    std::vector<Cell> &divided, Progress &progress);
 
 } // namespace fathom::mesh

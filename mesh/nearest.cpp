@@ -11,10 +11,10 @@ using Real3 = std::array<double, 3>;
 
 constexpr std::uint32_t few_triangles = 4;
 
-double squared_way(const Point &p, const Point &lo, const Point &hi) {
+double squared_way(const Real3 &p, const Point &lo, const Point &hi) {
     double squares = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        const double way = std::max({0.0, double(lo[i]) - p[i], double(p[i]) - hi[i]});
+        const double way = std::max({0.0, lo[i] - p[i], p[i] - hi[i]});
         squares += way * way;
     }
     return squares;
@@ -46,11 +46,19 @@ Real3 nearest_shares(const Real3 &p, const Real3 &a, const Real3 &b, const Real3
     return sum > 0 ? Real3{va / sum, vb / sum, vc / sum} : Real3{1, 0, 0};
 }
 
+std::vector<std::uint32_t> all_of(const Mesh &mesh) {
+    std::vector<std::uint32_t> numbers(mesh.triangles.size());
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    return numbers;
+}
+
 } // namespace
 
-TriangleTree::TriangleTree(const Mesh &mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
-    std::iota(order_.begin(), order_.end(), 0u);
-    std::vector<Point> middles;
+TriangleTree::TriangleTree(const Mesh &mesh) : TriangleTree(mesh, all_of(mesh)) {}
+
+TriangleTree::TriangleTree(const Mesh &mesh, std::vector<std::uint32_t> triangles)
+    : mesh_(mesh), order_(std::move(triangles)) {
+    std::vector<Point> middles; // of all triangles
     for (const auto &t : mesh.triangles) {
         Point m{};
         for (const std::uint32_t v : t)
@@ -90,21 +98,20 @@ void TriangleTree::divide(std::uint32_t number, std::vector<Point> &middles) {
     branches_[number] = branch;
 }
 
-std::optional<Nearest> TriangleTree::nearest(const Point &to, double within) const {
+std::optional<Nearest> TriangleTree::nearest(const Real3 &p, double within, double enough) const {
     std::optional<Nearest> found;
     if (branches_.empty()) return found;
     double best = within * within;
-    const Real3 p{to[0], to[1], to[2]};
     std::array<std::uint32_t, 128> stack; // the tree is no deeper: each half has half of them
     std::size_t depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
         const Branch &branch = branches_[stack[--depth]];
-        if (!(squared_way(to, branch.lo, branch.hi) < best)) continue;
+        if (!(squared_way(p, branch.lo, branch.hi) < best)) continue;
         if (branch.count == 0) {
             const std::uint32_t a = branch.children, b = a + 1;
-            const bool first = squared_way(to, branches_[a].lo, branches_[a].hi) <
-                               squared_way(to, branches_[b].lo, branches_[b].hi);
+            const bool first = squared_way(p, branches_[a].lo, branches_[a].hi) <
+                               squared_way(p, branches_[b].lo, branches_[b].hi);
             stack[depth++] = first ? b : a;
             stack[depth++] = first ? a : b;
             continue;
@@ -124,6 +131,7 @@ std::optional<Nearest> TriangleTree::nearest(const Point &to, double within) con
             if (!(squares < best)) continue;
             best = squares;
             found = Nearest{std::sqrt(squares), order_[k], shares};
+            if (found->distance <= enough) return found;
         }
     }
     return found;

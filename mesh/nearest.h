@@ -15,9 +15,15 @@ struct Nearest {
 
 class TriangleTree {
   public:
-    explicit TriangleTree(const Mesh &mesh); // which outlives it
-    // Of triangles that are nearer than `within`; none where there are none.
-    std::optional<Nearest> nearest(const Point &to, double within) const;
+    explicit TriangleTree(const Mesh &mesh);                              // which outlives it
+    TriangleTree(const Mesh &mesh, std::vector<std::uint32_t> triangles); // of these alone
+    // Of triangles that are nearer than `within`; none where there are none. One as near as `enough`
+    // will do.
+    std::optional<Nearest> nearest(const std::array<double, 3> &to, double within,
+                                   double enough = 0) const;
+    std::optional<Nearest> nearest(const Point &to, double within) const {
+        return nearest(std::array<double, 3>{to[0], to[1], to[2]}, within);
+    }
 
   private:
     struct Branch {

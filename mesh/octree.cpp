@@ -208,7 +208,8 @@ bool beside_crossed(const Octree &octree, const Cell &cell) {
     return false;
 }
 
-void graft_all(Octree &octree, const Field &field, const std::vector<Cell> &cells, int until,
+// `levels`: so many below each cell.
+void graft_all(Octree &octree, const Field &field, const std::vector<Cell> &cells, int levels,
                bool hidden, const OctreeSettings &settings, Progress &progress) {
     std::vector<std::vector<Node>> trees(cells.size());
     std::atomic<std::size_t> nodes{octree.nodes.size()};
@@ -219,7 +220,7 @@ void graft_all(Octree &octree, const Field &field, const std::vector<Cell> &cell
             const Node &node = octree.nodes[static_cast<std::size_t>(cells[k].node)];
             trees[k] =
                 subtree(divider, octree.lattice, *octree.tapes[static_cast<std::size_t>(node.task)],
-                        cells[k], until, hidden, settings.trusts_bounds);
+                        cells[k], cells[k].level + levels, hidden, settings.trusts_bounds);
             nodes += trees[k].size();
         });
     octree.full = octree.full || nodes > most_nodes;
@@ -241,11 +242,10 @@ void search_hidden(Octree &octree, const Field &field, const OctreeSettings &set
             cells.push_back(cell);
     }
     std::size_t boxes = std::max(least_hidden_boxes, hidden_boxes_a_cell * crossed);
-    for (int level = octree.lattice.level; level < octree.lattice.depth && !cells.empty();
-         ++level) {
+    for (int level = octree.lattice.level; level < octree.settled && !cells.empty(); ++level) {
         if (16 * cells.size() > boxes) break;
         boxes -= 16 * cells.size();
-        graft_all(octree, field, cells, level + 1, true, settings, progress);
+        graft_all(octree, field, cells, 1, true, settings, progress);
         if (progress.cancelled || octree.full) return;
         std::vector<Cell> parts;
         for (const Cell &cell : cells) {
@@ -269,6 +269,7 @@ Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSetti
                    Progress &progress) {
     Octree octree;
     octree.lattice = lattice;
+    octree.settled = std::min(lattice.depth, lattice.level + settings.extra);
     const double from = progress.from, to = progress.to;
     const auto share = [&](double s) { return from + s * (to - from); };
     progress.to = share(0.05);
@@ -282,7 +283,7 @@ Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSetti
         octree.tapes.push_back(branch.tape);
     }
     progress.phase(share(0.8));
-    graft_all(octree, field, cells, lattice.level, false, settings, progress);
+    graft_all(octree, field, cells, lattice.level - top, false, settings, progress);
     progress.phase(to);
     if (!progress.cancelled && !octree.full) search_hidden(octree, field, settings, progress);
     return octree;
@@ -312,6 +313,11 @@ void divide(Octree &octree, const Field &field, const std::vector<Cell> &leaves,
     for (std::size_t k = 0; k < leaves.size(); ++k)
         graft(octree, leaves[k].node, octree.nodes[static_cast<std::size_t>(leaves[k].node)].task,
               made[k].nodes);
+}
+
+void refine(Octree &octree, const Field &field, const std::vector<Cell> &leaves,
+            const OctreeSettings &settings, Progress &progress) {
+    graft_all(octree, field, leaves, 1, true, settings, progress);
 }
 
 Space space_of(const Evaluator &evaluator, std::size_t k, double half, double ulp,

@@ -40,11 +40,15 @@ struct Octree {
     // them, by the work that was spent on it.
     std::vector<Cell> undecided;
     bool full = false; // more than most_nodes were wanted: it is not whole
+    // Tangled cells are divided to this level, and below it only where smaller ones lie beside them;
+    // no farther is searched for what no corner shows.
+    int settled = 0;
 };
 
 struct OctreeSettings {
     bool trusts_bounds = true; // else ranges alone leave cells out
     unsigned threads = 1;
+    int extra = 3; // Octree::settled lies so many levels below the lattice's
 };
 
 // All leaves are of the lattice's level or left out; then those open ones that no crossed cell
@@ -55,6 +59,10 @@ Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSetti
 
 // Divides leaves once. Their parts are all open.
 void divide(Octree &octree, const Field &field, const std::vector<Cell> &leaves,
+            const OctreeSettings &settings, Progress &progress);
+
+// Divides open leaves once, and leaves out those of their parts in which no surface is.
+void refine(Octree &octree, const Field &field, const std::vector<Cell> &leaves,
             const OctreeSettings &settings, Progress &progress);
 
 // Whether surface may be in box k, after ranges_over; box k + 8 is its middle, a point. `half`: half

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double share_of_margin = 1.0 / 1024;
 constexpr int root_steps = 9;         // of the Illinois method
+constexpr double closing = 1.0 / 256; // of an edge: how near its signs are asked about a root
 constexpr double smooth_cosine = 0.9; // normals that are no farther apart are one smooth surface's
 constexpr std::size_t group_size = 2048;
 
@@ -144,11 +145,30 @@ void find_roots(Memory &memory, const cpu::ShortTape &tape, const Lattice &latti
             last[k] = at_low ? 1 : 2;
         }
     }
+    std::vector<float> best(n);
+    for (std::size_t k = 0; k < n; ++k)
+        best[k] = std::clamp(static_cast<float>(guess(k)), from[k], to[k]);
+    // On a flat face the first guess is right, and one end stays where it was: so both are brought
+    // near to it, since how near they are is what is known of the root.
+    for (const bool up : {false, true}) {
+        for (std::size_t k = 0; k < n; ++k) {
+            const double step = closing * (double(to[k]) - from[k]);
+            points.at[crossing_of(k).axis][k] = std::clamp(
+                static_cast<float>(up ? best[k] + step : best[k] - step), from[k], to[k]);
+        }
+        values_at(memory.evaluator, tape, points, memory.values);
+        for (std::size_t k = 0; k < n; ++k) {
+            const double at = points.at[crossing_of(k).axis][k];
+            if (!(at > roots.low[k] && at < roots.high[k])) continue; // nothing new between them
+            const bool at_low = (memory.values[k] < 0) == crossing_of(k).low_inside;
+            (at_low ? roots.low : roots.high)[k] = at;
+        }
+    }
     for (std::size_t k = 0; k < n; ++k) {
         const std::uint32_t number = group.members[k];
         const std::size_t axis = crossing_of(k).axis;
         Point root = points[k];
-        root[axis] = std::clamp(static_cast<float>(guess(k)), from[k], to[k]);
+        root[axis] = best[k];
         vertices.roots[number] = root;
         vertices.root_slack[number] =
             static_cast<float>(std::max(root[axis] - roots.low[k], roots.high[k] - root[axis]));

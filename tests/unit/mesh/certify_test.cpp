@@ -1,7 +1,8 @@
 // Certificates: what they say is true where the truth is known, and what is not known they do not
 // say.
 #include "driver/compile.h"
-#include "mesh/certify.h"
+#include "mesh/mend.h"
+#include "tests/support/mesh_checks.h"
 
 #include <catch2/catch.hpp>
 
@@ -108,4 +109,56 @@ TEST_CASE("a mesh that is moved from its surface is not certified") {
     const mesh::Certificate certificate = mesh::certify(c.scene, cells(24), made, progress);
     CHECK(certificate.unproved.size() > 0);
     CHECK_FALSE(certificate.undecided.empty());
+}
+
+namespace {
+
+mesh::Mended mended(const std::string &text, const mesh::Settings &settings) {
+    const driver::Compilation c = driver::compile_text("mesh.sdf", text, "", {});
+    REQUIRE(c.good());
+    mesh::Mended result = mesh::make_certified_mesh(c.scene, settings);
+    REQUIRE(result.made.failure == mesh::Failure::None);
+    const test::Survey found = test::survey(result.made.mesh.vertices, result.made.mesh.triangles);
+    CHECK(found.closed());
+    CHECK(test::crossings(result.made.mesh.vertices, result.made.mesh.triangles) == 0);
+    return result;
+}
+
+} // namespace
+
+TEST_CASE("cells that a certificate leaves undecided are divided until all is decided") {
+    int rounds = 0;
+    for (const char *text : {
+             "cone(0.3, 5)",
+             "sphere(1) | sphere(1).translate(x: 2) | sphere(0.5).translate(x: 3.5)",
+             "cylinder(0.01, 4) | cylinder(0.01, 4).rotate(1.5, axis: X)",
+             "torus(1, 0.005)",
+         }) {
+        INFO(text);
+        const auto [made, before] = certified(text, cells(96));
+        CHECK_FALSE(before.certified());
+        const mesh::Mended after = mended(text, cells(96));
+        CHECK(after.certificate.certified());
+        rounds += after.rounds;
+        // What was proved again in parts is proved of the whole.
+        mesh::Progress progress;
+        const driver::Compilation c = driver::compile_text("mesh.sdf", text, "", {});
+        CHECK(certify(c.scene, cells(96), after.made, progress).certified());
+    }
+    CHECK(rounds > 0);
+}
+
+TEST_CASE("mending has an end, and what is undecided then is listed") {
+    mesh::Settings settings = cells(40);
+    const mesh::Mended result = mended("sphere(1) | box([3, 3, 0.0001]).translate(z: 2)", settings);
+    CHECK_FALSE(result.certificate.certified());
+    CHECK(result.certificate.undecided.size() > 100);
+}
+
+TEST_CASE("a root on a flat face is known to a small part of its edge") {
+    const driver::Compilation c = driver::compile_text("mesh.sdf", "box([2, 1, 1.5])", "", {});
+    REQUIRE(c.good());
+    const mesh::Made made = mesh::make_mesh(c.scene, cells(25));
+    const double side = made.octree.lattice.side(made.octree.lattice.level);
+    for (const float slack : made.root_slack) CHECK(slack <= side / 200);
 }

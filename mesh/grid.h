@@ -1,0 +1,139 @@
+// Points and triangles in double precision, and things found by where they are: what proofs of
+// distances are made of.
+#pragma once
+
+#include "mesh/octree.h"
+
+#include <cmath>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace fathom::mesh {
+
+using Real3 = std::array<double, 3>;
+using Triangle3 = std::array<Real3, 3>;
+
+inline Real3 real(const Point &p) { return {p[0], p[1], p[2]}; }
+inline Real3 minus(const Real3 &a, const Real3 &b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Real3 along(const Real3 &a, const Real3 &d, double t) {
+    return {a[0] + t * d[0], a[1] + t * d[1], a[2] + t * d[2]};
+}
+inline double inner(const Real3 &a, const Real3 &b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Real3 outer(const Real3 &a, const Real3 &b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline double distance(const Real3 &a, const Real3 &b) {
+    const Real3 d = minus(a, b);
+    return std::sqrt(inner(d, d));
+}
+
+inline double to_segment(const Real3 &p, const Real3 &a, const Real3 &b) {
+    const Real3 d = minus(b, a);
+    const double squares = inner(d, d);
+    const double t = squares > 0 ? std::clamp(inner(minus(p, a), d) / squares, 0.0, 1.0) : 0;
+    return distance(p, along(a, d, t));
+}
+
+// No less than the distance: to the foot on the plane where that is in the triangle, else to a side.
+inline double to_triangle(const Real3 &p, const Triangle3 &t) {
+    double best =
+        std::min({to_segment(p, t[0], t[1]), to_segment(p, t[1], t[2]), to_segment(p, t[2], t[0])});
+    const Real3 u = minus(t[1], t[0]), v = minus(t[2], t[0]), w = minus(p, t[0]);
+    const Real3 n = outer(u, v);
+    const double squares = inner(n, n);
+    if (!(squares > 0)) return best;
+    const double b = inner(outer(w, v), n) / squares, c = inner(outer(u, w), n) / squares;
+    if (b >= 0 && c >= 0 && b + c <= 1)
+        best = std::min(best, distance(p, along(along(t[0], u, b), v, c)));
+    return best;
+}
+
+// Things by the cells of a grid that they touch.
+class Grid {
+  public:
+    Grid(const Point &origin, double side) : origin_(origin), side_(side) {}
+    void add(const Real3 &lo, const Real3 &hi, std::uint32_t what) {
+        each(lo, hi, [&](std::uint64_t key) { entries_.push_back({key, what}); });
+    }
+    void sort() {
+        std::ranges::sort(entries_);
+        for (std::size_t k = 0; k < entries_.size(); ++k)
+            if (k == 0 || entries_[k].first != entries_[k - 1].first)
+                begins_[entries_[k].first] = static_cast<std::uint32_t>(k);
+    }
+    // All that touch a box, each once.
+    void find(const Real3 &lo, const Real3 &hi, std::vector<std::uint32_t> &found) const {
+        found.clear();
+        each(lo, hi, [&](std::uint64_t key) {
+            const auto at = begins_.find(key);
+            if (at == begins_.end()) return;
+            for (std::size_t k = at->second; k < entries_.size() && entries_[k].first == key; ++k)
+                found.push_back(entries_[k].second);
+        });
+        std::ranges::sort(found);
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+    }
+
+  private:
+    template <class Do> void each(const Real3 &lo, const Real3 &hi, Do what) const {
+        std::array<std::int64_t, 3> from{}, to{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            from[i] = static_cast<std::int64_t>(std::floor((lo[i] - origin_[i]) / side_));
+            to[i] = static_cast<std::int64_t>(std::floor((hi[i] - origin_[i]) / side_));
+        }
+        for (std::int64_t x = from[0]; x <= to[0]; ++x)
+            for (std::int64_t y = from[1]; y <= to[1]; ++y)
+                for (std::int64_t z = from[2]; z <= to[2]; ++z)
+                    what(std::uint64_t(x + 8) << 42 | std::uint64_t(y + 8) << 21 |
+                         std::uint64_t(z + 8));
+    }
+    Point origin_;
+    double side_;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;
+    std::unordered_map<std::uint64_t, std::uint32_t> begins_;
+};
+
+// Where cells were divided: blocks of four drawing cells a side, and those about them.
+class Region {
+  public:
+    explicit Region(const Lattice &lattice)
+        : lattice_(lattice), side_(blocks * lattice.side(lattice.level)) {}
+    void add(const Cell &cell) {
+        const auto at = block_of(real(point_of(lattice_, corner(cell.at, 1, 0))));
+        if (!changed_.insert(key(at)).second) return;
+        for (std::int64_t x = -2; x <= 2; ++x)
+            for (std::int64_t y = -2; y <= 2; ++y)
+                for (std::int64_t z = -2; z <= 2; ++z) {
+                    const std::array<std::int64_t, 3> near{at[0] + x, at[1] + y, at[2] + z};
+                    around_.insert(key(near));
+                    if (std::max({x * x, y * y, z * z}) < 4) beside_.insert(key(near));
+                }
+    }
+    // Whether a point is no more than four drawing cells from a divided one, or eight: it may be of
+    // those that are a little farther.
+    bool beside(const Real3 &p) const { return beside_.contains(key(block_of(p))); }
+    bool around(const Real3 &p) const { return around_.contains(key(block_of(p))); }
+
+  private:
+    static constexpr double blocks = 4;
+    std::array<std::int64_t, 3> block_of(const Real3 &p) const {
+        const Real3 origin = real(point_of(lattice_, {0, 0, 0}));
+        std::array<std::int64_t, 3> at{};
+        for (std::size_t i = 0; i < 3; ++i)
+            at[i] = static_cast<std::int64_t>(std::floor((p[i] - origin[i]) / side_));
+        return at;
+    }
+    static std::uint64_t key(const std::array<std::int64_t, 3> &at) {
+        return std::uint64_t(at[0] + 8) << 42 | std::uint64_t(at[1] + 8) << 21 |
+               std::uint64_t(at[2] + 8);
+    }
+    const Lattice lattice_;
+    double side_;
+    std::unordered_set<std::uint64_t> changed_, beside_, around_;
+};
+
+} // namespace fathom::mesh
