@@ -1,6 +1,7 @@
 #include "api/impl.h"
 
 #include "backend-cpu/prune/shorten.h"
+#include "ir/lower/lower.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,6 +33,14 @@ template <class Memory> class Pool {
     std::mutex mutex_;
     std::vector<std::unique_ptr<Memory>> free_;
 };
+
+// Bounds by cells give lengths of steps, which jump at walls (docs/lipschitz.md, 6.1). A field is
+// what one bound leaves.
+static ir::Scene by_one_bound(ir::Scene scene) {
+    scene.cells.clear();
+    ir::lower(scene);
+    return scene;
+}
 
 struct Field::Impl {
     explicit Impl(const ir::Scene &scene, double time)
@@ -174,7 +183,10 @@ std::optional<Field> make_field(const Scene &scene, double time) noexcept {
     return guarded(
         [&]() -> std::optional<Field> {
             if (!hold_at(scene.facts(), time)) return std::nullopt;
-            return Field(std::make_shared<const Field::Impl>(ir_of(scene), time));
+            const ir::Scene &whole = ir_of(scene);
+            return Field(whole.cells.empty()
+                             ? std::make_shared<const Field::Impl>(whole, time)
+                             : std::make_shared<const Field::Impl>(by_one_bound(whole), time));
         },
         [](const Diagnostic &) { return std::optional<Field>(); });
 }

@@ -33,7 +33,8 @@ struct Interval {
 
 /** The marched distance of a scene at one time: negative inside, |d| never more than the distance
  *  to the surface as far as the facts' status says. It is the field divided by its bound, so it may
- *  be less where the facts say that the field is not exact.
+ *  be less where the facts say that the field is not exact. It is continuous: the longer steps that
+ *  pictures take by bounds of cells are not in it.
  *
  *  Values are those of single precision and the same on every machine. A Field is a value; any
  *  number of threads may evaluate one. As many values are computed as the shortest of a call's spans

@@ -173,6 +173,21 @@ TEST_CASE("distances, gradients and intervals agree") {
     }
 }
 
+TEST_CASE("a steep field's distances are continuous, and their gradients theirs") {
+    const fathom::Field field =
+        field_of(compiled("implicit(p => p.y - 0.1 * p.x ^ 6, within: ball(2))"));
+    std::vector<fathom::Point> points;
+    for (int i = 0; i < 2000; ++i)
+        points.push_back({0.5f, -1.2f + 0.0012f * static_cast<float>(i), -1.0f});
+    std::vector<float> distances(points.size());
+    std::vector<fathom::Point> gradients(points.size());
+    REQUIRE(field.gradients(points, distances, gradients));
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        REQUIRE(std::abs(distances[i + 1] - distances[i]) <= 0.0013f);
+        REQUIRE(gradients[i][1] > 0);
+    }
+}
+
 TEST_CASE("spans of unlike lengths compute what all hold") {
     const fathom::Field field = field_of(compiled("sphere(1)"));
     const std::vector<fathom::Point> points{{2, 0, 0}, {3, 0, 0}, {4, 0, 0}};
