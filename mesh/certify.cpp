@@ -101,9 +101,11 @@ double first_near(const Inquiry &inquiry, const std::vector<std::uint32_t> &tria
     return d;
 }
 
-// How far surface in a leaf may be from the mesh; none where that is more than is allowed.
+// How far surface in a leaf may be from the mesh; none where that is more than is allowed, or would
+// take more divisions of boxes than are left.
 std::optional<double> farthest_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
-                                  Candidates &candidates, const Cell &leaf, bool searched) {
+                                  Candidates &candidates, const Cell &leaf, bool searched,
+                                  std::size_t &divisions) {
     const Octree &octree = inquiry.made.octree;
     const std::int32_t side = octree.lattice.cells(leaf.level);
     const Box whole{point_of(octree.lattice, leaf.at),
@@ -130,7 +132,8 @@ std::optional<double> farthest_in(const Inquiry &inquiry, Evaluator &evaluator, 
                 left.push_back(box);
         }
         if (left.empty()) break;
-        if (depth == finest_box || searched) return std::nullopt;
+        if (depth == finest_box || searched || left.size() > divisions) return std::nullopt;
+        divisions -= left.size();
         open = open_parts(inquiry, evaluator, boxes, *octree.tapes[static_cast<std::size_t>(task)],
                           left);
     }
@@ -138,6 +141,7 @@ std::optional<double> farthest_in(const Inquiry &inquiry, Evaluator &evaluator, 
 }
 
 constexpr std::size_t piece_of_work = 512;
+constexpr std::size_t divisions_a_leaf = 32; // of boxes, on average over a piece of work
 
 struct Certifier {
     explicit Certifier(const Field &field) : evaluator(field) {}
@@ -166,10 +170,12 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
         found.size(), threads, progress, [&] { return Certifier(inquiry.field); },
         [&](Certifier &memory, std::size_t number) {
             const std::size_t end = std::min(leaves.size(), (number + 1) * piece_of_work);
+            std::size_t divisions = divisions_a_leaf * piece_of_work;
             for (std::size_t k = number * piece_of_work; k < end; ++k) {
+                const bool in_vain = std::ranges::binary_search(searched, leaves[k].node);
                 const std::optional<double> far =
                     farthest_in(inquiry, memory.evaluator, memory.boxes, memory.candidates,
-                                leaves[k], std::ranges::binary_search(searched, leaves[k].node));
+                                leaves[k], in_vain, divisions);
                 if (far)
                     found[number].farthest = std::max(found[number].farthest, *far);
                 else
