@@ -7,7 +7,7 @@ namespace fathom::mesh {
 namespace {
 
 constexpr int deeper = 3;                       // than what is searched without a certificate
-constexpr std::size_t least_growth = 8'000'000; // of the octree, in nodes
+constexpr std::size_t least_growth = 2'000'000; // of the octree, in nodes
 constexpr double nodes_a_cell = 16; // that dividing one once may take, with its neighbours
 constexpr int most_rounds = 12;
 

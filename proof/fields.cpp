@@ -2,6 +2,7 @@
 // of them, and the reports that say where and why there is none.
 #include "ir/passes/operations.h"
 #include "ir/passes/walk.h"
+#include "proof/discontinuities.h"
 #include "proof/param_bounds.h"
 #include "proof/prover.h"
 
@@ -223,6 +224,27 @@ bool reads_list_by_point(const ir::Graph &graph, const std::vector<NodeId> &root
 
 } // namespace
 
+// The param that a number of the field is divided by, and whose range has 0: the point is none of it.
+std::optional<std::string> Prover::divides_by_0(ShapeId id) {
+    std::vector<NodeId> todo;
+    for (NodeId arg : scene.shapes[id].args)
+        if (arg) todo.push_back(written_out(graph, arg));
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId at = todo.back();
+        todo.pop_back();
+        if (!seen.insert(at).second) continue;
+        const NodeId by = graph[at].op == Op::Div ? graph.arg(at, 1) : NodeId();
+        const NodeId one = by && graph[by].op == Op::Splat ? graph.arg(by, 0) : by;
+        if (one && graph[one].op == Op::Param) {
+            const Interval range = range_of(flattening, ranges, one)[0];
+            if (range.lo <= 0 && range.hi >= 0) return scene.params[graph[one].payload].name;
+        }
+        todo.insert(todo.end(), graph.args(at).begin(), graph.args(at).end());
+    }
+    return {};
+}
+
 void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &what) {
     int dims = scene.shapes[id].dims;
     const bool leaf = scene.shapes[id].kind == ShapeKind::Leaf;
@@ -298,6 +320,12 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     case Trouble::Overflow: // told above
     case Trouble::Singular:
     case Trouble::None:
+        if (const auto param = divides_by_0(id)) {
+            if (Diagnostic *d = report(id, Code::FieldSingular,
+                                       what + " is divided by `" + *param + "`, which may be 0"))
+                d->help("begin its range above 0, as in `in 0.001..1`");
+            return;
+        }
         if (Diagnostic *d = report(id, Code::FieldSingular,
                                    what + " is undefined or infinitely steep near " +
                                        point_text(b.where, dims)))

@@ -177,6 +177,7 @@ struct Prover {
     // -- reports; silent where the shape is not reported
     static std::string cheaper(const ir::Shape &shape);
     Diagnostic *report(ir::ShapeId id, Code code, std::string message);
+    std::optional<std::string> divides_by_0(ir::ShapeId id);
     void report_field(ir::ShapeId id, const FieldBound &bound, const std::string &what);
     void test_assumed(ir::ShapeId id, ir::NodeId field, double limit, bool estimate);
     std::vector<std::string>
