@@ -52,6 +52,12 @@ inline double to_triangle(const Real3 &p, const Triangle3 &t) {
     return best;
 }
 
+// One number for a cell of a grid, by its place along each axis: -8 to 2^21 - 9.
+inline std::uint64_t key_of(const std::array<std::int64_t, 3> &at) {
+    return std::uint64_t(at[0] + 8) << 42 | std::uint64_t(at[1] + 8) << 21 |
+           std::uint64_t(at[2] + 8);
+}
+
 // Things by the cells of a grid that they touch.
 class Grid {
   public:
@@ -87,9 +93,7 @@ class Grid {
         }
         for (std::int64_t x = from[0]; x <= to[0]; ++x)
             for (std::int64_t y = from[1]; y <= to[1]; ++y)
-                for (std::int64_t z = from[2]; z <= to[2]; ++z)
-                    what(std::uint64_t(x + 8) << 42 | std::uint64_t(y + 8) << 21 |
-                         std::uint64_t(z + 8));
+                for (std::int64_t z = from[2]; z <= to[2]; ++z) what(key_of({x, y, z}));
     }
     Point origin_;
     double side_;
@@ -104,19 +108,19 @@ class Region {
         : lattice_(lattice), side_(blocks * lattice.side(lattice.level)) {}
     void add(const Cell &cell) {
         const auto at = block_of(real(point_of(lattice_, corner(cell.at, 1, 0))));
-        if (!changed_.insert(key(at)).second) return;
+        if (!changed_.insert(key_of(at)).second) return;
         for (std::int64_t x = -2; x <= 2; ++x)
             for (std::int64_t y = -2; y <= 2; ++y)
                 for (std::int64_t z = -2; z <= 2; ++z) {
                     const std::array<std::int64_t, 3> near{at[0] + x, at[1] + y, at[2] + z};
-                    around_.insert(key(near));
-                    if (std::max({x * x, y * y, z * z}) < 4) beside_.insert(key(near));
+                    around_.insert(key_of(near));
+                    if (std::max({x * x, y * y, z * z}) < 4) beside_.insert(key_of(near));
                 }
     }
     // Whether a point is no more than four drawing cells from a divided one, or eight: it may be of
     // those that are a little farther.
-    bool beside(const Real3 &p) const { return beside_.contains(key(block_of(p))); }
-    bool around(const Real3 &p) const { return around_.contains(key(block_of(p))); }
+    bool beside(const Real3 &p) const { return beside_.contains(key_of(block_of(p))); }
+    bool around(const Real3 &p) const { return around_.contains(key_of(block_of(p))); }
 
   private:
     static constexpr double blocks = 4;
@@ -126,10 +130,6 @@ class Region {
         for (std::size_t i = 0; i < 3; ++i)
             at[i] = static_cast<std::int64_t>(std::floor((p[i] - origin[i]) / side_));
         return at;
-    }
-    static std::uint64_t key(const std::array<std::int64_t, 3> &at) {
-        return std::uint64_t(at[0] + 8) << 42 | std::uint64_t(at[1] + 8) << 21 |
-               std::uint64_t(at[2] + 8);
     }
     const Lattice lattice_;
     double side_;
