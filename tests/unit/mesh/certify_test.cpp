@@ -162,3 +162,39 @@ TEST_CASE("a root on a flat face is known to a small part of its edge") {
     const double side = made.octree.lattice.side(made.octree.lattice.level);
     for (const float slack : made.root_slack) CHECK(slack <= side / 200);
 }
+
+TEST_CASE("within a root's slack the field changes its sign, also on edges that cross many times") {
+    std::size_t several = 0; // roots with more than one change of sign within their slack
+    for (const char *text : {"gyroid(0.3, thickness: 0.05) & sphere(1)",
+                             "sphere(1) & box([4, 0.02, 4]).repeat([0, 0.05, 0])"}) {
+        INFO(text);
+        const driver::Compilation c = driver::compile_text("mesh.sdf", text, "", {});
+        REQUIRE(c.good());
+        const mesh::Settings settings = cells(12);
+        const mesh::Made made = mesh::make_mesh(c.scene, settings);
+        REQUIRE(made.failure == mesh::Failure::None);
+        const mesh::Field field(c.scene, settings.time, settings.bounds);
+        mesh::Evaluator evaluator(field);
+        constexpr int samples = 400;
+        std::size_t still = 0;
+        for (std::size_t k = 0; k < made.roots.size(); ++k) {
+            mesh::Points points;
+            for (int i = -samples; i <= samples; ++i) {
+                mesh::Point at = made.roots[k];
+                at[made.loops.crossings[k].axis] +=
+                    1.001f * made.root_slack[k] * static_cast<float>(i) / samples;
+                points.add(at);
+            }
+            std::vector<float> values;
+            values_at(evaluator, *field.whole, points, values);
+            int changes = 0;
+            for (std::size_t i = 1; i < values.size(); ++i)
+                changes += (values[i] < 0) != (values[i - 1] < 0);
+            still += changes == 0;
+            several += changes > 1;
+        }
+        CHECK(made.roots.size() > 500);
+        CHECK(still == 0);
+    }
+    CHECK(several > 0);
+}
