@@ -33,6 +33,17 @@ std::string write_file(const std::filesystem::path &file, std::string_view bytes
                    [](Diagnostic failed) { return std::move(failed.message); });
 }
 
+std::string write_files(const std::vector<FileBytes> &files, std::size_t &failed) {
+    failed = 0;
+    return guarded(
+        [&] {
+            std::vector<driver::FileBytes> all;
+            for (const FileBytes &one : files) all.push_back({one.file, one.bytes});
+            return driver::write_files(all, failed);
+        },
+        [](Diagnostic failure) { return std::move(failure.message); });
+}
+
 int write_all(int descriptor, std::string_view bytes) {
     return driver::write_all(descriptor, bytes);
 }

@@ -1,6 +1,6 @@
 #include "api/mesh.h"
 
-#include "mesh/colors.h"
+#include "mesh/appearance.h"
 #include "mesh/mend.h"
 #include "mesh/write.h"
 
@@ -51,6 +51,37 @@ MeshCertificate certificate_of(const fathom::mesh::Certificate &found) {
     made.mesh_volume = found.mesh_volume;
     made.mesh_area = found.mesh_area;
     made.rests_on = rests_on(found.used_bound);
+    return made;
+}
+
+void take_appearance(fathom::mesh::Appearance found, Mesh &mesh) {
+    mesh.colors = std::move(found.colors);
+    mesh.corner_colors = std::move(found.corners);
+    mesh.material_of = std::move(found.material_of);
+    for (fathom::mesh::Material &m : found.materials)
+        mesh.materials.push_back({std::move(m.name), m.diffuse, m.specular, m.emission, m.exponent,
+                                  m.colored, m.varies});
+}
+
+// Objects as the writers see them; refers to `objects`.
+struct Surfaces {
+    std::vector<std::vector<fathom::mesh::Material>> materials;
+    std::vector<fathom::mesh::Surface> objects;
+};
+Surfaces surfaces_of(const std::vector<MeshObject> &objects) {
+    Surfaces made;
+    for (const MeshObject &object : objects) {
+        std::vector<fathom::mesh::Material> &materials = made.materials.emplace_back();
+        for (const MeshMaterial &m : object.mesh->materials)
+            materials.push_back(
+                {m.name, m.diffuse, m.specular, m.emission, m.exponent, m.colored, m.varies});
+    }
+    for (std::size_t k = 0; k < objects.size(); ++k) {
+        const Mesh &mesh = *objects[k].mesh;
+        made.objects.push_back({mesh.vertices, mesh.normals, mesh.triangles, mesh.colors,
+                                mesh.corner_colors, made.materials[k], mesh.material_of,
+                                objects[k].name});
+    }
     return made;
 }
 
@@ -181,7 +212,8 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
             }
             if (options.colors) {
                 const fathom::mesh::Lattice &lattice = made.octree.lattice;
-                mesh.colors = colors_of(ir_of(scene), options.time, made.mesh, lattice.unit);
+                take_appearance(appearance_of(ir_of(scene), options.time, made.mesh, lattice.unit),
+                                mesh);
             }
             mesh.vertices = std::move(made.mesh.vertices);
             mesh.normals = std::move(made.mesh.normals);
@@ -214,13 +246,27 @@ std::optional<MeshFormat> mesh_format(std::string_view file_name) noexcept {
     return std::nullopt;
 }
 
+std::string mesh_file(const std::vector<MeshObject> &objects, MeshFormat format,
+                      const MeshFileOptions &options) noexcept {
+    return guarded(
+        [&] {
+            return file_of(surfaces_of(objects).objects, inner(format),
+                           {inner(options.unit), options.name, options.material_library});
+        },
+        [](const Diagnostic &) { return std::string(); });
+}
+
+std::string material_library(const std::vector<MeshObject> &objects) noexcept {
+    return guarded([&] { return material_library_of(surfaces_of(objects).objects); },
+                   [](const Diagnostic &) { return std::string(); });
+}
+
 std::string mesh_file(const Mesh &mesh, MeshFormat format, std::string_view name,
                       MeshUnit unit) noexcept {
     return guarded(
         [&] {
-            const fathom::mesh::Surface surface{mesh.vertices, mesh.normals, mesh.triangles,
-                                                mesh.colors};
-            return file_of(surface, inner(format), name, inner(unit));
+            return mesh_file({{std::string(name), &mesh}}, format,
+                             MeshFileOptions{unit, std::string(name), ""});
         },
         [](const Diagnostic &) { return std::string(); });
 }

@@ -1,7 +1,8 @@
-#include <fathom/parts.h>
+#include "api/parts.h"
 
-#include "api/impl.h"
 #include "ir/lower/lower.h"
+
+#include <fathom/parts.h>
 
 #include <fmt/format.h>
 
@@ -19,33 +20,6 @@ std::string first_word(std::string_view text) {
     std::size_t end = 0;
     while (end < text.size() && is_word(text[end], end == 0)) ++end;
     return end == 0 ? "part" : std::string(text.substr(0, end));
-}
-
-// A statement of the scene, and the shapes that it gave.
-struct Statement {
-    std::string name;
-    Span span;
-    std::vector<ir::TopLevel> shapes;
-};
-
-std::vector<Statement> statements_of(const Scene &scene) {
-    const Sources &sources = scene.impl().compilation->sources;
-    std::vector<Statement> statements;
-    for (const ir::TopLevel &top : ir_of(scene).top_level) {
-        const auto same = std::ranges::find(statements, top.span, &Statement::span);
-        if (same != statements.end())
-            same->shapes.push_back(top);
-        else
-            statements.push_back({"", top.span, {top}});
-    }
-    std::map<std::string, int> counts;
-    for (Statement &statement : statements) {
-        const std::string word =
-            first_word(statement.span.source ? text(sources, statement.span) : std::string_view());
-        const int count = ++counts[word];
-        statement.name = count == 1 ? word : fmt::format("{}#{}", word, count);
-    }
-    return statements;
 }
 
 // What is known of a union of shapes, by what is known of each.
@@ -85,6 +59,34 @@ void keep_only(ir::Scene &scene, const std::vector<ir::TopLevel> &shapes) {
 
 } // namespace
 
+std::vector<Statement> statements_of(const Scene &scene) {
+    const Sources &sources = scene.impl().compilation->sources;
+    std::vector<Statement> statements;
+    for (const ir::TopLevel &top : ir_of(scene).top_level) {
+        const auto same = std::ranges::find(statements, top.span, &Statement::span);
+        if (same != statements.end())
+            same->shapes.push_back(top);
+        else
+            statements.push_back({"", top.span, {top}});
+    }
+    std::map<std::string, int> counts;
+    for (Statement &statement : statements) {
+        const std::string word =
+            first_word(statement.span.source ? text(sources, statement.span) : std::string_view());
+        const int count = ++counts[word];
+        statement.name = count == 1 ? word : fmt::format("{}#{}", word, count);
+    }
+    return statements;
+}
+
+Scene scene_of(const Scene &whole, const Statement &statement) {
+    auto impl = std::make_shared<Scene::Impl>(whole.impl());
+    impl->part = statement.name;
+    keep_only(impl->scene, statement.shapes);
+    impl->facts = facts_of(impl->scene, impl->compilation->sources);
+    return Scene(std::move(impl));
+}
+
 std::vector<Part> parts_of(const Scene &scene) noexcept {
     return guarded(
         [&] {
@@ -103,11 +105,7 @@ std::optional<Scene> part_of(const Scene &scene, std::string_view name) noexcept
             const std::vector<Statement> statements = statements_of(scene);
             const auto found = std::ranges::find(statements, name, &Statement::name);
             if (found == statements.end()) return std::nullopt;
-            auto impl = std::make_shared<Scene::Impl>(scene.impl());
-            impl->part = std::string(name);
-            keep_only(impl->scene, found->shapes);
-            impl->facts = facts_of(impl->scene, impl->compilation->sources);
-            return Scene(std::move(impl));
+            return scene_of(scene, *found);
         },
         [](const Diagnostic &) { return std::optional<Scene>(); });
 }

@@ -2,8 +2,8 @@
 
 #include "api/mesh.h"
 #include "base/text.h"
+#include "mesh/appearance.h"
 #include "mesh/certify.h"
-#include "mesh/colors.h"
 #include "mesh/volume.h"
 
 #include <fmt/format.h>

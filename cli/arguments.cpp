@@ -360,6 +360,8 @@ struct Reader {
             ->required();
         add_solid(sub, mesh.solid);
         add_row(sub, units_row(mesh.solid, "for .3mf (mm unless said) and .glb (m unless said)"));
+        sub->add_flag("--parts", mesh.parts,
+                      "each part of the scene as an object of its own: .glb, .obj and .3mf");
         sub->add_flag("--json", mesh.json,
                       "prove what can be proved of the mesh: one JSON document on standard output");
     }

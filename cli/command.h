@@ -136,7 +136,8 @@ struct SolidArguments {
 struct MeshCommand {
     SolidArguments solid;
     std::string out;
-    bool json = false; // the certificate
+    bool parts = false; // each an object of its own
+    bool json = false;  // the certificate
 };
 // `fathom measure`.
 struct MeasureCommand {

@@ -165,6 +165,8 @@ std::string of_cells(const Given &given) {
 std::string of(const MeshCommand &mesh, const Given &given) {
     if (mesh.json && mesh.out == "-")
         return "--json and the mesh cannot both go to standard output: name a file by -o";
+    if (mesh.parts && !mesh.solid.part.empty())
+        return "--part writes one part alone, --parts all of them: give one of them";
     return of_cells(given);
 }
 

@@ -2,14 +2,19 @@
 #include "cli/interrupt.h"
 #include "cli/solid.h"
 
+#include <fathom/part_meshes.h>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace fathom::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 // What may be there and is not in the mesh.
-void say_undecided(const v1::Mesh &mesh, const MeshCommand &command, Terminal &terminal) {
+void say_undecided(const v1::Mesh &mesh, const std::string &what, int resolution,
+                   Terminal &terminal) {
     if (mesh.undecided_cells == 0) return;
     const v1::Box &box = mesh.undecided.front();
     terminal.say(fmt::format("{}: {} cells may hold surface that the mesh does not show, the first "
@@ -17,13 +22,12 @@ void say_undecided(const v1::Mesh &mesh, const MeshCommand &command, Terminal &t
                              "{:.6g}, {:.6g}] to [{:.6g}, {:.6g}, {:.6g}]; a finer mesh "
                              "(`--resolution {}`) or a tighter "
                              "bound tells more",
-                             command.out, mesh.undecided_cells, box.lo[0], box.lo[1], box.lo[2],
-                             box.hi[0], box.hi[1], box.hi[2], 2 * command.solid.resolution));
+                             what, mesh.undecided_cells, box.lo[0], box.lo[1], box.lo[2], box.hi[0],
+                             box.hi[1], box.hi[2], 2 * resolution));
 }
 
 // The certificate as a document; distances are null where they do not hold everywhere.
-std::string json_of(const v1::Mesh &mesh) {
-    using Json = nlohmann::ordered_json;
+Json json_of(const v1::Mesh &mesh) {
     const v1::MeshCertificate &c = *mesh.certificate;
     Json json;
     json["status"] = c.certified ? "certified" : "partial";
@@ -44,27 +48,137 @@ std::string json_of(const v1::Mesh &mesh) {
     json["undecided"] = Json::array();
     for (const v1::Box &box : mesh.undecided) json["undecided"].push_back({box.lo, box.hi});
     json["rests_on"] = c.rests_on;
-    return json.dump() + "\n";
+    return json;
 }
 
-} // namespace
+// The same of parts, each with its name and line.
+Json json_of(const v1::PartMeshes &made) {
+    Json json;
+    json["parts"] = Json::array();
+    for (const v1::PartMesh &part : made.parts) {
+        Json row{{"name", part.name}, {"line", part.at.line}};
+        row.update(json_of(part.mesh));
+        json["parts"].push_back(row);
+    }
+    json["empty"] = Json::array();
+    for (const v1::Part &part : made.empty) json["empty"].push_back(part.name);
+    json["overlaps"] = Json::array();
+    for (const v1::PartOverlap &overlap : made.overlaps)
+        json["overlaps"].push_back(
+            {{"between", {made.parts[overlap.first].name, made.parts[overlap.second].name}},
+             {"at", overlap.at}});
+    json["all_overlaps_looked_for"] = !made.overlaps_incomplete;
+    return json;
+}
 
-Exit run(const MeshCommand &command, Terminal &terminal) {
+// What a user of the parts has to know of them.
+void say_parts(const v1::PartMeshes &made, const std::string &out, Terminal &terminal) {
+    for (const v1::Part &part : made.empty)
+        terminal.say(fmt::format("{}: part `{}` (line {}) holds no point, and is left out", out,
+                                 part.name, part.at.line));
+    if (!made.overlaps.empty()) {
+        const v1::PartOverlap &first = made.overlaps.front();
+        terminal.say(fmt::format(
+            "{}: {} overlap: `{}` and `{}`{} at [{:.6g}, {:.6g}, {:.6g}]: each "
+            "object is whole, and surface of one lies inside of another; without --parts the file "
+            "has the surface of all together",
+            out,
+            made.overlaps.size() == 1 ? "two parts"
+                                      : fmt::format("{} pairs of parts", made.overlaps.size()),
+            made.parts[first.first].name, made.parts[first.second].name,
+            made.overlaps.size() == 1 ? "" : " first,", first.at[0], first.at[1], first.at[2]));
+    }
+    if (made.overlaps_incomplete)
+        terminal.say(fmt::format(
+            "{}: parts may overlap that are not named: too many lie near each other", out));
+}
+
+// Where a material of the file is only a mean of what the scene has.
+void say_means(const v1::Mesh &mesh, const std::string &out, Terminal &terminal) {
+    for (const v1::MeshMaterial &material : mesh.materials)
+        if (material.varies)
+            terminal.say(fmt::format("{}: highlight or emission of material `{}` differ from place "
+                                     "to place; the file has their means",
+                                     out, material.name));
+}
+
+std::string library_of(const std::string &out) { // of an OBJ
+    return std::filesystem::path(out).replace_extension(".mtl").string();
+}
+
+// What there is to write, in the order of the file.
+struct Objects {
+    v1::PartMeshes parts;
+    v1::Mesh whole; // without --parts
+    std::vector<v1::MeshObject> all;
+};
+
+Exit write_objects(const Objects &objects, const MeshCommand &command, v1::MeshFormat format,
+                   const std::string &name, Terminal &terminal) {
+    const std::string &out = command.out;
+    const UnitRow *unit = unit_named(command.solid.units);
+    v1::MeshFileOptions options{unit ? unit->unit : v1::MeshUnit::Unsaid, name, ""};
+    const bool has_library = format == v1::MeshFormat::Obj;
+    if (has_library)
+        options.material_library = std::filesystem::path(library_of(out)).filename().string();
+    const std::string bytes = v1::mesh_file(objects.all, format, options);
+    std::size_t triangles = 0, vertices = 0;
+    for (const v1::MeshObject &object : objects.all) {
+        triangles += object.mesh->triangles.size();
+        vertices += object.mesh->vertices.size();
+    }
+    if (bytes.empty()) {
+        terminal.say(fmt::format("fathom: {} triangles are more than `{}` can hold, or than there "
+                                 "is memory for",
+                                 triangles, out));
+        return device_error;
+    }
+    if (terminal.interactive())
+        terminal.say(
+            fmt::format("{}: {}{} triangles, {} vertices", out,
+                        command.parts ? fmt::format("{} objects, ", objects.all.size()) : "",
+                        triangles, vertices));
+    if (!has_library) return write_result(out, bytes, terminal);
+    const std::string library = v1::material_library(objects.all);
+    if (library.empty()) throw std::bad_alloc();
+    return write_results({{out, bytes}, {library_of(out), library}}, terminal);
+}
+
+// Refused before any work is done.
+Exit refused(const MeshCommand &command, v1::MeshFormat format, Terminal &terminal) {
     const std::string &file = command.solid.scene.file;
     if (overwrites(file, command.out, terminal) || misnamed(command.out, Content::Mesh, terminal))
         return usage_error;
-    const v1::MeshFormat format =
-        v1::mesh_format(command.out).value_or(v1::MeshFormat::Stl); // a stream has no suffix
     if (!command.solid.units.empty() && format != v1::MeshFormat::ThreeMf &&
         format != v1::MeshFormat::Glb) {
         terminal.say(fmt::format("fathom: --units: `{}` says nothing of units; .3mf and .glb do",
                                  command.out));
         return usage_error;
     }
-    if (unwritable(command.out, terminal)) return device_error;
+    if (command.parts && (format == v1::MeshFormat::Stl || format == v1::MeshFormat::Ply)) {
+        terminal.say(fmt::format("fathom: --parts: `{}` holds one object; .glb, .obj and .3mf hold "
+                                 "several. `--part NAME` writes one part",
+                                 command.out));
+        return usage_error;
+    }
+    if (unwritable(command.out, terminal) ||
+        (format == v1::MeshFormat::Obj && unwritable(library_of(command.out), terminal)))
+        return device_error;
+    return done;
+}
+
+} // namespace
+
+Exit run(const MeshCommand &command, Terminal &terminal) {
+    const std::string &file = command.solid.scene.file;
+    const v1::MeshFormat format =
+        v1::mesh_format(command.out).value_or(v1::MeshFormat::Stl); // a stream has no suffix
+    if (const Exit exit = refused(command, format, terminal); exit != done) return exit;
     const Solid solid = open_solid(command.solid, terminal);
     if (!solid.scene) return solid.exit;
     if (overwrites(solid.files, command.out, terminal)) return usage_error;
+    if (format == v1::MeshFormat::Obj && overwrites(solid.files, library_of(command.out), terminal))
+        return usage_error;
     v1::MeshOptions options = options_of(command.solid);
     options.certify = command.json;
     options.colors = format != v1::MeshFormat::Stl;
@@ -73,32 +187,43 @@ Exit run(const MeshCommand &command, Terminal &terminal) {
         terminal.progress(command.out, share);
         return !Interrupts::noticed();
     };
-    const v1::Mesh mesh = v1::make_mesh(*solid.scene, options);
+    Objects objects;
+    if (command.parts)
+        objects.parts = v1::make_part_meshes(*solid.scene, options);
+    else
+        objects.whole = v1::make_mesh(*solid.scene, options);
     terminal.finish_progress();
     if (Interrupts::noticed()) { // nothing is written
         terminal.flush();
         Interrupts::obey();
     }
-    if (!mesh) return say_refusal(file, "mesh", mesh.status, mesh.message, terminal);
-    say_undecided(mesh, command, terminal);
+    const auto &[status, message] = command.parts
+                                        ? std::tie(objects.parts.status, objects.parts.message)
+                                        : std::tie(objects.whole.status, objects.whole.message);
+    if (status != v1::MeshStatus::Done) return say_refusal(file, "mesh", status, message, terminal);
+
     const std::string stem = std::filesystem::path(file).stem().string();
     const std::string name = !command.solid.part.empty() ? command.solid.part
                              : stem == "-"               ? "scene"
                                                          : stem;
-    const UnitRow *unit = unit_named(command.solid.units);
-    const std::string bytes =
-        v1::mesh_file(mesh, format, name, unit ? unit->unit : v1::MeshUnit::Unsaid);
-    if (bytes.empty()) {
-        terminal.say(fmt::format("fathom: {} triangles are more than `{}` can hold, or than there "
-                                 "is memory for",
-                                 mesh.triangles.size(), command.out));
-        return device_error;
+    if (command.parts) {
+        say_parts(objects.parts, command.out, terminal);
+        for (const v1::PartMesh &part : objects.parts.parts) {
+            say_undecided(part.mesh, fmt::format("{}: part `{}`", command.out, part.name),
+                          command.solid.resolution, terminal);
+            objects.all.push_back({part.name, &part.mesh});
+        }
+    } else {
+        say_undecided(objects.whole, command.out, command.solid.resolution, terminal);
+        objects.all.push_back({name, &objects.whole});
     }
-    if (terminal.interactive())
-        terminal.say(fmt::format("{}: {} triangles, {} vertices", command.out,
-                                 mesh.triangles.size(), mesh.vertices.size()));
-    const Exit exit = write_result(command.out, bytes, terminal);
-    if (exit == done && command.json) terminal.put(json_of(mesh));
+    if (format == v1::MeshFormat::Glb || format == v1::MeshFormat::Obj)
+        for (const v1::MeshObject &object : objects.all)
+            say_means(*object.mesh, command.out, terminal);
+    const Exit exit = write_objects(objects, command, format, name, terminal);
+    if (exit == done && command.json)
+        terminal.put((command.parts ? json_of(objects.parts) : json_of(objects.whole)).dump() +
+                     "\n");
     return exit;
 }
 

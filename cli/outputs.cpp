@@ -212,4 +212,14 @@ Exit write_result(const std::string &out, std::string_view bytes, Terminal &term
     return device_error;
 }
 
+Exit write_results(const std::vector<OutFile> &files, Terminal &terminal) {
+    std::vector<v1::FileBytes> all;
+    for (const OutFile &file : files) all.push_back({file.out, file.bytes});
+    std::size_t failed = 0;
+    const std::string error = v1::write_files(all, failed);
+    if (error.empty()) return done;
+    terminal.say(fmt::format("fathom: cannot write `{}`: {}", files[failed].out, error));
+    return device_error;
+}
+
 } // namespace fathom::cli

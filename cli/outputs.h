@@ -57,4 +57,11 @@ bool unwritable(const std::string &out, Terminal &terminal);
 // Writes a result to a file, or to standard output where `out` is empty or `-`.
 Exit write_result(const std::string &out, std::string_view bytes, Terminal &terminal);
 
+// Writes several files, all or none of them.
+struct OutFile {
+    std::string out;
+    std::string_view bytes;
+};
+Exit write_results(const std::vector<OutFile> &files, Terminal &terminal);
+
 } // namespace fathom::cli

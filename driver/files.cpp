@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <list>
 #include <mutex>
 #include <set>
 #include <sys/file.h>
@@ -202,41 +203,86 @@ int locked_temporary(const std::string &pattern, std::string &name) {
 
 } // namespace
 
-std::string write_file(const std::filesystem::path &named, std::string_view bytes) {
-    const std::filesystem::path target = followed(named);
-    if (target.empty()) return error_words(ELOOP);
-    struct stat old {};
-    bool exists = ::stat(target.c_str(), &old) == 0;
-    if (exists && S_ISDIR(old.st_mode)) return "is a directory";
-    if (exists && !S_ISREG(old.st_mode)) {
-        Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-        if (file.get() < 0) return error_words(errno);
-        int error = write_all(file.get(), bytes);
-        return error ? error_words(error) : "";
-    }
-    if (exists && ::access(target.c_str(), W_OK) != 0) return error_words(errno);
+namespace {
 
-    std::filesystem::path folder = target.parent_path().empty() ? "." : target.parent_path();
+// The whole of a file beside its target. Removed where it was not renamed.
+struct Prepared {
+    std::filesystem::path target;
+    std::string temporary;
+    ~Prepared() {
+        if (!temporary.empty()) ::unlink(temporary.c_str());
+    }
+};
+
+// Whether a target is written in place; then it was, or there is the reason.
+bool written_in_place(const std::filesystem::path &target, std::string_view bytes,
+                      std::string &why) {
+    struct stat old {};
+    if (::stat(target.c_str(), &old) != 0 || S_ISREG(old.st_mode)) return false;
+    if (S_ISDIR(old.st_mode)) {
+        why = "is a directory";
+        return true;
+    }
+    Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+    if (const int error = file.get() < 0 ? errno : write_all(file.get(), bytes))
+        why = error_words(error);
+    return true;
+}
+
+// Why it failed, or nothing.
+std::string prepare(std::string_view bytes, Prepared &prepared) {
+    const std::filesystem::path &target = prepared.target;
+    struct stat old {};
+    const bool exists = ::stat(target.c_str(), &old) == 0;
+    if (exists && ::access(target.c_str(), W_OK) != 0) return error_words(errno);
+    const std::filesystem::path folder = target.parent_path().empty() ? "." : target.parent_path();
     sweep(folder);
     std::string temporary;
-    HoldInterrupts hold;
     Descriptor file(
         locked_temporary((folder / ("." + target.filename().string() + std::string(temporary_mark) +
                                     std::string(temporary_tail, 'X')))
                              .string(),
                          temporary));
     if (file.get() < 0) return error_words(errno);
-    mode_t mask = ::umask(0);
+    prepared.temporary = temporary;
+    const mode_t mask = ::umask(0);
     ::umask(mask);
-    mode_t mode = exists ? (old.st_mode & 07777) : (0666 & ~mask);
+    const mode_t mode = exists ? (old.st_mode & 07777) : (0666 & ~mask);
     int error = write_all(file.get(), bytes);
     if (!error && ::fchmod(file.get(), mode) != 0) error = errno;
     if (!error && ::fsync(file.get()) != 0) error = errno;
-    int close_error = file.close();
+    const int close_error = file.close();
     if (!error) error = close_error;
-    if (!error && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
-    if (error) ::unlink(temporary.c_str());
     return error ? error_words(error) : "";
+}
+
+} // namespace
+
+std::string write_file(const std::filesystem::path &named, std::string_view bytes) {
+    std::size_t failed = 0;
+    return write_files({{named, bytes}}, failed);
+}
+
+std::string write_files(const std::vector<FileBytes> &files, std::size_t &failed) {
+    const HoldInterrupts hold;
+    std::list<Prepared> all; // none is moved
+    std::string why;
+    for (failed = 0; failed < files.size(); ++failed) {
+        const auto &[named, bytes] = files[failed];
+        const std::filesystem::path target = followed(named);
+        if (target.empty()) return error_words(ELOOP);
+        const bool in_place = written_in_place(target, bytes, why);
+        if (!in_place) why = prepare(bytes, all.emplace_back(Prepared{target, ""}));
+        if (!why.empty()) return why;
+    }
+    failed = 0;
+    for (Prepared &prepared : all) {
+        if (::rename(prepared.temporary.c_str(), prepared.target.c_str()) != 0)
+            return error_words(errno);
+        prepared.temporary.clear();
+        ++failed;
+    }
+    return "";
 }
 
 } // namespace fathom::driver

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace fathom::driver {
 
@@ -44,6 +45,14 @@ std::optional<std::string> read_standard_input(std::size_t limit, std::string &e
 // are followed, also where they lead to nothing yet. A target that is no regular file (a pipe,
 // /dev/null) is written in place. Returns an empty string, or the reason of the failure.
 std::string write_file(const std::filesystem::path &target, std::string_view bytes);
+
+// Several files so: each is written whole beside its target before the first is renamed, so that on a
+// full disk all stay as they were. `failed`: which one failed.
+struct FileBytes {
+    std::filesystem::path target;
+    std::string_view bytes;
+};
+std::string write_files(const std::vector<FileBytes> &files, std::size_t &failed);
 
 // Writes all of `bytes` to a descriptor; 0, or the errno of the failure.
 int write_all(int descriptor, std::string_view bytes);

@@ -2,7 +2,7 @@
 // has z up as printers do, so there (x, y, z) is (x, -z, y).
 #pragma once
 
-#include "mesh/polygons.h"
+#include "mesh/appearance.h"
 
 #include <optional>
 #include <span>
@@ -10,18 +10,24 @@
 
 namespace fathom::mesh {
 
-// A mesh that lies elsewhere, as Mesh.
+using Triangle = std::array<std::uint32_t, 3>;
+
+// A mesh that lies elsewhere, as Mesh and Appearance; what there is of these may be empty.
 struct Surface {
     std::span<const Point> vertices, normals;
-    std::span<const std::array<std::uint32_t, 3>> triangles;
-    std::span<const Point> colors; // by vertex, linear, 0..1; or none
+    std::span<const Triangle> triangles;
+    std::span<const Point> colors; // by vertex
+    std::span<const std::array<Point, 3>> corners;
+    std::span<const Material> materials;
+    std::span<const std::uint32_t> material_of; // by triangle
+    std::string_view name;                      // of this object
 };
 
 enum class Format : std::uint8_t {
     Stl,    // binary: triangles with their normals
-    Obj,    // text: shared vertices with their colours, normals by corner
+    Obj,    // text: shared vertices with their colours, normals by corner, materials
     Ply,    // binary, little-endian: shared vertices with their colours
-    Glb,    // glTF 2.0 in one file: vertices by corner normal, one material
+    Glb,    // glTF 2.0 in one file: vertices by corner normal and colour, a primitive a material
     ThreeMf // 3D Manufacturing Format: shared vertices, colours by corner
 };
 
@@ -29,14 +35,51 @@ enum class Format : std::uint8_t {
 // counts metres, the object is scaled. Unsaid: 3MF's millimetres, GLB's metres.
 enum class Unit : std::uint8_t { Unsaid, Micron, Millimetre, Centimetre, Metre, Inch, Foot };
 
-// `name`: what the object is called where the format has names. Empty where the format cannot hold so
-// much: a GLB has at most 4 GiB.
-std::string file_of(const Surface &mesh, Format format, std::string_view name,
-                    Unit unit = Unit::Unsaid);
+struct FileOptions {
+    Unit unit = Unit::Unsaid;
+    std::string_view name = "scene"; // of several objects together
+    std::string_view library;        // of an OBJ: the file of its materials; none: it names none
+};
 
-// The colour of all vertices, where they have one and the same.
+// One object for each surface, or all in one where the format has no objects (STL, PLY). Empty where
+// the format cannot hold so much: a GLB has at most 4 GiB.
+std::string file_of(std::span<const Surface> objects, Format format,
+                    const FileOptions &options = {});
+// The materials of an OBJ (MTL).
+std::string material_library_of(std::span<const Surface> objects);
+
+// The colour of all of a surface, where it has one and the same.
 std::optional<Point> only_color(const Surface &mesh);
-// The bytes of a 3MF: file_of's.
-std::string three_mf_of(const Surface &mesh, std::string_view name, Unit unit);
+
+// file_of's, each in a source of its own.
+std::string obj_of(std::span<const Surface> objects, const FileOptions &options);
+std::string glb_of(std::span<const Surface> objects, const FileOptions &options);
+std::string three_mf_of(std::span<const Surface> objects, const FileOptions &options);
+
+// What several of them need.
+
+// Normals and where each corner finds its own.
+struct Corners {
+    std::vector<Point> normals;
+    std::vector<Triangle> indices;
+};
+Corners corners_of(const Surface &mesh);
+
+// The materials of several objects, equal ones once, each name once; and of each object where its
+// own ones stand.
+struct MaterialTable {
+    std::vector<Material> materials;
+    std::vector<std::vector<std::uint32_t>> places; // by object, by its material
+};
+MaterialTable table_of(std::span<const Surface> objects);
+
+// The roughness, as glTF has it, whose highlight is as wide as Phong's of that exponent n: a Phong
+// lobe about the mirrored direction is as wide as Blinn's with 4n about the half vector (Walter,
+// Marschner, Li and Torrance 2007: 2/a^2 - 2 of a Beckmann lobe), and glTF's a is the roughness
+// squared. So it is (2n + 1)^(-1/4).
+float roughness_of(float exponent);
+
+// The colour of a triangle's corner; white where there is none.
+Point corner_color(const Surface &mesh, std::size_t triangle, std::size_t corner);
 
 } // namespace fathom::mesh

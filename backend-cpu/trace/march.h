@@ -113,13 +113,16 @@ void encode_linear(std::span<const float> linear, int x, int y, std::span<std::u
 void encode_sums(std::span<const double> sums, int samples, int x, int y,
                  std::span<std::uint8_t> rgba);
 
-// The diffuse colours, linear, of the scene's surface at points on it or near it; `normals` of length 1
-// there. `arm` is a length that is small for the surface: where paint reads the normal, it is turned
-// into the paint's space by a point that far from the surface.
-std::vector<std::array<float, 3>> diffuse_colors(const Stage &stage,
-                                                 std::span<const std::array<float, 3>> points,
-                                                 std::span<const std::array<float, 3>> normals,
-                                                 float arm);
+// How the scene's surface looks at points on it or near it; `normals` of length 1 there. `arm` is a
+// length that is small for the surface: where paint reads the normal, it is turned into the paint's
+// space by a point that far from the surface. Colours are linear.
+struct Look {
+    std::int32_t surface = 0; // index into Scene::surfaces
+    std::array<float, 3> diffuse{}, specular{}, emission{};
+    float exponent = 0;
+};
+std::vector<Look> looks_at(const Stage &stage, std::span<const std::array<float, 3>> points,
+                           std::span<const std::array<float, 3>> normals, float arm);
 
 // How a ray ends (shading.h, MARCH).
 enum class RayEnd : std::uint8_t { Miss, Hit, Undecided };

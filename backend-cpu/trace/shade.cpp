@@ -16,6 +16,7 @@ namespace {
 struct Material {
     Vec diffuse, specular, emission;
     float exponent = 0;
+    std::int32_t surface = 0;
 };
 
 // What is known of the points that were hit, one entry a hit.
@@ -81,7 +82,8 @@ void find_materials(Worker &worker, Points &at) {
         evaluate(stage.surfaces[s], worker.surfaces[s], in.pointers(), out.pointers(),
                  group.size());
         for (std::size_t i = 0; i < group.size(); ++i)
-            at.material[group[i]] = {out.vec(0, i), out.vec(3, i), out.vec(7, i), out[6][i]};
+            at.material[group[i]] = {out.vec(0, i), out.vec(3, i), out.vec(7, i), out[6][i],
+                                     static_cast<std::int32_t>(s)};
     }
 }
 
@@ -287,13 +289,12 @@ void shade(Worker &worker, std::span<const RayState> rays, std::span<const Landi
     }
 }
 
-std::vector<std::array<float, 3>> diffuse_colors(const Stage &stage,
-                                                 std::span<const std::array<float, 3>> points,
-                                                 std::span<const std::array<float, 3>> normals,
-                                                 float arm) {
+std::vector<Look> looks_at(const Stage &stage, std::span<const std::array<float, 3>> points,
+                           std::span<const std::array<float, 3>> normals, float arm) {
     Worker worker(stage);
-    std::vector<std::array<float, 3>> colors;
-    colors.reserve(points.size());
+    std::vector<Look> looks;
+    looks.reserve(points.size());
+    const auto numbers = [](Vec v) { return std::array{v.x, v.y, v.z}; };
     for (std::size_t first = 0; first < points.size(); first += max_rays) {
         const std::size_t end = std::min(points.size(), first + max_rays);
         Points at;
@@ -303,9 +304,10 @@ std::vector<std::array<float, 3>> diffuse_colors(const Stage &stage,
         }
         find_materials(worker, at);
         for (const Material &m : at.material)
-            colors.push_back({m.diffuse.x, m.diffuse.y, m.diffuse.z});
+            looks.push_back({m.surface, numbers(m.diffuse), numbers(m.specular),
+                             numbers(m.emission), m.exponent});
     }
-    return colors;
+    return looks;
 }
 
 } // namespace fathom::cpu

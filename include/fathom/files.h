@@ -27,6 +27,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace fathom::FATHOM_V1 {
 
@@ -40,6 +41,14 @@ FATHOM_API std::optional<std::string> read_standard_input(std::size_t limit, std
  *  as it was. Signals of the terminal wait until that is done. Symbolic links are followed; a target
  *  that is no regular file (a pipe) is written in place. An empty text, or why it could not be. */
 FATHOM_API std::string write_file(const std::filesystem::path &file, std::string_view bytes);
+
+/** Several files: each is written whole beside its target before the first is renamed, so that a full
+ *  disk leaves all of them as they were. `failed`: which one could not be. */
+struct FileBytes {
+    std::filesystem::path file;
+    std::string_view bytes;
+};
+FATHOM_API std::string write_files(const std::vector<FileBytes> &files, std::size_t &failed);
 
 /** Writes all bytes to an open descriptor. 0, or the `errno` of the failure. */
 FATHOM_API int write_all(int descriptor, std::string_view bytes);

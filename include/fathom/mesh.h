@@ -74,6 +74,20 @@ struct MeshCertificate {
     std::vector<std::string> rests_on;
 };
 
+/** How the triangles of one paint look. Colours are linear, 0..1; `emission` may be more. */
+struct MeshMaterial {
+    /** What `material(name: ...)` calls it; else its colour, as `d94f2b`, or
+     *  `paint` where it has several; `unpainted` where nobody painted. */
+    std::string name;
+    std::array<float, 3> diffuse{}, specular{}, emission{};
+    float exponent = 0; /**< of Phong's highlight */
+    /** The diffuse colour differs from corner to corner (`Mesh::corner_colors`); `diffuse` is its
+     *  mean. */
+    bool colored = false;
+    /** So do `specular`, `emission` or `exponent`, whose means stand here. */
+    bool varies = false;
+};
+
 /** A closed, oriented 2-manifold that does not cross itself (docs/meshes.md says why). Vertices are
  *  single-precision coordinates in the scene's units and axes; `normals`, one a vertex, are means
  *  of the distance's gradients about there, of length 1, also at creases; `triangles` are
@@ -88,6 +102,11 @@ struct Mesh {
      *  and highlights. A vertex has one colour: where two paints meet, they run into each other over
      *  a triangle. */
     std::vector<std::array<float, 3>> colors;
+    /** With MeshOptions::colors, too: the paints of the surface; which of them each triangle has; and
+     *  what that paint's colour is at each corner, so that paints end at the edges of triangles. */
+    std::vector<MeshMaterial> materials;
+    std::vector<std::uint32_t> material_of;
+    std::vector<std::array<std::array<float, 3>, 3>> corner_colors;
     /** Cells in which there may be surface that the mesh does not show, since the bound is too loose
      *  to tell, or since what is there is thinner than the finest cells; the first 1,000 of them.
      *  With a certificate those in which surface may be farther from the mesh than a cell's side. */
@@ -97,7 +116,7 @@ struct Mesh {
     explicit operator bool() const { return status == MeshStatus::Done; }
 };
 
-/** Never throws. Takes some 400 bytes of memory a triangle meanwhile. */
+/** Never throws. Takes some 500 bytes of memory a triangle meanwhile. */
 FATHOM_API Mesh make_mesh(const Scene &scene, const MeshOptions &options = {}) noexcept;
 
 /** The formats of mesh files: binary STL, Wavefront OBJ, binary PLY, binary glTF 2.0, 3D Manufacturing
@@ -111,6 +130,26 @@ enum class MeshUnit { Unsaid, Micron, Millimetre, Centimetre, Metre, Inch, Foot 
 
 /** By a file name's suffix, `.stl`, `.obj`, `.ply`, `.glb` or `.3mf` in either case; or nothing. */
 FATHOM_API std::optional<MeshFormat> mesh_format(std::string_view file_name) noexcept;
+
+/** A mesh as an object of a file. */
+struct MeshObject {
+    std::string name;
+    const Mesh *mesh = nullptr; /**< not none */
+};
+
+/** What a file says beside its meshes. */
+struct MeshFileOptions {
+    MeshUnit unit = MeshUnit::Unsaid;
+    std::string name = "scene";   /**< of several objects together */
+    std::string material_library; /**< of an OBJ: the name of the MTL file beside it; empty: none */
+};
+
+/** The bytes of a file of several objects: nodes of a GLB, below one; the components of one object of a
+ *  3MF; `o` of an OBJ. An STL and a PLY hold all of them as one. Empty as below. */
+FATHOM_API std::string mesh_file(const std::vector<MeshObject> &objects, MeshFormat format,
+                                 const MeshFileOptions &options) noexcept;
+/** The bytes of the MTL file that an OBJ of these objects names. */
+FATHOM_API std::string material_library(const std::vector<MeshObject> &objects) noexcept;
 
 /** The bytes of a file. `name`: the object's, where the format has one. Empty where there is no memory
  *  for it, or more than the format holds (a GLB: 4 GiB). */

@@ -172,6 +172,20 @@ std::int32_t Lowering::surface_of(std::uint32_t material, bool flat) {
 
 // -- mixed materials
 
+std::vector<std::string> Lowering::surface_names() const {
+    std::vector<std::string> names(scene_.surfaces.size());
+    for (const auto &[material, surface] : surfaces_)
+        names[static_cast<std::size_t>(surface)] = shapes_.materials[material.first].name;
+    return names;
+}
+
+std::vector<std::string> surface_names(const Scene &scene) {
+    Scene again = scene; // the same one, so that its surfaces have the same places
+    Lowering lowering(again);
+    lowering.run();
+    return lowering.surface_names();
+}
+
 // The materials of a blend's operands, each as it is at the point, by the blend's weights: of two
 // whose distances differ by d < r, the lesser weighs 1 - (r - d)/2r and the greater the rest (the
 // slope of the quadratic profile); folded in order.

@@ -26,6 +26,9 @@ namespace fathom::ir {
 // Fills the functions of a scene (raw, marched, hit, shaded, safe radius) from its shapes and facts.
 void lower(Scene &scene);
 
+// By index into the surfaces of a lowered scene: what its material is called, where it has a name.
+std::vector<std::string> surface_names(const Scene &scene);
+
 // Lowered so that a hit also tells which part of the scene it is on: the innermost operand of a
 // union, a blend or another combination. A hit's paint, where it is not negative, then holds two
 // numbers: code + stride * part, where the code stride - 1 says that nobody painted; part 0 is

@@ -40,6 +40,7 @@ class Lowering {
     void run();
     Parts run_with_parts();
     std::vector<DividedField> divided_fields(double steeper_than);
+    std::vector<std::string> surface_names() const; // of what was run
 
   private:
     // -- evaluating shapes

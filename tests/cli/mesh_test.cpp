@@ -16,7 +16,8 @@ TEST_CASE("a mesh is written in the format of its suffix") {
         CHECK(made.err.empty());
         CHECK(made.out.empty());
     }
-    CHECK(folder.read("a.obj").starts_with("# by Fathom\no ring\nv "));
+    CHECK(folder.read("a.obj").starts_with("# by Fathom\nmtllib a.mtl\no ring\nv "));
+    CHECK(contains(folder.read("a.mtl"), "newmtl unpainted\n"));
     CHECK(folder.read("a.ply").starts_with("ply\n"));
     CHECK(folder.read("a.glb").starts_with("glTF"));
     CHECK(folder.read("a.3mf").starts_with("PK"));
@@ -89,4 +90,69 @@ TEST_CASE("what has no mesh says why, and writes nothing") {
     fails("ball.sdf -o none/a.stl", 3, "none");
     CHECK(shell(folder, "fathom mesh ground.sdf --bounds=-1,-1,-1,1,1,1 -o a.stl").exit == 0);
     CHECK(fs::exists(folder / "a.stl"));
+}
+
+TEST_CASE("--parts writes each part as a whole object of its own, and says where two overlap") {
+    ScratchFolder folder;
+    folder.write("two.sdf", "let base = box([2, 1, 2]).paint(#8a8)\n"
+                            "base\n"
+                            "cylinder(0.3, 2).paint(red)\n"
+                            "cylinder(0.1, 1).translate(x: 3).paint(red)\n"
+                            "box(1) & box(1).translate(x: 3)\n");
+    const Result glb = shell(folder, "fathom mesh two.sdf --parts --resolution 30 -o 'a b.glb'");
+    CHECK(glb.exit == 0);
+    CHECK(contains(glb.err, "part `box` (line 5) holds no point, and is left out"));
+    CHECK(contains(glb.err, "two parts overlap: `base` and `cylinder` at ["));
+    for (const char *name : {"\"name\":\"base\"", "\"name\":\"cylinder\"",
+                             "\"name\":\"cylinder#2\"", "\"children\":[1,2,3]"})
+        CHECK(contains(folder.read("a b.glb"), name));
+    const Result obj = shell(folder, "fathom mesh two.sdf --parts --resolution 30 -o 'a b.obj'");
+    CHECK(obj.exit == 0);
+    CHECK(contains(folder.read("a b.obj"), "mtllib a b.mtl\n"));
+    CHECK(contains(folder.read("a b.obj"), "\no cylinder.2\n"));
+    CHECK(contains(folder.read("a b.mtl"), "\nnewmtl ff0000\n"));
+    const Result json =
+        shell(folder, "fathom mesh two.sdf --parts --resolution 30 --json -o a.3mf 2>no");
+    CHECK(json.exit == 0);
+    CHECK(json.out.starts_with(
+        "{\"parts\":[{\"name\":\"base\",\"line\":2,\"status\":\"certified\","));
+    CHECK(contains(json.out,
+                   "\"empty\":[\"box\"],\"overlaps\":[{\"between\":[\"base\",\"cylinder\"]"));
+    CHECK(contains(json.out, "\"all_overlaps_looked_for\":true"));
+    // Parts that only touch do not overlap.
+    folder.write("touch.sdf", "box(1)\nbox(1).translate(y: 1)\n");
+    CHECK(shell(folder, "fathom mesh touch.sdf --parts --resolution 20 -o t.glb").err.empty());
+    const auto fails = [&](const std::string &arguments, int exit, const std::string &words) {
+        const Result made = shell(folder, "fathom mesh " + arguments);
+        INFO(arguments << '\n' << made.err);
+        CHECK(made.exit == exit);
+        CHECK(contains(made.err, words));
+    };
+    fails("two.sdf --parts -o n.stl", 2, "holds one object");
+    fails("two.sdf --parts --part base -o n.glb", 2, "give one of them");
+    folder.write("ground.sdf", "sphere(1)\nplane(Y, -1)\n");
+    fails("ground.sdf --parts -o n.glb", 1, "--bounds X,Y,Z,X,Y,Z");
+    folder.write("none.sdf", "box(1) & box(1).translate(x: 3)\n");
+    fails("none.sdf --parts -o n.glb", 1, "empty");
+    CHECK_FALSE((fs::exists(folder / "n.stl") || fs::exists(folder / "n.glb")));
+}
+
+TEST_CASE("an OBJ and its materials are both written, or neither") {
+    ScratchFolder folder;
+    folder.write("ball.sdf", "sphere(1)\n");
+    fs::create_directory(folder / "a.mtl");
+    const Result blocked = shell(folder, "fathom mesh ball.sdf --resolution 8 -o a.obj");
+    CHECK(blocked.exit == 3);
+    CHECK(contains(blocked.err, "a.mtl"));
+    CHECK_FALSE(fs::exists(folder / "a.obj"));
+    // A file that may grow to 4 KiB: the OBJ is larger, its materials are not.
+    const Result full =
+        shell(folder, "(ulimit -f 4; trap '' XFSZ; fathom mesh ball.sdf --resolution 8 -o b.obj)");
+    CHECK(full.exit == 3);
+    CHECK(contains(full.err, "b.obj"));
+    for (const auto &entry : fs::directory_iterator(folder.path()))
+        CHECK((entry.path().filename() == "ball.sdf" || entry.path().filename() == "a.mtl"));
+    // A name that an OBJ of the scene's own materials would overwrite.
+    CHECK(shell(folder, "fathom mesh ball.sdf --resolution 8 -o ball.obj").exit == 0);
+    CHECK(fs::exists(folder / "ball.mtl"));
 }

@@ -1,6 +1,6 @@
 // Meshes of scenes whose topology, volume and corners are known.
 #include "driver/compile.h"
-#include "mesh/colors.h"
+#include "mesh/appearance.h"
 #include "mesh/mesh.h"
 #include "tests/support/mesh_checks.h"
 

@@ -23,14 +23,16 @@ Mesh corner_of_a_cube() {
 }
 
 std::string bytes_of(const Mesh &mesh, Format format, std::string_view name = "a") {
-    return file_of({mesh.vertices, mesh.normals, mesh.triangles, {}}, format, name);
+    const Surface surface{mesh.vertices, mesh.normals, mesh.triangles, {}, {}, {}, {}, name};
+    return file_of({&surface, 1}, format);
 }
 
 // Of that tetrahedron: a colour by vertex, or one for all.
 const std::vector<Point> colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.2158605f, 0, 0}};
 std::string bytes_of(const Mesh &mesh, Format format, const std::vector<Point> &colored,
                      Unit unit = Unit::Unsaid) {
-    return file_of({mesh.vertices, mesh.normals, mesh.triangles, colored}, format, "a", unit);
+    const Surface surface{mesh.vertices, mesh.normals, mesh.triangles, colored, {}, {}, {}, "a"};
+    return file_of({&surface, 1}, format, {unit, "scene", ""});
 }
 
 // The document of a GLB.
@@ -214,7 +216,7 @@ TEST_CASE("a 3MF is an archive of a model with z up, its unit, and colours by co
     CHECK(count_of(model, "<triangle ") == 4);
     CHECK(count_of(model, "<m:color ") == 4);
     CHECK(count_of(model, "<m:color color=\"#800000\"/>") == 1);
-    CHECK(count_of(model, "v1=\"0\" v2=\"2\" v3=\"1\" pid=\"2\" p1=\"0\" p2=\"2\" p3=\"1\"") == 1);
+    CHECK(count_of(model, "v1=\"0\" v2=\"2\" v3=\"1\" pid=\"2\" p1=\"0\" p2=\"1\" p3=\"2\"") == 1);
     const std::string plain = unzipped(bytes_of(mesh, Format::ThreeMf), "3D/3dmodel.model");
     CHECK(count_of(plain, "color") == 0);
     CHECK(count_of(plain, "unit=\"millimeter\"") == 1);
@@ -222,8 +224,114 @@ TEST_CASE("a 3MF is an archive of a model with z up, its unit, and colours by co
 
 TEST_CASE("a name is text in a 3MF, whatever it holds") {
     const Mesh mesh = corner_of_a_cube();
-    const std::string model = unzipped(file_of({mesh.vertices, mesh.normals, mesh.triangles, {}},
-                                               Format::ThreeMf, "a\"><evil & \n"),
-                                       "3D/3dmodel.model");
+    const std::string model =
+        unzipped(bytes_of(mesh, Format::ThreeMf, "a\"><evil & \n"), "3D/3dmodel.model");
     CHECK(count_of(model, "name=\"a&quot;>&lt;evil &amp;  \"") == 1);
+    CHECK(count_of(unzipped(bytes_of(mesh, Format::ThreeMf, "a\xff"), "3D/3dmodel.model"),
+                   "name=\"a\xef\xbf\xbd\"") == 1);
+}
+
+namespace {
+
+// That tetrahedron twice: one of two materials, one of the second alone. Equal materials are one.
+struct Two {
+    Mesh mesh = corner_of_a_cube();
+    std::vector<Material> first{{"stone", {0.5f, 0.5f, 0.5f}, {1, 1, 1}, {}, 32},
+                                {"glow #1", {1, 0, 0}, {0.5f, 0.25f, 0}, {4, 2, 0}, 0}},
+        second{first[1], {"stone", {0, 0, 1}, {1, 1, 1}, {}, 32, true}};
+    std::vector<std::uint32_t> of_first{1, 0, 1, 0}, of_second{0, 0, 0, 1};
+    std::vector<std::array<Point, 3>> corners =
+        std::vector<std::array<Point, 3>>(4, {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
+    std::vector<Surface> surfaces() const {
+        return {{mesh.vertices, mesh.normals, mesh.triangles, colors, {}, first, of_first, "lid"},
+                {mesh.vertices, mesh.normals, mesh.triangles, colors, corners, second, of_second,
+                 "lid#2"}};
+    }
+};
+
+} // namespace
+
+TEST_CASE("objects of a GLB are nodes below one, with a primitive for each material") {
+    const Two two;
+    const std::string bytes = file_of(two.surfaces(), Format::Glb, {Unit::Inch, "all", ""});
+    const nlohmann::json json = document_of(bytes);
+    CHECK(json["nodes"][0]["name"] == "all");
+    CHECK(json["nodes"][0]["children"] == nlohmann::json({1, 2}));
+    CHECK(json["nodes"][0]["scale"][0] == 0.0254);
+    CHECK(json["nodes"][2]["name"] == "lid#2");
+    REQUIRE(json["materials"].size() == 3);
+    CHECK(json["materials"][2]["name"] == "stone.2");
+    REQUIRE(json["meshes"][0]["primitives"].size() == 2);
+    REQUIRE(json["meshes"][1]["primitives"].size() == 2);
+    const auto triangles = [&](std::size_t mesh, std::size_t primitive) {
+        const auto &one = json["meshes"][mesh]["primitives"][primitive];
+        return json["accessors"][one["indices"].get<std::size_t>()]["count"].get<int>() / 3;
+    };
+    CHECK((triangles(0, 0) == 2 && triangles(0, 1) == 2));
+    CHECK((triangles(1, 0) == 3 && triangles(1, 1) == 1));
+    // Equal ones are one: the second's first is the first's second.
+    CHECK(json["meshes"][0]["primitives"][1]["material"] == 1);
+    CHECK(json["meshes"][1]["primitives"][0]["material"] == 1);
+    CHECK_FALSE(json["meshes"][1]["primitives"][0]["attributes"].contains("COLOR_0"));
+    const auto &colored = json["meshes"][1]["primitives"][1];
+    CHECK(json["accessors"][colored["attributes"]["COLOR_0"].get<std::size_t>()]["count"] == 3);
+    CHECK(json["materials"][2]["pbrMetallicRoughness"]["baseColorFactor"][0] == 1.0);
+
+    const nlohmann::json &glow = json["materials"][1];
+    CHECK(glow["extensions"]["KHR_materials_specular"]["specularFactor"] == 0.5);
+    CHECK(glow["extensions"]["KHR_materials_specular"]["specularColorFactor"] ==
+          nlohmann::json({1.0, 0.5, 0.0}));
+    CHECK(glow["emissiveFactor"] == nlohmann::json({1.0, 0.5, 0.0}));
+    CHECK(glow["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] == 4.0);
+    CHECK(json["extensionsUsed"].size() == 2);
+    CHECK(glow["pbrMetallicRoughness"]["roughnessFactor"] == 1.0);
+    CHECK_FALSE(json["materials"][0].contains("extensions"));
+}
+
+TEST_CASE("a duller highlight is rougher") {
+    CHECK(roughness_of(0) == 1);
+    CHECK(roughness_of(-1) == 1);
+    CHECK(roughness_of(40) == Approx(1.0 / 3)); // (2 * 40 + 1)^(1/4) = 3
+    CHECK(roughness_of(1e6f) < 0.03f);
+}
+
+TEST_CASE("objects of an OBJ count on, and name materials of the library beside it") {
+    const Two two;
+    const std::string text =
+        file_of(two.surfaces(), Format::Obj, {Unit::Unsaid, "all", "two\nwords.mtl"});
+    CHECK(text.starts_with("# by Fathom\nmtllib two_words.mtl\no lid\nv "));
+    CHECK(count_of(text, "\no lid.2\n") == 1);
+    CHECK(count_of(text, "\nusemtl stone\n") == 1);
+    CHECK(count_of(text, "\nusemtl glow_.1\n") == 2);
+    CHECK(count_of(text, "\nusemtl stone.2\n") == 1);
+    CHECK(count_of(text, "\nf ") == 8);
+    const std::string second = text.substr(text.find("\no lid.2"));
+    CHECK(count_of(second, "\nf 5//") + count_of(second, " 5//") >= 3); // its first vertex
+    CHECK(count_of(second, " 4//") == 0);
+    const std::string library = material_library_of(two.surfaces());
+    CHECK(count_of(library, "\nnewmtl ") == 3);
+    CHECK(count_of(library,
+                   "\nnewmtl stone\nKd 0.7354 0.7354 0.7354\nKs 1 1 1\nKe 0 0 0\nNs 32\n") == 1);
+    CHECK(count_of(library, "Ke 1 1 0\n") == 1); // no more than 1
+    CHECK(file_of(two.surfaces(), Format::Obj).find("mtl") == std::string::npos);
+}
+
+TEST_CASE("objects of a 3MF are components of one, so that they stay where they are") {
+    const Two two;
+    const std::string model = unzipped(
+        file_of(two.surfaces(), Format::ThreeMf, {Unit::Unsaid, "a<b", ""}), "3D/3dmodel.model");
+    CHECK(count_of(model, "<object id=") == 3);
+    CHECK(count_of(model, "<object id=\"1\" type=\"model\" name=\"lid\" pid=\"3\"") == 1);
+    CHECK(count_of(model, "<object id=\"4\" type=\"model\" name=\"a&lt;b\">\n<components>\n"
+                          "<component objectid=\"1\"/>\n<component objectid=\"2\"/>\n") == 1);
+    CHECK(count_of(model, "<build><item objectid=\"4\"/></build>") == 1);
+    CHECK(count_of(model, "<triangle ") == 8);
+}
+
+TEST_CASE("an STL and a PLY hold several objects as one") {
+    const Two two;
+    CHECK(file_of(two.surfaces(), Format::Stl).size() == 84 + 8 * 50);
+    const std::string ply = file_of(two.surfaces(), Format::Ply);
+    CHECK(count_of(ply, "element vertex 8\n") == 1);
+    CHECK(read<std::uint32_t>(ply, ply.size() - 12) == 4); // the second's first vertex
 }
