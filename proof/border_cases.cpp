@@ -23,6 +23,11 @@ bool Cases::hold(const Claim &claim) {
     return hold(Case{}, 0);
 }
 
+bool Cases::hold_alike(const Claim &claim) {
+    alike_ = true;
+    return hold(claim);
+}
+
 bool Cases::hold(const Case &given, int depth) {
     if (++count_ > max_cases || depth > max_forks || looked_.spent()) return false;
     case_ = given;
@@ -63,7 +68,7 @@ std::optional<bool> Cases::attempt() {
         if (!v) return {};
         const Sum gap = add(*u, *v, -1);
         if (const auto c = as_constant(gap); c && std::fabs(*c) > 1e-9) return true; // nowhere
-        solve(gap);
+        if (!solve(gap)) return {};
         follow_roots(case_);
         case_.border_solved = true;
         forget();
@@ -80,6 +85,11 @@ std::optional<bool> Cases::attempt() {
             truths[turned] = *t;
         }
         if (truths[0] == truths[1]) return true;
+    }
+    if (alike_) {
+        relations_.clear();
+        const Relation sides = relation(claim_.of);
+        return fork_ ? std::nullopt : std::optional(sides == Relation::Same);
     }
     std::optional<Sum> first;
     const int sides = graph_[claim_.choice].op == Op::Sign ? 3 : 2;
@@ -240,13 +250,32 @@ bool Cases::solve_equality(Case &c) {
     return false;
 }
 
-void Cases::solve(const Sum &gap) {
+bool Cases::solve(const Sum &gap) {
     if (auto found = solved_for_atom(gap)) {
         case_.solved.push_back(std::move(*found));
-        return;
+        return true;
     }
+    if (const auto found = solved_for_square(gap)) {
+        const Sum above = add(atom(found->atom), found->middle, -1);
+        const auto w = way(claim_.choice, Squares, {{above}, {add({}, above, -1)}});
+        if (!w) return false;
+        const auto number = as_constant(found->square);
+        const Sum root = number ? constant(std::sqrt(std::max(*number, 0.0)))
+                                : atom(root_atom(found->square, true));
+        case_.solved.emplace_back(found->atom, add(found->middle, root, *w == 0 ? 1 : -1));
+        return true;
+    }
+    const Sum less = add({}, gap, -1);
+    for (const Sum &sum : {gap, less})
+        if (const auto roots = squares_in(sum)) { // each is 0
+            for (const Sum &root : *roots)
+                if (auto found = solved_for_atom(reduced(root, case_)))
+                    case_.solved.push_back(std::move(*found));
+            return true;
+        }
     case_.at_least_0.push_back(gap);
-    case_.at_least_0.push_back(add({}, gap, -1));
+    case_.at_least_0.push_back(less);
+    return true;
 }
 
 void Cases::follow_roots(Case &c) {
@@ -306,15 +335,26 @@ bool is_count(const Graph &graph, NodeId root) {
     return true;
 }
 
+bool is_proved_alike(Graph &graph, const Claim &claim, Looked &looked) {
+    Cases attempt(graph, false, looked);
+    const bool holds = attempt.hold_alike(claim);
+    looked.cases += attempt.count();
+    return holds;
+}
+
 bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {
     const bool near = looked.near;
-    for (const bool split_sizes : {false, true}) {
-        looked.near = near;
-        Cases attempt(graph, split_sizes, looked);
-        const bool holds = attempt.hold(claim);
-        looked.cases += attempt.count();
-        if (holds) return true;
-    }
+    const auto along = [&](std::optional<Axes> axes) {
+        return std::ranges::any_of(std::array{false, true}, [&](bool split_sizes) {
+            looked.near = near;
+            Cases attempt(graph, split_sizes, looked, axes);
+            const bool holds = attempt.hold(claim);
+            looked.cases += attempt.count();
+            return holds;
+        });
+    };
+    if (along({})) return true;
+    if (const auto axes = axes_of(graph, claim); axes && along(axes)) return true;
     looked.near = near;
     return false;
 }

@@ -33,7 +33,9 @@ struct Looked {
 // turns only where one of these does.
 bool is_count(const ir::Graph &graph, ir::NodeId id);
 
-// True is a proof; false is none.
+// True is a proof; false is none. The second proves by what the sides are to each other alone, which
+// is less, and takes few cases whatever else the field has.
 bool is_proved(ir::Graph &graph, const Claim &claim, Looked &looked);
+bool is_proved_alike(ir::Graph &graph, const Claim &claim, Looked &looked);
 
 } // namespace fathom::proof

@@ -25,6 +25,12 @@ struct Field {
     Graph &graph;
     std::vector<NodeId> nodes;                  // the root first, users before arguments
     std::unordered_map<NodeId, NodeId> through; // the next node that all uses go through
+
+    // The first node that what goes through two goes through.
+    NodeId joint(NodeId one, NodeId other) const {
+        while (one != other) (one < other ? one : other) = through.at(one < other ? one : other);
+        return one;
+    }
 };
 
 void look_at(Field &field, NodeId root) {
@@ -42,11 +48,7 @@ void look_at(Field &field, NodeId root) {
     for (NodeId user : field.nodes)
         for (NodeId a : field.graph.args(user)) {
             const auto [it, fresh] = field.through.try_emplace(a, user);
-            if (fresh) continue;
-            NodeId one = it->second, other = user;
-            while (one != other)
-                (one < other ? one : other) = field.through[one < other ? one : other];
-            it->second = one;
+            if (!fresh) it->second = field.joint(it->second, user);
         }
 }
 
@@ -93,34 +95,57 @@ bool meets(Graph &graph, NodeId choice, NodeId of, Looked &looked) {
                        [&](const Claim &claim) { return is_proved(graph, claim, looked); });
 }
 
-// A comparison turns all choices by it at once: does what all of its uses go through have one value
-// whether it is true or not, where both its sides are equal?
+// `b <= a` of `a < b`, and `b < a` of `a <= b`: it is true where that is not.
+NodeId opposite_of(Graph &graph, NodeId comparison) {
+    const Op op = graph[comparison].op == Op::Less ? Op::LessEqual : Op::Less;
+    return graph.make(op, {graph.arg(comparison, 1), graph.arg(comparison, 0)});
+}
+
+// A comparison turns all choices by it, and by its opposite, at once: does what all of their uses go
+// through have one value whether it is true or not, where both its sides are equal?
+bool turns_alike(Field &field, NodeId comparison, NodeId root, Looked &looked) {
+    Graph &graph = field.graph;
+    return is_proved_alike(
+        graph, {root, comparison, {}, graph.arg(comparison, 0), graph.arg(comparison, 1)}, looked);
+}
 bool turns_unseen(Field &field, NodeId comparison, NodeId root, Looked &looked) {
     Graph &graph = field.graph;
-    const Claim claim{root, comparison, {}, graph.arg(comparison, 0), graph.arg(comparison, 1)};
-    NodeId of = comparison;
-    for (int climb = 0; climb < max_climb && looked.cases < max_cases_of_field && of != root;
-         ++climb) {
-        of = field.through[of];
-        if (graph[of].type == ir::Type::Bool) continue;
-        Claim here = claim;
-        here.of = of;
-        if (is_proved(graph, here, looked)) return true;
+    Claim claim{root, comparison, {}, graph.arg(comparison, 0), graph.arg(comparison, 1)};
+    claim.of = field.through.at(comparison);
+    if (const auto other = field.through.find(opposite_of(graph, comparison));
+        other != field.through.end())
+        claim.of = field.joint(claim.of, other->second);
+    for (int climb = 0; climb < max_climb && looked.cases < max_cases_of_field; ++climb) {
+        if (graph[claim.of].type != ir::Type::Bool && is_proved(graph, claim, looked)) return true;
+        if (claim.of == root) return false;
+        claim.of = field.through.at(claim.of);
     }
     return false;
 }
 
-// By each of its condition's comparisons.
-bool turns_unseen(Field &field, NodeId select, NodeId root,
-                  std::unordered_map<NodeId, bool> &by_comparison, Looked &looked) {
-    const auto comparisons = comparisons_of(field.graph, field.graph.arg(select, 0));
-    if (!comparisons || comparisons->empty() || comparisons->size() > 8) return false;
-    return std::ranges::all_of(*comparisons, [&](NodeId c) {
-        const auto [known, fresh] = by_comparison.try_emplace(c, false);
-        if (fresh) known->second = turns_unseen(field, c, root, looked);
-        return by_comparison[c];
-    });
-}
+// By each of a choice's comparisons, whose answers are kept.
+class ByComparison {
+  public:
+    using Turns = bool (*)(Field &, NodeId comparison, NodeId root, Looked &);
+    explicit ByComparison(Turns turns) : turns_(turns) {}
+
+    bool prove(Field &field, NodeId choice, NodeId root, Looked &looked) {
+        if (field.graph[choice].op != Op::Select) return false;
+        const auto comparisons = comparisons_of(field.graph, field.graph.arg(choice, 0));
+        if (!comparisons || comparisons->empty() || comparisons->size() > 8) return false;
+        return std::ranges::all_of(*comparisons, [&](NodeId c) {
+            if (const auto known = known_.find(opposite_of(field.graph, c)); known != known_.end())
+                return known->second;
+            const auto [known, fresh] = known_.try_emplace(c, false);
+            if (fresh) known->second = turns_(field, c, root, looked);
+            return known->second;
+        });
+    }
+
+  private:
+    Turns turns_;
+    std::unordered_map<NodeId, bool> known_;
+};
 
 // A choice by comparisons of counts alone. Where no turning of what is counted is seen, neither is
 // the choice's: what all uses of a sign go through lies above the choice, or in the count, which
@@ -181,11 +206,15 @@ Meeting find_choices(Flattening &context, NodeId root) {
     if (choices.size() > max_choices) return {};
     Meeting out;
     Looked looked{context.work};
-    std::unordered_map<NodeId, bool> by_comparison;
+    ByComparison alike(turns_alike), unseen(turns_unseen);
     std::vector<NodeId> by_counts; // turn only where the choices do that they count
     for (NodeId choice : choices) {
         if (turns_by_counts(graph, choice)) {
             by_counts.push_back(choice);
+            continue;
+        }
+        if (alike.prove(field, choice, root, looked)) {
+            out.choices.insert(choice);
             continue;
         }
         NodeId of = graph[choice].op == Op::Select ? choice : field.through[choice];
@@ -197,8 +226,7 @@ Meeting find_choices(Flattening &context, NodeId root) {
             if (of == root) break;
             of = field.through[of];
         }
-        if (!out.choices.contains(choice) && graph[choice].op == Op::Select &&
-            turns_unseen(field, choice, root, by_comparison, looked))
+        if (!out.choices.contains(choice) && unseen.prove(field, choice, root, looked))
             out.choices.insert(choice);
     }
     std::reverse(by_counts.begin(), by_counts.end()); // arguments first

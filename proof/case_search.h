@@ -6,6 +6,7 @@
 #include "proof/cases.h"
 #include "proof/on_line.h"
 
+#include <array>
 #include <map>
 #include <optional>
 #include <utility>
@@ -34,17 +35,31 @@ struct Case {
     bool border_solved = false;
 };
 
+// What a number of two sides is on one of them to what it is on the other.
+enum class Relation : std::uint8_t { Same, Opposite, Unknown };
+
+// Axes at right angles, of length 1, that the point's coordinates are seen along, and their origin.
+struct Axes {
+    std::array<std::array<double, 3>, 3> along;
+    std::array<double, 3> origin;
+};
+// Along a direction that is no axis, with which the claim's numbers multiply a point (`dot(p - a, d)`).
+std::optional<Axes> axes_of(const Graph &graph, const Claim &claim);
+
 class Cases {
   public:
-    Cases(Graph &graph, bool split_sizes, Looked &looked)
-        : graph_(graph), split_sizes_(split_sizes), looked_(looked) {}
+    Cases(Graph &graph, bool split_sizes, Looked &looked, std::optional<Axes> axes = {})
+        : graph_(graph), split_sizes_(split_sizes), axes_(axes), looked_(looked) {}
 
     bool hold(const Claim &claim);
+    // By what the sides are to each other alone (relation); no number is compared.
+    bool hold_alike(const Claim &claim);
     int count() const { return count_; }
 
   private:
     Graph &graph_;
     const bool split_sizes_; // |x| of an atom by cases, too; else it is an atom
+    const std::optional<Axes> axes_;
     Looked &looked_;
     Claim claim_;
     Case case_;
@@ -56,7 +71,10 @@ class Cases {
     std::map<std::pair<NodeId, NodeId>, bool> reads_;
     std::map<AtomKey, std::uint32_t> index_;
     std::vector<Atom> atoms_;
+    std::map<NodeId, Relation> relations_;
     int count_ = 0, depth_ = 0, squares_ = 0, roots_ = 0;
+    bool alike_ = false; // as of hold_alike
+    bool splits_ = true; // else what a case leaves open is asked of its inequalities
 
     bool hold(const Case &given, int depth);
     void forget() { done_.clear(), truths_.clear(); }
@@ -64,6 +82,15 @@ class Cases {
     // true, false, or nothing where the case has to be split first (fork_) or is too large.
     std::optional<bool> attempt();
     std::optional<bool> vectors_agree(int sides);
+
+    Relation relation(NodeId id);
+    Relation relation_of(NodeId id);
+    // Is a number 0 in this case, as far as is seen without splitting it?
+    bool vanishes(NodeId id);
+    bool is_0(NodeId id);
+    bool is_at_least_0(NodeId id) const;
+    std::vector<NodeId> parts_of_min(NodeId id) const;
+    bool is_of_border(NodeId id); // reads a number, no coordinate, that u or v reads
 
     bool are_equal(const Sum &a, const Sum &b);
 
@@ -80,8 +107,9 @@ class Cases {
     // Of s >= 0 and -s >= 0: s = 0, if that can be solved.
     bool solve_equality(Case &c);
 
-    // gap = 0: for an atom that stands in one term alone; else as two inequalities.
-    void solve(const Sum &gap);
+    // gap = 0: for an atom that stands in one term alone, or in a square, by either of its roots; else
+    // as two inequalities. False where the case has to be split first.
+    bool solve(const Sum &gap);
     // Roots of what has been solved since, as roots of what it is now.
     void follow_roots(Case &c);
     Sum reduced(const Sum &sum, const Case &c) const;
@@ -91,11 +119,22 @@ class Cases {
     // A function of which nothing is known but its arguments.
     std::optional<Sum> unknown(NodeId id, int i);
 
-    bool reads(NodeId id, NodeId what);
+    bool reads(NodeId id, NodeId what); // or what is true where that is not
+    bool turns(NodeId id);              // reads the choice, or the comparison that turns it
+    // `a <= b` beside `b < a`, and the other way round: one is true where the other is not.
+    bool are_opposite(NodeId a, NodeId b) const;
 
     // The way that this case has gone at a node, or a fork. What depends on the choice, or on the
     // truth of its comparison, goes its own way on each side. `use`: which of a node's questions.
-    enum Use { Own = 0, Sizes = 100, Roots = 200, Upper = 300, Lengths = 400, PerSide = 1000 };
+    enum Use {
+        Own = 0,
+        Sizes = 100,
+        Roots = 200,
+        Upper = 300,
+        Lengths = 400,
+        Squares = 500,
+        PerSide = 1000
+    };
     std::optional<int> way(NodeId id, int i, std::vector<std::vector<Sum>> ways);
 
     std::optional<Sum> value(NodeId id, int i = 0);

@@ -13,6 +13,17 @@ namespace {
 
 constexpr int max_depth_of_cases = 200, max_squares = 12;
 
+// How often one sum is the other, above 0; else 0. Of what is below a root: nearly is not enough.
+double multiple_of(const Sum &a, const Sum &b) {
+    constexpr double granted = 1e-10;
+    if (a.size() != b.size() || a.empty()) return 0;
+    const double times = a.begin()->second / b.begin()->second;
+    for (auto x = a.begin(), y = b.begin(); x != a.end(); ++x, ++y)
+        if (x->first != y->first || !(std::fabs(x->second / (times * y->second) - 1) < granted))
+            return 0;
+    return times;
+}
+
 } // namespace
 
 std::uint32_t Cases::atom_of(AtomKey key, Atom about) {
@@ -23,6 +34,14 @@ std::uint32_t Cases::atom_of(AtomKey key, Atom about) {
 
 Sum Cases::leaf(NodeId id, int i) {
     Atom about;
+    if (axes_ && graph_[id].op == Op::Point && graph_[id].type == ir::Type::Vec3) {
+        about.range = Interval(-2 * near_enough, 2 * near_enough); // sqrt(3), and the origin
+        const auto k = static_cast<std::size_t>(i);
+        Sum out = constant(axes_->origin[k]);
+        for (std::size_t j = 0; j < 3; ++j)
+            out = add(out, atom(atom_of({-4.0, double(j)}, about)), axes_->along[j][k]);
+        return reduced(out, case_);
+    }
     if (graph_[id].op == Op::Point) about.range = Interval(-near_enough, near_enough);
     return reduced(atom(atom_of({-1.0, double(id.index), double(i)}, about)), case_);
 }
@@ -49,8 +68,14 @@ std::optional<Sum> Cases::unknown(NodeId id, int i) {
     return atom(atom_of(std::move(key), about));
 }
 
+bool Cases::are_opposite(NodeId a, NodeId b) const {
+    const Op x = graph_[a].op, y = graph_[b].op;
+    return ((x == Op::Less && y == Op::LessEqual) || (x == Op::LessEqual && y == Op::Less)) &&
+           graph_.arg(a, 0) == graph_.arg(b, 1) && graph_.arg(a, 1) == graph_.arg(b, 0);
+}
+
 bool Cases::reads(NodeId id, NodeId what) {
-    if (id == what) return true;
+    if (id == what || are_opposite(id, what)) return true;
     const auto it = reads_.find({id, what});
     if (it != reads_.end()) return it->second;
     bool out = false;
@@ -62,7 +87,7 @@ std::optional<int> Cases::way(NodeId id, int i, std::vector<std::vector<Sum>> wa
     if (side_ && reads(id, claim_.choice)) i += PerSide * (1 + *side_);
     if (turned_ && reads(id, claim_.comparison)) i += 10 * PerSide * (1 + *turned_);
     if (const auto it = case_.way.find({id, i}); it != case_.way.end()) return it->second;
-    if (!fork_) fork_ = Fork{{id, i}, std::move(ways)};
+    if (!fork_ && splits_) fork_ = Fork{{id, i}, std::move(ways)};
     return {};
 }
 
@@ -126,6 +151,10 @@ std::optional<Sum> Cases::root_of(NodeId at, const Sum &x, int i, bool of_square
     if (const auto c = as_constant(x)) return constant(*c > 0 ? std::sqrt(*c) : 0);
     const Sum sum = squares_known(x);
     if (const auto s = root_of_square(sum)) return size_of(at, Lengths + i, *s);
+    for (std::uint32_t a = 0; a < atoms_.size(); ++a)
+        if (atoms_[a].square)
+            if (const double times = multiple_of(sum, *atoms_[a].square); times > 0)
+                return add({}, reduced(atom(a), case_), std::sqrt(times));
     return reduced(atom(root_atom(sum, of_squares)), case_);
 }
 
@@ -176,6 +205,10 @@ std::optional<Sum> Cases::lesser(NodeId id, int i, const Sum &a, const Sum &b, b
     const Sum less = add({}, gap, -1);
     if (is_sum_of_squares(gap)) return least ? a : b;
     if (is_sum_of_squares(less)) return least ? b : a;
+    if (!splits_) {
+        if (impossible(case_, {less, true})) return least ? a : b;
+        if (impossible(case_, {gap, true})) return least ? b : a;
+    }
     const auto w = way(id, i, {{gap}, {less}});
     if (!w) return {};
     return (*w == 0) == least ? a : b;
@@ -321,6 +354,8 @@ std::optional<bool> Cases::truth_of(NodeId id) {
     const ir::Node node = graph_[id];
     if (turned_ && id == claim_.comparison) return *turned_;
     if (side_ && id == claim_.choice) return *side_ == 1;
+    if (turned_ && are_opposite(id, claim_.comparison)) return !*turned_;
+    if (side_ && are_opposite(id, claim_.choice)) return *side_ == 0;
     if (graph_.is_constant(id)) return graph_.constant_of(id).value[0] != 0;
     if (node.op == Op::Not) {
         const auto t = truth(graph_.arg(id, 0));

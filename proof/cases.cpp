@@ -126,7 +126,8 @@ std::optional<Sum> root_of_square(const Sum &a) {
     return {};
 }
 
-bool is_sum_of_squares(const Sum &a) {
+std::optional<std::vector<Sum>> squares_in(const Sum &a) {
+    std::vector<Sum> roots;
     Sum rest = a, sizes; // sizes: of all that was added up to each coefficient
     for (const auto &[m, c] : a) sizes[m] = std::fabs(c);
     const auto is_nothing = [&](const Product &m, double c) {
@@ -134,14 +135,14 @@ bool is_sum_of_squares(const Sum &a) {
     };
     for (;;) {
         std::erase_if(rest, [&](const auto &term) { return is_nothing(term.first, term.second); });
-        if (rest.empty()) return true;
+        if (rest.empty()) return roots;
         const Product lead = rest.begin()->first;
-        if (lead.empty()) return rest.begin()->second >= 0;
-        if (lead.size() > 2) return false;
+        if (lead.empty()) return rest.begin()->second >= 0 ? std::optional(roots) : std::nullopt;
+        if (lead.size() > 2) return {};
         // Some atom of the leading term has to stand as a square.
         const std::uint32_t x = lead[0];
         const auto square = rest.find({x, x});
-        if (square == rest.end() || square->second <= 0) return false;
+        if (square == rest.end() || square->second <= 0) return {};
         const double by = square->second;
         Sum root; // of the square to complete, times that of `by`
         for (const auto &[m, c] : rest) {
@@ -151,7 +152,7 @@ bool is_sum_of_squares(const Sum &a) {
             root[other] = other == Product{x} ? c : c / 2;
         }
         const auto whole = multiply(root, root);
-        if (!whole) return false;
+        if (!whole) return {};
         for (const auto &[m, c] : *whole) {
             rest[m] -= c / by;
             sizes[m] += std::fabs(c / by);
@@ -159,8 +160,11 @@ bool is_sum_of_squares(const Sum &a) {
         std::erase_if(rest, [&](const auto &term) {
             return std::find(term.first.begin(), term.first.end(), x) != term.first.end();
         });
+        roots.push_back(std::move(root));
     }
 }
+
+bool is_sum_of_squares(const Sum &a) { return squares_in(a).has_value(); }
 
 std::optional<std::pair<std::uint32_t, Sum>> solved_for_atom(const Sum &sum) {
     for (const auto &[m, c] : sum) {
@@ -174,6 +178,33 @@ std::optional<std::pair<std::uint32_t, Sum>> solved_for_atom(const Sum &sum) {
         for (const auto &[k, x] : sum)
             if (k != m) is[k] = -x / c;
         return std::pair(a, is);
+    }
+    return {};
+}
+
+std::optional<Squared> solved_for_square(const Sum &sum) {
+    for (const auto &[square, by] : sum) {
+        if (square.size() != 2 || square[0] != square[1]) continue;
+        const std::uint32_t a = square[0];
+        Sum once, rest; // what a is multiplied with, and what is without it
+        bool is_quadratic = true;
+        for (const auto &[m, c] : sum) {
+            if (m == square) continue;
+            Product other = m;
+            const auto at = std::ranges::find(other, a);
+            if (at == other.end()) {
+                rest[m] = c;
+                continue;
+            }
+            other.erase(at);
+            once[other] = c;
+            is_quadratic = is_quadratic && std::ranges::find(other, a) == other.end();
+        }
+        const Sum middle = add({}, once, -0.5 / by);
+        const auto middle_squared = is_quadratic ? multiply(middle, middle) : std::nullopt;
+        if (!middle_squared) continue;
+        const Sum is = add(*middle_squared, rest, -1 / by);
+        if (is_sum_of_squares(is)) return Squared{a, middle, is};
     }
     return {};
 }

@@ -29,11 +29,19 @@ std::optional<double> as_constant(const Sum &a);
 // s with s*s = a, or nothing. Its sign is either.
 std::optional<Sum> root_of_square(const Sum &a);
 
-// Of degree 2 at most: is it a sum of squares, so that it is never below 0? (Cholesky's way.)
+// Of degree 2 at most: sums of degree 1 of whose squares, by factors above 0, it is the sum, perhaps
+// with a number above 0 besides, so that it is never below 0 (Cholesky's way).
+std::optional<std::vector<Sum>> squares_in(const Sum &a);
 bool is_sum_of_squares(const Sum &a);
 
 // An atom that stands in one term alone, and what it is where sum = 0.
 std::optional<std::pair<std::uint32_t, Sum>> solved_for_atom(const Sum &sum);
+// An atom a of which sum = 0 says (a - middle)^2 = square, a sum of squares.
+struct Squared {
+    std::uint32_t atom = 0;
+    Sum middle, square;
+};
+std::optional<Squared> solved_for_square(const Sum &sum);
 Sum with_atom(const Sum &sum, std::uint32_t a, const Sum &is); // as it is where that gets too large
 // So that sums that are equal but for rounding have one key.
 void add_to_key(std::vector<double> &key, const Sum &sum);

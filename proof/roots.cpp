@@ -198,13 +198,14 @@ NodeId chosen(Graph &graph, const Arms &arms, NodeId first, NodeId second) {
     return graph.make(arms.op, {first, second});
 }
 
-// Is a choice of sums of squares, so that no root of it is singular?
-bool chooses_squares(Graph &graph, NodeId sum, int depth) {
+// Is a choice of sums of squares, so that no root of it is singular? `left`: choices that are still
+// looked at.
+bool chooses_squares(Graph &graph, NodeId sum, int &left) {
     if (squares(graph, sum)) return true;
-    if (depth > 8) return false;
+    if (--left < 0) return false;
     const auto arms = arms_of(graph, sum);
-    return arms && chooses_squares(graph, arms->first, depth + 1) &&
-           chooses_squares(graph, arms->second, depth + 1);
+    return arms && chooses_squares(graph, arms->first, left) &&
+           chooses_squares(graph, arms->second, left);
 }
 
 // sign(d)*sqrt(|d|), if d chooses among sums of squares and their negatives.
@@ -231,7 +232,8 @@ std::optional<NodeId> signed_root(Graph &graph, NodeId d, int depth = 0) {
 
 std::optional<RootOfChoice> root_inward(Graph &graph, NodeId id) {
     if (graph[id].op != Op::Sqrt || graph[id].type != ir::Type::Float) return {};
-    if (!chooses_squares(graph, graph.arg(id, 0), 0)) return {};
+    int left = 100; // edges of a polygon, say
+    if (!chooses_squares(graph, graph.arg(id, 0), left)) return {};
     const auto arms = arms_of(graph, graph.arg(id, 0));
     if (!arms) return {};
     const NodeId a = graph.make(Op::Sqrt, {arms->first}), b = graph.make(Op::Sqrt, {arms->second});

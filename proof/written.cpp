@@ -1,5 +1,5 @@
-// The bound of a field as it stands; where that is refused for a border that is not seen to be met,
-// of the field with its loops written out, and for each value of a whole param alone. Proofs:
+// The bound of a field as it stands; where that is refused for a border that is not seen to be met or
+// for a singular place, of the field with its loops written out, and for each value of a whole param alone. Proofs:
 // docs/lipschitz.md, 2.12.
 #include "ir/passes/inline.h"
 #include "ir/passes/walk.h"
@@ -35,21 +35,23 @@ std::optional<NodeId> whole_param(const ir::Graph &graph, NodeId root) {
 } // namespace
 
 FieldBound Prover::bound_written(NodeId field, const Domain &domain, const Budget &budget) {
-    const FieldBound out = bound_field(flattening, ranges, field, domain, budget);
+    FieldBound out = bound_field(flattening, ranges, field, domain, budget);
     if (std::isfinite(out.lipschitz) || flattening.written.contains(field)) return out;
     // of each power that a whole param can be it may be known that it is not singular
-    const bool jumps = out.trouble == Trouble::Jump,
-               has_powers = out.trouble == Trouble::Singular && out.cause == Op::Pow;
-    if (!jumps && !has_powers) return out;
+    const bool jumps = out.trouble == Trouble::Jump, singular = out.trouble == Trouble::Singular,
+               has_powers = singular && out.cause == Op::Pow;
+    if (!jumps && !singular) return out;
     work.take(max_nodes_written);
     const ir::WithoutCalls written = ir::without_loops(graph, field, max_nodes_written);
     if (!written.all) return out;
-    if (jumps && written.root != field) {
+    if (written.root != field) {
         flattening.written[field] = written.root;
         const FieldBound again = bound_field(flattening, ranges, field, domain, budget);
         if (std::isfinite(again.lipschitz)) return again;
         flattening.written.erase(field);
+        if (again.trouble == Trouble::Jump) out = again; // rather than a place that no turn meets
     }
+    if (!jumps && !has_powers) return out;
     const FieldBound by_values = bound_by_values(written.root, domain, budget);
     return std::isfinite(by_values.lipschitz) ? by_values : out;
 }

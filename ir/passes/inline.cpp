@@ -53,6 +53,20 @@ struct Writer {
         return values[node.op == Op::Loop ? 0 : node.payload];
     }
 
+    // A row of a table by a number that is known.
+    std::optional<NodeId> row_of(const Node &node, NodeId row) const {
+        if (!loops || node.op != Op::TableRead || !graph.is_constant(row)) return {};
+        const Table &table = graph.table(table_of(node.payload));
+        const double at = graph.constant_of(row).value[0];
+        if (!(at >= 0 && at < table.rows)) return {};
+        const std::size_t first = static_cast<std::size_t>(at) * std::size_t(table.stride) +
+                                  std::size_t(column_of(node.payload));
+        Constant out{node.type};
+        for (std::size_t i = 0; i < std::size_t(components(node.type)); ++i)
+            out.value[i] = double(table.data[first + i]);
+        return graph.constant(out);
+    }
+
     NodeId of(NodeId id) {
         if (const auto known = done.find(id); known != done.end()) return known->second;
         if (left == 0) {
@@ -67,6 +81,8 @@ struct Writer {
         NodeId out = id;
         if (node.op == Op::Call)
             out = of(called(graph, FunctionId{node.payload}, args));
+        else if (const auto row = row_of(node, args.empty() ? id : args[0]))
+            out = *row;
         else if (node.count > 0)
             out = graph.make(node.op, node.type, args, node.payload);
         return done[id] = out;

@@ -30,7 +30,8 @@ struct WithoutCalls {
     bool all = true;
 };
 WithoutCalls without_calls(Graph &graph, NodeId root, std::size_t max_nodes);
-// … and every loop whose count is a constant, outermost bodies first; others stay.
+// … and every loop whose count is a constant, outermost bodies first; others stay. A row of a table
+// that is read by a known number is its numbers.
 WithoutCalls without_loops(Graph &graph, NodeId root, std::size_t max_nodes);
 
 // Long chains of sums, minima and maxima of numbers as trees, so that a part of the terms is a part
