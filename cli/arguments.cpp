@@ -359,6 +359,7 @@ struct Reader {
             ->type_name("OUT.stl")
             ->required();
         add_solid(sub, mesh.solid);
+        for (const OptionRow &row : solid_film_rows(mesh.solid)) add_row(sub, row);
         add_row(sub, units_row(mesh.solid, "for .3mf (mm unless said) and .glb (m unless said)"));
         sub->add_flag("--parts", mesh.parts,
                       "each part of the scene as an object of its own: .glb, .obj and .3mf");
@@ -378,6 +379,7 @@ struct Reader {
         slice.solid.resolution = 512;
         CLI::App *sub = command("slice", "write where planes cut the solid, as contours", slice);
         add_solid(sub, slice.solid);
+        for (const OptionRow &row : solid_film_rows(slice.solid)) add_row(sub, row);
         for (const OptionRow &row : slice_rows(slice)) add_row(sub, row);
         add_out(sub, slice.out,
                 "a .svg, .dxf or .png (`-`: an SVG to standard output); `#`s or %04d stand for the "
@@ -396,7 +398,8 @@ struct Reader {
         add_out(sub, volume.out, "a .vdb, .nrrd or .npy (`-`: an NRRD to standard output)")
             ->type_name("OUT.vdb")
             ->required();
-        for (const OptionRow &row : volume_rows(volume)) add_row(sub, row);
+        for (const auto &rows : {volume_rows(volume), solid_film_rows(volume.solid)})
+            for (const OptionRow &row : rows) add_row(sub, row);
         choice<bool>(sub, "--certify", volume.certify, {{"on", true}, {"off", false}},
                      "prove how far distances are off: on, or off for speed")
             ->type_name("WHETHER");

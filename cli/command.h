@@ -129,7 +129,10 @@ struct SolidArguments {
     double tolerance = 0; // the side of the cells; 0: by resolution
     int resolution = 128; // cells along the longest side of the solid's box
     std::optional<std::array<std::array<double, 3>, 2>> bounds;
-    double time = 0;
+    double time = 0;  // with frames, when frame 0 is
+    FrameList frames; // a file for each; empty: one
+    double frame_rate = 30;
+    std::vector<Sweep> sweeps;
     std::string units; // what a length of 1 is, a word of unit_names(); empty: unsaid
 };
 // `fathom mesh`.

@@ -162,7 +162,21 @@ std::string of_cells(const Given &given) {
                : "";
 }
 
+// Of the frames of a solid.
+std::string of_frames(const SolidArguments &solid, const std::string &out, const Given &given) {
+    if (solid.frames.numbers.empty()) {
+        if (given("--fps")) return "--fps is for --frames: one file has no rate";
+        if (!solid.sweeps.empty()) return "--sweep is for --frames: -D sets a param of one file";
+        return "";
+    }
+    if (out == "-") return "--frames makes files: -o names them, as OUT_####.glb";
+    if (solid.scene.file == "-" && !solid.sweeps.empty())
+        return "--sweep reads the scene again, and standard input can be read once";
+    return "";
+}
+
 std::string of(const MeshCommand &mesh, const Given &given) {
+    if (std::string why = of_frames(mesh.solid, mesh.out, given); !why.empty()) return why;
     if (mesh.json && mesh.out == "-")
         return "--json and the mesh cannot both go to standard output: name a file by -o";
     if (mesh.parts && !mesh.solid.part.empty())
@@ -177,6 +191,9 @@ std::string of(const MeasureCommand &measure, const Given &given) {
 }
 
 std::string of(const SliceCommand &slice, const Given &given) {
+    if (std::string why = of_frames(slice.solid, slice.out, given); !why.empty()) return why;
+    if (!slice.solid.frames.numbers.empty() && slice.heights.size() > 1)
+        return "--frames takes one height: a file has one number";
     if (given("--x") + given("--y") + given("--z") != 1)
         return "slices lie across one axis: give one of --x, --y and --z, as --z 0..10:0.2";
     if (slice.json && slice.out == "-")
@@ -187,6 +204,7 @@ std::string of(const SliceCommand &slice, const Given &given) {
 }
 
 std::string of(const VolumeCommand &volume, const Given &given) {
+    if (std::string why = of_frames(volume.solid, volume.out, given); !why.empty()) return why;
     if (given("--voxel") && given("--resolution"))
         return "--voxel and --resolution both say how fine a volume is: give one of them";
     if (given("--band") && suffix_of(volume.out) != ".vdb")

@@ -43,9 +43,13 @@ double latest_time(const RenderCommand &command, const std::vector<int> &frames)
 }
 
 std::vector<Definition> swept(const RenderCommand &command, int frame) {
+    return swept(command.sweeps, frames_of_film(command), frame);
+}
+
+std::vector<Definition> swept(const std::vector<Sweep> &sweeps, const std::vector<int> &film,
+                              int frame) {
     std::vector<Definition> values;
-    const std::vector<int> film = frames_of_film(command);
-    for (const Sweep &sweep : command.sweeps) {
+    for (const Sweep &sweep : sweeps) {
         const int length = film.back() - film.front() + (sweep.to_last ? 0 : 1);
         const double share = length > 0 ? static_cast<double>(frame - film.front()) / length : 0;
         // At its ends the value is what was written, to the bit.

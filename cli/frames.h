@@ -24,6 +24,8 @@ double latest_time(const RenderCommand &command, const std::vector<int> &frames)
 
 // The swept params' values at a frame, as `-D` writes them.
 std::vector<Definition> swept(const RenderCommand &command, int frame);
+std::vector<Definition> swept(const std::vector<Sweep> &sweeps, const std::vector<int> &film,
+                              int frame);
 
 // `out` with the frame's number in place of its last row of `#`s, or before its suffix where it has
 // none.

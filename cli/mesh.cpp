@@ -1,4 +1,5 @@
 // fathom mesh: the surface as triangles, in a file. The mesh is whole before its file appears.
+#include "cli/frames.h"
 #include "cli/interrupt.h"
 #include "cli/solid.h"
 
@@ -113,9 +114,8 @@ struct Objects {
     std::vector<v1::MeshObject> all;
 };
 
-Exit write_objects(const Objects &objects, const MeshCommand &command, v1::MeshFormat format,
-                   const std::string &name, Terminal &terminal) {
-    const std::string &out = command.out;
+Exit write_objects(const Objects &objects, const MeshCommand &command, const std::string &out,
+                   v1::MeshFormat format, const std::string &name, Terminal &terminal) {
     const UnitRow *unit = unit_named(command.solid.units);
     v1::MeshFileOptions options{unit ? unit->unit : v1::MeshUnit::Unsaid, name, ""};
     const bool has_library = format == v1::MeshFormat::Obj;
@@ -161,70 +161,74 @@ Exit refused(const MeshCommand &command, v1::MeshFormat format, Terminal &termin
                                  command.out));
         return usage_error;
     }
-    if (unwritable(command.out, terminal) ||
-        (format == v1::MeshFormat::Obj && unwritable(library_of(command.out), terminal)))
+    const std::vector<int> &film = command.solid.frames.numbers;
+    const std::string first = film.empty() ? command.out : frame_name(command.out, film[0]);
+    if (format == v1::MeshFormat::Obj && unwritable(library_of(first), terminal))
         return device_error;
     return done;
+}
+
+// One frame's mesh, and its document.
+Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &frame,
+          Terminal &terminal) {
+    const std::string &file = command.solid.scene.file;
+    if (format == v1::MeshFormat::Obj && overwrites(frame.files, library_of(frame.out), terminal))
+        return usage_error;
+    v1::MeshOptions options = options_of(frame.arguments);
+    options.certify = command.json;
+    options.colors = format != v1::MeshFormat::Stl;
+    options.progress = frame.progress;
+    Objects objects;
+    if (command.parts)
+        objects.parts = v1::make_part_meshes(frame.scene, options);
+    else
+        objects.whole = v1::make_mesh(frame.scene, options);
+    stop_if_interrupted(terminal); // nothing is written
+    const auto &[status, message] = command.parts
+                                        ? std::tie(objects.parts.status, objects.parts.message)
+                                        : std::tie(objects.whole.status, objects.whole.message);
+    if (status != v1::MeshStatus::Done) {
+        terminal.finish_progress();
+        return say_refusal(frame.number ? frame.out : file, "mesh", status, message, terminal);
+    }
+    const std::string stem = std::filesystem::path(file).stem().string();
+    const std::string name = !command.solid.part.empty() ? command.solid.part
+                             : stem == "-"               ? "scene"
+                                                         : stem;
+    const int resolution = command.solid.resolution;
+    terminal.finish_progress();
+    if (command.parts) {
+        say_parts(objects.parts, frame.out, terminal);
+        for (const v1::PartMesh &part : objects.parts.parts) {
+            say_undecided(part.mesh, fmt::format("{}: part `{}`", frame.out, part.name), resolution,
+                          terminal);
+            objects.all.push_back({part.name, &part.mesh});
+        }
+    } else {
+        say_undecided(objects.whole, frame.out, resolution, terminal);
+        objects.all.push_back({name, &objects.whole});
+    }
+    if (format == v1::MeshFormat::Glb || format == v1::MeshFormat::Obj)
+        for (const v1::MeshObject &object : objects.all)
+            say_means(*object.mesh, frame.out, terminal);
+    const Exit exit = write_objects(objects, command, frame.out, format, name, terminal);
+    if (exit == done && command.json)
+        terminal.put(
+            frame_json(frame,
+                       (command.parts ? json_of(objects.parts) : json_of(objects.whole)).dump()) +
+            "\n");
+    return exit;
 }
 
 } // namespace
 
 Exit run(const MeshCommand &command, Terminal &terminal) {
-    const std::string &file = command.solid.scene.file;
     const v1::MeshFormat format =
         v1::mesh_format(command.out).value_or(v1::MeshFormat::Stl); // a stream has no suffix
     if (const Exit exit = refused(command, format, terminal); exit != done) return exit;
-    const Solid solid = open_solid(command.solid, terminal);
-    if (!solid.scene) return solid.exit;
-    if (overwrites(solid.files, command.out, terminal)) return usage_error;
-    if (format == v1::MeshFormat::Obj && overwrites(solid.files, library_of(command.out), terminal))
-        return usage_error;
-    v1::MeshOptions options = options_of(command.solid);
-    options.certify = command.json;
-    options.colors = format != v1::MeshFormat::Stl;
-    const Interrupts interrupts;
-    options.progress = [&](double share) {
-        terminal.progress(command.out, share);
-        return !Interrupts::noticed();
-    };
-    Objects objects;
-    if (command.parts)
-        objects.parts = v1::make_part_meshes(*solid.scene, options);
-    else
-        objects.whole = v1::make_mesh(*solid.scene, options);
-    terminal.finish_progress();
-    if (Interrupts::noticed()) { // nothing is written
-        terminal.flush();
-        Interrupts::obey();
-    }
-    const auto &[status, message] = command.parts
-                                        ? std::tie(objects.parts.status, objects.parts.message)
-                                        : std::tie(objects.whole.status, objects.whole.message);
-    if (status != v1::MeshStatus::Done) return say_refusal(file, "mesh", status, message, terminal);
-
-    const std::string stem = std::filesystem::path(file).stem().string();
-    const std::string name = !command.solid.part.empty() ? command.solid.part
-                             : stem == "-"               ? "scene"
-                                                         : stem;
-    if (command.parts) {
-        say_parts(objects.parts, command.out, terminal);
-        for (const v1::PartMesh &part : objects.parts.parts) {
-            say_undecided(part.mesh, fmt::format("{}: part `{}`", command.out, part.name),
-                          command.solid.resolution, terminal);
-            objects.all.push_back({part.name, &part.mesh});
-        }
-    } else {
-        say_undecided(objects.whole, command.out, command.solid.resolution, terminal);
-        objects.all.push_back({name, &objects.whole});
-    }
-    if (format == v1::MeshFormat::Glb || format == v1::MeshFormat::Obj)
-        for (const v1::MeshObject &object : objects.all)
-            say_means(*object.mesh, command.out, terminal);
-    const Exit exit = write_objects(objects, command, format, name, terminal);
-    if (exit == done && command.json)
-        terminal.put((command.parts ? json_of(objects.parts) : json_of(objects.whole)).dump() +
-                     "\n");
-    return exit;
+    return make_frames(command.solid, command.out, terminal, [&](const SolidFrame &frame) {
+        return make(command, format, frame, terminal);
+    });
 }
 
 } // namespace fathom::cli

@@ -28,6 +28,7 @@ std::vector<std::string> words_of_pictures(const RenderCommand &command);
 
 // Of what looks at a solid (solid_rows.cpp): which, how finely, and when.
 std::vector<OptionRow> solid_rows(SolidArguments &solid);
+std::vector<OptionRow> solid_film_rows(SolidArguments &solid); // of mesh, slice and volume
 OptionRow units_row(SolidArguments &solid, const std::string &what_for);
 std::vector<OptionRow> measure_rows(MeasureCommand &command);
 std::vector<OptionRow> slice_rows(SliceCommand &command);

@@ -39,9 +39,10 @@ std::string with_places(const std::string &out) {
            out.substr(end + 1);
 }
 
-std::string file_of(const SliceCommand &command, std::size_t k) {
-    const std::string out = with_places(command.out);
-    return command.heights.size() == 1 && out.find('#') == out.npos
+// `out`: with the frame's number, where there are frames; then there is one height.
+std::string file_of(const SliceCommand &command, const std::string &out, std::size_t k) {
+    return !command.solid.frames.numbers.empty() ||
+                   (command.heights.size() == 1 && out.find('#') == out.npos)
                ? out
                : frame_name(out, static_cast<int>(k));
 }
@@ -61,7 +62,8 @@ Json json_of(const v1::Slice &slice, const std::string &file) {
     return json;
 }
 
-void say_undecided(const v1::Slices &cut, const SliceCommand &command, Terminal &terminal) {
+void say_undecided(const v1::Slices &cut, const SliceCommand &command, const std::string &out,
+                   Terminal &terminal) {
     std::size_t slices = 0, squares = 0;
     const v1::Slice *first = nullptr;
     for (const v1::Slice &slice : cut.slices) {
@@ -76,57 +78,46 @@ void say_undecided(const v1::Slices &cut, const SliceCommand &command, Terminal 
         "{}: {} squares of {} slices may hold border that the contours do not show, the first of "
         "them at {} = {} from [{:.6g}, {:.6g}] to [{:.6g}, {:.6g}]; another height, if a face "
         "lies in the plane, or a larger `--resolution` tells more",
-        command.out, squares, slices, command.axis, format_shortest(first->at), box.lo[0],
-        box.lo[1], box.hi[0], box.hi[1]));
+        out, squares, slices, command.axis, format_shortest(first->at), box.lo[0], box.lo[1],
+        box.hi[0], box.hi[1]));
 }
 
 // Refused before any work is done.
-Exit refused(const SliceCommand &command, Terminal &terminal) {
-    if (misnamed(command.out, Content::Slice, terminal)) return usage_error;
-    if (command.out == "-" && command.heights.size() > 1) {
+Exit refused(const SliceCommand &command, const std::string &out, Terminal &terminal) {
+    if (misnamed(out, Content::Slice, terminal)) return usage_error;
+    if (out == "-" && command.heights.size() > 1) {
         terminal.say(
             "fathom: -o -: standard output takes one slice: name files, as layer_####.svg");
         return usage_error;
     }
+    if (!command.solid.frames.numbers.empty()) return done; // their files are looked at as such
     for (const std::size_t k : {std::size_t{0}, command.heights.size() - 1}) {
-        if (overwrites(command.solid.scene.file, file_of(command, k), terminal)) return usage_error;
-        if (unwritable(file_of(command, k), terminal)) return device_error;
+        if (overwrites(command.solid.scene.file, file_of(command, out, k), terminal))
+            return usage_error;
+        if (unwritable(file_of(command, out, k), terminal)) return device_error;
     }
     return done;
 }
 
-} // namespace
-
-Exit run(const SliceCommand &command, Terminal &terminal) {
-    if (const Exit exit = refused(command, terminal); exit != done) return exit;
-    const Solid solid = open_solid(command.solid, terminal);
-    if (!solid.scene) return solid.exit;
-    for (std::size_t k = 0; k < command.heights.size(); ++k)
-        if (overwrites(solid.files, file_of(command, k), terminal)) return usage_error;
+Exit make(const SliceCommand &command, const SolidFrame &frame, Terminal &terminal) {
     const v1::Axis axis = command.axis == 'x'   ? v1::Axis::X
                           : command.axis == 'y' ? v1::Axis::Y
                                                 : v1::Axis::Z;
-    v1::MeshOptions options = options_of(command.solid);
-    const Interrupts interrupts;
-    options.progress = [&](double share) {
-        terminal.progress(command.out, share);
-        return !Interrupts::noticed();
-    };
+    v1::MeshOptions options = options_of(frame.arguments);
+    options.progress = frame.progress;
     std::vector<float> heights(command.heights.begin(), command.heights.end());
-    const v1::Slices cut = v1::slice(*solid.scene, axis, heights, options);
+    const v1::Slices cut = v1::slice(frame.scene, axis, heights, options);
+    stop_if_interrupted(terminal); // nothing is written
     terminal.finish_progress();
-    if (Interrupts::noticed()) { // nothing is written
-        terminal.flush();
-        Interrupts::obey();
-    }
     if (!cut)
-        return say_refusal(command.solid.scene.file, "slices", cut.status, cut.message, terminal);
-    say_undecided(cut, command, terminal);
+        return say_refusal(frame.number ? frame.out : command.solid.scene.file, "slices",
+                           cut.status, cut.message, terminal);
+    say_undecided(cut, command, frame.out, terminal);
     Json json{{"axis", std::string(1, command.axis)}, {"side", cut.side}};
     json["slices"] = Json::array();
     std::size_t empty = 0;
     for (std::size_t k = 0; k < cut.slices.size(); ++k) {
-        const std::string file = file_of(command, k);
+        const std::string file = file_of(command, frame.out, k);
         const std::string bytes =
             bytes_of(cut, k, command, command.out == "-" ? ".svg" : suffix_of(file));
         if (bytes.empty()) throw std::bad_alloc();
@@ -137,11 +128,24 @@ Exit run(const SliceCommand &command, Terminal &terminal) {
     }
     if (empty == cut.slices.size())
         terminal.say(fmt::format("{}: no plane meets the solid, which lies from {} = {} to {}",
-                                 command.out, command.axis, format_shortest(cut.along[0]),
+                                 frame.out, command.axis, format_shortest(cut.along[0]),
                                  format_shortest(cut.along[1])));
     json["rests_on"] = cut.rests_on;
-    if (command.json) terminal.put(json.dump() + "\n");
+    if (command.json) terminal.put(frame_json(frame, json.dump()) + "\n");
     return done;
+}
+
+} // namespace
+
+Exit run(const SliceCommand &command, Terminal &terminal) {
+    const std::string out = with_places(command.out);
+    if (const Exit exit = refused(command, out, terminal); exit != done) return exit;
+    return make_frames(command.solid, out, terminal, [&](const SolidFrame &frame) {
+        if (!frame.number)
+            for (std::size_t k = 0; k < command.heights.size(); ++k)
+                if (overwrites(frame.files, file_of(command, out, k), terminal)) return usage_error;
+        return make(command, frame, terminal);
+    });
 }
 
 } // namespace fathom::cli

@@ -1,9 +1,14 @@
 #include "cli/solid.h"
 
+#include "cli/frames.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+
 #include <fathom/parts.h>
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace fathom::cli {
 namespace {
@@ -57,12 +62,12 @@ std::optional<v1::Scene> part_named(const v1::Scene &scene, const std::string &n
     return std::nullopt;
 }
 
-Solid open_solid(const SolidArguments &arguments, Terminal &terminal) {
+Solid open_solid(const SolidArguments &arguments, Terminal &terminal, bool again) {
     Solid solid;
     v1::CompileResult result =
         v1::compile_file(arguments.scene.file, library_options(arguments.scene));
     solid.files = result.files;
-    solid.exit = report(result, terminal);
+    solid.exit = again && result ? done : report(result, terminal);
     if (solid.exit != done) return solid;
     solid.exit = usage_error; // unless all is well
     if (!in_proved_time(result.scene->facts(), arguments.time, arguments.time, terminal))
@@ -71,6 +76,63 @@ Solid open_solid(const SolidArguments &arguments, Terminal &terminal) {
                                          : part_named(*result.scene, arguments.part, terminal);
     if (solid.scene) solid.exit = done;
     return solid;
+}
+
+Exit make_frames(const SolidArguments &solid, const std::string &out, Terminal &terminal,
+                 const std::function<Exit(const SolidFrame &)> &make) {
+    const std::vector<int> &film = solid.frames.numbers;
+    const std::size_t count = std::max<std::size_t>(film.size(), 1);
+    const auto file_of = [&](std::size_t k) {
+        return film.empty() ? out : frame_name(out, film[k]);
+    };
+    const auto at = [&](std::size_t k) {
+        SolidArguments moment = solid;
+        if (film.empty()) return moment;
+        moment.time = solid.time + film[k] / solid.frame_rate;
+        for (Definition &value : swept(solid.sweeps, film, film[k]))
+            moment.scene.overrides.push_back(std::move(value));
+        return moment;
+    };
+    for (const std::size_t k : {std::size_t{0}, count - 1})
+        if (unwritable(file_of(k), terminal)) return device_error;
+    const Interrupts interrupts;
+    Progress progress(ProgressFormat::Bar, count, terminal);
+    Solid opened = open_solid(at(0), terminal);
+    if (!opened.scene) return opened.exit;
+    if (!in_proved_time(opened.scene->facts(), at(0).time, at(count - 1).time, terminal))
+        return usage_error;
+    for (std::size_t k = 0; k < count; ++k)
+        if (overwrites(opened.files, file_of(k), terminal)) return usage_error;
+    for (std::size_t k = 0; k < count; ++k) {
+        if (k > 0 && !solid.sweeps.empty()) opened = open_solid(at(k), terminal, true);
+        if (!opened.scene) return opened.exit;
+        SolidFrame frame{*opened.scene, at(k), file_of(k), opened.files, std::nullopt, {}};
+        if (!film.empty()) frame.number = film[k];
+        frame.progress = [&](double share) {
+            progress.share(frame.out, share);
+            return !Interrupts::noticed();
+        };
+        if (const Exit exit = make(frame); exit != done) return exit;
+        progress.finished(film.empty() ? 0 : film[k], frame.out, false);
+        stop_if_interrupted(terminal); // between files, each of them whole
+    }
+    terminal.finish_progress();
+    return done;
+}
+
+std::string frame_json(const SolidFrame &frame, const std::string &document) {
+    if (!frame.number) return document;
+    const nlohmann::ordered_json head{{"frame", *frame.number}, {"file", frame.out}};
+    std::string text = head.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+    text.back() = ',';
+    return text + document.substr(1);
+}
+
+void stop_if_interrupted(Terminal &terminal) {
+    if (!Interrupts::noticed()) return;
+    terminal.finish_progress();
+    terminal.flush();
+    Interrupts::obey();
 }
 
 v1::MeshOptions options_of(const SolidArguments &arguments) {

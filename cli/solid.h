@@ -5,6 +5,8 @@
 
 #include <fathom/mesh.h>
 
+#include <functional>
+
 namespace fathom::cli {
 
 // The lengths that `--units` knows.
@@ -22,10 +24,29 @@ struct Solid {
     std::optional<v1::Scene> scene;
     std::vector<std::filesystem::path> files; // that it was read from
 };
-Solid open_solid(const SolidArguments &arguments, Terminal &terminal);
+// `again`: what is no error was said before.
+Solid open_solid(const SolidArguments &arguments, Terminal &terminal, bool again = false);
 // That part of a scene; none, with what parts there are said, where it has no such part.
 std::optional<v1::Scene> part_named(const v1::Scene &scene, const std::string &name,
                                     Terminal &terminal);
+
+// One file of a command: the scene at its frame.
+struct SolidFrame {
+    const v1::Scene &scene;
+    SolidArguments arguments;                        // with the frame's time
+    std::string out;                                 // with the frame's number
+    const std::vector<std::filesystem::path> &files; // that the scene was read from
+    std::optional<int> number;
+    std::function<bool(double share)> progress; // MeshOptions::progress
+};
+// Makes each frame, or the one moment that there is without frames, in turn. A file that is there
+// stays whole, whatever happens to the next one.
+Exit make_frames(const SolidArguments &solid, const std::string &out, Terminal &terminal,
+                 const std::function<Exit(const SolidFrame &)> &make);
+// In the JSON document of a frame, before the rest: its number and its file.
+std::string frame_json(const SolidFrame &frame, const std::string &document);
+// Ends the program where it was interrupted.
+void stop_if_interrupted(Terminal &terminal);
 
 // How finely and of what, without a progress.
 v1::MeshOptions options_of(const SolidArguments &arguments);

@@ -11,41 +11,52 @@
 namespace fathom::cli {
 
 std::vector<OptionRow> solid_rows(SolidArguments &solid) {
-    return {{"--tolerance", "T",
-             "the side of the cells that the surface is looked for in, in the scene's units",
-             [&](const std::string &word) {
-                 const std::optional<double> number = parse_number(word);
-                 if (!number || !(*number > 0) || !fits_single(*number))
-                     return fmt::format("wants a length above 0, as 0.01, not `{}`", word);
-                 solid.tolerance = *number;
-                 return std::string();
-             }},
-            {"--resolution", "N",
-             fmt::format("instead: cells along the longest side of the solid's box, {} unless said",
-                         solid.resolution),
-             [&](const std::string &word) {
-                 const std::optional<double> number = parse_number(word);
-                 if (!number || !(*number >= 1 && *number <= 8000) ||
-                     *number != std::floor(*number))
-                     return fmt::format("wants a whole number from 1 to 8000, not `{}`", word);
-                 solid.resolution = static_cast<int>(*number);
-                 return std::string();
-             }},
-            {"--bounds", "X,Y,Z,X,Y,Z",
-             "cut the solid off at a box: its least corner, then its greatest",
-             [&](const std::string &word) { return read_box(word, solid.bounds.emplace()); }},
-            {"--part", "NAME", "that part of the scene alone; `fathom measure --parts` lists them",
-             [&](const std::string &word) {
-                 solid.part = word;
-                 return std::string(word.empty() ? "wants a name" : "");
-             }},
-            {"--time", "T", "seconds", [&](const std::string &word) {
-                 const std::optional<double> number = parse_number(word);
-                 if (!number || !fits_single(*number))
-                     return fmt::format("wants seconds, as 2.5, not `{}`", word);
-                 solid.time = *number;
-                 return std::string();
-             }}};
+    return {
+        {"--tolerance", "T",
+         "the side of the cells that the surface is looked for in, in the scene's units",
+         [&](const std::string &word) {
+             const std::optional<double> number = parse_number(word);
+             if (!number || !(*number > 0) || !fits_single(*number))
+                 return fmt::format("wants a length above 0, as 0.01, not `{}`", word);
+             solid.tolerance = *number;
+             return std::string();
+         }},
+        {"--resolution", "N",
+         fmt::format("instead: cells along the longest side of the solid's box, {} unless said",
+                     solid.resolution),
+         [&](const std::string &word) {
+             const std::optional<double> number = parse_number(word);
+             if (!number || !(*number >= 1 && *number <= 8000) || *number != std::floor(*number))
+                 return fmt::format("wants a whole number from 1 to 8000, not `{}`", word);
+             solid.resolution = static_cast<int>(*number);
+             return std::string();
+         }},
+        {"--bounds", "X,Y,Z,X,Y,Z",
+         "cut the solid off at a box: its least corner, then its greatest",
+         [&](const std::string &word) { return read_box(word, solid.bounds.emplace()); }},
+        {"--part", "NAME", "that part of the scene alone; `fathom measure --parts` lists them",
+         [&](const std::string &word) {
+             solid.part = word;
+             return std::string(word.empty() ? "wants a name" : "");
+         }},
+        {"--time", "T", "seconds; with --frames, when frame 0 is", [&](const std::string &word) {
+             const std::optional<double> number = parse_number(word);
+             if (!number || !fits_single(*number))
+                 return fmt::format("wants seconds, as 2.5, not `{}`", word);
+             solid.time = *number;
+             return std::string();
+         }}};
+}
+
+std::vector<OptionRow> solid_film_rows(SolidArguments &solid) {
+    return {{"--frames", "FRAMES",
+             "a file for each of these frames: A..B leaves B out, A..=B takes it in, :N is a step; "
+             "lists by commas",
+             [&](const std::string &word) { return read_frames(word, solid.frames); }},
+            frame_rate_row(solid.frame_rate),
+            {"--sweep", "NAME=A..B",
+             "move a param over the frames: A at the first, B after the last; A..=B: at the last",
+             [&](const std::string &word) { return read_sweep(word, solid.sweeps); }}};
 }
 
 OptionRow units_row(SolidArguments &solid, const std::string &what_for) {

@@ -10,8 +10,8 @@
 namespace fathom::cli {
 namespace {
 
-v1::VolumeOptions volume_options(const VolumeCommand &command) {
-    const v1::MeshOptions solid = options_of(command.solid);
+v1::VolumeOptions volume_options(const VolumeCommand &command, const SolidFrame &frame) {
+    const v1::MeshOptions solid = options_of(frame.arguments);
     v1::VolumeOptions options;
     options.side = command.voxel;
     options.resolution = solid.resolution;
@@ -47,45 +47,40 @@ std::string json_of(const v1::Volume &volume) {
     return json.dump() + "\n";
 }
 
-} // namespace
-
-Exit run(const VolumeCommand &command, Terminal &terminal) {
-    const std::string &scene = command.solid.scene.file;
-    if (overwrites(scene, command.out, terminal) ||
-        misnamed(command.out, Content::Volume, terminal))
-        return usage_error;
-    if (unwritable(command.out, terminal)) return device_error;
-    const Solid solid = open_solid(command.solid, terminal);
-    if (!solid.scene) return solid.exit;
-    if (overwrites(solid.files, command.out, terminal)) return usage_error;
-    const Interrupts interrupts;
-    v1::VolumeOptions options = volume_options(command);
-    options.progress = [&](double share) {
-        terminal.progress(command.out, share);
-        return !Interrupts::noticed();
-    };
-    const v1::Volume volume = v1::make_volume(*solid.scene, options);
+Exit make(const VolumeCommand &command, const SolidFrame &frame, Terminal &terminal) {
+    v1::VolumeOptions options = volume_options(command, frame);
+    options.progress = frame.progress;
+    const v1::Volume volume = v1::make_volume(frame.scene, options);
+    stop_if_interrupted(terminal); // nothing is written
     terminal.finish_progress();
-    if (Interrupts::noticed()) { // nothing is written
-        terminal.flush();
-        Interrupts::obey();
-    }
-    if (!volume) return say_refusal(scene, "volume", volume.status, volume.message, terminal);
+    if (!volume)
+        return say_refusal(frame.number ? frame.out : command.solid.scene.file, "volume",
+                           volume.status, volume.message, terminal);
     if (volume.undecided_cells > 0)
         terminal.say(fmt::format(
             "{}: no error is proved: {} cells may hold surface that the distances do not know of; "
             "a smaller voxel or a tighter bound tells more",
-            command.out, volume.undecided_cells));
+            frame.out, volume.undecided_cells));
     std::string why;
     const std::string bytes = bytes_of(volume, suffix_of(command.out), why);
     if (bytes.empty()) {
-        terminal.say(fmt::format("fathom: {}: {}", command.out,
+        terminal.say(fmt::format("fathom: {}: {}", frame.out,
                                  why.empty() ? "there is not enough memory" : why));
         return device_error;
     }
-    const Exit exit = write_result(command.out, bytes, terminal);
-    if (exit == done && command.json) terminal.put(json_of(volume));
+    const Exit exit = write_result(frame.out, bytes, terminal);
+    if (exit == done && command.json) terminal.put(frame_json(frame, json_of(volume)));
     return exit;
+}
+
+} // namespace
+
+Exit run(const VolumeCommand &command, Terminal &terminal) {
+    if (overwrites(command.solid.scene.file, command.out, terminal) ||
+        misnamed(command.out, Content::Volume, terminal))
+        return usage_error;
+    return make_frames(command.solid, command.out, terminal,
+                       [&](const SolidFrame &frame) { return make(command, frame, terminal); });
 }
 
 } // namespace fathom::cli

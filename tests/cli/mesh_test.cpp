@@ -156,3 +156,50 @@ TEST_CASE("an OBJ and its materials are both written, or neither") {
     CHECK(shell(folder, "fathom mesh ball.sdf --resolution 8 -o ball.obj").exit == 0);
     CHECK(fs::exists(folder / "ball.mtl"));
 }
+
+TEST_CASE("--frames makes a file for each frame, as render numbers them, at its time and params") {
+    ScratchFolder folder;
+    folder.write("m.sdf", "param r = 0.5 in 0.2..1\nsphere(r).translate(x: time)\n");
+    const std::string few = "--resolution 8 ";
+    CHECK(shell(folder, "fathom mesh m.sdf --frames 0..=20:10 --fps 10 -o a.stl " + few).exit == 0);
+    for (const char *name : {"a_0000.stl", "a_0010.stl", "a_0020.stl"}) {
+        INFO(name);
+        CHECK(fs::exists(folder / name));
+    }
+    CHECK_FALSE(fs::exists(folder / "a.stl"));
+    // Each as if it were made alone.
+    CHECK(shell(folder, "fathom mesh m.sdf --time 1 -o - " + few).out == folder.read("a_0010.stl"));
+    const Result swept = shell(
+        folder, "fathom mesh m.sdf --frames 0..=2 --sweep r=0.2..=1 --json -o 'b_##.obj' " + few);
+    CHECK(swept.exit == 0);
+    CHECK(swept.out.starts_with("{\"frame\":0,\"file\":\"b_00.obj\",\"status\":"));
+    CHECK(contains(swept.out, "\n{\"frame\":2,\"file\":\"b_02.obj\","));
+    CHECK(
+        (fs::exists(folder / "b_01.mtl") && contains(folder.read("b_01.obj"), "mtllib b_01.mtl")));
+    CHECK(
+        shell(folder, "fathom mesh m.sdf -D r=1 --time 0.066666666666666666 --json -o c.obj " + few)
+            .exit == 0);
+    const std::string alone = folder.read("c.obj"), frame = folder.read("b_02.obj");
+    CHECK(alone.substr(alone.find("\nv ")) == frame.substr(frame.find("\nv ")));
+    CHECK(shell(folder, "fathom slice m.sdf --z 0 --frames 0..2 -o s.svg " + few).exit == 0);
+    CHECK(shell(folder, "fathom volume m.sdf --frames 0..2 -o v.nrrd " + few).exit == 0);
+    CHECK((fs::exists(folder / "s_0001.svg") && fs::exists(folder / "v_0001.nrrd")));
+    const auto fails = [&](const std::string &arguments, int exit, const std::string &words) {
+        const Result made = shell(folder, "fathom " + arguments);
+        INFO(arguments << '\n' << made.err);
+        CHECK(made.exit == exit);
+        CHECK(contains(made.err, words));
+    };
+    fails("mesh m.sdf --frames 0..3 -o -", 2, "--frames makes files");
+    fails("mesh m.sdf --fps 3 -o n.stl", 2, "--fps is for --frames");
+    fails("mesh m.sdf --sweep r=0..1 -o n.stl", 2, "--sweep is for --frames");
+    fails("volume m.sdf --sweep r=0..1 -o n.vdb", 2, "--sweep is for --frames");
+    fails("slice m.sdf --z 0,1 --frames 0..3 -o n.svg", 2, "one height");
+    fails("mesh m.sdf --frames 0..2 --sweep q=0..1 -o n.stl", 2, "q");
+    fails("mesh m.sdf --frames 0..2 -o none/n.stl", 3, "none");
+    fails("mesh m.sdf --frames 200000 -o n.stl", 2, "--time");
+    // The third frame has no mesh; the first two stay.
+    folder.write("ends.sdf", "sphere(1).translate(x: 40 * time) & box(3)\n");
+    fails("mesh ends.sdf --frames 0..4 -o e.stl " + few, 1, "e_0002.stl");
+    CHECK((fs::exists(folder / "e_0001.stl") && !fs::exists(folder / "e_0002.stl")));
+}
