@@ -134,6 +134,7 @@ driver::CompileOptions driver_options(const CompileOptions &options) {
     to.strict_proof = options.strict_proof;
     if (options.times) to.times = {(*options.times)[0], (*options.times)[1]};
     to.cells = options.cells;
+    to.flat_thickness = options.flat_thickness;
     if (options.cache.impl()) to.bounds = &options.cache.impl()->bounds;
     to.cancelled = options.cancelled;
     if (options.entered)

@@ -125,6 +125,7 @@ struct FarmCommand {
 // The solid that `mesh`, `measure`, `slice` and `volume` look at, and how finely.
 struct SolidArguments {
     SceneArguments scene;
+    bool flat = false;    // its flat shapes, as solids about z = 0
     std::string part;     // of the scene, alone; empty: all of it
     double tolerance = 0; // the side of the cells; 0: by resolution
     int resolution = 128; // cells along the longest side of the solid's box

@@ -194,8 +194,10 @@ std::string of(const SliceCommand &slice, const Given &given) {
     if (std::string why = of_frames(slice.solid, slice.out, given); !why.empty()) return why;
     if (!slice.solid.frames.numbers.empty() && slice.heights.size() > 1)
         return "--frames takes one height: a file has one number";
-    if (given("--x") + given("--y") + given("--z") != 1)
+    if (given("--x") + given("--y") + given("--z") > 1)
         return "slices lie across one axis: give one of --x, --y and --z, as --z 0..10:0.2";
+    if (slice.axis == 0 && slice.solid.scene.file == "-")
+        return "flat shapes are read twice, and standard input can be read once: name the scene";
     if (slice.json && slice.out == "-")
         return "--json and the slice cannot both go to standard output: name a file by -o";
     if (given("--size") && suffix_of(slice.out) != ".png")

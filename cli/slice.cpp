@@ -22,8 +22,10 @@ std::string bytes_of(const v1::Slices &cut, std::size_t k, const SliceCommand &c
     if (suffix == ".png")
         return v1::encode_png(v1::slice_picture(cut, k, command.width, command.height));
     return v1::svg_file(cut, k, of,
-                        fmt::format("{} at {} = {}", command.solid.scene.file, command.axis,
-                                    format_shortest(cut.slices[k].at)));
+                        command.solid.flat
+                            ? command.solid.scene.file
+                            : fmt::format("{} at {} = {}", command.solid.scene.file, command.axis,
+                                          format_shortest(cut.slices[k].at)));
 }
 
 // %04d as ####, which frames are named by.
@@ -137,7 +139,13 @@ Exit make(const SliceCommand &command, const SolidFrame &frame, Terminal &termin
 
 } // namespace
 
-Exit run(const SliceCommand &command, Terminal &terminal) {
+Exit run(const SliceCommand &given, Terminal &terminal) {
+    SliceCommand command = given;
+    if (command.axis == 0) { // no height: the scene is flat
+        command.solid.flat = true;
+        command.axis = 'z';
+        command.heights = {0};
+    }
     const std::string out = with_places(command.out);
     if (const Exit exit = refused(command, out, terminal); exit != done) return exit;
     return make_frames(command.solid, out, terminal, [&](const SolidFrame &frame) {

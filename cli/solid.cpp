@@ -33,6 +33,18 @@ Exit exit_of(v1::MeshStatus status) {
     return done;
 }
 
+// A flat scene is made as thick as it is wide, so that its outlines are far from the ends.
+v1::CompileResult compiled(const SolidArguments &arguments) {
+    v1::CompileOptions options = library_options(arguments.scene);
+    if (arguments.flat) options.flat_thickness = 1;
+    v1::CompileResult result = v1::compile_file(arguments.scene.file, options);
+    if (!arguments.flat || !result || !result.scene->facts().bounds) return result;
+    const v1::Box box = *result.scene->facts().bounds;
+    options.flat_thickness = std::max(box.hi[0] - box.lo[0], box.hi[1] - box.lo[1]);
+    if (!(options.flat_thickness > 0)) return result;
+    return v1::compile_file(arguments.scene.file, options);
+}
+
 } // namespace
 
 const UnitRow *unit_named(std::string_view name) {
@@ -64,8 +76,7 @@ std::optional<v1::Scene> part_named(const v1::Scene &scene, const std::string &n
 
 Solid open_solid(const SolidArguments &arguments, Terminal &terminal, bool again) {
     Solid solid;
-    v1::CompileResult result =
-        v1::compile_file(arguments.scene.file, library_options(arguments.scene));
+    v1::CompileResult result = compiled(arguments);
     solid.files = result.files;
     solid.exit = again && result ? done : report(result, terminal);
     if (solid.exit != done) return solid;

@@ -73,6 +73,7 @@ typecheck::Options check_options(const CompileOptions &options, Effort &effort) 
     typecheck::Options result;
     result.overrides = options.overrides;
     result.limits = options.limits;
+    result.flat_thickness = options.flat_thickness;
     result.stop = &effort.stop;
     result.lipschitz = [&effort](ir::Scene &scene, ir::ShapeId shape) -> std::optional<double> {
         std::optional<ir::ShapeFact> fact = prove_one(scene, shape, effort);

@@ -78,6 +78,22 @@ void apply(Interpreter &ev, const Setting &s) {
     }
 }
 
+// Of a flat scene.
+void add_flat(Interpreter &ev, const Value &v, Span span, std::vector<ir::ShapeId> &shapes) {
+    if (v.size != 2) {
+        report(ev, Code::WrongPlace, span, "this is a solid, and a flat scene is of flat shapes")
+            .help("`fathom slice --z 0` cuts solids; without a height it draws flat shapes");
+        return;
+    }
+    ir::Shape thick;
+    thick.kind = ir::ShapeKind::Extrude;
+    thick.children = {shape_of(v)};
+    thick.args = {ev.scene.graph.number(ev.options.flat_thickness)};
+    const ir::ShapeId shape = ev.scene.shapes.add(std::move(thick));
+    ev.scene.top_level.push_back({shape, span});
+    shapes.push_back(shape);
+}
+
 void add_top_level(Interpreter &ev, const Value &v, Span span, std::vector<ir::ShapeId> &shapes) {
     switch (v.kind) {
     case ValueKind::Poison:
@@ -90,6 +106,10 @@ void add_top_level(Interpreter &ev, const Value &v, Span span, std::vector<ir::S
         }
         return;
     case ValueKind::Shape:
+        if (ev.options.flat_thickness > 0) {
+            add_flat(ev, v, span, shapes);
+            return;
+        }
         if (v.size == 2) {
             report(ev, Code::FlatShape, span, "a flat shape has no thickness, so it cannot be seen")
                 .help("make it solid: `.extrude(0.1)` or `.revolve()`");

@@ -82,6 +82,9 @@ struct Options {
     std::function<std::optional<double>(ir::Scene &, ir::ShapeId)> lipschitz;
     std::function<std::optional<std::pair<double, double>>(ir::Scene &, ir::ShapeId, int axis)>
         extent;
+    // Above 0: the scene is flat. Its shape2 are what there is, each the middle of a solid as thick
+    // as this about z = 0, and solids are refused. 0: it is of solids.
+    double flat_thickness = 0;
     Limits limits;        // what the scene may cost before it is refused
     Stop *stop = nullptr; // where it stops, evaluation ends as at a limit, and nothing is reported
 };

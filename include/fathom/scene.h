@@ -156,6 +156,10 @@ struct CompileOptions {
      *  more. A field then takes longer steps, and a compilation longer. The program takes 16 for
      *  pictures and 8 for texts of shaders, which hold the cells. 0: none. */
     int cells = 0;
+    /** Above 0: the scene is a drawing. Its flat shapes (`shape2`), which else are an error, are what
+     *  there is, as solids that thick about z = 0: `slice` at z = 0 gives their outlines. Solids are
+     *  an error then. */
+    double flat_thickness = 0;
 };
 
 struct CompileResult;

@@ -71,7 +71,8 @@ TEST_CASE("what cannot be sliced says why, and writes nothing") {
     fails("nothing.sdf --z 0 -o a.svg", 1, "empty");
     fails("wrong.sdf --z 0 -o a.svg", 1, "unknown-name");
     fails("none.sdf --z 0 -o a.svg", 3, "none.sdf");
-    fails("ball.sdf -o a.svg", 2, "one of --x, --y and --z");
+    fails("ball.sdf -o a.svg", 1, "`fathom slice --z 0` cuts solids");
+    fails("- -o a.svg", 2, "read twice");
     fails("ball.sdf --x 0 --z 0 -o a.svg", 2, "one of --x, --y and --z");
     fails("ball.sdf --z 0..1 -o a.svg", 2, "wants a step");
     fails("ball.sdf --z 0..1:0 -o a.svg", 2, "wants heights");
@@ -87,4 +88,36 @@ TEST_CASE("what cannot be sliced says why, and writes nothing") {
     CHECK(shell(folder, "fathom slice ground.sdf --y=-0.5 --bounds=-1,-1,-1,1,1,1 -o a.svg").exit ==
           0);
     CHECK(shell(folder, "fathom mesh ball.sdf -o b.svg").exit == 2);
+}
+
+TEST_CASE("a scene of flat shapes is drawn without a height, as exactly as a slice") {
+    ScratchFolder folder;
+    folder.write("plate.sdf", "param r = 4 in 1..5\n"
+                              "rectangle([40, 20]) - circle(r).translate(x: 10)\n"
+                              "circle(3).translate(x: 40)\n");
+    const Result made =
+        shell(folder, "fathom slice plate.sdf -o plate.svg --units mm --json --tolerance 0.05");
+    CHECK(made.err.empty());
+    CHECK(made.exit == 0);
+    CHECK(contains(made.out, "\"status\":\"certified\",\"contours\":3,"));
+    // 800 - 16 pi + 9 pi
+    const std::size_t at = made.out.find("\"value\":") + 8;
+    CHECK(std::stod(made.out.substr(at)) == Approx(778.01).margin(0.1));
+    CHECK(contains(folder.read("plate.svg"), "width=\"63."));
+    CHECK(shell(folder, "fathom slice plate.sdf -D r=5 -o plate.dxf").exit == 0);
+    CHECK(contains(folder.read("plate.dxf"), "POLYLINE"));
+    CHECK(shell(folder, "fathom slice plate.sdf --part circle -o c.png --size 64x64").exit == 0);
+    // With a height, or to other commands, flat shapes are what they were.
+    CHECK(contains(shell(folder, "fathom slice plate.sdf --z 0 -o a.svg").err, "flat-shape"));
+    CHECK(contains(shell(folder, "fathom mesh plate.sdf -o a.stl").err, "flat-shape"));
+    CHECK_FALSE((fs::exists(folder / "a.svg") || fs::exists(folder / "a.stl")));
+    // The size of a drawing says nothing of how well it is drawn.
+    folder.write("tiny.sdf", "rectangle([0.004, 0.002])\n");
+    folder.write("large.sdf", "rectangle([4000, 2000])\n");
+    for (const char *name : {"tiny", "large"}) {
+        const Result drawn =
+            shell(folder, std::string("fathom slice ") + name + ".sdf -o " + name + ".svg --json");
+        INFO(drawn.out << drawn.err);
+        CHECK(contains(drawn.out, "\"status\":\"certified\",\"contours\":1,"));
+    }
 }
