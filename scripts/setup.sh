@@ -6,8 +6,9 @@ build_packages="g++ cmake ninja-build ccache pkg-config libfmt-dev tao-pegtl-dev
 libepoxy-dev libegl-dev libyaml-dev glslang-dev libglm-dev nlohmann-json3-dev libfast-float-dev spirv-tools libpng-dev libjpeg-dev libzip-dev libopenexr-dev libopenvdb-dev catch2 libegl1 libgl1-mesa-dri
 pybind11-dev python3-dev"
 # To test: a display of our own for the viewer, a second compiler for the fuzzers, a newer one with its own standard library
-# for .ci/run (libc++ 14 lacks the algorithms on ranges), a browser and what drives it.
-test_packages="xvfb xauth xdotool clang clang-16 libc++-16-dev libc++abi-16-dev python3-numpy python3-pytest chromium nodejs"
+# for .ci/run (libc++ 14 lacks the algorithms on ranges), a browser and what drives it; programs that judge meshes and volumes.
+test_packages="xvfb xauth xdotool clang clang-16 libc++-16-dev libc++abi-16-dev python3-numpy python3-pytest chromium nodejs
+admesh libopenvdb-tools"
 
 say() { printf '%s\n' "fathom: $*" >&2; }
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The checks that take too long for every change: the tests by clang++, each file compiled by itself,
 # the sanitizers, clang-tidy, ten minutes of each fuzzer, the coverage of the front end, the editors and
-# the pages in real programs, the Debian packages built twice, two ops more, and the columns of the op
+# the pages in real programs, other programs' judgement of meshes, the Debian packages built twice, two ops more, and the columns of the op
 # table. Each leaves its output in build-weekly/; the last lines say what passed. Takes some hours on
 # two cores.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
@@ -27,6 +27,7 @@ try cuts env FATHOM_CUTS=all build/test_lsp 'a text that ends early is known abo
 try coverage scripts/coverage.sh
 try editors scripts/editors.sh
 try pages scripts/pages.sh
+try judges scripts/judges.sh
 try packages scripts/packages.sh
 try ops scripts/weekly-ops.sh
 try columns scripts/weekly-columns.sh

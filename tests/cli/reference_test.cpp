@@ -179,3 +179,25 @@ TEST_CASE("docs/shaders.md has a row for each target, and help names them in the
         REQUIRE(at != help.npos);
     }
 }
+
+TEST_CASE(
+    "the commands of docs/from-fathom.md do what the page says, with the scene that it shows") {
+    const std::string page = read(fs::path(FATHOM_SOURCE_DIR) / "docs/from-fathom.md");
+    const std::string open = "```sdf\n", prompt = "\n$ fathom ";
+    const std::size_t program = page.find(open) + open.size();
+    ScratchFolder folder;
+    folder.write("bracket.sdf", page.substr(program, page.find("```", program) - program));
+    std::size_t count = 0;
+    for (std::size_t at = page.find(prompt); at != page.npos; at = page.find(prompt, at + 1)) {
+        const std::string line = page.substr(at + 3, page.find('\n', at + 1) - at - 3);
+        const Result made = shell(folder, line);
+        INFO(line << '\n' << made.err);
+        CHECK(made.exit == 0);
+        ++count;
+    }
+    CHECK(count == 6);
+    for (const char *name : {"bracket.png", "cut.png", "bracket.3mf", "whole.3mf", "bracket.glb"})
+        CHECK(fs::exists(folder / name));
+    CHECK(contains(folder.read("bracket.glb"), "\"name\":\"bolt\""));
+    CHECK(contains(folder.read("bracket.glb"), "\"name\":\"steel\""));
+}
