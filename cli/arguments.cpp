@@ -348,6 +348,10 @@ struct Reader {
 
     void add_solid(CLI::App *sub, SolidArguments &solid) {
         add_scene(sub, solid.scene);
+        add_solid_rows(sub, solid);
+    }
+
+    void add_solid_rows(CLI::App *sub, SolidArguments &solid) {
         for (const OptionRow &row : solid_rows(solid)) add_row(sub, row);
     }
 
@@ -355,10 +359,14 @@ struct Reader {
         CLI::App *sub = command("mesh", "write the scene's surface as triangles", mesh);
         add_out(sub, mesh.out,
                 "the mesh, by its suffix: .stl, .obj, .ply, .glb or .3mf (`-`: an STL to standard "
-                "output)")
+                "output); `{}` stands for the scene's name")
             ->type_name("OUT.stl")
             ->required();
-        add_solid(sub, mesh.solid);
+        sub->add_option("FILE", mesh.files, "the scenes, `-` for standard input")
+            ->type_name("")
+            ->required();
+        add_scene_options(sub, mesh.solid.scene);
+        add_solid_rows(sub, mesh.solid);
         for (const OptionRow &row : solid_film_rows(mesh.solid)) add_row(sub, row);
         add_row(sub, units_row(mesh.solid, "for .3mf (mm unless said) and .glb (m unless said)"));
         sub->add_flag("--parts", mesh.parts,

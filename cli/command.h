@@ -125,6 +125,7 @@ struct FarmCommand {
 // The solid that `mesh`, `measure`, `slice` and `volume` look at, and how finely.
 struct SolidArguments {
     SceneArguments scene;
+    bool several = false; // it is one of several scenes: documents name it
     bool flat = false;    // its flat shapes, as solids about z = 0
     std::string part;     // of the scene, alone; empty: all of it
     double tolerance = 0; // the side of the cells; 0: by resolution
@@ -138,8 +139,9 @@ struct SolidArguments {
 };
 // `fathom mesh`.
 struct MeshCommand {
-    SolidArguments solid;
-    std::string out;
+    SolidArguments solid; // its scene's file is each of these in turn
+    std::vector<std::string> files;
+    std::string out;    // `{}` stands for the scene's name
     bool parts = false; // each an object of its own
     bool json = false;  // the certificate
 };

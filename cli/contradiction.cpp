@@ -176,6 +176,12 @@ std::string of_frames(const SolidArguments &solid, const std::string &out, const
 }
 
 std::string of(const MeshCommand &mesh, const Given &given) {
+    const auto streams = std::ranges::count(mesh.files, "-");
+    if (streams > 1) return "standard input can be read once";
+    if (streams > 0 && !mesh.solid.sweeps.empty())
+        return "--sweep reads the scene again, and standard input can be read once";
+    if (mesh.out == "-" && mesh.files.size() > 1)
+        return "standard output takes one mesh: name files, as -o '{}.stl'";
     if (std::string why = of_frames(mesh.solid, mesh.out, given); !why.empty()) return why;
     if (mesh.json && mesh.out == "-")
         return "--json and the mesh cannot both go to standard output: name a file by -o";

@@ -5,7 +5,9 @@
 
 #include <fathom/part_meshes.h>
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace fathom::cli {
@@ -168,6 +170,20 @@ Exit refused(const MeshCommand &command, v1::MeshFormat format, Terminal &termin
     return done;
 }
 
+std::string name_of(const std::string &scene) {
+    const std::string stem = std::filesystem::path(scene).stem().string();
+    return stem == "-" ? "scene" : stem;
+}
+
+// The file of one of several scenes.
+std::string out_of(const MeshCommand &command, const std::string &scene) {
+    std::string out = command.out;
+    const std::string name = name_of(scene), mark = "{}";
+    for (std::size_t at = out.find(mark); at != out.npos; at = out.find(mark, at + name.size()))
+        out.replace(at, mark.size(), name);
+    return out;
+}
+
 // One frame's mesh, and its document.
 Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &frame,
           Terminal &terminal) {
@@ -191,10 +207,7 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
         terminal.finish_progress();
         return say_refusal(frame.number ? frame.out : file, "mesh", status, message, terminal);
     }
-    const std::string stem = std::filesystem::path(file).stem().string();
-    const std::string name = !command.solid.part.empty() ? command.solid.part
-                             : stem == "-"               ? "scene"
-                                                         : stem;
+    const std::string name = command.solid.part.empty() ? name_of(file) : command.solid.part;
     const int resolution = command.solid.resolution;
     terminal.finish_progress();
     if (command.parts) {
@@ -220,15 +233,38 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
     return exit;
 }
 
-} // namespace
-
-Exit run(const MeshCommand &command, Terminal &terminal) {
+Exit run_one(const MeshCommand &command, Terminal &terminal) {
     const v1::MeshFormat format =
         v1::mesh_format(command.out).value_or(v1::MeshFormat::Stl); // a stream has no suffix
     if (const Exit exit = refused(command, format, terminal); exit != done) return exit;
     return make_frames(command.solid, command.out, terminal, [&](const SolidFrame &frame) {
         return make(command, format, frame, terminal);
     });
+}
+
+} // namespace
+
+// The exit status is the largest of the scenes'; what is wrong with one keeps no other from its file.
+Exit run(const MeshCommand &command, Terminal &terminal) {
+    std::map<std::string, std::string> outs;
+    for (const std::string &file : command.files) {
+        const auto [at, fresh] = outs.emplace(out_of(command, file), file);
+        if (fresh) continue;
+        terminal.say(fmt::format("fathom: -o {}: `{}` and `{}` would both be `{}`; `{{}}` in it "
+                                 "stands for a scene's name",
+                                 command.out, at->second, file, at->first));
+        return usage_error;
+    }
+    Exit worst = done;
+    for (const std::string &file : command.files) {
+        MeshCommand one = command;
+        one.solid.scene.file = file;
+        one.solid.several = command.files.size() > 1;
+        one.out = out_of(command, file);
+        worst = std::max(worst, run_one(one, terminal));
+        if (terminal.reader_gone()) break;
+    }
+    return worst;
 }
 
 } // namespace fathom::cli

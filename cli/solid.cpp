@@ -132,8 +132,11 @@ Exit make_frames(const SolidArguments &solid, const std::string &out, Terminal &
 }
 
 std::string frame_json(const SolidFrame &frame, const std::string &document) {
-    if (!frame.number) return document;
-    const nlohmann::ordered_json head{{"frame", *frame.number}, {"file", frame.out}};
+    nlohmann::ordered_json head;
+    if (frame.arguments.several) head["scene"] = frame.arguments.scene.file;
+    if (frame.number) head["frame"] = *frame.number;
+    if (head.empty()) return document;
+    head["file"] = frame.out;
     std::string text = head.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
     text.back() = ',';
     return text + document.substr(1);

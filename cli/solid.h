@@ -43,7 +43,8 @@ struct SolidFrame {
 // stays whole, whatever happens to the next one.
 Exit make_frames(const SolidArguments &solid, const std::string &out, Terminal &terminal,
                  const std::function<Exit(const SolidFrame &)> &make);
-// In the JSON document of a frame, before the rest: its number and its file.
+// In the JSON document of a frame, or of one of several scenes, before the rest: which it is, and its
+// file.
 std::string frame_json(const SolidFrame &frame, const std::string &document);
 // Ends the program where it was interrupted.
 void stop_if_interrupted(Terminal &terminal);

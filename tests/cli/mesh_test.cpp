@@ -203,3 +203,31 @@ TEST_CASE("--frames makes a file for each frame, as render numbers them, at its 
     fails("mesh ends.sdf --frames 0..4 -o e.stl " + few, 1, "e_0002.stl");
     CHECK((fs::exists(folder / "e_0001.stl") && !fs::exists(folder / "e_0002.stl")));
 }
+
+TEST_CASE("several scenes are each a file by their name") {
+    ScratchFolder folder;
+    fs::create_directory(folder / "sub");
+    folder.write("ball.sdf", "sphere(1)\n");
+    folder.write("sub/cube {}.sdf", "box(1)\n");
+    folder.write("wrong.sdf", "shpere(1)\n");
+    const Result made =
+        shell(folder, "fathom mesh wrong.sdf ball.sdf 'sub/cube {}.sdf' -o 'out {}.obj' "
+                      "--resolution 8 --json");
+    CHECK(made.exit == 1);
+    CHECK(contains(made.err, "unknown-name"));
+    CHECK(made.out.starts_with("{\"scene\":\"ball.sdf\",\"file\":\"out ball.obj\",\"status\":"));
+    CHECK(contains(folder.read("out ball.obj"), "\no ball\n"));
+    CHECK((fs::exists(folder / "out cube {}.obj") && fs::exists(folder / "out cube {}.mtl")));
+    CHECK_FALSE(fs::exists(folder / "out wrong.obj"));
+    const auto fails = [&](const std::string &arguments, const std::string &words) {
+        const Result refused = shell(folder, "fathom mesh " + arguments);
+        INFO(arguments << '\n' << refused.err);
+        CHECK(refused.exit == 2);
+        CHECK(contains(refused.err, words));
+    };
+    fails("ball.sdf wrong.sdf -o a.stl", "would both be `a.stl`");
+    fails("ball.sdf sub/../ball.sdf -o '{}.stl'", "would both be `ball.stl`");
+    fails("ball.sdf wrong.sdf -o -", "standard output takes one mesh");
+    fails("- - -o '{}.stl'", "read once");
+    CHECK_FALSE((fs::exists(folder / "a.stl") || fs::exists(folder / "ball.stl")));
+}
