@@ -16,7 +16,7 @@ namespace {
 
 using ir::Graph;
 
-constexpr std::size_t max_nodes = 60, max_instructions = 20'000;
+constexpr std::size_t max_nodes_of_turn = 60, max_instructions = 20'000;
 
 // Does an expression change with the point through this angle alone?
 bool reads_alone(const Graph &graph, NodeId root, NodeId angle) {
@@ -30,7 +30,7 @@ bool reads_alone(const Graph &graph, NodeId root, NodeId angle) {
         if (!reads.point && !reads.free_vars) continue;
         constexpr ir::OpSet opaque{Op::Point, Op::Var,        Op::Loop,
                                    Op::Call,  Op::LoopResult, Op::Cached};
-        if (opaque[graph[id].op] || seen.size() > max_nodes) return false;
+        if (opaque[graph[id].op] || seen.size() > max_nodes_of_turn) return false;
         todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
     }
     return true;
@@ -39,7 +39,7 @@ bool reads_alone(const Graph &graph, NodeId root, NodeId angle) {
 std::optional<NodeId> angle_in(const Graph &graph, NodeId root) {
     std::vector<NodeId> todo{root};
     std::unordered_set<NodeId> seen;
-    while (!todo.empty() && seen.size() <= max_nodes) {
+    while (!todo.empty() && seen.size() <= max_nodes_of_turn) {
         const NodeId id = todo.back();
         todo.pop_back();
         if (!seen.insert(id).second) continue;

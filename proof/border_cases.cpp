@@ -206,15 +206,12 @@ bool Cases::impossible(const Case &c, const Inequality &more) {
     std::vector<Product> positive;
     for (const Sum &sum : c.at_least_0) all.push_back({reduced(sum, c), false});
     if (!more.sum.empty()) all.push_back({reduced(more.sum, c), more.strict});
+    for (const auto &[a, sum] : c.solved) // an atom that is none any more keeps its sign
+        if (atoms_[a].never_negative) all.push_back({reduced(sum, c), false});
+    add_products(all);
     for (const Inequality &row : all)
         for (const auto &[m, k] : row.sum)
             if (!m.empty() && never_negative(m)) positive.push_back(m);
-    for (const auto &[a, sum] : c.solved) // an atom that is none any more keeps its sign
-        if (atoms_[a].never_negative) {
-            all.push_back({reduced(sum, c), false});
-            for (const auto &[m, k] : all.back().sum)
-                if (!m.empty() && never_negative(m)) positive.push_back(m);
-        }
     std::sort(positive.begin(), positive.end());
     positive.erase(std::unique(positive.begin(), positive.end()), positive.end());
     std::size_t steps = 0;
@@ -255,6 +252,7 @@ bool Cases::solve(const Sum &gap) {
         case_.solved.push_back(std::move(*found));
         return true;
     }
+    if (solve_along_line(gap)) return true;
     if (const auto found = solved_for_square(gap)) {
         const Sum above = add(atom(found->atom), found->middle, -1);
         const auto w = way(claim_.choice, Squares, {{above}, {add({}, above, -1)}});

@@ -8,6 +8,8 @@
 
 namespace fathom::proof {
 
+struct Ranges;
+
 // `of` has one value for all sides of the choice (a Select, Sign or Step, or a comparison, which is
 // true or false), where u = v and, with that comparison true or false, the choice's condition is
 // not the same.
@@ -19,6 +21,7 @@ struct Claim {
 // What proofs have looked at so far, and what they take their steps off.
 struct Looked {
     Work &work;
+    const Ranges *ranges; // of params and the time; or none
     int cases = 0, on_lines = 0;
     std::size_t left = 6'000'000; // steps of the algebra: beyond, nothing more is proved
     void take(std::size_t steps) {

@@ -205,7 +205,7 @@ Meeting find_choices(Flattening &context, NodeId root) {
             for (NodeId inside : in_body(graph, id)) std::erase(choices, inside);
     if (choices.size() > max_choices) return {};
     Meeting out;
-    Looked looked{context.work};
+    Looked looked{context.work, context.ranges};
     ByComparison alike(turns_alike), unseen(turns_unseen);
     std::vector<NodeId> by_counts; // turn only where the choices do that they count
     for (NodeId choice : choices) {

@@ -72,7 +72,7 @@ class Cases {
     std::map<AtomKey, std::uint32_t> index_;
     std::vector<Atom> atoms_;
     std::map<NodeId, Relation> relations_;
-    int count_ = 0, depth_ = 0, squares_ = 0, roots_ = 0;
+    int count_ = 0, depth_ = 0, squares_ = 0, roots_ = 0, lines_ = 0;
     bool alike_ = false; // as of hold_alike
     bool splits_ = true; // else what a case leaves open is asked of its inequalities
 
@@ -102,6 +102,9 @@ class Cases {
     static std::optional<Interval> range_of_root(const Sum &below, const std::vector<Atom> &atoms);
 
     bool impossible(const Case &c, const Inequality &more);
+    // The ranges of what is held and stands in products, and what follows of rows of degree 1,
+    // `t >= 0`: (a - lo) t >= 0.
+    void add_products(std::vector<Inequality> &rows) const;
     bool never_negative(const Product &m) const;
 
     // Of s >= 0 and -s >= 0: s = 0, if that can be solved.
@@ -110,6 +113,12 @@ class Cases {
     // gap = 0: for an atom that stands in one term alone, or in a square, by either of its roots; else
     // as two inequalities. False where the case has to be split first.
     bool solve(const Sum &gap);
+    // A u + B v + C = 0 with A, B, C of what is held: u = u0 - B t and v = v0 + A t.
+    bool solve_along_line(const Sum &gap);
+    std::optional<Interval> range_of(const Sum &held) const; // where that is known
+    // a / b, both held, b a number times an atom that is never 0.
+    std::optional<Sum> quotient(const Sum &a, const Sum &b);
+    std::optional<std::pair<Product, Sum>> in_place_of_pair(const Product &m) const;
     // Roots of what has been solved since, as roots of what it is now.
     void follow_roots(Case &c);
     Sum reduced(const Sum &sum, const Case &c) const;

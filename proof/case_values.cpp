@@ -2,6 +2,7 @@
 // the case, or splits it.
 #include "proof/case_search.h"
 #include "proof/exact.h"
+#include "proof/machine.h"
 #include "proof/tape.h"
 
 #include <algorithm>
@@ -42,7 +43,16 @@ Sum Cases::leaf(NodeId id, int i) {
             out = add(out, atom(atom_of({-4.0, double(j)}, about)), axes_->along[j][k]);
         return reduced(out, case_);
     }
-    if (graph_[id].op == Op::Point) about.range = Interval(-near_enough, near_enough);
+    const ir::Node node = graph_[id];
+    const auto k = static_cast<std::size_t>(i);
+    const ir::Graph::Reads read = graph_.reads(id);
+    about.held = !read.point && !read.free_vars;
+    if (node.op == Op::Point) about.range = Interval(-near_enough, near_enough);
+    if (node.op == Op::Param && looked_.ranges)
+        about.range = looked_.ranges->params[node.payload][k];
+    if (node.op == Op::Time && looked_.ranges) about.range = looked_.ranges->time;
+    if (about.range && !about.range->finite()) about.range.reset();
+    if (about.held && about.range) about.never_negative = about.range->lo >= 0;
     return reduced(atom(atom_of({-1.0, double(id.index), double(i)}, about)), case_);
 }
 
@@ -65,6 +75,8 @@ std::optional<Sum> Cases::unknown(NodeId id, int i) {
     }
     Atom about;
     about.never_negative = node.op == Op::Exp || node.op == Op::Exp2 || node.op == Op::Hash;
+    const ir::Graph::Reads read = graph_.reads(id);
+    about.held = !read.point && !read.free_vars;
     return atom(atom_of(std::move(key), about));
 }
 
@@ -116,6 +128,16 @@ std::optional<Sum> Cases::size_of(NodeId id, int i, const Sum &x) {
             return add({}, reduced(atom(a), case_), std::fabs(c));
         }
     }
+    if (x.size() == 1) { // |a t| = a |t| for a >= 0
+        Product kept, rest;
+        for (std::uint32_t a : lead) (atoms_[a].never_negative ? kept : rest).push_back(a);
+        if (!kept.empty()) {
+            const double c = x.begin()->second; // the rest goes the way that x goes
+            const auto size = rest.empty() ? std::optional(constant(std::fabs(c)))
+                                           : size_of(id, i, Sum{{rest, c}});
+            return size ? times(*size, Sum{{kept, 1.0}}) : std::nullopt;
+        }
+    }
     const auto w = way(id, i, {{x}, {add({}, x, -1)}});
     if (!w) return {};
     return *w == 0 ? x : add({}, x, -1);
@@ -162,7 +184,13 @@ std::uint32_t Cases::root_atom(const Sum &below, bool of_squares) {
     Atom about;
     about.never_negative = true;
     about.below = below;
-    if (of_squares) about.square = below; // of less than 0 the root is 0
+    about.held = std::ranges::all_of(below, [&](const auto &term) {
+        return std::ranges::all_of(term.first, [&](std::uint32_t a) { return atoms_[a].held; });
+    });
+    const auto range = about.held ? range_of(below) : std::nullopt;
+    if (range) about.range = sqrt(*range);
+    if (of_squares || (range && range->lo >= 0))
+        about.square = below; // of less than 0 the root is 0
     AtomKey key{-3.0, double(of_squares)};
     add_to_key(key, below);
     return atom_of(std::move(key), about);
@@ -219,25 +247,41 @@ std::optional<Sum> Cases::times(const Sum &a, const Sum &b) {
     looked_.take(of_term * a.size() * b.size());
     const auto out = multiply(a, b);
     if (!out) return {};
-    Sum sum; // r*r is what is below the root r
+    Sum sum;
     for (const auto &[m, c] : *out) {
-        const auto twice = std::adjacent_find(
-            m.begin(), m.end(), [&](auto x, auto y) { return x == y && atoms_[x].square; });
-        if (twice == m.end()) {
+        const auto known = in_place_of_pair(m);
+        if (!known) {
             sum = add(sum, Sum{{m, c}});
             continue;
         }
-        Product rest = m;
-        rest.erase(rest.begin() + (twice - m.begin()), rest.begin() + (twice - m.begin()) + 2);
         // What a root's square is made of may have been solved by that root.
         if (squares_ >= max_squares) return {};
         ++squares_;
-        const auto whole = times(Sum{{rest, c}}, reduced(*atoms_[*twice].square, case_));
+        const auto whole = times(Sum{{known->first, c}}, reduced(known->second, case_));
         --squares_;
         if (!whole) return {};
         sum = add(sum, *whole);
     }
     return sum;
+}
+
+// r*r is what is below the root r, and q*d is a where q = a/d: the other factors, and that.
+std::optional<std::pair<Product, Sum>> Cases::in_place_of_pair(const Product &m) const {
+    const auto without = [&](std::size_t i, std::size_t k) {
+        Product rest;
+        for (std::size_t n = 0; n < m.size(); ++n)
+            if (n != i && n != k) rest.push_back(m[n]);
+        return rest;
+    };
+    for (std::size_t i = 0; i < m.size(); ++i) {
+        if (i + 1 < m.size() && m[i] == m[i + 1] && atoms_[m[i]].square)
+            return std::pair(without(i, i + 1), *atoms_[m[i]].square);
+        if (!atoms_[m[i]].quotient) continue;
+        const auto &[d, of] = *atoms_[m[i]].quotient;
+        if (const auto at = std::ranges::find(m, d); at != m.end())
+            return std::pair(without(i, std::size_t(at - m.begin())), of);
+    }
+    return {};
 }
 
 std::optional<Sum> Cases::dot(NodeId a, NodeId b) {
@@ -303,6 +347,7 @@ std::optional<Sum> Cases::component(NodeId id, int i, Op op, const Sum &a, const
     if (op == Op::Abs) return size_of(id, Sizes + i, a);
     if (op == Op::Div) {
         if (const auto d = as_constant(b); d && *d != 0) return add({}, a, 1 / *d);
+        if (const auto q = quotient(a, b)) return q;
         return unknown(id, i);
     }
     if (op == Op::Clamp) { // min(max(x, lo), hi)

@@ -16,7 +16,8 @@ namespace {
 
 using ir::Graph;
 
-constexpr std::size_t max_nodes = 96, max_pairs = 6, max_instructions = 20'000, max_parts = 32;
+constexpr std::size_t max_nodes_of_mean = 96, max_pairs = 6, max_instructions = 20'000,
+                      max_parts = 32;
 constexpr double max_steepness = 1.1; // 1 + 2e
 constexpr ir::OpSet opaque{Op::Point, Op::Loop, Op::LoopResult, Op::Call, Op::Cached};
 constexpr double rounding = 1e-9; // of the bound on a weight
@@ -38,7 +39,7 @@ class Moves {
     }
     std::optional<double> of(NodeId id) {
         if (const auto it = known_.find(id); it != known_.end()) return it->second;
-        if (known_.size() > max_nodes) return {};
+        if (known_.size() > max_nodes_of_mean) return {};
         const auto found = found_of(id);
         known_[id] = found;
         return found;
@@ -84,7 +85,7 @@ std::vector<Moved> pairs_in(const Graph &graph, NodeId root) {
     std::vector<Moved> out;
     std::vector<NodeId> level{root};
     std::unordered_set<NodeId> seen{root};
-    for (std::size_t at = 0; at < level.size() && level.size() < max_nodes; ++at) {
+    for (std::size_t at = 0; at < level.size() && level.size() < max_nodes_of_mean; ++at) {
         const NodeId id = level[at];
         const Op op = graph[id].op;
         constexpr ir::OpSet together{Op::Min, Op::Max,  Op::Add,      Op::Sub,

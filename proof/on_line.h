@@ -16,6 +16,9 @@ struct LineAtom {
     std::optional<Sum> square;         // of a root: what it is the root of
     std::optional<Sum> below;          // … which, if it may be below 0, counts as 0 there
     std::optional<ir::Interval> range; // of its own, where it is known
+    bool held = false;                 // the same for all points: a param, the time, made of these
+    // Of a / d, where d is an atom: d, and a.
+    std::optional<std::pair<std::uint32_t, Sum>> quotient;
 };
 
 // Do a and b differ nowhere where no row is below 0, by more than `granted` of their terms? All
