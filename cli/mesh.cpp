@@ -136,10 +136,11 @@ Exit write_objects(const Objects &objects, const MeshCommand &command, const std
         return device_error;
     }
     if (terminal.interactive())
-        terminal.say(
-            fmt::format("{}: {}{} triangles, {} vertices", out,
-                        command.parts ? fmt::format("{} objects, ", objects.all.size()) : "",
-                        triangles, vertices));
+        terminal.say(fmt::format("{}: {}{} triangles, {} vertices", out,
+                                 command.parts ? fmt::format("{} object{}, ", objects.all.size(),
+                                                             objects.all.size() == 1 ? "" : "s")
+                                               : "",
+                                 triangles, vertices));
     if (!has_library) return write_result(out, bytes, terminal);
     const std::string library = v1::material_library(objects.all);
     if (library.empty()) throw std::bad_alloc();
