@@ -33,11 +33,26 @@ int figures(int argc, char **argv) {
     return measure_figures(options);
 }
 
+int meshes(int argc, char **argv) {
+    fathom::bench::MeshFigureOptions options;
+    CLI::App app("what is proved of scenes' meshes, and what that costs", "fathom-bench meshes");
+    app.add_option("FILE", options.files)->required();
+    app.add_option("--resolution", options.resolution, "cells along the longest side, 96")
+        ->check(CLI::Range(1, 8000));
+    app.add_option("--threads", options.threads, "0: as many as the machine has cores");
+    app.add_option("--bounds", options.bounds, "X,Y,Z,X,Y,Z, of scenes without an end")
+        ->delimiter(',')
+        ->expected(6);
+    CLI11_PARSE(app, argc, argv);
+    return measure_meshes(options);
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
     using namespace fathom::bench;
     if (argc > 1 && argv[1] == std::string("figures")) return figures(argc - 1, argv + 1);
+    if (argc > 1 && argv[1] == std::string("meshes")) return meshes(argc - 1, argv + 1);
     struct Group {
         const char *name;
         void (*measure)(Table &);

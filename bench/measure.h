@@ -75,4 +75,13 @@ struct FigureOptions {
 };
 int measure_figures(const FigureOptions &options); // prints; returns the exit status
 
+// `fathom-bench meshes`: what the certificates of scenes say, and what they cost.
+struct MeshFigureOptions {
+    std::vector<std::string> files;
+    int resolution = 96;
+    unsigned threads = 0;       // 0: as many as the machine has cores
+    std::vector<double> bounds; // X,Y,Z,X,Y,Z, of scenes without an end
+};
+int measure_meshes(const MeshFigureOptions &options); // prints; returns the exit status
+
 } // namespace fathom::bench

@@ -17,7 +17,12 @@ struct Certificate {
     // Every point of the mesh has surface as near as this, and every point of the surface in the
     // cells that are not undecided has mesh as near as that. At most the side of a drawing cell.
     double mesh_to_surface = 0, surface_to_mesh = 0;
-    std::vector<Cell> undecided; // leaves that may hold surface farther from the mesh
+    std::vector<Cell> undecided; // leaves that may hold surface farther from the mesh,
+    std::vector<Point> doubts;   // … about there
+    // Leaves with places where parts of the solid touch, or are no farther apart than this along an
+    // axis: what surface there is between them is not drawn.
+    std::vector<Cell> seams;
+    double seam_width = 0;
     std::vector<Unproved> unproved;
     std::size_t components = 0;                  // of the mesh
     long genus = 0;                              // of all of them together
@@ -25,6 +30,7 @@ struct Certificate {
     double mesh_volume = 0, mesh_area = 0;
     // Whether the proofs used the proved bound, besides intervals.
     bool used_bound = false;
+    std::size_t divisions = 0; // of boxes, that this took: counted work
     bool certified() const { return undecided.empty() && unproved.empty(); }
 };
 

@@ -6,9 +6,11 @@
 namespace fathom::mesh {
 namespace {
 
-constexpr int deeper = 3;                       // than what is searched without a certificate
-constexpr std::size_t least_growth = 2'000'000; // of the octree, in nodes
-constexpr double nodes_a_cell = 16; // that dividing one once may take, with its neighbours
+constexpr int deeper = 3;                     // than what is searched without a certificate
+constexpr std::size_t least_growth = 500'000; // of the octree, in nodes
+constexpr double nodes_a_cell = 16;   // that dividing one once may take, with its neighbours
+constexpr int deepest_blind = 4;      // levels that are tried where nothing shows,
+constexpr std::size_t few_blind = 32; // … or all, in so many drawing cells at most
 constexpr int most_rounds = 12;
 
 // The open leaves about one, a drawing cell away at most: where nothing of a gap or a wall is seen, more
@@ -27,38 +29,157 @@ void add_leaves_about(const Octree &octree, const Cell &cell, std::vector<Cell> 
     }
 }
 
-// The leaves that are to be divided for a certificate's doubts, each once.
-std::vector<Cell> doubtful(const Made &made, const Certificate &certificate) {
-    const Lattice &lattice = made.octree.lattice;
-    std::vector<Cell> cells;
-    for (const Cell &cell : certificate.undecided) {
-        cells.push_back(cell);
-        if (cell.level == lattice.depth) add_leaves_about(made.octree, cell, cells);
+// A place whose doubt may be mended: a cell that is to be divided, and by how many levels, as far as
+// the field tells.
+struct Patient {
+    Cell cell;
+    int levels = 0;
+};
+
+std::array<std::int64_t, 3> block_of(const Lattice &lattice, const Cell &cell) {
+    const std::int64_t side = lattice.cells(lattice.level);
+    return {cell.at[0] / side, cell.at[1] / side, cell.at[2] / side};
+}
+
+// How far below a drawing cell signs at corners show what lies about a point: so many levels that
+// cells are no thicker than the piece of solid or of space next to it. None: nothing shows.
+std::optional<int> levels_that_show(const Lattice &lattice, Evaluator &evaluator, const Point &at) {
+    constexpr int steps = 128; // a finest cell each, one drawing cell to both sides
+    Points points;
+    points.add(at);
+    std::array<std::vector<float>, 4> slope;
+    gradients_at(evaluator, *evaluator.field.whole, points, slope);
+    Real3 way{slope[1][0], slope[2][0], slope[3][0]};
+    const double length = std::sqrt(inner(way, way));
+    if (!(length > 0 && std::isfinite(length))) return std::nullopt;
+    const double side = lattice.side(lattice.level), step = side / 64 / length;
+    points.clear();
+    for (int k = -steps / 2; k <= steps / 2; ++k) {
+        const Real3 p = along(real(at), way, k * step);
+        points.add({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+    }
+    std::vector<float> values;
+    values_at(evaluator, *evaluator.field.whole, points, values);
+    int thinnest = steps, from = -1; // between two changes of sign; the ends may be anything
+    for (int k = 1; k <= steps; ++k) {
+        const auto j = static_cast<std::size_t>(k);
+        if ((values[j] <= 0) == (values[j - 1] <= 0)) continue;
+        if (from >= 0) thinnest = std::min(thinnest, k - from);
+        from = k;
+    }
+    if (from < 0) return std::nullopt;
+    int levels = 1;
+    while (levels < 6 && (64 >> levels) > thinnest) ++levels;
+    return levels;
+}
+
+// What dividing a cell by so many levels takes, in nodes, if surface goes through all its parts.
+double nodes_for(const Patient &patient) {
+    return nodes_a_cell * std::ldexp(1.0, 2 * (patient.levels - 1));
+}
+
+// How deep drawing cells are to be divided for their doubts, by their key: found out when they are first
+// in doubt.
+using Depths = std::unordered_map<std::uint64_t, int>;
+
+// All cells that might be divided for a certificate's doubts, each once, and how deep.
+std::vector<Patient> patients(const Made &made, const Certificate &certificate, const Field &field,
+                              unsigned threads, Progress &progress, Depths &depths) {
+    const Octree &octree = made.octree;
+    const Lattice &lattice = octree.lattice;
+    struct Doubt {
+        Cell cell;
+        Point at{};
+        std::uint64_t block = 0;
+    };
+    std::vector<Doubt> doubts;
+    std::vector<Cell> about;
+    for (std::size_t k = 0; k < certificate.undecided.size(); ++k) {
+        const Cell &cell = certificate.undecided[k];
+        doubts.push_back({cell, certificate.doubts[k]});
+        if (cell.level < lattice.depth) continue;
+        about.clear();
+        add_leaves_about(octree, cell, about);
+        for (const Cell &near : about) doubts.push_back({near, certificate.doubts[k]});
     }
     for (const Unproved &place : certificate.unproved) {
         Index at{};
         for (std::size_t i = 0; i < 3; ++i)
             at[i] = static_cast<std::int32_t>(
                 std::floor((place.at[i] - double(lattice.at(i, 0))) / (2 * lattice.unit)));
-        const Cell leaf = leaf_at(made.octree, at);
+        const Cell leaf = leaf_at(octree, at);
         if (leaf.node != none &&
-            made.octree.nodes[static_cast<std::size_t>(leaf.node)].space == Space::Open)
-            cells.push_back(leaf);
+            octree.nodes[static_cast<std::size_t>(leaf.node)].space == Space::Open)
+            doubts.push_back({leaf, place.at});
     }
-    std::erase_if(cells, [&](const Cell &cell) { return cell.level >= lattice.depth; });
-    std::ranges::sort(cells, {}, &Cell::node);
-    const auto same = [](const Cell &x, const Cell &y) { return x.node == y.node; };
-    cells.erase(std::unique(cells.begin(), cells.end(), same), cells.end());
-    return cells;
+    std::erase_if(doubts, [&](const Doubt &doubt) { return doubt.cell.level >= lattice.depth; });
+    std::ranges::stable_sort(doubts, {}, [](const Doubt &doubt) { return doubt.cell.node; });
+    const auto same = [](const Doubt &x, const Doubt &y) { return x.cell.node == y.cell.node; };
+    doubts.erase(std::unique(doubts.begin(), doubts.end(), same), doubts.end());
+    std::vector<const Doubt *> first; // of their drawing cells
+    for (Doubt &doubt : doubts) {
+        doubt.block = key_of(block_of(lattice, doubt.cell));
+        if (depths.emplace(doubt.block, 0).second) first.push_back(&doubt);
+    }
+    // A place where a gap closes shows nothing; a few of them are divided as far as can be.
+    const int blind =
+        std::min(first.size() <= few_blind ? 6 : deepest_blind, lattice.depth - lattice.level);
+    std::vector<int> found(first.size());
+    in_parallel(
+        first.size(), threads, progress, [&] { return Evaluator(field); },
+        [&](Evaluator &evaluator, std::size_t k) {
+            found[k] = levels_that_show(lattice, evaluator, first[k]->at).value_or(blind);
+        });
+    for (std::size_t k = 0; k < first.size(); ++k) depths[first[k]->block] = found[k];
+    std::vector<Patient> result;
+    for (const Doubt &doubt : doubts) { // cells may be one level smaller than is likely to do
+        const int levels = lattice.level + depths[doubt.block] - doubt.cell.level;
+        if (levels >= 0) result.push_back({doubt.cell, std::max(levels, 1)});
+    }
+    return result;
 }
 
-// How many nodes dividing them to the finest level takes, if surface goes through all of them: four
-// parts of each.
-double nodes_for(const std::vector<Cell> &cells, const Lattice &lattice) {
-    double nodes = 0;
-    for (const Cell &cell : cells)
-        nodes += nodes_a_cell * std::ldexp(1.0, 2 * (lattice.depth - cell.level - 1));
-    return nodes;
+// Some of them: whole clusters of neighbouring drawing cells, those that take least first, as long as
+// all of them together take no more than so many nodes.
+std::vector<Cell> affordable(const std::vector<Patient> &all, const Lattice &lattice,
+                             double nodes) {
+    std::unordered_map<std::uint64_t, std::vector<std::size_t>> by_block;
+    for (std::size_t k = 0; k < all.size(); ++k)
+        by_block[key_of(block_of(lattice, all[k].cell))].push_back(k);
+    struct Cluster {
+        std::vector<std::size_t> members;
+        double nodes = 0;
+    };
+    std::vector<Cluster> clusters;
+    for (const Patient &patient : all) {
+        std::vector<std::array<std::int64_t, 3>> stack{block_of(lattice, patient.cell)};
+        Cluster cluster;
+        while (!stack.empty()) {
+            const auto at = stack.back();
+            stack.pop_back();
+            const auto block = by_block.find(key_of(at));
+            if (block == by_block.end()) continue;
+            for (const std::size_t k : block->second) {
+                cluster.members.push_back(k);
+                cluster.nodes += nodes_for(all[k]);
+            }
+            by_block.erase(block);
+            for (std::int64_t k = 0; k < 27; ++k)
+                stack.push_back({at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1});
+        }
+        if (!cluster.members.empty()) clusters.push_back(std::move(cluster));
+    }
+    std::ranges::stable_sort(clusters, {}, &Cluster::nodes);
+    std::vector<std::size_t> taken;
+    for (const Cluster &cluster : clusters) {
+        nodes -= cluster.nodes;
+        if (nodes < 0) break;
+        taken.insert(taken.end(), cluster.members.begin(), cluster.members.end());
+    }
+    std::ranges::sort(taken);
+    std::vector<Cell> cells;
+    for (const std::size_t k : taken) cells.push_back(all[k].cell);
+    return cells;
 }
 
 } // namespace
@@ -81,12 +202,13 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
     octree.threads = threads_of(settings);
     const std::size_t before = mended.made.octree.nodes.size();
     const std::size_t most = before + std::max(before, least_growth);
+    Depths depths;
     while (!progress.cancelled && mended.rounds < most_rounds) {
-        std::vector<Cell> divided = doubtful(mended.made, mended.certificate);
-        if (divided.empty() || double(mended.made.octree.nodes.size()) +
-                                       nodes_for(divided, mended.made.octree.lattice) >
-                                   double(most))
-            break;
+        const double left = double(most) - double(mended.made.octree.nodes.size());
+        std::vector<Cell> divided = affordable(
+            patients(mended.made, mended.certificate, field, octree.threads, progress, depths),
+            mended.made.octree.lattice, left);
+        if (divided.empty() || progress.cancelled) break;
         Made next; // what there is stays, should this one come to nothing
         next.box = mended.made.box;
         next.octree = mended.made.octree;

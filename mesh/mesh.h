@@ -37,7 +37,8 @@ struct Made {
     Failure failure = Failure::None;
     Point place{}; // of Contradicted: about there
     Mesh mesh;
-    Octree octree; // what the mesh was made of
+    double simplified = 0; // the mesh was simplified by this tolerance (simplify.h)
+    Octree octree;         // what the mesh was made of
     Loops loops;
     std::vector<Point> roots;      // by crossing: where the surface crosses the edge,
     std::vector<float> root_slack; // … no farther from there than this

@@ -1,5 +1,7 @@
 #include "mesh/octree.h"
 
+#include "mesh/seams.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -64,8 +66,9 @@ std::vector<Branch> divide_top(Octree &octree, const Field &field, const OctreeS
                 put_parts(octree.lattice, branch.cell.at, level, 0, divider.boxes);
                 ranges_over(divider.evaluator, *branch.tape, divider.boxes);
                 for (std::size_t k = 0; k < 8; ++k) {
-                    made[number].space[k] = space_of(divider.evaluator, k, half_way,
-                                                     octree.lattice.ulp, settings.trusts_bounds);
+                    made[number].space[k] =
+                        space_of(divider.evaluator, k, half_way, octree.lattice.ulp,
+                                 settings.trusts_bounds, true);
                     if (made[number].space[k] == Space::Open)
                         made[number].tapes[k] = shortened(divider.evaluator, branch.tape, k);
                 }
@@ -119,7 +122,7 @@ void sign(Divider &divider, const Lattice &lattice, const cpu::ShortTape &tape,
         for (int c = 0; c < 8; ++c) {
             const auto at = std::ranges::lower_bound(
                 divider.keys, key_of(corner(cell.at, lattice.cells(cell.level), c)));
-            if (divider.values[static_cast<std::size_t>(at - divider.keys.begin())] < 0)
+            if (divider.values[static_cast<std::size_t>(at - divider.keys.begin())] <= 0)
                 signs |= static_cast<std::uint8_t>(1 << c);
         }
     }
@@ -143,8 +146,8 @@ std::vector<Cell> parts_of(Divider &divider, const Lattice &lattice, const cpu::
             const Cell &cell = cells[begin + j];
             std::array<Space, 8> space;
             for (std::size_t k = 0; k < 8; ++k)
-                space[k] =
-                    space_of(divider.evaluator, 16 * j + k, half_way, lattice.ulp, trusts_bounds);
+                space[k] = space_of(divider.evaluator, 16 * j + k, half_way, lattice.ulp,
+                                    trusts_bounds, true);
             const bool same = std::ranges::all_of(
                 space, [&](Space s) { return s == space[0] && s != Space::Open; });
             if (same) {
@@ -230,6 +233,43 @@ void graft_all(Octree &octree, const Field &field, const std::vector<Cell> &cell
               trees[k]);
 }
 
+// Takes those cells away in which parts of the solid touch: they are solid, or seams.
+void find_seams(Octree &octree, const Field &field, std::vector<Cell> &cells,
+                const OctreeSettings &settings, Progress &progress) {
+    constexpr std::size_t group = 64;
+    std::vector<double> widths(cells.size(), -1); // -1: no seam
+    in_parallel((cells.size() + group - 1) / group, settings.threads, progress,
+                [&] { return Divider(field); },
+                [&](Divider &divider, std::size_t number) {
+                    const std::size_t end = std::min(cells.size(), (number + 1) * group);
+                    for (std::size_t k = number * group; k < end; ++k) {
+                        const Node &node = octree.nodes[static_cast<std::size_t>(cells[k].node)];
+                        if (node.signs != 0xff) continue;
+                        const std::int32_t side = octree.lattice.cells(cells[k].level);
+                        if (const auto width =
+                                seam_in(divider.evaluator,
+                                        *octree.tapes[static_cast<std::size_t>(node.task)],
+                                        divider.boxes, point_of(octree.lattice, cells[k].at),
+                                        point_of(octree.lattice, corner(cells[k].at, side, 7)),
+                                        seam_thickness(octree.lattice)))
+                            widths[k] = *width;
+                    }
+                });
+    if (progress.cancelled) return;
+    std::vector<Cell> left;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        if (widths[k] < 0) {
+            left.push_back(cells[k]);
+        } else if (widths[k] == 0) {
+            octree.nodes[static_cast<std::size_t>(cells[k].node)].space = Space::Inside;
+        } else {
+            octree.seams.push_back(cells[k].node);
+            octree.seam_width = std::max(octree.seam_width, widths[k]);
+        }
+    }
+    cells = std::move(left);
+}
+
 // Divides open cells without a crossed neighbour, level by level, as long as the work allows.
 void search_hidden(Octree &octree, const Field &field, const OctreeSettings &settings,
                    Progress &progress) {
@@ -241,6 +281,7 @@ void search_hidden(Octree &octree, const Field &field, const OctreeSettings &set
         else if (!beside_crossed(octree, cell))
             cells.push_back(cell);
     }
+    find_seams(octree, field, cells, settings, progress);
     std::size_t boxes = std::max(least_hidden_boxes, hidden_boxes_a_cell * crossed);
     for (int level = octree.lattice.level; level < octree.settled && !cells.empty(); ++level) {
         if (16 * cells.size() > boxes) break;
@@ -321,13 +362,14 @@ void refine(Octree &octree, const Field &field, const std::vector<Cell> &leaves,
 }
 
 Space space_of(const Evaluator &evaluator, std::size_t k, double half, double ulp,
-               bool trusts_bounds) {
+               bool trusts_bounds, bool closed) {
     const cpu::Shortener &ranges = evaluator.ranges;
     const double lo = ranges.result_lo[k], hi = ranges.result_hi[k];
     const bool trusts = trusts_bounds && evaluator.field.proved;
     const double reach = half * (1 + 1e-6) + 8 * ulp; // the middle and the value are rounded
     if (lo > 0 || (trusts && ranges.result_lo[k + 8] > reach)) return Space::Outside;
-    if (hi < 0 || (trusts && ranges.result_hi[k + 8] < -reach)) return Space::Inside;
+    if (hi < 0 || (closed && hi == 0) || (trusts && ranges.result_hi[k + 8] < -reach))
+        return Space::Inside;
     return Space::Open;
 }
 

@@ -22,7 +22,8 @@ struct Node {
         none;                 // the first of eight: bit 0 of their number is x, bit 1 y, bit 2 z
     std::int32_t task = none; // whose tape holds in it
     Space space = Space::Open;
-    std::uint8_t signs = 0; // of an open leaf: bit c is set where the field is negative at corner c
+    // Of an open leaf: bit c is set where the field is not positive at corner c.
+    std::uint8_t signs = 0;
     bool crossed() const { return signs != 0 && signs != 0xff; }
 };
 
@@ -39,6 +40,10 @@ struct Octree {
     // Open leaves without a crossed one beside them: the field does not say whether surface is in
     // them, by the work that was spent on it.
     std::vector<Cell> undecided;
+    // Open leaves of the same kind that are solid but for gaps of this width together at most: parts
+    // touch there.
+    std::vector<std::int32_t> seams; // nodes
+    double seam_width = 0;
     bool full = false; // more than most_nodes were wanted: it is not whole
     // Tangled cells are divided to this level, and below it only where smaller ones lie beside them;
     // no farther is searched for what no corner shows.
@@ -66,9 +71,12 @@ void refine(Octree &octree, const Field &field, const std::vector<Cell> &leaves,
             const OctreeSettings &settings, Progress &progress);
 
 // Whether surface may be in box k, after ranges_over; box k + 8 is its middle, a point. `half`: half
-// its diagonal.
+// its diagonal. `closed`: what is 0 all over is solid too, as in an octree; else it is open.
 Space space_of(const Evaluator &evaluator, std::size_t k, double half, double ulp,
-               bool trusts_bounds);
+               bool trusts_bounds, bool closed = false);
+
+// Slabs that are no thicker than this are not looked into for surface (seams.h).
+inline double seam_thickness(const Lattice &lattice) { return 2 * lattice.ulp; }
 
 std::vector<Cell> open_leaves(const Octree &octree); // in the order of the octree
 // The leaf that holds a cell of the finest level; `node` is none outside of the cube.

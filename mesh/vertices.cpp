@@ -137,7 +137,7 @@ void find_roots(Memory &memory, const cpu::ShortTape &tape, const Lattice &latti
         values_at(memory.evaluator, tape, points, memory.values);
         for (std::size_t k = 0; k < n; ++k) {
             const double at = points.at[crossing_of(k).axis][k], value = memory.values[k];
-            const bool at_low = (value < 0) == crossing_of(k).low_inside;
+            const bool at_low = (value <= 0) == crossing_of(k).low_inside;
             (at_low ? roots.low : roots.high)[k] = at;
             (at_low ? roots.low_value : roots.high_value)[k] = value;
             double &kept = (at_low ? roots.high_value : roots.low_value)[k];
@@ -160,7 +160,7 @@ void find_roots(Memory &memory, const cpu::ShortTape &tape, const Lattice &latti
         for (std::size_t k = 0; k < n; ++k) {
             const double at = points.at[crossing_of(k).axis][k];
             if (!(at > roots.low[k] && at < roots.high[k])) continue; // nothing new between them
-            const bool at_low = (memory.values[k] < 0) == crossing_of(k).low_inside;
+            const bool at_low = (memory.values[k] <= 0) == crossing_of(k).low_inside;
             (at_low ? roots.low : roots.high)[k] = at;
         }
     }

@@ -1,0 +1,209 @@
+// From the surface to the mesh: docs/meshes.md, 6, theorem 5.
+#include "mesh/inquiry.h"
+#include "mesh/seams.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::mesh {
+namespace {
+
+constexpr int finest_box = 4;        // divisions of a leaf by halves
+constexpr std::size_t seam_work = 3; // divisions of boxes that looking for one is counted as
+constexpr int least_finest_box = 2;  // … of one that is smaller than a drawing cell
+constexpr int seam_depth = 2;        // … of which seams are looked for, and in the whole
+
+struct Box {
+    Point lo, hi;
+    bool solid = false; // its middle lies in the solid
+};
+Real3 middle_of(const Box &box) {
+    Real3 m{};
+    for (std::size_t i = 0; i < 3; ++i) m[i] = 0.5 * (double(box.lo[i]) + box.hi[i]);
+    return m;
+}
+// The parts of some boxes in which surface may be.
+std::vector<Box> open_parts(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
+                            const cpu::ShortTape &tape, const std::vector<Box> &whole) {
+    constexpr std::size_t at_once = cpu::max_boxes / 16;
+    std::vector<Box> open;
+    for (std::size_t begin = 0; begin < whole.size(); begin += at_once) {
+        const std::size_t count = std::min(at_once, whole.size() - begin);
+        std::vector<Box> parts;
+        boxes.count = 16 * count;
+        for (std::size_t j = 0; j < count; ++j) {
+            const Box &box = whole[begin + j];
+            for (std::size_t k = 0; k < 8; ++k) {
+                Box part = box;
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const float cut = 0.5f * (box.lo[i] + box.hi[i]);
+                    (k >> i & 1 ? part.lo : part.hi)[i] = cut;
+                    boxes.lo[i][16 * j + k] = part.lo[i], boxes.hi[i][16 * j + k] = part.hi[i];
+                    boxes.lo[i][16 * j + 8 + k] = boxes.hi[i][16 * j + 8 + k] =
+                        0.5f * (part.lo[i] + part.hi[i]);
+                }
+                parts.push_back(part);
+            }
+        }
+        ranges_over(evaluator, tape, boxes);
+        for (std::size_t j = 0; j < count; ++j)
+            for (std::size_t k = 0; k < 8; ++k) {
+                const Box &part = parts[8 * j + k];
+                if (space_of(evaluator, 16 * j + k, 0.5 * distance(real(part.lo), real(part.hi)),
+                             inquiry.made.octree.lattice.ulp, inquiry.trusts,
+                             true) == Space::Open) {
+                    open.push_back(part);
+                    open.back().solid = evaluator.ranges.result_hi[16 * j + 8 + k] <= 0;
+                }
+            }
+    }
+    return open;
+}
+void find_own(const Inquiry &inquiry, const Cell &leaf, Candidates &candidates) {
+    candidates.own.clear();
+    if (!inquiry.own) return;
+    const auto at = std::ranges::lower_bound(inquiry.patches, std::pair{leaf.node, 0u});
+    for (auto p = at; p != inquiry.patches.end() && p->first == leaf.node; ++p)
+        for (std::uint32_t k = inquiry.first_at[p->second]; k < inquiry.first_at[p->second + 1];
+             ++k)
+            candidates.own.push_back(inquiry.at_vertex[k]);
+}
+
+// The distance of a triangle that is near enough, or else of the nearest.
+double first_near(const Inquiry &inquiry, const std::vector<std::uint32_t> &triangles,
+                  const Real3 &to, double enough) {
+    double d = 2 * inquiry.allowed;
+    for (std::size_t k = 0; k < triangles.size() && d > enough; ++k)
+        d = std::min(d, to_triangle(to, inquiry.triangles[triangles[k]]));
+    return d;
+}
+
+// What is found of the surface in a leaf.
+struct Reach {
+    bool decided = true;
+    double farthest = 0;                // from the mesh at most
+    std::optional<double> seam_width{}; // where parts of the leaf are left out as seams
+    Point doubt{};                      // of what is not decided: about there
+};
+
+// Decided: no surface in a leaf is farther from the mesh than is allowed, but at seams. It would be
+// undecided too where that took more divisions of boxes than are left.
+Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
+               Candidates &candidates, const Cell &leaf, bool searched, std::size_t &divisions) {
+    const Octree &octree = inquiry.made.octree;
+    const std::int32_t side = octree.lattice.cells(leaf.level);
+    const Node &node = octree.nodes[static_cast<std::size_t>(leaf.node)];
+    const cpu::ShortTape &tape = *octree.tapes[static_cast<std::size_t>(node.task)];
+    const Box whole{point_of(octree.lattice, leaf.at),
+                    point_of(octree.lattice, corner(leaf.at, side, 7)), node.signs == 0xff};
+    find_own(inquiry, leaf, candidates);
+    // What was divided already is divided less here: it may be divided again.
+    const int deepest =
+        std::max(least_finest_box, finest_box - std::max(0, leaf.level - octree.lattice.level));
+    std::vector<Box> open{whole};
+    Reach reach;
+    const auto is_seam = [&](const Box &box) {
+        if (!box.solid || divisions < seam_work) return false;
+        divisions -= seam_work;
+        const auto width =
+            seam_in(evaluator, tape, boxes, box.lo, box.hi, seam_thickness(octree.lattice));
+        if (width) reach.seam_width = std::max(reach.seam_width.value_or(0), *width);
+        return width.has_value();
+    };
+    for (int depth = 0; !open.empty(); ++depth) {
+        std::vector<Box> left;
+        for (const Box &box : open) {
+            const Real3 middle = middle_of(box);
+            const double half = 0.5 * distance(real(box.lo), real(box.hi));
+            // The first that is near enough will do: the claim is no more than what is allowed.
+            const double enough = inquiry.allowed - half;
+            double d = enough < 0 ? 2 * inquiry.allowed
+                                  : first_near(inquiry, candidates.own, middle, enough);
+            if (d > enough && enough >= 0)
+                if (const auto near = inquiry.tree->nearest(middle, inquiry.allowed, enough))
+                    d = near->distance;
+            if (d <= enough)
+                reach.farthest = std::max(reach.farthest, (d + half) * outward);
+            else
+                left.push_back(box);
+        }
+        if (depth % seam_depth == 0 && depth < deepest) std::erase_if(left, is_seam);
+        if (left.empty()) break;
+        if (depth == deepest || searched || left.size() > divisions) {
+            reach.decided = false;
+            for (std::size_t i = 0; i < 3; ++i)
+                reach.doubt[i] = static_cast<float>(middle_of(left[left.size() / 2])[i]);
+            break;
+        }
+        divisions -= left.size();
+        open = open_parts(inquiry, evaluator, boxes, tape, left);
+    }
+    return reach;
+}
+
+constexpr std::size_t piece_of_work = 512;
+constexpr std::size_t divisions_a_leaf = 32; // of boxes, on average over a piece of work
+
+struct Certifier {
+    explicit Certifier(const Field &field) : evaluator(field) {}
+    Evaluator evaluator;
+    cpu::Boxes boxes;
+    Candidates candidates;
+};
+
+} // namespace
+
+void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progress,
+                     Certificate &certificate) {
+    const Lattice &lattice = inquiry.made.octree.lattice;
+    std::vector<Cell> leaves = open_leaves(inquiry.made.octree);
+    std::erase_if(leaves, [&](const Cell &leaf) {
+        return inquiry.proved_before(real(point_of(lattice, leaf.at)));
+    });
+    // What was searched for in vain is not searched again.
+    std::vector<std::int32_t> searched;
+    for (const Cell &cell : inquiry.made.octree.undecided) searched.push_back(cell.node);
+    std::ranges::sort(searched);
+    struct Found {
+        double farthest = 0, seam_width = 0;
+        std::vector<Cell> undecided, seams;
+        std::vector<Point> doubts;
+        std::size_t divisions = 0;
+    };
+    std::vector<Found> found((leaves.size() + piece_of_work - 1) / piece_of_work);
+    in_parallel(
+        found.size(), threads, progress, [&] { return Certifier(inquiry.field); },
+        [&](Certifier &memory, std::size_t number) {
+            const std::size_t end = std::min(leaves.size(), (number + 1) * piece_of_work);
+            std::size_t divisions = divisions_a_leaf * piece_of_work;
+            for (std::size_t k = number * piece_of_work; k < end; ++k) {
+                const bool in_vain = std::ranges::binary_search(searched, leaves[k].node);
+                const Reach reach = reach_in(inquiry, memory.evaluator, memory.boxes,
+                                             memory.candidates, leaves[k], in_vain, divisions);
+                Found &here = found[number];
+                here.divisions = divisions_a_leaf * piece_of_work - divisions;
+                if (!reach.decided) {
+                    here.undecided.push_back(leaves[k]);
+                    here.doubts.push_back(reach.doubt);
+                    continue;
+                }
+                here.farthest = std::max(here.farthest, reach.farthest);
+                if (!reach.seam_width) continue;
+                here.seams.push_back(leaves[k]);
+                here.seam_width = std::max(here.seam_width, *reach.seam_width);
+            }
+        });
+    for (const Found &some : found) {
+        certificate.surface_to_mesh = std::max(certificate.surface_to_mesh, some.farthest);
+        certificate.seam_width = std::max(certificate.seam_width, some.seam_width);
+        certificate.divisions += some.divisions;
+        const auto append = [](auto &to, const auto &what) {
+            to.insert(to.end(), what.begin(), what.end());
+        };
+        append(certificate.undecided, some.undecided);
+        append(certificate.doubts, some.doubts);
+        append(certificate.seams, some.seams);
+    }
+}
+
+} // namespace fathom::mesh
