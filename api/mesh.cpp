@@ -2,6 +2,7 @@
 
 #include "mesh/appearance.h"
 #include "mesh/mend.h"
+#include "mesh/simplify.h"
 #include "mesh/write.h"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@ namespace fathom::v1 {
 namespace {
 
 constexpr int most_cells = 8000;
+constexpr double simplify_from = 0.8; // of the progress
 
 Mesh without_mesh(MeshStatus status, std::string message) {
     Mesh mesh;
@@ -43,6 +45,8 @@ MeshCertificate certificate_of(const fathom::mesh::Certificate &found) {
     made.certified = found.certified();
     made.mesh_to_surface = found.mesh_to_surface;
     made.surface_to_mesh = found.surface_to_mesh;
+    made.seam_cells = found.seams.size();
+    made.seam_width = found.seam_width;
     made.unproved_places = found.unproved.size();
     made.components = found.components;
     made.genus = found.genus;
@@ -85,8 +89,33 @@ Surfaces surfaces_of(const std::vector<MeshObject> &objects) {
     return made;
 }
 
+// Puts fewer triangles in the place of the mesh. Where colours are wanted, those of what comes in say
+// what may go.
+MeshSimplification simplified(fathom::mesh::Made &made, const ir::Scene &scene,
+                              const MeshOptions &options) {
+    const fathom::mesh::Lattice &lattice = made.octree.lattice;
+    fathom::mesh::Paints paints;
+    if (options.colors) {
+        fathom::mesh::Appearance found =
+            appearance_of(scene, options.time, made.mesh, lattice.unit);
+        paints.colors = std::move(found.colors);
+        paints.material_of = std::move(found.material_of);
+    }
+    fathom::mesh::Progress progress;
+    if (options.progress) progress.report = [&](double) { return options.progress(simplify_from); };
+    fathom::mesh::Simplified found =
+        simplify(made.mesh, paints,
+                 {options.simplify, lattice.side(lattice.level), threads_of(settings_of(options))},
+                 progress);
+    if (progress.cancelled) made.failure = fathom::mesh::Failure::Cancelled;
+    made.mesh = std::move(found.mesh);
+    made.simplified = found.undone ? 0 : options.simplify;
+    return {found.before, found.colored, found.refused, found.undone};
+}
+
 bool good(const MeshOptions &options) {
     if (!(options.tolerance >= 0 && std::isfinite(options.tolerance))) return false;
+    if (!(options.simplify >= 0 && std::isfinite(options.simplify))) return false;
     if (options.tolerance == 0 && (options.resolution < 1 || options.resolution > most_cells))
         return false;
     for (std::size_t i = 0; options.bounds && i < 3; ++i) {
@@ -196,25 +225,39 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
         return without_mesh(why.status, std::move(why.message));
     return guarded(
         [&] {
+            const double share = options.simplify > 0 ? simplify_from : 1;
+            const fathom::mesh::Settings settings = settings_of(options, share);
             fathom::mesh::Made made;
+            fathom::mesh::Certificate certificate;
             Mesh mesh;
             if (options.certify) {
-                fathom::mesh::Mended mended =
-                    make_certified_mesh(ir_of(scene), settings_of(options));
+                fathom::mesh::Mended mended = make_certified_mesh(ir_of(scene), settings);
                 made = std::move(mended.made);
-                if (made.failure != fathom::mesh::Failure::None) return refused(made);
-                mesh.certificate = certificate_of(mended.certificate);
-                list_undecided(made.octree, mended.certificate.undecided, mesh);
+                certificate = std::move(mended.certificate);
             } else {
-                made = fathom::mesh::make_mesh(ir_of(scene), settings_of(options));
+                made = fathom::mesh::make_mesh(ir_of(scene), settings);
+            }
+            if (made.failure != fathom::mesh::Failure::None) return refused(made);
+            if (options.simplify > 0) {
+                mesh.simplification = simplified(made, ir_of(scene), options);
                 if (made.failure != fathom::mesh::Failure::None) return refused(made);
-                list_undecided(made.octree, made.octree.undecided, mesh);
+                if (options.certify && made.simplified > 0) {
+                    fathom::mesh::Progress progress;
+                    if (options.progress) progress.report = options.progress;
+                    progress.from = 0.9;
+                    certificate = certify(ir_of(scene), settings, made, progress);
+                    if (progress.cancelled) made.failure = fathom::mesh::Failure::Cancelled;
+                    if (progress.cancelled) return refused(made);
+                }
             }
             if (options.colors) {
                 const fathom::mesh::Lattice &lattice = made.octree.lattice;
                 take_appearance(appearance_of(ir_of(scene), options.time, made.mesh, lattice.unit),
                                 mesh);
             }
+            if (options.certify) mesh.certificate = certificate_of(certificate);
+            list_undecided(made.octree,
+                           options.certify ? certificate.undecided : made.octree.undecided, mesh);
             mesh.vertices = std::move(made.mesh.vertices);
             mesh.normals = std::move(made.mesh.normals);
             mesh.triangles = std::move(made.mesh.triangles);

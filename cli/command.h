@@ -139,6 +139,7 @@ struct SolidArguments {
 };
 // `fathom mesh`.
 struct MeshCommand {
+    double simplify = 0; // a distance; 0: no triangles are left out
     SolidArguments solid; // its scene's file is each of these in turn
     std::vector<std::string> files;
     std::string out;    // `{}` stands for the scene's name

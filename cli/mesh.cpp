@@ -48,6 +48,13 @@ Json json_of(const v1::Mesh &mesh) {
     json["mesh_area"] = c.mesh_area;
     json["undecided_cells"] = mesh.undecided_cells;
     json["unproved_places"] = c.unproved_places;
+    json["seam_cells"] = c.seam_cells;
+    json["seam_width"] = c.seam_width;
+    if (mesh.simplification)
+        json["simplified"] = {{"triangles_before", mesh.simplification->triangles_before},
+                              {"colored_triangles", mesh.simplification->colored_triangles},
+                              {"refused", mesh.simplification->refused},
+                              {"undone", mesh.simplification->undone}};
     json["undecided"] = Json::array();
     for (const v1::Box &box : mesh.undecided) json["undecided"].push_back({box.lo, box.hi});
     json["rests_on"] = c.rests_on;
@@ -103,6 +110,22 @@ void say_means(const v1::Mesh &mesh, const std::string &out, Terminal &terminal)
             terminal.say(fmt::format("{}: highlight or emission of material `{}` differ from place "
                                      "to place; the file has their means",
                                      out, material.name));
+}
+
+// What --simplify left as it was, and why.
+void say_simplified(const v1::Mesh &mesh, const std::string &what, double tolerance,
+                    Terminal &terminal) {
+    if (!mesh.simplification) return;
+    const v1::MeshSimplification &s = *mesh.simplification;
+    if (s.undone)
+        terminal.say(
+            fmt::format("{}: not simplified: fewer triangles would have had another shape; "
+                        "a smaller tolerance than {} may do",
+                        what, tolerance));
+    else if (2 * s.colored_triangles > mesh.triangles.size())
+        terminal.say(fmt::format("{}: {} of {} triangles stay, since paints meet there; an STL has "
+                                 "no paint",
+                                 what, s.colored_triangles, mesh.triangles.size()));
 }
 
 std::string library_of(const std::string &out) { // of an OBJ
@@ -194,6 +217,7 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
     v1::MeshOptions options = options_of(frame.arguments);
     options.certify = command.json;
     options.colors = format != v1::MeshFormat::Stl;
+    options.simplify = command.simplify;
     options.progress = frame.progress;
     Objects objects;
     if (command.parts)
@@ -216,10 +240,13 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
         for (const v1::PartMesh &part : objects.parts.parts) {
             say_undecided(part.mesh, fmt::format("{}: part `{}`", frame.out, part.name), resolution,
                           terminal);
+            say_simplified(part.mesh, fmt::format("{}: part `{}`", frame.out, part.name),
+                           command.simplify, terminal);
             objects.all.push_back({part.name, &part.mesh});
         }
     } else {
         say_undecided(objects.whole, frame.out, resolution, terminal);
+        say_simplified(objects.whole, frame.out, command.simplify, terminal);
         objects.all.push_back({name, &objects.whole});
     }
     if (format == v1::MeshFormat::Glb || format == v1::MeshFormat::Obj)

@@ -24,12 +24,13 @@ fathom::MeshOptions mesh_options(PyScene &scene, int resolution, double toleranc
 
 fathom::Mesh mesh(PyScene &scene, int resolution, double tolerance, double time,
                   const py::object &lo, const py::object &hi, bool certify, bool colors,
-                  unsigned threads, const py::object &progress) {
+                  double simplify, unsigned threads, const py::object &progress) {
     Progress told(progress);
     fathom::MeshOptions options =
         mesh_options(scene, resolution, tolerance, time, lo, hi, threads, told);
     options.certify = certify;
     options.colors = colors;
+    options.simplify = simplify;
     fathom::Mesh made;
     {
         const py::gil_scoped_release release;
@@ -86,7 +87,7 @@ void add_solids(py::class_<PyScene> &scene) {
     scene
         .def("mesh", &mesh, "resolution"_a = 128, "tolerance"_a = 0.0, "time"_a = 0.0,
              "lo"_a = py::none(), "hi"_a = py::none(), "certify"_a = false, "colors"_a = false,
-             "threads"_a = 0, "progress"_a = py::none(),
+             "simplify"_a = 0.0, "threads"_a = 0, "progress"_a = py::none(),
              "The surface as triangles. Raises ValueError where there is none, and says why.")
         .def_property_readonly(
             "parts",

@@ -39,6 +39,9 @@ struct MeshOptions {
     unsigned threads = 0;      /**< 0: as many as the machine has cores */
     bool certify = false;      /**< prove what `Mesh::certificate` says; takes longer */
     bool colors = false;       /**< also `Mesh::colors` */
+    /** Fewer triangles: every point of the mesh with those of the cells has a point of the new one as
+     *  near as this, in the scene's units; a certificate is of the new one. 0: none are left out. */
+    double simplify = 0;
     /** Called now and then by one thread at a time, with the share that is done; false cancels. */
     std::function<bool(double done)> progress;
 };
@@ -64,6 +67,10 @@ struct MeshCertificate {
     /** Every point of the mesh has surface as near as this; every point of the surface has mesh as
      *  near as this. Where not `certified`: but for the undecided cells and the unproved places. */
     double mesh_to_surface = 0, surface_to_mesh = 0;
+    /** Cells with places where parts of the solid touch, or are no farther apart than `seam_width`:
+     *  what surface there may be between them is not in the mesh. */
+    std::size_t seam_cells = 0;
+    double seam_width = 0;
     std::size_t unproved_places = 0; /**< pieces of triangles without surface found near them */
     std::size_t components = 0;      /**< of the mesh */
     long genus = 0;                  /**< of the mesh, all its components together */
@@ -86,6 +93,19 @@ struct MeshMaterial {
     bool colored = false;
     /** So do `specular`, `emission` or `exponent`, whose means stand here. */
     bool varies = false;
+};
+
+/** What MeshOptions::simplify did. */
+struct MeshSimplification {
+    std::size_t triangles_before = 0;
+    /** Of these, so many were not touched, since the colours of their corners differ: there paints
+     *  meet. With MeshOptions::colors. */
+    std::size_t colored_triangles = 0;
+    /** So often a part of the mesh was done again, more carefully, or left as it was, since a check of
+     *  it failed. */
+    std::size_t refused = 0;
+    bool undone =
+        false; /**< the mesh is as it was: fewer triangles would have been another shape */
 };
 
 /** A closed, oriented 2-manifold that does not cross itself (docs/meshes.md says why). Vertices are
@@ -111,8 +131,9 @@ struct Mesh {
      *  to tell, or since what is there is thinner than the finest cells; the first 1,000 of them.
      *  With a certificate those in which surface may be farther from the mesh than a cell's side. */
     std::vector<Box> undecided;
-    std::size_t undecided_cells = 0;            /**< all of them */
-    std::optional<MeshCertificate> certificate; /**< with MeshOptions::certify */
+    std::size_t undecided_cells = 0;                  /**< all of them */
+    std::optional<MeshCertificate> certificate;       /**< with MeshOptions::certify */
+    std::optional<MeshSimplification> simplification; /**< with MeshOptions::simplify */
     explicit operator bool() const { return status == MeshStatus::Done; }
 };
 

@@ -139,6 +139,7 @@ class Scene:
         hi: _Corner | None = None,
         certify: bool = False,
         colors: bool = False,
+        simplify: float = 0.0,
         threads: int = 0,
         progress: _Progress | None = None,
     ) -> Mesh: ...
