@@ -139,12 +139,12 @@ struct SolidArguments {
 };
 // `fathom mesh`.
 struct MeshCommand {
-    double simplify = 0; // a distance; 0: no triangles are left out
     SolidArguments solid; // its scene's file is each of these in turn
     std::vector<std::string> files;
-    std::string out;    // `{}` stands for the scene's name
-    bool parts = false; // each an object of its own
-    bool json = false;  // the certificate
+    std::string out;     // `{}` stands for the scene's name
+    double simplify = 0; // a distance; 0: no triangles are left out
+    bool parts = false;  // each an object of its own
+    bool json = false;   // the certificate
 };
 // `fathom measure`.
 struct MeasureCommand {

@@ -188,7 +188,7 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
                     continue;
                 }
                 here.farthest = std::max(here.farthest, reach.farthest);
-                if (!reach.seam_width) continue;
+                if (!(reach.seam_width > 0.0)) continue;
                 here.seams.push_back(leaves[k]);
                 here.seam_width = std::max(here.seam_width, *reach.seam_width);
             }

@@ -2,7 +2,7 @@
 // that meshoptimizer collapses (Garland and Heckbert 1997). What that library does not promise is
 // checked here, block by block; where a check fails the block is tried again with a smaller aim, and
 // at last stays as it was
-// (docs/meshes.md, 10).
+// (docs/meshes.md, 11).
 #pragma once
 
 #include "mesh/polygons.h"

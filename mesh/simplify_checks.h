@@ -1,4 +1,4 @@
-// What is checked of a mesh that was simplified, and of pieces of it (docs/meshes.md, 10).
+// What is checked of a mesh that was simplified, and of pieces of it (docs/meshes.md, 11).
 #pragma once
 
 #include "mesh/grid.h"

@@ -55,6 +55,19 @@ TEST_CASE("--json prints the certificate, and says partial where something is un
     CHECK(shell(folder, "fathom mesh ball.sdf --json -o -").exit == 2);
 }
 
+TEST_CASE("--simplify writes fewer triangles, and the certificate is of these") {
+    ScratchFolder folder;
+    folder.write("part.sdf", "box(1) - sphere(0.62)\n");
+    CHECK(shell(folder, "fathom mesh part.sdf --resolution 24 -o fine.stl").exit == 0);
+    const Result made =
+        shell(folder, "fathom mesh part.sdf --resolution 24 --simplify 0.01 --json -o coarse.stl");
+    CHECK(made.exit == 0);
+    CHECK(contains(made.out, "{\"status\":\"certified\","));
+    CHECK(contains(made.out, "\"simplified\":{\"triangles_before\":"));
+    CHECK(folder.read("coarse.stl").size() < folder.read("fine.stl").size() / 2);
+    CHECK(shell(folder, "fathom mesh part.sdf --simplify -1 -o a.stl").exit == 2);
+}
+
 TEST_CASE("what has no mesh says why, and writes nothing") {
     ScratchFolder folder;
     folder.write("ground.sdf", "plane(Y, 0)\n");

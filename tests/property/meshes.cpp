@@ -3,6 +3,7 @@
 // FATHOM_EFFORT and FATHOM_SEED in the environment make it longer, or another.
 #include "driver/compile.h"
 #include "mesh/certify.h"
+#include "mesh/simplify.h"
 #include "random_scenes.h"
 #include "tests/support/effort.h"
 #include "tests/support/mesh_checks.h"
@@ -110,7 +111,7 @@ void hold_against(const mesh::Made &made, const mesh::Certificate &certificate,
 TEST_CASE(
     "meshes of random scenes are closed, do not cross themselves, and are as near as claimed") {
     const std::uint64_t count = std::uint64_t(test::effort(8)), seed = std::uint64_t(test::seed());
-    std::size_t made_meshes = 0, triangles = 0, certified = 0;
+    std::size_t made_meshes = 0, triangles = 0, kept_triangles = 0, certified = 0;
     for (std::uint64_t number = 0; number < count; ++number) {
         test::Dice dice{seed * 1'000'003 + number};
         test::RandomScene scene(seed * 7919 + number);
@@ -141,6 +142,15 @@ TEST_CASE(
         CHECK(found.equal_points == 0);
         CHECK(test::crossings(made.mesh.vertices, made.mesh.triangles) == 0);
         mesh::Progress progress;
+        const mesh::Lattice &lattice = made.octree.lattice;
+        const double side = lattice.side(lattice.level);
+        const mesh::Simplified fewer =
+            simplify(made.mesh, {}, {dice.in(0.05, 1) * side, side, 2}, progress);
+        const test::Survey left = test::survey(fewer.mesh.vertices, fewer.mesh.triangles);
+        CHECK(left.closed());
+        CHECK((left.components == found.components && left.genus == found.genus));
+        CHECK(test::crossings(fewer.mesh.vertices, fewer.mesh.triangles) == 0);
+        kept_triangles += fewer.mesh.triangles.size();
         const mesh::Certificate certificate = certify(c.scene, settings, made, progress);
         if (!certificate.certified()) continue;
         ++certified;
@@ -148,5 +158,7 @@ TEST_CASE(
     }
     CHECK(made_meshes > count / 3);
     CHECK(certified > made_meshes / 4);
-    WARN(made_meshes << " meshes, " << triangles << " triangles, " << certified << " certified");
+    CHECK(kept_triangles < triangles);
+    WARN(made_meshes << " meshes, " << triangles << " triangles, " << kept_triangles
+                     << " when simplified, " << certified << " certified");
 }
