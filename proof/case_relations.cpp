@@ -96,7 +96,8 @@ bool Cases::is_0(NodeId id) {
         if (!std::ranges::all_of(parts, [&](NodeId part) { return is_at_least_0(part); }))
             return false;
         // first those that are made of what the border is made of
-        std::ranges::stable_partition(parts, [&](NodeId part) { return is_of_border(part); });
+        std::stable_partition(parts.begin(), parts.end(),
+                              [&](NodeId part) { return is_of_border(part); });
         return std::ranges::any_of(parts, [&](NodeId part) { return is_0(part); });
     }
     if (node.op == Op::Length || (node.op == Op::Dot && arg(0) == arg(1))) {
