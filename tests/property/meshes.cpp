@@ -128,7 +128,8 @@ TEST_CASE(
         if (dice.chance(0.2)) settings.bounds = ir::Box{{-0.5, -0.7, -0.6}, {0.9, 0.8, 0.7}};
         const mesh::Made made = mesh::make_mesh(c.scene, settings);
         INFO(text << "resolution " << settings.resolution << (settings.bounds ? ", cut" : ""));
-        if (made.failure == mesh::Failure::Empty || made.failure == mesh::Failure::Endless)
+        if (made.failure == mesh::Failure::Empty || made.failure == mesh::Failure::Endless ||
+            made.failure == mesh::Failure::Unseen) // said: of what is nearly all cut away
             continue;
         REQUIRE(made.failure == mesh::Failure::None);
         ++made_meshes;
