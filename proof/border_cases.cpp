@@ -15,6 +15,7 @@ namespace fathom::proof {
 namespace {
 
 constexpr int max_cases = 600, max_forks = 40;
+constexpr double rounding_of_squares = 1e-12; // what double precision loses
 
 } // namespace
 
@@ -265,7 +266,7 @@ bool Cases::solve(const Sum &gap) {
     }
     const Sum less = add({}, gap, -1);
     for (const Sum &sum : {gap, less})
-        if (const auto roots = squares_in(sum)) { // each is 0
+        if (const auto roots = squares_in(sum, rounding_of_squares)) { // each is 0
             for (const Sum &root : *roots)
                 if (auto found = solved_for_atom(reduced(root, case_)))
                     case_.solved.push_back(std::move(*found));

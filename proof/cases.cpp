@@ -126,12 +126,12 @@ std::optional<Sum> root_of_square(const Sum &a) {
     return {};
 }
 
-std::optional<std::vector<Sum>> squares_in(const Sum &a) {
+std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding) {
     std::vector<Sum> roots;
     Sum rest = a, sizes; // sizes: of all that was added up to each coefficient
     for (const auto &[m, c] : a) sizes[m] = std::fabs(c);
     const auto is_nothing = [&](const Product &m, double c) {
-        return std::fabs(c) <= granted * sizes[m];
+        return std::fabs(c) <= rounding * sizes[m];
     };
     for (;;) {
         std::erase_if(rest, [&](const auto &term) { return is_nothing(term.first, term.second); });
@@ -164,7 +164,7 @@ std::optional<std::vector<Sum>> squares_in(const Sum &a) {
     }
 }
 
-bool is_sum_of_squares(const Sum &a) { return squares_in(a).has_value(); }
+bool is_sum_of_squares(const Sum &a) { return squares_in(a, granted).has_value(); }
 
 std::optional<std::pair<std::uint32_t, Sum>> solved_for_atom(const Sum &sum) {
     for (const auto &[m, c] : sum) {

@@ -30,8 +30,10 @@ std::optional<double> as_constant(const Sum &a);
 std::optional<Sum> root_of_square(const Sum &a);
 
 // Of degree 2 at most: sums of degree 1 of whose squares, by factors above 0, it is the sum, perhaps
-// with a number above 0 besides, so that it is never below 0 (Cholesky's way).
-std::optional<std::vector<Sum>> squares_in(const Sum &a);
+// with a number above 0 besides, so that it is never below 0 (Cholesky's way). What is at most
+// `rounding` of all that was added up to it is nothing: where a sum is 0 its squares are, but a root turns
+// an error e into sqrt(e).
+std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding);
 bool is_sum_of_squares(const Sum &a);
 
 // An atom that stands in one term alone, and what it is where sum = 0.
