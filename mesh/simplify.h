@@ -1,8 +1,7 @@
 // Fewer triangles: a mesh that is no farther than a tolerance from the one it comes from, by edges
 // that meshoptimizer collapses (Garland and Heckbert 1997). What that library does not promise is
-// checked here, block by block; where a check fails the block is tried again with a smaller aim, and
-// at last stays as it was
-// (docs/meshes.md, 11).
+// checked here, block by block; where a check fails the block is tried again with a smaller aim, and at
+// last stays as it was (docs/meshes.md, 11).
 #pragma once
 
 #include "mesh/polygons.h"
