@@ -143,7 +143,8 @@ bool Cases::are_equal_on_line(const Sum &a, const Sum &b) {
     for (Atom &atom : atoms) {
         if (!atom.below) continue;
         atom.below = reduced(*atom.below, case_);
-        if (!atom.range) atom.range = range_of_root(*atom.below, atoms);
+        if (const auto range = range_of(*atom.below, atoms); range && !atom.range)
+            atom.range = Interval(0, sqrt(*range).hi);
     }
     bool holds = agree_on_line(rows, one, other, atoms, looked_.on_lines);
     for (std::uint32_t r = 0; !holds && r < atoms.size(); ++r) { // x*x + y*y as r*r
@@ -187,19 +188,6 @@ Sum Cases::with_square(const Sum &sum, std::uint32_t r, const Sum &square) {
         out = add(out, *whole);
     }
     return sum;
-}
-
-std::optional<Interval> Cases::range_of_root(const Sum &below, const std::vector<Atom> &atoms) {
-    Interval sum;
-    for (const auto &[m, c] : below) {
-        Interval term = c;
-        for (std::uint32_t a : m) {
-            if (!atoms[a].range) return {};
-            term = term * *atoms[a].range;
-        }
-        sum += term;
-    }
-    return Interval(0, sqrt(sum).hi);
 }
 
 bool Cases::impossible(const Case &c, const Inequality &more) {

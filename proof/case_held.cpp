@@ -7,12 +7,12 @@
 
 namespace fathom::proof {
 
-std::optional<Interval> Cases::range_of(const Sum &held) const {
+std::optional<Interval> Cases::range_of(const Sum &of, const std::vector<Atom> &atoms) {
     Interval sum;
-    for (const auto &[m, c] : held) {
+    for (const auto &[m, c] : of) {
         Interval term = c;
         for (std::size_t i = 0; i < m.size(); ++i) {
-            const auto &range = atoms_[m[i]].range;
+            const auto &range = atoms[m[i]].range;
             if (!range) return {};
             const bool twice = i + 1 < m.size() && m[i] == m[i + 1];
             term = term * (twice ? square(*range) : *range);
@@ -23,18 +23,23 @@ std::optional<Interval> Cases::range_of(const Sum &held) const {
     return sum;
 }
 
+bool Cases::is_held(const Sum &sum) const {
+    return std::ranges::all_of(sum, [&](const auto &term) {
+        return std::ranges::all_of(term.first, [&](std::uint32_t a) { return atoms_[a].held; });
+    });
+}
+
 std::optional<Sum> Cases::quotient(const Sum &a, const Sum &b) {
     if (b.size() != 1 || b.begin()->first.size() != 1) return {};
     const std::uint32_t d = b.begin()->first[0];
     const auto &below = atoms_[d].range;
     if (!atoms_[d].held || !below || below->contains(0)) return {};
-    for (const auto &[m, c] : a)
-        if (!std::ranges::all_of(m, [&](std::uint32_t x) { return atoms_[x].held; })) return {};
+    if (!is_held(a)) return {};
     Atom about;
     about.held = true;
     const Sum of = add({}, a, 1 / b.begin()->second);
     about.quotient = std::pair(d, of);
-    if (const auto range = range_of(of)) {
+    if (const auto range = range_of(of, atoms_)) {
         about.range = *range / *below;
         about.never_negative = about.range->lo >= 0;
     }
@@ -66,7 +71,7 @@ bool Cases::solve_along_line(const Sum &gap) {
         at->second[held] = c;
     }
     const auto never_0 = [&](const Sum &held) {
-        const auto range = range_of(held);
+        const auto range = range_of(held, atoms_);
         return range && !range->contains(0);
     };
     if (parts.size() != 2 || !(never_0(parts[0].second) || never_0(parts[1].second))) return false;

@@ -98,8 +98,8 @@ class Cases {
     bool are_equal_on_line(const Sum &a, const Sum &b);
     // With r*r for the leading term of what r is the root of, less the other terms.
     static Sum with_square(const Sum &sum, std::uint32_t r, const Sum &square);
-    // Of the root of a sum of products of what has a range.
-    static std::optional<Interval> range_of_root(const Sum &below, const std::vector<Atom> &atoms);
+    // Of a sum of products of what has a range.
+    static std::optional<Interval> range_of(const Sum &sum, const std::vector<Atom> &atoms);
 
     bool impossible(const Case &c, const Inequality &more);
     // The ranges of what is held and stands in products, and what follows of rows of degree 1,
@@ -115,7 +115,7 @@ class Cases {
     bool solve(const Sum &gap);
     // A u + B v + C = 0 with A, B, C of what is held: u = u0 - B t and v = v0 + A t.
     bool solve_along_line(const Sum &gap);
-    std::optional<Interval> range_of(const Sum &held) const; // where that is known
+    bool is_held(const Sum &sum) const; // of what is held alone
     // a / b, both held, b a number times an atom that is never 0.
     std::optional<Sum> quotient(const Sum &a, const Sum &b);
     std::optional<std::pair<Product, Sum>> in_place_of_pair(const Product &m) const;

@@ -184,10 +184,8 @@ std::uint32_t Cases::root_atom(const Sum &below, bool of_squares) {
     Atom about;
     about.never_negative = true;
     about.below = below;
-    about.held = std::ranges::all_of(below, [&](const auto &term) {
-        return std::ranges::all_of(term.first, [&](std::uint32_t a) { return atoms_[a].held; });
-    });
-    const auto range = about.held ? range_of(below) : std::nullopt;
+    about.held = is_held(below);
+    const auto range = about.held ? range_of(below, atoms_) : std::nullopt;
     if (range) about.range = sqrt(*range);
     if (of_squares || (range && range->lo >= 0))
         about.square = below; // of less than 0 the root is 0
