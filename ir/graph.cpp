@@ -108,6 +108,13 @@ std::uint64_t hash_of(Op op, Type type, std::span<const NodeId> args, std::uint3
     for (NodeId arg : args) h = hash_combine(h, arg.index);
     return h;
 }
+std::uint64_t hash_of(const Constant &constant) {
+    std::uint64_t h = static_cast<std::uint64_t>(constant.type);
+    for (int i = 0; i < components(constant.type); ++i)
+        h = hash_combine(h,
+                         std::bit_cast<std::uint64_t>(constant.value[static_cast<std::size_t>(i)]));
+    return h;
+}
 
 // The type of an op whose rule is Given, where its arguments decide it.
 Type given_type(const Graph &graph, Op op, std::span<const NodeId> args, std::uint32_t payload) {
@@ -167,8 +174,30 @@ NodeId Graph::make(Op op, Type type, std::initializer_list<NodeId> args, std::ui
     return make(op, type, std::span<const NodeId>(args.begin(), args.size()), payload);
 }
 
+template <class Equal> NodeId &Graph::slot_of(std::uint64_t hash, const Equal &equal) {
+    const auto free_or_equal = [](std::vector<NodeId> &slots, std::uint64_t of, const auto &same) {
+        const std::size_t mask = slots.size() - 1;
+        std::size_t at = of & mask;
+        while (slots[at] && !same(slots[at])) at = (at + 1) & mask;
+        return at;
+    };
+    if (nodes_.size() * 2 >= slots_.size()) {
+        std::vector<NodeId> grown(std::max<std::size_t>(1024, slots_.size() * 4));
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            const NodeId id{i};
+            const Node &node = nodes_[id];
+            const std::uint64_t of = is_constant(id)
+                                         ? hash_of(constant_of(id))
+                                         : hash_of(node.op, node.type, args(id), node.payload);
+            grown[free_or_equal(grown, of, [](NodeId) { return false; })] = id;
+        }
+        slots_ = std::move(grown);
+    }
+    return slots_[free_or_equal(slots_, hash, equal)];
+}
+
 NodeId Graph::intern(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
-    const auto equal = [&](NodeId id) {
+    NodeId &slot = slot_of(hash_of(op, type, args, payload), [&](NodeId id) {
         const Node &node = nodes_[id];
         if (node.op != op || node.type != type || node.payload != payload ||
             node.count != args.size())
@@ -176,23 +205,12 @@ NodeId Graph::intern(Op op, Type type, std::span<const NodeId> args, std::uint32
         const std::span<const NodeId> have = this->args(id);
         return std::equal(have.begin(), have.end(), args.begin()) ||
                (commutes(op) && have[0] == args[1] && have[1] == args[0]);
-    };
-    if (nodes_.size() * 2 >= slots_.size()) {
-        std::vector<NodeId> grown(std::max<std::size_t>(1024, slots_.size() * 4));
-        for (std::size_t i = 0; i < nodes_.size(); ++i) {
-            const Node &node = nodes_[NodeId{i}];
-            std::size_t at = hash_of(node.op, node.type, this->args(NodeId{i}), node.payload);
-            for (at &= grown.size() - 1; grown[at]; at = (at + 1) & (grown.size() - 1)) {
-            }
-            grown[at] = NodeId{i};
-        }
-        slots_ = std::move(grown);
-    }
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t at = hash_of(op, type, args, payload) & mask;
-    for (; slots_[at]; at = (at + 1) & mask)
-        if (equal(slots_[at])) return slots_[at];
+    });
+    if (!slot) slot = add_node(op, type, args, payload);
+    return slot;
+}
 
+NodeId Graph::add_node(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {
     Node node{op, type, payload, static_cast<std::uint32_t>(args_.size()),
               static_cast<std::uint32_t>(args.size())};
     const std::less<> before;
@@ -205,7 +223,6 @@ NodeId Graph::intern(Op op, Type type, std::span<const NodeId> args, std::uint32
     }
     const NodeId id = nodes_.add(node);
     reads_.push_back(reads_of(nodes_[id]));
-    slots_[at] = id;
     return id;
 }
 
@@ -227,22 +244,16 @@ NodeId Graph::folded(Op op, Type type, std::span<const NodeId> args, std::uint32
 NodeId Graph::constant(const Constant &wanted) {
     Constant value = wanted;
     const std::size_t count = static_cast<std::size_t>(components(value.type));
-    std::uint64_t h = static_cast<std::uint64_t>(value.type);
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < count; ++i)
         if (value.value[i] == 0) value.value[i] = 0; // -0 is the same number
-        h = hash_combine(h, std::bit_cast<std::uint64_t>(value.value[i]));
-    }
     std::fill(value.value.begin() + static_cast<std::ptrdiff_t>(count), value.value.end(), 0.0);
-    const auto [first, last] = interned_constants_.equal_range(h);
-    for (auto it = first; it != last; ++it) {
-        const Constant &have = constants_[Id<Constant>{std::size_t{it->second}}];
-        if (have.type == value.type &&
-            std::memcmp(have.value.data(), value.value.data(), count * sizeof(double)) == 0)
-            return intern(Op::Const, value.type, {}, it->second);
-    }
-    const Id<Constant> id = constants_.add(value);
-    interned_constants_.emplace(h, id.index);
-    return intern(Op::Const, value.type, {}, id.index);
+    NodeId &slot = slot_of(hash_of(value), [&](NodeId id) {
+        return is_constant(id) && constant_of(id).type == value.type &&
+               std::memcmp(constant_of(id).value.data(), value.value.data(),
+                           count * sizeof(double)) == 0;
+    });
+    if (!slot) slot = add_node(Op::Const, value.type, {}, constants_.add(value).index);
+    return slot;
 }
 
 NodeId Graph::number(double value) { return constant({Type::Float, {value}}); }
@@ -306,7 +317,7 @@ NodeId Graph::call(FunctionId id, std::span<const NodeId> args) {
 std::size_t Graph::bytes() const {
     constexpr std::size_t hashed = 48; // what a hash table adds
     return nodes_.size() * (sizeof(Node) + sizeof(Reads) + 2 * sizeof(NodeId)) +
-           args_.size() * sizeof(NodeId) + constants_.size() * (sizeof(Constant) + hashed) +
+           args_.size() * sizeof(NodeId) + constants_.size() * sizeof(Constant) +
            functions_.size() * (sizeof(Function) + hashed) +
            loops_.size() * (sizeof(Loop) + hashed) + table_bytes_;
 }

@@ -200,6 +200,9 @@ class Graph {
   private:
     NodeId folded(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload); // or none
     NodeId intern(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload);
+    NodeId add_node(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload);
+    // Where the node that is `equal` stands in slots_, or the next one of this hash will.
+    template <class Equal> NodeId &slot_of(std::uint64_t hash, const Equal &equal);
     Reads reads_of(const Node &node) const;
     Arena<Node> nodes_;
     std::vector<NodeId> args_;
@@ -213,7 +216,6 @@ class Graph {
     std::size_t table_bytes_ = 0;
     std::vector<Constant> folding_; // the arguments of the fold in hand
     std::vector<NodeId> slots_;     // open addressing by content; a power of two, at most half full
-    std::unordered_multimap<std::uint64_t, std::uint32_t> interned_constants_;
     std::unordered_multimap<std::uint64_t, TableId> interned_tables_;
 };
 

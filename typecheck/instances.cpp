@@ -36,7 +36,7 @@ struct SkeletonBuilder {
     bool too_large = false;
 
     void node(NodeId id) {
-        too_large = !ir::take_apart(scene.graph, id, largest_walk, tree) || too_large;
+        too_large = too_large || !ir::take_apart(scene.graph, id, largest_walk, tree);
         stated.resize(tree.row.size(), in_statement);
     }
     void region(const ir::Region &r) {
@@ -47,10 +47,8 @@ struct SkeletonBuilder {
         for (const ir::Region &l : r.less) region(l);
     }
     void shape(ShapeId id) {
-        if (tree.words.size() > largest_walk) {
-            too_large = true;
-            return;
-        }
+        too_large = too_large || tree.words.size() > largest_walk;
+        if (too_large) return;
         const ir::Shape &s = scene.shapes[id];
         tree.words.push_back(
             static_cast<std::uint64_t>(s.kind) << 40 | static_cast<std::uint64_t>(s.map) << 32 |
@@ -304,11 +302,11 @@ std::vector<ShapeId> gather_instances(Interpreter &ev, std::vector<ShapeId> shap
     }
     std::map<std::vector<std::uint64_t>, Group> groups;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        if (taken[i]) continue;
+        if (taken[i] || ev.scene.shapes[shapes[i]].kind == ShapeKind::Instances) continue;
         SkeletonBuilder builder{ev.scene};
         builder.shape(shapes[i]);
-        constexpr std::size_t words_of_a_step = 32; // in time
-        if (!spend(ev, place, builder.tree.words.size() / words_of_a_step)) return shapes;
+        constexpr std::size_t words_of_a_step = 8; // in time
+        if (!spend(ev, place, 1 + builder.tree.words.size() / words_of_a_step)) return shapes;
         if (builder.too_large || builder.tree.row.empty()) continue;
         Group &g = groups[builder.tree.words];
         g.members.push_back(i);
