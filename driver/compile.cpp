@@ -3,6 +3,7 @@
 #include "driver/edit.h"
 #include "driver/framing.h"
 #include "driver/scene_files.h"
+#include "driver/unproved_ranges.h"
 #include "ir/lower/lower.h"
 #include "ir/passes/early_exit.h"
 #include "ir/passes/operations.h"
@@ -48,6 +49,7 @@ struct Effort {
     std::size_t work;
     proof::BoundCache &bounds;
     Stop stop;
+    std::vector<ir::ShapeId> asked{}; // what prove_one was asked of
 };
 
 // What the proof says of one shape while the scene is still being built (`lipschitz(s)`, `taper`).
@@ -63,6 +65,7 @@ std::optional<ir::ShapeFact> prove_one(ir::Scene &scene, ir::ShapeId shape, Effo
     ir::ShapeId root = std::exchange(scene.root, shape);
     std::vector<ir::TopLevel> top_level = std::exchange(scene.top_level, {{shape, {}}});
     effort.work -= proof::prove(scene, discarded, options);
+    effort.asked.push_back(shape);
     scene.root = root;
     scene.top_level = std::move(top_level);
     if (discarded.has_errors()) return std::nullopt;
@@ -127,15 +130,22 @@ void cancel(Compilation &out) {
     out.cancelled = true;
 }
 
-void run_phases(Compilation &out, const typecheck::Loader &loader, const std::string &identity,
-                SourceId root, const CompileOptions &options) {
+// What a scene is compiled from, beside the options.
+struct Text {
+    const typecheck::Loader &loader;
+    const std::string &identity;
+    SourceId root;
+};
+
+// `at_values`: as typecheck::Options has it.
+void run_phases(Compilation &out, const Text &text, const CompileOptions &options, Effort &effort,
+                const std::vector<Span> &at_values) {
     enter(options, Phase::Check);
-    proof::BoundCache own;
-    Effort effort{options.limits.proof, options.bounds ? *options.bounds : own,
-                  Stop(options.cancelled)};
+    typecheck::Options checks = check_options(options, effort);
+    checks.at_values = at_values;
     typecheck::Checked checked =
-        typecheck::check(out.sources, root, identity, standard_library(), loader,
-                         check_options(options, effort), out.diagnostics);
+        typecheck::check(out.sources, text.root, text.identity, standard_library(), text.loader,
+                         checks, out.diagnostics);
     if (checked.no_memory) throw std::bad_alloc();
     out.scene = std::move(checked.scene);
     out.usage_errors = std::move(checked.usage_errors);
@@ -166,7 +176,7 @@ void run_phases(Compilation &out, const typecheck::Loader &loader, const std::st
         if (effort.stop.now()) return cancel(out);
         const ir::Graph &graph = out.scene.graph;
         const Span whole =
-            out.scene.top_level.empty() ? Span{root, 0, 0} : out.scene.top_level[0].span;
+            out.scene.top_level.empty() ? Span{text.root, 0, 0} : out.scene.top_level[0].span;
         const std::size_t functions = ir::functions_called(graph, roots_of(out.scene));
         if (functions > options.limits.functions)
             out.diagnostics
@@ -194,15 +204,37 @@ void run_phases(Compilation &out, const typecheck::Loader &loader, const std::st
     enter(options, Phase::Done);
 }
 
+// The phases; and again, where the proof refuses the ranges of params, with these at their present
+// values. What is drawn once is proved for these alone, and nothing is said.
+void run_phases(Compilation &out, const Text &text, const CompileOptions &options) {
+    proof::BoundCache own;
+    const Effort whole{options.limits.proof, options.bounds ? *options.bounds : own,
+                       Stop(options.cancelled)};
+    Effort first = whole, second = whole;
+    Compilation again;
+    again.sources = out.sources, again.diagnostics = out.diagnostics;
+    run_phases(out, text, options, first, {});
+    if (out.cancelled || !out.diagnostics.has_errors() || (options.strict_proof && !options.times))
+        return;
+    const std::vector<Span> params = unproved_ranges(out.scene, out.diagnostics, first.asked);
+    if (params.empty()) return;
+    run_phases(again, text, options, second, params);
+    if (again.cancelled) return cancel(out);
+    if (!again.good()) return;
+    if (!options.times) warn_of_ranges(out.scene, out.diagnostics, params, again.diagnostics);
+    again.proof_steps += out.proof_steps, again.evaluations += out.evaluations;
+    out = std::move(again);
+}
+
 // The phases, or an error where the system gives no memory for them.
-void compile_phases(Compilation &out, const typecheck::Loader &loader, const std::string &identity,
-                    SourceId root, const CompileOptions &options) {
+void compile_phases(Compilation &out, const Text &text, const CompileOptions &options) {
     try {
-        run_phases(out, loader, identity, root, options);
+        run_phases(out, text, options);
     } catch (const std::bad_alloc &) {
         out.scene = {};
         out.diagnostics
-            .add(Code::MemoryLimit, {root, 0, 0}, "the system has no memory left for this scene")
+            .add(Code::MemoryLimit, {text.root, 0, 0},
+                 "the system has no memory left for this scene")
             .help(fmt::format("`--limit memory={}` refuses it sooner, with the place",
                               std::max<std::size_t>(1, options.limits.memory / 2)));
     }
@@ -243,7 +275,7 @@ Compilation compile_imported(const std::string &name, const std::string &text,
             save::import_yaml(out.sources, save_file, out.diagnostics, import);
         const SourceId root =
             out.sources.add(name + " (imported)", std::move(result.sdf), save_file);
-        compile_phases(out, loader, identity, root, options);
+        compile_phases(out, {loader, identity, root}, options);
         if (result.structural_error || attempt == max_attempts ||
             !note_unusable(out, root, result, import.unusable))
             return out;
@@ -260,7 +292,7 @@ Compilation compile_source(const std::string &name, std::string text,
     }
     Compilation out;
     const SourceId root = out.sources.add(name, std::move(text));
-    compile_phases(out, loader, identity, root, options);
+    compile_phases(out, {loader, identity, root}, options);
     return out;
 }
 

@@ -86,6 +86,12 @@ struct Param {
     bool structural = false; // a change rebuilds the scene; else it is a uniform
     std::array<double, 4> value{}, initial{}, lo{}, hi{};
     Span origin;
+
+    Constant present() const { // its value
+        Constant constant{type, {}};
+        std::copy(value.begin(), value.end(), constant.value.begin());
+        return constant;
+    }
 };
 
 // One light; colours are linear.

@@ -6,6 +6,7 @@
 #include "typecheck/interpreter.h"
 
 #include "ir/background.h"
+#include "ir/passes/param_reads.h"
 
 #include <fmt/format.h>
 
@@ -148,58 +149,10 @@ void add_top_level(Interpreter &ev, const Value &v, Span span, std::vector<ir::S
         d.help("name it with `let`, or look at it with `print(…)`");
 }
 
-// The params that shapes and expressions read.
-class ParamReads {
-  public:
-    explicit ParamReads(const ir::Scene &scene)
-        : scene_(scene), used_(scene.params.size(), false) {}
-    bool used(std::size_t param) const { return used_[param]; }
-
-    // What decides the form, without the materials.
-    void form(ir::ShapeId id) {
-        if (!id || !shapes_.insert(id.index).second) return;
-        const ir::Shape &s = scene_.shapes[id];
-        for (ir::NodeId arg : s.args) node(arg);
-        if (s.kind == ir::ShapeKind::Within) region(scene_.shapes.regions[s.payload]);
-        for (ir::ShapeId child : s.children) form(child);
-    }
-    void node(ir::NodeId root) {
-        std::vector<ir::NodeId> todo{root};
-        while (!todo.empty()) {
-            ir::NodeId id = todo.back();
-            todo.pop_back();
-            if (!id || !nodes_.insert(id.index).second || !scene_.graph.reads(id).params) continue;
-            const ir::Node &n = scene_.graph[id];
-            if (n.op == ir::Op::Param) used_[n.payload] = true;
-            if (n.op == ir::Op::Call)
-                todo.push_back(scene_.graph.function(ir::FunctionId{n.payload}).result);
-            if (n.op == ir::Op::Cached)
-                todo.push_back(
-                    scene_.graph.function(scene_.graph.cache(ir::CacheId{n.payload}).field).result);
-            if (n.op == ir::Op::Loop) {
-                const ir::Loop &loop = scene_.graph.loop(ir::LoopId{n.payload});
-                todo.insert(todo.end(), loop.next.begin(), loop.next.end());
-                todo.push_back(loop.condition);
-                todo.push_back(loop.count);
-            }
-            for (ir::NodeId arg : scene_.graph.args(id)) todo.push_back(arg);
-        }
-    }
-
-  private:
-    void region(const ir::Region &r) {
-        node(r.center), node(r.size);
-        for (const ir::Region &less : r.less) region(less);
-    }
-    const ir::Scene &scene_;
-    std::vector<bool> used_;
-    std::set<std::uint32_t> shapes_, nodes_;
-};
-
 // A number that reaches a shape's form needs a range, since the proof holds for all its values
 // (semantics.md, 18); what only paints does not.
 void demand_ranges(Interpreter &ev) {
-    ParamReads geometry(ev.scene);
+    ir::ParamReads geometry(ev.scene);
     geometry.form(ev.scene.root);
     for (std::size_t i = 0; i < ev.scene.params.size(); ++i) {
         const ir::Param p = ev.scene.params[i];
@@ -218,7 +171,7 @@ void demand_ranges(Interpreter &ev) {
 void tell_unused_params(Interpreter &ev, SourceId root) {
     const ir::Scene &scene = ev.scene;
     if (ev.diagnostics.has_errors() || scene.top_level.empty() || !ev.only_shapes.empty()) return;
-    ParamReads reads(scene);
+    ir::ParamReads reads(scene);
     reads.form(scene.root);
     for (const ir::Material &m : scene.shapes.materials)
         for (ir::NodeId id : {m.diffuse, m.specular, m.exponent, m.emission}) reads.node(id);

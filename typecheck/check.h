@@ -85,6 +85,9 @@ struct Options {
     // Above 0: the scene is flat. Its shape2 are what there is, each the middle of a solid as thick
     // as this about z = 0, and solids are refused. 0: it is of solids.
     double flat_thickness = 0;
+    // Where params are declared that stand at their present values, as scene time sees them, and not
+    // for all of their ranges: they become structural.
+    std::vector<Span> at_values{};
     Limits limits;        // what the scene may cost before it is refused
     Stop *stop = nullptr; // where it stops, evaluation ends as at a limit, and nothing is reported
 };

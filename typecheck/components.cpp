@@ -99,13 +99,8 @@ std::optional<Value> element_as_known(Interpreter &ev, const Value &v, Span plac
     if (reads.params && !reads.point && !reads.normal && !reads.direction && !reads.time &&
         !reads.free_vars) {
         ir::Substitution values;
-        for (std::size_t i = 0; i < ev.scene.params.size(); ++i) {
-            ir::Constant c;
-            c.type = ev.scene.params[i].type;
-            std::copy(ev.scene.params[i].value.begin(), ev.scene.params[i].value.end(),
-                      c.value.begin());
-            values[ev.param_nodes[i]] = g.constant(c);
-        }
+        for (std::size_t i = 0; i < ev.scene.params.size(); ++i)
+            values[ev.param_nodes[i]] = g.constant(ev.scene.params[i].present());
         ir::NodeId known = ir::substitute(g, node_of(v), values);
         if (g.is_constant(known)) {
             std::vector<ir::NodeId> todo{node_of(v)};

@@ -406,10 +406,11 @@ void declare_param(Interpreter &ev, const File &ast, const lang::Param &param,
     ir::NodeId node =
         ev.scene.graph.param(static_cast<std::uint32_t>(ev.scene.params.size()), p.type);
     ev.param_nodes.push_back(node);
-    bool is_color = p.is_color;
-    ev.scene.params.push_back(std::move(p));
     Value v = make_value(ValueKind::Field, node.index);
-    v.color = is_color;
+    v.color = p.is_color;
+    p.structural = std::ranges::find(ev.options.at_values, p.origin) != ev.options.at_values.end();
+    if (p.structural) v = from_node(ev, ev.scene.graph.constant(p.present()), p.is_color);
+    ev.scene.params.push_back(std::move(p));
     declare(ev, frame, name, v, false, param.name.span);
 }
 

@@ -148,3 +148,67 @@ TEST_CASE("the solid does not depend on what the proof is for") {
     for (std::size_t i = 3; i < one.rgba.size(); i += 4) differ += one.rgba[i] != other.rgba[i];
     CHECK(differ <= 4);
 }
+
+TEST_CASE("a param whose range is refused, and its present value not, builds the scene anew") {
+    // a ball cut at a height: its arms meet for each, and that is not seen for all at once
+    const std::string cut = "implicit(p => {\n"
+                            "  let q = [length(p.xz), p.y]\n"
+                            "  let w = sqrt(1 - h * h)\n"
+                            "  let s = max((h - 1) * q.x * q.x + w * w * (h + 1 - 2 * q.y), "
+                            "h * q.x - w * q.y)\n"
+                            "  if s < 0 { length(q) - 1 } else if q.x < w { h - q.y } "
+                            "else { length(q - [w, h]) }\n"
+                            "}, within: ball(2))",
+                      beside = "\nparam r = 0.5 in 0.2..2\nsphere(r).translate(x: 3)\n",
+                      text = "param h = 0.3 in 0.2..0.4\n" + cut + beside;
+    driver::CompileOptions options;
+    const auto compiled = [&](const std::string &of) {
+        return driver::compile_text("scene.sdf", of, ".", options);
+    };
+    const auto codes = [](const driver::Compilation &made) {
+        std::vector<Code> out;
+        for (const Diagnostic &d : made.diagnostics.items()) out.push_back(d.code);
+        return out;
+    };
+
+    const auto slider = compiled(text), number = compiled("let h = 0.3\n" + cut + beside);
+    REQUIRE(slider.good());
+    REQUIRE(number.good());
+    CHECK(codes(slider) == std::vector{Code::RangeUnproved});
+    CHECK(codes(number).empty());
+    const Diagnostic &said = slider.diagnostics.items()[0];
+    CHECK(said.message.find("`h`") != std::string::npos);
+    CHECK(fathom::text(slider.sources, said.primary.span).starts_with("implicit(p"));
+    REQUIRE(slider.scene.params.size() == 2);
+    CHECK(slider.scene.params[0].structural);
+    CHECK_FALSE(slider.scene.params[1].structural); // the other stays a number of the shader
+    for (const char *value : {"0.2", "0.25", "0.4"}) {
+        options.overrides = {{"h", value}};
+        const auto moved = compiled(text);
+        INFO(value);
+        REQUIRE(moved.good());
+        CHECK(steepest(moved.scene, 0) <= 1.001);
+        CHECK(moved.scene.params[0].value[0] == Approx(std::stod(value)));
+    }
+
+    options = {};
+    options.strict_proof = true;
+    CHECK(codes(compiled(text)) == std::vector{Code::LipschitzUnbounded});
+    options.times = {0, 0}; // what is drawn once has no ranges
+    CHECK(compiled(text).good());
+    options.strict_proof = false;
+    CHECK(codes(compiled(text)).empty());
+
+    // refused at each value, or for something else: as it was
+    options = {};
+    CHECK(codes(compiled("param h = 0.3 in 0.2..0.4\n"
+                         "implicit(p => if p.x > h { 1 } else { -1 }, within: ball(2))\n")) ==
+          std::vector{Code::FieldJump});
+    CHECK(std::ranges::count(codes(compiled(text + "sphere(-1)\n")), Code::RangeUnproved) == 0);
+    CHECK_FALSE(compiled(text + "sphere(-1)\n").good());
+
+    // the ends of a taper are asked of the proof for whole ranges, so the solid would be another
+    const auto asked = compiled(text + "cylinder(0.5, 4 * h).taper(0.5).translate(x: -3)\n");
+    CHECK_FALSE(asked.good());
+    CHECK(codes(asked).front() == Code::LipschitzUnbounded);
+}
