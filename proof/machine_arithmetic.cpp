@@ -55,7 +55,7 @@ void Step::quotient() {
     for (int c = 0; c < n; ++c) {
         Interval x = value(0, c), y = value(1, c);
         odd_divisor = odd_divisor || odd(1, c);
-        if (zero(grad(1, c)) && zero(grad(0, c))) {
+        if (zero(grad(1, c)) && zero(grad(0, c)) && !y.contains(0)) {
             set(c, x / y, none);
             continue;
         }

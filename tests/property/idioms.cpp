@@ -32,11 +32,14 @@ std::vector<Idiom> idioms_in(const char *file) {
     return out;
 }
 
-// The bound within ball(2); nothing where it is refused.
+// The bound within ball(2), for all of its params' ranges; nothing where it is refused.
 std::optional<double> proved(const Idiom &idiom) {
     const driver::Compilation c =
         driver::compile_text("idiom.sdf", idiom.text + "implicit(f, within: ball(2))\n", "", {});
-    if (!c.good()) return {};
+    if (!c.good() || std::ranges::any_of(c.diagnostics.items(), [](const Diagnostic &d) {
+            return d.code == Code::RangeUnproved;
+        }))
+        return {};
     double bound = 0;
     for (std::size_t i = 0; i < c.scene.shapes.size(); ++i)
         if (c.scene.shapes[ir::ShapeId{i}].kind == ir::ShapeKind::Leaf)
@@ -87,6 +90,11 @@ slope that was found by trying. A dash: no bound is proved, and the field is ref
 // that is read. None may be proved.
 constexpr std::array near_misses = {
     "sign(p.x) * length(p.xy)",
+    // 0/0 wherever they are evaluated, or in a half
+    "p.y + min(abs(p.x), 0) * min(abs(p.x), 0) / (2 - 2.0)",
+    "max(p.x, p.y) + max(-abs(p.x - p.y), 0) * max(-abs(p.x - p.y), 0) / 0.0",
+    "p.y + max(p.x, 0) * max(p.x, 0) / max(p.x, 0)",
+    "p.y + min(time, 0) / min(time, 0)",
     "sign(p.x) * (abs(p.x) + 0.001)",
     "sign(p.x) * abs(p.x - 0.01)",
     "sign(p.y) * abs(p.x)",
