@@ -113,9 +113,20 @@ void Builder::generic_failure(Wanted wanted, Index at) {
     const bool exists = at < tokens_.tokens.size();
     if (exists && found == Tok::StrayBrace && foreign_record(at)) return;
     if (exists && found == Tok::StrayBrace) {
-        diagnostics_.add(Code::SyntaxError, span(at), "a block cannot stand here")
-            .note("`{` opens a block behind a callee, a header, a function's head or `=>`")
-            .help("to put shapes together, write `union { … }`");
+        Diagnostic &d = diagnostics_.add(Code::SyntaxError, span(at), "a block cannot stand here")
+                            .note("`{` opens a block behind a callee, a header, a function's head "
+                                  "or `=>`");
+        Index first = at; // of the statement
+        while (first > 0 && kind(first - 1) != Tok::End && tokens_.match[first - 1] < first)
+            first = tokens_.match[first - 1];
+        const bool is_value = at > first && kind(at - 1) == Tok::Assign;
+        if (is_value && kind(first) == Tok::Fn) // `fn f(x) = { … }`
+            d.help("a function's body in braces takes no `=`",
+                   {{{id_, token(at - 1).begin, token(at).begin}, ""}});
+        else if (is_value && kind(first) == Tok::Let) // `let a = { … }`
+            d.help("write its statements before it, or a function: `fn name() { … }`");
+        else
+            d.help("to put shapes together, write `union { … }`");
         return;
     }
     if (exists && found == Tok::Else) {
