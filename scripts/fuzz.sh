@@ -2,10 +2,10 @@
 # Builds a libFuzzer target with clang++ in build-fuzz/ and runs it for a minute: scripts/fuzz.sh TARGET [SECONDS]
 # Targets: parse_fuzz (text to tree), compile_fuzz (text to shader), agree_fuzz (what a text means, by every evaluator),
 # yaml_fuzz (save files), save_fuzz (save files to text and back), image_fuzz (images and grids), lsp_fuzz (messages to the
-# language server); `all` only builds them. What it finds is left in build-fuzz/ as crash-…; what it learns is kept in
+# language server). `build TARGETS…` only builds them. What it finds is left in build-fuzz/ as crash-…; what it learns is kept in
 # build-fuzz/TARGET_corpus.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
-target=${1:?which target: parse_fuzz, compile_fuzz, agree_fuzz, yaml_fuzz, save_fuzz, image_fuzz, lsp_fuzz or all}
+target=${1:?which target: parse_fuzz, compile_fuzz, agree_fuzz, yaml_fuzz, save_fuzz, image_fuzz, lsp_fuzz or build}
 seconds=${2:-60}
 build=$root/build-fuzz
 fuzz=$root/tests/fuzz
@@ -18,15 +18,16 @@ yaml_fuzz) length=4096 words=yaml.dict seeds=$fuzz/yaml_seeds ;;
 save_fuzz) length=4096 words=yaml.dict seeds="$fuzz/yaml_seeds $fuzz/corpus/save_fuzz" ;;
 image_fuzz) length=4096 words=image.dict seeds="$fuzz/image_seeds $fuzz/corpus/image_fuzz" ;;
 lsp_fuzz) length=2048 words=fathom.dict seeds=$fuzz/lsp_seeds more=$fuzz/seeds ;;
-all) ;;
+build) ;;
 *) echo "there is no target $target" >&2; exit 2 ;;
 esac
 . "$root/scripts/setup.sh"
 use_ccache
 cd "$root" || exit 3
 [ -e "$build/build.ninja" ] || cmake --preset fuzz || exit 3
-if [ "$target" = all ]; then
-    exec flock "$build" ninja -C "$build" parse_fuzz compile_fuzz agree_fuzz yaml_fuzz save_fuzz image_fuzz lsp_fuzz
+if [ "$target" = build ]; then
+    shift
+    exec flock "$build" ninja -C "$build" "$@"
 fi
 flock "$build" ninja -C "$build" "$target" || exit 3
 [ "$seconds" -ge 60 ] && seeds="$seeds $more"
