@@ -201,7 +201,6 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
         ir::end_loops_early(out.scene.graph);
         assert(ir::verify(out.scene).empty());
     }
-    enter(options, Phase::Done);
 }
 
 // The phases; and again, where the proof refuses the ranges of params, with these at their present
@@ -230,6 +229,7 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
 void compile_phases(Compilation &out, const Text &text, const CompileOptions &options) {
     try {
         run_phases(out, text, options);
+        if (!out.cancelled) enter(options, Phase::Done);
     } catch (const std::bad_alloc &) {
         out.scene = {};
         out.diagnostics
@@ -240,8 +240,6 @@ void compile_phases(Compilation &out, const Text &text, const CompileOptions &op
     }
 }
 
-// A save file stands for the text that an import makes of it; what is to be said of the file itself
-// joins the diagnostics.
 // Notes the parts of the save file that errors of its text belong to; false where none is new.
 bool note_unusable(const Compilation &out, SourceId text, const save::ImportResult &result,
                    std::map<std::uint32_t, std::string> &unusable) {
@@ -263,8 +261,9 @@ constexpr std::size_t max_compiled_bytes = std::size_t{4}
                                            << 20; // bytes of a save file that is compiled
 constexpr int max_attempts = 32; // at a save file, each without the parts refused before
 
-// The text of a save file, compiled; with those parts left out that no compiler takes, so that the
-// others are not lost with them.
+// A save file stands for the text that an import makes of it; what is to be said of the file itself
+// joins the diagnostics. Those parts are left out that no compiler takes, so that the others are not
+// lost with them.
 Compilation compile_imported(const std::string &name, const std::string &text,
                              const typecheck::Loader &loader, const std::string &identity,
                              save::ImportOptions &import, const CompileOptions &options) {

@@ -20,7 +20,8 @@ namespace fathom::driver {
 
 using typecheck::Override;
 
-// The phases of a compilation, in their order.
+// The phases of a compilation, in their order; from Check on again where the ranges of params are
+// refused and their present values are tried (semantics.md, 25).
 enum class Phase { Read, Check, Prove, Lower, Done };
 
 // Cells along a side for what is drawn often (CompileOptions::cells): pictures of files; what is

@@ -50,9 +50,10 @@ struct Param {
     enum class Type { Bool, Int, Float, Vec2, Vec3, Vec4 };
     std::string name, label;
     Type type = Type::Float;
-    bool color = false;      /**< a Vec3 that is a linear colour */
-    bool ranged = false;     /**< `lo` and `hi` are given; else they are infinite */
-    bool structural = false; /**< it decides what shapes there are: setting it compiles anew */
+    bool color = false;  /**< a Vec3 that is a linear colour */
+    bool ranged = false; /**< `lo` and `hi` are given; else they are infinite */
+    bool structural =
+        false; /**< it decides what shapes there are, or its range is not proved: setting it compiles anew */
     std::array<double, 4> value{}, initial{}, lo{}, hi{};
 };
 
@@ -125,7 +126,8 @@ class FATHOM_API ProofCache {
 };
 
 /** What a compilation does at present: reads the text, evaluates it, proves its bounds, makes the
- *  functions that are evaluated. */
+ *  functions that are evaluated. Check and Prove come again where a param's range is refused and its
+ *  present value is tried. */
 enum class Phase { Read, Check, Prove, Lower, Done };
 
 struct CompileOptions {

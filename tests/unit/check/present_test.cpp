@@ -171,7 +171,14 @@ TEST_CASE("a param whose range is refused, and its present value not, builds the
         return out;
     };
 
+    using driver::Phase;
+    std::vector<Phase> phases;
+    options.entered = [&](Phase phase) { phases.push_back(phase); };
     const auto slider = compiled(text), number = compiled("let h = 0.3\n" + cut + beside);
+    CHECK(phases == std::vector{Phase::Check, Phase::Prove, Phase::Check, Phase::Prove,
+                                Phase::Lower, Phase::Done, Phase::Check, Phase::Prove, Phase::Lower,
+                                Phase::Done});
+    options.entered = {};
     REQUIRE(slider.good());
     REQUIRE(number.good());
     CHECK(codes(slider) == std::vector{Code::RangeUnproved});
