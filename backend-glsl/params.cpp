@@ -77,8 +77,8 @@ void note_fixed_params(const ir::Scene &scene, const Options &options, Diagnosti
         if (!param.structural || chosen.contains(param.name)) continue;
         diagnostics
             .add(Code::FixedParam, param.origin,
-                 "`" + param.name + "` decides what there is, so the `" + target.name +
-                     "` text holds it as a constant, " + value_text(param))
+                 "each value of `" + param.name + "` is a scene of its own, so the `" +
+                     target.name + "` text holds it as a constant, " + value_text(param))
             .help("`-D " + param.name + "=…` writes the text for another value" +
                   (param.has_range ? " of " + range_text(param) : ""));
     }

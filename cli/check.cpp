@@ -21,8 +21,12 @@ std::string_view word_of(v1::Status status) {
     return "";
 }
 
-std::string verdict_line(const v1::Facts &facts, const std::string &file) {
-    return fmt::format("{}: ok, {}{}{}", file, word_of(facts.status),
+std::string verdict_line(const v1::CompileResult &result, const std::string &file) {
+    const v1::Facts &facts = result.scene->facts();
+    const bool at_values =
+        std::ranges::count(result.diagnostics, "range-unproved", &v1::Diagnostic::code) > 0;
+    return fmt::format("{}: ok, {}{}{}{}", file, word_of(facts.status),
+                       at_values ? " at the present values" : "",
                        facts.lipschitz ? fmt::format(", lipschitz {:.6g}", *facts.lipschitz) : "",
                        facts.exact ? ", exact" : "");
 }
@@ -56,10 +60,10 @@ void explain_axioms(const v1::Facts &facts, Terminal &terminal) {
 
 void explain_params(const v1::Scene &scene, Terminal &terminal) {
     for (const v1::Param &param : scene.params())
-        terminal.put(fmt::format("param {}: {}\n", param.name,
-                                 param.structural
-                                     ? "decides what there is: moving it builds the scene anew"
-                                     : "a number of the shader: moving it costs nothing"));
+        terminal.put(fmt::format(
+            "param {}: {}\n", param.name,
+            param.structural ? "each value is a scene of its own: moving it builds the scene anew"
+                             : "a number of the shader: moving it costs nothing"));
 }
 
 void explain_pruning(const v1::Scene &scene, Terminal &terminal) {
@@ -91,7 +95,7 @@ Exit say(const CheckCommand &command, const SceneArguments &scene, const v1::Com
         const Exit exit = report(result, terminal);
         if (exit != done) return exit;
         if (command.explain) explain(*result.scene, terminal);
-        if (!command.json) terminal.say(verdict_line(result.scene->facts(), scene.file));
+        if (!command.json) terminal.say(verdict_line(result, scene.file));
     }
     if (command.json) terminal.put(v1::verdict_json(result));
     return result ? done : scene_error;

@@ -44,9 +44,9 @@ void enter(const CompileOptions &options, Phase phase) {
     if (options.entered) options.entered(phase);
 }
 
-// What the proofs of one compilation share.
+// What the attempts at one compilation and their proofs share: what is left of the limits.
 struct Effort {
-    std::size_t work;
+    std::size_t work, evaluations;
     proof::BoundCache &bounds;
     Stop stop;
     std::vector<ir::ShapeId> asked{}; // what prove_one was asked of
@@ -76,6 +76,7 @@ typecheck::Options check_options(const CompileOptions &options, Effort &effort) 
     typecheck::Options result;
     result.overrides = options.overrides;
     result.limits = options.limits;
+    result.limits.work = effort.evaluations;
     result.flat_thickness = options.flat_thickness;
     result.stop = &effort.stop;
     result.lipschitz = [&effort](ir::Scene &scene, ir::ShapeId shape) -> std::optional<double> {
@@ -150,7 +151,8 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
     out.scene = std::move(checked.scene);
     out.usage_errors = std::move(checked.usage_errors);
     out.names = std::move(checked.names);
-    out.evaluations = checked.evaluations;
+    effort.evaluations -= std::min(effort.evaluations, checked.evaluations);
+    out.evaluations += checked.evaluations;
     if (effort.stop.now()) return cancel(out);
     if (checked.over_limit) return;
     // What checked is proved also where other statements did not: all errors in one run.
@@ -164,8 +166,8 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
     proof_options.cells = options.cells;
     if (options.times)
         proof_options.times = ir::Interval(options.times->first, options.times->second);
-    out.proof_steps = options.limits.proof - effort.work +
-                      proof::prove(out.scene, out.diagnostics, proof_options);
+    effort.work -= proof::prove(out.scene, out.diagnostics, proof_options);
+    out.proof_steps = options.limits.proof - effort.work;
     if (effort.stop.now()) return cancel(out);
     if (out.good()) {
         enter(options, Phase::Lower);
@@ -204,24 +206,24 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
 }
 
 // The phases; and again, where the proof refuses the ranges of params, with these at their present
-// values. What is drawn once is proved for these alone, and nothing is said.
+// values, as far as the limits are not spent. What is drawn once is proved for these alone, and
+// nothing is said.
 void run_phases(Compilation &out, const Text &text, const CompileOptions &options) {
     proof::BoundCache own;
-    const Effort whole{options.limits.proof, options.bounds ? *options.bounds : own,
-                       Stop(options.cancelled)};
-    Effort first = whole, second = whole;
+    Effort effort{options.limits.proof, options.limits.work, options.bounds ? *options.bounds : own,
+                  Stop(options.cancelled)};
     Compilation again;
     again.sources = out.sources, again.diagnostics = out.diagnostics;
-    run_phases(out, text, options, first, {});
+    run_phases(out, text, options, effort, {});
     if (out.cancelled || !out.diagnostics.has_errors() || (options.strict_proof && !options.times))
         return;
-    const std::vector<Span> params = unproved_ranges(out.scene, out.diagnostics, first.asked);
+    const std::vector<Span> params = unproved_ranges(out.scene, out.diagnostics, effort.asked);
     if (params.empty()) return;
-    run_phases(again, text, options, second, params);
+    again.evaluations = out.evaluations;
+    run_phases(again, text, options, effort, params);
     if (again.cancelled) return cancel(out);
     if (!again.good()) return;
     if (!options.times) warn_of_ranges(out.scene, out.diagnostics, params, again.diagnostics);
-    again.proof_steps += out.proof_steps, again.evaluations += out.evaluations;
     out = std::move(again);
 }
 

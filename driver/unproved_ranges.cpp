@@ -23,8 +23,8 @@ std::vector<Span> unproved_ranges(const ir::Scene &refused, const Diagnostics &e
                !std::isfinite(refused.facts[id.index].lipschitz_sup);
     };
     ir::ParamReads reads(refused);
-    for (std::size_t i = 0; i < refused.facts.size();
-         ++i) { // the lowest: what stands on them fails too
+    // the lowest: what stands on them fails too
+    for (std::size_t i = 0; i < refused.facts.size(); ++i) {
         const ir::ShapeId id{i};
         if (failed(id) && std::ranges::none_of(refused.shapes[id].children, failed)) reads.form(id);
     }

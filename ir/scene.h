@@ -5,6 +5,7 @@
 
 #include "ir/shape.h"
 
+#include <algorithm>
 #include <map>
 
 namespace fathom::ir {

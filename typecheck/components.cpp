@@ -1,4 +1,5 @@
 // Vectors by their components: swizzles, vectors of parts, and single elements as known numbers.
+#include "ir/passes/param_reads.h"
 #include "ir/passes/walk.h"
 #include "typecheck/interpreter.h"
 
@@ -103,16 +104,10 @@ std::optional<Value> element_as_known(Interpreter &ev, const Value &v, Span plac
             values[ev.param_nodes[i]] = g.constant(ev.scene.params[i].present());
         ir::NodeId known = ir::substitute(g, node_of(v), values);
         if (g.is_constant(known)) {
-            std::vector<ir::NodeId> todo{node_of(v)};
-            std::unordered_map<std::uint32_t, bool> seen;
-            while (!todo.empty()) {
-                ir::NodeId n = todo.back();
-                todo.pop_back();
-                if (seen[n.index]) continue;
-                seen[n.index] = true;
-                if (g[n].op == Op::Param) ev.scene.params[g[n].payload].structural = true;
-                for (ir::NodeId a : g.args(n)) todo.push_back(a);
-            }
+            ir::ParamReads reads_of(ev.scene);
+            reads_of.node(node_of(v));
+            for (std::size_t i = 0; i < ev.scene.params.size(); ++i)
+                if (reads_of.used(i)) ev.scene.params[i].structural = true;
             return from_node(ev, known, v.color);
         }
     }

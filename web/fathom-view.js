@@ -531,7 +531,7 @@ function controls(view, panel, state, inputs, animated, end) {
   for (const p of inputs) {
     if (p.values && p.values.length === 1) {
       const fixed = p.type === "bool" ? String(p.first[0] !== 0) : p.first.map(short).join(", ");
-      make("p", p.label + " = " + fixed + " (fixed here: it decides what there is)", panel);
+      make("p", p.label + " = " + fixed + " (fixed here: each value is a scene of its own)", panel);
       continue;
     }
     const label = make("label", "", panel);

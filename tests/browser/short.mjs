@@ -65,7 +65,7 @@ const tests = {
     await near(await picture(page), bytes(rendered("scene", "-D", "many=3", "-D", "holed=false")), "three with a torus");
     await apart(await picture(page), first, "three with a torus look like the first");
     const fixed = await view(page, v => [...v.shadowRoot.querySelectorAll("details p")].map(p => p.textContent));
-    same(fixed, ["far = 0 (fixed here: it decides what there is)"], "what is fixed");
+    same(fixed, ["far = 0 (fixed here: each value is a scene of its own)"], "what is fixed");
     quiet(page);
     await page.close();
   },

@@ -365,6 +365,13 @@ TEST_CASE("a param that a shader holds as a constant is said, with its place and
     CHECK(shell(folder, "fathom compile counted.sdf --target spirv -o a.spv").exit == 0);
     CHECK(shell(folder, "fathom check counted.sdf").err ==
           "counted.sdf: ok, proved, lipschitz 1, exact\n");
+    // … and of a field that is proved at its value alone
+    folder.write("divided.sdf", "param k = 0.2 in 0..1\nimplicit(p => length(p) - 1 + "
+                                "0.01 * sin(p.x / k), within: ball(2))\n");
+    const Result divided = shell(folder, "fathom check divided.sdf");
+    CHECK(divided.exit == 0);
+    CHECK(contains(divided.err, "warning[range-unproved]"));
+    CHECK(contains(divided.err, "divided.sdf: ok, proved at the present values, lipschitz 1.05"));
 }
 
 TEST_CASE("a cell that cannot vanish stays a slider, one that can decides what there is") {

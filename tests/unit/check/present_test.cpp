@@ -206,6 +206,13 @@ TEST_CASE("a param whose range is refused, and its present value not, builds the
     options.strict_proof = false;
     CHECK(codes(compiled(text)).empty());
 
+    // both attempts together take no more than the limits allow
+    options = {};
+    CHECK(slider.proof_steps > number.proof_steps);
+    CHECK(slider.evaluations > number.evaluations);
+    options.limits.proof = slider.proof_steps - number.proof_steps * 3 / 4;
+    CHECK(codes(compiled(text)) == std::vector{Code::LipschitzUnbounded});
+
     // refused at each value, or for something else: as it was
     options = {};
     CHECK(codes(compiled("param h = 0.3 in 0.2..0.4\n"
