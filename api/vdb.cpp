@@ -36,7 +36,8 @@ FathomWriteVdb load(std::string &why) {
         why = fmt::format("{}: {}", file.string(), error ? error : "it is no module of Fathom's");
         return nullptr;
     }
-    why = "this Fathom was built without OpenVDB: build it where libopenvdb-dev is, or write .nrrd";
+    why = "this Fathom was built without OpenVDB: build it where libopenvdb-dev and libboost-dev "
+          "are, or write .nrrd";
     return nullptr;
 }
 

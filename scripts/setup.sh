@@ -3,7 +3,7 @@
 
 # To build and to run. Mesa draws without a graphics card and without a display.
 build_packages="g++ cmake ninja-build ccache pkg-config libfmt-dev tao-pegtl-dev libcli11-dev libglfw3-dev libimgui-dev
-libepoxy-dev libegl-dev libyaml-dev glslang-dev libglm-dev nlohmann-json3-dev libfast-float-dev spirv-tools libpng-dev libjpeg-dev libzip-dev libmeshoptimizer-dev libopenexr-dev libopenvdb-dev catch2 libegl1 libgl1-mesa-dri
+libepoxy-dev libegl-dev libyaml-dev glslang-dev libglm-dev nlohmann-json3-dev libfast-float-dev spirv-tools libpng-dev libjpeg-dev libzip-dev libmeshoptimizer-dev libopenexr-dev libopenvdb-dev libboost-dev catch2 libegl1 libgl1-mesa-dri
 pybind11-dev python3-dev"
 # To test: a display of our own for the viewer, a second compiler for the fuzzers, a newer one with its own standard library
 # for .ci/run (libc++ 14 lacks the algorithms on ranges), a browser and what drives it; programs that judge meshes and volumes.
